@@ -1,0 +1,138 @@
+#include "config.hpp"
+
+#include <array>
+#include <bit>
+#include <charconv>
+
+#include "widths.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::array<std::string_view, 2> kColorFormatNames{"rgb565", "rgba8888"};
+
+const std::array kSettings{
+    Setting{"subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12, &Config::subpixel_bits},
+    Setting{"guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16, 1 << 20,
+            &Config::guard_band},
+    Setting{"target.width", "pixels", "widest target", 1, 16384, &Config::target_width},
+    Setting{"target.height", "pixels", "highest target", 1, 16384, &Config::target_height},
+    Setting{"depth.bits", "bits", "bits B of a stored depth code", 8, 32, &Config::depth_bits},
+    Setting{"plane.local_guard_bits", "bits", "fraction bits of a plane stepped inside one tile", 4, 12,
+            &Config::local_guard_bits},
+    Setting{"reciprocal.extra_bits", "bits", "significant bits of 1/area beyond depth.bits", 2, 12,
+            &Config::reciprocal_extra_bits},
+    Setting{"color.format", "rgb565|rgba8888", "layout of a stored colour", 0, 0, &Config::color_format},
+    Setting{"tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32, &Config::tile_size},
+    Setting{"stamp.size", "pixels", "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8, &Config::stamp_size},
+    Setting{"key.primitive_bits", "bits", "bits of the primitive number in an RTL packet key", 4, 32,
+            &Config::primitive_id_bits},
+    Setting{"context.slots", "slots", "triangles whose constants the context RAM holds; a power of two", 2, 64,
+            &Config::context_slots},
+};
+
+constexpr std::array<std::string_view, 3> kPresetNames{"tiny", "embedded", "full"};
+
+std::string joined(std::span<const std::string_view> names) {
+  std::string text;
+  for (const auto name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+int parse_int(const Setting& setting, std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string range = std::to_string(setting.min) + "..." + std::to_string(setting.max);
+  if (error == std::errc::invalid_argument || end != text.data() + text.size())
+    throw InputError(std::string(setting.key) + ": '" + std::string(text) + "' is not a whole number; give " + range);
+  if (error == std::errc::result_out_of_range || value < setting.min || value > setting.max)
+    throw InputError(std::string(setting.key) + ": " + std::string(text) + " is outside its range; give " + range);
+  return value;
+}
+
+void refuse_unless(bool holds, const std::string& message) {
+  if (!holds) throw InputError("configuration refused: " + message);
+}
+
+void require_bits(const Width& width, int bits, std::string_view holder) {
+  refuse_unless(width.bits <= bits, std::string(width.name) + " needs " + std::to_string(width.bits) + " bits (bound: " +
+                                        std::string(width.bound) + "), but " + std::string(holder) + " has " +
+                                        std::to_string(bits) + "; lower subpixel.bits, guard.band or depth.bits");
+}
+
+bool is_power_of_two(int value) { return std::has_single_bit(static_cast<unsigned>(value)); }
+
+}  // namespace
+
+std::span<const Setting> settings() { return kSettings; }
+
+std::span<const std::string_view> preset_names() { return kPresetNames; }
+
+Config preset(std::string_view name) {
+  Config config;
+  if (name == "embedded") return config;
+  config.preset = name;
+  if (name == "tiny") {
+    config.subpixel_bits = 2;
+    config.guard_band = 32;
+    config.target_width = config.target_height = 16;
+    config.depth_bits = 8;
+    config.stamp_size = 1;
+    return config;
+  }
+  if (name == "full") {
+    config.subpixel_bits = 8;
+    config.guard_band = 8192;
+    config.target_width = config.target_height = 4096;
+    config.depth_bits = 24;
+    config.color_format = ColorFormat::rgba8888;
+    config.stamp_size = 4;
+    return config;
+  }
+  throw InputError("no preset '" + std::string(name) + "'; the presets are " + joined(kPresetNames));
+}
+
+std::string get(const Config& config, const Setting& setting) {
+  if (const auto* number = std::get_if<int Config::*>(&setting.member)) return std::to_string(config.**number);
+  const auto format = config.*std::get<ColorFormat Config::*>(setting.member);
+  return std::string(kColorFormatNames[static_cast<std::size_t>(format)]);
+}
+
+void set(Config& config, std::string_view key, std::string_view value) {
+  for (const Setting& setting : kSettings) {
+    if (setting.key != key) continue;
+    if (const auto* number = std::get_if<int Config::*>(&setting.member)) {
+      config.**number = parse_int(setting, value);
+      return;
+    }
+    for (std::size_t i = 0; i < kColorFormatNames.size(); ++i) {
+      if (kColorFormatNames[i] != value) continue;
+      config.*std::get<ColorFormat Config::*>(setting.member) = static_cast<ColorFormat>(i);
+      return;
+    }
+    throw InputError(std::string(key) + ": no value '" + std::string(value) + "'; give " + joined(kColorFormatNames));
+  }
+  throw InputError("no setting '" + std::string(key) + "'; `halfplane config --list` shows them all");
+}
+
+void validate(const Config& config) {
+  for (const Setting& setting : kSettings)  // a Config built in code has not passed through set()
+    if (const auto* number = std::get_if<int Config::*>(&setting.member))
+      (void)parse_int(setting, std::to_string(config.**number));
+  refuse_unless(is_power_of_two(config.guard_band), "guard.band must be a power of two");
+  refuse_unless(is_power_of_two(config.tile_size), "tile.size must be 4, 8, 16 or 32");
+  refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
+  refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
+  refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
+  refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
+                "the target must lie inside the guard band: target.width and target.height <= guard.band");
+  const Widths widths = derive_widths(config);
+  require_bits(widths.coordinate, 32, "a packet's coordinate");
+  require_bits(widths.area, 63, "a 64-bit lane");
+  require_bits(widths.edge_value, 64, "a 64-bit lane");
+  require_bits(widths.sample_edge, 32, "a 32-bit lane");
+  require_bits(widths.depth_plane, 64, "a 64-bit lane");
+  require_bits(widths.depth_product, 127, "a 128-bit product");
+}
+
+}  // namespace halfplane

@@ -1,0 +1,68 @@
+// The ONE authored configuration. Everything else that has a width (C++ lanes, raster_pkg.sv, the table in docs/spec.md)
+// is derived from it by model/widths.hpp.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace halfplane {
+
+/// Thrown where input enters (files, options, configurations); what() is one line that names the place and the mend.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Layout of a stored colour. rgb565: R in bits 15...11. rgba8888: R in the lowest byte, so memory order is R, G, B, A.
+enum class ColorFormat : int { rgb565, rgba8888 };
+
+/// A hardware configuration. The default is the `embedded` preset.
+struct Config {
+  std::string preset = "embedded";  ///< the preset the values started from
+  int subpixel_bits = 4;            ///< S: fraction bits of a snapped window coordinate
+  int guard_band = 2048;            ///< window coordinates lie in [-guard_band, guard_band) pixels; a power of two
+  int target_width = 1920;          ///< widest target, pixels
+  int target_height = 1080;         ///< highest target, pixels
+  int depth_bits = 16;              ///< B: bits of a stored depth code
+  int local_guard_bits = 6;         ///< fraction bits of a plane stepped inside one tile
+  int reciprocal_extra_bits = 4;    ///< the reciprocal of the area has depth_bits + this many significant bits
+  ColorFormat color_format = ColorFormat::rgb565;
+  int tile_size = 8;         ///< pixels along the side of a tile
+  int stamp_size = 2;        ///< pixels along the side of the stamp that fine_raster tests in one clock
+  int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
+  int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
+
+  bool operator==(const Config&) const = default;
+};
+
+/// One setting: its key in TOML and `--set`, its range, and where it lives.
+struct Setting {
+  std::string_view key;      ///< "depth.bits"
+  std::string_view unit;     ///< "bits", "pixels", ...
+  std::string_view meaning;  ///< one line for `halfplane config --list`
+  int min;                   ///< smallest legal value (numbers only)
+  int max;                   ///< largest legal value (numbers only)
+  std::variant<int Config::*, ColorFormat Config::*> member;
+};
+
+/// Every setting, in the order in which `config --list` prints them.
+[[nodiscard]] std::span<const Setting> settings();
+
+/// The names that preset() takes: tiny, embedded, full.
+[[nodiscard]] std::span<const std::string_view> preset_names();
+
+/// The preset of that name. Throws InputError when there is none.
+[[nodiscard]] Config preset(std::string_view name);
+
+/// The value of one setting, as it is written in TOML and on the command line.
+[[nodiscard]] std::string get(const Config& config, const Setting& setting);
+
+/// Changes one setting by key. Throws InputError for an unknown key or a value outside its range; `config` is then unchanged.
+void set(Config& config, std::string_view key, std::string_view value);
+
+/// Checks what no single range can: combinations that could overflow are refused, naming the bound. Throws InputError.
+void validate(const Config& config);
+
+}  // namespace halfplane

@@ -1,0 +1,68 @@
+// What every engine of the model takes and gives: one interface, so that engines can be exchanged and compared.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "../config.hpp"
+#include "../packets.hpp"
+#include "../scene.hpp"
+#include "../stages/framebuffer.hpp"
+
+namespace halfplane {
+
+/// What an engine may leave out when it cannot change the image. Each has a counter of the same name.
+struct Skip {
+  bool frustum = true;              ///< triangles wholly outside one clip plane skip the clipper
+  bool empty = true;                ///< triangles whose box holds no pixel centre skip setup
+  bool tiles_outside = true;        ///< tiles wholly outside one edge skip the fine raster
+  bool trivially_accepted = true;   ///< tiles wholly inside all edges skip the edge tests
+  bool fragments_early_z = true;    ///< fragments that fail the depth test skip the other attributes
+  bool operator==(const Skip&) const = default;
+};
+
+/// Work done and work saved. See CONTRACT.md for the JSON keys.
+struct Counters {
+  std::uint64_t primitives_in = 0, culled = 0, drawn = 0, clipped = 0;
+  std::uint64_t covered = 0;        ///< samples that the fine raster produced
+  std::uint64_t depth_passed = 0;   ///< in program order: equal for every engine and skip setting
+  std::uint64_t written = 0;        ///< fragments that changed colour or depth memory, in program order
+  std::uint64_t samples_tested = 0; ///< samples whose edge functions were evaluated
+  std::uint64_t tiles_visited = 0;  ///< primitive-tile visits, those skipped included
+  struct {
+    std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
+                  fragments_early_z = 0;
+  } skipped;
+};
+
+/// Which samples of one tile a triangle covers: bit i of row j. Rows beyond the tile size are 0.
+using TileMask = std::array<std::uint32_t, 32>;
+
+/// Called for every tile visit that produced coverage, in the engine's order: index into Rendering::triangles, tile
+/// column, tile row, mask.
+using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask)>;
+
+struct RenderOptions {
+  Skip skip;
+  bool want_count = false;      ///< fill Rendering::count
+  bool want_ids = false;        ///< fill Rendering::ids
+  bool want_triangles = false;  ///< keep Rendering::triangles (and fill `visible` beside `ids`)
+  CoverageTap coverage_tap;     ///< implies want_triangles
+  std::function<void(double fraction)> progress;  ///< 0...1, called a few times a second at most; may be empty
+
+  [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap; }
+};
+
+struct Rendering {
+  Framebuffer frame;
+  Counters counters;
+  std::vector<std::uint32_t> count;   ///< covered samples per pixel before the depth test, width * height
+  std::vector<std::int32_t> ids;      ///< input triangle that owns the stored colour or depth, -1 none, width * height
+  std::vector<std::int32_t> visible;  ///< index into `triangles` of the same, -1 none, width * height
+  std::vector<Triangle> triangles;    ///< every triangle that reached setup, in program order
+  double geometry_s = 0, raster_s = 0;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,11 @@
+// The scalar engine: the stages, one packet at a time. Slow, short, and the specification of every other engine.
+#pragma once
+
+#include "render.hpp"
+
+namespace halfplane {
+
+/// As render_functional, with the same image, counts and ids, bit for bit.
+[[nodiscard]] Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options = {});
+
+}  // namespace halfplane

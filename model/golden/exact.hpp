@@ -1,0 +1,40 @@
+// The exact oracle: coverage and attribute planes of one snapped triangle in integers and rationals, straight from the
+// definition. No stepping, no canonical order, no shared code with the stages or the golden: it judges both.
+//
+// Bounds, with |X|, |Y| < 2^31 subpixels and codes < 2^32: differences < 2^32, products < 2^64, edge values and areas
+// < 2^65, plane numerators < 2^65 * 2^32 * 3 < 2^99, on the grid of 2^-20 LSB < 2^120: all fit int128.
+#pragma once
+
+#include <cstdint>
+
+#include "../fixed.hpp"
+#include "../packets.hpp"
+
+namespace halfplane::exact {
+
+/// Fraction bits of the grid on which errors are held: fine enough that its half step never shows in a reported digit.
+inline constexpr int kGridBits = 20;
+
+/// An exact quotient, denominator > 0.
+struct Rational {
+  int128 numerator = 0;
+  int128 denominator = 1;
+};
+
+/// Does the triangle cover the centre of pixel (x, y)? Both orientations; zero area covers nothing. Coordinates in
+/// units of 2^-grid_bits pixel, grid_bits >= 1 (Widths::grid_bits).
+[[nodiscard]] bool covers(const Triangle& triangle, int x, int y, int grid_bits);
+
+/// Is that centre on the closed triangle's border: exactly on an edge or a vertex?
+[[nodiscard]] bool is_on_border(const Triangle& triangle, int x, int y, int grid_bits);
+
+/// The plane through the three snapped vertices' depth codes at that centre, in depth LSB. The area must not be zero.
+[[nodiscard]] Rational depth_at(const Triangle& triangle, int x, int y, int grid_bits);
+
+/// The same through the 8-bit colour codes of one channel, in LSB of 8 bits.
+[[nodiscard]] Rational color_at(const Triangle& triangle, int x, int y, int grid_bits, int channel);
+
+/// floor(value * scale_numerator / scale_denominator * 2^kGridBits + 1/2), scale_numerator < 2^7.
+[[nodiscard]] std::int64_t on_grid(const Rational& value, int scale_numerator = 1, int scale_denominator = 1);
+
+}  // namespace halfplane::exact

@@ -1,0 +1,60 @@
+// The float golden model: what the scene looks like without snap, quantization or fixed-point arithmetic (image U).
+//
+// Its own code, on purpose: it shares the scene, the configuration and the framebuffer type with the model, and no
+// stage. The docs call the pixel values "real"; here they are binary64, contraction off.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "../config.hpp"
+#include "../engines/render.hpp"
+#include "../scene.hpp"
+
+namespace halfplane::golden {
+
+/// binary64 is the reference. binary32 is what a GPU's single precision would show: it cannot judge a 24-bit depth.
+enum class Precision { binary64, binary32 };
+
+/// Where a triangle of the golden lies, after clipping: for distances to edges and for eye-space depth.
+struct Outline {
+  std::uint32_t primitive = 0;     ///< input triangle, over the whole scene
+  std::uint32_t draw = 0;          ///< index into Scene::commands
+  std::array<double, 3> x{}, y{};  ///< pixels, y down
+  std::array<double, 3> z{};       ///< window depth, 0...1
+  std::array<double, 3> inverse_w{};
+};
+
+/// All per-pixel vectors have width * height entries, rows from the top.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint32_t> count;  ///< covered samples before the depth test
+  std::vector<std::int32_t> ids;     ///< input triangle that owns the stored colour or depth, -1 none
+  std::vector<double> depth;         ///< depth LSB: z * (2^B - 1), not rounded
+  std::vector<std::array<double, 4>> affine, perspective;  ///< colour, 0...255, not rounded, by either rule
+  Framebuffer frame;                                       ///< the same, rounded to the stored formats
+  Counters counters;              ///< primitives, covered, samples_tested, depth_passed, written
+  std::vector<Outline> outlines;  ///< triangles that were not culled, if asked for
+};
+
+struct Options {
+  Precision precision = Precision::binary64;
+  bool want_outlines = false;
+  std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 triangles or so; may be empty
+};
+
+/// Renders every command in program order. Throws InputError for a target that the configuration does not hold: each of
+/// its pixels costs 100 bytes here.
+[[nodiscard]] Image render(const Scene& scene, const Config& config, const Options& options);
+[[nodiscard]] Image render(const Scene& scene, const Config& config, Precision precision = Precision::binary64);
+
+/// The largest code of a channel in the stored format: 31, 63, 31, 255 or 255 each. rgb565 stores no alpha.
+[[nodiscard]] std::array<int, 4> channel_max(ColorFormat format);
+[[nodiscard]] int channel_count(ColorFormat format);
+
+/// One channel of a stored colour code.
+[[nodiscard]] int stored_channel(std::uint32_t color, ColorFormat format, int channel);
+
+}  // namespace halfplane::golden

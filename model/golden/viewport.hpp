@@ -1,0 +1,74 @@
+// Golden viewport: perspective divide, viewport transform, depth range; and the pixels that a draw may touch.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "../scene.hpp"
+#include "clip.hpp"
+
+namespace halfplane::golden {
+
+/// A vertex on the screen, not snapped.
+template <class Real>
+struct ScreenVertex {
+  Real x = 0, y = 0;  ///< pixels, y down
+  Real z = 0;         ///< window depth, 0...1
+  Real inverse_w = 1;
+  std::array<Real, 4> rgba{};  ///< 0...255
+};
+
+/// Pixels in half-open ranges.
+struct PixelBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  [[nodiscard]] bool empty() const { return left >= right || top >= bottom; }
+};
+
+[[nodiscard]] inline PixelBox intersect(const PixelBox& a, const PixelBox& b) {
+  return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
+}
+
+/// The first pixel whose centre is at or right of (below) `position`; held inside 0...limit.
+[[nodiscard]] inline int first_centre(double position, int limit) {
+  return static_cast<int>(std::clamp(std::ceil(position - 0.5), 0.0, static_cast<double>(limit)));
+}
+
+/// The pixels whose centres lie in the box [left, right) x [top, bottom), inside the target.
+[[nodiscard]] inline PixelBox pixel_box(double left, double top, double right, double bottom, const Scene& scene) {
+  return {first_centre(left, scene.width), first_centre(top, scene.height), first_centre(right, scene.width),
+          first_centre(bottom, scene.height)};
+}
+
+/// Target and scissor: what a clear fills.
+[[nodiscard]] inline PixelBox clear_region(const Scene& scene, const State& state) {
+  if (!state.scissor) return {0, 0, scene.width, scene.height};
+  const double x = state.scissor->x, y = state.scissor->y;  // double: x + width may not fit an int
+  return pixel_box(x, y, x + state.scissor->width, y + state.scissor->height, scene);
+}
+
+[[nodiscard]] inline Viewport viewport_of(const Scene& scene, const State& state) {
+  return state.viewport.value_or(Viewport{0, 0, static_cast<double>(scene.width), static_cast<double>(scene.height)});
+}
+
+/// Target, scissor and, in clip space, the viewport: what a draw may touch.
+[[nodiscard]] inline PixelBox draw_region(const Scene& scene, const State& state) {
+  const PixelBox box = clear_region(scene, state);
+  if (state.space == Space::window) return box;
+  const Viewport vp = viewport_of(scene, state);
+  return intersect(box, pixel_box(vp.x, vp.y, vp.x + vp.width, vp.y + vp.height, scene));
+}
+
+template <class Real>
+[[nodiscard]] ScreenVertex<Real> to_screen(const ClipVertex<Real>& v, const State& state, const Viewport& vp) {
+  // Divided, not multiplied by 1 / w: a vertex exactly on a pixel centre stays there.
+  const auto& [clip_x, clip_y, clip_z, w] = v.position;
+  const Real x = clip_x / w, y = clip_y / w, z = clip_z / w;
+  const auto near = static_cast<Real>(state.depth_range[0]), far = static_cast<Real>(state.depth_range[1]);
+  const Real depth = state.clip_z == ClipZ::zero_one ? z : (z + 1) / 2;
+  return {static_cast<Real>(vp.x) + (x + 1) / 2 * static_cast<Real>(vp.width),
+          static_cast<Real>(vp.y) + (1 - y) / 2 * static_cast<Real>(vp.height), near + (far - near) * depth, 1 / w,
+          v.rgba};
+}
+
+}  // namespace halfplane::golden

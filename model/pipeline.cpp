@@ -1,0 +1,188 @@
+#include "pipeline.hpp"
+
+#include <algorithm>
+
+namespace halfplane {
+namespace {
+
+/// A clipped polygon after the snap.
+struct SnappedPolygon {
+  std::array<SnappedVertex, 9> v;
+  int size = 0;
+  [[nodiscard]] const SnappedVertex& at(int i) const { return v[static_cast<std::size_t>(i % size)]; }
+  [[nodiscard]] std::int64_t fan_area(int start, int i) const {
+    return signed_area(at(start), at(start + i), at(start + i + 1));
+  }
+};
+
+std::int64_t total_area(const SnappedPolygon& polygon) {
+  std::int64_t sum = 0;
+  for (int i = 1; i + 1 < polygon.size; ++i) sum += polygon.fan_area(0, i);
+  return sum;
+}
+
+/// The snap can dent a convex polygon by a subpixel, and a fan across the dent would draw some pixels twice. A fan from
+/// the dent's own corner has no piece turned over, so it covers the polygon exactly once.
+int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
+  for (int start = 0; start < polygon.size; ++start) {
+    bool all_agree = true;
+    for (int i = 1; i + 1 < polygon.size && all_agree; ++i) {
+      const std::int64_t piece = polygon.fan_area(start, i);
+      all_agree = piece == 0 || (piece > 0) == (area > 0);
+    }
+    if (all_agree) return start;
+  }
+  return 0;
+}
+
+SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
+  const auto& vertices = context.scene.vertices;
+  std::array<Vertex, 3> v{vertices[index[0]], vertices[index[1]], vertices[index[2]]};
+  const ClipPolygon clipped = clip(context.guard_band, v[0], v[1], v[2]);
+  SnappedPolygon polygon;
+  polygon.size = clipped.size;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
+    polygon.v[i] = snap_vertex(to_window(clipped.v[i], context.state, context.viewport), clipped.v[i].rgba, context.config,
+                               index[0], context.draw.line);
+  return polygon;
+}
+
+bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& context) {
+  TriangleSetup box;
+  set_box(box, v, context.rect, std::max(context.config.subpixel_bits, 1));
+  return box.is_empty();
+}
+
+}  // namespace
+
+DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_)
+    : scene(scene_),
+      config(config_),
+      state(scene_.states[draw_.state]),
+      draw(draw_),
+      command(command_),
+      viewport(effective_viewport(state, scene_.width, scene_.height)),
+      rect(raster_rect(state, scene_.width, scene_.height)),
+      guard_band(guard_band_planes(state.clip_z, viewport, config_)),
+      view_volume(view_volume_planes(state.clip_z)) {}
+
+const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {
+  Entry& entry = entries_[index];
+  if (entry.state == context.draw.state) return entry;
+  const Vertex& v = context.scene.vertices[index];
+  if (context.state.space == Space::clip) {
+    entry.outside_volume = outcode(context.view_volume, v);
+    entry.outside_guard_band = outcode(context.guard_band, v) | (v.w > 0 ? 0U : 1U);
+  } else {
+    entry.outside_volume = entry.outside_guard_band = 0;
+  }
+  if (entry.outside_guard_band == 0) {
+    const WindowPosition p = context.state.space == Space::clip ? to_window(v, context.state, context.viewport)
+                                                                : WindowPosition{v.x, v.y, v.z};
+    entry.snapped = snap_vertex(p, v.rgba, context.config, index, context.draw.line);
+  }
+  entry.state = context.draw.state;
+  return entry;
+}
+
+void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index, std::uint32_t primitive,
+              const Skip& skip, Counters& counters, std::vector<Triangle>& out) {
+  ++counters.primitives_in;
+  const auto &a = cache.get(context, index[0]), &b = cache.get(context, index[1]), &c = cache.get(context, index[2]);
+  if (skip.frustum && (a.outside_volume & b.outside_volume & c.outside_volume) != 0) {
+    ++counters.skipped.frustum;
+    ++counters.culled;
+    return;
+  }
+  SnappedPolygon polygon;
+  const bool is_cut = (a.outside_guard_band | b.outside_guard_band | c.outside_guard_band) != 0;
+  if (is_cut) {
+    polygon = clip_and_snap(context, index);
+  } else {
+    polygon.size = 3;
+    polygon.v[0] = a.snapped;
+    polygon.v[1] = b.snapped;
+    polygon.v[2] = c.snapped;
+  }
+  if (context.state.shade == Shade::flat)
+    for (auto& v : polygon.v)
+      for (std::size_t k = 0; k < 4; ++k) v.rgba[k] = snap_color(context.scene.vertices[index[0]].rgba[k]);
+
+  if (polygon.size < 3) {  // the clipper left nothing
+    ++counters.culled;
+    return;
+  }
+  const std::int64_t area = total_area(polygon);
+  switch (cull(area, context.state)) {
+    case CullResult::zero_area: ++counters.skipped.zero_area; ++counters.culled; return;
+    case CullResult::backface: ++counters.skipped.backface; ++counters.culled; return;
+    case CullResult::keep: break;
+  }
+  bool is_drawn = false;
+  const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
+  for (int i = 1; i + 1 < polygon.size; ++i) {
+    const Triangle piece{primitive, context.command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}};
+    const std::int64_t piece_area = polygon.fan_area(start, i);
+    if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;
+    const bool is_empty = box_is_empty(piece.v, context);
+    is_drawn |= !is_empty;
+    if (!is_empty || !skip.empty) out.push_back(piece);
+  }
+  if (is_drawn) {
+    ++counters.drawn;
+    counters.clipped += is_cut ? 1 : 0;
+  } else {
+    ++counters.culled;
+    counters.skipped.empty += skip.empty ? 1 : 0;
+  }
+}
+
+void check_scene(const Scene& scene, const Config& config) {
+  if (scene.width < 1 || scene.height < 1 || scene.width > config.target_width || scene.height > config.target_height)
+    throw InputError("the target is " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
+                     ", but this configuration takes 1x1 to " + std::to_string(config.target_width) + "x" +
+                     std::to_string(config.target_height) +
+                     "; use a smaller --size, another --config, or --set target.width=... and target.height=...");
+  for (const State& state : scene.states) {
+    if (state.color_interp == ColorInterp::perspective)
+      throw InputError("state color_interp perspective: this engine interpolates colours affinely; use --engine golden");
+    const Viewport v = effective_viewport(state, scene.width, scene.height);
+    const double limit = config.guard_band - 1;
+    if (!(v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1))
+      throw InputError("state viewport: it must lie inside the guard band of +-" + std::to_string(config.guard_band) +
+                       " pixels; use a smaller viewport or raise guard.band");
+  }
+}
+
+void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config) {
+  Framebuffer& frame = rendering.frame;
+  State state = scene.states[command.state];
+  state.viewport.reset();  // clearing obeys the scissor alone
+  const Rect rect = raster_rect(state, frame.width, frame.height);
+  const auto fill = [&rect](auto& image, int stride, auto value) {
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(y) * stride + rect.x, rect.width, value);
+  };
+  if (command.depth) fill(frame.depth, frame.stride, snap_depth(*command.depth, config.depth_bits));
+  if (command.color) {
+    std::array<std::uint8_t, 4> code;
+    for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color((*command.color)[c]);
+    fill(frame.color, frame.stride, pack_color(config.color_format, code));
+  }
+  if (!rendering.ids.empty()) fill(rendering.ids, frame.width, -1);
+  if (!rendering.visible.empty()) fill(rendering.visible, frame.width, -1);
+}
+
+Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options) {
+  Rendering rendering;
+  rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
+  std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(), snap_depth(1.0, config.depth_bits));
+  std::fill(rendering.frame.color.begin(), rendering.frame.color.end(), pack_color(config.color_format, {0, 0, 0, 255}));
+  const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+  if (options.want_count) rendering.count.assign(pixels, 0);
+  if (options.want_ids) rendering.ids.assign(pixels, -1);
+  if (options.want_ids && options.keeps_triangles()) rendering.visible.assign(pixels, -1);
+  return rendering;
+}
+
+}  // namespace halfplane

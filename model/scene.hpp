@@ -1,0 +1,93 @@
+// What enters the pipeline: vertices, state and draws, in program order. Model, golden and oracle read this type;
+// sim/scene makes it from captures, meshes and the built-in scenes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace halfplane {
+
+enum class Space { clip, window };
+enum class Topology { triangles, triangle_strip, triangle_fan };
+enum class DepthFunc { never, less, lequal, equal, greater, gequal, notequal, always };
+enum class Cull { none, back, front, both };
+enum class FrontFace { ccw, cw };
+enum class Shade { smooth, flat };
+enum class ColorInterp { affine, perspective };
+enum class ClipZ { minus_one_one, zero_one };
+
+/// A vertex as it was given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down,
+/// pixel centres at half-integers), z in [0, 1], w as the clip-space w.
+struct Vertex {
+  double x = 0, y = 0, z = 0, w = 1;
+  std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
+  double u = 0, v = 0;
+};
+
+/// A rectangle of whole pixels: left, top, width, height.
+struct Rect {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Rect&) const = default;
+};
+
+/// A viewport: left, top, width, height in pixels, y down. Fractions are allowed.
+struct Viewport {
+  double x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Viewport&) const = default;
+};
+
+/// Everything that a draw depends on besides its vertices.
+struct State {
+  Space space = Space::clip;
+  DepthFunc depth_test = DepthFunc::less;
+  bool depth_write = true;
+  bool color_write = true;
+  Cull cull = Cull::none;
+  FrontFace front = FrontFace::ccw;  ///< as seen on the screen
+  Shade shade = Shade::smooth;       ///< flat: the colour of the first vertex of each triangle
+  ColorInterp color_interp = ColorInterp::affine;
+  ClipZ clip_z = ClipZ::minus_one_one;
+  std::optional<Rect> scissor;        ///< none: the whole target
+  std::optional<Viewport> viewport;   ///< none: the whole target
+  std::array<double, 2> depth_range{0.0, 1.0};
+  bool operator==(const State&) const = default;
+};
+
+/// Fills colour and depth inside the scissor of `state`.
+struct Clear {
+  std::uint32_t state = 0;                     ///< index into Scene::states
+  std::optional<std::array<double, 4>> color;  ///< 0...255
+  std::optional<double> depth;                 ///< window z in [0, 1]: ignores depth_range
+};
+
+/// A run of indices that share topology, state and object.
+struct Draw {
+  std::uint32_t state = 0;   ///< index into Scene::states
+  std::uint32_t object = 0;  ///< index into Scene::objects
+  Topology topology = Topology::triangles;
+  std::size_t first = 0;  ///< first of its entries in Scene::indices
+  std::size_t count = 0;  ///< how many entries
+  std::uint32_t line = 0;  ///< line in the file it came from, 0 for none: for messages only
+};
+
+/// `frame` in a capture. Buffers keep their contents.
+struct EndFrame {};
+
+using Command = std::variant<Clear, Draw, EndFrame>;
+
+/// A whole input. Invariants (kept by every reader): indices < vertices.size(), all numbers finite, sizes positive.
+struct Scene {
+  std::string name;
+  int width = 640, height = 480;  ///< target, pixels
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<State> states;
+  std::vector<std::string> objects{""};
+  std::vector<Command> commands;
+};
+
+}  // namespace halfplane

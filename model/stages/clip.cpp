@@ -1,0 +1,73 @@
+#include "clip.hpp"
+
+namespace halfplane {
+namespace {
+
+/// The point where the edge crosses the plane, from the inside end (distance `d_in` >= 0) to the outside one (< 0).
+Vertex cut(const Vertex& in, const Vertex& out, double d_in, double d_out) {
+  const double t = d_in / (d_in - d_out);
+  const auto mix = [t](double from, double to) { return from + t * (to - from); };
+  Vertex v;
+  v.x = mix(in.x, out.x);
+  v.y = mix(in.y, out.y);
+  v.z = mix(in.z, out.z);
+  v.w = mix(in.w, out.w);
+  for (std::size_t c = 0; c < 4; ++c) v.rgba[c] = mix(in.rgba[c], out.rgba[c]);
+  v.u = mix(in.u, out.u);
+  v.v = mix(in.v, out.v);
+  return v;
+}
+
+/// One step of Sutherland and Hodgman's reentrant polygon clipping (CACM 17(1), 1974).
+ClipPolygon clip_against(const ClipPlane& plane, const ClipPolygon& polygon) {
+  ClipPolygon result;
+  const auto append = [&result](const Vertex& v) { result.v[static_cast<std::size_t>(result.size++)] = v; };
+  for (int i = 0; i < polygon.size; ++i) {
+    const Vertex& from = polygon.v[static_cast<std::size_t>(i)];
+    const Vertex& to = polygon.v[static_cast<std::size_t>((i + 1) % polygon.size)];
+    const double d_from = distance(plane, from), d_to = distance(plane, to);
+    if (d_from >= 0) append(from);
+    if (d_from >= 0 && d_to < 0) append(cut(from, to, d_from, d_to));
+    if (d_from < 0 && d_to >= 0) append(cut(to, from, d_to, d_from));
+    if (result.size + 2 > static_cast<int>(result.v.size())) break;  // a convex polygon never gets here
+  }
+  return result;
+}
+
+}  // namespace
+
+ClipPlanes view_volume_planes(ClipZ clip_z) {
+  const ClipPlane near = clip_z == ClipZ::zero_one ? ClipPlane{0, 0, 1, 0} : ClipPlane{0, 0, 1, 1};
+  return {near, {0, 0, -1, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {0, -1, 0, 1}, {0, 1, 0, 1}};
+}
+
+ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config) {
+  // Window x = vx + (x/w + 1) vw/2 and y = vy + (1 - y/w) vh/2, both kept in [-limit, limit].
+  const double limit = config.guard_band - 1;
+  const double half_width = viewport.width / 2, half_height = viewport.height / 2;
+  const double center_x = viewport.x + half_width, center_y = viewport.y + half_height;
+  ClipPlanes planes = view_volume_planes(clip_z);
+  planes[2] = {half_width, 0, 0, limit + center_x};
+  planes[3] = {-half_width, 0, 0, limit - center_x};
+  planes[4] = {0, -half_height, 0, limit + center_y};
+  planes[5] = {0, half_height, 0, limit - center_y};
+  return planes;
+}
+
+ClipPolygon clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b, const Vertex& c) {
+  ClipPolygon polygon;
+  polygon.v[0] = a;
+  polygon.v[1] = b;
+  polygon.v[2] = c;
+  polygon.size = 3;
+  for (const ClipPlane& plane : planes) {
+    polygon = clip_against(plane, polygon);
+    if (polygon.size < 3) return {};
+  }
+  // Inside all planes w >= 0, and w = 0 only at the eye itself: then the triangle is seen edge-on and covers nothing.
+  for (int i = 0; i < polygon.size; ++i)
+    if (!(polygon.v[static_cast<std::size_t>(i)].w > 0)) return {};
+  return polygon;
+}
+
+}  // namespace halfplane

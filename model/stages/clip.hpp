@@ -1,0 +1,53 @@
+// Clip: a triangle in homogeneous clip coordinates in, a convex polygon out.
+//
+// Host side, binary64, contraction off. Planes: near and far of the view volume, then the four sides of the guard band
+// (one pixel inside the range of a snapped coordinate). An edge is cut only where it leaves the guard band, so most
+// triangles that cross the border of the screen keep their edges and the scissor does the rest.
+//
+// Exactly-once: the cut of an edge depends on its two ends alone. The parameter is always computed from the inside end,
+// so both triangles on the edge get the identical new vertex, whichever way round they name it.
+#pragma once
+
+#include <array>
+
+#include "../config.hpp"
+#include "../scene.hpp"
+
+namespace halfplane {
+
+/// Inside: a x + b y + c z + d w >= 0.
+struct ClipPlane {
+  double a = 0, b = 0, c = 0, d = 0;
+};
+
+/// near, far, left, right, top, bottom.
+using ClipPlanes = std::array<ClipPlane, 6>;
+
+/// A triangle cut by six planes has at most nine corners.
+struct ClipPolygon {
+  std::array<Vertex, 9> v;
+  int size = 0;
+};
+
+[[nodiscard]] inline double distance(const ClipPlane& p, const Vertex& v) {
+  return p.a * v.x + p.b * v.y + p.c * v.z + p.d * v.w;
+}
+
+/// The planes that cut: near, far, and the guard band as seen through `viewport`.
+[[nodiscard]] ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config);
+
+/// The planes of the view volume: what lies outside one of them covers nothing.
+[[nodiscard]] ClipPlanes view_volume_planes(ClipZ clip_z);
+
+/// One bit per plane that the vertex lies outside of (Cohen and Sutherland). A triangle with a bit common to all three
+/// codes is outside; one with no bit in any code has nothing to cut.
+[[nodiscard]] inline unsigned outcode(const ClipPlanes& planes, const Vertex& v) {
+  unsigned code = 0;
+  for (std::size_t i = 0; i < planes.size(); ++i) code |= (distance(planes[i], v) >= 0 ? 0U : 1U) << i;
+  return code;
+}
+
+/// The part of the triangle inside all planes, corners in the triangle's order. Empty when nothing with w > 0 is left.
+[[nodiscard]] ClipPolygon clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b, const Vertex& c);
+
+}  // namespace halfplane

@@ -1,0 +1,65 @@
+// Interpolate: attributes at the covered samples of a tile.
+//
+// In: the planes at the tile's anchor. Out: depth and colour codes per sample. Inside a tile a plane is narrow:
+// l local guard bits, anchored at the centre of pixel (T/2, T/2), so the rounding of a step acts over at most T/2 pixels a
+// side. The value at a pixel is the closed form anchor + i step_x + j step_y: every traversal computes the same one.
+// Final value: floor(v + 1/2), clamped to the range of the triangle's vertices.
+#pragma once
+
+#include "coarse_raster.hpp"
+
+namespace halfplane {
+
+/// A plane inside one tile, in 2^-l LSB, modulo 2^(bits + 1 + l), held in the low bits of a lane.
+/// Lane: std::uint32_t when bits + 1 + l <= 32, else std::uint64_t.
+template <class Lane>
+struct LocalPlane {
+  Lane anchor = 0;                 ///< at pixel (T/2, T/2), plus the offset that makes decode() a shift
+  Lane step_x = 0, step_y = 0;     ///< per pixel
+};
+
+/// How to read a LocalPlane of `bits`-bit codes back.
+template <class Lane>
+struct LocalFormat {
+  int bits = 0;        ///< of a code
+  int guard_bits = 0;  ///< l
+  Lane modulus_mask = 0;
+
+  LocalFormat(int bits_, int guard_bits_)
+      : bits(bits_), guard_bits(guard_bits_), modulus_mask(static_cast<Lane>(~0ULL >> (63 - bits_ - guard_bits_))) {}
+
+  /// Codes wrap modulo 2^(bits + 1); the window [-2^(bits-1), 3 * 2^(bits-1)) holds every value near a legal code.
+  [[nodiscard]] constexpr Lane offset() const { return Lane{1} << (bits - 1 + guard_bits); }
+};
+
+/// Narrows a plane at a tile's anchor: both roundings are to the nearest 2^-l LSB.
+template <class Lane>
+[[nodiscard]] inline LocalPlane<Lane> local_plane(PlaneValue anchor, const Plane& plane, const LocalFormat<Lane>& format,
+                                                  const Widths& widths) {
+  const int drop = widths.plane_fraction - format.guard_bits;  // F - l
+  const Lane half = format.guard_bits > 0 ? Lane{1} << (format.guard_bits - 1) : Lane{0};
+  return {static_cast<Lane>(static_cast<Lane>(round_shift(anchor, drop)) + format.offset() + half),
+          static_cast<Lane>(round_shift(plane.step_x, drop - widths.grid_bits)),
+          static_cast<Lane>(round_shift(plane.step_y, drop - widths.grid_bits))};
+}
+
+/// The rounded code of an accumulated local value, clamped to [low, high]. SignedLane: signed type of the lane's size.
+template <class SignedLane, class Lane>
+[[nodiscard]] constexpr SignedLane decode(Lane value, const LocalFormat<Lane>& format, SignedLane low, SignedLane high) {
+  const auto code = static_cast<SignedLane>((value & format.modulus_mask) >> format.guard_bits) -
+                    static_cast<SignedLane>(SignedLane{1} << (format.bits - 1));
+  return code < low ? low : code > high ? high : code;
+}
+
+/// Every attribute at one pixel, before and after the final rounding.
+struct Interpolated {
+  std::int64_t depth = 0;                 ///< 2^-l LSB, before rounding and clamp
+  std::uint32_t depth_code = 0;
+  std::array<std::int64_t, 4> color{};    ///< 2^-l LSB of an 8-bit code, before rounding and clamp
+  std::array<std::uint8_t, 4> color_code{};
+};
+
+/// The attributes of a triangle at pixel (x, y): the specification that every engine must match.
+[[nodiscard]] Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
+
+}  // namespace halfplane

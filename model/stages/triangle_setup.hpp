@@ -1,0 +1,81 @@
+// Triangle setup: three snapped vertices in, everything that stays constant over the triangle out.
+//
+//   edges       E_i(p) = dx_i (p_y - y_i) - dy_i (p_x - x_i), folded to one integer per pixel (see edge_function)
+//   reciprocal  R = floor(2^k / A), k placing R in (2^(r-1), 2^r], r = B + extra bits: one for all planes
+//   planes      z(p) = z_0 + (N_x (p_x - x_0) + N_y (p_y - y_0)) / A, gradients per subpixel with F fraction bits
+//
+// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-(r-1) of the depth range inside the
+// triangle, however thin. Planes live modulo 2^(bits + 1 + F): right inside the triangle, wherever they wrap outside it.
+//
+// Values are given at the first tile of the triangle's box: edges at its first pixel, planes at its anchor (the centre of
+// pixel (T/2, T/2)); coarse_raster steps them from tile to tile.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "../packets.hpp"
+#include "../scene.hpp"
+#include "../widths.hpp"
+
+namespace halfplane {
+
+using EdgeValue = std::int64_t;      ///< floor((E + bias) / 2^s) at a pixel centre; covered when >= 0
+using PlaneValue = std::int64_t;     ///< 2^-F LSB, modulo 2^(bits + 1 + F)
+
+/// The edge function at pixel centres. Bits below a pixel are constant along an edge, so they fold into the bias.
+struct Edge {
+  std::int32_t dx = 0, dy = 0;  ///< subpixels; one pixel to the right adds -dy, one pixel down adds dx
+  EdgeValue value = 0;          ///< at the first pixel of the first tile
+};
+
+/// One attribute over the triangle.
+struct Plane {
+  PlaneValue value = 0;             ///< at the anchor of the first tile
+  PlaneValue step_x = 0, step_y = 0;  ///< per subpixel
+};
+
+/// A triangle's constants: what the context RAM holds, and where its tile walk starts.
+struct TriangleSetup {
+  std::uint32_t primitive = 0;
+  std::int64_t area = 0;                                 ///< twice the area, square subpixels, > 0
+  std::array<Edge, 3> edge{};
+  int left = 0, top = 0, right = -1, bottom = -1;        ///< box of pixel centres inside the scissor, inclusive
+  Plane depth;
+  std::array<Plane, 4> color{};
+  std::uint32_t depth_min = 0, depth_max = 0;            ///< the final depth is clamped to the vertices' codes
+  std::array<std::uint8_t, 4> color_min{}, color_max{};  ///< likewise
+
+  [[nodiscard]] bool is_empty() const { return left > right || top > bottom; }
+};
+
+/// E of the edge from `from` to `to` at the centre of pixel (x, y), with the fill rule folded in: >= 0 when covered.
+/// Top-left rule: a sample exactly on the edge belongs to the triangle when the edge is a top (dy = 0, dx > 0) or left
+/// (dy < 0) edge of a triangle of positive area.
+[[nodiscard]] constexpr EdgeValue edge_function(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
+                                                int grid_bits) {
+  const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
+  const std::int64_t px = (std::int64_t{x} << grid_bits) + half, py = (std::int64_t{y} << grid_bits) + half;
+  const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+  const bool is_top_left = dy < 0 || (dy == 0 && dx > 0);
+  return (dx * (py - from.y) - dy * (px - from.x) - (is_top_left ? 0 : 1)) >> grid_bits;
+}
+
+/// floor(2^shift / area): the one division of a triangle.
+struct Reciprocal {
+  std::uint64_t value = 0;
+  int shift = 0;
+};
+[[nodiscard]] Reciprocal reciprocal(std::int64_t area, int significant_bits);
+
+/// The pixels whose centres lie in the triangle's bounding box and in `rect`; left > right when there are none.
+void set_box(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Rect& rect, int grid_bits);
+
+/// The whole setup. Zero area gives an empty box.
+[[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths,
+                                           const Rect& rect);
+
+/// The same over the whole guard band: for questions about a single pixel.
+[[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths);
+
+}  // namespace halfplane

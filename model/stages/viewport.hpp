@@ -1,0 +1,40 @@
+// Viewport: clip coordinates in, snapped window coordinates out (perspective divide, viewport, depth range, snap).
+//
+// Host side, binary64. From here on every number is an integer. X, Y: floor(x * 2^S + 1/2), held in units of 2^-s pixel
+// (s = max(S, 1)); Z: floor(z * (2^B - 1) + 1/2); colour: floor(c + 1/2).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "../config.hpp"
+#include "../packets.hpp"
+#include "../scene.hpp"
+
+namespace halfplane {
+
+/// A vertex in window coordinates before the snap: x, y in pixels (y down), z in [0, 1].
+struct WindowPosition {
+  double x = 0, y = 0, z = 0;
+};
+
+/// The viewport of a state: its own or the whole target.
+[[nodiscard]] Viewport effective_viewport(const State& state, int target_width, int target_height);
+
+/// The pixels that a draw may touch: target, scissor and (in clip space) the pixel centres inside the viewport.
+[[nodiscard]] Rect raster_rect(const State& state, int target_width, int target_height);
+
+/// Divide, viewport and depth range of a clipped vertex (w > 0).
+[[nodiscard]] WindowPosition to_window(const Vertex& v, const State& state, const Viewport& viewport);
+
+/// The snap. `place` names the vertex in the message when it is outside the guard band or depth range (InputError).
+[[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba, const Config& config,
+                                        std::size_t vertex_number, std::uint32_t line);
+
+/// A colour channel (0...255) as its 8-bit code.
+[[nodiscard]] std::uint8_t snap_color(double channel);
+
+/// A window depth in [0, 1] as its code.
+[[nodiscard]] std::uint32_t snap_depth(double z, int depth_bits);
+
+}  // namespace halfplane

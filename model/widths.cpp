@@ -1,0 +1,95 @@
+#include "widths.hpp"
+
+namespace halfplane {
+namespace {
+
+int bits_of(Interval range) {
+  const auto magnitude_bits = [](int128 value) {  // bits without the sign
+    const auto v = static_cast<uint128>(value < 0 ? ~value : value);
+    return v == 0 ? 0 : floor_log2(v) + 1;
+  };
+  const int lo = magnitude_bits(range.lo), hi = magnitude_bits(range.hi);
+  const int bits = (lo > hi ? lo : hi) + (range.lo < 0 ? 1 : 0);
+  return bits == 0 ? 1 : bits;  // a wire of width 0 does not exist
+}
+
+Width exact(std::string_view name, std::string_view bound, Interval range) {
+  return {name, bound, range, bits_of(range), range.lo < 0, false};
+}
+
+Width modular(std::string_view name, std::string_view bound, int bits) {
+  const int128 half = int128{1} << (bits - 1);
+  return {name, bound, {-half, half - 1}, bits, true, true};
+}
+
+}  // namespace
+
+Widths derive_widths(const Config& config) {
+  Widths w;
+  const int B = config.depth_bits;
+  w.grid_bits = config.subpixel_bits > 1 ? config.subpixel_bits : 1;
+  const int s = w.grid_bits;
+  const int128 band = config.guard_band;
+  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor.
+  w.guard_bits = ceil_log2(static_cast<uint128>(4 * band)) + 4;
+  w.plane_fraction = w.guard_bits + s;
+  w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
+  w.stamps_per_row = config.tile_size / config.stamp_size;
+
+  // Coverage. A box of side L holds every vertex and pixel centre, so twice any triangle's area in it is at most L^2.
+  const Interval coordinate{-(band << s), (band << s) - 1};
+  const Interval delta = coordinate - coordinate;
+  const int128 side = delta.hi;
+  const Interval edge = symmetric(side * side);
+  w.coordinate = exact("coordinate", "guard band g * 2^s", coordinate);
+  w.delta = exact("delta", "X - X", delta);
+  w.edge_product = exact("edge product", "delta * delta", delta * delta);
+  w.area = exact("area", "L^2, L the side of the guard band", {0, edge.hi});
+  w.edge_value = exact("edge value", "(+-L^2 - 1) >> s", (edge + Interval{-1, 0}) >> s);
+  w.edge_step = exact("edge step", "delta: one pixel changes E >> s by dx or dy", delta);
+  const int128 extent = 2 * side * (config.tile_size - 1);  // |dx| + |dy| over T - 1 pixels
+  w.tile_edge = exact("tile edge", "saturated to (T-1)(|dx|+|dy|) at the tile's first pixel", {-extent - 1, extent});
+  w.sample_edge = exact("sample edge", "tile edge + (T-1)(|dx|+|dy|)", w.tile_edge.range + symmetric(extent));
+
+  // Planes. The numerator is twice an area in a box of L subpixels by 2^bits - 1 codes.
+  const int128 depth_max = (int128{1} << B) - 1;
+  w.depth_code = exact("depth code", "2^B - 1", {0, depth_max});
+  w.depth_delta = exact("depth delta", "Z - Z", symmetric(depth_max));
+  w.depth_numerator = exact("depth numerator", "L * (2^B - 1)", symmetric(side * depth_max));
+  w.color_code = exact("color code", "2^8 - 1", {0, 255});
+  w.color_numerator = exact("color numerator", "L * (2^8 - 1)", symmetric(side * 255));
+  const int R = B + config.reciprocal_extra_bits;
+  w.reciprocal = exact("reciprocal", "2^(m+R) / A, 2^m <= A < 2^(m+1), R = B + extra", {0, int128{1} << R});
+  w.reciprocal_shift = exact("reciprocal shift", "k = m + R, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(edge.hi)) + R});
+  w.depth_product = exact("depth product", "depth numerator * reciprocal", w.depth_numerator.range * w.reciprocal.range);
+  w.color_product = exact("color product", "color numerator * reciprocal", w.color_numerator.range * w.reciprocal.range);
+  w.depth_plane = modular("depth plane", "modulo 2^(B + 1 + F), F = G + s", B + 1 + w.plane_fraction);
+  w.color_plane = modular("color plane", "modulo 2^(8 + 1 + F)", 8 + 1 + w.plane_fraction);
+  w.local_depth = modular("local depth", "modulo 2^(B + 1 + l), l local guard bits", B + 1 + config.local_guard_bits);
+  w.local_color = modular("local color", "modulo 2^(8 + 1 + l)", 8 + 1 + config.local_guard_bits);
+
+  // Keys and positions.
+  const auto count = [](std::string_view name, std::string_view bound, int128 n) { return exact(name, bound, {0, n - 1}); };
+  const int tile = config.tile_size;
+  w.primitive_id = count("primitive id", "modulo 2^key.primitive_bits", int128{1} << config.primitive_id_bits);
+  w.slot = count("slot", "context.slots", config.context_slots);
+  w.tile_x = count("tile x", "target width / T", (config.target_width + tile - 1) / tile);
+  w.tile_y = count("tile y", "target height / T", (config.target_height + tile - 1) / tile);
+  w.tile_pixel = count("tile pixel", "T", tile);
+  w.stamp_index = count("stamp index", "(T / stamp)^2", int128{w.stamps_per_row} * w.stamps_per_row);
+  const int samples = config.stamp_size * config.stamp_size;
+  w.sample_mask = exact("sample mask", "one bit a sample", {0, (int128{1} << samples) - 1});
+  w.stored_color = exact("stored color", "color.format",
+                         {0, (int128{1} << (config.color_format == ColorFormat::rgb565 ? 16 : 32)) - 1});
+  return w;
+}
+
+std::vector<const Width*> Widths::all() const {
+  return {&coordinate,      &delta,        &edge_product,    &area,        &edge_value,       &edge_step,
+          &tile_edge,       &sample_edge,  &depth_code,   &depth_delta,     &depth_numerator, &color_code,   &color_numerator,
+          &reciprocal,      &reciprocal_shift, &depth_product, &color_product, &depth_plane,  &color_plane,
+          &local_depth,     &local_color,  &primitive_id,    &slot,        &tile_x,           &tile_y,
+          &tile_pixel,      &stamp_index,  &sample_mask,     &stored_color};
+}
+
+}  // namespace halfplane

@@ -1,0 +1,17 @@
+// The commands of the program. Each adds itself to the command line and returns its exit status when it is called.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace halfplane {
+
+using Action = std::function<int()>;
+
+/// Each sets `selected` when the user chose the command.
+void add_render_command(CLI::App& app, Action& selected);
+void add_compare_command(CLI::App& app, Action& selected);
+void add_scenes_command(CLI::App& app, Action& selected);
+void add_config_command(CLI::App& app, Action& selected);
+
+}  // namespace halfplane

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "model/raster_pkg.hpp"
+#include "model/widths.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/options.hpp"
+
+namespace halfplane {
+namespace {
+
+void print_settings(std::ostream& out, const Config& config, bool with_meaning) {
+  out << "preset = " << config.preset << '\n';
+  for (const Setting& setting : settings()) {
+    out << std::left << std::setw(24) << setting.key << std::right << std::setw(10) << get(config, setting);
+    if (with_meaning) {
+      const bool is_number = std::holds_alternative<int Config::*>(setting.member);
+      const std::string range = is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " "
+                                          : std::string();
+      out << "   " << std::left << std::setw(26) << range + std::string(setting.unit) << setting.meaning << std::right;
+    }
+    out << '\n';
+  }
+}
+
+std::string bound_text(const Width& width) {
+  const auto magnitude = static_cast<double>(std::max(-width.range.lo, width.range.hi));
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", magnitude);
+  return text;
+}
+
+void print_widths(std::ostream& out, const Widths& widths) {
+  out << "\nderived width        bits           largest   bound\n";
+  for (const Width* width : widths.all())
+    out << std::left << std::setw(20) << width->name << std::right << std::setw(4) << width->bits
+        << (width->is_modular ? " modular" : width->is_signed ? " signed " : "        ") << std::setw(14) << bound_text(*width)
+        << "   " << width->bound << '\n';
+}
+
+Json widths_json(const Widths& widths) {
+  Json list = Json::array();
+  for (const Width* width : widths.all())
+    list.push_back({{"name", width->name},
+                    {"bits", width->bits},
+                    {"signed", width->is_signed},
+                    {"modular", width->is_modular},
+                    {"bound", width->bound}});
+  return list;
+}
+
+struct ConfigOptions : CommonOptions {
+  bool list = false, widths = false, sv = false;
+};
+
+int run(const ConfigOptions& options) {
+  const Config config = effective_config(options);
+  std::ostream& out = human(options);
+  if (options.sv) {
+    std::cout << raster_pkg(config);
+    return kOk;
+  }
+  print_settings(out, config, options.list);
+  const Widths widths = derive_widths(config);
+  if (options.widths) print_widths(out, widths);
+  Json result = result_head("config", options, config);
+  result.erase("scene");
+  result.erase("seed");
+  if (options.list) {
+    Json list = Json::array();
+    for (const Setting& setting : settings()) {
+      Json entry{{"key", setting.key}, {"value", result["config"][std::string(setting.key)]}, {"unit", setting.unit}};
+      if (std::holds_alternative<int Config::*>(setting.member)) entry["range"] = {setting.min, setting.max};
+      entry["meaning"] = setting.meaning;
+      list.push_back(entry);
+    }
+    result["settings"] = list;
+  }
+  if (options.widths) result["widths"] = widths_json(widths);
+  write_json(options, result);
+  return kOk;
+}
+
+}  // namespace
+
+void add_config_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("config", "shows or lists the settings and the widths that follow from them");
+  auto options = std::make_shared<ConfigOptions>();
+  add_output_options(*command, *options);
+  command->add_flag("--list", options->list, "every setting with its range and meaning");
+  command->add_flag("--widths", options->widths, "every derived width with its bound");
+  command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration");
+  command->footer("\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane

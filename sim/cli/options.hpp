@@ -1,0 +1,87 @@
+// What all commands share: options, the effective configuration, where text and results go.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <iosfwd>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/engines/render.hpp"
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+using Json = nlohmann::ordered_json;
+
+/// Exit status: CONTRACT of every command.
+enum ExitStatus : int { kOk = 0, kMismatch = 1, kBadInput = 2, kMissing = 3 };
+
+/// The common options as typed.
+struct CommonOptions {
+  std::string scene;
+  std::string config = "embedded";
+  std::vector<std::string> settings;  ///< key=value
+  std::string size;                   ///< WxH
+  std::string camera;
+  std::uint64_t seed = 1;
+  int threads = 1;
+  std::string skip = "all";
+  std::string convention = "gl";
+  std::string json;  ///< empty: none, "-": stdout, else a file
+  bool quiet = false;
+};
+
+/// Adds --config, --set, --json and --quiet.
+void add_output_options(CLI::App& app, CommonOptions& options);
+
+/// Adds SCENE and every common option.
+void add_scene_options(CLI::App& app, CommonOptions& options);
+
+/// Preset or file, then every --set, validated. Throws InputError.
+[[nodiscard]] Config effective_config(const CommonOptions& options);
+
+/// `--skip all|none|NAME,NAME...`. Throws InputError naming the legal names.
+[[nodiscard]] Skip parse_skip(const std::string& text);
+
+/// Loads the scene that the options ask for; a size that is not given fits the configuration's target. Prints warnings
+/// to stderr and sets `load_s`.
+[[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s);
+
+/// Every effective value, keyed as in --set.
+[[nodiscard]] Json config_json(const Config& config);
+
+/// {schema, config, scene, seed}: the head of every result. `command` as in "render".
+[[nodiscard]] Json result_head(const std::string& command, const CommonOptions& options, const Config& config);
+
+/// The stream for human text: stdout, or stderr when the result is on stdout; a null stream with --quiet.
+[[nodiscard]] std::ostream& human(const CommonOptions& options);
+
+/// Writes the result where --json says.
+void write_json(const CommonOptions& options, const Json& result);
+
+/// A progress line on stderr for work longer than two seconds; nothing in a pipe or with --quiet.
+class Progress {
+ public:
+  Progress(const CommonOptions& options, std::string what);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void operator()(double fraction);
+
+ private:
+  std::string what_;
+  std::chrono::steady_clock::time_point start_;
+  bool is_enabled_, is_shown_ = false;
+};
+
+/// 1234567 as "1,234,567".
+[[nodiscard]] std::string with_commas(std::uint64_t value);
+
+/// "%.*f" as a string.
+[[nodiscard]] std::string fixed(double value, int decimals);
+
+}  // namespace halfplane

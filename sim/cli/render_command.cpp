@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include "model/engines/functional.hpp"
+#include "model/engines/scalar.hpp"
+#include "model/golden/golden.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/options.hpp"
+#include "sim/image/framebuffer_files.hpp"
+#include "sim/image/png.hpp"
+#include "sim/image/terminal.hpp"
+
+namespace halfplane {
+namespace {
+
+struct RenderCommand : CommonOptions {
+  std::string engine = "functional";
+  std::string color_path, depth_path, count_path, ids_path;
+  int repeat = 0;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision, const RenderOptions& render) {
+  golden::Options options;
+  options.precision = precision;
+  options.progress = render.progress;
+  const auto start = std::chrono::steady_clock::now();
+  golden::Image image = golden::render(scene, config, options);
+  Rendering rendering;
+  rendering.frame = std::move(image.frame);
+  rendering.counters = image.counters;
+  rendering.count = std::move(image.count);
+  rendering.ids = std::move(image.ids);
+  rendering.raster_s = seconds_since(start);
+  return rendering;
+}
+
+Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config) {
+  Progress progress(options, "rendering");
+  RenderOptions render;
+  render.skip = parse_skip(options.skip);
+  render.want_count = !options.count_path.empty();
+  render.want_ids = !options.ids_path.empty();
+  render.progress = [&progress](double fraction) { progress(fraction); };
+  if (options.engine == "functional") return render_functional(scene, config, render);
+  if (options.engine == "scalar") return render_scalar(scene, config, render);
+  if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
+  if (options.engine == "golden32") return render_golden(scene, config, golden::Precision::binary32, render);
+  throw InputError("--engine: no engine '" + options.engine + "' in this version; give functional, scalar, golden or golden32");
+}
+
+Json counters_json(const Counters& c) {
+  return {{"primitives", {{"in", c.primitives_in}, {"culled", c.culled}, {"drawn", c.drawn}, {"clipped", c.clipped}}},
+          {"fragments", {{"covered", c.covered}, {"depth_passed", c.depth_passed}, {"written", c.written}}},
+          {"samples_tested", c.samples_tested},
+          {"tiles_visited", c.tiles_visited},
+          {"skipped",
+           {{"frustum", c.skipped.frustum},
+            {"trivially_accepted", c.skipped.trivially_accepted},
+            {"backface", c.skipped.backface},
+            {"zero_area", c.skipped.zero_area},
+            {"empty", c.skipped.empty},
+            {"tiles_outside", c.skipped.tiles_outside},
+            {"fragments_early_z", c.skipped.fragments_early_z}}}};
+}
+
+/// Renders again N times after the first and adds {min, median} of the engine's own time.
+Json measure(const RenderCommand& options, const Scene& scene, const Config& config) {
+  std::vector<double> times;
+  for (int i = 0; i < options.repeat; ++i) {
+    const Rendering rendering = run_engine(options, scene, config);
+    times.push_back(rendering.geometry_s + rendering.raster_s);
+  }
+  std::sort(times.begin(), times.end());
+  return {{"min", times.front()}, {"median", times[times.size() / 2]}};
+}
+
+void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config) {
+  const Framebuffer& frame = rendering.frame;
+  if (!options.color_path.empty()) write_png(options.color_path, color_picture(frame, config.color_format));
+  if (!options.depth_path.empty()) write_depth(options.depth_path, frame, config.depth_bits);
+  if (!options.count_path.empty()) write_npy(options.count_path, frame.width, frame.height, rendering.count);
+  if (!options.ids_path.empty()) write_npy(options.ids_path, frame.width, frame.height, rendering.ids);
+}
+
+int run(const RenderCommand& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Config config = effective_config(options);
+  (void)parse_skip(options.skip);
+  if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
+  double load_s = 0;
+  const Scene scene = load_scene(options, config, load_s);
+  const Rendering rendering = run_engine(options, scene, config);
+  const Counters& c = rendering.counters;
+
+  Json result = result_head("render", options, config);
+  result["engine"] = options.engine;
+  result["width"] = scene.width;
+  result["height"] = scene.height;
+  result["threads"] = 1;
+  result.update(counters_json(c));
+  result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
+  if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
+  result["color_hash"] = color_hash(rendering.frame, config.color_format);
+  result["depth_hash"] = depth_hash(rendering.frame);
+  write_files(options, rendering, config);
+  result["wall_s"] = seconds_since(start);
+
+  std::ostream& out = human(options);
+  if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
+    out << terminal_preview(color_picture(rendering.frame, config.color_format), terminal_size(1), TerminalStyle::color);
+  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << config.preset << ", engine " << options.engine
+      << ", seed " << options.seed << '\n'
+      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, " << with_commas(c.drawn)
+      << " drawn (" << with_commas(c.clipped) << " clipped)\n"
+      << "fragments   " << with_commas(c.covered) << " covered, " << with_commas(c.depth_passed) << " passed, "
+      << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
+      << "time        load " << fixed(1e3 * load_s, 1) << " ms, geometry " << fixed(1e3 * rendering.geometry_s, 2)
+      << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
+  if (options.repeat > 0)
+    out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
+        << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
+  out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
+      << result["depth_hash"].get<std::string>() << '\n';
+  write_json(options, result);
+  return kOk;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("render", "one image from one engine");
+  auto options = std::make_shared<RenderCommand>();
+  add_scene_options(*command, *options);
+  command->add_option("--engine", options->engine, "functional (fast), scalar (the stages, one packet at a time), golden, golden32")
+      ->capture_default_str();
+  command->add_option("-o", options->color_path, "colour picture, .png");
+  command->add_option("--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
+  command->add_option("--count", options->count_path, "covered samples per pixel before the depth test, .npy");
+  command->add_option("--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
+  command->add_option("--repeat", options->repeat, "render N more times and print min and median")->check(CLI::Range(1, 100000));
+  command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane

@@ -1,0 +1,16 @@
+// What model and golden say of one pixel.
+#pragma once
+
+#include <cstdint>
+
+namespace halfplane {
+
+enum class CoverageClass : std::uint8_t {
+  none,     ///< neither covers it
+  both,     ///< as often as each other, the same triangle visible
+  missing,  ///< the golden covers it more often
+  extra,    ///< the model covers it more often
+  other     ///< equally often, but another triangle is visible
+};
+
+}  // namespace halfplane

@@ -1,0 +1,26 @@
+// Configuration files: TOML with the keys of settings(), a dot being a table. `preset` chooses what the others start
+// from:
+//
+//   preset = "full"
+//   [depth]
+//   bits = 20
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "model/config.hpp"
+
+namespace halfplane {
+
+/// Reads a configuration from TOML text and validates it. Throws InputError "file:line: ..." for text that is not TOML,
+/// an unknown key (naming the nearest one), a wrong type, a value outside its range, or a refused combination.
+[[nodiscard]] Config read_config_toml(std::string_view text, std::string_view file_name);
+
+/// The same for a file. Throws InputError when it cannot be read.
+[[nodiscard]] Config read_config_file(const std::string& path);
+
+/// What `--config` takes: the name of a preset, or a file ending in .toml.
+[[nodiscard]] Config config_from_option(const std::string& option);
+
+}  // namespace halfplane

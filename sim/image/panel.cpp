@@ -1,0 +1,160 @@
+#include "panel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "color_map.hpp"
+
+namespace halfplane {
+namespace {
+
+struct ClassStyle {
+  Rgb color;
+  std::string_view label;
+  int rank;  // the higher one wins when a block is reduced to one pixel
+};
+
+// Indexed by CoverageClass. The three faults: hues of Okabe and Ito's palette, told apart by colour-blind readers too.
+constexpr std::array<ClassStyle, 5> kClasses{{{kNotCompared, "neither", 0},
+                                              {{0x6e, 0x75, 0x80}, "both", 1},
+                                              {{0xf0, 0x6a, 0x1e}, "missing", 3},
+                                              {{0x56, 0xb4, 0xe9}, "extra", 4},
+                                              {{0xf0, 0xe4, 0x42}, "other primitive", 2}}};
+
+int reduction(int width, int height) { return (std::max(width, height) + kMaxPanelSide - 1) / kMaxPanelSide; }
+
+std::string reduction_note(int factor) {
+  if (factor == 1) return "";
+  const std::string n = std::to_string(factor);
+  return ", worst of " + n + "x" + n;
+}
+
+// Calls merge(target index, source index) for every source pixel, in blocks of factor x factor.
+template <typename Merge>
+void for_each_in_blocks(int width, int height, int factor, Merge merge) {
+  const int reduced_width = (width + factor - 1) / factor;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      merge(static_cast<std::size_t>(y / factor) * static_cast<std::size_t>(reduced_width) +
+                static_cast<std::size_t>(x / factor),
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+}
+
+Picture reduced_canvas(int width, int height, int factor) {
+  return Picture((width + factor - 1) / factor, (height + factor - 1) / factor, kNotCompared);
+}
+
+void store(Picture& picture, std::size_t pixel, Rgb color) {
+  picture.rgb[3 * pixel] = color.r;
+  picture.rgb[3 * pixel + 1] = color.g;
+  picture.rgb[3 * pixel + 2] = color.b;
+}
+
+struct ErrorStatistics {
+  std::size_t compared = 0, beyond = 0;
+  double max = 0, mean = 0, rms = 0;  // max of the magnitudes
+  double range = 1;                   // where the scale ends
+};
+
+ErrorStatistics measure(std::span<const float> errors) {
+  ErrorStatistics result;
+  std::vector<float> magnitudes;
+  double sum = 0, squares = 0;
+  for (const float error : errors) {
+    if (std::isnan(error)) continue;
+    magnitudes.push_back(std::abs(error));
+    sum += error;
+    squares += static_cast<double>(error) * error;
+  }
+  result.compared = magnitudes.size();
+  if (magnitudes.empty()) return result;
+  const auto count = static_cast<double>(magnitudes.size());
+  result.mean = sum / count;
+  result.rms = std::sqrt(squares / count);
+  result.max = *std::max_element(magnitudes.begin(), magnitudes.end());
+  const auto most = magnitudes.begin() + static_cast<std::ptrdiff_t>((count - 1) * 0.995);
+  std::nth_element(magnitudes.begin(), most, magnitudes.end());
+  const bool outliers = *most > 0 && result.max > 4 * *most;  // 4: beyond it the rest would lose its contrast
+  result.range = nice_ceiling(outliers ? *most : result.max);
+  for (const float magnitude : magnitudes)
+    if (magnitude > result.range) ++result.beyond;
+  return result;
+}
+
+std::string error_note(const ErrorStatistics& statistics, bool diverging) {
+  if (statistics.compared == 0) return "no pixel compared";
+  std::string text = "max " + short_number(statistics.max) + "  rms " + short_number(statistics.rms);
+  if (diverging) text += "  mean " + short_number(statistics.mean);
+  if (statistics.beyond > 0) text += "  beyond scale: " + std::to_string(statistics.beyond);
+  return text;
+}
+
+}  // namespace
+
+Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes) {
+  const int factor = reduction(width, height);
+  Panel panel;
+  panel.caption = "coverage difference" + reduction_note(factor);
+  panel.picture = reduced_canvas(width, height, factor);
+  std::array<std::size_t, kClasses.size()> counts{};
+  std::vector<int> ranks(panel.picture.rgb.size() / 3, -1);
+  for_each_in_blocks(width, height, factor, [&](std::size_t target, std::size_t source) {
+    const auto value = static_cast<std::size_t>(classes[source]);
+    ++counts[value];
+    if (kClasses[value].rank <= ranks[target]) return;
+    ranks[target] = kClasses[value].rank;
+    store(panel.picture, target, kClasses[value].color);
+  });
+  std::vector<LegendEntry> entries;
+  for (std::size_t i = 0; i < kClasses.size(); ++i)
+    entries.push_back({kClasses[i].color, std::string(kClasses[i].label) + " " + std::to_string(counts[i])});
+  panel.legend = std::move(entries);
+  return panel;
+}
+
+Panel error_panel(std::string_view caption, int width, int height, std::span<const float> errors, std::string_view unit,
+                  bool diverging) {
+  const int factor = reduction(width, height);
+  const ErrorStatistics statistics = measure(errors);
+  Panel panel;
+  panel.caption = std::string(caption) + ", " + std::string(unit) + reduction_note(factor);
+  panel.note = error_note(statistics, diverging);
+  panel.picture = reduced_canvas(width, height, factor);
+  panel.legend = ScaleLegend{diverging, statistics.range, std::string(unit)};
+  std::vector<float> largest(panel.picture.rgb.size() / 3, -1.0f);
+  for_each_in_blocks(width, height, factor, [&](std::size_t target, std::size_t source) {
+    const float error = errors[source];
+    if (std::isnan(error) || std::abs(error) <= largest[target]) return;
+    largest[target] = std::abs(error);
+    const double t = error / statistics.range;
+    store(panel.picture, target, diverging ? diverging_color(t) : sequential_color(std::abs(t)));
+  });
+  return panel;
+}
+
+Picture comparison_sheet(const ComparisonSheet& sheet) {
+  const int width = sheet.width, height = sheet.height;
+  const int factor = reduction(width, height);
+  const auto view = [factor](const char* caption, const Picture& picture) {
+    Panel panel;
+    panel.caption = caption;
+    if (factor > 1) panel.caption += ", reduced 1:" + std::to_string(factor);
+    panel.picture = factor > 1 ? shrink(picture, factor) : picture;
+    return panel;
+  };
+  std::vector<Panel> panels{view("model", sheet.model), view("golden", sheet.golden),
+                            coverage_panel(width, height, sheet.coverage),
+                            error_panel("depth error", width, height, sheet.depth_error, "LSB", true),
+                            error_panel("colour error", width, height, sheet.color_error, "LSB", false)};
+  if (!sheet.summary.empty()) {
+    Panel text;
+    text.caption = "summary";
+    text.lines = sheet.summary;
+    panels.push_back(std::move(text));
+  }
+  const int columns = width > 2 * height ? 2 : 3;
+  return compose_sheet(sheet.title, panels, columns);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,148 @@
+#include "sim/scene/builtin.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "model/config.hpp"
+#include "sim/scene/builtin_meshes.hpp"
+#include "sim/scene/mesh_scene.hpp"
+#include "sim/scene/random.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::array<Builtin, 7> kBuiltins{{
+    {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
+    {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
+    {"knot", "a torus knot in all hues", "segments along the tube", 256, 16, 4096, true},
+    {"coplanar", "two planes that cross at a third of a degree: z-fighting", "", 0, 0, 0, true},
+    {"slivers", "a fan of long triangles, pixels to fractions of a pixel thin", "triangles", 600, 1, 1000000, false},
+    {"walk", "a chequered corridor round the eye: crosses the near and all other planes", "", 0, 0, 0, true},
+    {"triangle", "one triangle with red, green and blue corners", "", 0, 0, 0, false},
+}};
+
+std::string_view base_name(std::string_view name) { return name.substr(0, name.find(':')); }
+
+// N of "name:N", or the default.
+int size_of(const Builtin& builtin, std::string_view name) {
+  const std::size_t colon = name.find(':');
+  if (colon == std::string_view::npos) return builtin.default_size;
+  const std::string base(builtin.name);
+  if (builtin.size.empty()) throw InputError("scene " + in_quotes(name) + ": has no sizes; write " + base);
+  const std::string_view digits = name.substr(colon + 1);
+  int value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size() || value < builtin.min_size ||
+      value > builtin.max_size) {
+    throw InputError("scene " + in_quotes(name) + ": N counts the " + std::string(builtin.size) + "; write " + base +
+                     ":" + std::to_string(builtin.min_size) + " to " + base + ":" + std::to_string(builtin.max_size));
+  }
+  return value;
+}
+
+void add_draw(Scene& scene, const std::string& object) {
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) scene.indices.push_back(static_cast<std::uint32_t>(i));
+  scene.objects.push_back(object);
+  scene.commands.push_back(Draw{0, 1, Topology::triangles, 0, scene.indices.size(), 0});
+}
+
+Scene triangle_scene(int width, int height) {
+  Scene scene = cleared_scene(width, height);
+  scene.vertices = {{-0.8, -0.7, 0, 1, {255, 0, 0, 255}, 0, 0},
+                    {0.8, -0.7, 0, 1, {0, 255, 0, 255}, 1, 0},
+                    {0, 0.8, 0, 1, {0, 0, 255, 255}, 0.5, 1}};
+  add_draw(scene, "triangle");
+  return scene;
+}
+
+// From one corner of the screen across it, each a little turned, at random depths. A third is less than a pixel thin.
+Scene slivers_scene(int width, int height, int count, std::uint64_t seed) {
+  Scene scene = cleared_scene(width, height);
+  Random random(seed);
+  for (int i = 0; i < count; ++i) {
+    const double angle = std::numbers::pi / 2 * (i + random.uniform(0, 1)) / count;
+    const double reach = random.uniform(1.2, 1.98);
+    const double pixels = std::exp2(random.uniform(-3, 6));  // width at the far end
+    const double along_x = std::cos(angle), along_y = std::sin(angle);
+    const double from = random.uniform(0, 0.25);
+    const auto at = [&](double distance, double side) {  // 2 / width and 2 / height: clip units of a pixel
+      Vertex vertex{-0.99 + distance * along_x - side * along_y * 2 / width,
+                    -0.99 + distance * along_y + side * along_x * 2 / height,
+                    random.uniform(-0.95, 0.95),
+                    1,
+                    {},
+                    0,
+                    0};
+      for (double& channel : vertex.rgba) channel = random.uniform(40, 255);
+      vertex.rgba[3] = 255;
+      return vertex;
+    };
+    scene.vertices.push_back(at(from, 0));
+    scene.vertices.push_back(at(reach, -pixels / 2));
+    scene.vertices.push_back(at(reach, pixels / 2));
+  }
+  add_draw(scene, "slivers");
+  return scene;
+}
+
+// Obliquely down the corridor: its far parts lie beyond the far plane, but only outside the view, so that every pixel
+// sees the shell once. Wide targets keep 90 degrees across, which this rests on.
+CameraRequest walk_camera(int width, int height) {
+  const double aspect = static_cast<double>(width) / height;
+  CameraRequest camera;
+  camera.eye = Vec3{1.2, 1.6, 0.3};
+  camera.target = Vec3{1.2 - std::sin(std::numbers::pi / 3), 1.45, 0.3 - std::cos(std::numbers::pi / 3)};
+  camera.fov = std::min(75.0, std::atan(1 / aspect) * 360 / std::numbers::pi);
+  camera.near = 0.1;
+  camera.far = 12.5;
+  return camera;
+}
+
+CameraRequest coplanar_camera() {
+  CameraRequest camera;
+  camera.eye = Vec3{4, 6, 24};
+  camera.target = Vec3{0, 0, 0};
+  camera.near = 0.3;  // a 16-bit depth step is 0.03 units there, the planes are up to 0.05 apart
+  camera.far = 100;
+  return camera;
+}
+
+}  // namespace
+
+std::span<const Builtin> builtin_scenes() { return kBuiltins; }
+
+const Builtin* find_builtin(std::string_view name) {
+  for (const Builtin& builtin : kBuiltins) {
+    if (builtin.name == base_name(name)) return &builtin;
+  }
+  return nullptr;
+}
+
+Scene make_builtin(std::string_view name, int width, int height, const CameraRequest& camera, std::uint64_t seed) {
+  const Builtin* builtin = find_builtin(name);
+  if (builtin == nullptr) throw InputError("no built-in scene " + in_quotes(name) + "; see halfplane scenes");
+  const int size = size_of(*builtin, name);
+  if (!builtin->has_camera && camera != CameraRequest()) {
+    throw InputError("--camera: the scene " + in_quotes(name) + " is made in clip space; leave the camera out");
+  }
+  const auto view = [&](const Mesh& mesh, const CameraRequest& own, Cull cull) {
+    return mesh_scene(mesh, merged(camera, own), width, height, cull);
+  };
+  const std::string_view base = builtin->name;
+  Scene scene = base == "teapot"     ? view(teapot_mesh(size), {}, Cull::none)
+                : base == "city"     ? view(city_mesh(size, seed), {}, Cull::back)
+                : base == "knot"     ? view(knot_mesh(size), {}, Cull::back)
+                : base == "coplanar" ? view(coplanar_mesh(), coplanar_camera(), Cull::none)
+                : base == "walk"     ? view(corridor_mesh(), walk_camera(width, height), Cull::none)
+                : base == "slivers"  ? slivers_scene(width, height, size, seed)
+                                     : triangle_scene(width, height);
+  scene.name = std::string(name);
+  return scene;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,33 @@
+// The built-in scenes, made in code: nothing to download, the same on every machine.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "model/scene.hpp"
+#include "sim/scene/camera.hpp"
+
+namespace halfplane {
+
+struct Builtin {
+  std::string_view name;
+  std::string_view description;  ///< one line for `halfplane scenes`
+  std::string_view size;         ///< what N of "name:N" counts; empty when there is no N
+  int default_size, min_size, max_size;
+  bool has_camera;  ///< false: made in clip space, so there is no place for a camera
+};
+
+/// All of them, in the order in which `halfplane scenes` prints them.
+[[nodiscard]] std::span<const Builtin> builtin_scenes();
+
+/// The built-in that `name` ("city" or "city:64") asks for; null if there is none of that name. N is not looked at.
+[[nodiscard]] const Builtin* find_builtin(std::string_view name);
+
+/// Makes "name" or "name:N". The camera's left-out parts are filled by the scene's own. The seed changes `city` and
+/// `slivers`; the others are always the same. Throws InputError for an unknown name, a bad N, or a camera where there
+/// is none.
+[[nodiscard]] Scene make_builtin(std::string_view name, int width, int height, const CameraRequest& camera,
+                                 std::uint64_t seed);
+
+}  // namespace halfplane

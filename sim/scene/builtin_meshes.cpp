@@ -1,0 +1,181 @@
+#include "sim/scene/builtin_meshes.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "sim/scene/random.hpp"
+
+namespace halfplane {
+namespace {
+
+using Color = std::array<double, 4>;
+using Quad = std::array<Vec3, 4>;  // counter-clockwise from the side that is meant to be seen
+
+// A hue of 0...1 (red, green, blue, red), fully bright.
+Color from_hue(double hue, double saturation, double value) {
+  Color rgba{0, 0, 0, 255};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double turn = hue * 6 + std::array<double, 3>{5, 3, 1}[i];
+    const double k = turn - 6 * std::floor(turn / 6);
+    rgba[i] = 255 * value * (1 - saturation * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
+  }
+  return rgba;
+}
+
+// Two triangles with vertices of their own: flat normal, one colour.
+void add_quad(Mesh& mesh, const Quad& corners, const Color& color) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Vec3 normal = normalized(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])));
+  for (const Vec3& corner : corners) mesh.vertices.push_back({corner, normal, color, 0, 0});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+// Makes everything since the last part a part of its own.
+void close_part(Mesh& mesh, const std::string& object) {
+  const std::size_t first = mesh.parts.empty() ? 0 : mesh.parts.back().first + mesh.parts.back().count;
+  mesh.parts.push_back({static_cast<std::uint32_t>(mesh.objects.size()), first, mesh.triangles.size() - first, 0});
+  mesh.objects.push_back(object);
+}
+
+// The six sides of a box, seen from outside. Axis 0...2, side low or high.
+Quad box_side(const Vec3& low, const Vec3& high, std::size_t axis, bool upper) {
+  const std::size_t s = (axis + 1) % 3, t = (axis + 2) % 3;
+  Quad quad;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t corner = upper ? i : 3 - i;
+    quad[i][axis] = upper ? high[axis] : low[axis];
+    quad[i][s] = corner == 1 || corner == 2 ? high[s] : low[s];
+    quad[i][t] = corner >= 2 ? high[t] : low[t];
+  }
+  return quad;
+}
+
+// The torus knot's centre line at angle t of 0...2 pi: twice round the axis, three times through the hole.
+Vec3 knot_line(double t) {
+  const double r = 2 + std::cos(3 * t);
+  return {r * std::cos(2 * t), r * std::sin(2 * t), std::sin(3 * t)};
+}
+
+// Its tangent.
+Vec3 knot_tangent(double t) {
+  const double r = 2 + std::cos(3 * t), slope = -3 * std::sin(3 * t);
+  return normalized({slope * std::cos(2 * t) - 2 * r * std::sin(2 * t),
+                     slope * std::sin(2 * t) + 2 * r * std::cos(2 * t), 3 * std::cos(3 * t)});
+}
+
+}  // namespace
+
+Mesh city_mesh(int boxes, std::uint64_t seed) {
+  Mesh mesh;
+  Random random(seed);
+  int side = 1;
+  while (side * side < boxes) ++side;
+  const double half = side / 2.0;
+  for (int i = 0; i < boxes; ++i) {
+    const double x = i % side - half, z = std::floor(static_cast<double>(i) / side) - half;  // the lot's corner
+    const double inset = random.uniform(0.12, 0.3);
+    // A few towers among many low houses.
+    const double height = 0.25 + 3.2 * std::pow(random.uniform(0, 1), 3);
+    const Color color = from_hue(random.uniform(0, 1), random.uniform(0.15, 0.45), random.uniform(0.65, 0.95));
+    const Vec3 low{x + inset, 0, z + inset}, high{x + 1 - inset, height, z + 1 - inset};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const bool upper : {false, true}) add_quad(mesh, box_side(low, high, axis, upper), color);
+    }
+    close_part(mesh, "box " + std::to_string(i));
+  }
+  const double edge = half + 0.5;
+  // A little below the boxes' bottoms, which it would fight with for the same depth.
+  add_quad(mesh, {{{-edge, -0.02, edge}, {edge, -0.02, edge}, {edge, -0.02, -edge}, {-edge, -0.02, -edge}}},
+           {95, 105, 95, 255});
+  close_part(mesh, "ground");
+  return mesh;
+}
+
+Mesh knot_mesh(int segments) {
+  Mesh mesh;
+  const int around = std::max(3, segments / 8);
+  constexpr double kTurn = 2 * std::numbers::pi, kTube = 0.42;  // radius of the tube; the strands are 1 to 2 apart
+  // Turned towards the default camera, which would otherwise look along one of the tube's bends.
+  const Vec3 z = normalized({0.45, 0.3, 0.85}), x = normalized(cross({0, 1, 0}, z)), y = cross(z, x);
+  const auto turned = [&](const Vec3& p) { return add(add(scaled(x, p[0]), scaled(y, p[1])), scaled(z, p[2])); };
+  for (int i = 0; i < segments; ++i) {
+    const double t = kTurn * i / segments;
+    const Vec3 center = knot_line(t), tangent = knot_tangent(t);
+    // Away from the torus' own core circle: a frame that comes back to itself after the whole way round.
+    const Vec3 core{2 * std::cos(2 * t), 2 * std::sin(2 * t), 0};
+    const Vec3 side = normalized(cross(tangent, subtract(center, core)));
+    const Vec3 out = cross(side, tangent);
+    const Color color = from_hue(static_cast<double>(i) / segments, 0.75, 0.95);
+    for (int j = 0; j < around; ++j) {
+      const double angle = kTurn * j / around;
+      const Vec3 normal = add(scaled(out, std::cos(angle)), scaled(side, std::sin(angle)));
+      mesh.vertices.push_back({turned(add(center, scaled(normal, kTube))), turned(normal), color, 0, 0});
+    }
+  }
+  const auto index = [&](int i, int j) { return static_cast<std::uint32_t>(i % segments * around + j % around); };
+  for (int i = 0; i < segments; ++i) {
+    for (int j = 0; j < around; ++j) {
+      mesh.triangles.push_back({index(i, j), index(i + 1, j + 1), index(i + 1, j)});
+      mesh.triangles.push_back({index(i, j), index(i, j + 1), index(i + 1, j + 1)});
+    }
+  }
+  close_part(mesh, "knot");
+  return mesh;
+}
+
+Mesh coplanar_mesh() {
+  Mesh mesh;
+  mesh.lit = false;
+  // Both squares lean back; the second is turned by a third of a degree about the line x = 0 that they share.
+  constexpr double kSize = 8, kLean = 0.6, kTilt = 0.006;
+  const auto square = [](double tilt) {
+    Quad quad{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double x = i == 1 || i == 2 ? kSize : -kSize, y = i >= 2 ? kSize : -kSize;
+      quad[i] = {x, y, -kLean * y + tilt * x};
+    }
+    return quad;
+  };
+  add_quad(mesh, square(0), {240, 140, 40, 255});
+  close_part(mesh, "orange");
+  Quad second = square(kTilt);
+  std::rotate(second.begin(), second.begin() + 1, second.end());  // the other diagonal: rounding differs too
+  add_quad(mesh, second, {50, 120, 220, 255});
+  close_part(mesh, "blue");
+  return mesh;
+}
+
+Mesh corridor_mesh() {
+  Mesh mesh;
+  mesh.lit = false;
+  const Vec3 low{-2, 0, -20}, high{2, 3, 20};
+  const std::array<std::array<Color, 2>, 3> colors{{{{{205, 190, 150, 255}, {120, 80, 60, 255}}},   // walls
+                                                    {{{90, 140, 120, 255}, {225, 230, 220, 255}}},  // floor, ceiling
+                                                    {{{150, 60, 60, 255}, {235, 200, 90, 255}}}}};  // ends
+  const std::array<const char*, 6> names{"left wall", "right wall", "floor", "ceiling", "far end", "near end"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool upper : {false, true}) {
+      const std::size_t s = (axis + 1) % 3, t = (axis + 2) % 3;
+      // Every edge of a cell is an edge of its neighbour too, over the corridor's corners as well: no T-junction.
+      for (double a = low[s]; a < high[s]; ++a) {
+        for (double b = low[t]; b < high[t]; ++b) {
+          Vec3 from = low, to = high;
+          from[s] = a;
+          to[s] = a + 1;
+          from[t] = b;
+          to[t] = b + 1;
+          const bool odd = std::fmod(std::abs(a + b), 2) != 0;
+          Quad quad = box_side(from, to, axis, upper);
+          std::reverse(quad.begin(), quad.end());  // seen from inside
+          add_quad(mesh, quad, colors[axis][odd ? 1 : 0]);
+        }
+      }
+      close_part(mesh, names[axis * 2 + (upper ? 1 : 0)]);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,231 @@
+#include "sim/scene/camera.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "model/config.hpp"
+#include "sim/scene/mesh.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr const char* kExample = "write for example --camera 'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100'";
+
+[[noreturn]] void fail(const std::string& what, const std::string& mend) {
+  throw InputError("--camera: " + what + "; " + mend);
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+// Cuts the first part off `text`, up to `separator` or the end.
+std::string_view cut(std::string_view& text, char separator) {
+  const std::size_t end = text.find(separator);
+  const std::string_view part = text.substr(0, end);
+  text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  return trimmed(part);
+}
+
+double read_number(std::string_view key, std::string_view word) {
+  const std::optional<double> value = parse_number(trimmed(word));
+  if (!value) fail(std::string(key) + "=" + printable(word) + " is not a finite number", kExample);
+  if (std::abs(*value) > kLargestCoordinate) fail(std::string(key) + " is beyond +-1e30", "choose a smaller number");
+  return *value;
+}
+
+Vec3 read_vector(std::string_view key, std::string_view text) {
+  if (std::count(text.begin(), text.end(), ',') != 2) {
+    fail(std::string(key) + "=" + printable(text) + " is not three numbers", "write " + std::string(key) + "=X,Y,Z");
+  }
+  Vec3 result{};
+  for (double& component : result) component = read_number(key, cut(text, ','));
+  return result;
+}
+
+double read_positive(std::string_view key, std::string_view text) {
+  const double value = read_number(key, text);
+  if (!(value > 0)) fail(std::string(key) + "=" + printable(text) + " is not above 0", "choose a positive number");
+  return value;
+}
+
+void read_part(CameraRequest& request, std::string_view key, std::string_view value) {
+  if (key == "eye") {
+    request.eye = read_vector(key, value);
+  } else if (key == "target") {
+    request.target = read_vector(key, value);
+  } else if (key == "up") {
+    request.up = read_vector(key, value);
+    if (length(*request.up) == 0) fail("up=0,0,0 has no direction", "write up=0,1,0");
+  } else if (key == "fov") {
+    request.fov = read_positive(key, value);
+    if (*request.fov >= 180) fail("fov=" + printable(value) + " is not below 180 degrees", "choose 20 to 120");
+  } else if (key == "ortho") {
+    request.ortho = read_positive(key, value);
+  } else if (key == "near") {
+    request.near = read_positive(key, value);
+  } else if (key == "far") {
+    request.far = read_positive(key, value);
+  } else if (key == "name") {
+    fail("name=" + printable(value) + ": this scene has no cameras of its own", kExample);
+  } else {
+    fail("unknown part " + in_quotes(key), "the parts are eye, target, up, fov, ortho, near and far");
+  }
+}
+
+constexpr double kMargin = 1.06;  // space around the mesh, as a factor of its size in the view
+
+double half_fov(double degrees) { return degrees * std::numbers::pi / 360; }
+
+struct Sphere {
+  Vec3 center{};
+  double radius = 0;
+};
+
+// The middle of the vertices' box and the farthest of them from it.
+Sphere bounding_sphere(const Mesh& mesh) {
+  Vec3 low = mesh.vertices.front().position, high = low;
+  for (const MeshVertex& vertex : mesh.vertices) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], vertex.position[i]);
+      high[i] = std::max(high[i], vertex.position[i]);
+    }
+  }
+  Sphere sphere{scaled(add(low, high), 0.5), 0};
+  for (const MeshVertex& vertex : mesh.vertices) {
+    sphere.radius = std::max(sphere.radius, length(subtract(vertex.position, sphere.center)));
+  }
+  // A mesh of one point still needs a size, and one that binary64 can add to its place.
+  sphere.radius = std::max({sphere.radius, 1e-9 * length(sphere.center), 1e-30});
+  return sphere;
+}
+
+// An up that is not along the view: the given one if that will do.
+Vec3 usable_up(const Vec3& up, const Vec3& forward) {
+  if (length(cross(forward, normalized(up))) >= 1e-9) return normalized(up);
+  if (std::abs(forward[2]) < 0.7) return {0, 0, -1};  // looking straight down, as maps are read
+  return {0, 1, 0};
+}
+
+// How far back along `back` the eye must be from the target for the cone of view to hold every vertex.
+double fitting_distance(const Camera& camera, const Mesh& mesh, const Vec3& back, double radius, double aspect) {
+  const double half_height = std::tan(half_fov(camera.fov)), half_width = half_height * aspect;
+  const Vec3 right = normalized(cross(camera.up, back)), up = cross(back, right);
+  double distance = 1e-3 * radius;
+  for (const MeshVertex& vertex : mesh.vertices) {
+    const Vec3 offset = scaled(subtract(vertex.position, camera.target), kMargin);
+    const double across = std::max(std::abs(dot(offset, right)) / half_width, std::abs(dot(offset, up)) / half_height);
+    distance = std::max(distance, dot(offset, back) + across);
+  }
+  return distance;
+}
+
+// near and far around the vertices' depths along the view, with some room.
+void fit_planes(Camera& camera, const CameraRequest& request, const Mesh& mesh, const Vec3& forward, double radius) {
+  double front = dot(subtract(mesh.vertices.front().position, camera.eye), forward), back = front;
+  for (const MeshVertex& vertex : mesh.vertices) {
+    const double depth = dot(subtract(vertex.position, camera.eye), forward);
+    front = std::min(front, depth);
+    back = std::max(back, depth);
+  }
+  back += 0.05 * radius;
+  camera.far = request.far.value_or(back > 0 ? back : 10 * radius);
+  // Depth precision goes with near: it is kept away from the eye even where the eye is inside the mesh.
+  front = std::max(front - 0.05 * radius, camera.far / 1000);
+  camera.near = request.near.value_or(std::min(front, camera.far / 2));
+  if (!request.far && camera.far <= camera.near) camera.far = 10 * camera.near;
+}
+
+}  // namespace
+
+CameraRequest parse_camera(std::string_view text) {
+  CameraRequest request;
+  std::set<std::string, std::less<>> seen;
+  while (!text.empty()) {
+    const std::string_view part = cut(text, ';');
+    if (part.empty()) continue;
+    const std::size_t equals = part.find('=');
+    if (equals == std::string_view::npos) fail("no = in " + in_quotes(part), kExample);
+    const std::string_view key = trimmed(part.substr(0, equals));
+    if (!seen.emplace(key).second) fail(in_quotes(key) + " is given twice", "leave one of them out");
+    read_part(request, key, trimmed(part.substr(equals + 1)));
+  }
+  if (request.fov && request.ortho) fail("fov and ortho together", "leave one of them out");
+  return request;
+}
+
+CameraRequest merged(const CameraRequest& request, const CameraRequest& defaults) {
+  CameraRequest result = request;
+  if (!result.eye) result.eye = defaults.eye;
+  if (!result.target) result.target = defaults.target;
+  if (!result.up) result.up = defaults.up;
+  if (!result.near) result.near = defaults.near;
+  if (!result.far) result.far = defaults.far;
+  if (!request.ortho && !request.fov) {
+    result.fov = defaults.fov;
+    result.ortho = defaults.ortho;
+  }
+  return result;
+}
+
+Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect) {
+  const Sphere bounds = bounding_sphere(mesh);
+  Camera camera;
+  camera.target = request.target.value_or(bounds.center);
+  camera.fov = request.fov.value_or(camera.fov);
+  camera.ortho = request.ortho.value_or(0);
+  const Vec3 up = request.up.value_or(camera.up), three_quarter = normalized({0.5, 0.45, 0.85});
+  if (request.eye) {
+    camera.eye = *request.eye;
+  } else {
+    camera.up = usable_up(up, scaled(three_quarter, -1));
+    const double distance = camera.ortho > 0 ? 2 * bounds.radius + length(subtract(camera.target, bounds.center))
+                                             : fitting_distance(camera, mesh, three_quarter, bounds.radius, aspect);
+    camera.eye = add(camera.target, scaled(three_quarter, distance));
+  }
+  const Vec3 view = subtract(camera.target, camera.eye);
+  if (length(view) == 0) fail("eye and target are the same point", "move one of them");
+  const Vec3 forward = normalized(view);
+  camera.up = usable_up(up, forward);
+  fit_planes(camera, request, mesh, forward, bounds.radius);
+  if (!(camera.near < camera.far)) {
+    fail("near=" + std::to_string(camera.near) + " is not nearer than far=" + std::to_string(camera.far),
+         "choose near < far");
+  }
+  return camera;
+}
+
+Mat4 view_matrix(const Camera& camera) {
+  const Vec3 back = normalized(subtract(camera.eye, camera.target));
+  const Vec3 right = normalized(cross(camera.up, back));
+  const Vec3 up = cross(back, right);
+  const auto row = [&camera](const Vec3& axis) { return Vec4{axis[0], axis[1], axis[2], -dot(axis, camera.eye)}; };
+  return {row(right), row(up), row(back), Vec4{0, 0, 0, 1}};
+}
+
+Mat4 projection_matrix(const Camera& camera, double aspect) {
+  const double n = camera.near, f = camera.far;
+  if (camera.ortho > 0) {
+    const double scale = 2 / camera.ortho;
+    return {Vec4{scale / aspect, 0, 0, 0}, Vec4{0, scale, 0, 0}, Vec4{0, 0, -2 / (f - n), -(f + n) / (f - n)},
+            Vec4{0, 0, 0, 1}};
+  }
+  const double scale = 1 / std::tan(half_fov(camera.fov));
+  return {Vec4{scale / aspect, 0, 0, 0}, Vec4{0, scale, 0, 0}, Vec4{0, 0, -(f + n) / (f - n), -2 * f * n / (f - n)},
+          Vec4{0, 0, -1, 0}};
+}
+
+Vec4 transform(const Mat4& matrix, const Vec4& point) {
+  Vec4 result{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t i = 0; i < 4; ++i) result[row] += matrix[row][i] * point[i];
+  }
+  return result;
+}
+
+}  // namespace halfplane

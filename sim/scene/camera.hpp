@@ -1,0 +1,50 @@
+// Cameras: what `--camera` says, the default framing that fills in the rest, and the matrices. Right-handed, looking
+// along -z in eye space; clip space as OpenGL has it: +y up, z in -w...w. All in binary64.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "sim/scene/mesh.hpp"
+
+namespace halfplane {
+
+using Vec4 = std::array<double, 4>;
+using Mat4 = std::array<Vec4, 4>;  ///< four rows; points are columns
+
+/// What a user asked for. What is left out is framed.
+struct CameraRequest {
+  std::optional<Vec3> eye, target, up;
+  std::optional<double> fov;        ///< vertical, degrees
+  std::optional<double> ortho;      ///< height of the view in world units: orthographic instead of fov
+  std::optional<double> near, far;  ///< distances along the view
+  bool operator==(const CameraRequest&) const = default;
+};
+
+/// A complete, valid camera.
+struct Camera {
+  Vec3 eye{}, target{}, up{0, 1, 0};
+  double fov = 45;               ///< vertical, degrees, in (0, 180)
+  double ortho = 0;              ///< height of an orthographic view; 0 for perspective
+  double near = 0.1, far = 100;  ///< distances along the view, 0 < near < far
+};
+
+/// Reads `eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100` or `ortho=2`; empty asks for nothing. Throws
+/// InputError that names the part and the mend; also for `name=NAME`, since no input of this version has cameras of its
+/// own.
+[[nodiscard]] CameraRequest parse_camera(std::string_view text);
+
+/// `request`, with what it leaves out taken from `defaults`. A user's fov or ortho replaces either default.
+[[nodiscard]] CameraRequest merged(const CameraRequest& request, const CameraRequest& defaults);
+
+/// Fills a request in for a mesh with at least one vertex: a three-quarter view (from the front, right and above) of
+/// the middle of its bounding box, as near as holds every vertex at this aspect (width / height); near and far just
+/// around the mesh. An `up` along the view is replaced. Throws InputError if the whole makes no camera: eye = target,
+/// near >= far.
+[[nodiscard]] Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect);
+
+[[nodiscard]] Mat4 view_matrix(const Camera& camera);
+[[nodiscard]] Mat4 projection_matrix(const Camera& camera, double aspect);
+[[nodiscard]] Vec4 transform(const Mat4& matrix, const Vec4& point);
+
+}  // namespace halfplane

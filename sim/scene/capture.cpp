@@ -1,0 +1,340 @@
+#include "capture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+
+#include "capture_states.hpp"
+#include "capture_text.hpp"
+#include "model/config.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr int max_side = 16384;  // pixels along a side of the target
+
+/// Spreads states over buckets, so that a file with a new state for each triangle is still read in linear time.
+struct StateHash {
+  std::size_t operator()(const State& state) const {
+    std::size_t hash = 0;
+    const auto mix = [&hash](std::size_t value) { hash = (hash ^ value) * 0x9e3779b97f4a7c15u + (hash >> 29); };
+    const auto mix_number = [&mix](double value) { mix(std::hash<double>{}(value)); };
+    for (const int value :
+         {static_cast<int>(state.space), static_cast<int>(state.depth_test), static_cast<int>(state.depth_write),
+          static_cast<int>(state.color_write), static_cast<int>(state.cull), static_cast<int>(state.front),
+          static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z)})
+      mix(static_cast<std::size_t>(value));
+    const Rect scissor = state.scissor.value_or(Rect{});
+    for (const int value : {scissor.x, scissor.y, scissor.width, scissor.height}) mix(static_cast<std::size_t>(value));
+    const Viewport viewport = state.viewport.value_or(Viewport{});
+    for (const double value : {viewport.x, viewport.y, viewport.width, viewport.height}) mix_number(value);
+    for (const double value : state.depth_range) mix_number(value);
+    return hash;
+  }
+};
+
+/// Builds the scene, one line at a time.
+class CaptureReader {
+ public:
+  CaptureReader(std::string_view text, std::string_view file_name) : text_(text, file_name) { scene_.name = file_name; }
+
+  Scene read() {
+    read_header();
+    while (text_.next_line()) {
+      read_line(text_.word());
+      text_.expect_end();
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  void read_header();
+  void read_line(std::string_view word);
+  void read_rare_line(std::string_view word);
+  void read_target();
+  void read_clear();
+  void read_state();
+  void read_object();
+  void read_vertex();
+  void grow_vertices();
+  void read_draw(Topology topology, const char* name);
+
+  std::uint32_t state_number();
+  std::array<double, 4> read_color();
+
+  CaptureText text_;
+  Scene scene_;
+  State state_;                // what the next draw gets
+  bool state_changed_ = true;  // since state_number() was asked
+  std::uint32_t state_number_ = 0;
+  std::uint32_t object_ = 0;
+  std::size_t target_line_ = 0;  // 0: not given yet
+  std::unordered_map<State, std::uint32_t, StateHash> state_numbers_;
+  std::unordered_map<std::string, std::uint32_t> object_numbers_{{"", 0}};
+};
+
+void CaptureReader::read_header() {
+  if (!text_.next_line()) {
+    constexpr std::string_view mend = "; a capture begins with the line 'halfplane 1'";
+    throw InputError(scene_.name + ":1: the file is empty" + std::string(mend));
+  }
+  const std::string_view word = text_.word();
+  if (word == "halfplane") {
+    const std::string_view version = text_.word();
+    if (version.empty()) text_.fail("'halfplane' without a version; write 'halfplane 1'");
+    if (version != "1")
+      text_.fail("version " + quoted_word(version) +
+                 " of the format is not known here; this program reads 'halfplane 1'");
+  } else {
+    text_.fail("this is no capture, it begins with " + quoted_word(word) + "; the first line must be 'halfplane 1'");
+  }
+  text_.expect_end();
+  text_.refuse_nul();
+}
+
+void CaptureReader::read_line(std::string_view word) {
+  if (word == "v") return read_vertex();
+  if (word == "t") return read_draw(Topology::triangles, "t");
+  if (word == "ts") return read_draw(Topology::triangle_strip, "ts");
+  if (word == "tf") return read_draw(Topology::triangle_fan, "tf");
+  if (word == "state") return read_state();
+  read_rare_line(word);
+}
+
+void CaptureReader::read_rare_line(std::string_view word) {
+  if (word == "object") return read_object();
+  if (word == "clear") return read_clear();
+  if (word == "target") return read_target();
+  if (word == "space") {
+    capture_space().read(text_, state_);
+    state_changed_ = true;
+  } else if (word == "frame") {
+    scene_.commands.emplace_back(EndFrame{});
+  } else if (word == "l" || word == "ll" || word == "ls" || word == "p") {
+    text_.fail("points and lines are not in this version; remove the line, or draw with t, ts or tf");
+  } else if (word == "planes") {
+    text_.fail("planes is not in this version; remove the line");
+  } else if (word == "halfplane") {
+    text_.fail("a second 'halfplane' line; a file holds one capture: remove the line, or split the file");
+  } else {
+    text_.fail(quoted_word(word) +
+               " begins no line of a capture; write one of target, clear, space, state, v, t, ts, tf, " +
+               "object, frame, or # before a comment");
+  }
+}
+
+void CaptureReader::read_target() {
+  if (target_line_ != 0)
+    text_.fail("a second target, the first is on line " + std::to_string(target_line_) + "; remove one of them");
+  target_line_ = text_.line();
+  scene_.width = text_.integer("the target's width", 1, max_side);
+  scene_.height = text_.integer("the target's height", 1, max_side);
+}
+
+std::array<double, 4> CaptureReader::read_color() {
+  std::array<double, 4> color{};
+  for (double& component : color) component = text_.number("a colour component", 0, 255);
+  return color;
+}
+
+void CaptureReader::read_clear() {
+  Clear clear;
+  while (text_.has_word()) {
+    const std::string_view what = text_.word();
+    if ((what == "color" && clear.color) || (what == "depth" && clear.depth))
+      text_.fail("a second " + quoted_word(what) + " on one clear line; remove one of them");
+    if (what == "color") {
+      clear.color = read_color();
+    } else if (what == "depth") {
+      clear.depth = text_.number("the clear depth", 0, 1);
+    } else {
+      text_.fail(quoted_word(what) + " cannot be cleared; write clear color r g b a depth z, or one of the two");
+    }
+  }
+  if (!clear.color && !clear.depth)
+    text_.fail("clear without anything to clear; write clear color r g b a depth z, or one of the two");
+  clear.state = state_number();
+  scene_.commands.emplace_back(clear);
+}
+
+void CaptureReader::read_state() {
+  const std::string_view name = text_.word();
+  const auto settings = capture_states();
+  const auto setting = std::find_if(settings.begin(), settings.end(), [&](const auto& s) { return s.name == name; });
+  if (setting != settings.end()) {
+    setting->read(text_, state_);
+    state_changed_ = true;
+    return;
+  }
+  if (is_later_state(name)) text_.fail("state " + std::string(name) + " is not in this version; remove the line");
+  std::string known;
+  for (const CaptureState& s : settings) known.append(known.empty() ? "" : ", ").append(s.name);
+  text_.fail((name.empty() ? "state without a name" : "state " + quoted_word(name) + " is not known") +
+             "; write one of " + known);
+}
+
+/// The index of state_ in Scene::states; a state that was drawn with before keeps its index.
+std::uint32_t CaptureReader::state_number() {
+  if (state_changed_) {
+    state_changed_ = false;
+    const auto next = static_cast<std::uint32_t>(scene_.states.size());
+    const auto [place, is_new] = state_numbers_.try_emplace(state_, next);
+    if (is_new) scene_.states.push_back(state_);
+    state_number_ = place->second;
+  }
+  return state_number_;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+void CaptureReader::read_object() {
+  const std::string_view raw = text_.rest();
+  std::string name;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(raw[i]);
+    if ((byte < 0x20 && byte != '\t') || byte == 0x7f)
+      text_.fail("the object's name " + quoted_word(raw) + " holds a control byte; write it as % and two hex digits");
+    if (raw[i] != '%') {
+      name += raw[i];
+      continue;
+    }
+    const int high = i + 2 < raw.size() ? hex_digit(raw[i + 1]) : -1;
+    const int low = i + 2 < raw.size() ? hex_digit(raw[i + 2]) : -1;
+    if (high < 0 || low < 0)
+      text_.fail("the object's name " + quoted_word(raw) + " holds a % without two hex digits; write %25 for a % sign");
+    name += static_cast<char>(high * 16 + low);
+    i += 2;
+  }
+  const auto next = static_cast<std::uint32_t>(scene_.objects.size());
+  const auto [place, is_new] = object_numbers_.try_emplace(name, next);
+  if (is_new) scene_.objects.push_back(std::move(name));
+  object_ = place->second;
+}
+
+void CaptureReader::read_vertex() {
+  std::array<double, 10> values{};
+  const std::size_t count = text_.numbers(values);
+  if (text_.has_word() || (count != 3 && count != 4 && count != 8 && count != 10))
+    text_.fail("a vertex of " + (text_.has_word() ? "more than 10" : std::to_string(count)) +
+               " numbers; write 3 (x y z), 4 (and w), 8 (and r g b a) or 10 (and u v)");
+  // No index can follow the last line, and the number at a cut would be read as a shorter one.
+  if (!text_.is_terminated())
+    text_.fail("the file ends inside this vertex: it may be cut off; add the rest, or end the line");
+  Vertex vertex{.x = values[0], .y = values[1], .z = values[2]};
+  if (count >= 4) vertex.w = values[3];
+  if (count >= 8) {
+    std::copy_n(values.begin() + 4, 4, vertex.rgba.begin());
+    for (const double component : vertex.rgba)
+      if (!(component >= 0 && component <= 255))
+        text_.fail("a colour component outside 0...255; write r g b a in 0...255");
+  }
+  if (count == 10) {
+    vertex.u = values[8];
+    vertex.v = values[9];
+  }
+  if (scene_.vertices.size() == scene_.vertices.capacity()) grow_vertices();
+  scene_.vertices.push_back(vertex);
+}
+
+/// Makes room for as many vertices as the text will have if it goes on like this: touching fresh memory, which doubling
+/// does twice, takes as long as reading the numbers. Bounded by the text, since a vertex takes at least 8 bytes of it.
+void CaptureReader::grow_vertices() {
+  constexpr std::size_t enough_to_tell = 1024;  // vertices
+  const std::size_t count = scene_.vertices.size();
+  const double share = static_cast<double>(text_.size()) / static_cast<double>(text_.bytes_read());
+  const double expected = static_cast<double>(count) * share * 1.02;  // 2 %: lines get longer as numbers do, or shorter
+  const std::size_t doubled = std::max<std::size_t>(2 * count, enough_to_tell);
+  scene_.vertices.reserve(count < enough_to_tell ? doubled : std::max(doubled, static_cast<std::size_t>(expected)));
+}
+
+/// One `t`, `ts` or `tf` line. A strip or a fan stands on one line; lists of triangles that follow each other join.
+void CaptureReader::read_draw(Topology topology, const char* name) {
+  const std::size_t first = scene_.indices.size();
+  do {
+    scene_.indices.push_back(text_.index(scene_.vertices.size()));
+  } while (text_.has_word());
+  const std::size_t count = scene_.indices.size() - first;
+  const bool is_list = topology == Topology::triangles;
+  if (is_list ? count % 3 != 0 : count < 3)
+    text_.fail(name + (" with " + std::to_string(count)) + (count == 1 ? " index" : " indices") + "; write " +
+               (is_list ? "3 for each triangle" : "at least 3, all on one line"));
+  const std::uint32_t state = state_number();
+  if (is_list && !scene_.commands.empty()) {
+    auto* last = std::get_if<Draw>(&scene_.commands.back());
+    if (last != nullptr && last->topology == topology && last->state == state && last->object == object_) {
+      last->count += count;
+      return;
+    }
+  }
+  const auto line = std::min<std::size_t>(text_.line(), std::numeric_limits<std::uint32_t>::max());
+  scene_.commands.emplace_back(Draw{.state = state,
+                                    .object = object_,
+                                    .topology = topology,
+                                    .first = first,
+                                    .count = count,
+                                    .line = static_cast<std::uint32_t>(line)});
+}
+
+/// The text of a file. Its memory is not filled before it is read into, as a std::string's would be.
+struct FileText {
+  std::unique_ptr<char[]> bytes;
+  std::size_t size = 0;
+};
+
+/// Reads to the end, a file in one piece; a pipe has no size to go by.
+FileText read_all(const std::string& path) {
+  const auto refuse = [&path](const std::string& why) {
+    throw InputError(path + ": " + why + "; give the path of a capture");
+  };
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) refuse("there is no such file");
+  if (std::filesystem::is_directory(status)) refuse("this is a folder");
+  if (std::filesystem::is_character_file(status)) refuse("this is a device");  // some of them never end
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse("the file cannot be opened (" + std::generic_category().message(errno) + ")");
+
+  const auto known_size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
+  // One byte more than the file has: the first read then meets its end.
+  std::size_t room = std::max<std::size_t>(error ? 0 : known_size, 1u << 16) + 1;
+  FileText text{std::make_unique_for_overwrite<char[]>(room)};
+  for (;;) {
+    file.read(text.bytes.get() + text.size, static_cast<std::streamsize>(room - text.size));
+    text.size += static_cast<std::size_t>(file.gcount());
+    if (!file) break;
+    auto larger = std::make_unique_for_overwrite<char[]>(room * 2);
+    std::copy_n(text.bytes.get(), text.size, larger.get());
+    text.bytes = std::move(larger);
+    room *= 2;
+  }
+  if (file.bad()) refuse("reading stopped (" + std::generic_category().message(errno) + ")");
+  return text;
+}
+
+}  // namespace
+
+Scene read_capture(std::string_view text, std::string_view file_name) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // some editors begin UTF-8 files with it
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  return CaptureReader(text, file_name).read();
+}
+
+Scene read_capture_file(const std::string& path) {
+  const FileText text = read_all(path);
+  return read_capture({text.bytes.get(), text.size}, path);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,75 @@
+// A capture's text, line by line and word by word, with the place for messages. Used by the capture reader only.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace halfplane {
+
+/// `text` between quotes, fit for a one-line message: at most 40 bytes of it, the unprintable ones as \xNN.
+[[nodiscard]] std::string quoted_word(std::string_view text);
+
+/// "none, back, front, both"
+[[nodiscard]] std::string comma_list(std::span<const std::string_view> names);
+
+/// Appends the shortest decimal that reads back as `value`, bit for bit.
+void append_number(std::string& out, double value);
+
+/// A cursor over the words of a text. Words are separated by blanks and tabs; `#` ends a line early, CR LF is one end.
+class CaptureText {
+ public:
+  CaptureText(std::string_view text, std::string_view file_name) : text_(text), file_name_(file_name) {}
+
+  /// Moves on to the next line that has a word in it. False at the end of the text.
+  [[nodiscard]] bool next_line();
+  /// Whether the line has another word.
+  [[nodiscard]] bool has_word();
+  /// The next word, empty at the end of the line.
+  [[nodiscard]] std::string_view word();
+  /// What is left of the line, without the blanks around it.
+  [[nodiscard]] std::string_view rest();
+
+  /// The next word as a finite number: decimal or C hex float, rounded to nearest.
+  [[nodiscard]] double number();
+  /// The numbers that follow, as many as the line and `values` have. Returns how many.
+  [[nodiscard]] std::size_t numbers(std::span<double> values);
+  /// A number in [low, high]; `what` names it in the message.
+  [[nodiscard]] double number(std::string_view what, double low, double high);
+  /// The next word as a whole number in [low, high].
+  [[nodiscard]] int integer(std::string_view what, int low, int high);
+  /// The next word as the index of one of `count` vertices.
+  [[nodiscard]] std::uint32_t index(std::size_t count);
+  /// The place in `names` of the next word; `what` names the setting in the message.
+  [[nodiscard]] std::size_t choice(std::string_view what, std::span<const std::string_view> names);
+
+  /// Refuses words that are left over.
+  void expect_end();
+  /// Refuses a NUL byte anywhere in the text.
+  void refuse_nul() const;
+  /// Whether the line ends with a line end, as all do but the last one of a text that was cut off.
+  [[nodiscard]] bool is_terminated() const { return next_ > 0 && text_[next_ - 1] == '\n'; }
+  /// Bytes of the whole text, and of its lines up to this one.
+  [[nodiscard]] std::size_t size() const { return text_.size(); }
+  [[nodiscard]] std::size_t bytes_read() const { return next_; }
+  /// Number of the line, from 1.
+  [[nodiscard]] std::size_t line() const { return line_; }
+  /// Throws InputError "file:line: message".
+  [[noreturn]] void fail(const std::string& message) const { fail_at(line_, message); }
+
+ private:
+  [[noreturn]] void fail_at(std::size_t line, const std::string& message) const;
+  /// The next word; fails, naming `what`, if there is none.
+  std::string_view expect_word(std::string_view what);
+
+  std::string_view text_, file_name_;
+  std::size_t next_ = 0;            // where the next line begins in text_
+  std::size_t line_ = 0;            // 0: before the first
+  const char* at_ = nullptr;        // where the next word is looked for
+  const char* line_end_ = nullptr;  // before its LF or CR LF
+};
+
+}  // namespace halfplane

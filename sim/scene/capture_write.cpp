@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <ostream>
+#include <span>
+
+#include "capture.hpp"
+#include "capture_states.hpp"
+#include "capture_text.hpp"
+
+namespace halfplane {
+namespace {
+
+using VertexNumbers = std::array<double, 10>;
+
+/// In the order of a `v` line.
+VertexNumbers numbers_of(const Vertex& v) {
+  return {v.x, v.y, v.z, v.w, v.rgba[0], v.rgba[1], v.rgba[2], v.rgba[3], v.u, v.v};
+}
+
+/// Equal in every bit: 0 and -0 differ.
+bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
+/// How many numbers of a `v` line say more than the defaults do: 3, 4, 8 or 10.
+std::size_t numbers_needed(const VertexNumbers& numbers) {
+  static const VertexNumbers defaults = numbers_of(Vertex{});
+  std::size_t needed = numbers.size();
+  for (const std::size_t shorter : {8u, 4u, 3u}) {
+    const std::span tail = std::span(numbers).subspan(shorter, needed - shorter);
+    if (!same_bits(tail, std::span(defaults).subspan(shorter, needed - shorter))) break;
+    needed = shorter;
+  }
+  return needed;
+}
+
+/// An object's name as one word or several on a line: what the line could not hold is written as % and two hex digits.
+std::string escaped(std::string_view name) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(name[i]);
+    const bool is_edge_blank = byte == ' ' && (i == 0 || i + 1 == name.size());
+    if (byte >= 0x20 && byte != 0x7f && byte != '%' && byte != '#' && !is_edge_blank) {
+      result += name[i];
+    } else {
+      result += '%';
+      result += digits[byte >> 4];
+      result += digits[byte & 15];
+    }
+  }
+  return result;
+}
+
+/// Writes commands in order and remembers what the reader knows at each point.
+class CaptureWriter {
+ public:
+  CaptureWriter(const Scene& scene, std::ostream& out) : scene_(scene), out_(out) {}
+
+  void write() {
+    buffer_ += "halfplane 1\ntarget " + std::to_string(scene_.width) + ' ' + std::to_string(scene_.height) + '\n';
+    for (const Vertex& vertex : scene_.vertices) write_vertex(vertex);
+    for (const Command& command : scene_.commands) {
+      if (const auto* clear = std::get_if<Clear>(&command)) write_clear(*clear);
+      if (const auto* draw = std::get_if<Draw>(&command)) write_draw(*draw);
+      if (std::holds_alternative<EndFrame>(command)) buffer_ += "frame\n";
+      flush_if_full();
+    }
+    introduce_objects(scene_.objects.size());
+    flush();
+  }
+
+ private:
+  void write_vertex(const Vertex& vertex);
+  void write_clear(const Clear& clear);
+  void write_draw(const Draw& draw);
+  void write_state(const State& wanted);
+  void write_object(std::size_t object);
+  void introduce_objects(std::size_t end);
+
+  void flush() {
+    out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    buffer_.clear();
+  }
+  void flush_if_full() {
+    if (buffer_.size() > (1u << 16)) flush();
+  }
+
+  const Scene& scene_;
+  std::ostream& out_;
+  std::string buffer_;
+  State state_;                    // what the reader has at this point
+  bool space_is_named_ = false;    // `space` is written once even if it is the default: people look for it
+  std::size_t object_ = 0;         // the reader's current object
+  std::size_t objects_named_ = 1;  // objects below this one have their numbers; 0 needs no line
+};
+
+void CaptureWriter::write_vertex(const Vertex& vertex) {
+  const VertexNumbers numbers = numbers_of(vertex);
+  buffer_ += 'v';
+  for (const double number : std::span(numbers).first(numbers_needed(numbers))) {
+    buffer_ += ' ';
+    append_number(buffer_, number);
+  }
+  buffer_ += '\n';
+  flush_if_full();
+}
+
+void CaptureWriter::write_state(const State& wanted) {
+  const CaptureState& space = capture_space();
+  const auto write = [&](const CaptureState& setting) {
+    buffer_ += setting.name;
+    setting.write(wanted, buffer_);
+    buffer_ += '\n';
+  };
+  if (!space_is_named_ || !space.is_same(state_, wanted)) write(space);
+  space_is_named_ = true;
+  for (const CaptureState& setting : capture_states()) {
+    if (setting.is_same(state_, wanted)) continue;
+    buffer_ += "state ";
+    write(setting);
+  }
+  state_ = wanted;
+}
+
+void CaptureWriter::write_clear(const Clear& clear) {
+  write_state(scene_.states[clear.state]);
+  buffer_ += "clear";
+  const auto write = [this](const char* what, std::span<const double> numbers) {
+    buffer_ += what;
+    for (const double number : numbers) {
+      buffer_ += ' ';
+      append_number(buffer_, number);
+    }
+  };
+  if (clear.color) write(" color", *clear.color);
+  if (clear.depth) write(" depth", std::span(&*clear.depth, 1));
+  buffer_ += '\n';
+}
+
+void CaptureWriter::write_object(std::size_t object) {
+  buffer_ += "object";
+  if (!scene_.objects[object].empty()) buffer_ += ' ' + escaped(scene_.objects[object]);
+  buffer_ += '\n';
+  object_ = object;
+}
+
+/// The reader numbers objects as they appear: names the ones before `end` that have not appeared yet, in order.
+void CaptureWriter::introduce_objects(std::size_t end) {
+  for (; objects_named_ < end; ++objects_named_) write_object(objects_named_);
+}
+
+void CaptureWriter::write_draw(const Draw& draw) {
+  const bool is_list = draw.topology == Topology::triangles;
+  const std::size_t count = is_list ? draw.count - draw.count % 3 : draw.count;  // what the pipeline draws
+  if (count < 3) return;
+  introduce_objects(draw.object);
+  if (draw.object != object_) {
+    write_object(draw.object);
+    objects_named_ = std::max<std::size_t>(objects_named_, draw.object + std::size_t{1});
+  }
+  write_state(scene_.states[draw.state]);
+  const char* name = is_list ? "t" : draw.topology == Topology::triangle_strip ? "ts" : "tf";
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == 0 || (is_list && i % 3 == 0)) buffer_ += name;
+    buffer_ += ' ';
+    buffer_ += std::to_string(scene_.indices[draw.first + i]);
+    if (i + 1 == count || (is_list && i % 3 == 2)) buffer_ += '\n';
+    flush_if_full();
+  }
+}
+
+bool same_command(const Scene& a, const Command& command_a, const Scene& b, const Command& command_b) {
+  if (command_a.index() != command_b.index()) return false;
+  if (const auto* clear_a = std::get_if<Clear>(&command_a)) {
+    const auto& clear_b = std::get<Clear>(command_b);
+    return clear_a->state == clear_b.state && clear_a->color.has_value() == clear_b.color.has_value() &&
+           (!clear_a->color || same_bits(*clear_a->color, *clear_b.color)) &&
+           clear_a->depth.has_value() == clear_b.depth.has_value() &&
+           (!clear_a->depth || same_bits(std::span(&*clear_a->depth, 1), std::span(&*clear_b.depth, 1)));
+  }
+  if (const auto* draw_a = std::get_if<Draw>(&command_a)) {
+    const auto& draw_b = std::get<Draw>(command_b);
+    if (draw_a->state != draw_b.state || draw_a->object != draw_b.object || draw_a->topology != draw_b.topology)
+      return false;
+    const auto indices_a = std::span(a.indices).subspan(draw_a->first, draw_a->count);
+    const auto indices_b = std::span(b.indices).subspan(draw_b.first, draw_b.count);
+    return std::equal(indices_a.begin(), indices_a.end(), indices_b.begin(), indices_b.end());
+  }
+  return true;  // EndFrame
+}
+
+}  // namespace
+
+void write_capture(const Scene& scene, std::ostream& out) { CaptureWriter(scene, out).write(); }
+
+bool same_scene(const Scene& a, const Scene& b) {
+  return a.width == b.width && a.height == b.height && a.states == b.states && a.objects == b.objects &&
+         std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),
+                    [](const Vertex& v, const Vertex& w) { return same_bits(numbers_of(v), numbers_of(w)); }) &&
+         std::equal(a.commands.begin(), a.commands.end(), b.commands.begin(), b.commands.end(),
+                    [&](const Command& c, const Command& d) { return same_command(a, c, b, d); });
+}
+
+}  // namespace halfplane

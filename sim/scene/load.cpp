@@ -1,0 +1,93 @@
+#include "sim/scene/load.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+#include <string_view>
+
+#include "model/config.hpp"
+#include "sim/scene/builtin.hpp"
+#include "sim/scene/camera.hpp"
+#include "sim/scene/capture.hpp"
+#include "sim/scene/mesh_scene.hpp"
+#include "sim/scene/obj.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+// How many letters must be put in, left out or changed to make `a` of `b` (Levenshtein).
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+[[noreturn]] void fail_unknown(const std::string& name) {
+  const std::string_view word = std::string_view(name).substr(0, name.find(':'));
+  std::string_view nearest;
+  std::string names;
+  for (const Builtin& builtin : builtin_scenes()) {
+    names += (names.empty() ? "" : ", ") + std::string(builtin.name);
+    const bool close = word.size() < 32 && distance(word, builtin.name) <= 2;
+    if (close && (nearest.empty() || distance(word, builtin.name) < distance(word, nearest))) nearest = builtin.name;
+  }
+  const std::string hint = nearest.empty() ? "" : " did you mean " + std::string(nearest) + "?";
+  throw InputError("unknown scene " + in_quotes(name) + ";" + hint + " built in are " + names +
+                   "; a file ends in .obj or .hpt");
+}
+
+std::string lower_extension(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+Scene load_capture(const SceneRequest& request) {
+  if (!request.camera.empty()) {
+    throw InputError("--camera: " + request.name + " is a capture, already projected; leave the camera out");
+  }
+  Scene scene = read_capture_file(request.name);
+  if (request.width == 0) return scene;
+  for (const State& state : scene.states) {
+    if (state.space == Space::window && (request.width != scene.width || request.height != scene.height)) {
+      throw InputError("--size: " + request.name + " has window-space vertices made for " +
+                       std::to_string(scene.width) + "x" + std::to_string(scene.height) + "; leave the size out");
+    }
+  }
+  scene.width = request.width;
+  scene.height = request.height;
+  return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings) {
+  if (request.width < 0 || request.height < 0 || (request.width == 0) != (request.height == 0)) {
+    throw InputError("--size: " + std::to_string(request.width) + "x" + std::to_string(request.height) +
+                     " has no pixels; write for example --size 640x480");
+  }
+  const std::string extension = lower_extension(request.name);
+  if (extension == ".hpt") return load_capture(request);
+  const bool given = request.width > 0;
+  const int width = given ? request.width : 640, height = given ? request.height : 480;
+  if (extension == ".gltf" || extension == ".glb") {
+    throw InputError(request.name + ": glTF is not in this version; export the model as .obj");
+  }
+  if (extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
+  const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
+  if (extension != ".obj") return make_builtin(request.name, width, height, camera, request.seed);
+  Scene scene = mesh_scene(read_obj_file(request.name, warnings), camera, width, height);
+  scene.name = request.name;
+  return scene;
+}
+
+}  // namespace halfplane

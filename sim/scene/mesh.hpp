@@ -1,0 +1,40 @@
+// An indexed triangle mesh in world space: what OBJ files and the built-in models become before a camera sees them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/scene/vec3.hpp"
+
+namespace halfplane {
+
+/// Coordinates are refused beyond this, so that no product of a few of them can leave binary64.
+inline constexpr double kLargestCoordinate = 1e30;
+
+struct MeshVertex {
+  Vec3 position{};                                 ///< right-handed, +y up
+  Vec3 normal{};                                   ///< length 1, or zero where no face gives a direction
+  std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
+  double u = 0, v = 0;
+  bool operator==(const MeshVertex&) const = default;
+};
+
+/// A run of triangles that belong to one object.
+struct MeshPart {
+  std::uint32_t object = 0;  ///< index into Mesh::objects
+  std::size_t first = 0;     ///< first of its triangles
+  std::size_t count = 0;     ///< how many
+  std::uint32_t line = 0;    ///< line of its first face in the file, 0 for none
+};
+
+/// Invariants (kept by every maker): indices < vertices.size(), all numbers finite, parts cover all triangles in order.
+struct Mesh {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside, as far as the source knows
+  std::vector<MeshPart> parts;
+  std::vector<std::string> objects;
+  bool lit = true;  ///< colours are materials, to be shaded by the header light; false: they are shown as they are
+};
+
+}  // namespace halfplane

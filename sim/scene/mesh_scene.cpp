@@ -1,0 +1,73 @@
+#include "sim/scene/mesh_scene.hpp"
+
+#include <algorithm>
+
+#include "model/config.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr double kAmbient = 0.18;  // what a face seen edge-on keeps of its colour
+constexpr double kWrap = 0.25;     // light that reaches round the edge, so that the dark side keeps its shape
+
+// 0...1 for a unit normal (or none) in eye space and the direction to the light.
+double brightness(const Vec3& normal, const Vec3& to_light) {
+  if (normal == Vec3{}) return 1;
+  const double facing = std::min(std::abs(dot(normal, to_light)), 1.0);  // two-sided
+  return kAmbient + (1 - kAmbient) * (facing + kWrap) / (1 + kWrap);
+}
+
+bool finite(const Vertex& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
+}  // namespace
+
+Scene cleared_scene(int width, int height) {
+  Scene scene;
+  scene.width = width;
+  scene.height = height;
+  scene.states.push_back({});
+  scene.commands.push_back(Clear{0, std::array<double, 4>{20, 20, 30, 255}, 1.0});
+  return scene;
+}
+
+Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height, Cull cull) {
+  const double aspect = static_cast<double>(width) / height;
+  const Camera camera = frame(request, mesh, aspect);
+  const Mat4 view = view_matrix(camera), projection = projection_matrix(camera, aspect);
+
+  Scene scene = cleared_scene(width, height);
+  scene.states[0].cull = cull;
+  scene.vertices.reserve(mesh.vertices.size());
+  for (const MeshVertex& in : mesh.vertices) {
+    const Vec4 eye = transform(view, {in.position[0], in.position[1], in.position[2], 1});
+    const Vec4 clip = transform(projection, eye);
+    Vertex out{clip[0], clip[1], clip[2], clip[3], in.rgba, in.u, in.v};
+    if (!finite(out)) throw InputError("--camera: a vertex leaves binary64; bring eye and fov nearer to the mesh");
+    if (mesh.lit) {
+      const Vec4 n = transform(view, {in.normal[0], in.normal[1], in.normal[2], 0});
+      const Vec3 to_light = camera.ortho > 0 ? Vec3{0, 0, 1} : normalized({-eye[0], -eye[1], -eye[2]});
+      const double light = brightness({n[0], n[1], n[2]}, to_light);
+      for (std::size_t i = 0; i < 3; ++i) out.rgba[i] *= light;
+    }
+    scene.vertices.push_back(out);
+  }
+  scene.indices.reserve(mesh.triangles.size() * 3);
+  for (const auto& triangle : mesh.triangles) {
+    scene.indices.insert(scene.indices.end(), triangle.begin(), triangle.end());
+  }
+  // Object 0 of a scene is the unnamed one; a mesh's own unnamed part becomes it.
+  std::vector<std::uint32_t> numbers;
+  for (const std::string& name : mesh.objects) {
+    numbers.push_back(name.empty() ? 0 : static_cast<std::uint32_t>(scene.objects.size()));
+    if (!name.empty()) scene.objects.push_back(name);
+  }
+  for (const MeshPart& part : mesh.parts) {
+    const std::uint32_t object = numbers[part.object];
+    scene.commands.push_back(Draw{0, object, Topology::triangles, part.first * 3, part.count * 3, part.line});
+  }
+  return scene;
+}
+
+}  // namespace halfplane

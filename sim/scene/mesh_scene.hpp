@@ -1,0 +1,19 @@
+// A mesh seen by a camera: a Scene in clip space.
+#pragma once
+
+#include "model/scene.hpp"
+#include "sim/scene/camera.hpp"
+#include "sim/scene/mesh.hpp"
+
+namespace halfplane {
+
+/// Projects a mesh: one indexed draw for each part, depth_test less, a dark background and depth 1 cleared first.
+/// A lit mesh gets a light at the eye: ambient plus wrapped diffuse, two-sided, computed at the vertices in eye space.
+/// `cull`: none where the winding is not known. Throws InputError if the camera throws a vertex out of binary64.
+[[nodiscard]] Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height,
+                               Cull cull = Cull::none);
+
+/// An empty clip-space scene of that size: one state and the clear to the house's background.
+[[nodiscard]] Scene cleared_scene(int width, int height);
+
+}  // namespace halfplane

@@ -1,0 +1,35 @@
+// Wavefront OBJ files into meshes.
+//
+// Read: v (with a colour after the place, 0...1 or 0...255), vt, vn, f (a, a/b, a//c, a/b/c; negative counts back),
+// o, g, s, usemtl, mtllib. Other keywords are passed over; points and lines with a warning.
+//
+// Not read through tinyobjloader 2.0rc10: libFuzzer under UBSan finds undefined behaviour in it within seconds (any
+// weight line, `vw`, with an index beyond int), and it takes damaged files for good ones: NaN, "abc" and "3x4" become
+// numbers, an index outside the file is a warning or nothing, a short face vanishes, and decimals are not rounded to
+// the nearest binary64.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/scene/mesh.hpp"
+
+namespace halfplane {
+
+/// The text of a material library by the name that the OBJ uses, or nothing when there is none.
+using MaterialSource = std::function<std::optional<std::string>(const std::string& name)>;
+
+/// Reads a mesh from text. `file` is the name for messages. Materials give the colours unless the vertices have their
+/// own (then the mesh is not lit). Corners without a normal get one smoothed over the faces of their smoothing group,
+/// weighted by the angle at the corner; `s off` makes flat ones; without any `s` line the whole file is one group.
+/// A missing library or material is a warning. Throws InputError "file:line: what; the mend".
+[[nodiscard]] Mesh parse_obj(std::string_view text, const std::string& file, const MaterialSource& materials,
+                             std::vector<std::string>& warnings);
+
+/// Reads an OBJ file; material libraries are looked for beside it.
+[[nodiscard]] Mesh read_obj_file(const std::string& path, std::vector<std::string>& warnings);
+
+}  // namespace halfplane

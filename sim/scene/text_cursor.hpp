@@ -1,0 +1,66 @@
+// Walks through a text file word by word and knows the line: what the OBJ and MTL readers share.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace halfplane {
+
+/// A position in a text whose lines are words between blanks. Lines end in LF, CR LF or CR; `#` starts a comment; a
+/// backslash just before a line's end joins the next line on.
+class TextCursor {
+ public:
+  TextCursor(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  /// Goes to the start of the next line that holds a word. False at the end of the text.
+  [[nodiscard]] bool next_line();
+
+  /// The next word of this line, or an empty view at its end.
+  std::string_view next_word();
+
+  /// What is left of this line, without blanks around it: names may contain blanks.
+  std::string_view rest_of_line();
+
+  /// The next word as a number. Throws InputError naming `what` if it is missing, no number, NaN, infinite, or beyond
+  /// `limit` in size.
+  double number(std::string_view what, double limit);
+
+  /// Whether this line holds another word.
+  [[nodiscard]] bool more();
+
+  [[nodiscard]] std::uint32_t line() const { return line_; }
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+  /// Throws InputError "file:line: what; mend".
+  [[noreturn]] void fail(const std::string& what, const std::string& mend) const;
+
+ private:
+  void skip_blanks();
+  [[nodiscard]] std::size_t line_end_length(std::size_t at) const;
+
+  std::string_view text_;
+  std::string file_;
+  std::size_t at_ = 0;
+  std::uint32_t line_ = 0;          // counts from 1 once next_line() was called
+  std::uint32_t lines_passed_ = 0;  // line ends before at_, joined ones included
+};
+
+/// Throws InputError "file:line: what; mend".
+[[noreturn]] void fail_at(const std::string& file, std::uint32_t line, const std::string& what,
+                          const std::string& mend);
+
+/// A word for a one-line message: unprintable bytes become '?', long words are cut.
+[[nodiscard]] std::string printable(std::string_view word);
+
+/// The same in quotes.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// A finite decimal number that takes the whole word; a leading + is allowed. Too small to hold is zero.
+[[nodiscard]] std::optional<double> parse_number(std::string_view word);
+
+/// The text of a regular file (no device, no pipe: those may never end), or nothing when there is none to read.
+[[nodiscard]] std::optional<std::string> read_regular_file(const std::string& path);
+
+}  // namespace halfplane

@@ -1,0 +1,307 @@
+// Random and stressful triangles through the engine, held against the oracle: no coverage mismatch anywhere, depth and
+// colour within their bounds. Every failure prints the seed that repeats it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "model/engines/functional.hpp"
+#include "model/golden/exact.hpp"
+#include "model/widths.hpp"
+#include "scene_builder.hpp"
+#include "sim/compare/compare.hpp"
+
+namespace halfplane {
+namespace {
+
+using test::at;
+using test::Random;
+using test::SceneBuilder;
+
+using Points = std::array<std::array<double, 2>, 3>;
+
+/// Makes triangles of one family; coordinates in pixels, inside the guard band.
+class Generator {
+ public:
+  Generator(const Config& config, int width, int height, std::uint32_t seed)
+      : random_(seed),
+        width_(width),
+        height_(height),
+        limit_(config.guard_band - 1),
+        subpixel_(std::ldexp(1.0, -config.subpixel_bits)) {}
+
+  static constexpr int kFamilies = 8;
+
+  std::array<Vertex, 3> triangle(int family) {
+    const Points p = points(family);
+    std::array<Vertex, 3> v;
+    const int depths = random_.index(5);
+    const double base = random_.unit();
+    for (std::size_t i = 0; i < 3; ++i) {
+      double z = random_.unit();
+      if (depths == 1) z = random_.index(2);                // the extreme codes
+      if (depths == 2) z = base;                            // constant
+      if (depths == 3) z = std::min(base + z * 1e-4, 1.0);  // hardly a slope
+      std::array<double, 4> rgba;
+      for (double& c : rgba) c = random_.index(4) == 0 ? 255.0 * random_.index(2) : random_.between(0, 255);
+      v[i] = at(p[i][0], p[i][1], z, rgba);
+    }
+    return v;
+  }
+
+ private:
+  double clamp(double value) const { return std::clamp(value, -limit_, limit_); }
+  std::array<double, 2> near_target() {
+    return {random_.between(-4, width_ + 4.0), random_.between(-4, height_ + 4.0)};
+  }
+  std::array<double, 2> centre() { return {random_.index(width_) + 0.5, random_.index(height_) + 0.5}; }
+  std::array<double, 2> anywhere() { return {random_.between(-limit_, limit_), random_.between(-limit_, limit_)}; }
+
+  Points points(int family) {
+    switch (family) {
+      case 0: return {near_target(), near_target(), near_target()};
+      case 1: return {centre(), centre(), centre()};  // samples on edges and vertices
+      case 2: return right_triangle();
+      case 3: return sliver();
+      case 4: return {anywhere(), anywhere(), anywhere()};
+      case 5: return corners();
+      case 6: return unit_area();
+      default: return small();
+    }
+  }
+
+  /// Axis-parallel legs through pixel centres.
+  Points right_triangle() {
+    const auto a = centre(), b = centre();
+    return {a, {b[0], a[1]}, {a[0], b[1]}};
+  }
+
+  /// Two far ends and a third vertex a few subpixels off their line.
+  Points sliver() {
+    const auto a = random_.index(2) == 0 ? near_target() : anywhere(), b = near_target();
+    const double t = random_.unit();
+    const auto off = [&] { return subpixel_ * (random_.index(7) - 3); };
+    return {a, b, {clamp(a[0] + t * (b[0] - a[0]) + off()), clamp(a[1] + t * (b[1] - a[1]) + off())}};
+  }
+
+  /// Guard-band corners: the largest edges there are.
+  Points corners() {
+    const auto corner = [&] {
+      const double x = random_.index(2) == 0 ? -limit_ : limit_, y = random_.index(2) == 0 ? -limit_ : limit_;
+      return std::array{clamp(x + random_.between(-1, 1)), clamp(y + random_.between(-1, 1))};
+    };
+    return {corner(), corner(), near_target()};
+  }
+
+  /// Twice the area is one square subpixel: sides (a, b) and (c, d) with a d - b c = 1.
+  Points unit_area() {
+    long a = 1 + random_.index(600), b = 1 + random_.index(600);
+    const long common = std::gcd(a, b);
+    a /= common;
+    b /= common;
+    long c = 0, d = 1;  // a * d mod b = 1 by search: b is small
+    while (d < b && a * d % b != 1 % b) ++d;
+    c = (a * d - 1) / b;
+    const auto start = centre();
+    const double x = std::floor(start[0] / subpixel_) * subpixel_, y = std::floor(start[1] / subpixel_) * subpixel_;
+    const auto step = [&](double from, long n) { return clamp(from + static_cast<double>(n) * subpixel_); };
+    return {{{x, y}, {step(x, a), step(y, b)}, {step(x, c), step(y, d)}}};
+  }
+
+  /// Within a pixel or two, one corner on a pixel centre.
+  Points small() {
+    const auto a = centre();
+    return {a,
+            {a[0] + random_.between(-2, 2), a[1] + random_.between(-2, 2)},
+            {a[0] + random_.index(5) * 0.5 - 1, a[1] + random_.index(5) * 0.5 - 1}};
+  }
+
+  Random random_;
+  int width_, height_;
+  double limit_, subpixel_;
+};
+
+/// What all scenes of one run had in common.
+struct Tally {
+  std::uint64_t triangles = 0, on_edge = 0, samples = 0, owned = 0, depth_count = 0;
+  double depth_max = 0, color_max = 0, depth_sum = 0, bias_sum = 0, color_sum = 0, color_bias_sum = 0;
+  std::uint64_t color_count = 0;
+
+  void add(const Comparison& c, const Config& config) {
+    const int grid_bits = derive_widths(config).grid_bits;
+    for (const Triangle& t : c.rendering.triangles) on_edge += has_sample_on_border(t, c.golden, grid_bits) ? 1 : 0;
+    samples += c.oracle.samples;
+    const auto n = static_cast<double>(c.datapath.count), m = static_cast<double>(c.color_datapath.count);
+    depth_count += c.datapath.count;
+    color_count += c.color_datapath.count;
+    depth_max = std::max(depth_max, c.datapath.max);
+    color_max = std::max(color_max, c.color_datapath.max);
+    depth_sum += c.datapath.mean * n;
+    bias_sum += c.datapath_bias.mean * n;
+    color_sum += c.color_datapath.mean * m;
+    color_bias_sum += c.color_datapath_bias.mean * m;
+  }
+
+  static bool has_sample_on_border(const Triangle& t, const golden::Image& target, int grid_bits) {
+    for (int y = 0; y < target.height; ++y)
+      for (int x = 0; x < target.width; ++x)
+        if (exact::is_on_border(t, x, y, grid_bits)) return true;
+    return false;
+  }
+
+  void expect_bounds() const {
+    EXPECT_GT(depth_count, 0u);
+    EXPECT_LE(depth_max, 0.75);
+    EXPECT_LT(std::abs(depth_sum / static_cast<double>(depth_count)), 0.05);
+    EXPECT_LT(std::abs(bias_sum / static_cast<double>(depth_count)), 0.05);
+    EXPECT_LE(color_max, 1);
+    EXPECT_LT(std::abs(color_sum / static_cast<double>(color_count)), 0.05);
+  }
+
+  /// Measured figures, into the test's XML and on stdout when asked for.
+  void record() const {
+    const auto text = [](double v) { return std::to_string(v); };
+    testing::Test::RecordProperty("triangles", std::to_string(triangles));
+    testing::Test::RecordProperty("samples", std::to_string(samples));
+    testing::Test::RecordProperty("on_edge", std::to_string(on_edge));
+    testing::Test::RecordProperty("depth_max_lsb", text(depth_max));
+    testing::Test::RecordProperty("depth_mean_lsb", text(depth_sum / static_cast<double>(depth_count)));
+    testing::Test::RecordProperty("depth_bias_lsb", text(bias_sum / static_cast<double>(depth_count)));
+    testing::Test::RecordProperty("color_max_lsb", text(color_max));
+    testing::Test::RecordProperty("color_mean_lsb", text(color_sum / static_cast<double>(color_count)));
+  }
+};
+
+/// Triangles of all families in scenes of sixteen.
+Tally run_random(const Config& config, int width, int height, int scenes, std::uint32_t first_seed) {
+  Tally tally;
+  for (int i = 0; i < scenes; ++i) {
+    const std::uint32_t seed = first_seed + static_cast<std::uint32_t>(i);
+    SCOPED_TRACE("preset " + config.preset + ", seed " + std::to_string(seed));
+    Generator generator(config, width, height, seed);
+    SceneBuilder builder(width, height);
+    for (int k = 0; k < 16; ++k) {
+      const auto v = generator.triangle(k % Generator::kFamilies);
+      builder.triangle(v[0], v[1], v[2]);
+    }
+    const Comparison c = compare(builder.scene, config);
+    EXPECT_EQ(c.oracle.mismatches, 0u);
+    EXPECT_EQ(c.stage_mismatches, 0u);
+    EXPECT_LE(c.datapath.max, 0.75);
+    tally.triangles += 16;
+    tally.add(c, config);
+    if (testing::Test::HasFailure()) break;
+  }
+  tally.record();
+  return tally;
+}
+
+TEST(RandomTriangles, TinyPresetMatchesTheOracle) {
+  const Tally tally = run_random(preset("tiny"), 16, 16, 400, 1000);
+  tally.expect_bounds();
+  EXPECT_GE(tally.on_edge * 10, tally.triangles * 3);
+}
+
+TEST(RandomTriangles, EmbeddedPresetMatchesTheOracle) {
+  const Tally tally = run_random(preset("embedded"), 45, 31, 400, 2000);
+  tally.expect_bounds();
+  EXPECT_GE(tally.on_edge * 10, tally.triangles * 3);
+}
+
+TEST(RandomTriangles, FullPresetMatchesTheOracle) {
+  const Tally tally = run_random(preset("full"), 45, 31, 400, 3000);
+  tally.expect_bounds();
+  EXPECT_GE(tally.on_edge * 10, tally.triangles * 3);
+}
+
+TEST(RandomTriangles, LargeTargetIsWithinBoundsFarFromTheFirstTile) {
+  // Slivers and guard-band triangles over a whole screen: the longest steps between tiles.
+  for (const auto name : {"embedded", "full"}) {
+    Config config = preset(name);
+    Generator generator(config, 1600, 900, 77);
+    SceneBuilder builder(1600, 900);
+    for (int k = 0; k < 24; ++k) {
+      const auto v = generator.triangle(k % 3 == 0 ? 0 : 2 + k % 4);
+      builder.triangle(v[0], v[1], v[2]);
+    }
+    SCOPED_TRACE(config.preset + ", seed 77");
+    const Comparison c = compare(builder.scene, config);
+    EXPECT_TRUE(broken_bounds(c, config).empty()) << broken_bounds(c, config).front();
+    EXPECT_GT(c.datapath.count, 100000u);
+  }
+}
+
+TEST(RandomTriangles, AllSixVertexOrdersGiveEqualBuffers) {
+  for (const auto name : {"tiny", "embedded", "full"}) {
+    const Config config = preset(name);
+    for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+      SCOPED_TRACE(config.preset + ", seed " + std::to_string(seed));
+      Generator generator(config, 16, 16, seed);
+      const auto v = generator.triangle(static_cast<int>(seed) % Generator::kFamilies);
+      std::array<std::size_t, 3> order{0, 1, 2};
+      std::optional<Rendering> first;
+      do {
+        SceneBuilder builder(16, 16);
+        builder.triangle(v[order[0]], v[order[1]], v[order[2]]);
+        const Rendering r = render_functional(builder.scene, config);
+        if (!first) first = r;
+        EXPECT_EQ(r.frame.depth, first->frame.depth);
+        EXPECT_EQ(r.frame.color, first->frame.color);
+      } while (std::next_permutation(order.begin(), order.end()));
+    }
+  }
+}
+
+/// 128 well-shaped triangles side by side, vertices off every subpixel grid.
+Scene jittered_grid(std::uint32_t seed) {
+  Random random(seed);
+  std::vector<Vertex> grid;
+  for (int j = 0; j <= 8; ++j) {
+    for (int i = 0; i <= 8; ++i) {
+      const double x = 8 * i + random.between(-2.5, 2.5), y = 8 * j + random.between(-2.5, 2.5);
+      grid.push_back(at(x, y, random.unit()));
+    }
+  }
+  SceneBuilder builder(64, 64);
+  for (std::size_t k = 0; k < 72; ++k) {
+    if (k % 9 == 8) continue;
+    builder.triangle(grid[k], grid[k + 1], grid[k + 9]).triangle(grid[k + 9], grid[k + 1], grid[k + 10]);
+  }
+  return builder.scene;
+}
+
+TEST(RandomTriangles, EverySubpixelWidthMatchesTheOracleAndHalvesTheSnapError) {
+  double previous = 0;
+  for (int bits = 0; bits <= 8; ++bits) {
+    Config config = preset("full");  // 24 bits of depth: the snap of x and y dominates at every width
+    config.subpixel_bits = bits;
+    SCOPED_TRACE("subpixel.bits " + std::to_string(bits) + ", seed 5");
+    const Comparison c = compare(jittered_grid(5), config);
+    EXPECT_EQ(c.oracle.mismatches, 0u);
+    EXPECT_LE(c.datapath.max, 0.75);
+    EXPECT_GT(c.compared_pixels, 3000u);
+    if (bits > 0) {
+      EXPECT_GT(c.parts.snap.rms, 0.4 * previous);  // 0.5, apart from the scatter of 81 vertices
+      EXPECT_LT(c.parts.snap.rms, 0.6 * previous);
+    }
+    previous = c.parts.snap.rms;
+    Tally tally = run_random(config, 24, 24, 8, 100);
+    tally.expect_bounds();
+  }
+}
+
+TEST(RandomTriangles, EveryDepthWidthStaysWithinBoundsInItsOwnLsb) {
+  for (int bits = 8; bits <= 32; ++bits) {
+    Config config = preset("embedded");
+    config.depth_bits = bits;
+    ASSERT_NO_THROW(validate(config));
+    SCOPED_TRACE("depth.bits " + std::to_string(bits));
+    Tally tally = run_random(config, 24, 24, 8, 200);
+    EXPECT_LE(tally.depth_max, 0.75);
+    EXPECT_GT(tally.depth_max, 0.3);  // an LSB of the asked width, not of a wider one
+  }
+}
+
+}  // namespace
+}  // namespace halfplane

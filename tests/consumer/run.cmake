@@ -1,0 +1,19 @@
+# cmake -DSOURCE= -DWORK= -DGENERATOR= -DCOMPILER= -DLAUNCHER= -P run.cmake
+# The steps of a stranger who uses the library; the first that fails stops the script, and so the test.
+
+file(REMOVE_RECURSE "${WORK}")
+set(common -G "${GENERATOR}" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${COMPILER}"
+  "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+
+macro(step)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY COMMAND_ECHO STDOUT)
+endmacro()
+
+step("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/library" ${common} -DHALFPLANE_RTL=OFF -DHALFPLANE_BUILD_SIM=OFF
+  -DHALFPLANE_BUILD_TESTS=OFF)
+step("${CMAKE_COMMAND}" --build "${WORK}/library" --parallel 2)
+step("${CMAKE_COMMAND}" --install "${WORK}/library" --prefix "${WORK}/prefix")
+step("${CMAKE_COMMAND}" -S "${SOURCE}/tests/consumer" -B "${WORK}/consumer" ${common}
+  "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
+step("${CMAKE_COMMAND}" --build "${WORK}/consumer")
+step("${WORK}/consumer/consumer")

@@ -1,0 +1,281 @@
+// The OBJ reader: what a good file becomes, and what a bad one is told.
+#include "sim/scene/obj.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "model/config.hpp"
+#include "sim/scene/polygon.hpp"
+#include "sim/scene/random.hpp"
+
+namespace halfplane {
+namespace {
+
+struct Parsed {
+  Mesh mesh;
+  std::vector<std::string> warnings;
+};
+
+// `library` is what every mtllib line finds; empty finds nothing.
+Parsed parse(const std::string& text, const std::string& library = "") {
+  Parsed result;
+  const auto source = [&library](const std::string&) {
+    return library.empty() ? std::nullopt : std::optional<std::string>(library);
+  };
+  result.mesh = parse_obj(text, "test.obj", source, result.warnings);
+  return result;
+}
+
+// The message with which a file is refused; empty if it is taken.
+std::string refusal(const std::string& text, const std::string& library = "") {
+  try {
+    (void)parse(text, library);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_refusal(const std::string& text, const std::string& start, const std::string& part) {
+  const std::string message = refusal(text);
+  EXPECT_EQ(message.substr(0, start.size()), start) << message;
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+  EXPECT_NE(message.find("; "), std::string::npos) << "no mend in: " << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return scaled(cross(subtract(b, a), subtract(c, a)), 0.5);
+}
+
+// A triangulation is right if all triangles keep the polygon's side and their areas add up to the polygon's: nothing
+// overlaps, nothing is left out. Every corner must be used.
+void expect_exact_cover(const std::vector<Vec3>& polygon, const std::string& name) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  ASSERT_TRUE(triangulate_polygon(polygon, triangles)) << name;
+  ASSERT_EQ(triangles.size(), polygon.size() - 2) << name;
+  Vec3 whole{};
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    whole = add(whole, area_vector(polygon[0], polygon[i], polygon[i + 1]));
+  double sum = 0;
+  std::vector<bool> used(polygon.size(), false);
+  for (const auto& t : triangles) {
+    const Vec3 area = area_vector(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+    EXPECT_GE(dot(area, normalized(whole)), -1e-9 * length(whole)) << name;
+    sum += length(area);
+    for (const std::uint32_t corner : t) used[corner] = true;
+  }
+  EXPECT_NEAR(sum, length(whole), 1e-9 * length(whole)) << name;
+  EXPECT_EQ(std::count(used.begin(), used.end(), false), 0) << name;
+}
+
+// Lays the polygon on a slanted plane, away from the origin.
+std::vector<Vec3> slanted(const std::vector<std::array<double, 2>>& flat) {
+  const Vec3 x = normalized({1, 0.5, -0.3}), y = normalized(cross({0.2, -1, 0.7}, x));
+  std::vector<Vec3> result;
+  for (const auto& p : flat) result.push_back(add({3, -7, 2}, add(scaled(x, p[0]), scaled(y, p[1]))));
+  return result;
+}
+
+TEST(Polygon, ConcaveOnesAreCoveredOnceByTheirTriangles) {
+  expect_exact_cover(slanted({{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}}), "arrow");
+  expect_exact_cover(slanted({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 2}, {0, 2}}), "corners on straight edges");
+  expect_exact_cover(slanted({{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 2}, {2, 2}, {2, 1}, {0, 1}}), "C");
+  // A hole joined to the outline by a bridge that is walked both ways.
+  expect_exact_cover(slanted({{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}, {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}}),
+                     "bridged hole");
+  std::vector<std::array<double, 2>> comb{{0, 0}, {20, 0}};
+  for (int i = 20; i >= 0; --i) comb.push_back({static_cast<double>(i), i % 2 == 0 ? 5.0 : 1.0});
+  expect_exact_cover(slanted(comb), "comb");
+}
+
+TEST(Polygon, RandomStarsAndSpiralsAreCoveredOnceByTheirTriangles) {
+  Random random(7);
+  for (int round = 0; round < 300; ++round) {
+    const int count = 4 + static_cast<int>(random.next() % 60);
+    std::vector<std::array<double, 2>> star, spiral;
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + random.uniform(0, 0.9)) / count, r = random.uniform(0.1, 5);
+      star.push_back({r * std::cos(angle), r * std::sin(angle)});
+    }
+    for (int i = 0; i <= count; ++i) {  // out along one arm, back along the other
+      const double angle = 0.35 * i;
+      spiral.push_back({(1 + angle) * std::cos(angle), (1 + angle) * std::sin(angle)});
+    }
+    for (int i = count; i >= 0; --i) {
+      const double angle = 0.35 * i, r = 1 + angle + random.uniform(1, 3);
+      spiral.push_back({r * std::cos(angle), r * std::sin(angle)});
+    }
+    expect_exact_cover(slanted(star), "star " + std::to_string(round));
+    expect_exact_cover(slanted(spiral), "spiral " + std::to_string(round));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(Polygon, OnesWithoutAreaAndCrossingOnesStillBecomeTriangles) {
+  const std::vector<std::vector<Vec3>> odd{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+                                           {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1, 0, 0}},
+                                           {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}},
+                                           {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {3, 2, 0}, {1, -1, 0}}};
+  for (const auto& polygon : odd) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    EXPECT_TRUE(triangulate_polygon(polygon, triangles));
+    EXPECT_EQ(triangles.size(), polygon.size() - 2);
+  }
+}
+
+TEST(Obj, NegativeIndicesCountBackFromTheLineTheyAreOn) {
+  const Mesh mesh = parse(kSquare + "f -4 -3 -2\nv 5 5 5\nf -5 -3 -2\n").mesh;
+  ASSERT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.vertices[mesh.triangles[0][0]].position, (Vec3{0, 0, 0}));
+  EXPECT_EQ(mesh.vertices[mesh.triangles[0][2]].position, (Vec3{1, 1, 0}));
+  EXPECT_EQ(mesh.vertices[mesh.triangles[1][0]].position, (Vec3{0, 0, 0}));
+  EXPECT_EQ(mesh.vertices[mesh.triangles[1][2]].position, (Vec3{0, 1, 0}));
+}
+
+TEST(Obj, CornersThatAgreeShareOneVertex) {
+  EXPECT_EQ(parse(kSquare + "f 1 2 3\nf 1 3 4\n").mesh.vertices.size(), 4u);
+  const std::string uvs = "vt 0 0\nvt 1 1\n";
+  EXPECT_EQ(parse(kSquare + uvs + "f 1/1 2/1 3/1\nf 1/2 3/1 4/1\n").mesh.vertices.size(), 5u);
+}
+
+TEST(Obj, EveryCornerFormIsRead) {
+  const std::string more = "vt 0.25 0.5\nvn 0 0 2\n";
+  for (const char* face : {"f 1 2 3\n", "f 1/1 2/1 3/1\n", "f 1//1 2//1 3//1\n", "f 1/1/1 2/-1/-1 3/1/1\n"}) {
+    const Mesh mesh = parse(kSquare + more + face).mesh;
+    ASSERT_EQ(mesh.vertices.size(), 3u) << face;
+    const MeshVertex& vertex = mesh.vertices[1];
+    EXPECT_EQ(vertex.normal, (Vec3{0, 0, 1})) << face;
+    const bool has_uv = std::string_view(face).find("/1") != std::string_view::npos && face[3] == '/' && face[4] != '/';
+    EXPECT_EQ(vertex.u, has_uv ? 0.25 : 0) << face;
+  }
+}
+
+TEST(Obj, WithoutSmoothingEachFaceHasItsOwnNormalAndWithItTheyAreAveraged) {
+  const std::string roof = "v 0 0 0\nv 0 0 1\nv 1 1 0\nv 1 1 1\nv 2 0 0\nv 2 0 1\n";
+  const std::string faces = "f 1 2 4 3\nf 3 4 6 5\n";
+  const Mesh smooth = parse(roof + faces).mesh, flat = parse(roof + "s off\n" + faces).mesh;
+  EXPECT_EQ(smooth.vertices.size(), 6u);
+  EXPECT_EQ(flat.vertices.size(), 8u);
+  for (const MeshVertex& vertex : smooth.vertices) {
+    EXPECT_NEAR(vertex.normal[1], vertex.position[1] == 1 ? 1 : std::sqrt(0.5), 1e-12);  // the ridge: straight up
+  }
+  for (const MeshVertex& vertex : flat.vertices) EXPECT_NEAR(std::abs(vertex.normal[0]), std::sqrt(0.5), 1e-12);
+}
+
+TEST(Obj, MaterialsGiveColoursAndOpacity) {
+  const std::string text = "mtllib a.mtl\n" + kSquare + "usemtl red paint\nf 1 2 3\nusemtl half\nf 1 3 4\n";
+  const auto [mesh, warnings] = parse(text, "newmtl red paint\nKd 1 0 0.2\nnewmtl half\nKd 0.5\nd 0.25\n");
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_TRUE(mesh.lit);
+  EXPECT_EQ(mesh.vertices[mesh.triangles[0][0]].rgba, (std::array<double, 4>{255, 0, 51, 255}));
+  EXPECT_EQ(mesh.vertices[mesh.triangles[1][0]].rgba, (std::array<double, 4>{127.5, 127.5, 127.5, 63.75}));
+}
+
+TEST(Obj, AMissingLibraryOrMaterialIsOneWarningEach) {
+  const auto [mesh, warnings] = parse("mtllib a.mtl\nmtllib a.mtl\n" + kSquare + "usemtl x\nf 1 2 3\nf 1 3 4\n");
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].find("test.obj:1: no material library 'a.mtl'"), 0u) << warnings[0];
+  EXPECT_EQ(warnings[1].find("test.obj:8: no material 'x'"), 0u) << warnings[1];
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+}
+
+TEST(Obj, ABrokenMaterialNamesTheLibraryAndTheLine) {
+  const std::string text = "mtllib a.mtl\n" + kSquare + "f 1 2 3\n";
+  EXPECT_EQ(refusal(text, "newmtl a\nKd 1 x 0\n").find("a.mtl:2: green of Kd 'x'"), 0u)
+      << refusal(text, "newmtl a\nKd 1 x 0\n");
+  EXPECT_EQ(refusal(text, "Kd 1 1 0\n").find("a.mtl:1: "), 0u);
+  EXPECT_EQ(refusal(text, "newmtl a\nKd 1 1\n").find("a.mtl:2: blue of Kd is missing"), 0u);
+  EXPECT_EQ(refusal(text, "newmtl a\nd nan\n").find("a.mtl:2: "), 0u);
+}
+
+TEST(Obj, VertexColoursAreTakenAsTheyAreInEitherRange) {
+  for (const char* color : {" 1 0 0.2", " 255 0 51"}) {
+    const Mesh mesh = parse(std::string("v 0 0 0") + color + "\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n").mesh;
+    EXPECT_FALSE(mesh.lit);
+    EXPECT_EQ(mesh.vertices[0].rgba, (std::array<double, 4>{255, 0, 51, 255})) << color;
+    EXPECT_EQ(mesh.vertices[1].rgba, (std::array<double, 4>{255, 255, 255, 255})) << color;
+  }
+}
+
+TEST(Obj, ObjectsBecomePartsWithTheirNames) {
+  const Mesh mesh = parse(kSquare + "o unused\no a b\nf 1 2 3\nf 1 3 4\ng c\nf 1 2 4\no a b\nf 2 3 4\n").mesh;
+  EXPECT_EQ(mesh.objects, (std::vector<std::string>{"a b", "c"}));
+  ASSERT_EQ(mesh.parts.size(), 3u);
+  EXPECT_EQ(mesh.parts[0].count, 2u);
+  EXPECT_EQ(mesh.parts[2].object, 0u);
+  EXPECT_EQ(mesh.parts[1].line, 10u);
+}
+
+TEST(Obj, LineEndsContinuationsAndCommentsOfEveryKindAreRead) {
+  const std::string text = "# comment\r\nv 0 0 0\r\nv 1 0 \\\r\n 0\rv 0 +1 0 # end\n\n\tf 1 \\\n 2 3";
+  EXPECT_EQ(parse(text).mesh.triangles.size(), 1u);
+  expect_refusal("v 0 0 0\r\nv 1 0 \\\r\n 0\rv 0 x 0\n", "test.obj:4: ", "y of v 'x'");
+}
+
+TEST(Obj, NumbersAreRoundedToTheNearestBinary64) {
+  const Mesh mesh = parse("v 0.3 1e-400 123456789.123456789\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").mesh;
+  EXPECT_EQ(mesh.vertices[0].position, (Vec3{0.3, 0, 123456789.123456789}));
+}
+
+TEST(Obj, BadFilesAreRefusedWithLineAndMend) {
+  const std::string at5 = "test.obj:5: ";
+  expect_refusal(kSquare + "f 1 2\n", at5, "2 corners");
+  expect_refusal(kSquare + "f 1 2 5\n", at5, "v index 5 of 4");
+  expect_refusal(kSquare + "f 1 2 -5\n", at5, "beyond the first of 4");
+  expect_refusal(kSquare + "f 0 1 2\n", at5, "index 0");
+  expect_refusal(kSquare + "f 1 2 3x4\n", at5, "'3x4'");
+  expect_refusal(kSquare + "f 1/1/1/1 2 3\n", at5, "three parts");
+  expect_refusal(kSquare + "f 1/1 2/1 3/1\n", at5, "vt index 1 of 0");
+  expect_refusal(kSquare + "f 1//1 2//1 3//1\n", at5, "vn index 1 of 0");
+  expect_refusal(kSquare + "f 1 2 99999999999999999999\n", at5, "whole numbers");
+  expect_refusal(kSquare, "test.obj:1: ", "no faces");
+  expect_refusal("", "test.obj:1: ", "no faces");
+  expect_refusal("v 0 nan 0\n", "test.obj:1: ", "y of v 'nan'");
+  expect_refusal("v 0 0 inf\n", "test.obj:1: ", "z of v 'inf'");
+  expect_refusal("v 0 0 1e999\n", "test.obj:1: ", "'1e999'");
+  expect_refusal("v 0 0 1e31\n", "test.obj:1: ", "beyond");
+  expect_refusal("v 0 0\n", "test.obj:1: ", "z of v is missing");
+  expect_refusal("v 0 0 0 1 1\n", "test.obj:1: ", "5 numbers");
+  expect_refusal("v 0 0 0 1 1 256\n", "test.obj:1: ", "colour");
+  expect_refusal("s x\n", "test.obj:1: ", "smoothing group");
+  expect_refusal(std::string("v \x1b[31m\x01 0 0\n"), "test.obj:1: ", "?[31m?");
+}
+
+TEST(Obj, AConcavePolygonOfTooManyCornersIsRefusedByItsSize) {
+  std::string text, face = "f";
+  for (int i = 0; i < 5000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 5000, r = i % 2 == 0 ? 1 : 0.9;
+    text += "v " + std::to_string(r * std::cos(angle)) + " " + std::to_string(r * std::sin(angle)) + " 0\n";
+    face += " " + std::to_string(i + 1);
+  }
+  expect_refusal(text + face + "\n", "test.obj:5001: ", "5000 corners");
+}
+
+TEST(Obj, FilesFindTheirLibraryBesideThemselvesAndMissingFilesAreNamed) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "halfplane obj";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.obj") << "mtllib a b.mtl\n" + kSquare + "usemtl m\nf 1 2 3 4\n";
+  std::ofstream(folder / "a b.mtl") << "newmtl m\nKd 0 1 0\n";
+  std::vector<std::string> warnings;
+  const Mesh mesh = read_obj_file((folder / "a.obj").string(), warnings);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(mesh.vertices[0].rgba, (std::array<double, 4>{0, 255, 0, 255}));
+  for (const std::filesystem::path& bad : {folder / "none.obj", folder}) {
+    try {
+      (void)read_obj_file(bad.string(), warnings);
+      ADD_FAILURE() << bad << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(bad.string()), 0u) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace halfplane
