@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cstdio>
 
 #include "widths.hpp"
 
@@ -55,9 +56,10 @@ void refuse_unless(bool holds, const std::string& message) {
 }
 
 void require_bits(const Width& width, int bits, std::string_view holder) {
-  refuse_unless(width.bits <= bits, std::string(width.name) + " needs " + std::to_string(width.bits) + " bits (bound: " +
-                                        std::string(width.bound) + "), but " + std::string(holder) + " has " +
-                                        std::to_string(bits) + "; lower subpixel.bits, guard.band or depth.bits");
+  refuse_unless(width.bits <= bits, std::string(width.name) + " needs " + std::to_string(width.bits) +
+                                        " bits (bound: " + std::string(width.bound) + "), but " + std::string(holder) +
+                                        " has " + std::to_string(bits) +
+                                        "; lower subpixel.bits, guard.band or depth.bits");
 }
 
 bool is_power_of_two(int value) { return std::has_single_bit(static_cast<unsigned>(value)); }
@@ -102,7 +104,7 @@ void set(Config& config, std::string_view key, std::string_view value) {
   for (const Setting& setting : kSettings) {
     if (setting.key != key) continue;
     if (const auto* number = std::get_if<int Config::*>(&setting.member)) {
-      config.**number = parse_int(setting, value);
+      config.** number = parse_int(setting, value);
       return;
     }
     for (std::size_t i = 0; i < kColorFormatNames.size(); ++i) {
@@ -133,6 +135,12 @@ void validate(const Config& config) {
   require_bits(widths.sample_edge, 32, "a 32-bit lane");
   require_bits(widths.depth_plane, 64, "a 64-bit lane");
   require_bits(widths.depth_product, 127, "a 128-bit product");
+  const double bound = depth_error_bound(config);
+  char text[16];
+  std::snprintf(text, sizeof text, "%.2f", bound);
+  refuse_unless(bound <= 1.0, std::string("the depth error may reach ") + text +
+                                  " LSB (bound: 1/2 + 2^-extra + (T+1) 2^-(l+1) + 2^-5, at most 1); raise "
+                                  "plane.local_guard_bits or reciprocal.extra_bits, or lower tile.size");
 }
 
 }  // namespace halfplane

@@ -29,8 +29,8 @@ struct Config {
   int local_guard_bits = 6;         ///< fraction bits of a plane stepped inside one tile
   int reciprocal_extra_bits = 4;    ///< the reciprocal of the area has depth_bits + this many significant bits
   ColorFormat color_format = ColorFormat::rgb565;
-  int tile_size = 8;         ///< pixels along the side of a tile
-  int stamp_size = 2;        ///< pixels along the side of the stamp that fine_raster tests in one clock
+  int tile_size = 8;           ///< pixels along the side of a tile
+  int stamp_size = 2;          ///< pixels along the side of the stamp that fine_raster tests in one clock
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
 

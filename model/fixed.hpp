@@ -36,7 +36,9 @@ template <class Integer>
 }
 
 /// `value` modulo 2^bits, as an unsigned number. 1 <= bits <= 64.
-[[nodiscard]] constexpr std::uint64_t wrap_unsigned(std::uint64_t value, int bits) { return value & (~0ULL >> (64 - bits)); }
+[[nodiscard]] constexpr std::uint64_t wrap_unsigned(std::uint64_t value, int bits) {
+  return value & (~0ULL >> (64 - bits));
+}
 
 /// floor(value * scale + 1/2) in binary64: the snap. The caller checks the range first.
 [[nodiscard]] inline std::int64_t snap(double value, double scale) {

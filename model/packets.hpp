@@ -33,9 +33,9 @@ inline constexpr std::size_t kArraySize<std::array<T, N>> = N;
 
 /// A vertex after the snap.
 struct SnappedVertex {
-  std::int32_t x = 0, y = 0;               ///< subpixels, y down
-  std::uint32_t z = 0;                     ///< depth code
-  std::array<std::uint8_t, 4> rgba{};      ///< colour codes, 8 bits a channel
+  std::int32_t x = 0, y = 0;           ///< subpixels, y down
+  std::uint32_t z = 0;                 ///< depth code
+  std::array<std::uint8_t, 4> rgba{};  ///< colour codes, 8 bits a channel
   bool operator==(const SnappedVertex&) const = default;
 };
 
@@ -49,11 +49,11 @@ struct Triangle {
 
 /// coarse_raster -> fine_raster: one tile of one triangle.
 struct TilePacket {
-  std::uint32_t primitive_id = 0;        ///< Triangle::primitive modulo 2^key.primitive_bits
-  std::uint8_t slot = 0;                 ///< context RAM slot of the triangle's constants
-  std::uint16_t tile_x = 0, tile_y = 0;  ///< tiles
+  std::uint32_t primitive_id = 0;                         ///< Triangle::primitive modulo 2^key.primitive_bits
+  std::uint8_t slot = 0;                                  ///< context RAM slot of the triangle's constants
+  std::uint16_t tile_x = 0, tile_y = 0;                   ///< tiles
   std::uint8_t left = 0, top = 0, right = 0, bottom = 0;  ///< pixels of the tile inside box and scissor, inclusive
-  std::array<std::int32_t, 3> edge_value{};    ///< edge values at the tile's first pixel, saturated (coarse_raster.hpp)
+  std::array<std::int32_t, 3> edge_value{};  ///< edge values at the tile's first pixel, saturated (coarse_raster.hpp)
 
   static constexpr std::string_view name = "tile_packet";
   static constexpr auto fields() {
@@ -86,8 +86,8 @@ struct StampPacket {
   std::uint32_t primitive_id = 0;
   std::uint8_t slot = 0;
   std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint8_t stamp = 0;   ///< row-major number of the stamp in its tile
-  std::uint64_t mask = 0;   ///< bit j * stamp_size + i: sample in column i, row j of the stamp is covered
+  std::uint8_t stamp = 0;  ///< row-major number of the stamp in its tile
+  std::uint64_t mask = 0;  ///< bit j * stamp_size + i: sample in column i, row j of the stamp is covered
 
   static constexpr std::string_view name = "stamp_packet";
   static constexpr auto fields() {
@@ -105,7 +105,8 @@ template <class Packet, class Visit>
 constexpr void for_each_field(const Widths& widths, Visit&& visit) {
   std::apply(
       [&](const auto&... field) {
-        (visit(field, widths.*field.width, std::max<std::size_t>(1, kArraySize<std::decay_t<decltype(Packet{}.*field.member)>>)),
+        (visit(field, widths.*field.width,
+               std::max<std::size_t>(1, kArraySize<std::decay_t<decltype(Packet{}.*field.member)>>)),
          ...);
       },
       Packet::fields());
@@ -115,7 +116,8 @@ constexpr void for_each_field(const Widths& widths, Visit&& visit) {
 template <class Packet>
 [[nodiscard]] constexpr int packet_bits(const Widths& widths) {
   int bits = 0;
-  for_each_field<Packet>(widths, [&](const auto&, const Width& width, std::size_t n) { bits += width.bits * static_cast<int>(n); });
+  for_each_field<Packet>(
+      widths, [&](const auto&, const Width& width, std::size_t n) { bits += width.bits * static_cast<int>(n); });
   return bits;
 }
 

@@ -42,8 +42,8 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
   SnappedPolygon polygon;
   polygon.size = clipped.size;
   for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
-    polygon.v[i] = snap_vertex(to_window(clipped.v[i], context.state, context.viewport), clipped.v[i].rgba, context.config,
-                               index[0], context.draw.line);
+    polygon.v[i] = snap_vertex(to_window(clipped.v[i], context.state, context.viewport), clipped.v[i].rgba,
+                               context.config, index[0], context.draw.line);
   return polygon;
 }
 
@@ -85,8 +85,8 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
   return entry;
 }
 
-void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index, std::uint32_t primitive,
-              const Skip& skip, Counters& counters, std::vector<Triangle>& out) {
+void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
+              std::uint32_t primitive, const Skip& skip, Counters& counters, std::vector<Triangle>& out) {
   ++counters.primitives_in;
   const auto &a = cache.get(context, index[0]), &b = cache.get(context, index[1]), &c = cache.get(context, index[2]);
   if (skip.frustum && (a.outside_volume & b.outside_volume & c.outside_volume) != 0) {
@@ -114,14 +114,21 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
   }
   const std::int64_t area = total_area(polygon);
   switch (cull(area, context.state)) {
-    case CullResult::zero_area: ++counters.skipped.zero_area; ++counters.culled; return;
-    case CullResult::backface: ++counters.skipped.backface; ++counters.culled; return;
+    case CullResult::zero_area:
+      ++counters.skipped.zero_area;
+      ++counters.culled;
+      return;
+    case CullResult::backface:
+      ++counters.skipped.backface;
+      ++counters.culled;
+      return;
     case CullResult::keep: break;
   }
   bool is_drawn = false;
   const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
   for (int i = 1; i + 1 < polygon.size; ++i) {
-    const Triangle piece{primitive, context.command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}};
+    const Triangle piece{
+        primitive, context.command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}};
     const std::int64_t piece_area = polygon.fan_area(start, i);
     if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;
     const bool is_empty = box_is_empty(piece.v, context);
@@ -145,7 +152,8 @@ void check_scene(const Scene& scene, const Config& config) {
                      "; use a smaller --size, another --config, or --set target.width=... and target.height=...");
   for (const State& state : scene.states) {
     if (state.color_interp == ColorInterp::perspective)
-      throw InputError("state color_interp perspective: this engine interpolates colours affinely; use --engine golden");
+      throw InputError(
+          "state color_interp perspective: this engine interpolates colours affinely; use --engine golden");
     const Viewport v = effective_viewport(state, scene.width, scene.height);
     const double limit = config.guard_band - 1;
     if (!(v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1))
@@ -177,7 +185,8 @@ Rendering make_rendering(const Scene& scene, const Config& config, const RenderO
   Rendering rendering;
   rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
   std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(), snap_depth(1.0, config.depth_bits));
-  std::fill(rendering.frame.color.begin(), rendering.frame.color.end(), pack_color(config.color_format, {0, 0, 0, 255}));
+  std::fill(rendering.frame.color.begin(), rendering.frame.color.end(),
+            pack_color(config.color_format, {0, 0, 0, 255}));
   const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
   if (options.want_count) rendering.count.assign(pixels, 0);
   if (options.want_ids) rendering.ids.assign(pixels, -1);

@@ -1,17 +1,17 @@
 // The pipeline, in order. Read this file first: each line below is a stage, and each stage is a file.
 #pragma once
 
-#include "stages/primitive_assembly.hpp"  // indices and topology       -> triangles               host
 #include "stages/clip.hpp"                // homogeneous triangle       -> convex polygon          host
-#include "stages/viewport.hpp"            // clip coordinates           -> snapped window vertex   host
-#include "stages/cull.hpp"                // signed area                -> keep or drop
-#include "stages/triangle_setup.hpp"      // three snapped vertices     -> edges, reciprocal, planes
 #include "stages/coarse_raster.hpp"       // setup                      -> tiles, rejected and accepted
-#include "stages/fine_raster.hpp"         // tile                       -> covered samples of its stamps
-#include "stages/interpolate.hpp"         // planes at the tile         -> depth and colour at a sample
+#include "stages/cull.hpp"                // signed area                -> keep or drop
 #include "stages/depth_test.hpp"          // fragment and stored depth  -> pass or fail
-#include "stages/rop.hpp"                 // passed fragment            -> stored colour
+#include "stages/fine_raster.hpp"         // tile                       -> covered samples of its stamps
 #include "stages/framebuffer.hpp"         // stored depth and colour    -> the image
+#include "stages/interpolate.hpp"         // planes at the tile         -> depth and colour at a sample
+#include "stages/primitive_assembly.hpp"  // indices and topology       -> triangles               host
+#include "stages/rop.hpp"                 // passed fragment            -> stored colour
+#include "stages/triangle_setup.hpp"      // three snapped vertices     -> edges, reciprocal, planes
+#include "stages/viewport.hpp"            // clip coordinates           -> snapped window vertex   host
 
 #include "engines/render.hpp"
 
@@ -25,7 +25,7 @@ struct DrawContext {
   const Draw& draw;
   std::uint32_t command = 0;  ///< index of the draw in Scene::commands
   Viewport viewport;
-  Rect rect;                  ///< pixels that the draw may touch
+  Rect rect;  ///< pixels that the draw may touch
   ClipPlanes guard_band, view_volume;
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
@@ -35,10 +35,10 @@ struct DrawContext {
 class VertexCache {
  public:
   struct Entry {
-    SnappedVertex snapped;         ///< valid when outside_guard_band == 0
-    unsigned outside_volume = 0;   ///< outcode against the view volume
+    SnappedVertex snapped;        ///< valid when outside_guard_band == 0
+    unsigned outside_volume = 0;  ///< outcode against the view volume
     unsigned outside_guard_band = 0;
-    std::uint32_t state = ~0U;     ///< state that the entry was made with
+    std::uint32_t state = ~0U;  ///< state that the entry was made with
   };
   explicit VertexCache(std::size_t vertices) : entries_(vertices) {}
   [[nodiscard]] const Entry& get(const DrawContext& context, std::uint32_t index);
@@ -49,8 +49,8 @@ class VertexCache {
 
 /// The host side of one input triangle: clip, viewport, cull. Appends what is left of it to `out`: nothing, the triangle,
 /// or the fan of its clipped polygon. Counts into `counters`.
-void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index, std::uint32_t primitive,
-              const Skip& skip, Counters& counters, std::vector<Triangle>& out);
+void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
+              std::uint32_t primitive, const Skip& skip, Counters& counters, std::vector<Triangle>& out);
 
 /// Throws InputError when `scene` asks for what this configuration or version does not have.
 void check_scene(const Scene& scene, const Config& config);

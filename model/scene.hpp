@@ -51,8 +51,8 @@ struct State {
   Shade shade = Shade::smooth;       ///< flat: the colour of the first vertex of each triangle
   ColorInterp color_interp = ColorInterp::affine;
   ClipZ clip_z = ClipZ::minus_one_one;
-  std::optional<Rect> scissor;        ///< none: the whole target
-  std::optional<Viewport> viewport;   ///< none: the whole target
+  std::optional<Rect> scissor;       ///< none: the whole target
+  std::optional<Viewport> viewport;  ///< none: the whole target
   std::array<double, 2> depth_range{0.0, 1.0};
   bool operator==(const State&) const = default;
 };
@@ -69,8 +69,8 @@ struct Draw {
   std::uint32_t state = 0;   ///< index into Scene::states
   std::uint32_t object = 0;  ///< index into Scene::objects
   Topology topology = Topology::triangles;
-  std::size_t first = 0;  ///< first of its entries in Scene::indices
-  std::size_t count = 0;  ///< how many entries
+  std::size_t first = 0;   ///< first of its entries in Scene::indices
+  std::size_t count = 0;   ///< how many entries
   std::uint32_t line = 0;  ///< line in the file it came from, 0 for none: for messages only
 };
 

@@ -1,5 +1,7 @@
 #include "widths.hpp"
 
+#include <cmath>
+
 namespace halfplane {
 namespace {
 
@@ -58,18 +60,23 @@ Widths derive_widths(const Config& config) {
   w.depth_numerator = exact("depth numerator", "L * (2^B - 1)", symmetric(side * depth_max));
   w.color_code = exact("color code", "2^8 - 1", {0, 255});
   w.color_numerator = exact("color numerator", "L * (2^8 - 1)", symmetric(side * 255));
-  const int R = B + config.reciprocal_extra_bits;
-  w.reciprocal = exact("reciprocal", "2^(m+R) / A, 2^m <= A < 2^(m+1), R = B + extra", {0, int128{1} << R});
-  w.reciprocal_shift = exact("reciprocal shift", "k = m + R, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(edge.hi)) + R});
-  w.depth_product = exact("depth product", "depth numerator * reciprocal", w.depth_numerator.range * w.reciprocal.range);
-  w.color_product = exact("color product", "color numerator * reciprocal", w.color_numerator.range * w.reciprocal.range);
+  const int r = B + config.reciprocal_extra_bits;
+  w.reciprocal = exact("reciprocal", "2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra", {0, int128{1} << r});
+  w.reciprocal_shift =
+      exact("reciprocal shift", "k = m + r, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(edge.hi)) + r});
+  w.depth_product =
+      exact("depth product", "depth numerator * reciprocal", w.depth_numerator.range * w.reciprocal.range);
+  w.color_product =
+      exact("color product", "color numerator * reciprocal", w.color_numerator.range * w.reciprocal.range);
   w.depth_plane = modular("depth plane", "modulo 2^(B + 1 + F), F = G + s", B + 1 + w.plane_fraction);
   w.color_plane = modular("color plane", "modulo 2^(8 + 1 + F)", 8 + 1 + w.plane_fraction);
   w.local_depth = modular("local depth", "modulo 2^(B + 1 + l), l local guard bits", B + 1 + config.local_guard_bits);
   w.local_color = modular("local color", "modulo 2^(8 + 1 + l)", 8 + 1 + config.local_guard_bits);
 
   // Keys and positions.
-  const auto count = [](std::string_view name, std::string_view bound, int128 n) { return exact(name, bound, {0, n - 1}); };
+  const auto count = [](std::string_view name, std::string_view bound, int128 n) {
+    return exact(name, bound, {0, n - 1});
+  };
   const int tile = config.tile_size;
   w.primitive_id = count("primitive id", "modulo 2^key.primitive_bits", int128{1} << config.primitive_id_bits);
   w.slot = count("slot", "context.slots", config.context_slots);
@@ -84,12 +91,44 @@ Widths derive_widths(const Config& config) {
   return w;
 }
 
+double depth_error_bound(const Config& config) {
+  const double local = std::ldexp(1.0, -config.local_guard_bits - 1);  // one rounding to the local guard bits
+  return 0.5                                                           // storage
+         + std::ldexp(1.0, -config.reciprocal_extra_bits)              // the reciprocal, over the full depth range
+         + (config.tile_size + 1) * local                              // T/2 steps in x and in y, and the anchor
+         + std::ldexp(1.0, -5);  // wide gradients over the guard band: guard_bits is chosen so
+}
+
 std::vector<const Width*> Widths::all() const {
-  return {&coordinate,      &delta,        &edge_product,    &area,        &edge_value,       &edge_step,
-          &tile_edge,       &sample_edge,  &depth_code,   &depth_delta,     &depth_numerator, &color_code,   &color_numerator,
-          &reciprocal,      &reciprocal_shift, &depth_product, &color_product, &depth_plane,  &color_plane,
-          &local_depth,     &local_color,  &primitive_id,    &slot,        &tile_x,           &tile_y,
-          &tile_pixel,      &stamp_index,  &sample_mask,     &stored_color};
+  return {&coordinate,
+          &delta,
+          &edge_product,
+          &area,
+          &edge_value,
+          &edge_step,
+          &tile_edge,
+          &sample_edge,
+          &depth_code,
+          &depth_delta,
+          &depth_numerator,
+          &color_code,
+          &color_numerator,
+          &reciprocal,
+          &reciprocal_shift,
+          &depth_product,
+          &color_product,
+          &depth_plane,
+          &color_plane,
+          &local_depth,
+          &local_color,
+          &primitive_id,
+          &slot,
+          &tile_x,
+          &tile_y,
+          &tile_pixel,
+          &stamp_index,
+          &sample_mask,
+          &stored_color};
 }
 
 }  // namespace halfplane

@@ -65,4 +65,7 @@ struct Widths {
 /// Derives every width. Never throws: what does not fit is found by validate().
 [[nodiscard]] Widths derive_widths(const Config& config);
 
+/// The largest depth error, in LSB, against the exact plane through the snapped vertices. validate() refuses above 1.
+[[nodiscard]] double depth_error_bound(const Config& config);
+
 }  // namespace halfplane

@@ -9,7 +9,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Halfplane: a fixed-point raster pipeline as C++ model, RTL and golden.", "halfplane"};
   app.set_version_flag("--version", "halfplane " HALFPLANE_VERSION);
   app.require_subcommand(1);
-  app.footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n`halfplane COMMAND --help` shows a command's options.");
+  app.footer(
+      "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n`halfplane COMMAND --help` shows a "
+      "command's options.");
   Action selected;
   add_render_command(app, selected);
   add_compare_command(app, selected);

@@ -37,7 +37,8 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
     started = Clock::now();
     if (options.progress && seconds_since(last_report) > 0.1) {
       last_report = started;
-      options.progress(static_cast<double>(entries_done) / static_cast<double>(std::max<std::size_t>(1, scene.indices.size())));
+      options.progress(static_cast<double>(entries_done) /
+                       static_cast<double>(std::max<std::size_t>(1, scene.indices.size())));
     }
   };
 

@@ -15,22 +15,22 @@ namespace halfplane {
 
 /// What an engine may leave out when it cannot change the image. Each has a counter of the same name.
 struct Skip {
-  bool frustum = true;              ///< triangles wholly outside one clip plane skip the clipper
-  bool empty = true;                ///< triangles whose box holds no pixel centre skip setup
-  bool tiles_outside = true;        ///< tiles wholly outside one edge skip the fine raster
-  bool trivially_accepted = true;   ///< tiles wholly inside all edges skip the edge tests
-  bool fragments_early_z = true;    ///< fragments that fail the depth test skip the other attributes
+  bool frustum = true;             ///< triangles wholly outside one clip plane skip the clipper
+  bool empty = true;               ///< triangles whose box holds no pixel centre skip setup
+  bool tiles_outside = true;       ///< tiles wholly outside one edge skip the fine raster
+  bool trivially_accepted = true;  ///< tiles wholly inside all edges skip the edge tests
+  bool fragments_early_z = true;   ///< fragments that fail the depth test skip the other attributes
   bool operator==(const Skip&) const = default;
 };
 
 /// Work done and work saved. See CONTRACT.md for the JSON keys.
 struct Counters {
   std::uint64_t primitives_in = 0, culled = 0, drawn = 0, clipped = 0;
-  std::uint64_t covered = 0;        ///< samples that the fine raster produced
-  std::uint64_t depth_passed = 0;   ///< in program order: equal for every engine and skip setting
-  std::uint64_t written = 0;        ///< fragments that changed colour or depth memory, in program order
-  std::uint64_t samples_tested = 0; ///< samples whose edge functions were evaluated
-  std::uint64_t tiles_visited = 0;  ///< primitive-tile visits, those skipped included
+  std::uint64_t covered = 0;         ///< samples that the fine raster produced
+  std::uint64_t depth_passed = 0;    ///< in program order: equal for every engine and skip setting
+  std::uint64_t written = 0;         ///< fragments that changed colour or depth memory, in program order
+  std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated
+  std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   struct {
     std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
                   fragments_early_z = 0;
@@ -46,10 +46,10 @@ using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int t
 
 struct RenderOptions {
   Skip skip;
-  bool want_count = false;      ///< fill Rendering::count
-  bool want_ids = false;        ///< fill Rendering::ids
-  bool want_triangles = false;  ///< keep Rendering::triangles (and fill `visible` beside `ids`)
-  CoverageTap coverage_tap;     ///< implies want_triangles
+  bool want_count = false;                        ///< fill Rendering::count
+  bool want_ids = false;                          ///< fill Rendering::ids
+  bool want_triangles = false;                    ///< keep Rendering::triangles (and fill `visible` beside `ids`)
+  CoverageTap coverage_tap;                       ///< implies want_triangles
   std::function<void(double fraction)> progress;  ///< 0...1, called a few times a second at most; may be empty
 
   [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap; }

@@ -2,7 +2,8 @@
 
 namespace halfplane {
 
-TilePacket make_tile_packet(const TriangleSetup& setup, int tile_x, int tile_y, std::uint8_t slot, const Widths& widths) {
+TilePacket make_tile_packet(const TriangleSetup& setup, int tile_x, int tile_y, std::uint8_t slot,
+                            const Widths& widths) {
   const int last = (1 << widths.tile_shift) - 1;
   const auto inside_tile = [&](int pixel, int tile) {
     return static_cast<std::uint8_t>(std::clamp(pixel - (tile << widths.tile_shift), 0, last));

@@ -46,7 +46,8 @@ using EdgeValues = std::array<EdgeValue, 3>;
 }
 
 /// Edge values at the first pixel of tile (tile_x, tile_y).
-[[nodiscard]] inline EdgeValues edges_at_tile(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
+[[nodiscard]] inline EdgeValues edges_at_tile(const TriangleSetup& setup, int tile_x, int tile_y,
+                                              const Widths& widths) {
   const int steps_x = (tile_x - (setup.left >> widths.tile_shift)) << widths.tile_shift;
   const int steps_y = (tile_y - (setup.top >> widths.tile_shift)) << widths.tile_shift;
   EdgeValues value;

@@ -9,7 +9,8 @@
 namespace halfplane {
 
 /// Twice the signed area, in square subpixels: exact.
-[[nodiscard]] constexpr std::int64_t signed_area(const SnappedVertex& a, const SnappedVertex& b, const SnappedVertex& c) {
+[[nodiscard]] constexpr std::int64_t signed_area(const SnappedVertex& a, const SnappedVertex& b,
+                                                 const SnappedVertex& c) {
   const std::int64_t ax = std::int64_t{b.x} - a.x, ay = std::int64_t{b.y} - a.y;
   const std::int64_t bx = std::int64_t{c.x} - a.x, by = std::int64_t{c.y} - a.y;
   return ax * by - ay * bx;
@@ -21,8 +22,8 @@ enum class CullResult { keep, backface, zero_area };
 [[nodiscard]] constexpr CullResult cull(std::int64_t area, const State& state) {
   if (area == 0) return CullResult::zero_area;
   const bool is_front = (area > 0) == (state.front == FrontFace::cw);
-  const bool removed = state.cull == Cull::both || (state.cull == Cull::front && is_front) ||
-                       (state.cull == Cull::back && !is_front);
+  const bool removed =
+      state.cull == Cull::both || (state.cull == Cull::front && is_front) || (state.cull == Cull::back && !is_front);
   return removed ? CullResult::backface : CullResult::keep;
 }
 

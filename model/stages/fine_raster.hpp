@@ -35,7 +35,8 @@ namespace halfplane {
 
 /// Calls emit(StampPacket) for every stamp of the tile that has coverage.
 template <class Emit>
-void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Config& config, const Widths& widths, Emit&& emit) {
+void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Config& config, const Widths& widths,
+                 Emit&& emit) {
   const int size = config.stamp_size;
   for (int row = tile.top / size; row <= tile.bottom / size; ++row) {
     for (int column = tile.left / size; column <= tile.right / size; ++column) {

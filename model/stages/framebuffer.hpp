@@ -11,8 +11,8 @@
 namespace halfplane {
 
 struct Framebuffer {
-  int width = 0, height = 0;       ///< pixels
-  int stride = 0;                  ///< pixels from one row to the next; rows below `height` are padding as well
+  int width = 0, height = 0;  ///< pixels
+  int stride = 0;             ///< pixels from one row to the next; rows below `height` are padding as well
   std::vector<std::uint32_t> depth;
   std::vector<std::uint32_t> color;
 

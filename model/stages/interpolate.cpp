@@ -7,8 +7,9 @@ struct Value {
   std::int64_t unrounded, code;
 };
 
-Value value_at(const TriangleSetup& setup, const Plane& plane, const Width& plane_width, const LocalFormat<std::uint64_t>& format,
-               const Widths& widths, int x, int y, std::int64_t low, std::int64_t high) {
+Value value_at(const TriangleSetup& setup, const Plane& plane, const Width& plane_width,
+               const LocalFormat<std::uint64_t>& format, const Widths& widths, int x, int y, std::int64_t low,
+               std::int64_t high) {
   const int tile_x = x >> widths.tile_shift, tile_y = y >> widths.tile_shift;
   const int half_tile = 1 << (widths.tile_shift - 1);
   const PlaneValue anchor = plane_at_tile(setup, plane, tile_x, tile_y, widths, plane_width.bits);
@@ -17,8 +18,8 @@ Value value_at(const TriangleSetup& setup, const Plane& plane, const Width& plan
   const auto j = static_cast<std::uint64_t>(std::int64_t{y - (tile_y << widths.tile_shift) - half_tile});
   const std::uint64_t sum = local.anchor + i * local.step_x + j * local.step_y;
   const std::uint64_t half = std::uint64_t{1} << (format.guard_bits - 1);
-  const auto unrounded = static_cast<std::int64_t>((sum - half) & format.modulus_mask) -
-                         static_cast<std::int64_t>(format.offset());
+  const auto unrounded =
+      static_cast<std::int64_t>((sum - half) & format.modulus_mask) - static_cast<std::int64_t>(format.offset());
   return {unrounded, decode(sum, format, low, high)};
 }
 

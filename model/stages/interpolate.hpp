@@ -14,8 +14,8 @@ namespace halfplane {
 /// Lane: std::uint32_t when bits + 1 + l <= 32, else std::uint64_t.
 template <class Lane>
 struct LocalPlane {
-  Lane anchor = 0;                 ///< at pixel (T/2, T/2), plus the offset that makes decode() a shift
-  Lane step_x = 0, step_y = 0;     ///< per pixel
+  Lane anchor = 0;              ///< at pixel (T/2, T/2), plus the offset that makes decode() a shift
+  Lane step_x = 0, step_y = 0;  ///< per pixel
 };
 
 /// How to read a LocalPlane of `bits`-bit codes back.
@@ -34,8 +34,8 @@ struct LocalFormat {
 
 /// Narrows a plane at a tile's anchor: both roundings are to the nearest 2^-l LSB.
 template <class Lane>
-[[nodiscard]] inline LocalPlane<Lane> local_plane(PlaneValue anchor, const Plane& plane, const LocalFormat<Lane>& format,
-                                                  const Widths& widths) {
+[[nodiscard]] inline LocalPlane<Lane> local_plane(PlaneValue anchor, const Plane& plane,
+                                                  const LocalFormat<Lane>& format, const Widths& widths) {
   const int drop = widths.plane_fraction - format.guard_bits;  // F - l
   const Lane half = format.guard_bits > 0 ? Lane{1} << (format.guard_bits - 1) : Lane{0};
   return {static_cast<Lane>(static_cast<Lane>(round_shift(anchor, drop)) + format.offset() + half),
@@ -45,7 +45,8 @@ template <class Lane>
 
 /// The rounded code of an accumulated local value, clamped to [low, high]. SignedLane: signed type of the lane's size.
 template <class SignedLane, class Lane>
-[[nodiscard]] constexpr SignedLane decode(Lane value, const LocalFormat<Lane>& format, SignedLane low, SignedLane high) {
+[[nodiscard]] constexpr SignedLane decode(Lane value, const LocalFormat<Lane>& format, SignedLane low,
+                                          SignedLane high) {
   const auto code = static_cast<SignedLane>((value & format.modulus_mask) >> format.guard_bits) -
                     static_cast<SignedLane>(SignedLane{1} << (format.bits - 1));
   return code < low ? low : code > high ? high : code;
@@ -53,9 +54,9 @@ template <class SignedLane, class Lane>
 
 /// Every attribute at one pixel, before and after the final rounding.
 struct Interpolated {
-  std::int64_t depth = 0;                 ///< 2^-l LSB, before rounding and clamp
+  std::int64_t depth = 0;  ///< 2^-l LSB, before rounding and clamp
   std::uint32_t depth_code = 0;
-  std::array<std::int64_t, 4> color{};    ///< 2^-l LSB of an 8-bit code, before rounding and clamp
+  std::array<std::int64_t, 4> color{};  ///< 2^-l LSB of an 8-bit code, before rounding and clamp
   std::array<std::uint8_t, 4> color_code{};
 };
 

@@ -11,19 +11,28 @@
 
 namespace halfplane {
 
-[[nodiscard]] constexpr std::uint32_t to_5_bits(std::uint32_t c) { return (c * 249 + 1014) >> 11; }
-[[nodiscard]] constexpr std::uint32_t to_6_bits(std::uint32_t c) { return (c * 253 + 505) >> 10; }
-
-[[nodiscard]] constexpr std::uint32_t pack_rgb565(std::uint32_t r, std::uint32_t g, std::uint32_t b) {
-  return to_5_bits(r) << 11 | to_6_bits(g) << 5 | to_5_bits(b);
+template <class Lane>
+[[nodiscard]] constexpr Lane to_5_bits(const Lane& c) {
+  return (c * 249 + 1014) >> 11;
+}
+template <class Lane>
+[[nodiscard]] constexpr Lane to_6_bits(const Lane& c) {
+  return (c * 253 + 505) >> 10;
 }
 
-[[nodiscard]] constexpr std::uint32_t pack_rgba8888(std::uint32_t r, std::uint32_t g, std::uint32_t b, std::uint32_t a) {
+/// Lane: std::uint32_t or a vector of them.
+template <class Lane>
+[[nodiscard]] constexpr Lane pack_rgb565(const Lane& r, const Lane& g, const Lane& b) {
+  return to_5_bits(r) << 11 | to_6_bits(g) << 5 | to_5_bits(b);
+}
+template <class Lane>
+[[nodiscard]] constexpr Lane pack_rgba8888(const Lane& r, const Lane& g, const Lane& b, const Lane& a) {
   return r | g << 8 | b << 16 | a << 24;
 }
 
 [[nodiscard]] constexpr std::uint32_t pack_color(ColorFormat format, const std::array<std::uint8_t, 4>& c) {
-  return format == ColorFormat::rgb565 ? pack_rgb565(c[0], c[1], c[2]) : pack_rgba8888(c[0], c[1], c[2], c[3]);
+  const std::uint32_t r = c[0], g = c[1], b = c[2], a = c[3];
+  return format == ColorFormat::rgb565 ? pack_rgb565(r, g, b) : pack_rgba8888(r, g, b, a);
 }
 
 }  // namespace halfplane

@@ -24,7 +24,7 @@ struct PlaneFrame {
   std::int64_t ax, ay, bx, by;  ///< v1 - v0 and v2 - v0, subpixels
   std::int64_t dx, dy;          ///< from v0 to the anchor, subpixels
   Reciprocal reciprocal;
-  int fraction;                 ///< F
+  int fraction;  ///< F
 };
 
 PlaneValue gradient(std::int64_t numerator, const PlaneFrame& frame) {
@@ -51,8 +51,10 @@ Reciprocal reciprocal(std::int64_t area, int significant_bits) {
   if (area <= 0) return {};
   const int shift = floor_log2(static_cast<uint128>(area)) + significant_bits;
   const auto divisor = static_cast<std::uint64_t>(area);
-  if (shift < 64) return {(std::uint64_t{1} << shift) / divisor, shift};
-  return {static_cast<std::uint64_t>((uint128{1} << shift) / divisor), shift};
+  // One quotient bit more than is kept, then the pipeline's rounding.
+  const std::uint64_t quotient =
+      shift < 63 ? (std::uint64_t{2} << shift) / divisor : static_cast<std::uint64_t>((uint128{2} << shift) / divisor);
+  return {round_shift(quotient, 1), shift};
 }
 
 void set_box(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Rect& rect, int grid_bits) {

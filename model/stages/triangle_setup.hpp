@@ -1,10 +1,10 @@
 // Triangle setup: three snapped vertices in, everything that stays constant over the triangle out.
 //
 //   edges       E_i(p) = dx_i (p_y - y_i) - dy_i (p_x - x_i), folded to one integer per pixel (see edge_function)
-//   reciprocal  R = floor(2^k / A), k placing R in (2^(r-1), 2^r], r = B + extra bits: one for all planes
+//   reciprocal  R = floor(2^k / A + 1/2), k placing R in [2^(r-1), 2^r], r = B + extra bits: one for all planes
 //   planes      z(p) = z_0 + (N_x (p_x - x_0) + N_y (p_y - y_0)) / A, gradients per subpixel with F fraction bits
 //
-// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-(r-1) of the depth range inside the
+// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-r of the depth range inside the
 // triangle, however thin. Planes live modulo 2^(bits + 1 + F): right inside the triangle, wherever they wrap outside it.
 //
 // Values are given at the first tile of the triangle's box: edges at its first pixel, planes at its anchor (the centre of
@@ -20,8 +20,8 @@
 
 namespace halfplane {
 
-using EdgeValue = std::int64_t;      ///< floor((E + bias) / 2^s) at a pixel centre; covered when >= 0
-using PlaneValue = std::int64_t;     ///< 2^-F LSB, modulo 2^(bits + 1 + F)
+using EdgeValue = std::int64_t;   ///< floor((E + bias) / 2^s) at a pixel centre; covered when >= 0
+using PlaneValue = std::int64_t;  ///< 2^-F LSB, modulo 2^(bits + 1 + F)
 
 /// The edge function at pixel centres. Bits below a pixel are constant along an edge, so they fold into the bias.
 struct Edge {
@@ -31,16 +31,16 @@ struct Edge {
 
 /// One attribute over the triangle.
 struct Plane {
-  PlaneValue value = 0;             ///< at the anchor of the first tile
+  PlaneValue value = 0;               ///< at the anchor of the first tile
   PlaneValue step_x = 0, step_y = 0;  ///< per subpixel
 };
 
 /// A triangle's constants: what the context RAM holds, and where its tile walk starts.
 struct TriangleSetup {
   std::uint32_t primitive = 0;
-  std::int64_t area = 0;                                 ///< twice the area, square subpixels, > 0
+  std::int64_t area = 0;  ///< twice the area, square subpixels, > 0
   std::array<Edge, 3> edge{};
-  int left = 0, top = 0, right = -1, bottom = -1;        ///< box of pixel centres inside the scissor, inclusive
+  int left = 0, top = 0, right = -1, bottom = -1;  ///< box of pixel centres inside the scissor, inclusive
   Plane depth;
   std::array<Plane, 4> color{};
   std::uint32_t depth_min = 0, depth_max = 0;            ///< the final depth is clamped to the vertices' codes
@@ -61,7 +61,7 @@ struct TriangleSetup {
   return (dx * (py - from.y) - dy * (px - from.x) - (is_top_left ? 0 : 1)) >> grid_bits;
 }
 
-/// floor(2^shift / area): the one division of a triangle.
+/// floor(2^shift / area + 1/2): the one division of a triangle.
 struct Reciprocal {
   std::uint64_t value = 0;
   int shift = 0;

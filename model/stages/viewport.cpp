@@ -18,8 +18,9 @@ Rect intersect(const Rect& a, const Rect& b) {
 
 [[noreturn]] void refuse_vertex(const WindowPosition& p, std::size_t number, std::uint32_t line, const Config& config) {
   const std::string band = std::to_string(config.guard_band);
-  throw InputError("vertex " + std::to_string(number) + (line != 0 ? " (drawn in line " + std::to_string(line) + ")" : "") +
-                   " at window (" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
+  throw InputError("vertex " + std::to_string(number) +
+                   (line != 0 ? " (drawn in line " + std::to_string(line) + ")" : "") + " at window (" +
+                   std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
                    ") is outside the guard band: x and y must snap into [-" + band + ", " + band +
                    ") pixels and z into [0, 1]; clip it first or raise guard.band");
 }

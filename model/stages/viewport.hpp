@@ -28,8 +28,8 @@ struct WindowPosition {
 [[nodiscard]] WindowPosition to_window(const Vertex& v, const State& state, const Viewport& viewport);
 
 /// The snap. `place` names the vertex in the message when it is outside the guard band or depth range (InputError).
-[[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba, const Config& config,
-                                        std::size_t vertex_number, std::uint32_t line);
+[[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,
+                                        const Config& config, std::size_t vertex_number, std::uint32_t line);
 
 /// A colour channel (0...255) as its 8-bit code.
 [[nodiscard]] std::uint8_t snap_color(double channel);

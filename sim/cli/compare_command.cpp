@@ -60,8 +60,8 @@ std::string row(const std::string& name, double max, double rms) {
 std::vector<std::string> summary_lines(const Comparison& c, const std::vector<std::string>& broken) {
   std::vector<std::string> lines{
       "oracle: " + with_commas(c.oracle.samples) + " samples, " + with_commas(c.oracle.mismatches) + " mismatches",
-      "golden: " + with_commas(c.compared_pixels) + " pixels compared, " + with_commas(c.coverage.missing) + " missing, " +
-          with_commas(c.coverage.extra) + " extra",
+      "golden: " + with_commas(c.compared_pixels) + " pixels compared, " + with_commas(c.coverage.missing) +
+          " missing, " + with_commas(c.coverage.extra) + " extra",
       "",
       "LSB\tmax\trms",
       row("depth, model - golden", c.depth_lsb.max, c.depth_lsb.rms),
@@ -86,10 +86,12 @@ void print_lines(std::ostream& out, const std::vector<std::string>& lines) {
       out << line << '\n';
       continue;
     }
-    const auto cell = [](const std::string& text) { return std::string(12 - std::min<std::size_t>(11, text.size()), ' ') + text; };
+    const auto cell = [](const std::string& text) {
+      return std::string(12 - std::min<std::size_t>(11, text.size()), ' ') + text;
+    };
     const std::string name = line.substr(0, first);
-    out << name << std::string(26 - std::min<std::size_t>(25, name.size()), ' ') << cell(line.substr(first + 1, second - first - 1))
-        << cell(line.substr(second + 1)) << '\n';
+    out << name << std::string(26 - std::min<std::size_t>(25, name.size()), ' ')
+        << cell(line.substr(first + 1, second - first - 1)) << cell(line.substr(second + 1)) << '\n';
   }
 }
 
@@ -118,14 +120,15 @@ int run(const CompareCommand& options) {
     Progress progress(options, "comparing");
     CompareOptions compare_options;
     compare_options.skip = parse_skip(options.skip);
-    compare_options.precision = options.golden == "binary32" ? golden::Precision::binary32 : golden::Precision::binary64;
+    compare_options.precision =
+        options.golden == "binary32" ? golden::Precision::binary32 : golden::Precision::binary64;
     compare_options.progress = [&progress](double fraction) { progress(fraction); };
     c = compare(scene, config, compare_options);
   }
   const std::vector<std::string> broken = broken_bounds(c, config);
   const auto lines = summary_lines(c, broken);
-  const std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) + ", " +
-                            config.preset + ", seed " + std::to_string(options.seed);
+  const std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
+                            ", " + config.preset + ", seed " + std::to_string(options.seed);
   if (!options.model_path.empty()) write_png(options.model_path, color_picture(c.rendering.frame, config.color_format));
   if (!options.golden_path.empty()) write_png(options.golden_path, color_picture(c.golden.frame, config.color_format));
   if (!options.sheet_path.empty())
@@ -133,7 +136,8 @@ int run(const CompareCommand& options) {
 
   std::ostream& out = human(options);
   if (&out == &std::cout && terminal_style(1) == TerminalStyle::color)
-    out << terminal_preview(color_picture(c.rendering.frame, config.color_format), terminal_size(1, 24), TerminalStyle::color);
+    out << terminal_preview(color_picture(c.rendering.frame, config.color_format), terminal_size(1, 24),
+                            TerminalStyle::color);
   out << title << "; model (functional) against golden (" << options.golden << ")\n";
   print_lines(out, lines);
 
@@ -151,13 +155,15 @@ int run(const CompareCommand& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("compare", "model against golden: coverage, depth and colour error with its parts");
+  CLI::App* command =
+      app.add_subcommand("compare", "model against golden: coverage, depth and colour error with its parts");
   auto options = std::make_shared<CompareCommand>();
   add_scene_options(*command, *options);
   command->add_option("--golden", options->golden, "binary64, or binary32 to see what single precision would show")
       ->check(CLI::IsMember({"binary64", "binary32"}))
       ->capture_default_str();
-  command->add_option("-o", options->sheet_path, "one sheet: model, golden, coverage, depth and colour difference, .png");
+  command->add_option("-o", options->sheet_path,
+                      "one sheet: model, golden, coverage, depth and colour difference, .png");
   command->add_option("--model", options->model_path, "the model's picture alone, .png");
   command->add_option("--golden-picture", options->golden_path, "the golden's picture alone, .png");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");

@@ -17,8 +17,8 @@ void print_settings(std::ostream& out, const Config& config, bool with_meaning) 
     out << std::left << std::setw(24) << setting.key << std::right << std::setw(10) << get(config, setting);
     if (with_meaning) {
       const bool is_number = std::holds_alternative<int Config::*>(setting.member);
-      const std::string range = is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " "
-                                          : std::string();
+      const std::string range =
+          is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " " : std::string();
       out << "   " << std::left << std::setw(26) << range + std::string(setting.unit) << setting.meaning << std::right;
     }
     out << '\n';
@@ -36,8 +36,10 @@ void print_widths(std::ostream& out, const Widths& widths) {
   out << "\nderived width        bits           largest   bound\n";
   for (const Width* width : widths.all())
     out << std::left << std::setw(20) << width->name << std::right << std::setw(4) << width->bits
-        << (width->is_modular ? " modular" : width->is_signed ? " signed " : "        ") << std::setw(14) << bound_text(*width)
-        << "   " << width->bound << '\n';
+        << (width->is_modular  ? " modular"
+            : width->is_signed ? " signed "
+                               : "        ")
+        << std::setw(14) << bound_text(*width) << "   " << width->bound << '\n';
 }
 
 Json widths_json(const Widths& widths) {
@@ -92,7 +94,8 @@ void add_config_command(CLI::App& app, Action& selected) {
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");
   command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration");
-  command->footer("\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");
+  command->footer(
+      "\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 

@@ -53,11 +53,13 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
   app.add_option("SCENE", options.scene, "built-in name (halfplane scenes), .obj or .hpt file")->required();
   add_output_options(app, options);
   app.add_option("--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)");
-  app.add_option("--camera", options.camera, "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT'");
+  app.add_option("--camera", options.camera,
+                 "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT'");
   app.add_option("--seed", options.seed, "seed of scenes with something random in them")->capture_default_str();
   app.add_option("--threads", options.threads, "use at most N threads (this version uses one)")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")->capture_default_str();
+  app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
+      ->capture_default_str();
   app.add_option("--convention", options.convention, "gl: pixel centres at halves, origin top left, clip z -w...w")
       ->capture_default_str();
 }
@@ -66,7 +68,8 @@ Config effective_config(const CommonOptions& options) {
   Config config = config_from_option(options.config);
   for (const std::string& setting : options.settings) {
     const auto equals = setting.find('=');
-    if (equals == std::string::npos) throw InputError("--set: '" + setting + "' has no '='; give key=value, as in depth.bits=20");
+    if (equals == std::string::npos)
+      throw InputError("--set: '" + setting + "' has no '='; give key=value, as in depth.bits=20");
     set(config, setting.substr(0, equals), setting.substr(equals + 1));
   }
   validate(config);
@@ -84,7 +87,8 @@ Skip parse_skip(const std::string& text) {
     const std::string name = text.substr(start, end - start);
     const auto* entry = std::find_if(std::begin(kSkipNames), std::end(kSkipNames),
                                      [&name](const SkipName& s) { return name == s.name; });
-    if (entry == std::end(kSkipNames)) throw InputError("--skip: no '" + name + "'; give all, none or some of " + names);
+    if (entry == std::end(kSkipNames))
+      throw InputError("--skip: no '" + name + "'; give all, none or some of " + names);
     skip.*entry->member = true;
     start = end + 1;
   }
@@ -144,7 +148,9 @@ void write_json(const CommonOptions& options, const Json& result) {
 }
 
 Progress::Progress(const CommonOptions& options, std::string what)
-    : what_(std::move(what)), start_(std::chrono::steady_clock::now()), is_enabled_(!options.quiet && isatty(STDERR_FILENO) != 0) {}
+    : what_(std::move(what)),
+      start_(std::chrono::steady_clock::now()),
+      is_enabled_(!options.quiet && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   if (is_shown_) std::cerr << "\r\033[K" << std::flush;
@@ -153,7 +159,8 @@ Progress::~Progress() {
 void Progress::operator()(double fraction) {
   if (!is_enabled_ || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(2)) return;
   is_shown_ = true;
-  std::cerr << '\r' << what_ << ' ' << static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0)) << " %\033[K" << std::flush;
+  std::cerr << '\r' << what_ << ' ' << static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0)) << " %\033[K"
+            << std::flush;
 }
 
 std::string with_commas(std::uint64_t value) {

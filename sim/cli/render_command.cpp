@@ -25,7 +25,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision, const RenderOptions& render) {
+Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision,
+                        const RenderOptions& render) {
   golden::Options options;
   options.precision = precision;
   options.progress = render.progress;
@@ -51,7 +52,8 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   if (options.engine == "scalar") return render_scalar(scene, config, render);
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
   if (options.engine == "golden32") return render_golden(scene, config, golden::Precision::binary32, render);
-  throw InputError("--engine: no engine '" + options.engine + "' in this version; give functional, scalar, golden or golden32");
+  throw InputError("--engine: no engine '" + options.engine +
+                   "' in this version; give functional, scalar, golden or golden32");
 }
 
 Json counters_json(const Counters& c) {
@@ -113,11 +115,12 @@ int run(const RenderCommand& options) {
 
   std::ostream& out = human(options);
   if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
-    out << terminal_preview(color_picture(rendering.frame, config.color_format), terminal_size(1), TerminalStyle::color);
-  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << config.preset << ", engine " << options.engine
-      << ", seed " << options.seed << '\n'
-      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, " << with_commas(c.drawn)
-      << " drawn (" << with_commas(c.clipped) << " clipped)\n"
+    out << terminal_preview(color_picture(rendering.frame, config.color_format), terminal_size(1),
+                            TerminalStyle::color);
+  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << config.preset << ", engine "
+      << options.engine << ", seed " << options.seed << '\n'
+      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, "
+      << with_commas(c.drawn) << " drawn (" << with_commas(c.clipped) << " clipped)\n"
       << "fragments   " << with_commas(c.covered) << " covered, " << with_commas(c.depth_passed) << " passed, "
       << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
       << "time        load " << fixed(1e3 * load_s, 1) << " ms, geometry " << fixed(1e3 * rendering.geometry_s, 2)
@@ -137,13 +140,16 @@ void add_render_command(CLI::App& app, Action& selected) {
   CLI::App* command = app.add_subcommand("render", "one image from one engine");
   auto options = std::make_shared<RenderCommand>();
   add_scene_options(*command, *options);
-  command->add_option("--engine", options->engine, "functional (fast), scalar (the stages, one packet at a time), golden, golden32")
+  command
+      ->add_option("--engine", options->engine,
+                   "functional (fast), scalar (the stages, one packet at a time), golden, golden32")
       ->capture_default_str();
   command->add_option("-o", options->color_path, "colour picture, .png");
   command->add_option("--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
   command->add_option("--count", options->count_path, "covered samples per pixel before the depth test, .npy");
   command->add_option("--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
-  command->add_option("--repeat", options->repeat, "render N more times and print min and median")->check(CLI::Range(1, 100000));
+  command->add_option("--repeat", options->repeat, "render N more times and print min and median")
+      ->check(CLI::Range(1, 100000));
   command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

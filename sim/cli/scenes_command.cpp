@@ -22,9 +22,12 @@ void add_scenes_command(CLI::App& app, Action& selected) {
         out << name << std::string(12 - std::min<std::size_t>(11, name.size()), ' ') << scene.description << '\n';
         Json entry{{"name", name}, {"description", scene.description}};
         if (!scene.size.empty()) {
-          out << std::string(12, ' ') << name << ":N   N = " << scene.size << ", " << scene.min_size << "..." << scene.max_size
-              << ", default " << scene.default_size << '\n';
-          entry["n"] = {{"counts", scene.size}, {"min", scene.min_size}, {"max", scene.max_size}, {"default", scene.default_size}};
+          out << std::string(12, ' ') << name << ":N   N = " << scene.size << ", " << scene.min_size << "..."
+              << scene.max_size << ", default " << scene.default_size << '\n';
+          entry["n"] = {{"counts", scene.size},
+                        {"min", scene.min_size},
+                        {"max", scene.max_size},
+                        {"default", scene.default_size}};
         }
         list.push_back(entry);
       }

@@ -222,12 +222,10 @@ std::vector<std::string> broken_bounds(const Comparison& c, const Config& config
   const auto require = [&broken](bool holds, const char* format, double value, double bound) {
     if (!holds) broken.push_back(line(format, value, bound));
   };
-  // The presets' reciprocal, local guard bits and tile give 0.75 LSB; cheaper ones are only promised the full LSB.
-  const bool is_preset_like =
-      config.local_guard_bits >= 6 && config.reciprocal_extra_bits >= 4 && config.tile_size <= 8;
-  const double depth_bound = is_preset_like ? 0.75 : 1.0;
-  // The mean is a property of many triangles: one alone has the bias of its own reciprocal, up to 1/8 LSB.
+  const double depth_bound = depth_error_bound(config);
+  // The mean is a property of many triangles: one alone has the error of its own reciprocal, up to 1/16 LSB.
   const bool has_population = c.visible_triangles >= 100;
+
   require(c.oracle.mismatches == 0, "coverage: %.0f samples differ from the exact oracle (bound %.0f)",
           static_cast<double>(c.oracle.mismatches), 0);
   require(c.stage_mismatches == 0, "engine: %.0f stored values differ from what the stages compute (bound %.0f)",

@@ -151,6 +151,7 @@ Mesh corridor_mesh() {
   Mesh mesh;
   mesh.lit = false;
   const Vec3 low{-2, 0, -20}, high{2, 3, 20};
+  const Vec3 cell{1, 1, 8};  // long in the walking direction: the cells beside the eye begin behind it and end in view
   const std::array<std::array<Color, 2>, 3> colors{{{{{205, 190, 150, 255}, {120, 80, 60, 255}}},   // walls
                                                     {{{90, 140, 120, 255}, {225, 230, 220, 255}}},  // floor, ceiling
                                                     {{{150, 60, 60, 255}, {235, 200, 90, 255}}}}};  // ends
@@ -159,14 +160,14 @@ Mesh corridor_mesh() {
     for (const bool upper : {false, true}) {
       const std::size_t s = (axis + 1) % 3, t = (axis + 2) % 3;
       // Every edge of a cell is an edge of its neighbour too, over the corridor's corners as well: no T-junction.
-      for (double a = low[s]; a < high[s]; ++a) {
-        for (double b = low[t]; b < high[t]; ++b) {
+      for (int i = 0; low[s] + i * cell[s] < high[s]; ++i) {
+        for (int j = 0; low[t] + j * cell[t] < high[t]; ++j) {
           Vec3 from = low, to = high;
-          from[s] = a;
-          to[s] = a + 1;
-          from[t] = b;
-          to[t] = b + 1;
-          const bool odd = std::fmod(std::abs(a + b), 2) != 0;
+          from[s] = low[s] + i * cell[s];
+          to[s] = from[s] + cell[s];
+          from[t] = low[t] + j * cell[t];
+          to[t] = from[t] + cell[t];
+          const bool odd = (i + j) % 2 != 0;
           Quad quad = box_side(from, to, axis, upper);
           std::reverse(quad.begin(), quad.end());  // seen from inside
           add_quad(mesh, quad, colors[axis][odd ? 1 : 0]);

@@ -30,7 +30,7 @@ std::string printable(std::string_view word) {
   return result;
 }
 
-std::string in_quotes(std::string_view word) { return "'" + printable(word) + "'"; }
+std::string in_quotes(std::string_view word) { return std::string(1, '\'').append(printable(word)).append(1, '\''); }
 
 std::optional<double> parse_number(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);

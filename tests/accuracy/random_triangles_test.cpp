@@ -159,7 +159,7 @@ struct Tally {
     EXPECT_LT(std::abs(color_sum / static_cast<double>(color_count)), 0.05);
   }
 
-  /// Measured figures, into the test's XML and on stdout when asked for.
+  /// Measured figures, for the XML report.
   void record() const {
     const auto text = [](double v) { return std::to_string(v); };
     testing::Test::RecordProperty("triangles", std::to_string(triangles));

@@ -49,13 +49,16 @@ struct Stimulus {
 std::vector<Stimulus> random_tiles(const Config& config, std::uint64_t seed, std::size_t count) {
   const Widths widths = derive_widths(config);
   std::mt19937_64 random(seed);
-  const auto below = [&random](std::int64_t n) { return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n)); };
+  const auto below = [&random](std::int64_t n) {
+    return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n));
+  };
   std::vector<Stimulus> stimuli;
   for (std::uint32_t primitive = 0; stimuli.size() < count; ++primitive) {
     Triangle triangle;
     triangle.primitive = primitive;
     const auto target = std::min(config.target_width, config.target_height);
-    const std::int64_t reach = std::int64_t{1} << (1 + below(widths.coordinate.bits - 1));  // from 1 subpixel to the band
+    const std::int64_t reach = std::int64_t{1}
+                               << (1 + below(widths.coordinate.bits - 1));  // from 1 subpixel to the band
     const std::int64_t center_x = below(std::int64_t{target} << widths.grid_bits);
     const std::int64_t center_y = below(std::int64_t{target} << widths.grid_bits);
     for (auto& v : triangle.v) {
@@ -73,8 +76,10 @@ std::vector<Stimulus> random_tiles(const Config& config, std::uint64_t seed, std
     const int last_x = setup.right >> widths.tile_shift, last_y = setup.bottom >> widths.tile_shift;
     const auto slot = static_cast<std::uint8_t>(primitive % static_cast<std::uint32_t>(config.context_slots));
     for (int n = 0; n < 16 && stimuli.size() < count; ++n) {  // a sample of its tiles, those outside an edge included
-      const int x = (setup.left >> widths.tile_shift) + static_cast<int>(below(last_x - (setup.left >> widths.tile_shift) + 1));
-      const int y = (setup.top >> widths.tile_shift) + static_cast<int>(below(last_y - (setup.top >> widths.tile_shift) + 1));
+      const int x =
+          (setup.left >> widths.tile_shift) + static_cast<int>(below(last_x - (setup.left >> widths.tile_shift) + 1));
+      const int y =
+          (setup.top >> widths.tile_shift) + static_cast<int>(below(last_y - (setup.top >> widths.tile_shift) + 1));
       stimuli.push_back({make_tile_packet(setup, x, y, slot, widths), make_edge_context(setup)});
     }
   }
@@ -155,9 +160,15 @@ template <class Dut_>
 struct Preset {
   using Dut = Dut_;
 };
-struct Tiny : Preset<VFineRasterTiny> { static constexpr auto kName = "tiny"; };
-struct Embedded : Preset<VFineRasterEmbedded> { static constexpr auto kName = "embedded"; };
-struct Full : Preset<VFineRasterFull> { static constexpr auto kName = "full"; };
+struct Tiny : Preset<VFineRasterTiny> {
+  static constexpr auto kName = "tiny";
+};
+struct Embedded : Preset<VFineRasterEmbedded> {
+  static constexpr auto kName = "embedded";
+};
+struct Full : Preset<VFineRasterFull> {
+  static constexpr auto kName = "full";
+};
 
 template <class P>
 class FineRasterRtl : public ::testing::Test {
