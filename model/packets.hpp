@@ -86,8 +86,8 @@ struct StampPacket {
   std::uint32_t primitive_id = 0;
   std::uint8_t slot = 0;
   std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint8_t stamp = 0;  ///< row-major number of the stamp in its tile
-  std::uint64_t mask = 0;  ///< bit j * stamp_size + i: sample in column i, row j of the stamp is covered
+  std::uint16_t stamp = 0;  ///< row-major number of the stamp in its tile
+  std::uint64_t mask = 0;   ///< bit j * stamp_size + i: sample in column i, row j of the stamp is covered
 
   static constexpr std::string_view name = "stamp_packet";
   static constexpr auto fields() {

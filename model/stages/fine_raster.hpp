@@ -47,7 +47,7 @@ void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Config&
       stamp.slot = tile.slot;
       stamp.tile_x = tile.tile_x;
       stamp.tile_y = tile.tile_y;
-      stamp.stamp = static_cast<std::uint8_t>(row * widths.stamps_per_row + column);
+      stamp.stamp = static_cast<std::uint16_t>(row * widths.stamps_per_row + column);
       stamp.mask = mask;
       emit(stamp);
     }

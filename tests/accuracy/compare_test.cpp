@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/engines/functional.hpp"
-#include "scene_builder.hpp"
+#include "../scene_builder.hpp"
 #include "sim/compare/eye_depth.hpp"
 
 namespace halfplane {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "model/fixed.hpp"
-#include "scene_builder.hpp"
+#include "../scene_builder.hpp"
 #include "sim/compare/compare.hpp"
 
 namespace halfplane {

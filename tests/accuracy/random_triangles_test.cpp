@@ -9,7 +9,7 @@
 #include "model/engines/functional.hpp"
 #include "model/golden/exact.hpp"
 #include "model/widths.hpp"
-#include "scene_builder.hpp"
+#include "../scene_builder.hpp"
 #include "sim/compare/compare.hpp"
 
 namespace halfplane {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "scene_builder.hpp"
+#include "../scene_builder.hpp"
 #include "sim/compare/compare.hpp"
 
 namespace halfplane {

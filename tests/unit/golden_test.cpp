@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "../accuracy/scene_builder.hpp"
+#include "../scene_builder.hpp"
 
 namespace halfplane {
 namespace {

@@ -38,8 +38,8 @@ package raster_pkg;
   localparam int DEPTH_NUMERATOR_BITS = 47;  // L * (2^B - 1)
   localparam int COLOR_CODE_BITS = 8;  // 2^8 - 1
   localparam int COLOR_NUMERATOR_BITS = 31;  // L * (2^8 - 1)
-  localparam int RECIPROCAL_BITS = 29;  // 2^(m+R) / A, 2^m <= A < 2^(m+1), R = B + extra
-  localparam int RECIPROCAL_SHIFT_BITS = 7;  // k = m + R, m <= 2 log2 L
+  localparam int RECIPROCAL_BITS = 29;  // 2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra
+  localparam int RECIPROCAL_SHIFT_BITS = 7;  // k = m + r, m <= 2 log2 L
   localparam int DEPTH_PRODUCT_BITS = 75;  // depth numerator * reciprocal
   localparam int COLOR_PRODUCT_BITS = 59;  // color numerator * reciprocal
   localparam int DEPTH_PLANE_BITS = 52;  // modulo 2^(B + 1 + F), F = G + s

@@ -1,0 +1,131 @@
+#include "model/config.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "model/raster_pkg.hpp"
+#include "model/widths.hpp"
+
+namespace halfplane {
+namespace {
+
+std::string refusal(const Config& config) {
+  try {
+    validate(config);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+std::string file_text(const std::string& path) {
+  std::ifstream file(std::string(HALFPLANE_SOURCE_DIR) + "/rtl_ref/" + path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(Config, EveryPresetIsValidAndKnowsItsName) {
+  for (const auto name : preset_names()) {
+    EXPECT_EQ(refusal(preset(name)), "") << name;
+    EXPECT_EQ(preset(name).preset, name);
+  }
+  EXPECT_THROW((void)preset("huge"), InputError);
+}
+
+TEST(Config, EverySettingReadsBackWhatWasSetAndRefusesWhatLiesOutside) {
+  for (const Setting& setting : settings()) {
+    Config config;
+    const std::string own = get(config, setting);
+    set(config, setting.key, own);
+    EXPECT_EQ(config, Config()) << setting.key;
+    if (!std::holds_alternative<int Config::*>(setting.member)) continue;
+    set(config, setting.key, std::to_string(setting.max));
+    EXPECT_EQ(get(config, setting), std::to_string(setting.max));
+    const Config before = config;
+    for (const std::string& bad : {std::to_string(setting.max + 1), std::to_string(setting.min - 1), std::string("x"),
+                                   std::string(""), std::string("4.5"), std::string("99999999999999")}) {
+      EXPECT_THROW(set(config, setting.key, bad), InputError) << setting.key << " = " << bad;
+      EXPECT_EQ(config, before);
+    }
+  }
+}
+
+TEST(Config, CombinationThatCouldOverflowIsRefusedNamingTheBound) {
+  Config config;
+  config.guard_band = 1 << 20;
+  config.subpixel_bits = 12;
+  EXPECT_NE(refusal(config).find("needs"), std::string::npos) << refusal(config);
+  EXPECT_NE(refusal(config).find("bound: "), std::string::npos) << refusal(config);
+}
+
+TEST(Config, RefusedAreATargetBeyondTheGuardBandAStampBeyondTheTileAndAnOddGuardBand) {
+  Config config;
+  config.guard_band = 1024;
+  EXPECT_NE(refusal(config).find("guard.band"), std::string::npos);
+  config = Config();
+  config.stamp_size = 8;
+  config.tile_size = 4;
+  EXPECT_NE(refusal(config).find("stamp"), std::string::npos);
+  config = Config();
+  config.guard_band = 2000;
+  EXPECT_NE(refusal(config).find("power of two"), std::string::npos);
+}
+
+TEST(Config, PlaneTooCoarseForOneLsbIsRefused) {
+  Config config;
+  config.tile_size = 32;
+  config.local_guard_bits = 4;
+  EXPECT_NE(refusal(config).find("LSB"), std::string::npos) << refusal(config);
+}
+
+TEST(Widths, FollowTheTableOfTheNumericsPage) {
+  for (const auto name : preset_names()) {
+    const Config config = preset(name);
+    const Widths w = derive_widths(config);
+    const int V = w.coordinate.bits, B = config.depth_bits, s = w.grid_bits;
+    EXPECT_EQ(1 << (V - 1), config.guard_band << s) << name;
+    EXPECT_EQ(w.delta.bits, V + 1);
+    EXPECT_LE(w.edge_product.bits, 2 * V + 2);
+    EXPECT_EQ(w.edge_value.bits, 2 * V + 1 - s);
+    EXPECT_LE(w.depth_numerator.bits, B + V + 2);
+    EXPECT_EQ(w.depth_plane.bits, B + 1 + w.plane_fraction);
+    EXPECT_LE(w.sample_edge.bits, 32);
+    EXPECT_LE(w.local_depth.bits, 32);
+    EXPECT_LE(depth_error_bound(config), 0.75);
+  }
+}
+
+TEST(Widths, IntervalsNeedExactlyTheBitsOfTheirEnds) {
+  const Config config = preset("tiny");
+  for (const Width* width : derive_widths(config).all()) {
+    const int128 half = int128{1} << (width->bits - 1);
+    if (width->is_signed) {
+      EXPECT_TRUE(width->range.lo >= -half && width->range.hi < half) << width->name;
+      EXPECT_TRUE(width->bits == 1 || width->range.lo < -half / 2 || width->range.hi >= half / 2) << width->name;
+    } else {
+      EXPECT_TRUE(width->range.lo == 0 && width->range.hi < 2 * half) << width->name;
+      EXPECT_TRUE(width->bits == 1 || width->range.hi >= half) << width->name;
+    }
+  }
+}
+
+TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
+  EXPECT_EQ(file_text("raster_pkg.sv"), raster_pkg(preset("embedded")));
+  EXPECT_EQ(file_text("presets/tiny/raster_pkg.sv"), raster_pkg(preset("tiny")));
+  EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
+}
+
+TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
+  for (const Setting& setting : settings()) {
+    Config config;
+    set(config, setting.key,
+        std::holds_alternative<int Config::*>(setting.member) ? std::to_string(setting.max) : "rgba8888");
+    EXPECT_NE(config_id(config), config_id(Config())) << setting.key;
+  }
+}
+
+}  // namespace
+}  // namespace halfplane

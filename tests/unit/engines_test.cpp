@@ -1,0 +1,216 @@
+// The functional engine against the stages, and both against themselves with work skipped.
+#include <gtest/gtest.h>
+
+#include "../scene_builder.hpp"
+#include "model/engines/functional.hpp"
+#include "model/engines/scalar.hpp"
+#include "sim/scene/builtin.hpp"
+
+namespace halfplane {
+namespace {
+
+using test::at;
+using test::Random;
+using test::SceneBuilder;
+
+/// Overlapping triangles of all sizes and states in window space.
+Scene random_scene(std::uint32_t seed, int width, int height) {
+  Random random(seed);
+  SceneBuilder builder(width, height);
+  const double band = width < 16 ? 31.0 : 100.0;  // tiny's guard band is 32
+  for (int n = 0; n < 60; ++n) {
+    if (n % 6 == 0) {
+      State state = SceneBuilder::window_state();
+      state.depth_test = static_cast<DepthFunc>(static_cast<int>(random.between(0, 8)));
+      state.depth_write = random.unit() < 0.7;
+      state.color_write = random.unit() < 0.7;
+      state.cull = static_cast<Cull>(static_cast<int>(random.between(0, 3)));
+      state.shade = random.unit() < 0.3 ? Shade::flat : Shade::smooth;
+      if (random.unit() < 0.4) {
+        const int x = static_cast<int>(random.between(-5, width)), y = static_cast<int>(random.between(-5, height));
+        state.scissor =
+            Rect{x, y, static_cast<int>(random.between(0, width)), static_cast<int>(random.between(0, height))};
+      }
+      builder.with_state(state);
+    }
+    const double reach = std::exp2(random.between(-3, 6));
+    const double x = random.between(0, width), y = random.between(0, height);
+    std::array<Vertex, 3> v;
+    for (auto& vertex : v) {
+      const double dx = random.between(-reach, reach), dy = random.between(-reach, reach);
+      vertex = at(std::clamp(x + dx, -31.0, band), std::clamp(y + dy, -31.0, band), random.unit());
+      for (auto& channel : vertex.rgba) channel = random.between(0, 255);
+    }
+    builder.triangle(v[0], v[1], v[2]);
+  }
+  return builder.scene;
+}
+
+RenderOptions everything() {
+  RenderOptions options;
+  options.want_count = options.want_ids = options.want_triangles = true;
+  return options;
+}
+
+void expect_same_image(const Rendering& a, const Rendering& b) {
+  EXPECT_EQ(a.frame.depth, b.frame.depth);
+  EXPECT_EQ(a.frame.color, b.frame.color);
+  EXPECT_EQ(a.count, b.count);
+  EXPECT_EQ(a.ids, b.ids);
+  EXPECT_EQ(a.counters.depth_passed, b.counters.depth_passed);
+  EXPECT_EQ(a.counters.written, b.counters.written);
+  EXPECT_EQ(a.counters.primitives_in, b.counters.primitives_in);
+  EXPECT_EQ(a.counters.drawn, b.counters.drawn);
+  EXPECT_EQ(a.counters.culled, b.counters.culled);
+  EXPECT_EQ(a.counters.clipped, b.counters.clipped);
+}
+
+TEST(Engines, FunctionalEqualsScalarOnRandomScenesOfEveryPresetAndTile) {
+  std::uint64_t written = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Config config = preset(preset_names()[seed % 3]);
+    config.tile_size = 4 << seed / 3 % 4;
+    config.stamp_size = 1 << seed % 3;
+    if (seed % 5 == 0) config.depth_bits = 32;  // 64-bit lanes
+    if (config.tile_size == 32) config.local_guard_bits = 7;
+    const bool is_tiny = config.preset == "tiny";
+    const Scene scene = random_scene(seed, is_tiny ? 15 : 61, is_tiny ? 13 : 47);
+    const Rendering functional = render_functional(scene, config, everything());
+    const Rendering scalar = render_scalar(scene, config, everything());
+    expect_same_image(functional, scalar);
+    EXPECT_EQ(functional.visible, scalar.visible);
+    EXPECT_EQ(functional.counters.covered, scalar.counters.covered);
+    EXPECT_EQ(functional.counters.samples_tested, scalar.counters.samples_tested);
+    EXPECT_EQ(functional.counters.skipped.fragments_early_z, scalar.counters.skipped.fragments_early_z);
+    EXPECT_EQ(functional.counters.skipped.tiles_outside, scalar.counters.skipped.tiles_outside);
+    EXPECT_EQ(functional.counters.skipped.trivially_accepted, scalar.counters.skipped.trivially_accepted);
+    written += functional.counters.written;
+  }
+  EXPECT_GT(written, 10000u);
+}
+
+TEST(Engines, FunctionalEqualsScalarOnBuiltinScenes) {
+  for (const char* name : {"triangle", "teapot:4", "city:40", "knot:48", "coplanar", "slivers:60", "walk"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = make_builtin(name, 160, 120, {}, 1);
+    const Config config = preset("embedded");
+    expect_same_image(render_functional(scene, config, everything()), render_scalar(scene, config, everything()));
+  }
+}
+
+constexpr Skip kSkipNothing{false, false, false, false, false};
+
+TEST(Skip, EachSwitchLeavesTheImageAloneAndItsCounterShowsTheWorkSaved) {
+  const Scene scene = make_builtin("walk", 320, 240, {}, 1);
+  const Config config = preset("embedded");
+  RenderOptions options = everything();
+  options.skip = kSkipNothing;
+  const Rendering none = render_functional(scene, config, options);
+  EXPECT_EQ(none.counters.skipped.frustum + none.counters.skipped.empty + none.counters.skipped.tiles_outside +
+                none.counters.skipped.trivially_accepted + none.counters.skipped.fragments_early_z,
+            0u);
+  struct Case {
+    const char* name;
+    bool Skip::*member;
+    std::uint64_t (*count)(const Counters&);
+  };
+  const Case cases[] = {
+      {"frustum", &Skip::frustum, [](const Counters& c) { return c.skipped.frustum; }},
+      {"tiles_outside", &Skip::tiles_outside, [](const Counters& c) { return c.skipped.tiles_outside; }},
+      {"trivially_accepted", &Skip::trivially_accepted,
+       [](const Counters& c) { return c.skipped.trivially_accepted; }}};
+  for (const Case& skip : cases) {
+    SCOPED_TRACE(skip.name);
+    options.skip = kSkipNothing;
+    options.skip.*skip.member = true;
+    const Rendering one = render_functional(scene, config, options);
+    expect_same_image(one, none);
+    EXPECT_GT(skip.count(one.counters), 0u);
+  }
+  options.skip = {};
+  const Rendering all = render_functional(scene, config, options);
+  expect_same_image(all, none);
+  EXPECT_LT(all.counters.samples_tested, none.counters.samples_tested / 2);
+}
+
+TEST(Skip, EmptyAndEarlyDepthSaveWorkWhereThereIsSome) {
+  // A dense teapot: many triangles without a sample, many fragments behind others.
+  const Scene scene = make_builtin("teapot:40", 120, 90, {}, 1);
+  const Config config = preset("embedded");
+  RenderOptions options = everything();
+  const Rendering all = render_functional(scene, config, options);
+  options.skip = kSkipNothing;
+  const Rendering none = render_functional(scene, config, options);
+  expect_same_image(all, none);
+  EXPECT_GT(all.counters.skipped.empty, 1000u);
+  EXPECT_GT(all.counters.skipped.fragments_early_z, 1000u);
+  EXPECT_LT(all.counters.tiles_visited, none.counters.tiles_visited + 1);
+}
+
+TEST(Engines, TranslationByWholeTilesMovesTheImageBitForBit) {
+  const Config config = preset("embedded");
+  Random random(21);
+  for (int n = 0; n < 50; ++n) {
+    SceneBuilder here(96, 96), there(96, 96);
+    std::array<Vertex, 3> v;
+    for (auto& vertex : v) {
+      const double x = random.between(1, 60), y = random.between(1, 60);
+      vertex = at(x, y, random.unit());
+      for (auto& channel : vertex.rgba) channel = random.between(0, 255);
+    }
+    here.triangle(v[0], v[1], v[2]);
+    for (auto& vertex : v) {
+      vertex.x += 24;
+      vertex.y += 32;
+    }
+    there.triangle(v[0], v[1], v[2]);
+    const Rendering a = render_functional(here.scene, config), b = render_functional(there.scene, config);
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        ASSERT_EQ(a.frame.depth[a.frame.at(x, y)], b.frame.depth[b.frame.at(x + 24, y + 32)]) << n;
+        ASSERT_EQ(a.frame.color[a.frame.at(x, y)], b.frame.color[b.frame.at(x + 24, y + 32)]) << n;
+      }
+  }
+}
+
+TEST(Engines, WindowVertexOutsideTheGuardBandIsReportedNotMoved) {
+  const Config config = preset("tiny");
+  const auto drawn_with = [&](double x, double z) {
+    SceneBuilder builder(16, 16);
+    builder.triangle(at(x, 1, z), at(5, 9), at(1, 9));
+    return render_functional(builder.scene, config).counters.drawn;
+  };
+  EXPECT_EQ(drawn_with(-32, 0.5), 1u);
+  EXPECT_EQ(drawn_with(31.75, 0.5), 1u);
+  EXPECT_THROW((void)drawn_with(31.875, 0.5), InputError);  // snaps to 32
+  EXPECT_THROW((void)drawn_with(-32.25, 0.5), InputError);
+  EXPECT_THROW((void)drawn_with(1e300, 0.5), InputError);
+  EXPECT_THROW((void)drawn_with(5, 1.1), InputError);
+  EXPECT_THROW((void)drawn_with(5, -0.1), InputError);
+}
+
+TEST(Engines, WhatTheEngineDoesNotHaveIsNamed) {
+  SceneBuilder builder(16, 16);
+  State state = SceneBuilder::window_state();
+  state.color_interp = ColorInterp::perspective;
+  builder.with_state(state).triangle(at(1, 1), at(9, 1), at(1, 9));
+  try {
+    (void)render_functional(builder.scene, preset("embedded"));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("color_interp perspective"), std::string::npos);
+  }
+}
+
+TEST(Engines, SceneWithoutAClearStartsFarAndBlack) {
+  SceneBuilder builder(9, 5);
+  builder.scene.commands.clear();
+  const Rendering r = render_functional(builder.scene, preset("embedded"), everything());
+  EXPECT_EQ(r.frame.depth[0], 65535u);
+  EXPECT_EQ(r.frame.color[0], 0u);
+  EXPECT_EQ(r.ids[0], -1);
+}
+
+}  // namespace
+}  // namespace halfplane

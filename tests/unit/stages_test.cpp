@@ -1,0 +1,253 @@
+// Each stage on its own: the closed forms, the stepped forms, and the cases by which they could differ.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../scene_builder.hpp"
+#include "model/packet_bits.hpp"
+#include "model/pipeline.hpp"
+
+namespace halfplane {
+namespace {
+
+using test::Random;
+
+Triangle random_triangle(Random& random, const Widths& widths, double reach) {
+  Triangle triangle;
+  for (auto& v : triangle.v) {
+    v.x = static_cast<std::int32_t>(reach * random.between(static_cast<double>(widths.coordinate.range.lo),
+                                                           static_cast<double>(widths.coordinate.range.hi)));
+    v.y = static_cast<std::int32_t>(reach * random.between(static_cast<double>(widths.coordinate.range.lo),
+                                                           static_cast<double>(widths.coordinate.range.hi)));
+    v.z = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth_code.range.hi)));
+  }
+  return triangle;
+}
+
+TEST(Snap, RoundsHalvesUpOnBothSidesOfZeroAndMovesWithTheScene) {
+  EXPECT_EQ(snap(0.5, 1), 1);
+  EXPECT_EQ(snap(-0.5, 1), 0);
+  EXPECT_EQ(snap(-1.5, 1), -1);
+  EXPECT_EQ(snap(0.49999999999999994, 1), 0) << "adding one half would round this up";
+  EXPECT_EQ(snap(-0.03125, 16), 0);
+  EXPECT_EQ(snap(10.03125, 16), 161);
+}
+
+TEST(Snap, RoundShiftIsFloorOfTheQuotientPlusOneHalf) {
+  for (std::int64_t value = -100; value <= 100; ++value)
+    for (int bits = 1; bits <= 6; ++bits)
+      EXPECT_EQ(round_shift(value, bits),
+                static_cast<std::int64_t>(std::floor(static_cast<double>(value) / (1 << bits) + 0.5)));
+}
+
+TEST(Rop, PackedChannelIsTheNearestCodeForEveryInput) {
+  for (std::uint32_t c = 0; c < 256; ++c) {
+    EXPECT_EQ(to_5_bits(c), static_cast<std::uint32_t>(std::floor(c * 31 / 255.0 + 0.5))) << c;
+    EXPECT_EQ(to_6_bits(c), static_cast<std::uint32_t>(std::floor(c * 63 / 255.0 + 0.5))) << c;
+  }
+}
+
+TEST(DepthTest, EveryFunctionIsTheUnionOfItsOutcomes) {
+  for (const auto func : {DepthFunc::never, DepthFunc::less, DepthFunc::lequal, DepthFunc::equal, DepthFunc::greater,
+                          DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always}) {
+    const bool less = depth_passes(func, 1, 2), equal = depth_passes(func, 2, 2), greater = depth_passes(func, 3, 2);
+    const int outcomes = less * 4 + equal * 2 + greater;
+    const std::array<int, 8> expected{0, 4, 6, 2, 1, 3, 5, 7};
+    EXPECT_EQ(outcomes, expected[static_cast<std::size_t>(func)]);
+  }
+}
+
+TEST(Reciprocal, IsTheNearestQuotientWithAllItsSignificantBits) {
+  Random random(11);
+  for (const int bits : {10, 20, 28, 36}) {
+    for (int n = 0; n < 2000; ++n) {
+      const auto area = n < 64 ? std::int64_t{n + 1} : static_cast<std::int64_t>(std::exp2(random.between(0, 45)));
+      const Reciprocal r = reciprocal(area, bits);
+      EXPECT_GE(r.value, std::uint64_t{1} << (bits - 1));
+      EXPECT_LE(r.value, std::uint64_t{1} << bits);
+      // |value * area - 2^shift| <= area / 2, in integers.
+      const int128 error = static_cast<int128>(r.value) * area - (int128{1} << r.shift);
+      EXPECT_LE(2 * (error < 0 ? -error : error), static_cast<int128>(area)) << "area " << area << ", bits " << bits;
+    }
+  }
+}
+
+TEST(EdgeFunction, SteppedToAnyTileEqualsDirectEvaluation) {
+  Random random(12);
+  for (const auto name : preset_names()) {
+    const Config config = preset(name);
+    const Widths widths = derive_widths(config);
+    const Rect all{0, 0, config.target_width, config.target_height};
+    for (int n = 0; n < 500; ++n) {
+      const Triangle triangle = random_triangle(random, widths, 1);
+      const TriangleSetup setup = setup_triangle(triangle, config, widths, all);
+      if (setup.is_empty()) continue;
+      const int tile_x = setup.right >> widths.tile_shift, tile_y = setup.bottom >> widths.tile_shift;
+      const EdgeValues stepped = edges_at_tile(setup, tile_x, tile_y, widths);
+      // The same edges found again by their direction, whatever order setup chose.
+      for (std::size_t e = 0; e < 3; ++e) {
+        bool is_found = false;
+        for (std::size_t i = 0; i < 3; ++i)
+          for (std::size_t j = 0; j < 3; ++j) {
+            const auto &from = triangle.v[i], &to = triangle.v[j];
+            is_found |= i != j && to.x - from.x == setup.edge[e].dx && to.y - from.y == setup.edge[e].dy &&
+                        stepped[e] == edge_function(from, to, tile_x << widths.tile_shift, tile_y << widths.tile_shift,
+                                                    widths.grid_bits);
+          }
+        EXPECT_TRUE(is_found) << name << ", triangle " << n << ", edge " << e;
+      }
+    }
+  }
+}
+
+TEST(EdgeFunction, SharedEdgeSeenFromBothSidesIsCoveredFromExactlyOne) {
+  // tiny's grid, every edge of a 5 x 5 subpixel neighbourhood, every pixel nearby: a sample on the line belongs to one.
+  for (std::int32_t x = -8; x <= 8; ++x)
+    for (std::int32_t y = -8; y <= 8; ++y) {
+      if (x == 0 && y == 0) continue;
+      SnappedVertex a, b;
+      a.x = a.y = 2;
+      b.x = 2 + x;
+      b.y = 2 + y;
+      for (int px = -4; px <= 4; ++px)
+        for (int py = -4; py <= 4; ++py)
+          EXPECT_NE(edge_function(a, b, px, py, 2) >= 0, edge_function(b, a, px, py, 2) >= 0) << x << ' ' << y;
+    }
+}
+
+TEST(CoarseRaster, SaturatedTileEdgeKeepsTheSignOfEverySample) {
+  Random random(13);
+  for (const auto name : preset_names()) {
+    const Config config = preset(name);
+    const Widths widths = derive_widths(config);
+    const Rect all{0, 0, config.target_width, config.target_height};
+    std::size_t saturated = 0;
+    for (int n = 0; n < 300; ++n) {
+      const TriangleSetup setup = setup_triangle(random_triangle(random, widths, 1), config, widths, all);
+      if (setup.is_empty()) continue;
+      const int tile_x = (setup.left + setup.right) / 2 >> widths.tile_shift;
+      const int tile_y = (setup.top + setup.bottom) / 2 >> widths.tile_shift;
+      const EdgeValues wide = edges_at_tile(setup, tile_x, tile_y, widths);
+      for (std::size_t e = 0; e < 3; ++e) {
+        const std::int32_t narrow = saturate_tile_edge(wide[e], widths);
+        saturated += narrow != wide[e];
+        for (int j = 0; j < config.tile_size; ++j)
+          for (int i = 0; i < config.tile_size; ++i) {
+            const std::int64_t step = std::int64_t{j} * setup.edge[e].dx - std::int64_t{i} * setup.edge[e].dy;
+            EXPECT_EQ(wide[e] + step >= 0, narrow + step >= 0);
+          }
+      }
+    }
+    EXPECT_GT(saturated, 0u) << name << ": the case was never met";
+  }
+}
+
+TEST(CoarseRaster, ClassOfATileIsWhatItsSamplesSay) {
+  Random random(14);
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  std::array<int, 3> met{};
+  for (int n = 0; n < 2000; ++n) {
+    const TriangleSetup setup = setup_triangle(random_triangle(random, widths, 0.02), config, widths, {0, 0, 64, 64});
+    if (setup.is_empty()) continue;
+    const int tile_x = (setup.left >> 3) + random.index((setup.right >> 3) - (setup.left >> 3) + 1);
+    const int tile_y = (setup.top >> 3) + random.index((setup.bottom >> 3) - (setup.top >> 3) + 1);
+    const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths);
+    const TileClass kind = classify(setup, edges, config.tile_size);
+    int inside = 0;
+    bool is_outside_one = false;
+    for (std::size_t e = 0; e < 3; ++e) {
+      int of_edge = 0;
+      for (int s = 0; s < 64; ++s) of_edge += edges[e] + (s / 8) * setup.edge[e].dx - (s % 8) * setup.edge[e].dy >= 0;
+      inside += of_edge;
+      is_outside_one |= of_edge == 0;
+    }
+    const TileClass expected = is_outside_one     ? TileClass::outside
+                               : inside == 3 * 64 ? TileClass::inside
+                                                  : TileClass::cut;
+    EXPECT_EQ(kind, expected);
+    ++met[static_cast<std::size_t>(kind)];
+  }
+  for (const int count : met) EXPECT_GT(count, 10);
+}
+
+TEST(Interpolate, FlatDepthHasNoGradientAtAll) {
+  Random random(15);
+  const Config config = preset("full");
+  const Widths widths = derive_widths(config);
+  for (int n = 0; n < 1000; ++n) {
+    Triangle triangle = random_triangle(random, widths, 1);
+    triangle.v[0].z = triangle.v[1].z = triangle.v[2].z;
+    const TriangleSetup setup = setup_triangle(triangle, config, widths);
+    EXPECT_EQ(setup.depth.step_x, 0);
+    EXPECT_EQ(setup.depth.step_y, 0);
+  }
+}
+
+TEST(Interpolate, ValueFarOutsideTheTriangleWrapsWithoutHarmInside) {
+  // A full-range gradient over a pixel: far away the plane leaves its range thousands of times over.
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  Triangle triangle;
+  triangle.v[0] = {160, 160, 0, {}};
+  triangle.v[1] = {176, 160, 65535, {}};
+  triangle.v[2] = {160, 30000, 0, {}};
+  const TriangleSetup setup = setup_triangle(triangle, config, widths);
+  EXPECT_EQ(interpolate_at(setup, widths, 10, 10).depth_code, 32768u);  // 65535 * 8/16, rounded
+}
+
+TEST(Packets, BitsAndBackAreTheSamePacket) {
+  Random random(16);
+  for (const auto name : preset_names()) {
+    const Widths widths = derive_widths(preset(name));
+    for (int n = 0; n < 200; ++n) {
+      PacketBits bits(packet_bits<TilePacket>(widths));
+      for (int b = 0; b < bits.size; ++b) bits.put(b, 1, random.unit() < 0.5 ? 1 : 0);
+      EXPECT_EQ(pack(unpack<TilePacket>(bits, widths), widths), bits);
+    }
+  }
+}
+
+/// Every field of the packet fits the member that holds it in C++.
+template <class Packet>
+void expect_members_wide_enough(const Widths& widths) {
+  for_each_element<Packet>(widths, [](const auto& field, const Width& width, std::size_t i, int) {
+    Packet packet;
+    using Member = std::decay_t<decltype(element(packet, field.member, i))>;
+    EXPECT_LE(width.bits, static_cast<int>(8 * sizeof(Member))) << Packet::name << '.' << field.name;
+    EXPECT_EQ(width.is_signed, std::is_signed_v<Member>) << Packet::name << '.' << field.name;
+  });
+}
+
+TEST(Packets, EveryMemberHoldsItsFieldInEveryLegalTileAndStamp) {
+  for (const int tile : {4, 8, 16, 32})
+    for (const int stamp : {1, 2, 4, 8}) {
+      if (stamp > tile) continue;
+      Config config = preset("full");
+      config.tile_size = tile;
+      config.stamp_size = stamp;
+      config.local_guard_bits = 8;
+      config.context_slots = 64;
+      config.primitive_id_bits = 32;
+      config.guard_band = config.target_width = config.target_height = 16384;
+      validate(config);
+      const Widths widths = derive_widths(config);
+      expect_members_wide_enough<TilePacket>(widths);
+      expect_members_wide_enough<EdgeContext>(widths);
+      expect_members_wide_enough<StampPacket>(widths);
+    }
+}
+
+TEST(Packets, DifferenceNamesTheFieldAndTheElement) {
+  const Widths widths = derive_widths(preset("embedded"));
+  TilePacket a, b;
+  b.edge_value[1] = -5;
+  b.slot = 2;
+  EXPECT_EQ(differing_fields(a, b, widths), (std::vector<std::string>{"slot", "edge_value[1]"}));
+  EXPECT_TRUE(differing_fields(a, a, widths).empty());
+  EXPECT_NE(to_string(b, widths).find("edge_value[1]=-5"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace halfplane
