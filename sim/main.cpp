@@ -1,11 +1,36 @@
 // halfplane COMMAND [SCENE] [options]
+#include <csignal>
 #include <iostream>
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 
-int main(int argc, char** argv) {
-  using namespace halfplane;
+namespace {
+
+using namespace halfplane;
+
+/// One line on stderr, whatever bytes a name in it holds.
+int fail(ExitStatus status, std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  std::cerr << "halfplane: " << message << '\n';
+  return status;
+}
+
+/// CLI11 names what a command lacks, but not the command that does not exist.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2) throw InputError("no command; try `halfplane render teapot -o teapot.png` or `halfplane --help`");
+  const std::string word = argv[1];
+  if (word.starts_with("-")) return;
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == word) return;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw InputError("no command '" + word + "' in this version; give one of " + names);
+}
+
+int run(int argc, char** argv) {
   CLI::App app{"Halfplane: a fixed-point raster pipeline as C++ model, RTL and golden.", "halfplane"};
   app.set_version_flag("--version", "halfplane " HALFPLANE_VERSION);
   app.require_subcommand(1);
@@ -17,22 +42,35 @@ int main(int argc, char** argv) {
   add_compare_command(app, selected);
   add_scenes_command(app, selected);
   add_config_command(app, selected);
+  check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
-    return selected();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::cerr << "halfplane: " << error.what() << "; see halfplane " << (argc > 1 && argv[1][0] != '-' ? argv[1] : "")
-              << " --help\n";
-    return kBadInput;
+    const std::string command = argv[1][0] == '-' ? "" : std::string(argv[1]) + " ";
+    throw InputError(std::string(error.what()) + "; see `halfplane " + command + "--help`");
+  }
+  return selected();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A reader that went away and a file size limit are errors of the write, like a full disk: without the signals the
+  // write reports them, and no half-written file stays behind.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    const int status = run(argc, argv);
+    if (!std::cout.flush()) throw InputError("writing to stdout failed; give a place that takes it, or --quiet");
+    return status;
   } catch (const InputError& error) {
-    std::cerr << "halfplane: " << error.what() << '\n';
-    return kBadInput;
+    return fail(kBadInput, error.what());
   } catch (const std::bad_alloc&) {
-    std::cerr << "halfplane: not enough memory for this scene and target\n";
-    return kMissing;
+    return fail(kMissing, "not enough memory for this scene and target; give a smaller --size");
+  } catch (const std::length_error&) {
+    return fail(kMissing, "not enough memory for this scene and target; give a smaller --size");
   } catch (const std::exception& error) {
-    std::cerr << "halfplane: " << error.what() << '\n';
-    return kMissing;
+    return fail(kMissing, error.what());
   }
 }

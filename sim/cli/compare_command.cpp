@@ -113,6 +113,7 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
 int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
+  for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path}) check_output(*path);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
   Comparison c;
@@ -123,7 +124,7 @@ int run(const CompareCommand& options) {
     compare_options.precision =
         options.golden == "binary32" ? golden::Precision::binary32 : golden::Precision::binary64;
     compare_options.progress = [&progress](double fraction) { progress(fraction); };
-    c = compare(scene, config, compare_options);
+    c = on_scene(options, [&] { return compare(scene, config, compare_options); });
   }
   const std::vector<std::string> broken = broken_bounds(c, config);
   const auto lines = summary_lines(c, broken);
@@ -134,21 +135,21 @@ int run(const CompareCommand& options) {
   if (!options.sheet_path.empty())
     write_png(options.sheet_path, comparison_sheet(make_sheet(c, scene, config, title, lines)));
 
-  std::ostream& out = human(options);
-  if (&out == &std::cout && terminal_style(1) == TerminalStyle::color)
-    out << terminal_preview(color_picture(c.rendering.frame, config.color_format), terminal_size(1, 24),
-                            TerminalStyle::color);
-  out << title << "; model (functional) against golden (" << options.golden << ")\n";
-  print_lines(out, lines);
-
   Json result = result_head("compare", options, config);
   result["golden"] = options.golden;
   result["width"] = scene.width;
   result["height"] = scene.height;
   result.update(comparison_json(c));
   result["broken_bounds"] = broken;
-  result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result["wall_s"] = seconds_since(start);
   write_json(options, result);
+
+  std::ostream& out = human(options);
+  if (&out == &std::cout && terminal_style(1) == TerminalStyle::color)
+    out << terminal_preview(color_picture(c.rendering.frame, config.color_format), terminal_size(1, 24),
+                            TerminalStyle::color);
+  out << title << "; model (functional) against golden (" << options.golden << ")\n";
+  print_lines(out, lines);
   return broken.empty() ? kOk : kMismatch;
 }
 
@@ -162,10 +163,10 @@ void add_compare_command(CLI::App& app, Action& selected) {
   command->add_option("--golden", options->golden, "binary64, or binary32 to see what single precision would show")
       ->check(CLI::IsMember({"binary64", "binary32"}))
       ->capture_default_str();
-  command->add_option("-o", options->sheet_path,
-                      "one sheet: model, golden, coverage, depth and colour difference, .png");
-  command->add_option("--model", options->model_path, "the model's picture alone, .png");
-  command->add_option("--golden-picture", options->golden_path, "the golden's picture alone, .png");
+  add_file_option(*command, "-o", options->sheet_path,
+                  "one sheet: model, golden, coverage, depth and colour difference, .png");
+  add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");
+  add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

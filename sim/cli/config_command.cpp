@@ -58,18 +58,15 @@ struct ConfigOptions : CommonOptions {
 };
 
 int run(const ConfigOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   std::ostream& out = human(options);
   if (options.sv) {
     std::cout << raster_pkg(config);
     return kOk;
   }
-  print_settings(out, config, options.list);
   const Widths widths = derive_widths(config);
-  if (options.widths) print_widths(out, widths);
   Json result = result_head("config", options, config);
-  result.erase("scene");
-  result.erase("seed");
   if (options.list) {
     Json list = Json::array();
     for (const Setting& setting : settings()) {
@@ -81,7 +78,10 @@ int run(const ConfigOptions& options) {
     result["settings"] = list;
   }
   if (options.widths) result["widths"] = widths_json(widths);
+  result["wall_s"] = seconds_since(start);
   write_json(options, result);
+  print_settings(out, config, options.list);
+  if (options.widths) print_widths(out, widths);
   return kOk;
 }
 
@@ -93,7 +93,7 @@ void add_config_command(CLI::App& app, Action& selected) {
   add_output_options(*command, *options);
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");
-  command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration");
+  command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration")->excludes("--json");
   command->footer(
       "\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });

@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 #include "sim/config_file.hpp"
@@ -27,6 +29,17 @@ Size parse_size(const std::string& text) {
   return size;
 }
 
+// Decimal, as it is printed; CLI11 would take -1, 010 and what is too large for another number.
+std::uint64_t parse_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw InputError("--seed: '" + text + "' is not a seed; give a whole number from 0 to 18446744073709551615");
+  return seed;
+}
+
+std::string refuse_empty(const std::string& text) { return text.empty() ? "nothing given, where a value is due" : ""; }
+
 bool is_capture(const std::string& name) { return name.size() > 4 && name.substr(name.size() - 4) == ".hpt"; }
 
 struct SkipName {
@@ -49,13 +62,21 @@ void add_output_options(CLI::App& app, CommonOptions& options) {
   app.add_flag("--quiet", options.quiet, "no human text");
 }
 
+void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning) {
+  app.add_option(name, path, meaning)->check(refuse_empty)->type_name("FILE");
+}
+
 void add_scene_options(CLI::App& app, CommonOptions& options) {
   app.add_option("SCENE", options.scene, "built-in name (halfplane scenes), .obj or .hpt file")->required();
   add_output_options(app, options);
-  app.add_option("--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)");
+  app.add_option("--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)")
+      ->check(refuse_empty);
   app.add_option("--camera", options.camera,
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT'");
-  app.add_option("--seed", options.seed, "seed of scenes with something random in them")->capture_default_str();
+  const auto set_seed = [&options](const std::string& text) { options.seed = parse_seed(text); };
+  app.add_option_function<std::string>("--seed", set_seed, "seed of scenes with something random in them")
+      ->default_str("1")
+      ->type_name("N");
   app.add_option("--threads", options.threads, "use at most N threads (this version uses one)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
@@ -64,7 +85,22 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
       ->capture_default_str();
 }
 
+void check_output(const std::string& path, const std::string& extension) {
+  if (path.empty()) return;
+  namespace fs = std::filesystem;
+  std::string end = path.substr(path.size() - std::min(path.size(), extension.size()));
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (end != extension) throw InputError("'" + path + "': this is written as " + extension + "; name the file so");
+  std::error_code error;
+  const fs::path folder = fs::path(path).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    throw InputError("cannot write '" + path + "': there is no such folder; create it first");
+  if (fs::is_directory(path, error))
+    throw InputError("cannot write '" + path + "': it is a folder; choose another file");
+}
+
 Config effective_config(const CommonOptions& options) {
+  if (options.json != "-") check_output(options.json);
   Config config = config_from_option(options.config);
   for (const std::string& setting : options.settings) {
     const auto equals = setting.find('=');
@@ -108,7 +144,7 @@ Scene load_scene(const CommonOptions& options, const Config& config, double& loa
   std::vector<std::string> warnings;
   Scene scene = load_scene(request, warnings);
   for (const std::string& warning : warnings) std::cerr << "halfplane: warning: " << warning << '\n';
-  load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  load_s = seconds_since(start);
   return scene;
 }
 
@@ -125,10 +161,11 @@ Json config_json(const Config& config) {
 }
 
 Json result_head(const std::string& command, const CommonOptions& options, const Config& config) {
+  const bool has_scene = !options.scene.empty();
   return Json{{"schema", "halfplane." + command + "/1"},
               {"config", config_json(config)},
-              {"scene", options.scene},
-              {"seed", options.seed}};
+              {"scene", has_scene ? Json(options.scene) : Json(nullptr)},
+              {"seed", has_scene ? Json(options.seed) : Json(nullptr)}};
 }
 
 std::ostream& human(const CommonOptions& options) {
@@ -141,7 +178,7 @@ void write_json(const CommonOptions& options, const Json& result) {
   const std::string text = result.dump(2) + "\n";
   if (options.json == "-") {
     std::cout << text << std::flush;
-    if (!std::cout) throw InputError("--json: writing to stdout failed");
+    if (!std::cout) throw InputError("--json: writing to stdout failed; give a place that takes it, or --json=FILE");
     return;
   }
   write_whole_file(options.json, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -161,6 +198,10 @@ void Progress::operator()(double fraction) {
   is_shown_ = true;
   std::cerr << '\r' << what_ << ' ' << static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0)) << " %\033[K"
             << std::flush;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::string with_commas(std::uint64_t value) {

@@ -38,8 +38,15 @@ struct CommonOptions {
 /// Adds --config, --set, --json and --quiet.
 void add_output_options(CLI::App& app, CommonOptions& options);
 
+/// Adds an option that takes the name of a file to write; an empty name is refused.
+void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning);
+
 /// Adds SCENE and every common option.
 void add_scene_options(CLI::App& app, CommonOptions& options);
+
+/// Throws InputError when `path` lies in no folder or is one, or does not end in `extension` (lower case, as ".npy"; ""
+/// for any). Called before the work, so that nobody waits for a result that cannot be saved. No path is fine.
+void check_output(const std::string& path, const std::string& extension = "");
 
 /// Preset or file, then every --set, validated. Throws InputError.
 [[nodiscard]] Config effective_config(const CommonOptions& options);
@@ -51,16 +58,28 @@ void add_scene_options(CLI::App& app, CommonOptions& options);
 /// to stderr and sets `load_s`.
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s);
 
+/// Calls `work` on a loaded scene; what it refuses names the scene's file.
+template <typename Work>
+auto on_scene(const CommonOptions& options, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    const bool is_file = options.scene.find('.') != std::string::npos;  // built-in scenes have no extension
+    throw InputError((is_file ? options.scene + ": " : "") + error.what());
+  }
+}
+
 /// Every effective value, keyed as in --set.
 [[nodiscard]] Json config_json(const Config& config);
 
-/// {schema, config, scene, seed}: the head of every result. `command` as in "render".
+/// {schema, config, scene, seed}: the head of every result; the last two are null for a command without a scene.
+/// `command` as in "render".
 [[nodiscard]] Json result_head(const std::string& command, const CommonOptions& options, const Config& config);
 
 /// The stream for human text: stdout, or stderr when the result is on stdout; a null stream with --quiet.
 [[nodiscard]] std::ostream& human(const CommonOptions& options);
 
-/// Writes the result where --json says.
+/// Writes the result where --json says. Call it before the human text: if it fails, its one line stands alone.
 void write_json(const CommonOptions& options, const Json& result);
 
 /// A progress line on stderr for work longer than two seconds; nothing in a pipe or with --quiet.
@@ -77,6 +96,9 @@ class Progress {
   std::chrono::steady_clock::time_point start_;
   bool is_enabled_, is_shown_ = false;
 };
+
+/// Seconds since `start`.
+[[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
 
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::uint64_t value);

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <string_view>
 
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
@@ -21,9 +23,7 @@ struct RenderCommand : CommonOptions {
   int repeat = 0;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+constexpr std::array<std::string_view, 4> kEngines{"functional", "scalar", "golden", "golden32"};
 
 Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision,
                         const RenderOptions& render) {
@@ -51,9 +51,20 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   if (options.engine == "functional") return render_functional(scene, config, render);
   if (options.engine == "scalar") return render_scalar(scene, config, render);
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
-  if (options.engine == "golden32") return render_golden(scene, config, golden::Precision::binary32, render);
-  throw InputError("--engine: no engine '" + options.engine +
-                   "' in this version; give functional, scalar, golden or golden32");
+  return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() let no other through
+}
+
+// Everything that can be refused before a scene is read.
+void check_options(const RenderCommand& options, const Config& config) {
+  if (std::find(kEngines.begin(), kEngines.end(), options.engine) == kEngines.end())
+    throw InputError("--engine: no engine '" + options.engine +
+                     "' in this version; give functional, scalar, golden or golden32");
+  (void)parse_skip(options.skip);
+  if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
+  check_output(options.color_path);
+  check_output(options.depth_path);
+  check_output(options.count_path, ".npy");
+  check_output(options.ids_path, ".npy");
 }
 
 Json counters_json(const Counters& c) {
@@ -68,6 +79,7 @@ Json counters_json(const Counters& c) {
             {"zero_area", c.skipped.zero_area},
             {"empty", c.skipped.empty},
             {"tiles_outside", c.skipped.tiles_outside},
+            {"tiles_hiz", 0},  // no engine of this version has a HiZ
             {"fragments_early_z", c.skipped.fragments_early_z}}}};
 }
 
@@ -93,11 +105,10 @@ void write_files(const RenderCommand& options, const Rendering& rendering, const
 int run(const RenderCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
-  (void)parse_skip(options.skip);
-  if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
+  check_options(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
-  const Rendering rendering = run_engine(options, scene, config);
+  const Rendering rendering = on_scene(options, [&] { return run_engine(options, scene, config); });
   const Counters& c = rendering.counters;
 
   Json result = result_head("render", options, config);
@@ -112,6 +123,7 @@ int run(const RenderCommand& options) {
   result["depth_hash"] = depth_hash(rendering.frame);
   write_files(options, rendering, config);
   result["wall_s"] = seconds_since(start);
+  write_json(options, result);
 
   std::ostream& out = human(options);
   if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
@@ -130,7 +142,6 @@ int run(const RenderCommand& options) {
         << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
   out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
       << result["depth_hash"].get<std::string>() << '\n';
-  write_json(options, result);
   return kOk;
 }
 
@@ -144,10 +155,10 @@ void add_render_command(CLI::App& app, Action& selected) {
       ->add_option("--engine", options->engine,
                    "functional (fast), scalar (the stages, one packet at a time), golden, golden32")
       ->capture_default_str();
-  command->add_option("-o", options->color_path, "colour picture, .png");
-  command->add_option("--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
-  command->add_option("--count", options->count_path, "covered samples per pixel before the depth test, .npy");
-  command->add_option("--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
+  add_file_option(*command, "-o", options->color_path, "colour picture, .png");
+  add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
+  add_file_option(*command, "--count", options->count_path, "covered samples per pixel before the depth test, .npy");
+  add_file_option(*command, "--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(CLI::Range(1, 100000));
   command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json");

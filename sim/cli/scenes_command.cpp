@@ -6,35 +6,48 @@
 #include "sim/scene/builtin.hpp"
 
 namespace halfplane {
+namespace {
+
+Json scenes_json() {
+  Json list = Json::array();
+  for (const Builtin& scene : builtin_scenes()) {
+    Json entry{{"name", scene.name}, {"description", scene.description}};
+    if (!scene.size.empty())
+      entry["n"] = {
+          {"counts", scene.size}, {"min", scene.min_size}, {"max", scene.max_size}, {"default", scene.default_size}};
+    list.push_back(entry);
+  }
+  return list;
+}
+
+void print_scenes(std::ostream& out) {
+  for (const Builtin& scene : builtin_scenes()) {
+    out << scene.name << std::string(12 - std::min<std::size_t>(11, scene.name.size()), ' ') << scene.description
+        << '\n';
+    if (!scene.size.empty())
+      out << std::string(12, ' ') << scene.name << ":N   N = " << scene.size << ", " << scene.min_size << "..."
+          << scene.max_size << ", default " << scene.default_size << '\n';
+  }
+}
+
+int run(const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Json result = result_head("scenes", options, effective_config(options));
+  result["scenes"] = scenes_json();
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+  print_scenes(human(options));
+  return kOk;
+}
+
+}  // namespace
 
 void add_scenes_command(CLI::App& app, Action& selected) {
   CLI::App* command = app.add_subcommand("scenes", "lists the built-in scenes");
   auto options = std::make_shared<CommonOptions>();
-  command->add_flag("--json{-}", options->json, "result as JSON on stdout; --json=FILE: to a file");
-  command->add_flag("--quiet", options->quiet, "no human text");
+  add_output_options(*command, *options);
   command->footer("\nExample:\n  halfplane scenes\n  halfplane render city:32 -o city.png");
-  command->callback([&selected, options] {
-    selected = [options] {
-      Json list = Json::array();
-      std::ostream& out = human(*options);
-      for (const Builtin& scene : builtin_scenes()) {
-        const std::string name(scene.name);
-        out << name << std::string(12 - std::min<std::size_t>(11, name.size()), ' ') << scene.description << '\n';
-        Json entry{{"name", name}, {"description", scene.description}};
-        if (!scene.size.empty()) {
-          out << std::string(12, ' ') << name << ":N   N = " << scene.size << ", " << scene.min_size << "..."
-              << scene.max_size << ", default " << scene.default_size << '\n';
-          entry["n"] = {{"counts", scene.size},
-                        {"min", scene.min_size},
-                        {"max", scene.max_size},
-                        {"default", scene.default_size}};
-        }
-        list.push_back(entry);
-      }
-      write_json(*options, {{"schema", "halfplane.scenes/1"}, {"scenes", list}});
-      return static_cast<int>(kOk);
-    };
-  });
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane
