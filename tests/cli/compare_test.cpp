@@ -1,0 +1,170 @@
+// `halfplane compare`, `scenes` and `config`: their results and what they print.
+#include <set>
+
+#include "program.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class CompareCommand : public Cli {};
+class ScenesCommand : public Cli {};
+class ConfigCommand : public Cli {};
+
+void expect_numbers(const Json& json, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    ASSERT_TRUE(json.contains(key)) << key << " in " << json;
+    EXPECT_TRUE(json[key].is_number()) << key << ": " << json[key];
+  }
+}
+
+TEST_F(CompareCommand, ResultHasEveryKeyOfTheContract) {
+  const Json json = result({"compare", "teapot", "--size", "160x120", "--seed", "5"});
+  EXPECT_EQ(json["schema"], "halfplane.compare/1");
+  EXPECT_EQ(json["scene"], "teapot");
+  EXPECT_EQ(json["seed"], 5);
+  EXPECT_EQ(json["config"]["depth.bits"], 16);
+  EXPECT_TRUE(json["wall_s"].is_number());
+  for (const char* key : {"missing", "extra", "oracle_mismatches"})
+    EXPECT_TRUE(json["coverage"][key].is_number_unsigned()) << key;
+  for (const char* key : {"depth_lsb", "depth_eye", "color_lsb"})
+    expect_numbers(json[key], {"max", "mean", "rms", "p999"});
+  for (const char* part : {"snap", "interpolation", "storage", "affine"})
+    expect_numbers(json["parts"][part], {"max", "rms"});
+}
+
+TEST_F(CompareCommand, FiguresAreInOrderAndBounded) {
+  for (const char* config : {"tiny", "embedded", "full"}) {
+    const Json json = result({"compare", "teapot", "--config", config, "--size", "16x16"});
+    EXPECT_EQ(json["coverage"]["oracle_mismatches"], 0) << config;
+    for (const char* key : {"depth_lsb", "depth_eye", "color_lsb"}) {
+      const Json& s = json[key];
+      EXPECT_GE(s["max"], s["p999"]) << config << key;
+      EXPECT_GE(s["max"], s["rms"]) << config << key;
+      EXPECT_GE(s["rms"].get<double>() * (1 + 1e-12), std::abs(s["mean"].get<double>())) << config << key;
+      EXPECT_GT(s["max"], 0.0) << config << key << ": nothing was compared";
+    }
+    EXPECT_LE(json["parts"]["interpolation"]["max"], 0.25) << config;  // with storage: 0.75 LSB
+    EXPECT_LE(json["parts"]["storage"]["max"], 0.5) << config;
+    EXPECT_GT(json["compared_pixels"], 0) << config;
+  }
+}
+
+TEST_F(CompareCommand, HumanTextSumsUpOnStdoutOrBesideTheResultOnStderr) {
+  const Outcome plain = run({"compare", "triangle", "--size", "64x48"});
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_NE(plain.out.find("0 mismatches"), std::string::npos) << plain.out;
+  EXPECT_EQ(plain.err, "");
+  const Outcome json = run({"compare", "triangle", "--size", "64x48", "--json"});
+  EXPECT_FALSE(Json::parse(json.out, nullptr, false).is_discarded()) << json.out;
+  EXPECT_NE(json.err.find("0 mismatches"), std::string::npos);
+}
+
+TEST_F(CompareCommand, ModelPictureIsTheRenderedOneAndSheetAndGoldenAreWritten) {
+  ASSERT_EQ(run({"compare", "teapot", "--size", "64x48", "-o", "sheet.png", "--model", "model.png", "--golden-picture",
+                 "golden.png"})
+                .status,
+            0);
+  ASSERT_EQ(run({"render", "teapot", "--size", "64x48", "-o", "render.png"}).status, 0);
+  EXPECT_EQ(read("model.png"), read("render.png"));
+  const Bytes signature{0x89, 'P', 'N', 'G'};
+  for (const char* name : {"sheet.png", "golden.png"}) {
+    const Bytes file = read(name);
+    ASSERT_GT(file.size(), 100u) << name;
+    EXPECT_EQ(Bytes(file.begin(), file.begin() + 4), signature) << name;
+  }
+}
+
+TEST_F(CompareCommand, SinglePrecisionGoldenDiffersFromTheDoubleOne) {
+  const Arguments base{"compare", "walk", "--size", "64x48", "--config", "full"};
+  Arguments single = base;
+  single.insert(single.end(), {"--golden", "binary32"});
+  const Json a = result(base), b = result(single);
+  EXPECT_EQ(a["golden"], "binary64");
+  EXPECT_EQ(b["golden"], "binary32");
+  EXPECT_NE(a["depth_lsb"], b["depth_lsb"]);  // a binary32 cannot hold a 24-bit z with its rounding
+}
+
+TEST_F(CompareCommand, SceneWithoutTrianglesComparesNothingAndHasNoError) {
+  write("clear.hpt", "halfplane 1\ntarget 9 7\nclear color 9 9 9 255 depth .5\n");
+  const Json json = result({"compare", "clear.hpt"});
+  EXPECT_EQ(json["compared_pixels"], 0);
+  EXPECT_EQ(json["coverage"]["missing"], 0);
+  EXPECT_EQ(json["coverage"]["extra"], 0);
+}
+
+TEST_F(ScenesCommand, EveryListedSceneRendersByItsName) {
+  const Json json = result({"scenes"});
+  EXPECT_EQ(json["schema"], "halfplane.scenes/1");
+  const std::string text = run({"scenes"}).out;
+  std::set<std::string> names;
+  for (const Json& scene : json["scenes"]) {
+    const std::string name = scene["name"];
+    names.insert(name);
+    EXPECT_NE(text.find(name), std::string::npos) << name;
+    EXPECT_FALSE(scene["description"].get<std::string>().empty()) << name;
+    EXPECT_GT(result({"render", name, "--size", "64x48"})["fragments"]["written"], 0u) << name;
+    if (!scene.contains("n")) continue;
+    const std::string smallest = name + ":" + std::to_string(scene["n"]["min"].get<int>());
+    EXPECT_EQ(result({"render", smallest, "--size", "64x48"})["scene"], smallest);
+  }
+  for (const char* name : {"teapot", "city", "knot", "coplanar", "slivers", "walk"}) EXPECT_TRUE(names.contains(name));
+}
+
+TEST_F(ConfigCommand, ListShowsEverySettingWithItsRangeAndItsValue) {
+  const Json json = result({"config", "--list", "--config", "full", "--set", "depth.bits=20"});
+  const std::string text = run({"config", "--list"}).out;
+  EXPECT_EQ(json["schema"], "halfplane.config/1");
+  EXPECT_EQ(json["config"]["depth.bits"], 20);
+  EXPECT_EQ(json["config"].size(), json["settings"].size() + 1);  // the preset's name is no setting
+  for (const Json& setting : json["settings"]) {
+    const std::string key = setting["key"];
+    EXPECT_EQ(setting["value"], json["config"][key]) << key;
+    EXPECT_NE(text.find(key), std::string::npos) << key;
+    EXPECT_FALSE(setting["meaning"].get<std::string>().empty()) << key;
+    if (!setting["value"].is_number()) continue;
+    EXPECT_LE(setting["range"][0], setting["value"]) << key;
+    EXPECT_GE(setting["range"][1], setting["value"]) << key;
+    for (const int outside : {setting["range"][0].get<int>() - 1, setting["range"][1].get<int>() + 1})
+      expect_refused({"config", "--set", key + "=" + std::to_string(outside)}, key);
+  }
+}
+
+TEST_F(ConfigCommand, ShownValuesGivenBackMakeTheSameConfiguration) {
+  const Json full = result({"config", "--config", "full"})["config"];
+  std::string toml = "preset = \"full\"\n";
+  Arguments settings{"config", "--config", "full"};
+  for (const auto& [key, value] : full.items()) {
+    if (key == "preset") continue;
+    toml += key + " = " + value.dump() + "\n";
+    settings.insert(settings.end(),
+                    {"--set", key + "=" + (value.is_string() ? value.get<std::string>() : value.dump())});
+  }
+  write("full.toml", toml);
+  EXPECT_EQ(result({"config", "--config", "full.toml"})["config"], full);
+  EXPECT_EQ(result(settings)["config"], full);
+}
+
+TEST_F(ConfigCommand, WidthsComeWithTheirBounds) {
+  const Json json = result({"config", "--widths"});
+  ASSERT_FALSE(json["widths"].empty());
+  const std::string text = run({"config", "--widths"}).out;
+  for (const Json& width : json["widths"]) {
+    EXPECT_GT(width["bits"], 0) << width;
+    EXPECT_FALSE(width["bound"].get<std::string>().empty()) << width;
+    EXPECT_NE(text.find(width["name"].get<std::string>()), std::string::npos) << width;
+  }
+}
+
+TEST_F(ConfigCommand, EveryResultBeginsWithTheSameHead) {
+  for (const Arguments& arguments :
+       {Arguments{"render", "triangle"}, {"compare", "triangle"}, {"scenes"}, {"config"}}) {
+    const Json json = result(arguments);
+    EXPECT_EQ(json["schema"], "halfplane." + arguments[0] + "/1");
+    EXPECT_EQ(json["config"]["preset"], "embedded") << arguments[0];
+    EXPECT_TRUE(json.contains("scene") && json.contains("seed")) << arguments[0];
+    EXPECT_TRUE(json["wall_s"].is_number()) << arguments[0];
+  }
+}
+
+}  // namespace
+}  // namespace halfplane::cli

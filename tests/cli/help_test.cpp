@@ -1,0 +1,72 @@
+// What the program says about itself, and that its worked examples work.
+#include "program.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class Help : public Cli {};
+
+/// The commands under "Example:", each as typed.
+std::vector<std::string> examples(const std::string& help) {
+  std::vector<std::string> found;
+  bool is_example = false;
+  for (const std::string& line : lines_of(help)) {
+    is_example |= line.rfind("Example", 0) == 0;
+    if (is_example && line.rfind("  halfplane ", 0) == 0) found.push_back(line.substr(2));
+  }
+  return found;
+}
+
+TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
+  for (const Arguments& command : {Arguments{}, {"render"}, {"compare"}, {"scenes"}, {"config"}}) {
+    Arguments arguments = command;
+    arguments.push_back("--help");
+    const Outcome help = run(arguments);
+    EXPECT_EQ(help.status, 0);
+    EXPECT_EQ(help.err, "");
+    const auto lines = examples(help.out);
+    EXPECT_FALSE(lines.empty()) << help.out;
+    for (const std::string& line : lines) {
+      Arguments words = split_words(line);
+      words.erase(words.begin());
+      const Outcome outcome = run(words);
+      EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
+      for (std::size_t i = 0; i + 1 < words.size(); ++i)
+        if (words[i] == "-o") EXPECT_TRUE(exists(words[i + 1])) << line;
+    }
+  }
+}
+
+TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
+  const std::string line = run({}).err;
+  const std::size_t start = line.find('`'), end = line.find('`', start + 1);
+  ASSERT_NE(end, std::string::npos) << line;
+  Arguments words = split_words(line.substr(start + 1, end - start - 1));
+  ASSERT_GT(words.size(), 1u);
+  EXPECT_EQ(words.front(), "halfplane");
+  words.erase(words.begin());
+  EXPECT_EQ(run(words).status, 0) << line;
+  EXPECT_FALSE(listing().empty()) << "the example draws a picture";
+}
+
+TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
+  const std::string program = run({"--help"}).out;
+  for (const char* command : {"render", "compare", "scenes", "config"})
+    EXPECT_NE(program.find(command), std::string::npos) << command;
+  for (const char* command : {"render", "compare"}) {
+    const std::string help = run({command, "--help"}).out;
+    for (const char* option : {"SCENE", "--config", "--set", "--size", "--camera", "--seed", "--threads", "--skip",
+                               "--convention", "--json", "--quiet", "-o"})
+      EXPECT_NE(help.find(option), std::string::npos) << command << " " << option;
+  }
+}
+
+TEST_F(Help, VersionIsOneLine) {
+  const Outcome outcome = run({"--version"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(lines_of(outcome.out).size(), 1u);
+  EXPECT_EQ(outcome.out.rfind("halfplane ", 0), 0u);
+}
+
+}  // namespace
+}  // namespace halfplane::cli

@@ -1,0 +1,67 @@
+// Runs the halfplane program the way a person or a script does, in an empty folder of the test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace halfplane::cli {
+
+using Bytes = std::vector<std::uint8_t>;
+using Json = nlohmann::json;
+using Arguments = std::vector<std::string>;
+
+/// Where the program's stdout leads.
+enum class Stdout { captured, closed, full_disk, pipe_without_reader };
+
+/// What the machine grants the program; 0: no limit.
+struct Surroundings {
+  Stdout out = Stdout::captured;
+  std::size_t file_bytes = 0;    ///< no file may grow beyond
+  std::size_t memory_bytes = 0;  ///< address space
+};
+
+/// What one run left behind.
+struct Outcome {
+  int status = -1;  ///< exit status, or 1000 + the signal that killed it
+  std::string out, err;
+};
+
+/// A test with an empty folder, in which the program runs. The folder is gone when the test ends.
+class Cli : public testing::Test {
+ protected:
+  Cli();
+  ~Cli() override;
+
+  [[nodiscard]] Outcome run(const Arguments& arguments, const Surroundings& surroundings = {}) const;
+
+  /// Runs with `--quiet --json` added, expects success and an empty stderr, and parses the whole of stdout.
+  [[nodiscard]] Json result(Arguments arguments) const;
+
+  /// Expects one line on stderr that begins "halfplane: " and holds `part`, an empty stdout, the status, and no file in
+  /// the folder that was not there before.
+  void expect_refused(const Arguments& arguments, const std::string& part, int status = 2,
+                      const Surroundings& surroundings = {}) const;
+
+  void write(const std::string& name, const std::string& text) const;
+  [[nodiscard]] Bytes read(const std::string& name) const;
+  [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+  /// Names of all files in the folder, hidden ones too.
+  [[nodiscard]] std::vector<std::string> listing() const;
+
+  std::filesystem::path folder_;
+};
+
+/// Words between blanks; ' quotes as in a shell.
+[[nodiscard]] Arguments split_words(const std::string& line);
+
+/// The lines of `text`, without their ends.
+[[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
+
+}  // namespace halfplane::cli
