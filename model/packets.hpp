@@ -39,6 +39,11 @@ struct SnappedVertex {
   bool operator==(const SnappedVertex&) const = default;
 };
 
+/// The order of vertices on which setup and the fan of a clipped polygon agree: by (Y, X, Z).
+[[nodiscard]] inline bool canonically_before(const SnappedVertex& a, const SnappedVertex& b) {
+  return std::tie(a.y, a.x, a.z) < std::tie(b.y, b.x, b.z);
+}
+
 /// A triangle between viewport and triangle_setup: where the RTL starts. One input triangle that was clipped yields
 /// several of these with the same `primitive`.
 struct Triangle {

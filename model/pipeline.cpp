@@ -21,18 +21,20 @@ std::int64_t total_area(const SnappedPolygon& polygon) {
   return sum;
 }
 
-/// The snap can dent a convex polygon by a subpixel, and a fan across the dent would draw some pixels twice. A fan from
-/// the dent's own corner has no piece turned over, so it covers the polygon exactly once.
+/// Where the fan of a clipped polygon starts. The snap can dent a convex polygon by a subpixel, and a fan across the dent
+/// would draw some pixels twice; a fan with no piece turned over covers the polygon exactly once. Of the corners that give
+/// one, the smallest (Y, X, Z): the order in which the triangle names its vertices must not show. -1 when there is none.
 int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
+  int best = -1;
   for (int start = 0; start < polygon.size; ++start) {
     bool all_agree = true;
     for (int i = 1; i + 1 < polygon.size && all_agree; ++i) {
       const std::int64_t piece = polygon.fan_area(start, i);
       all_agree = piece == 0 || (piece > 0) == (area > 0);
     }
-    if (all_agree) return start;
+    if (all_agree && (best < 0 || canonically_before(polygon.at(start), polygon.at(best)))) best = start;
   }
-  return 0;
+  return best;
 }
 
 SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
@@ -43,7 +45,7 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
   polygon.size = clipped.size;
   for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
     polygon.v[i] = snap_vertex(to_window(clipped.v[i], context.state, context.viewport), clipped.v[i].rgba,
-                               context.config, index[0], context.draw.line);
+                               context.config, {context.scene.name, context.draw.line, index[0]});
   return polygon;
 }
 
@@ -79,7 +81,7 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
   if (entry.outside_guard_band == 0) {
     const WindowPosition p = context.state.space == Space::clip ? to_window(v, context.state, context.viewport)
                                                                 : WindowPosition{v.x, v.y, v.z};
-    entry.snapped = snap_vertex(p, v.rgba, context.config, index, context.draw.line);
+    entry.snapped = snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, index});
   }
   entry.state = context.draw.state;
   return entry;
@@ -125,12 +127,12 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
     case CullResult::keep: break;
   }
   bool is_drawn = false;
-  const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
+  const int start = polygon.size == 3 ? 0 : std::max(0, fan_start(polygon, area));  // without one: see the loop
   for (int i = 1; i + 1 < polygon.size; ++i) {
     const Triangle piece{
         primitive, context.command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}};
     const std::int64_t piece_area = polygon.fan_area(start, i);
-    if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;
+    if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;  // a piece turned over is left out
     const bool is_empty = box_is_empty(piece.v, context);
     is_drawn |= !is_empty;
     if (!is_empty || !skip.empty) out.push_back(piece);
@@ -146,19 +148,20 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
 
 void check_scene(const Scene& scene, const Config& config) {
   if (scene.width < 1 || scene.height < 1 || scene.width > config.target_width || scene.height > config.target_height)
-    throw InputError("the target is " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
-                     ", but this configuration takes 1x1 to " + std::to_string(config.target_width) + "x" +
-                     std::to_string(config.target_height) +
+    throw InputError(scene.name + ": the target is " + std::to_string(scene.width) + "x" +
+                     std::to_string(scene.height) + ", but this configuration takes 1x1 to " +
+                     std::to_string(config.target_width) + "x" + std::to_string(config.target_height) +
                      "; use a smaller --size, another --config, or --set target.width=... and target.height=...");
   for (const State& state : scene.states) {
     if (state.color_interp == ColorInterp::perspective)
       throw InputError(
-          "state color_interp perspective: this engine interpolates colours affinely; use --engine golden");
+          scene.name +
+          ": state color_interp perspective: this engine interpolates colours affinely; use --engine golden");
     const Viewport v = effective_viewport(state, scene.width, scene.height);
     const double limit = config.guard_band - 1;
     if (!(v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1))
-      throw InputError("state viewport: it must lie inside the guard band of +-" + std::to_string(config.guard_band) +
-                       " pixels; use a smaller viewport or raise guard.band");
+      throw InputError(scene.name + ": state viewport: it must lie inside the guard band of +-" +
+                       std::to_string(config.guard_band) + " pixels; use a smaller viewport or raise guard.band");
   }
 }
 

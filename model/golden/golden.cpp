@@ -119,8 +119,10 @@ class Renderer {
       bool was_cut = false, was_drawn = false;
       Polygon<Real> polygon = assemble(vertices);
       if (state.space == Space::clip) polygon = clip<Real>(polygon, planes, was_cut);
+      const std::size_t start = polygon.count > 3 ? fan_start(polygon, state, vp) : 0;
+      const auto corner = [&](std::size_t k) { return polygon.vertex[(start + k) % polygon.count]; };
       for (std::size_t k = 1; k + 1 < polygon.count; ++k) {
-        const std::array<ClipVertex<Real>, 3> part{polygon.vertex[0], polygon.vertex[k], polygon.vertex[k + 1]};
+        const std::array<ClipVertex<Real>, 3> part{corner(0), corner(k), corner(k + 1)};
         was_drawn |= draw_part(part, state, vp, primitive, command);
       }
       image_.counters.culled += was_drawn ? 0 : 1;
@@ -139,6 +141,22 @@ class Renderer {
                     {real(v.rgba[0]), real(v.rgba[1]), real(v.rgba[2]), real(v.rgba[3])}});
     }
     return polygon;
+  }
+
+  /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie shows
+  /// in affine colours, and the real coordinates of a level edge tie only up to rounding.
+  std::size_t fan_start(const Polygon<Real>& polygon, const State& state, const Viewport& vp) const {
+    std::array<std::array<double, 3>, 9> key{};
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      const auto v = to_screen(polygon.vertex[i], state, vp);
+      const auto snapped = [](Real value, int bits) {
+        return std::floor(std::ldexp(static_cast<double>(value), bits) + 0.5);
+      };
+      key[i] = {snapped(v.y, config_.subpixel_bits), snapped(v.x, config_.subpixel_bits),
+                std::floor(static_cast<double>(v.z) * (std::ldexp(1.0, config_.depth_bits) - 1) + 0.5)};
+    }
+    return static_cast<std::size_t>(
+        std::min_element(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(polygon.count)) - key.begin());
   }
 
   /// From clip or window space to pixels. False when it was culled.

@@ -10,10 +10,7 @@ namespace {
 
 /// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one.
 std::array<SnappedVertex, 3> canonical(const std::array<SnappedVertex, 3>& v, std::int64_t area) {
-  const auto before = [](const SnappedVertex& a, const SnappedVertex& b) {
-    return std::tie(a.y, a.x, a.z) < std::tie(b.y, b.x, b.z);
-  };
-  const auto first = static_cast<std::size_t>(std::min_element(v.begin(), v.end(), before) - v.begin());
+  const auto first = static_cast<std::size_t>(std::min_element(v.begin(), v.end(), canonically_before) - v.begin());
   std::array<SnappedVertex, 3> order{v[first], v[(first + 1) % 3], v[(first + 2) % 3]};
   if (area < 0) std::swap(order[1], order[2]);
   return order;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 namespace halfplane {
 namespace {
@@ -16,12 +18,13 @@ Rect intersect(const Rect& a, const Rect& b) {
   return {left, top, static_cast<int>(width), static_cast<int>(height)};
 }
 
-[[noreturn]] void refuse_vertex(const WindowPosition& p, std::size_t number, std::uint32_t line, const Config& config) {
+[[noreturn]] void refuse_vertex(const WindowPosition& p, const VertexSource& source, const Config& config) {
+  char position[96];
+  std::snprintf(position, sizeof position, "(%.9g, %.9g, %.9g)", p.x, p.y, p.z);
   const std::string band = std::to_string(config.guard_band);
-  throw InputError("vertex " + std::to_string(number) +
-                   (line != 0 ? " (drawn in line " + std::to_string(line) + ")" : "") + " at window (" +
-                   std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
-                   ") is outside the guard band: x and y must snap into [-" + band + ", " + band +
+  throw InputError(std::string(source.file) + (source.line != 0 ? ":" + std::to_string(source.line) : "") +
+                   ": vertex " + std::to_string(source.number) + " at window " + position +
+                   " is outside the guard band: x and y must snap into [-" + band + ", " + band +
                    ") pixels and z into [0, 1]; clip it first or raise guard.band");
 }
 
@@ -64,18 +67,18 @@ std::uint32_t snap_depth(double z, int depth_bits) {
 }
 
 SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba, const Config& config,
-                          std::size_t vertex_number, std::uint32_t line) {
+                          const VertexSource& source) {
   const double band = config.guard_band;
   // The comparisons are false for a NaN, and coarse enough that the conversions below are in range.
   if (!(std::abs(p.x) <= 2 * band && std::abs(p.y) <= 2 * band && p.z >= -1 && p.z <= 2))
-    refuse_vertex(p, vertex_number, line, config);
+    refuse_vertex(p, source, config);
   const int S = config.subpixel_bits, grid_bits = std::max(S, 1);
   const double scale = static_cast<double>(std::int64_t{1} << S);
   const std::int64_t x = snap(p.x, scale) << (grid_bits - S), y = snap(p.y, scale) << (grid_bits - S);
   const std::int64_t z = snap(p.z, static_cast<double>((std::int64_t{1} << config.depth_bits) - 1));
   const std::int64_t limit = static_cast<std::int64_t>(config.guard_band) << grid_bits;
   if (x < -limit || x >= limit || y < -limit || y >= limit || z < 0 || z >= std::int64_t{1} << config.depth_bits)
-    refuse_vertex(p, vertex_number, line, config);
+    refuse_vertex(p, source, config);
   SnappedVertex v;
   v.x = static_cast<std::int32_t>(x);
   v.y = static_cast<std::int32_t>(y);

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
+#include <string_view>
 
 #include "../config.hpp"
 #include "../packets.hpp"
@@ -27,9 +27,16 @@ struct WindowPosition {
 /// Divide, viewport and depth range of a clipped vertex (w > 0).
 [[nodiscard]] WindowPosition to_window(const Vertex& v, const State& state, const Viewport& viewport);
 
-/// The snap. `place` names the vertex in the message when it is outside the guard band or depth range (InputError).
+/// Where a vertex came from: for the message when it does not fit.
+struct VertexSource {
+  std::string_view file;   ///< Scene::name
+  std::uint32_t line = 0;  ///< of the draw that uses it; 0: none
+  std::size_t number = 0;  ///< index into Scene::vertices
+};
+
+/// The snap. Throws InputError naming the vertex when it is outside the guard band or the depth range.
 [[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,
-                                        const Config& config, std::size_t vertex_number, std::uint32_t line);
+                                        const Config& config, const VertexSource& source);
 
 /// A colour channel (0...255) as its 8-bit code.
 [[nodiscard]] std::uint8_t snap_color(double channel);

@@ -124,7 +124,7 @@ int run(const CompareCommand& options) {
     compare_options.precision =
         options.golden == "binary32" ? golden::Precision::binary32 : golden::Precision::binary64;
     compare_options.progress = [&progress](double fraction) { progress(fraction); };
-    c = on_scene(options, [&] { return compare(scene, config, compare_options); });
+    c = compare(scene, config, compare_options);
   }
   const std::vector<std::string> broken = broken_bounds(c, config);
   const auto lines = summary_lines(c, broken);

@@ -58,17 +58,6 @@ void check_output(const std::string& path, const std::string& extension = "");
 /// to stderr and sets `load_s`.
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s);
 
-/// Calls `work` on a loaded scene; what it refuses names the scene's file.
-template <typename Work>
-auto on_scene(const CommonOptions& options, const Work& work) {
-  try {
-    return work();
-  } catch (const InputError& error) {
-    const bool is_file = options.scene.find('.') != std::string::npos;  // built-in scenes have no extension
-    throw InputError((is_file ? options.scene + ": " : "") + error.what());
-  }
-}
-
 /// Every effective value, keyed as in --set.
 [[nodiscard]] Json config_json(const Config& config);
 

@@ -108,7 +108,7 @@ int run(const RenderCommand& options) {
   check_options(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
-  const Rendering rendering = on_scene(options, [&] { return run_engine(options, scene, config); });
+  const Rendering rendering = run_engine(options, scene, config);
   const Counters& c = rendering.counters;
 
   Json result = result_head("render", options, config);

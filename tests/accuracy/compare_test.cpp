@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "model/engines/functional.hpp"
 #include "../scene_builder.hpp"
+#include "model/engines/functional.hpp"
 #include "sim/compare/eye_depth.hpp"
 
 namespace halfplane {

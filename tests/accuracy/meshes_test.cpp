@@ -5,8 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "model/fixed.hpp"
 #include "../scene_builder.hpp"
+#include "model/engines/functional.hpp"
+#include "model/fixed.hpp"
 #include "sim/compare/compare.hpp"
 
 namespace halfplane {
@@ -190,6 +191,80 @@ TEST(Meshes, ClosedBoxThatCrossesNearAndSidePlanesCoversEveryPixelOnce) {
     EXPECT_EQ(c.oracle.mismatches, 0u);
     EXPECT_GT(c.rendering.counters.clipped, 0u);
     EXPECT_EQ(c.coverage.near_edge, c.coverage.missing + c.coverage.extra);
+  }
+}
+
+TEST(Meshes, AllSixVertexOrdersOfAClippedTriangleGiveEqualBuffers) {
+  const Config config = preset("embedded");
+  Random random(41);
+  std::uint64_t clipped = 0;
+  for (int n = 0; n < 200; ++n) {
+    SCOPED_TRACE("seed 41, triangle " + std::to_string(n));
+    State state;
+    state.depth_test = DepthFunc::always;
+    std::array<Vertex, 3> v;
+    for (Vertex& vertex : v) {
+      const double w = random.between(-1, 3), x = random.between(-90, 90), y = random.between(-90, 90);
+      vertex = clip_at(x, y, random.between(-1.2, 1.2) * w, w);
+      for (double& channel : vertex.rgba) channel = random.index(256);
+    }
+    std::array<int, 3> order{0, 1, 2};
+    Rendering first;
+    do {
+      SceneBuilder builder(48, 40, state);
+      builder.triangle(v[static_cast<std::size_t>(order[0])], v[static_cast<std::size_t>(order[1])],
+                       v[static_cast<std::size_t>(order[2])]);
+      Rendering rendering = render_functional(builder.scene, config);
+      if (first.frame.width == 0)
+        first = std::move(rendering);
+      else {
+        EXPECT_EQ(rendering.frame.depth, first.frame.depth);
+        EXPECT_EQ(rendering.frame.color, first.frame.color);
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
+    clipped += first.counters.written > 0 ? first.counters.clipped : 0;
+  }
+  EXPECT_GT(clipped, 30u);
+}
+
+/// A mesh of 2 * cells^2 triangles in random order over the whole target, on a grid of 2^-bits pixels.
+Scene shuffled_mesh(int cells, int pitch, int bits, std::uint32_t seed) {
+  Random random(seed);
+  const auto at_grid = [&](int i) { return (std::int64_t{i} * pitch << bits) - (std::int64_t{pitch} << bits); };
+  std::vector<Point> grid;
+  for (int j = 0; j <= cells; ++j)
+    for (int i = 0; i <= cells; ++i) {
+      const int reach = (pitch << bits) / 5;  // less than a quarter of a cell: no triangle turns over
+      const std::int64_t dx = random.index(2 * reach + 1) - reach;
+      grid.push_back({at_grid(i) + dx, at_grid(j) + random.index(2 * reach + 1) - reach});
+    }
+  std::vector<Corner> mesh;
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const auto corner = [&](int dx, int dy) {
+        return grid[static_cast<std::size_t>((j + dy) * (cells + 1) + i + dx)];
+      };
+      if (random.index(2) == 0) {
+        mesh.push_back({corner(0, 0), corner(1, 0), corner(0, 1)});
+        mesh.push_back({corner(0, 1), corner(1, 0), corner(1, 1)});
+      } else {
+        mesh.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
+        mesh.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
+      }
+    }
+  return mesh_scene(mesh, (cells - 3) * pitch, bits, random);
+}
+
+TEST(StressMeshes, HundredThousandShuffledTrianglesCoverEveryPixelExactlyOnce) {
+  // On the half-pixel grid ties are everywhere; on the subpixel grid they are rare, and triangles thinner.
+  for (const int bits : {1, 4}) {
+    SCOPED_TRACE("grid bits " + std::to_string(bits) + ", seed 31");
+    const Scene scene = shuffled_mesh(224, 4, bits, 31);
+    RenderOptions options;
+    options.want_count = true;
+    const Rendering r = render_functional(scene, preset("embedded"), options);
+    EXPECT_EQ(r.counters.primitives_in, 100352u);
+    EXPECT_EQ(std::count(r.count.begin(), r.count.end(), 1u), static_cast<std::ptrdiff_t>(r.count.size()));
   }
 }
 

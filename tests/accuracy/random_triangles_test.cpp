@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numeric>
 
+#include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/golden/exact.hpp"
 #include "model/widths.hpp"
-#include "../scene_builder.hpp"
 #include "sim/compare/compare.hpp"
 
 namespace halfplane {
@@ -301,6 +304,25 @@ TEST(RandomTriangles, EveryDepthWidthStaysWithinBoundsInItsOwnLsb) {
     EXPECT_LE(tally.depth_max, 0.75);
     EXPECT_GT(tally.depth_max, 0.3);  // an LSB of the asked width, not of a wider one
   }
+}
+
+/// Soak: fresh seeds for HALFPLANE_SOAK seconds, a few otherwise. The first seed is printed; every failure has its own.
+TEST(StressRandomTriangles, FreshSeedsMeetTheBoundsInEveryPreset) {
+  const char* soak = std::getenv("HALFPLANE_SOAK");
+  const double seconds = soak == nullptr ? 6 : std::atof(soak);
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [&start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const std::uint32_t first = soak == nullptr ? 100000 : std::random_device()();
+  std::uint64_t triangles = 0;
+  for (std::uint32_t seed = first; elapsed() < seconds && !HasFailure(); seed += 60)
+    for (const char* name : {"tiny", "embedded", "full"}) {
+      const int width = name == std::string("tiny") ? 16 : 61, height = name == std::string("tiny") ? 16 : 43;
+      triangles += run_random(preset(name), width, height, 20, seed).triangles;
+    }
+  std::printf("seeds from %u: %llu triangles\n", first, static_cast<unsigned long long>(triangles));
+  EXPECT_GT(triangles, 0u);
 }
 
 }  // namespace

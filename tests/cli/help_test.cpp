@@ -31,8 +31,9 @@ TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
       words.erase(words.begin());
       const Outcome outcome = run(words);
       EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
-      for (std::size_t i = 0; i + 1 < words.size(); ++i)
-        if (words[i] == "-o") EXPECT_TRUE(exists(words[i + 1])) << line;
+      for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+        EXPECT_TRUE(words[i] != "-o" || exists(words[i + 1])) << line;
+      }
     }
   }
 }
