@@ -14,9 +14,9 @@
 namespace halfplane {
 namespace {
 
-constexpr std::size_t kMaxBytes = 64 * 1024;  // every setting with a paragraph of comment is below 4 KiB
-constexpr int kMaxDotsPerLine = 16;           // a key has one
-constexpr int kMaxBraces = 4;                 // { } once, as in depth = { bits = 20 }
+constexpr std::size_t kMaxBytes = 65536;  // every setting with a paragraph of comment is below 4 KiB
+constexpr int kMaxDotsPerLine = 16;       // a key has one
+constexpr int kMaxBraces = 4;             // { } once, as in depth = { bits = 20 }
 
 struct Place {
   std::string_view file;
@@ -239,7 +239,7 @@ Config read_config_toml(std::string_view text, std::string_view file_name) {
   std::vector<Entry> entries;
   collect(table, "", file_name, entries);
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.line < b.line; });
-  const Config config = config_of(entries, file_name);
+  Config config = config_of(entries, file_name);
   at_place({file_name}, [&] { validate(config); });
   return config;
 }

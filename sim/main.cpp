@@ -65,12 +65,12 @@ int main(int argc, char** argv) {
     if (!std::cout.flush()) throw InputError("writing to stdout failed; give a place that takes it, or --quiet");
     return status;
   } catch (const InputError& error) {
-    return fail(kBadInput, error.what());
+    return fail(exit_bad_input, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(kMissing, "not enough memory for this scene and target; give a smaller --size");
+    return fail(exit_missing, "not enough memory for this scene and target; give a smaller --size");
   } catch (const std::length_error&) {
-    return fail(kMissing, "not enough memory for this scene and target; give a smaller --size");
+    return fail(exit_missing, "not enough memory for this scene and target; give a smaller --size");
   } catch (const std::exception& error) {
-    return fail(kMissing, error.what());
+    return fail(exit_missing, error.what());
   }
 }

@@ -113,7 +113,8 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
 int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
-  for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path}) check_output(*path);
+  for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
+    check_output(*path, ".png");
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
   Comparison c;
@@ -150,7 +151,7 @@ int run(const CompareCommand& options) {
                             TerminalStyle::color);
   out << title << "; model (functional) against golden (" << options.golden << ")\n";
   print_lines(out, lines);
-  return broken.empty() ? kOk : kMismatch;
+  return broken.empty() ? exit_ok : exit_mismatch;
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ int run(const ConfigOptions& options) {
   std::ostream& out = human(options);
   if (options.sv) {
     std::cout << raster_pkg(config);
-    return kOk;
+    return exit_ok;
   }
   const Widths widths = derive_widths(config);
   Json result = result_head("config", options, config);
@@ -82,7 +82,7 @@ int run(const ConfigOptions& options) {
   write_json(options, result);
   print_settings(out, config, options.list);
   if (options.widths) print_widths(out, widths);
-  return kOk;
+  return exit_ok;
 }
 
 }  // namespace

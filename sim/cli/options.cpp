@@ -89,7 +89,8 @@ void check_output(const std::string& path, const std::string& extension) {
   if (path.empty()) return;
   namespace fs = std::filesystem;
   std::string end = path.substr(path.size() - std::min(path.size(), extension.size()));
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (end != extension) throw InputError("'" + path + "': this is written as " + extension + "; name the file so");
   std::error_code error;
   const fs::path folder = fs::path(path).parent_path();

@@ -18,7 +18,7 @@ namespace halfplane {
 using Json = nlohmann::ordered_json;
 
 /// Exit status: CONTRACT of every command.
-enum ExitStatus : int { kOk = 0, kMismatch = 1, kBadInput = 2, kMissing = 3 };
+enum ExitStatus : int { exit_ok = 0, exit_mismatch = 1, exit_bad_input = 2, exit_missing = 3 };
 
 /// The common options as typed.
 struct CommonOptions {

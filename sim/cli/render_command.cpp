@@ -61,7 +61,7 @@ void check_options(const RenderCommand& options, const Config& config) {
                      "' in this version; give functional, scalar, golden or golden32");
   (void)parse_skip(options.skip);
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
-  check_output(options.color_path);
+  check_output(options.color_path, ".png");
   check_output(options.depth_path);
   check_output(options.count_path, ".npy");
   check_output(options.ids_path, ".npy");
@@ -142,7 +142,7 @@ int run(const RenderCommand& options) {
         << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
   out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
       << result["depth_hash"].get<std::string>() << '\n';
-  return kOk;
+  return exit_ok;
 }
 
 }  // namespace

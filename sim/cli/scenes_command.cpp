@@ -37,7 +37,7 @@ int run(const CommonOptions& options) {
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
   print_scenes(human(options));
-  return kOk;
+  return exit_ok;
 }
 
 }  // namespace

@@ -163,6 +163,7 @@ TEST(Compare, EmptySceneIsSeenToHaveComparedNothing) {
   EXPECT_EQ(c.compared_pixels, 0u);
   EXPECT_EQ(c.oracle.samples, 0u);
   EXPECT_EQ(c.depth_lsb.count, 0u);
+  EXPECT_EQ(broken_bounds(c, preset("embedded")).size(), 1u) << "a comparison that compared nothing has not passed";
 }
 
 TEST(CompareMustFail, DepthPlaneShiftedByTwoLsbIsReported) {

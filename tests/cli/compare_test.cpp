@@ -84,12 +84,14 @@ TEST_F(CompareCommand, SinglePrecisionGoldenDiffersFromTheDoubleOne) {
   EXPECT_NE(a["depth_lsb"], b["depth_lsb"]);  // a binary32 cannot hold a 24-bit z with its rounding
 }
 
-TEST_F(CompareCommand, SceneWithoutTrianglesComparesNothingAndHasNoError) {
+TEST_F(CompareCommand, SceneWithoutTrianglesComparesNothingWhichIsNoPass) {
   write("clear.hpt", "halfplane 1\ntarget 9 7\nclear color 9 9 9 255 depth .5\n");
-  const Json json = result({"compare", "clear.hpt"});
+  const auto outcome = run({"compare", "clear.hpt", "--json"});
+  EXPECT_EQ(outcome.status, 1);
+  const Json json = Json::parse(outcome.out);
   EXPECT_EQ(json["compared_pixels"], 0);
   EXPECT_EQ(json["coverage"]["missing"], 0);
-  EXPECT_EQ(json["coverage"]["extra"], 0);
+  ASSERT_EQ(json["broken_bounds"].size(), 1u);
 }
 
 TEST_F(ScenesCommand, EveryListedSceneRendersByItsName) {
