@@ -99,7 +99,7 @@ double depth_error_bound(const Config& config) {
          + std::ldexp(1.0, -5);  // wide gradients over the guard band: guard_bits is chosen so
 }
 
-std::vector<const Width*> Widths::all() const {
+std::vector<const Width*> Widths::all() const& {
   return {&coordinate,
           &delta,
           &edge_product,

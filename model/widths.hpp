@@ -59,7 +59,8 @@ struct Widths {
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
 
   /// All of them, in the order above: for tables and for raster_pkg.sv.
-  [[nodiscard]] std::vector<const Width*> all() const;
+  [[nodiscard]] std::vector<const Width*> all() const&;
+  std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
 };
 
 /// Derives every width. Never throws: what does not fit is found by validate().

@@ -100,7 +100,8 @@ TEST(Widths, FollowTheTableOfTheNumericsPage) {
 
 TEST(Widths, IntervalsNeedExactlyTheBitsOfTheirEnds) {
   const Config config = preset("tiny");
-  for (const Width* width : derive_widths(config).all()) {
+  const Widths widths = derive_widths(config);
+  for (const Width* width : widths.all()) {
     const int128 half = int128{1} << (width->bits - 1);
     if (width->is_signed) {
       EXPECT_TRUE(width->range.lo >= -half && width->range.hi < half) << width->name;
