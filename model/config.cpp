@@ -100,6 +100,15 @@ std::string get(const Config& config, const Setting& setting) {
   return std::string(kColorFormatNames[static_cast<std::size_t>(format)]);
 }
 
+std::string label(const Config& config, std::string_view separator) {
+  const Config base = preset(config.preset);
+  std::string text = config.preset;
+  for (const Setting& setting : kSettings)
+    if (get(config, setting) != get(base, setting))
+      text.append(separator).append(setting.key).append(1, '=').append(get(config, setting));
+  return text;
+}
+
 void set(Config& config, std::string_view key, std::string_view value) {
   for (const Setting& setting : kSettings) {
     if (setting.key != key) continue;

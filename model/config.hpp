@@ -59,6 +59,10 @@ struct Setting {
 /// The value of one setting, as it is written in TOML and on the command line.
 [[nodiscard]] std::string get(const Config& config, const Setting& setting);
 
+/// The preset, and every setting that differs from it: "embedded, depth.bits=20, stamp.size=4". `separator` goes before
+/// each setting.
+[[nodiscard]] std::string label(const Config& config, std::string_view separator = ", ");
+
 /// Changes one setting by key. Throws InputError for an unknown key or a value outside its range; `config` is then unchanged.
 void set(Config& config, std::string_view key, std::string_view value);
 

@@ -1,6 +1,9 @@
 #include "pipeline.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace halfplane {
 namespace {
@@ -23,24 +26,46 @@ std::int64_t total_area(const SnappedPolygon& polygon) {
 
 /// Where the fan of a clipped polygon starts. The snap can dent a convex polygon by a subpixel, and a fan across the dent
 /// would draw some pixels twice; a fan with no piece turned over covers the polygon exactly once. Of the corners that give
-/// one, the smallest (Y, X, Z): the order in which the triangle names its vertices must not show. -1 when there is none.
+/// one, or of all when none does, the smallest (Y, X, Z): the order in which the triangle names its vertices must not show.
 int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
-  int best = -1;
+  int best = 0;
+  bool best_agrees = false;
   for (int start = 0; start < polygon.size; ++start) {
-    bool all_agree = true;
-    for (int i = 1; i + 1 < polygon.size && all_agree; ++i) {
+    bool agrees = true;
+    for (int i = 1; i + 1 < polygon.size && agrees; ++i) {
       const std::int64_t piece = polygon.fan_area(start, i);
-      all_agree = piece == 0 || (piece > 0) == (area > 0);
+      agrees = piece == 0 || (piece > 0) == (area > 0);
     }
-    if (all_agree && (best < 0 || canonically_before(polygon.at(start), polygon.at(best)))) best = start;
+    const bool is_smaller = canonically_before(polygon.at(start), polygon.at(best));
+    if (agrees == best_agrees ? is_smaller : agrees) {
+      best = start;
+      best_agrees = agrees;
+    }
   }
   return best;
+}
+
+/// Clipping cancels digits: a corner is as exact as binary64 is at the size of the triangle's coordinates. Refuses one that
+/// could be off by more than a pixel.
+void require_precision(const ClipPolygon& clipped, const std::array<Vertex, 3>& v, const DrawContext& context) {
+  double largest = 0;
+  for (const Vertex& vertex : v)
+    for (const double c : {vertex.x, vertex.y, vertex.z, vertex.w}) largest = std::max(largest, std::abs(c));
+  const double pixels = std::max(context.viewport.width, context.viewport.height);
+  const double error = largest * pixels * std::numeric_limits<double>::epsilon();
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", largest);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
+    if (!(error <= clipped.v[i].w))
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": clip coordinates as large as " + text +
+                       " leave less than a pixel of precision where the triangle is cut; use smaller coordinates");
 }
 
 SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
   const auto& vertices = context.scene.vertices;
   std::array<Vertex, 3> v{vertices[index[0]], vertices[index[1]], vertices[index[2]]};
   const ClipPolygon clipped = clip(context.guard_band, v[0], v[1], v[2]);
+  require_precision(clipped, v, context);
   SnappedPolygon polygon;
   polygon.size = clipped.size;
   for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
@@ -127,7 +152,7 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
     case CullResult::keep: break;
   }
   bool is_drawn = false;
-  const int start = polygon.size == 3 ? 0 : std::max(0, fan_start(polygon, area));  // without one: see the loop
+  const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
   for (int i = 1; i + 1 < polygon.size; ++i) {
     const Triangle piece{
         primitive, context.command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}};
@@ -152,16 +177,21 @@ void check_scene(const Scene& scene, const Config& config) {
                      std::to_string(scene.height) + ", but this configuration takes 1x1 to " +
                      std::to_string(config.target_width) + "x" + std::to_string(config.target_height) +
                      "; use a smaller --size, another --config, or --set target.width=... and target.height=...");
-  for (const State& state : scene.states) {
-    if (state.color_interp == ColorInterp::perspective)
-      throw InputError(
-          scene.name +
-          ": state color_interp perspective: this engine interpolates colours affinely; use --engine golden");
-    const Viewport v = effective_viewport(state, scene.width, scene.height);
+  for (std::size_t i = 0; i < scene.commands.size(); ++i) {
+    const auto* draw = std::get_if<Draw>(&scene.commands[i]);
+    if (draw == nullptr) continue;
+    const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
+    if (context.state.color_interp == ColorInterp::perspective)
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) +
+                       ": state color_interp perspective: this engine interpolates colours affinely; "
+                       "use `render --engine golden`");
+    const Viewport& v = context.viewport;
     const double limit = config.guard_band - 1;
-    if (!(v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1))
-      throw InputError(scene.name + ": state viewport: it must lie inside the guard band of +-" +
-                       std::to_string(config.guard_band) + " pixels; use a smaller viewport or raise guard.band");
+    const bool fits = v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1;
+    if (context.state.space == Space::clip && !fits)
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) +
+                       ": state viewport: it must lie inside the guard band of +-" + std::to_string(config.guard_band) +
+                       " pixels; use a smaller viewport or raise guard.band");
   }
 }
 

@@ -1,17 +1,19 @@
 // The pipeline, in order. Read this file first: each line below is a stage, and each stage is a file.
 #pragma once
 
-#include "stages/clip.hpp"                // homogeneous triangle       -> convex polygon          host
-#include "stages/coarse_raster.hpp"       // setup                      -> tiles, rejected and accepted
-#include "stages/cull.hpp"                // signed area                -> keep or drop
-#include "stages/depth_test.hpp"          // fragment and stored depth  -> pass or fail
-#include "stages/fine_raster.hpp"         // tile                       -> covered samples of its stamps
-#include "stages/framebuffer.hpp"         // stored depth and colour    -> the image
-#include "stages/interpolate.hpp"         // planes at the tile         -> depth and colour at a sample
-#include "stages/primitive_assembly.hpp"  // indices and topology       -> triangles               host
-#include "stages/rop.hpp"                 // passed fragment            -> stored colour
-#include "stages/triangle_setup.hpp"      // three snapped vertices     -> edges, reciprocal, planes
-#include "stages/viewport.hpp"            // clip coordinates           -> snapped window vertex   host
+// clang-format off: the order is the point.
+#include "stages/clip.hpp"                // homogeneous triangle    -> convex polygon                       host
+#include "stages/coarse_raster.hpp"       // setup                   -> tiles, rejected and accepted
+#include "stages/cull.hpp"                // signed area             -> keep or drop
+#include "stages/depth_test.hpp"          // fragment, stored depth  -> pass or fail
+#include "stages/fine_raster.hpp"         // tile                    -> covered samples of its stamps
+#include "stages/framebuffer.hpp"         // stored codes            -> the two images
+#include "stages/interpolate.hpp"         // planes at the tile      -> depth and colour at a sample
+#include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles                            host
+#include "stages/rop.hpp"                 // passed fragment         -> stored colour
+#include "stages/triangle_setup.hpp"      // three snapped vertices  -> edges, reciprocal, planes
+#include "stages/viewport.hpp"            // clip coordinates        -> snapped window vertex                host
+// clang-format on
 
 #include "engines/render.hpp"
 

@@ -63,7 +63,7 @@ struct Widths {
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
 };
 
-/// Derives every width. Never throws: what does not fit is found by validate().
+/// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to say.
 [[nodiscard]] Widths derive_widths(const Config& config);
 
 /// The largest depth error, in LSB, against the exact plane through the snapped vertices. validate() refuses above 1.

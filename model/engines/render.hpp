@@ -23,12 +23,12 @@ struct Skip {
   bool operator==(const Skip&) const = default;
 };
 
-/// Work done and work saved. See CONTRACT.md for the JSON keys.
+/// Work done and work saved. The JSON keys of `render` have the same names.
 struct Counters {
   std::uint64_t primitives_in = 0, culled = 0, drawn = 0, clipped = 0;
   std::uint64_t covered = 0;         ///< samples that the fine raster produced
   std::uint64_t depth_passed = 0;    ///< in program order: equal for every engine and skip setting
-  std::uint64_t written = 0;         ///< fragments that changed colour or depth memory, in program order
+  std::uint64_t written = 0;         ///< of those, with depth or colour writes enabled
   std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   struct {
@@ -40,7 +40,7 @@ struct Counters {
 /// Which samples of one tile a triangle covers: bit i of row j. Rows beyond the tile size are 0.
 using TileMask = std::array<std::uint32_t, 32>;
 
-/// Called for every tile visit that produced coverage, in the engine's order: index into Rendering::triangles, tile
+/// Called for every tile that was not skipped, also when its mask is empty, in the engine's order: index into Rendering::triangles, tile
 /// column, tile row, mask.
 using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask)>;
 

@@ -31,6 +31,7 @@ void shade_sample(const DrawContext& context, const TriangleSetup& setup, const 
 }  // namespace
 
 Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options) {
+  validate(config);
   const Widths widths = derive_widths(config);
   const int stamp = config.stamp_size, shift = widths.tile_shift;
   const Skip& skip = options.skip;

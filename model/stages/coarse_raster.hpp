@@ -1,6 +1,6 @@
-// Coarse raster: walks the tiles of a triangle's box, row by row, and sorts them.
+// Coarse raster: the tiles of a triangle's box, row by row, sorted into outside, cut and inside.
 //
-// In: a TriangleSetup. Out: one TilePacket per tile that may hold coverage, and the planes at that tile's anchor.
+// In: a TriangleSetup. Out: per tile its class, its TilePacket, and the planes at its anchor; the engines walk.
 // A tile is outside when the largest value of one edge over its pixels is negative (trivial reject), inside when the
 // smallest value of every edge is not (trivial accept), cut otherwise.
 //
@@ -16,12 +16,6 @@
 namespace halfplane {
 
 enum class TileClass { outside, cut, inside };
-
-/// The planes at the anchor of one tile.
-struct TilePlanes {
-  PlaneValue depth = 0;
-  std::array<PlaneValue, 4> color{};
-};
 
 /// Edge values at the first pixel of a tile.
 using EdgeValues = std::array<EdgeValue, 3>;

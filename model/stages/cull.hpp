@@ -1,6 +1,6 @@
 // Cull: decides by the signed area, after the snap, whether a triangle faces the right way.
 //
-// In: three snapped vertices. Out: keep or drop. Positive area = clockwise as seen on the screen (y down).
+// In: the signed area of a triangle or of a clipped polygon. Out: keep or drop. Positive area = clockwise as seen on the screen (y down).
 #pragma once
 
 #include "../packets.hpp"

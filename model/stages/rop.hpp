@@ -1,4 +1,4 @@
-// ROP: packs a fragment's colour into the stored format and writes what the masks allow.
+// ROP: packs a fragment's colour into the stored format. The write masks are one AND each, in the engines.
 //
 // In: 8-bit colour codes of a fragment that passed. Out: the stored code. rgb565 keeps the nearest 5- or 6-bit code:
 // floor(c * 31 / 255 + 1/2) as one multiply, add and shift (exact for all 256 inputs; tested).

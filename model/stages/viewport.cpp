@@ -22,13 +22,16 @@ Rect intersect(const Rect& a, const Rect& b) {
   char position[96];
   std::snprintf(position, sizeof position, "(%.9g, %.9g, %.9g)", p.x, p.y, p.z);
   const std::string band = std::to_string(config.guard_band);
-  throw InputError(std::string(source.file) + (source.line != 0 ? ":" + std::to_string(source.line) : "") +
-                   ": vertex " + std::to_string(source.number) + " at window " + position +
-                   " is outside the guard band: x and y must snap into [-" + band + ", " + band +
-                   ") pixels and z into [0, 1]; clip it first or raise guard.band");
+  throw InputError(place_of_draw(source.file, source.line) + ": vertex " + std::to_string(source.number) +
+                   " at window " + position + " is outside the guard band: x and y must snap into [-" + band + ", " +
+                   band + ") pixels and z into [0, 1]; clip it first or raise guard.band");
 }
 
 }  // namespace
+
+std::string place_of_draw(std::string_view file, std::uint32_t line) {
+  return std::string(file) + (line != 0 ? ": draw from line " + std::to_string(line) : "");
+}
 
 Viewport effective_viewport(const State& state, int target_width, int target_height) {
   return state.viewport.value_or(Viewport{0, 0, static_cast<double>(target_width), static_cast<double>(target_height)});

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "../config.hpp"
@@ -30,9 +31,12 @@ struct WindowPosition {
 /// Where a vertex came from: for the message when it does not fit.
 struct VertexSource {
   std::string_view file;   ///< Scene::name
-  std::uint32_t line = 0;  ///< of the draw that uses it; 0: none
+  std::uint32_t line = 0;  ///< Draw::line
   std::size_t number = 0;  ///< index into Scene::vertices
 };
+
+/// "file: draw from line 7", for messages about a draw.
+[[nodiscard]] std::string place_of_draw(std::string_view file, std::uint32_t line);
 
 /// The snap. Throws InputError naming the vertex when it is outside the guard band or the depth range.
 [[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,

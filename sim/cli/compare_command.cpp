@@ -60,8 +60,8 @@ std::string row(const std::string& name, double max, double rms) {
 std::vector<std::string> summary_lines(const Comparison& c, const std::vector<std::string>& broken) {
   std::vector<std::string> lines{
       "oracle: " + with_commas(c.oracle.samples) + " samples, " + with_commas(c.oracle.mismatches) + " mismatches",
-      "golden: " + with_commas(c.compared_pixels) + " pixels compared, " + with_commas(c.coverage.missing) +
-          " missing, " + with_commas(c.coverage.extra) + " extra",
+      "golden: " + with_commas(c.compared_pixels) + " pixels show the same triangle",
+      "  samples: " + with_commas(c.coverage.missing) + " missing, " + with_commas(c.coverage.extra) + " extra",
       "",
       "LSB\tmax\trms",
       row("depth, model - golden", c.depth_lsb.max, c.depth_lsb.rms),
@@ -130,7 +130,7 @@ int run(const CompareCommand& options) {
   const std::vector<std::string> broken = broken_bounds(c, config);
   const auto lines = summary_lines(c, broken);
   const std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
-                            ", " + config.preset + ", seed " + std::to_string(options.seed);
+                            ", " + label(config) + ", seed " + std::to_string(options.seed);
   if (!options.model_path.empty()) write_png(options.model_path, color_picture(c.rendering.frame, config.color_format));
   if (!options.golden_path.empty()) write_png(options.golden_path, color_picture(c.golden.frame, config.color_format));
   if (!options.sheet_path.empty())

@@ -17,7 +17,7 @@ namespace halfplane {
 
 using Json = nlohmann::ordered_json;
 
-/// Exit status: CONTRACT of every command.
+/// Exit status: the same for every command.
 enum ExitStatus : int { exit_ok = 0, exit_mismatch = 1, exit_bad_input = 2, exit_missing = 3 };
 
 /// The common options as typed.

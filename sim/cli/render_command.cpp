@@ -129,7 +129,7 @@ int run(const RenderCommand& options) {
   if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
     out << terminal_preview(color_picture(rendering.frame, config.color_format), terminal_size(1),
                             TerminalStyle::color);
-  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << config.preset << ", engine "
+  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << label(config) << ", engine "
       << options.engine << ", seed " << options.seed << '\n'
       << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, "
       << with_commas(c.drawn) << " drawn (" << with_commas(c.clipped) << " clipped)\n"

@@ -222,7 +222,7 @@ std::vector<std::string> broken_bounds(const Comparison& c, const Config& config
   const auto require = [&broken](bool holds, const char* format, double value, double bound) {
     if (!holds) broken.push_back(line(format, value, bound));
   };
-  if (c.oracle.samples == 0) broken.push_back("nothing was compared: no triangle reached a pixel");
+  if (c.rendering.counters.covered == 0) broken.push_back("nothing was compared: no triangle covers a sample");
   const double depth_bound = depth_error_bound(config);
   // The mean is a property of many triangles: one alone has the error of its own reciprocal, up to 1/16 LSB.
   const bool has_population = c.visible_triangles >= 100;

@@ -34,10 +34,11 @@ int enlargement(const Picture& picture) {
 struct Cells {
   int width = kMinCellWidth;
   int picture_height = 0, legend_height = 0, note_height = 0;
+  int text_height = 0;  // of the highest panel without a picture, its caption included
   [[nodiscard]] int height() const {
     const int legend = legend_height == 0 ? 0 : legend_height + kGap;
     const int note = note_height == 0 ? 0 : note_height + kGap;
-    return kLine + kGap + picture_height + legend + note;
+    return std::max(kLine + kGap + picture_height + legend + note, text_height);
   }
 };
 
@@ -130,7 +131,6 @@ void draw_lines(Picture& sheet, const Panel& panel, const Rect& box) {
   }
   int y = box.y;
   for (const std::string& line : panel.lines) {
-    if (y + kLine > box.y + box.height) return;
     const auto fields = split_at_tabs(line);
     draw_text(sheet, box.x, y, fit_text(fields[0], box.width, kText2), kText, kText2);
     int right = widths.empty() ? 0 : box.x + widths[0];
@@ -178,6 +178,7 @@ Picture compose_sheet(std::string_view title, std::span<const Panel> panels, int
     row.picture_height = std::max(row.picture_height, enlargement(panel.picture) * panel.picture.height);
     row.legend_height = std::max(row.legend_height, legend_height(panel.legend, width));
     if (!panel.note.empty()) row.note_height = kLine;
+    row.text_height = std::max(row.text_height, kLine + kGap + static_cast<int>(panel.lines.size()) * (kLine + 2));
   }
   int height = kMargin;
   const int title_height = title.empty() ? 0 : text_height(kTitleScale) + kMargin;

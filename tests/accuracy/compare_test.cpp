@@ -166,6 +166,12 @@ TEST(Compare, EmptySceneIsSeenToHaveComparedNothing) {
   EXPECT_EQ(broken_bounds(c, preset("embedded")).size(), 1u) << "a comparison that compared nothing has not passed";
 }
 
+TEST(Compare, TriangleThatCoversNoSampleIsNoPassEither) {
+  SceneBuilder builder(8, 8);
+  builder.triangle(at(-40, -40), at(40, -40), at(-40, 39));  // its box holds the target, its inside does not
+  EXPECT_EQ(broken_bounds(compare(builder.scene, preset("embedded")), preset("embedded")).size(), 1u);
+}
+
 TEST(CompareMustFail, DepthPlaneShiftedByTwoLsbIsReported) {
   const Config config = preset("embedded");
   const Comparison c = compare(one_triangle(), config, with_engine([](Rendering& r) {

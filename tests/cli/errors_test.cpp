@@ -193,14 +193,14 @@ TEST_F(BadInput, WhatTheConfigurationCannotHoldIsRefused) {
 
   const std::string head = "halfplane 1\ntarget 64 48\nspace window\nv 0 0 .5\nv 0 40 .5\n";
   expect_file_refused("outside.hpt", head + "v 2048 0 .5\nt 0 1 2\n", "guard band");
-  expect_file_refused("outside.hpt", head + "v -2049 0 .5\nt 0 1 2\n", "outside.hpt:7: vertex 2");
+  expect_file_refused("outside.hpt", head + "v -2049 0 .5\nt 0 1 2\n", "outside.hpt: draw from line 7: vertex 2");
   expect_file_refused("outside.hpt", head + "v 1e30 0 .5\nt 0 1 2\n", "guard band");
-  expect_file_refused("outside.hpt", head + "v 40 0 1.5\nt 0 1 2\n", "outside.hpt:7: ");
+  expect_file_refused("outside.hpt", head + "v 40 0 1.5\nt 0 1 2\n", "outside.hpt: draw from line 7: ");
   write("inside.hpt", head + "v 2047 0 .5\nt 0 1 2\n");
   EXPECT_EQ(run({"render", "inside.hpt"}).status, 0);
   expect_file_refused("viewport.hpt",
                       "halfplane 1\ntarget 64 48\nstate viewport 0 0 5000 48\nv 0 0 0\nv 1 0 0\nv 0 1 0\nt 0 1 2\n",
-                      "viewport.hpt: state viewport");
+                      "state viewport");
 }
 
 TEST_F(BadInput, CaptureTakesNeitherAnotherSizeNorACamera) {

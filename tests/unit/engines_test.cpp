@@ -203,6 +203,25 @@ TEST(Engines, WhatTheEngineDoesNotHaveIsNamed) {
   }
 }
 
+TEST(Engines, ClipCoordinatesBeyondThePrecisionOfADoubleAreRefusedNotDrawnWrong) {
+  const auto covered_with = [](double size) {
+    SceneBuilder builder(64, 48, State());
+    builder.triangle(test::clip_at(size, 0, 0, 1), test::clip_at(0, size, 0, 1), test::clip_at(-size, -size, 0, 1));
+    return render_functional(builder.scene, preset("embedded")).counters.covered;
+  };
+  EXPECT_EQ(covered_with(1e9), 64u * 48u);
+  EXPECT_THROW((void)covered_with(1e20), InputError);
+  EXPECT_THROW((void)covered_with(1e306), InputError);
+}
+
+TEST(Engines, BothRefuseAnInvalidConfiguration) {
+  Config config;
+  config.tile_size = 0;
+  const Scene scene = SceneBuilder(8, 8).scene;
+  EXPECT_THROW((void)render_functional(scene, config), InputError);
+  EXPECT_THROW((void)render_scalar(scene, config), InputError);
+}
+
 TEST(Engines, SceneWithoutAClearStartsFarAndBlack) {
   SceneBuilder builder(9, 5);
   builder.scene.commands.clear();
