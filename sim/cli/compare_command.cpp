@@ -60,7 +60,7 @@ std::string row(const std::string& name, double max, double rms) {
 std::vector<std::string> summary_lines(const Comparison& c, const std::vector<std::string>& broken) {
   std::vector<std::string> lines{
       "oracle: " + with_commas(c.oracle.samples) + " samples, " + with_commas(c.oracle.mismatches) + " mismatches",
-      "golden: " + with_commas(c.compared_pixels) + " pixels show the same triangle",
+      "golden: " + with_commas(c.compared_pixels) + " pixels compared",
       "  samples: " + with_commas(c.coverage.missing) + " missing, " + with_commas(c.coverage.extra) + " extra",
       "",
       "LSB\tmax\trms",
