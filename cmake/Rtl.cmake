@@ -14,13 +14,13 @@ if(HALFPLANE_RTL)  # AUTO, ON and REQUIRED; OFF skips the search
   endif()
 endif()
 
-# halfplane_verilate(target PREFIX Class TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES folder...])
+# halfplane_verilate(target PREFIX Class TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES folder...] [TRACE])
 #
 # Adds the Verilated class `Class` of module `TOP` to the static library `target`, which the first call creates. One
 # class per configuration, because parameters are fixed when Verilator runs; one library for many, because each carries
-# Verilator's runtime. Any lint warning of -Wall is an error, at configure time already.
+# Verilator's runtime. TRACE: waveforms (FST) can be written. Any lint warning of -Wall is an error, at configure time already.
 function(halfplane_verilate target)
-  cmake_parse_arguments(PARSE_ARGV 1 RTL "" "PREFIX;TOP" "SOURCES;PARAMS;INCLUDES")
+  cmake_parse_arguments(PARSE_ARGV 1 RTL "TRACE" "PREFIX;TOP" "SOURCES;PARAMS;INCLUDES")
   foreach(argument PREFIX TOP SOURCES)
     if(NOT RTL_${argument})
       message(FATAL_ERROR "halfplane_verilate(${target}): ${argument} is missing")
@@ -44,11 +44,16 @@ function(halfplane_verilate target)
     list(APPEND arguments "-G${param}")
   endforeach()
 
+  set(trace "")
+  if(RTL_TRACE)
+    set(trace TRACE_FST)
+  endif()
+
   if(NOT TARGET ${target})
     add_library(${target} STATIC)
   endif()
   # SLOW is what runs once, GLOBAL the runtime: optimising them costs build time and gains nothing.
-  verilate(${target} PREFIX ${RTL_PREFIX} TOP_MODULE ${RTL_TOP} SOURCES ${sources} VERILATOR_ARGS ${arguments}
+  verilate(${target} PREFIX ${RTL_PREFIX} TOP_MODULE ${RTL_TOP} SOURCES ${sources} ${trace} VERILATOR_ARGS ${arguments}
     OPT_SLOW -O0 OPT_FAST -O2 OPT_GLOBAL -O1)
   # Verilator's headers warn under our flags: their users see them as system headers.
   get_target_property(folders ${target} INTERFACE_INCLUDE_DIRECTORIES)

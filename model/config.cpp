@@ -11,6 +11,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::array<std::string_view, 2> kColorFormatNames{"rgb565", "rgba8888"};
+constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
 
 const std::array kSettings{
     Setting{"subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12, &Config::subpixel_bits},
@@ -30,9 +31,14 @@ const std::array kSettings{
             &Config::primitive_id_bits},
     Setting{"context.slots", "slots", "triangles whose constants the context RAM holds; a power of two", 2, 64,
             &Config::context_slots},
+    Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, at most depth.bits; 0: no HiZ", 0, 32, &Config::hiz_bits},
+    Setting{"cache.lines", "tiles", "tiles that the on-chip depth and colour RAM holds; a power of two", 1, 256,
+            &Config::cache_lines},
+    Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
+            &Config::setup_kind},
 };
 
-constexpr std::array<std::string_view, 3> kPresetNames{"tiny", "embedded", "full"};
+constexpr std::array<std::string_view, 4> kPresetNames{"tiny", "small", "embedded", "full"};
 
 std::string joined(std::span<const std::string_view> names) {
   std::string text;
@@ -49,6 +55,12 @@ int parse_int(const Setting& setting, std::string_view text) {
   if (error == std::errc::result_out_of_range || value < setting.min || value > setting.max)
     throw InputError(std::string(setting.key) + ": " + std::string(text) + " is outside its range; give " + range);
   return value;
+}
+
+int parse_name(std::string_view key, std::string_view value, std::span<const std::string_view> names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == value) return static_cast<int>(i);
+  throw InputError(std::string(key) + ": no value '" + std::string(value) + "'; give " + joined(names));
 }
 
 void refuse_unless(bool holds, const std::string& message) {
@@ -80,6 +92,20 @@ Config preset(std::string_view name) {
     config.target_width = config.target_height = 16;
     config.depth_bits = 8;
     config.stamp_size = 1;
+    config.hiz_bits = 8;
+    config.cache_lines = 2;
+    return config;
+  }
+  if (name == "small") {  // what fits an FPGA without multipliers
+    config.guard_band = 512;
+    config.target_width = 320;
+    config.target_height = 240;
+    config.stamp_size = 1;
+    config.primitive_id_bits = 8;
+    config.context_slots = 2;
+    config.hiz_bits = 8;
+    config.cache_lines = 4;
+    config.setup_kind = SetupKind::serial;
     return config;
   }
   if (name == "full") {
@@ -96,8 +122,10 @@ Config preset(std::string_view name) {
 
 std::string get(const Config& config, const Setting& setting) {
   if (const auto* number = std::get_if<int Config::*>(&setting.member)) return std::to_string(config.**number);
-  const auto format = config.*std::get<ColorFormat Config::*>(setting.member);
-  return std::string(kColorFormatNames[static_cast<std::size_t>(format)]);
+  if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
+    return std::string(kColorFormatNames[static_cast<std::size_t>(config.**format)]);
+  const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
+  return std::string(kSetupKindNames[static_cast<std::size_t>(kind)]);
 }
 
 std::string label(const Config& config, std::string_view separator) {
@@ -116,12 +144,12 @@ void set(Config& config, std::string_view key, std::string_view value) {
       config.** number = parse_int(setting, value);
       return;
     }
-    for (std::size_t i = 0; i < kColorFormatNames.size(); ++i) {
-      if (kColorFormatNames[i] != value) continue;
-      config.*std::get<ColorFormat Config::*>(setting.member) = static_cast<ColorFormat>(i);
-      return;
-    }
-    throw InputError(std::string(key) + ": no value '" + std::string(value) + "'; give " + joined(kColorFormatNames));
+    if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
+      config.** format = static_cast<ColorFormat>(parse_name(key, value, kColorFormatNames));
+    else
+      config.*std::get<SetupKind Config::*>(setting.member) =
+          static_cast<SetupKind>(parse_name(key, value, kSetupKindNames));
+    return;
   }
   throw InputError("no setting '" + std::string(key) + "'; `halfplane config --list` shows them all");
 }
@@ -134,6 +162,9 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.tile_size), "tile.size must be 4, 8, 16 or 32");
   refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
   refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
+  refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
+  refuse_unless(config.hiz_bits <= config.depth_bits,
+                "a HiZ bound has no more bits than a depth: hiz.bits <= depth.bits");
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");

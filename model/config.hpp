@@ -18,6 +18,9 @@ struct InputError : std::runtime_error {
 /// Layout of a stored colour. rgb565: R in bits 15...11. rgba8888: R in the lowest byte, so memory order is R, G, B, A.
 enum class ColorFormat : int { rgb565, rgba8888 };
 
+/// How the RTL does triangle setup: several multipliers and a triangle every few cycles, or one shared multiplier. Same bits.
+enum class SetupKind : int { pipelined, serial };
+
 /// A hardware configuration. The default is the `embedded` preset.
 struct Config {
   std::string preset = "embedded";  ///< the preset the values started from
@@ -33,6 +36,9 @@ struct Config {
   int stamp_size = 2;          ///< pixels along the side of the stamp that fine_raster tests in one clock
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
+  int hiz_bits = 16;           ///< bits of a tile's HiZ bound, at most depth_bits; 0: no HiZ
+  int cache_lines = 16;        ///< tiles that the on-chip depth and colour RAM holds; a power of two
+  SetupKind setup_kind = SetupKind::pipelined;
 
   bool operator==(const Config&) const = default;
 };
@@ -44,13 +50,13 @@ struct Setting {
   std::string_view meaning;  ///< one line for `halfplane config --list`
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
-  std::variant<int Config::*, ColorFormat Config::*> member;
+  std::variant<int Config::*, ColorFormat Config::*, SetupKind Config::*> member;
 };
 
 /// Every setting, in the order in which `config --list` prints them.
 [[nodiscard]] std::span<const Setting> settings();
 
-/// The names that preset() takes: tiny, embedded, full.
+/// The names that preset() takes: tiny, small, embedded, full.
 [[nodiscard]] std::span<const std::string_view> preset_names();
 
 /// The preset of that name. Throws InputError when there is none.

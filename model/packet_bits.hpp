@@ -18,16 +18,21 @@ struct PacketBits {
   explicit PacketBits(int size_) : size(size_), word(static_cast<std::size_t>((size_ + 31) / 32)) {}
 
   void put(int position, int bits, std::uint64_t value) {
-    for (int b = 0; b < bits; ++b) {
-      const auto n = static_cast<std::size_t>(position + b);
-      word[n / 32] |= static_cast<std::uint32_t>(value >> b & 1) << n % 32;
+    for (int done = 0; done < bits;) {  // up to the end of a word at a time
+      const auto n = static_cast<std::size_t>(position + done);
+      const int room = std::min(32 - static_cast<int>(n % 32), bits - done);
+      const std::uint64_t piece = value >> done & (~0ULL >> (64 - room));
+      word[n / 32] |= static_cast<std::uint32_t>(piece << n % 32);
+      done += room;
     }
   }
   [[nodiscard]] std::uint64_t take(int position, int bits) const {
     std::uint64_t value = 0;
-    for (int b = 0; b < bits; ++b) {
-      const auto n = static_cast<std::size_t>(position + b);
-      value |= static_cast<std::uint64_t>(word[n / 32] >> n % 32 & 1) << b;
+    for (int done = 0; done < bits;) {
+      const auto n = static_cast<std::size_t>(position + done);
+      const int room = std::min(32 - static_cast<int>(n % 32), bits - done);
+      value |= (std::uint64_t{word[n / 32]} >> n % 32 & (~0ULL >> (64 - room))) << done;
+      done += room;
     }
     return value;
   }

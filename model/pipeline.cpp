@@ -75,9 +75,64 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
 }
 
 bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& context) {
-  TriangleSetup box;
-  set_box(box, v, context.rect, std::max(context.config.subpixel_bits, 1));
-  return box.is_empty();
+  const Rect& rect = context.rect;
+  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  return pixel_bounds(v, limit, std::max(context.config.subpixel_bits, 1)).is_empty();
+}
+
+/// An input triangle after clip, viewport and snap.
+struct Projected {
+  SnappedPolygon polygon;  ///< fewer than three corners: nothing is left
+  bool is_cut = false;
+};
+
+/// Counts a triangle that comes in, and one of which nothing is left.
+Projected project(const DrawContext& context, VertexCache& cache, const std::array<std::uint32_t, 3>& index,
+                  const Skip& skip, Counters& counters) {
+  ++counters.primitives_in;
+  const auto &a = cache.get(context, index[0]), &b = cache.get(context, index[1]), &c = cache.get(context, index[2]);
+  Projected result;
+  if (skip.frustum && (a.outside_volume & b.outside_volume & c.outside_volume) != 0) {
+    ++counters.skipped.frustum;
+    ++counters.culled;
+    return result;
+  }
+  SnappedPolygon& polygon = result.polygon;
+  result.is_cut = (a.outside_guard_band | b.outside_guard_band | c.outside_guard_band) != 0;
+  if (result.is_cut) {
+    polygon = clip_and_snap(context, index);
+  } else {
+    polygon.size = 3;
+    polygon.v[0] = a.snapped;
+    polygon.v[1] = b.snapped;
+    polygon.v[2] = c.snapped;
+  }
+  if (context.state.shade == Shade::flat)
+    for (auto& v : polygon.v)
+      for (std::size_t k = 0; k < 4; ++k) v.rgba[k] = snap_color(context.scene.vertices[index[0]].rgba[k]);
+  counters.culled += polygon.size < 3 ? 1 : 0;
+  return result;
+}
+
+/// Whether the whole polygon is culled; counts it then.
+bool is_culled(std::int64_t area, const State& state, Counters& counters) {
+  const CullResult result = cull(area, state);
+  if (result == CullResult::keep) return false;
+  ++(result == CullResult::zero_area ? counters.skipped.zero_area : counters.skipped.backface);
+  ++counters.culled;
+  return true;
+}
+
+/// Calls visit(piece) for the triangles of a polygon's fan. A piece turned over by the snap is left out.
+template <class Visit>
+void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint32_t primitive, std::uint32_t command,
+                    Visit&& visit) {
+  const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
+  for (int i = 1; i + 1 < polygon.size; ++i) {
+    const std::int64_t piece_area = polygon.fan_area(start, i);
+    if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;
+    visit(Triangle{primitive, command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}});
+  }
 }
 
 }  // namespace
@@ -114,61 +169,44 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
 
 void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
               std::uint32_t primitive, const Skip& skip, Counters& counters, std::vector<Triangle>& out) {
-  ++counters.primitives_in;
-  const auto &a = cache.get(context, index[0]), &b = cache.get(context, index[1]), &c = cache.get(context, index[2]);
-  if (skip.frustum && (a.outside_volume & b.outside_volume & c.outside_volume) != 0) {
-    ++counters.skipped.frustum;
-    ++counters.culled;
-    return;
-  }
-  SnappedPolygon polygon;
-  const bool is_cut = (a.outside_guard_band | b.outside_guard_band | c.outside_guard_band) != 0;
-  if (is_cut) {
-    polygon = clip_and_snap(context, index);
-  } else {
-    polygon.size = 3;
-    polygon.v[0] = a.snapped;
-    polygon.v[1] = b.snapped;
-    polygon.v[2] = c.snapped;
-  }
-  if (context.state.shade == Shade::flat)
-    for (auto& v : polygon.v)
-      for (std::size_t k = 0; k < 4; ++k) v.rgba[k] = snap_color(context.scene.vertices[index[0]].rgba[k]);
-
-  if (polygon.size < 3) {  // the clipper left nothing
-    ++counters.culled;
-    return;
-  }
+  const Projected projected = project(context, cache, index, skip, counters);
+  const SnappedPolygon& polygon = projected.polygon;
+  if (polygon.size < 3) return;
   const std::int64_t area = total_area(polygon);
-  switch (cull(area, context.state)) {
-    case CullResult::zero_area:
-      ++counters.skipped.zero_area;
-      ++counters.culled;
-      return;
-    case CullResult::backface:
-      ++counters.skipped.backface;
-      ++counters.culled;
-      return;
-    case CullResult::keep: break;
-  }
+  if (is_culled(area, context.state, counters)) return;
   bool is_drawn = false;
-  const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
-  for (int i = 1; i + 1 < polygon.size; ++i) {
-    const Triangle piece{
-        primitive, context.command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}};
-    const std::int64_t piece_area = polygon.fan_area(start, i);
-    if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;  // a piece turned over is left out
+  for_each_piece(polygon, area, primitive, context.command, [&](const Triangle& piece) {
     const bool is_empty = box_is_empty(piece.v, context);
     is_drawn |= !is_empty;
     if (!is_empty || !skip.empty) out.push_back(piece);
-  }
+  });
   if (is_drawn) {
     ++counters.drawn;
-    counters.clipped += is_cut ? 1 : 0;
+    counters.clipped += projected.is_cut ? 1 : 0;
   } else {
     ++counters.culled;
     counters.skipped.empty += skip.empty ? 1 : 0;
   }
+}
+
+bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
+                           std::uint32_t primitive, Counters& counters, std::vector<Triangle>& out) {
+  const Projected projected = project(context, cache, index, Skip{}, counters);
+  const SnappedPolygon& polygon = projected.polygon;
+  if (polygon.size < 3) return false;
+  if (!projected.is_cut) {
+    out.push_back({primitive, context.command, {polygon.v[0], polygon.v[1], polygon.v[2]}});
+    return false;
+  }
+  const std::int64_t area = total_area(polygon);
+  if (is_culled(area, context.state, counters)) return true;
+  bool is_drawn = false;
+  for_each_piece(polygon, area, primitive, context.command, [&](const Triangle& piece) {
+    is_drawn |= !box_is_empty(piece.v, context);
+    out.push_back(piece);
+  });
+  counters.clipped += is_drawn ? 1 : 0;
+  return true;
 }
 
 void check_scene(const Scene& scene, const Config& config) {
@@ -195,11 +233,15 @@ void check_scene(const Scene& scene, const Config& config) {
   }
 }
 
+Rect clear_rect(const Scene& scene, const Clear& command) {
+  State state = scene.states[command.state];
+  state.viewport.reset();
+  return raster_rect(state, scene.width, scene.height);
+}
+
 void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config) {
   Framebuffer& frame = rendering.frame;
-  State state = scene.states[command.state];
-  state.viewport.reset();  // clearing obeys the scissor alone
-  const Rect rect = raster_rect(state, frame.width, frame.height);
+  const Rect rect = clear_rect(scene, command);
   const auto fill = [&rect](auto& image, int stride, auto value) {
     for (int y = rect.y; y < rect.y + rect.height; ++y)
       std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(y) * stride + rect.x, rect.width, value);

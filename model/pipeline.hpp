@@ -8,9 +8,11 @@
 #include "stages/depth_test.hpp"          // fragment, stored depth  -> pass or fail
 #include "stages/fine_raster.hpp"         // tile                    -> covered samples of its stamps
 #include "stages/framebuffer.hpp"         // stored codes            -> the two images
+#include "stages/hiz.hpp"                 // retired tile visits     -> a bound on the depths of each tile
 #include "stages/interpolate.hpp"         // planes at the tile      -> depth and colour at a sample
 #include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles                            host
 #include "stages/rop.hpp"                 // passed fragment         -> stored colour
+#include "stages/tile_cache.hpp"          // passed stamps           -> on-chip tiles, memory requests
 #include "stages/triangle_setup.hpp"      // three snapped vertices  -> edges, reciprocal, planes
 #include "stages/viewport.hpp"            // clip coordinates        -> snapped window vertex                host
 // clang-format on
@@ -54,8 +56,17 @@ class VertexCache {
 void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
               std::uint32_t primitive, const Skip& skip, Counters& counters, std::vector<Triangle>& out);
 
+/// The same for hardware that culls by itself: a triangle that needs no cut is appended as it was named, whatever its
+/// area, facing and box; of a clipped polygon, culled as a whole, every piece that is not turned over. Counts
+/// primitives_in, clipped, and what is culled here. Returns whether the triangle was cut.
+bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
+                           std::uint32_t primitive, Counters& counters, std::vector<Triangle>& out);
+
 /// Throws InputError when `scene` asks for what this configuration or version does not have.
 void check_scene(const Scene& scene, const Config& config);
+
+/// The pixels that a clear fills: it obeys the scissor alone, not the viewport.
+[[nodiscard]] Rect clear_rect(const Scene& scene, const Clear& command);
 
 /// Clears depth and colour inside the scissor; nobody owns the cleared pixels any more.
 void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config);

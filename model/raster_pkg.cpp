@@ -24,9 +24,9 @@ template <class Packet, class Member>
 void print_field(std::ostream& out, const Field<Packet, Member>& field, const Widths& widths) {
   const Width& width = widths.*field.width;
   const std::string bits = constant_name(width.name) + "_BITS";
-  constexpr std::size_t n = kArraySize<Member>;
-  if constexpr (n != 0)  // flat, because Yosys reads no packed 2-D members; element i is [i*BITS +: BITS]
-    out << "    logic [" << n << "*" << bits << "-1:0] " << field.name << ";\n";
+  if constexpr (kArraySize<Member> !=
+                0)  // flat, because Yosys reads no packed 2-D members; element i is [i*BITS +: BITS]
+    out << "    logic [" << element_count(field, widths) << "*" << bits << "-1:0] " << field.name << ";\n";
   else
     out << "    logic " << (width.is_signed ? "signed " : "") << "[" << bits << "-1:0] " << field.name << ";\n";
 }
@@ -68,6 +68,9 @@ std::string raster_pkg(const Config& config) {
     if (std::holds_alternative<ColorFormat Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.color_format),
                      "0 rgb565, 1 rgba8888: " + std::string(setting.meaning));
+    else if (std::holds_alternative<SetupKind Config::*>(setting.member))
+      print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
+                     "0 pipelined, 1 serial: " + std::string(setting.meaning));
     else
       print_constant(out, constant_name(setting.key), std::stoll(get(config, setting)), std::string(setting.meaning));
   }
@@ -79,13 +82,29 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "PLANE_FRACTION", widths.plane_fraction, "F = G + s");
   print_constant(out, "TILE_SHIFT", widths.tile_shift, "log2 of the tile size");
   print_constant(out, "STAMPS_PER_ROW", widths.stamps_per_row, "stamps along the side of a tile");
+  print_constant(out, "COLOR_CHANNELS", widths.color_channels, "channels that the colour format stores");
+  print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
+  print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
+  print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
+  print_constant(out, "LINE_X_BITS", widths.line_x_bits, "low bits of tile x in a cache line's number");
+  print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "low bits of tile y in a cache line's number, above those");
   out << "\n  // Derived widths, each with its bound.\n";
   for (const Width* width : widths.all())
     print_constant(out, constant_name(width->name) + "_BITS", width->bits, std::string(width->bound));
   out << "\n  // Packets. Array fields are flat, element 0 lowest.";
+  print_packet<PrimitivePacket>(out, widths);
+  print_packet<TrianglePacket>(out, widths);
+  print_packet<SetupPacket>(out, widths);
+  print_packet<ContextPacket>(out, widths);
   print_packet<TilePacket>(out, widths);
   print_packet<EdgeContext>(out, widths);
   print_packet<StampPacket>(out, widths);
+  print_packet<FragmentPacket>(out, widths);
+  print_packet<WritePacket>(out, widths);
+  print_packet<RetirePacket>(out, widths);
+  print_packet<MemoryRequest>(out, widths);
+  print_packet<MemoryResponse>(out, widths);
+  print_packet<CounterPacket>(out, widths);
   out << "\nendpackage\n";
   return out.str();
 }

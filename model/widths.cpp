@@ -37,6 +37,13 @@ Widths derive_widths(const Config& config) {
   w.plane_fraction = w.guard_bits + s;
   w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
   w.stamps_per_row = config.tile_size / config.stamp_size;
+  w.color_channels = config.color_format == ColorFormat::rgb565 ? 3 : 4;
+  w.samples = config.stamp_size * config.stamp_size;
+  w.tiles_x = (config.target_width + config.tile_size - 1) / config.tile_size;
+  w.tiles_y = (config.target_height + config.tile_size - 1) / config.tile_size;
+  const int line_bits = floor_log2(static_cast<uint128>(config.cache_lines));
+  w.line_x_bits = (line_bits + 1) / 2;
+  w.line_y_bits = line_bits / 2;
 
   // Coverage. A box of side L holds every vertex and pixel centre, so twice any triangle's area in it is at most L^2.
   const Interval coordinate{-(band << s), (band << s) - 1};
@@ -50,7 +57,10 @@ Widths derive_widths(const Config& config) {
   w.edge_value = exact("edge value", "(+-L^2 - 1) >> s", (edge + Interval{-1, 0}) >> s);
   w.edge_step = exact("edge step", "delta: one pixel changes E >> s by dx or dy", delta);
   const int128 extent = 2 * side * (config.tile_size - 1);  // |dx| + |dy| over T - 1 pixels
-  w.tile_edge = exact("tile edge", "saturated to (T-1)(|dx|+|dy|) at the tile's first pixel", {-extent - 1, extent});
+  w.tile_edge =
+      exact("tile edge", "saturated beyond (T-1)(|dx|+|dy|) at the tile's first pixel", {-extent - 1, extent});
+  // All of its bits are used: saturating at a power of two is a look at the high bits, where a clamp would subtract.
+  w.tile_edge.range = {-(int128{1} << (w.tile_edge.bits - 1)), (int128{1} << (w.tile_edge.bits - 1)) - 1};
   w.sample_edge = exact("sample edge", "tile edge + (T-1)(|dx|+|dy|)", w.tile_edge.range + symmetric(extent));
 
   // Planes. The numerator is twice an area in a box of L subpixels by 2^bits - 1 codes.
@@ -80,14 +90,29 @@ Widths derive_widths(const Config& config) {
   const int tile = config.tile_size;
   w.primitive_id = count("primitive id", "modulo 2^key.primitive_bits", int128{1} << config.primitive_id_bits);
   w.slot = count("slot", "context.slots", config.context_slots);
-  w.tile_x = count("tile x", "target width / T", (config.target_width + tile - 1) / tile);
-  w.tile_y = count("tile y", "target height / T", (config.target_height + tile - 1) / tile);
+  w.tile_x = count("tile x", "target width / T", w.tiles_x);
+  w.tile_y = count("tile y", "target height / T", w.tiles_y);
   w.tile_pixel = count("tile pixel", "T", tile);
   w.stamp_index = count("stamp index", "(T / stamp)^2", int128{w.stamps_per_row} * w.stamps_per_row);
-  const int samples = config.stamp_size * config.stamp_size;
-  w.sample_mask = exact("sample mask", "one bit a sample", {0, (int128{1} << samples) - 1});
-  w.stored_color = exact("stored color", "color.format",
-                         {0, (int128{1} << (config.color_format == ColorFormat::rgb565 ? 16 : 32)) - 1});
+  const auto bits = [](std::string_view name, std::string_view bound, int n) {
+    return exact(name, bound, {0, (int128{1} << n) - 1});
+  };
+  const int color_bits = config.color_format == ColorFormat::rgb565 ? 16 : 32;
+  w.sample_mask = bits("sample mask", "one bit a sample", w.samples);
+  w.stored_color = bits("stored color", "color.format", color_bits);
+
+  // What rides with a primitive.
+  w.kind = count("kind", "PrimitiveKind", 4);
+  w.flag = count("flag", "yes or no", 2);
+  w.depth_func = count("depth func", "DepthFunc", 8);
+  w.cull_mode = count("cull mode", "Cull", 4);
+  w.pixel_x = count("pixel x", "target width", config.target_width);
+  w.pixel_y = count("pixel y", "target height", config.target_height);
+  w.vertex_color = bits("vertex color", "8 bits a stored channel", 8 * w.color_channels);
+  w.hiz_code = bits("hiz code", "hiz.bits, at least 1", config.hiz_bits > 0 ? config.hiz_bits : 1);
+  w.hiz_update = count("hiz update", "HizUpdate", 3);
+  w.counter = bits("counter", "modulo 2^32", 32);
+  w.memory_lane = bits("memory lane", "a depth code or a stored colour", B > color_bits ? B : color_bits);
   return w;
 }
 
@@ -128,7 +153,18 @@ std::vector<const Width*> Widths::all() const& {
           &tile_pixel,
           &stamp_index,
           &sample_mask,
-          &stored_color};
+          &stored_color,
+          &kind,
+          &flag,
+          &depth_func,
+          &cull_mode,
+          &pixel_x,
+          &pixel_y,
+          &vertex_color,
+          &hiz_code,
+          &hiz_update,
+          &memory_lane,
+          &counter};
 }
 
 }  // namespace halfplane

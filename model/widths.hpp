@@ -48,6 +48,10 @@ struct Widths {
   int plane_fraction = 0;  ///< F = G + s: fraction bits of a plane at subpixel resolution
   int tile_shift = 0;      ///< log2 of the tile size
   int stamps_per_row = 0;  ///< stamps along the side of a tile
+  int color_channels = 0;  ///< channels that the colour format stores: 3 or 4
+  int samples = 0;         ///< samples of a stamp
+  int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
+  int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's x and y that choose its cache line
 
   // Coverage.
   Width coordinate, delta, edge_product, area, edge_value, edge_step, tile_edge, sample_edge;
@@ -57,6 +61,7 @@ struct Widths {
   Width depth_plane, color_plane, local_depth, local_color;
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
+  Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, memory_lane, counter;
 
   /// All of them, in the order above: for tables and for raster_pkg.sv.
   [[nodiscard]] std::vector<const Width*> all() const&;

@@ -40,6 +40,8 @@ int run(int argc, char** argv) {
   Action selected;
   add_render_command(app, selected);
   add_compare_command(app, selected);
+  add_cosim_command(app, selected);
+  add_reduce_command(app, selected);
   add_scenes_command(app, selected);
   add_config_command(app, selected);
   check_command(app, argc, argv);

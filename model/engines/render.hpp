@@ -33,7 +33,7 @@ struct Counters {
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   struct {
     std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
-                  fragments_early_z = 0;
+                  fragments_early_z = 0, tiles_hiz = 0;
   } skipped;
 };
 

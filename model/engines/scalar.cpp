@@ -40,6 +40,7 @@ Rendering render_scalar(const Scene& scene, const Config& config, const RenderOp
       [&](const DrawContext& context, const Triangle& triangle, std::uint32_t index, Rendering& rendering) {
         const TriangleSetup setup = setup_triangle(triangle, config, widths, context.rect);
         if (setup.is_empty()) return;
+        const SetupPacket packet = to_setup_packet(setup, widths);
         const EdgeContext edges = make_edge_context(setup);
         Counters& counters = rendering.counters;
         for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y) {
@@ -50,18 +51,19 @@ Rendering render_scalar(const Scene& scene, const Config& config, const RenderOp
               ++counters.skipped.tiles_outside;
               continue;
             }
-            const TilePacket tile = make_tile_packet(setup, tile_x, tile_y, 0, widths);
-            if (kind == TileClass::inside && skip.trivially_accepted)
+            TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, widths);
+            tile.is_inside = tile.is_inside != 0 && skip.trivially_accepted;
+            if (tile.is_inside != 0)
               ++counters.skipped.trivially_accepted;
             else
               counters.samples_tested +=
                   static_cast<std::uint64_t>((tile.right - tile.left + 1) * (tile.bottom - tile.top + 1));
             TileMask mask{};
-            fine_raster(tile, edges, config, widths, [&](const StampPacket& packet) {
-              const int column = packet.stamp % widths.stamps_per_row * stamp,
-                        row = packet.stamp / widths.stamps_per_row * stamp;
+            fine_raster(tile, edges, config, widths, [&](const StampPacket& covered) {
+              const int column = covered.stamp % widths.stamps_per_row * stamp,
+                        row = covered.stamp / widths.stamps_per_row * stamp;
               for (int s = 0; s < stamp * stamp; ++s) {
-                if ((packet.mask >> s & 1) == 0) continue;
+                if ((covered.mask >> s & 1) == 0) continue;
                 const int i = column + s % stamp, j = row + s / stamp;
                 mask[static_cast<std::size_t>(j)] |= 1U << i;
                 shade_sample(context, setup, widths, index, (tile_x << shift) + i, (tile_y << shift) + j, skip,

@@ -1,8 +1,9 @@
-// Coarse raster: the tiles of a triangle's box, row by row, sorted into outside, cut and inside.
+// Coarse raster: the tiles of a primitive's box, row by row, sorted into outside, cut and inside.
 //
-// In: a TriangleSetup. Out: per tile its class, its TilePacket, and the planes at its anchor; the engines walk.
-// A tile is outside when the largest value of one edge over its pixels is negative (trivial reject), inside when the
-// smallest value of every edge is not (trivial accept), cut otherwise.
+// In: a SetupPacket. Out: a TilePacket for each tile that is neither outside nor behind its HiZ bound, and the
+// constants that wait in the context RAM. The last tile of the box always sends one: if it was left out, one without a
+// visit. A tile is outside when the largest value of one edge over its pixels is negative (trivial reject), inside
+// when the smallest value of every edge is not (trivial accept), cut otherwise.
 //
 // Edge values leave here narrow: inside a tile they move by at most M = (T-1)(|dx| + |dy|), so saturating the value at the
 // first pixel to [-M_max - 1, M_max] leaves the sign of every sample as it was. A tile that an edge accepts or rejects
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 
+#include "hiz.hpp"
 #include "triangle_setup.hpp"
 
 namespace halfplane {
@@ -20,17 +22,25 @@ enum class TileClass { outside, cut, inside };
 /// Edge values at the first pixel of a tile.
 using EdgeValues = std::array<EdgeValue, 3>;
 
-[[nodiscard]] constexpr TileClass classify(const TriangleSetup& setup, const EdgeValues& value, int tile_size) {
+/// `edge_dx`, `edge_dy`: of the three edges, subpixels; `value`: at the tile's first pixel.
+[[nodiscard]] constexpr TileClass classify(const std::array<std::int32_t, 3>& edge_dx,
+                                           const std::array<std::int32_t, 3>& edge_dy, const EdgeValues& value,
+                                           int tile_size) {
   const EdgeValue extent = tile_size - 1;
   TileClass result = TileClass::inside;
   for (std::size_t i = 0; i < 3; ++i) {
-    const EdgeValue dx = setup.edge[i].dx, dy = setup.edge[i].dy;
+    const EdgeValue dx = edge_dx[i], dy = edge_dy[i];
     const EdgeValue largest = value[i] + extent * ((dx > 0 ? dx : 0) + (dy < 0 ? -dy : 0));
     const EdgeValue smallest = value[i] + extent * ((dx < 0 ? dx : 0) + (dy > 0 ? -dy : 0));
     if (largest < 0) return TileClass::outside;
     if (smallest < 0) result = TileClass::cut;
   }
   return result;
+}
+
+[[nodiscard]] constexpr TileClass classify(const TriangleSetup& setup, const EdgeValues& value, int tile_size) {
+  const auto& edge = setup.edge;
+  return classify({edge[0].dx, edge[1].dx, edge[2].dx}, {edge[0].dy, edge[1].dy, edge[2].dy}, value, tile_size);
 }
 
 /// The narrow edge value of a tile packet.
@@ -62,8 +72,64 @@ using EdgeValues = std::array<EdgeValue, 3>;
                      bits);
 }
 
-/// The packet of tile (tile_x, tile_y). `slot` is the context slot of the triangle.
+/// The same for a packet.
+[[nodiscard]] inline EdgeValues edges_at_tile(const SetupPacket& setup, int tile_x, int tile_y, const Widths& widths) {
+  const int steps_x = (tile_x - (setup.left >> widths.tile_shift)) << widths.tile_shift;
+  const int steps_y = (tile_y - (setup.top >> widths.tile_shift)) << widths.tile_shift;
+  EdgeValues value;
+  for (std::size_t i = 0; i < 3; ++i)
+    value[i] = setup.edge_value[i] - EdgeValue{steps_x} * setup.dy[i] + EdgeValue{steps_y} * setup.dx[i];
+  return value;
+}
+
+/// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive.
+[[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
+                                          const Widths& widths);
 [[nodiscard]] TilePacket make_tile_packet(const TriangleSetup& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           const Widths& widths);
+
+/// What coarse_raster writes into the context RAM when it takes a primitive.
+[[nodiscard]] ContextPacket make_context(const SetupPacket& setup, const Widths& widths);
+
+/// The stage: calls emit(TilePacket) in the order of the walk. Whatever emit does to `hiz` is seen by the next tile.
+template <class Emit>
+void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
+                   Emit&& emit) {
+  const int first_x = setup.left >> widths.tile_shift, last_x = setup.right >> widths.tile_shift;
+  const int first_y = setup.top >> widths.tile_shift, last_y = setup.bottom >> widths.tile_shift;
+  const auto emit_end = [&] {  // the end of the primitive without a visit
+    TilePacket packet = make_tile_packet(setup, last_x, last_y, slot, widths);
+    packet.is_visit = packet.is_inside = 0;
+    emit(packet);
+  };
+  const auto kind = static_cast<PrimitiveKind>(setup.kind);
+  if (kind == PrimitiveKind::fast_clear || kind == PrimitiveKind::flush) {
+    if (kind == PrimitiveKind::fast_clear && setup.depth_write != 0) hiz.clear(last_x, last_y, setup.depth_max);
+    emit_end();
+    return;
+  }
+  CounterPacket uncounted;
+  CounterPacket& count = kind == PrimitiveKind::triangle ? counters : uncounted;
+  const bool asks_hiz = hiz.is_eligible(setup, widths);
+  for (int tile_y = first_y; tile_y <= last_y; ++tile_y)
+    for (int tile_x = first_x; tile_x <= last_x; ++tile_x) {
+      ++count.tiles_visited;
+      const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths);
+      const TileClass tile_class = classify(setup.dx, setup.dy, edges, 1 << widths.tile_shift);
+      const bool is_outside = tile_class == TileClass::outside;
+      if (is_outside || (asks_hiz && hiz.rejects(setup, tile_x, tile_y))) {
+        ++(is_outside ? count.tiles_outside : count.tiles_hiz);
+        if (tile_x == last_x && tile_y == last_y) emit_end();
+        continue;
+      }
+      const TilePacket packet = make_tile_packet(setup, tile_x, tile_y, slot, widths);
+      if (tile_class == TileClass::inside)
+        ++count.trivially_accepted;
+      else
+        count.samples_tested +=
+            static_cast<std::uint32_t>((packet.right - packet.left + 1) * (packet.bottom - packet.top + 1));
+      emit(packet);
+    }
+}
 
 }  // namespace halfplane

@@ -23,6 +23,11 @@ Value value_at(const TriangleSetup& setup, const Plane& plane, const Width& plan
   return {unrounded, decode(sum, format, low, high)};
 }
 
+/// A plane of a packet, as it was before the wrap.
+LocalPlane<std::uint64_t> plane_of(std::int64_t anchor, std::int64_t step_x, std::int64_t step_y) {
+  return {static_cast<std::uint64_t>(anchor), static_cast<std::uint64_t>(step_x), static_cast<std::uint64_t>(step_y)};
+}
+
 }  // namespace
 
 Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
@@ -40,6 +45,43 @@ Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, in
     result.color_code[c] = static_cast<std::uint8_t>(color.code);
   }
   return result;
+}
+
+FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Config& config,
+                           const Widths& widths) {
+  const int guard_bits = widths.local_color.bits - 8 - 1;
+  const LocalFormat<std::uint64_t> depth_format(widths.depth_code.bits, guard_bits), color_format(8, guard_bits);
+  const auto channels = static_cast<std::size_t>(widths.color_channels);
+  FragmentPacket fragment;
+  static_cast<PrimitiveState&>(fragment) = context;
+  fragment.kind = stamp.kind;
+  fragment.ends_visit = stamp.ends_visit;
+  fragment.ends_primitive = stamp.ends_primitive;
+  fragment.primitive_id = stamp.primitive_id;
+  fragment.tile_x = stamp.tile_x;
+  fragment.tile_y = stamp.tile_y;
+  fragment.stamp = stamp.stamp;
+  fragment.mask = stamp.mask;
+  const int size = config.stamp_size, half_tile = config.tile_size / 2;
+  const int first_x = stamp.stamp % widths.stamps_per_row * size - half_tile;  // pixels from the anchor
+  const int first_y = stamp.stamp / widths.stamps_per_row * size - half_tile;
+  std::size_t sample = 0;
+  for (int y = first_y; y < first_y + size; ++y)
+    for (int x = first_x; x < first_x + size; ++x, ++sample) {
+      const auto code = [x, y](const LocalPlane<std::uint64_t>& plane, const LocalFormat<std::uint64_t>& format,
+                               std::int64_t low, std::int64_t high) {
+        const std::uint64_t value = plane.anchor + static_cast<std::uint64_t>(std::int64_t{x}) * plane.step_x +
+                                    static_cast<std::uint64_t>(std::int64_t{y}) * plane.step_y;
+        return static_cast<std::uint32_t>(decode(value, format, low, high));
+      };
+      fragment.depth[sample] = code(plane_of(stamp.depth_anchor, context.depth_step_x, context.depth_step_y),
+                                    depth_format, context.depth_min, context.depth_max);
+      for (std::size_t c = 0; c < channels; ++c)
+        fragment.rgba[sample] |= code(plane_of(stamp.color_anchor[c], context.color_step_x[c], context.color_step_y[c]),
+                                      color_format, context.color_min[c], context.color_max[c])
+                                 << 8 * c;
+    }
+  return fragment;
 }
 
 }  // namespace halfplane

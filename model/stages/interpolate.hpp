@@ -63,4 +63,9 @@ struct Interpolated {
 /// The attributes of a triangle at pixel (x, y): the specification that every engine must match.
 [[nodiscard]] Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
 
+/// The stage: depth and colour of every sample of the stamp, covered or not, from its tile's anchors. `context` is
+/// that of the stamp's slot.
+[[nodiscard]] FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Config& config,
+                                         const Widths& widths);
+
 }  // namespace halfplane

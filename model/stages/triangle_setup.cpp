@@ -8,14 +8,6 @@
 namespace halfplane {
 namespace {
 
-/// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one.
-std::array<SnappedVertex, 3> canonical(const std::array<SnappedVertex, 3>& v, std::int64_t area) {
-  const auto first = static_cast<std::size_t>(std::min_element(v.begin(), v.end(), canonically_before) - v.begin());
-  std::array<SnappedVertex, 3> order{v[first], v[(first + 1) % 3], v[(first + 2) % 3]};
-  if (area < 0) std::swap(order[1], order[2]);
-  return order;
-}
-
 /// What the planes of one triangle share.
 struct PlaneFrame {
   std::int64_t ax, ay, bx, by;  ///< v1 - v0 and v2 - v0, subpixels
@@ -42,38 +34,10 @@ Plane setup_plane(std::int64_t c0, std::int64_t c1, std::int64_t c2, const Plane
   return plane;
 }
 
-}  // namespace
-
-Reciprocal reciprocal(std::int64_t area, int significant_bits) {
-  if (area <= 0) return {};
-  const int shift = floor_log2(static_cast<uint128>(area)) + significant_bits;
-  const auto divisor = static_cast<std::uint64_t>(area);
-  // One quotient bit more than is kept, then the pipeline's rounding.
-  const std::uint64_t quotient =
-      shift < 63 ? (std::uint64_t{2} << shift) / divisor : static_cast<std::uint64_t>((uint128{2} << shift) / divisor);
-  return {round_shift(quotient, 1), shift};
-}
-
-void set_box(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Rect& rect, int grid_bits) {
-  const std::int32_t half = std::int32_t{1} << (grid_bits - 1);
-  const auto [x_min, x_max] = std::minmax({v[0].x, v[1].x, v[2].x});
-  const auto [y_min, y_max] = std::minmax({v[0].y, v[1].y, v[2].y});
-  // First pixel whose centre is >= min, last whose centre is <= max.
-  setup.left = std::max(rect.x, (x_min + half - 1) >> grid_bits);
-  setup.top = std::max(rect.y, (y_min + half - 1) >> grid_bits);
-  setup.right = std::min(rect.x + rect.width - 1, (x_max - half) >> grid_bits);
-  setup.bottom = std::min(rect.y + rect.height - 1, (y_max - half) >> grid_bits);
-}
-
-TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths, const Rect& rect) {
-  TriangleSetup setup;
-  setup.primitive = triangle.primitive;
-  const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
-  if (area == 0) return setup;
-  const auto v = canonical(triangle.v, area);
+/// Everything that follows from the vertices in canonical order, their area and the box.
+void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Config& config,
+                  const Widths& widths) {
   const int s = widths.grid_bits;
-  setup.area = area < 0 ? -area : area;
-  set_box(setup, v, rect, s);
   const int first_x = setup.left >> widths.tile_shift << widths.tile_shift;  // first pixel of the first tile
   const int first_y = setup.top >> widths.tile_shift << widths.tile_shift;
 
@@ -99,12 +63,107 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
     setup.color[c] = setup_plane(v[0].rgba[c], v[1].rgba[c], v[2].rgba[c], frame, widths.color_plane.bits);
     std::tie(setup.color_min[c], setup.color_max[c]) = std::minmax({v[0].rgba[c], v[1].rgba[c], v[2].rgba[c]});
   }
+}
+
+/// The constants of a primitive that has one depth and one colour and no edges.
+void finish_flat_setup(TriangleSetup& setup, const SnappedVertex& v, const Widths& widths) {
+  const auto constant = [&](std::uint64_t code, int bits) {
+    return Plane{wrap_signed(static_cast<std::int64_t>(code << widths.plane_fraction), bits), 0, 0};
+  };
+  setup.depth = constant(v.z, widths.depth_plane.bits);
+  setup.depth_min = setup.depth_max = v.z;
+  for (std::size_t c = 0; c < 4; ++c) setup.color[c] = constant(v.rgba[c], widths.color_plane.bits);
+  setup.color_min = setup.color_max = v.rgba;
+}
+
+}  // namespace
+
+Reciprocal reciprocal(std::int64_t area, int significant_bits) {
+  if (area <= 0) return {};
+  const int shift = floor_log2(static_cast<uint128>(area)) + significant_bits;
+  const auto divisor = static_cast<std::uint64_t>(area);
+  // One quotient bit more than is kept, then the pipeline's rounding.
+  const std::uint64_t quotient =
+      shift < 63 ? (std::uint64_t{2} << shift) / divisor : static_cast<std::uint64_t>((uint128{2} << shift) / divisor);
+  return {round_shift(quotient, 1), shift};
+}
+
+TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths, const Rect& rect) {
+  TriangleSetup setup;
+  setup.primitive = triangle.primitive;
+  const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
+  if (area == 0) return setup;
+  const auto v = canonical(triangle.v, area);
+  setup.area = area < 0 ? -area : area;
+  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  const PixelBounds box = pixel_bounds(v, limit, widths.grid_bits);
+  setup.left = box.left;
+  setup.top = box.top;
+  setup.right = box.right;
+  setup.bottom = box.bottom;
+  finish_setup(setup, v, config, widths);
   return setup;
 }
 
 TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths) {
   return setup_triangle(triangle, config, widths,
                         {-config.guard_band, -config.guard_band, 2 * config.guard_band, 2 * config.guard_band});
+}
+
+std::uint64_t plane_bias(int bits, const Widths& widths) {
+  const int guard_bits = widths.local_depth.bits - widths.depth_code.bits - 1;  // l, at least 1
+  const int drop = widths.plane_fraction - guard_bits;
+  const std::uint64_t to_window = std::uint64_t{1} << (bits - 1 + guard_bits),
+                      half = std::uint64_t{1} << (guard_bits - 1);
+  return (std::uint64_t{1} << (drop - 1)) + ((to_window + half) << drop);
+}
+
+SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths) {
+  const auto biased = [](const Plane& plane, std::uint64_t bias, int bits) {
+    return wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) + bias), bits);
+  };
+  SetupPacket packet;
+  set_box(packet, {setup.left, setup.top, setup.right, setup.bottom});
+  packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(setup.primitive, widths.primitive_id.bits));
+  for (std::size_t i = 0; i < 3; ++i) {
+    packet.dx[i] = setup.edge[i].dx;
+    packet.dy[i] = setup.edge[i].dy;
+    packet.edge_value[i] = setup.edge[i].value;
+  }
+  packet.depth_value = biased(setup.depth, plane_bias(widths.depth_code.bits, widths), widths.depth_plane.bits);
+  packet.depth_step_x = setup.depth.step_x;
+  packet.depth_step_y = setup.depth.step_y;
+  packet.depth_min = setup.depth_min;
+  packet.depth_max = setup.depth_max;
+  const std::uint64_t color_bias = plane_bias(8, widths);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_channels); ++c) {
+    packet.color_value[c] = biased(setup.color[c], color_bias, widths.color_plane.bits);
+    packet.color_step_x[c] = setup.color[c].step_x;
+    packet.color_step_y[c] = setup.color[c].step_y;
+    packet.color_min[c] = setup.color_min[c];
+    packet.color_max[c] = setup.color_max[c];
+  }
+  return packet;
+}
+
+SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
+  TriangleSetup setup;
+  setup.primitive = primitive.primitive_id;
+  setup.left = primitive.left;
+  setup.top = primitive.top;
+  setup.right = primitive.right;
+  setup.bottom = primitive.bottom;
+  const auto v = vertices_of(primitive);
+  if (primitive.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+    setup.area = static_cast<std::int64_t>(primitive.area);
+    finish_setup(setup, v, config, widths);
+  } else {
+    finish_flat_setup(setup, v[0], widths);
+  }
+  SetupPacket packet = to_setup_packet(setup, widths);
+  static_cast<PrimitiveState&>(packet) = primitive;
+  packet.kind = primitive.kind;
+  return packet;
 }
 
 }  // namespace halfplane

@@ -17,10 +17,10 @@
 #include "../packets.hpp"
 #include "../scene.hpp"
 #include "../widths.hpp"
+#include "edge_function.hpp"
 
 namespace halfplane {
 
-using EdgeValue = std::int64_t;   ///< floor((E + bias) / 2^s) at a pixel centre; covered when >= 0
 using PlaneValue = std::int64_t;  ///< 2^-F LSB, modulo 2^(bits + 1 + F)
 
 /// The edge function at pixel centres. Bits below a pixel are constant along an edge, so they fold into the bias.
@@ -49,18 +49,6 @@ struct TriangleSetup {
   [[nodiscard]] bool is_empty() const { return left > right || top > bottom; }
 };
 
-/// E of the edge from `from` to `to` at the centre of pixel (x, y), with the fill rule folded in: >= 0 when covered.
-/// Top-left rule: a sample exactly on the edge belongs to the triangle when the edge is a top (dy = 0, dx > 0) or left
-/// (dy < 0) edge of a triangle of positive area.
-[[nodiscard]] constexpr EdgeValue edge_function(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
-                                                int grid_bits) {
-  const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
-  const std::int64_t px = (std::int64_t{x} << grid_bits) + half, py = (std::int64_t{y} << grid_bits) + half;
-  const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-  const bool is_top_left = dy < 0 || (dy == 0 && dx > 0);
-  return (dx * (py - from.y) - dy * (px - from.x) - (is_top_left ? 0 : 1)) >> grid_bits;
-}
-
 /// floor(2^shift / area + 1/2): the one division of a triangle.
 struct Reciprocal {
   std::uint64_t value = 0;
@@ -68,14 +56,21 @@ struct Reciprocal {
 };
 [[nodiscard]] Reciprocal reciprocal(std::int64_t area, int significant_bits);
 
-/// The pixels whose centres lie in the triangle's bounding box and in `rect`; left > right when there are none.
-void set_box(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Rect& rect, int grid_bits);
-
 /// The whole setup. Zero area gives an empty box.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths,
                                            const Rect& rect);
 
 /// The same over the whole guard band: for questions about a single pixel.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths);
+
+/// What SetupPacket adds to the value of a plane of `bits`-bit codes: half of the last place that a tile keeps, and
+/// what makes decode() a shift. With it, a tile's local anchor is the stepped value shifted right by F - l.
+[[nodiscard]] std::uint64_t plane_bias(int bits, const Widths& widths);
+
+/// A setup whose box lies inside the target, as it goes to coarse_raster. Kind and state are left at 0.
+[[nodiscard]] SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths);
+
+/// The stage: any kind of primitive.
+[[nodiscard]] SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths);
 
 }  // namespace halfplane

@@ -1,14 +1,17 @@
 // Fine raster: one tile in, the covered samples of its stamps out.
 //
-// In: a tile packet and the triangle's edge context. Out: a stamp packet for each stamp with at least one covered sample,
-// row by row. One stamp position of the tile's box per cycle; two cycles from the tile to its first stamp, no bubble
-// between tiles. The edge values are stepped from stamp to stamp; nothing here multiplies.
+// In: a tile packet and the primitive's edge context. Out: a stamp packet for each stamp with a covered sample, row by row;
+// the last row sends one in any case, because it carries the news that the visit ends.
+//
+// Two parts: `rows` evaluates the edge functions of a whole row of stamps per cycle, stepping down the tile's box and
+// passing over rows without coverage; `stamps` sends the stamps of one row, one per cycle, while the next row is found.
+// Two cycles from the tile to its first stamp, no bubble between rows or tiles. Nothing here multiplies.
 // Specification: model/stages/fine_raster.hpp.
 module fine_raster (
     input logic clk_i,
     input logic rst_ni,
 
-    // From coarse_raster; edges_i is the context of tile_i.slot
+    // From coarse_raster
     input  logic                      tile_valid_i,
     output logic                      tile_ready_o,
     input  raster_pkg::tile_packet_t  tile_i,
@@ -22,90 +25,78 @@ module fine_raster (
 
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int STAMP_SHIFT = $clog2(STAMP);
+  localparam int TILE = raster_pkg::TILE_SIZE;
+  localparam int PER_ROW = raster_pkg::STAMPS_PER_ROW;
   localparam int W = raster_pkg::SAMPLE_EDGE_BITS;
   localparam int STEP = raster_pkg::EDGE_STEP_BITS;
   localparam int TILE_EDGE = raster_pkg::TILE_EDGE_BITS;
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
-  localparam int SAMPLES = raster_pkg::SAMPLE_MASK_BITS;
-  localparam int STAMP_BITS = raster_pkg::STAMP_PACKET_BITS;
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int ROW = PER_ROW * SAMPLES;  // samples of a row of stamps; those of one stamp are neighbours
+  localparam int COLUMN = PER_ROW > 1 ? $clog2(PER_ROW) : 1;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // tile_q.edge_value: stepped in gen_edge from the moment it enters
+  // -------------------------------------------------------------------------------------------------------------- rows
+  /* verilator lint_off UNUSEDSIGNAL */  // edge_value is stepped in gen_edge from the moment it enters
   var raster_pkg::tile_packet_t  tile_q;
   /* verilator lint_on UNUSEDSIGNAL */
   var raster_pkg::edge_context_t edges_q;
-  logic                      busy_q;
-  logic [PIXEL-1:0]          x_q, y_q;  // first sample of the current stamp, pixels of the tile
+  logic             row_valid_q;
+  logic [PIXEL-1:0] y_q;  // first pixel row of the current row of stamps
 
-  logic takes_tile, stamp_taken, is_last_column, is_last_stamp, out_ready;
-  logic [PIXEL-1:0] first_x, first_y;  // the stamp that holds the first pixel of the new tile's box
+  logic             takes_tile, row_leaves, row_is_sent, is_last_row, stamps_ready;
+  logic [ROW-1:0]   covered;
+  logic [3*ROW-1:0] outside;  // by edge
+  logic [PIXEL-1:0] first_y;
 
-  // All three edges at every sample: bit s is set where the sample is outside that edge.
-  logic [3*SAMPLES-1:0] outside;
-  logic [SAMPLES-1:0]   in_box, mask;
-
-  assign first_x        = (tile_i.left >> STAMP_SHIFT) << STAMP_SHIFT;
-  assign first_y        = (tile_i.top >> STAMP_SHIFT) << STAMP_SHIFT;
-  assign is_last_column = (x_q >> STAMP_SHIFT) == (tile_q.right >> STAMP_SHIFT);
-  assign is_last_stamp  = is_last_column && (y_q >> STAMP_SHIFT) == (tile_q.bottom >> STAMP_SHIFT);
-  assign stamp_taken    = busy_q && (out_ready || mask == '0);
-  assign tile_ready_o   = !busy_q || (stamp_taken && is_last_stamp);
-  assign takes_tile     = tile_valid_i && tile_ready_o;
+  assign first_y      = (tile_i.top >> STAMP_SHIFT) << STAMP_SHIFT;
+  assign is_last_row  = !tile_q.is_visit || (y_q >> STAMP_SHIFT) == (tile_q.bottom >> STAMP_SHIFT);
+  assign row_is_sent  = covered != '0 || is_last_row;
+  assign row_leaves   = row_valid_q && (stamps_ready || !row_is_sent);
+  assign tile_ready_o = !row_valid_q || (row_leaves && is_last_row);
+  assign takes_tile   = tile_valid_i && tile_ready_o;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) busy_q <= 1'b0;
-    else if (takes_tile) busy_q <= 1'b1;
-    else if (stamp_taken && is_last_stamp) busy_q <= 1'b0;
+    if (!rst_ni) row_valid_q <= 1'b0;
+    else if (tile_ready_o) row_valid_q <= tile_valid_i;
   end
 
   always_ff @(posedge clk_i) begin
     if (takes_tile) begin
       tile_q  <= tile_i;
       edges_q <= edges_i;
-      x_q     <= first_x;
       y_q     <= first_y;
-    end else if (stamp_taken) begin
-      x_q <= is_last_column ? (tile_q.left >> STAMP_SHIFT) << STAMP_SHIFT : x_q + PIXEL'(STAMP);
-      if (is_last_column) y_q <= y_q + PIXEL'(STAMP);
-    end
+    end else if (row_leaves) y_q <= y_q + PIXEL'(STAMP);
   end
 
   genvar e, i, j;
   generate
     for (e = 0; e < 3; e++) begin : gen_edge
-      logic signed [W-1:0] value_q;  // edge value at the current stamp's first sample
-      logic signed [W-1:0] row_q;    // the same at the first stamp of this row
-      logic signed [W-1:0] new_step_x, new_step_y, step_x, step_y, start;
+      logic signed [W-1:0] value_q;  // edge value at column 0 of the first pixel row of this row of stamps
+      logic signed [W-1:0] step_x, step_y, start;
 
-      assign new_step_x = W'($signed(edges_i.step_x[e*STEP +: STEP]));
-      assign new_step_y = W'($signed(edges_i.step_y[e*STEP +: STEP]));
-      assign step_x     = W'($signed(edges_q.step_x[e*STEP +: STEP]));
-      assign step_y     = W'($signed(edges_q.step_y[e*STEP +: STEP]));
+      assign step_x = W'($signed(edges_q.step_x[e*STEP+:STEP]));
+      assign step_y = W'($signed(edges_q.step_y[e*STEP+:STEP]));
 
-      // From the tile's first pixel to the box's first stamp: a sum of shifted steps, one for each bit of the offset.
+      // From the tile's first pixel to the box's first row of stamps.
       edge_offset #(
           .WIDTH (W),
           .OFFSET(PIXEL)
       ) u_start (
-          .value_i (W'($signed(tile_i.edge_value[e*TILE_EDGE +: TILE_EDGE]))),
-          .step_x_i(new_step_x),
-          .step_y_i(new_step_y),
-          .x_i     (first_x),
+          .value_i (W'($signed(tile_i.edge_value[e*TILE_EDGE+:TILE_EDGE]))),
+          .step_x_i('0),
+          .step_y_i(W'($signed(edges_i.step_y[e*STEP+:STEP]))),
+          .x_i     ('0),
           .y_i     (first_y),
           .value_o (start)
       );
 
       always_ff @(posedge clk_i) begin
-        if (takes_tile) begin
-          value_q <= start;
-          row_q   <= start;
-        end else if (stamp_taken) begin
-          value_q <= is_last_column ? row_q + (step_y <<< STAMP_SHIFT) : value_q + (step_x <<< STAMP_SHIFT);
-          if (is_last_column) row_q <= row_q + (step_y <<< STAMP_SHIFT);
-        end
+        if (takes_tile) value_q <= start;
+        else if (row_leaves) value_q <= value_q + (step_y <<< STAMP_SHIFT);
       end
 
       for (j = 0; j < STAMP; j++) begin : gen_row
-        for (i = 0; i < STAMP; i++) begin : gen_column
+        for (i = 0; i < TILE; i++) begin : gen_column
           logic signed [W-1:0] sample;
           edge_offset #(
               .WIDTH (W),
@@ -118,47 +109,90 @@ module fine_raster (
               .y_i     (PIXEL'(j)),
               .value_o (sample)
           );
-          assign outside[e*SAMPLES+j*STAMP+i] = sample < 0;
+          assign outside[e*ROW+(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = sample < 0;
         end
       end
     end
 
+    /* verilator lint_off UNSIGNED */  // the first and the last column compare with a constant
+    /* verilator lint_off CMPCONST */
     for (j = 0; j < STAMP; j++) begin : gen_box_row
-      for (i = 0; i < STAMP; i++) begin : gen_box_column
-        assign in_box[j*STAMP+i] = x_q + PIXEL'(i) >= tile_q.left && x_q + PIXEL'(i) <= tile_q.right &&
-                                   y_q + PIXEL'(j) >= tile_q.top && y_q + PIXEL'(j) <= tile_q.bottom;
+      for (i = 0; i < TILE; i++) begin : gen_box_column
+        localparam int AT = (i / STAMP) * SAMPLES + j * STAMP + i % STAMP;
+        logic is_in_box;
+        assign is_in_box = tile_q.is_visit && PIXEL'(i) >= tile_q.left && PIXEL'(i) <= tile_q.right &&
+                           y_q + PIXEL'(j) >= tile_q.top && y_q + PIXEL'(j) <= tile_q.bottom;
+        assign covered[AT] = is_in_box && (tile_q.is_inside || !(outside[AT] || outside[ROW+AT] || outside[2*ROW+AT]));
       end
     end
+    /* verilator lint_on CMPCONST */
+    /* verilator lint_on UNSIGNED */
   endgenerate
 
-  assign mask = in_box & ~(outside[0+:SAMPLES] | outside[SAMPLES+:SAMPLES] | outside[2*SAMPLES+:SAMPLES]);
+  // ------------------------------------------------------------------------------------------------------------ stamps
+  /* verilator lint_off UNUSEDSIGNAL */  // box and edges end in the part above
+  var raster_pkg::tile_packet_t stamp_tile_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic             stamps_valid_q;
+  logic             stamps_last_row_q;
+  /* verilator lint_off UNUSEDSIGNAL */  // a row of stamps begins at a multiple of their size
+  logic [PIXEL-1:0] stamps_y_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [ROW-1:0]   pending_q, pending_d;  // samples of the row not yet sent
 
-  var raster_pkg::stamp_packet_t stamp;
-  assign stamp.primitive_id = tile_q.primitive_id;
-  assign stamp.slot         = tile_q.slot;
-  assign stamp.tile_x       = tile_q.tile_x;
-  assign stamp.tile_y       = tile_q.tile_y;
-  assign stamp.mask         = mask;
+  logic [COLUMN-1:0]  column;  // of the first stamp with samples left
+  logic [SAMPLES-1:0] mask;
+  logic               is_last_stamp, stamp_leaves;
+
+  always_comb begin
+    column    = '0;
+    mask      = '0;
+    pending_d = pending_q;
+    for (int s = PER_ROW - 1; s >= 0; s--) begin
+      if (pending_q[s*SAMPLES+:SAMPLES] != '0) begin
+        column = COLUMN'(s);
+        mask   = pending_q[s*SAMPLES+:SAMPLES];
+      end
+    end
+    for (int s = 0; s < PER_ROW; s++) if (COLUMN'(s) == column) pending_d[s*SAMPLES+:SAMPLES] = '0;
+  end
+
+  assign is_last_stamp = pending_d == '0;
+  assign stamp_valid_o = stamps_valid_q;
+  assign stamp_leaves  = stamps_valid_q && stamp_ready_i;
+  assign stamps_ready  = !stamps_valid_q || (stamp_leaves && is_last_stamp);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) stamps_valid_q <= 1'b0;
+    else if (stamps_ready) stamps_valid_q <= row_valid_q && row_is_sent;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (stamps_ready) begin
+      stamp_tile_q      <= tile_q;
+      stamps_last_row_q <= is_last_row;
+      stamps_y_q        <= y_q;
+      pending_q         <= covered;
+    end else if (stamp_leaves) pending_q <= pending_d;
+  end
+
+  assign stamp_o.kind           = stamp_tile_q.kind;
+  assign stamp_o.ends_visit     = stamps_last_row_q && is_last_stamp && stamp_tile_q.is_visit;
+  assign stamp_o.ends_primitive = stamps_last_row_q && is_last_stamp && stamp_tile_q.ends_primitive;
+  assign stamp_o.primitive_id   = stamp_tile_q.primitive_id;
+  assign stamp_o.slot           = stamp_tile_q.slot;
+  assign stamp_o.tile_x         = stamp_tile_q.tile_x;
+  assign stamp_o.tile_y         = stamp_tile_q.tile_y;
+  assign stamp_o.mask           = mask;
+  assign stamp_o.depth_anchor   = stamp_tile_q.depth_anchor;
+  assign stamp_o.color_anchor   = stamp_tile_q.color_anchor;
 
   generate
-    if (STAMP == raster_pkg::TILE_SIZE) begin : gen_one_stamp
-      assign stamp.stamp = '0;
+    if (PER_ROW == 1) begin : gen_one_stamp
+      assign stamp_o.stamp = '0;
     end else begin : gen_stamps
-      assign stamp.stamp = {y_q[PIXEL-1:STAMP_SHIFT], x_q[PIXEL-1:STAMP_SHIFT]};
+      assign stamp_o.stamp = stamp_tile_q.is_visit ? {stamps_y_q[PIXEL-1:STAMP_SHIFT], column} : '0;
     end
   endgenerate
-
-  skid_buffer #(
-      .WIDTH(STAMP_BITS)
-  ) u_out (
-      .clk_i,
-      .rst_ni,
-      .valid_i(busy_q && mask != '0),
-      .ready_o(out_ready),
-      .data_i (stamp),
-      .valid_o(stamp_valid_o),
-      .ready_i(stamp_ready_i),
-      .data_o (stamp_o)
-  );
 
 endmodule

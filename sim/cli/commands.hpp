@@ -11,6 +11,8 @@ using Action = std::function<int()>;
 /// Each sets `selected` when the user chose the command.
 void add_render_command(CLI::App& app, Action& selected);
 void add_compare_command(CLI::App& app, Action& selected);
+void add_cosim_command(CLI::App& app, Action& selected);
+void add_reduce_command(CLI::App& app, Action& selected);
 void add_scenes_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
 

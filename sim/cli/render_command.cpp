@@ -10,6 +10,7 @@
 #include "model/golden/golden.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cosim/rtl_engine.hpp"
 #include "sim/image/framebuffer_files.hpp"
 #include "sim/image/png.hpp"
 #include "sim/image/terminal.hpp"
@@ -23,7 +24,7 @@ struct RenderCommand : CommonOptions {
   int repeat = 0;
 };
 
-constexpr std::array<std::string_view, 4> kEngines{"functional", "scalar", "golden", "golden32"};
+constexpr std::array<std::string_view, 5> kEngines{"functional", "scalar", "rtl", "golden", "golden32"};
 
 Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision,
                         const RenderOptions& render) {
@@ -41,7 +42,8 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
   return rendering;
 }
 
-Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config) {
+/// `rtl_run` is set by the engine of that name.
+Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, LockstepResult& rtl_run) {
   Progress progress(options, "rendering");
   RenderOptions render;
   render.skip = parse_skip(options.skip);
@@ -50,6 +52,11 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   render.progress = [&progress](double fraction) { progress(fraction); };
   if (options.engine == "functional") return render_functional(scene, config, render);
   if (options.engine == "scalar") return render_scalar(scene, config, render);
+  if (options.engine == "rtl") {
+    RtlRendering rtl = render_rtl(*make_dut(find_dut(config)), scene, config, render);
+    rtl_run = rtl.run;
+    return std::move(rtl.rendering);
+  }
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
   return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() let no other through
 }
@@ -58,7 +65,10 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
 void check_options(const RenderCommand& options, const Config& config) {
   if (std::find(kEngines.begin(), kEngines.end(), options.engine) == kEngines.end())
     throw InputError("--engine: no engine '" + options.engine +
-                     "' in this version; give functional, scalar, golden or golden32");
+                     "' in this version; give functional, scalar, rtl, golden or golden32");
+  if (options.engine == "rtl" && !(options.count_path.empty() && options.ids_path.empty()))
+    throw InputError("--engine rtl: hardware keeps neither counts nor ids; leave out --count and --ids");
+  if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
   check_output(options.color_path, ".png");
@@ -79,15 +89,27 @@ Json counters_json(const Counters& c) {
             {"zero_area", c.skipped.zero_area},
             {"empty", c.skipped.empty},
             {"tiles_outside", c.skipped.tiles_outside},
-            {"tiles_hiz", 0},  // no engine of this version has a HiZ
+            {"tiles_hiz", c.skipped.tiles_hiz},
             {"fragments_early_z", c.skipped.fragments_early_z}}}};
+}
+
+/// {stage: {busy, stalled, starved, items}}, in cycles of the stage's output.
+Json stages_json(const LockstepResult& run) {
+  Json stages = Json::object();
+  for (std::size_t i = 0; i < kStreams; ++i) {
+    const StreamUse& use = run.use[i];
+    stages[std::string(kStreamStages[i])] = {
+        {"busy", use.busy}, {"stalled", use.stalled}, {"starved", use.starved}, {"items", use.busy}};
+  }
+  return stages;
 }
 
 /// Renders again N times after the first and adds {min, median} of the engine's own time.
 Json measure(const RenderCommand& options, const Scene& scene, const Config& config) {
   std::vector<double> times;
   for (int i = 0; i < options.repeat; ++i) {
-    const Rendering rendering = run_engine(options, scene, config);
+    LockstepResult ignored;
+    const Rendering rendering = run_engine(options, scene, config, ignored);
     times.push_back(rendering.geometry_s + rendering.raster_s);
   }
   std::sort(times.begin(), times.end());
@@ -108,7 +130,8 @@ int run(const RenderCommand& options) {
   check_options(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
-  const Rendering rendering = run_engine(options, scene, config);
+  LockstepResult rtl_run;
+  const Rendering rendering = run_engine(options, scene, config, rtl_run);
   const Counters& c = rendering.counters;
 
   Json result = result_head("render", options, config);
@@ -118,6 +141,11 @@ int run(const RenderCommand& options) {
   result["threads"] = 1;
   result.update(counters_json(c));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
+  if (options.engine == "rtl") {
+    result["cycles"] = rtl_run.cycles;
+    result["raster_cycles"] = rtl_run.raster_cycles;
+    result["stages"] = stages_json(rtl_run);
+  }
   if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
   result["depth_hash"] = depth_hash(rendering.frame);
@@ -137,6 +165,9 @@ int run(const RenderCommand& options) {
       << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
       << "time        load " << fixed(1e3 * load_s, 1) << " ms, geometry " << fixed(1e3 * rendering.geometry_s, 2)
       << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
+  if (options.engine == "rtl")
+    out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
+        << " from the first triangle to the last write\n";
   if (options.repeat > 0)
     out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
         << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
@@ -153,7 +184,8 @@ void add_render_command(CLI::App& app, Action& selected) {
   add_scene_options(*command, *options);
   command
       ->add_option("--engine", options->engine,
-                   "functional (fast), scalar (the stages, one packet at a time), golden, golden32")
+                   "functional (fast), scalar (the stages, one packet at a time), rtl (the Verilated hardware), "
+                   "golden, golden32")
       ->capture_default_str();
   add_file_option(*command, "-o", options->color_path, "colour picture, .png");
   add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");

@@ -15,7 +15,10 @@ package raster_pkg;
   localparam int STAMP_SIZE = 4;  // side of the stamp tested in one clock: 1, 2, 4 or 8
   localparam int KEY_PRIMITIVE_BITS = 16;  // bits of the primitive number in an RTL packet key
   localparam int CONTEXT_SLOTS = 4;  // triangles whose constants the context RAM holds; a power of two
-  localparam logic [63:0] CONFIG_ID = 64'hfd4b5f89878a089b;  // hash of the above
+  localparam int HIZ_BITS = 16;  // bits of a tile's HiZ bound, at most depth.bits; 0: no HiZ
+  localparam int CACHE_LINES = 16;  // tiles that the on-chip depth and colour RAM holds; a power of two
+  localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
+  localparam logic [63:0] CONFIG_ID = 64'h21aacc6d9d1654e7;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 8;  // s: fraction bits of a coordinate, at least 1
@@ -23,6 +26,12 @@ package raster_pkg;
   localparam int PLANE_FRACTION = 27;  // F = G + s
   localparam int TILE_SHIFT = 3;  // log2 of the tile size
   localparam int STAMPS_PER_ROW = 2;  // stamps along the side of a tile
+  localparam int COLOR_CHANNELS = 4;  // channels that the colour format stores
+  localparam int SAMPLES = 16;  // samples of a stamp
+  localparam int TILES_X = 512;  // tiles along the top of the widest target
+  localparam int TILES_Y = 512;  // tiles along the side of the highest target
+  localparam int LINE_X_BITS = 2;  // low bits of tile x in a cache line's number
+  localparam int LINE_Y_BITS = 2;  // low bits of tile y in a cache line's number, above those
 
   // Derived widths, each with its bound.
   localparam int COORDINATE_BITS = 22;  // guard band g * 2^s
@@ -31,7 +40,7 @@ package raster_pkg;
   localparam int AREA_BITS = 44;  // L^2, L the side of the guard band
   localparam int EDGE_VALUE_BITS = 37;  // (+-L^2 - 1) >> s
   localparam int EDGE_STEP_BITS = 23;  // delta: one pixel changes E >> s by dx or dy
-  localparam int TILE_EDGE_BITS = 27;  // saturated to (T-1)(|dx|+|dy|) at the tile's first pixel
+  localparam int TILE_EDGE_BITS = 27;  // saturated beyond (T-1)(|dx|+|dy|) at the tile's first pixel
   localparam int SAMPLE_EDGE_BITS = 28;  // tile edge + (T-1)(|dx|+|dy|)
   localparam int DEPTH_CODE_BITS = 24;  // 2^B - 1
   localparam int DEPTH_DELTA_BITS = 25;  // Z - Z
@@ -54,9 +63,102 @@ package raster_pkg;
   localparam int STAMP_INDEX_BITS = 2;  // (T / stamp)^2
   localparam int SAMPLE_MASK_BITS = 16;  // one bit a sample
   localparam int STORED_COLOR_BITS = 32;  // color.format
+  localparam int KIND_BITS = 2;  // PrimitiveKind
+  localparam int FLAG_BITS = 1;  // yes or no
+  localparam int DEPTH_FUNC_BITS = 3;  // DepthFunc
+  localparam int CULL_MODE_BITS = 2;  // Cull
+  localparam int PIXEL_X_BITS = 12;  // target width
+  localparam int PIXEL_Y_BITS = 12;  // target height
+  localparam int VERTEX_COLOR_BITS = 32;  // 8 bits a stored channel
+  localparam int HIZ_CODE_BITS = 16;  // hiz.bits, at least 1
+  localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
+  localparam int MEMORY_LANE_BITS = 32;  // a depth code or a stored colour
+  localparam int COUNTER_BITS = 32;  // modulo 2^32
 
   // Packets. Array fields are flat, element 0 lowest.
   typedef struct packed {
+    logic [KIND_BITS-1:0] kind;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [PIXEL_X_BITS-1:0] left;
+    logic [PIXEL_Y_BITS-1:0] top;
+    logic [PIXEL_X_BITS-1:0] right;
+    logic [PIXEL_Y_BITS-1:0] bottom;
+    logic [DEPTH_FUNC_BITS-1:0] depth_test;
+    logic [FLAG_BITS-1:0] depth_write;
+    logic [FLAG_BITS-1:0] color_write;
+    logic [CULL_MODE_BITS-1:0] cull;
+    logic [FLAG_BITS-1:0] front_cw;
+    logic [3*COORDINATE_BITS-1:0] x;
+    logic [3*COORDINATE_BITS-1:0] y;
+    logic [3*DEPTH_CODE_BITS-1:0] z;
+    logic [3*VERTEX_COLOR_BITS-1:0] rgba;
+  } primitive_packet_t;
+  localparam int PRIMITIVE_PACKET_BITS = 374;  // of the struct above
+
+  typedef struct packed {
+    logic [KIND_BITS-1:0] kind;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [PIXEL_X_BITS-1:0] left;
+    logic [PIXEL_Y_BITS-1:0] top;
+    logic [PIXEL_X_BITS-1:0] right;
+    logic [PIXEL_Y_BITS-1:0] bottom;
+    logic [DEPTH_FUNC_BITS-1:0] depth_test;
+    logic [FLAG_BITS-1:0] depth_write;
+    logic [FLAG_BITS-1:0] color_write;
+    logic [3*COORDINATE_BITS-1:0] x;
+    logic [3*COORDINATE_BITS-1:0] y;
+    logic [3*DEPTH_CODE_BITS-1:0] z;
+    logic [3*VERTEX_COLOR_BITS-1:0] rgba;
+    logic [AREA_BITS-1:0] area;
+    logic [3*EDGE_VALUE_BITS-1:0] edge_value;
+  } triangle_packet_t;
+  localparam int TRIANGLE_PACKET_BITS = 526;  // of the struct above
+
+  typedef struct packed {
+    logic [KIND_BITS-1:0] kind;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [PIXEL_X_BITS-1:0] left;
+    logic [PIXEL_Y_BITS-1:0] top;
+    logic [PIXEL_X_BITS-1:0] right;
+    logic [PIXEL_Y_BITS-1:0] bottom;
+    logic [DEPTH_FUNC_BITS-1:0] depth_test;
+    logic [FLAG_BITS-1:0] depth_write;
+    logic [FLAG_BITS-1:0] color_write;
+    logic [3*DELTA_BITS-1:0] dx;
+    logic [3*DELTA_BITS-1:0] dy;
+    logic [3*EDGE_VALUE_BITS-1:0] edge_value;
+    logic signed [DEPTH_PLANE_BITS-1:0] depth_value;
+    logic signed [DEPTH_PLANE_BITS-1:0] depth_step_x;
+    logic signed [DEPTH_PLANE_BITS-1:0] depth_step_y;
+    logic [4*COLOR_PLANE_BITS-1:0] color_value;
+    logic [4*COLOR_PLANE_BITS-1:0] color_step_x;
+    logic [4*COLOR_PLANE_BITS-1:0] color_step_y;
+    logic [DEPTH_CODE_BITS-1:0] depth_min;
+    logic [DEPTH_CODE_BITS-1:0] depth_max;
+    logic [4*COLOR_CODE_BITS-1:0] color_min;
+    logic [4*COLOR_CODE_BITS-1:0] color_max;
+  } setup_packet_t;
+  localparam int SETUP_PACKET_BITS = 1020;  // of the struct above
+
+  typedef struct packed {
+    logic [DEPTH_FUNC_BITS-1:0] depth_test;
+    logic [FLAG_BITS-1:0] depth_write;
+    logic [FLAG_BITS-1:0] color_write;
+    logic signed [LOCAL_DEPTH_BITS-1:0] depth_step_x;
+    logic signed [LOCAL_DEPTH_BITS-1:0] depth_step_y;
+    logic [4*LOCAL_COLOR_BITS-1:0] color_step_x;
+    logic [4*LOCAL_COLOR_BITS-1:0] color_step_y;
+    logic [DEPTH_CODE_BITS-1:0] depth_min;
+    logic [DEPTH_CODE_BITS-1:0] depth_max;
+    logic [4*COLOR_CODE_BITS-1:0] color_min;
+    logic [4*COLOR_CODE_BITS-1:0] color_max;
+  } context_packet_t;
+  localparam int CONTEXT_PACKET_BITS = 299;  // of the struct above
+
+  typedef struct packed {
+    logic [KIND_BITS-1:0] kind;
+    logic [FLAG_BITS-1:0] is_visit;
+    logic [FLAG_BITS-1:0] ends_primitive;
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
     logic [SLOT_BITS-1:0] slot;
     logic [TILE_X_BITS-1:0] tile_x;
@@ -65,9 +167,12 @@ package raster_pkg;
     logic [TILE_PIXEL_BITS-1:0] top;
     logic [TILE_PIXEL_BITS-1:0] right;
     logic [TILE_PIXEL_BITS-1:0] bottom;
+    logic [FLAG_BITS-1:0] is_inside;
     logic [3*TILE_EDGE_BITS-1:0] edge_value;
+    logic signed [LOCAL_DEPTH_BITS-1:0] depth_anchor;
+    logic [4*LOCAL_COLOR_BITS-1:0] color_anchor;
   } tile_packet_t;
-  localparam int TILE_PACKET_BITS = 129;  // of the struct above
+  localparam int TILE_PACKET_BITS = 225;  // of the struct above
 
   typedef struct packed {
     logic [3*EDGE_STEP_BITS-1:0] step_x;
@@ -76,13 +181,91 @@ package raster_pkg;
   localparam int EDGE_CONTEXT_BITS = 138;  // of the struct above
 
   typedef struct packed {
+    logic [KIND_BITS-1:0] kind;
+    logic [FLAG_BITS-1:0] ends_visit;
+    logic [FLAG_BITS-1:0] ends_primitive;
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
     logic [SLOT_BITS-1:0] slot;
     logic [TILE_X_BITS-1:0] tile_x;
     logic [TILE_Y_BITS-1:0] tile_y;
     logic [STAMP_INDEX_BITS-1:0] stamp;
     logic [SAMPLE_MASK_BITS-1:0] mask;
+    logic signed [LOCAL_DEPTH_BITS-1:0] depth_anchor;
+    logic [4*LOCAL_COLOR_BITS-1:0] color_anchor;
   } stamp_packet_t;
-  localparam int STAMP_PACKET_BITS = 54;  // of the struct above
+  localparam int STAMP_PACKET_BITS = 149;  // of the struct above
+
+  typedef struct packed {
+    logic [KIND_BITS-1:0] kind;
+    logic [FLAG_BITS-1:0] ends_visit;
+    logic [FLAG_BITS-1:0] ends_primitive;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [TILE_X_BITS-1:0] tile_x;
+    logic [TILE_Y_BITS-1:0] tile_y;
+    logic [STAMP_INDEX_BITS-1:0] stamp;
+    logic [SAMPLE_MASK_BITS-1:0] mask;
+    logic [DEPTH_FUNC_BITS-1:0] depth_test;
+    logic [FLAG_BITS-1:0] depth_write;
+    logic [FLAG_BITS-1:0] color_write;
+    logic [16*DEPTH_CODE_BITS-1:0] depth;
+    logic [16*VERTEX_COLOR_BITS-1:0] rgba;
+  } fragment_packet_t;
+  localparam int FRAGMENT_PACKET_BITS = 957;  // of the struct above
+
+  typedef struct packed {
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [TILE_X_BITS-1:0] tile_x;
+    logic [TILE_Y_BITS-1:0] tile_y;
+    logic [STAMP_INDEX_BITS-1:0] stamp;
+    logic [SAMPLE_MASK_BITS-1:0] passed;
+    logic [SAMPLE_MASK_BITS-1:0] write_depth;
+    logic [SAMPLE_MASK_BITS-1:0] write_color;
+    logic [16*DEPTH_CODE_BITS-1:0] depth;
+    logic [16*STORED_COLOR_BITS-1:0] color;
+  } write_packet_t;
+  localparam int WRITE_PACKET_BITS = 980;  // of the struct above
+
+  typedef struct packed {
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [TILE_X_BITS-1:0] tile_x;
+    logic [TILE_Y_BITS-1:0] tile_y;
+    logic [HIZ_UPDATE_BITS-1:0] update;
+    logic [HIZ_CODE_BITS-1:0] hiz_code;
+  } retire_packet_t;
+  localparam int RETIRE_PACKET_BITS = 52;  // of the struct above
+
+  typedef struct packed {
+    logic [FLAG_BITS-1:0] is_write;
+    logic [FLAG_BITS-1:0] is_color;
+    logic [TILE_X_BITS-1:0] tile_x;
+    logic [TILE_Y_BITS-1:0] tile_y;
+    logic [STAMP_INDEX_BITS-1:0] stamp;
+    logic [16*MEMORY_LANE_BITS-1:0] data;
+  } memory_request_t;
+  localparam int MEMORY_REQUEST_BITS = 534;  // of the struct above
+
+  typedef struct packed {
+    logic [16*MEMORY_LANE_BITS-1:0] data;
+  } memory_response_t;
+  localparam int MEMORY_RESPONSE_BITS = 512;  // of the struct above
+
+  typedef struct packed {
+    logic [COUNTER_BITS-1:0] primitives_in;
+    logic [COUNTER_BITS-1:0] zero_area;
+    logic [COUNTER_BITS-1:0] backface;
+    logic [COUNTER_BITS-1:0] empty;
+    logic [COUNTER_BITS-1:0] tiles_visited;
+    logic [COUNTER_BITS-1:0] tiles_outside;
+    logic [COUNTER_BITS-1:0] trivially_accepted;
+    logic [COUNTER_BITS-1:0] tiles_hiz;
+    logic [COUNTER_BITS-1:0] samples_tested;
+    logic [COUNTER_BITS-1:0] covered;
+    logic [COUNTER_BITS-1:0] depth_passed;
+    logic [COUNTER_BITS-1:0] written;
+    logic [COUNTER_BITS-1:0] tile_fills;
+    logic [COUNTER_BITS-1:0] tile_evictions;
+    logic [COUNTER_BITS-1:0] tile_clears;
+  } counter_packet_t;
+  localparam int COUNTER_PACKET_BITS = 480;  // of the struct above
 
 endpackage

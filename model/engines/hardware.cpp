@@ -1,0 +1,217 @@
+#include "hardware.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "../host_stream.hpp"
+#include "../pipeline.hpp"
+
+namespace halfplane {
+namespace {
+
+std::uint32_t stored_color(std::uint32_t rgba, const Config& config) {
+  return pack_color(config.color_format,
+                    {static_cast<std::uint8_t>(rgba), static_cast<std::uint8_t>(rgba >> 8),
+                     static_cast<std::uint8_t>(rgba >> 16), static_cast<std::uint8_t>(rgba >> 24)});
+}
+
+}  // namespace
+
+std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample, const Widths& widths) {
+  // Spread over all bits by an odd factor, so that a wrong tile, stamp or sample shows in narrow codes too.
+  std::uint32_t value = 0xDEADBEEFU ^ (is_color ? 0x5A5A5A5AU : 0U);
+  for (const int part : {tile_x, tile_y, stamp, sample})
+    value = (value ^ static_cast<std::uint32_t>(part)) * 0x9E3779B1U ^ value >> 15;
+  const Width& code = is_color ? widths.stored_color : widths.depth_code;
+  return static_cast<std::uint32_t>(wrap_unsigned(value, code.bits));
+}
+
+TileMemory::TileMemory(const Config& config) : widths_(derive_widths(config)) {
+  block_.resize(2 * static_cast<std::size_t>(widths_.tiles_x) * static_cast<std::size_t>(widths_.tiles_y), kNone);
+}
+
+void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, 64> data) const {
+  const std::uint32_t block = block_[index(is_color, tile_x, tile_y)];
+  if (block == kNone) {
+    for (int s = 0; s < samples(); ++s)
+      data[static_cast<std::size_t>(s)] = memory_garbage(is_color, tile_x, tile_y, stamp, s, widths_);
+    return;
+  }
+  std::copy_n(lanes_.begin() + first_lane(block, stamp), samples(), data.begin());
+}
+
+void TileMemory::write(bool is_color, int tile_x, int tile_y, int stamp, std::span<const std::uint32_t, 64> data) {
+  std::uint32_t& block = block_[index(is_color, tile_x, tile_y)];
+  if (block == kNone) {
+    block = blocks_++;
+    for (int other = 0; other < stamps(); ++other)
+      for (int s = 0; s < samples(); ++s) lanes_.push_back(memory_garbage(is_color, tile_x, tile_y, other, s, widths_));
+  }
+  std::copy_n(data.begin(), samples(), lanes_.begin() + first_lane(block, stamp));
+}
+
+Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config) {
+  Framebuffer frame(width, height, config.tile_size);
+  std::ranges::fill(frame.depth, snap_depth(1.0, config.depth_bits));
+  std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
+  const int tile = config.tile_size, size = config.stamp_size, stamps_per_row = tile / size;
+  std::array<std::uint32_t, 64> data;
+  const auto copy_stamp = [&](std::vector<std::uint32_t>& image, int x, int y) {
+    for (int s = 0; s < size * size; ++s)
+      if (x + s % size < width && y + s / size < height)
+        image[frame.at(x + s % size, y + s / size)] = data[static_cast<std::size_t>(s)];
+  };
+  for (int y = 0; y < height; y += size)
+    for (int x = 0; x < width; x += size) {
+      const int stamp = y % tile / size * stamps_per_row + x % tile / size;
+      memory.read(false, x / tile, y / tile, stamp, data);
+      copy_stamp(frame.depth, x, y);
+      memory.read(true, x / tile, y / tile, stamp, data);
+      copy_stamp(frame.color, x, y);
+    }
+  return frame;
+}
+
+WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored, const Config& config,
+                       const Widths& widths) {
+  WritePacket packet;
+  packet.primitive_id = fragment.primitive_id;
+  packet.tile_x = fragment.tile_x;
+  packet.tile_y = fragment.tile_y;
+  packet.stamp = fragment.stamp;
+  const auto func = static_cast<DepthFunc>(fragment.depth_test);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
+    packet.depth[s] = fragment.depth[s];
+    packet.color[s] = stored_color(fragment.rgba[s], config);
+    const bool passes = (fragment.mask >> s & 1) != 0 && depth_passes(func, fragment.depth[s], stored[s]);
+    packet.passed |= std::uint64_t{passes} << s;
+  }
+  packet.write_depth = fragment.depth_write != 0 ? packet.passed : 0;
+  packet.write_color = fragment.color_write != 0 ? packet.passed : 0;
+  return packet;
+}
+
+HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
+    : config_(config),
+      widths_(derive_widths(config)),
+      sink_(sink),
+      hiz_(config, widths_),
+      cache_(config, widths_),
+      memory_(config) {}
+
+void HardwareModel::run(const PrimitivePacket& primitive) {
+  const auto triangle = cull(primitive, widths_, counters_);
+  if (!triangle) return;
+  sink_.take(*triangle);
+  const SetupPacket setup = setup_packet(*triangle, config_, widths_);
+  sink_.take(setup);
+  const ContextPacket context = make_context(setup, widths_);
+  sink_.take(context);
+  const EdgeContext edges = make_edge_context(setup);
+  coarse_raster(setup, slot_, hiz_, widths_, counters_, [&](const TilePacket& tile) {
+    sink_.take(tile);
+    sink_.take(edges);
+    fine_raster(tile, edges, config_, widths_, [&](const StampPacket& stamp) {
+      sink_.take(stamp);
+      const FragmentPacket fragment = interpolate(stamp, context, config_, widths_);
+      sink_.take(fragment);
+      shade(fragment);
+    });
+  });
+  slot_ = static_cast<std::uint8_t>((slot_ + 1) % config_.context_slots);
+}
+
+/// depth_test, rop and framebuffer.
+void HardwareModel::shade(const FragmentPacket& fragment) {
+  switch (static_cast<PrimitiveKind>(fragment.kind)) {
+    case PrimitiveKind::fast_clear:
+      cache_.fast_clear(fragment, stored_color(fragment.rgba[0], config_), *this, counters_);
+      return;
+    case PrimitiveKind::flush: cache_.flush(fragment, *this, counters_); return;
+    case PrimitiveKind::triangle:
+    case PrimitiveKind::rectangle: break;
+  }
+  if (fragment.mask != 0) {
+    cache_.access(fragment.tile_x, fragment.tile_y, *this, counters_);
+    const auto stored = cache_.stored(TilePlane::depth, fragment.tile_x, fragment.tile_y, fragment.stamp);
+    const WritePacket packet = depth_test(fragment, stored, config_, widths_);
+    sink_.take(packet);
+    cache_.write(packet);
+    visit_.add(fragment, packet.passed, widths_);
+    if (fragment.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+      const auto passed = static_cast<std::uint32_t>(std::popcount(packet.passed));
+      counters_.covered += static_cast<std::uint32_t>(std::popcount(fragment.mask));
+      counters_.depth_passed += passed;
+      if (fragment.depth_write != 0 || fragment.color_write != 0) counters_.written += passed;
+    }
+  }
+  if (fragment.ends_visit != 0) {
+    const RetirePacket retired = visit_.retire(fragment, config_, widths_);
+    sink_.take(retired);
+    hiz_.update(retired);
+    visit_ = {};
+  }
+}
+
+void HardwareModel::write(const MemoryRequest& request) {
+  sink_.take(request);
+  memory_.write(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, request.data);
+}
+
+const MemoryResponse& HardwareModel::read(const MemoryRequest& request) {
+  sink_.take(request);
+  memory_.read(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, response_.data);
+  sink_.take(response_);
+  return response_;
+}
+
+void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters) {
+  // One input triangle may have sent several pieces: those without a pixel are counted by triangle, not by piece.
+  const std::uint64_t culled_before_box = counters.culled + hardware.zero_area + hardware.backface;
+  counters.drawn = drawn;
+  counters.culled = counters.primitives_in - drawn;
+  counters.skipped.empty += counters.culled - culled_before_box;
+  counters.skipped.zero_area += hardware.zero_area;
+  counters.skipped.backface += hardware.backface;
+  counters.skipped.tiles_outside = hardware.tiles_outside;
+  counters.skipped.trivially_accepted = hardware.trivially_accepted;
+  counters.skipped.tiles_hiz = hardware.tiles_hiz;
+  counters.skipped.fragments_early_z = hardware.covered - hardware.depth_passed;
+  counters.tiles_visited = hardware.tiles_visited;
+  counters.samples_tested = hardware.samples_tested;
+  counters.covered = hardware.covered;
+  counters.depth_passed = hardware.depth_passed;
+  counters.written = hardware.written;
+}
+
+Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options) {
+  const auto started = std::chrono::steady_clock::now();
+  PacketSink nobody;
+  HostStream host(scene, config);
+  HardwareModel hardware(config, nobody);
+  const auto dropped = [&hardware] {
+    const CounterPacket& c = hardware.counters();
+    return c.zero_area + c.backface + c.empty;
+  };
+  std::uint64_t drawn = 0;
+  std::int64_t last_drawn = -1;  // the pieces of an input triangle come one after the other
+  std::uint32_t sent = 0;
+  while (const auto primitive = host.next()) {
+    const std::uint32_t dropped_before = dropped();
+    hardware.run(primitive->packet);
+    const bool is_triangle = primitive->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle);
+    if (is_triangle && dropped() == dropped_before && last_drawn != primitive->primitive) {
+      ++drawn;
+      last_drawn = primitive->primitive;
+    }
+    if (options.progress && ++sent % 4096 == 0) options.progress(host.progress());
+  }
+  Rendering rendering;
+  rendering.frame = to_framebuffer(hardware.memory(), scene.width, scene.height, config);
+  rendering.counters = host.counters();
+  count_hardware(hardware.counters(), drawn, rendering.counters);
+  rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return rendering;
+}
+
+}  // namespace halfplane

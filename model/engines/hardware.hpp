@@ -1,0 +1,108 @@
+// The hardware engine: what the RTL computes, packet by packet, in program order and without time. Every packet goes to
+// a PacketSink on its way; the co-simulation compares the RTL's with them, and a cycle model can put time between them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "../stages/hiz.hpp"
+#include "../stages/tile_cache.hpp"
+#include "render.hpp"
+
+namespace halfplane {
+
+/// Who wants to see packets overrides the overloads it needs. Each arrow's packets come in the order of that arrow;
+/// packets of different arrows come interleaved as the work happens.
+struct PacketSink {
+  virtual ~PacketSink() = default;
+  virtual void take(const TrianglePacket&) {}  ///< cull -> triangle_setup
+  virtual void take(const SetupPacket&) {}     ///< triangle_setup -> coarse_raster
+  virtual void take(const ContextPacket&) {}   ///< beside each SetupPacket
+  virtual void take(const TilePacket&) {}      ///< coarse_raster -> fine_raster
+  virtual void take(const EdgeContext&) {}     ///< beside each TilePacket
+  virtual void take(const StampPacket&) {}     ///< fine_raster -> interpolate
+  virtual void take(const FragmentPacket&) {}  ///< interpolate -> depth_test
+  virtual void take(const WritePacket&) {}     ///< depth_test, rop -> framebuffer
+  virtual void take(const RetirePacket&) {}    ///< depth_test -> coarse_raster
+  virtual void take(const MemoryRequest&) {}   ///< framebuffer -> memory
+  virtual void take(const MemoryResponse&) {}  ///< memory -> framebuffer
+};
+
+/// The lanes of a stamp that nobody has written yet: different everywhere, and the same for every TileMemory.
+[[nodiscard]] std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample,
+                                           const Widths& widths);
+
+/// The memory behind the memory port: both planes, tile-major, a stamp at a time. Tiles are allocated when written.
+class TileMemory {
+ public:
+  explicit TileMemory(const Config& config);
+  /// The first `samples` lanes of `data`; the others are left alone.
+  void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, 64> data) const;
+  void write(bool is_color, int tile_x, int tile_y, int stamp, std::span<const std::uint32_t, 64> data);
+  [[nodiscard]] int tiles_x() const { return widths_.tiles_x; }  ///< of the widest and highest target
+  [[nodiscard]] int tiles_y() const { return widths_.tiles_y; }
+  [[nodiscard]] int stamps() const { return widths_.stamps_per_row * widths_.stamps_per_row; }  ///< of a tile
+  [[nodiscard]] int samples() const { return widths_.samples; }                                 ///< of a stamp
+  /// Whether any stamp of the tile was ever written. Two memories with equal writes agree on it.
+  [[nodiscard]] bool is_written(bool is_color, int tile_x, int tile_y) const {
+    return block_[index(is_color, tile_x, tile_y)] != kNone;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0U;
+  [[nodiscard]] std::size_t index(bool is_color, int tile_x, int tile_y) const {
+    return (static_cast<std::size_t>(is_color ? widths_.tiles_y : 0) + static_cast<std::size_t>(tile_y)) *
+               static_cast<std::size_t>(widths_.tiles_x) +
+           static_cast<std::size_t>(tile_x);
+  }
+  [[nodiscard]] std::ptrdiff_t first_lane(std::uint32_t block, int stamp) const {
+    return (static_cast<std::ptrdiff_t>(block) * stamps() + stamp) * samples();
+  }
+  Widths widths_;
+  std::vector<std::uint32_t> block_;  ///< of each tile of each plane: which tile of lanes_, or kNone
+  std::uint32_t blocks_ = 0;          ///< tiles in lanes_
+  std::vector<std::uint32_t> lanes_;  ///< stamp by stamp
+};
+
+/// The two images, as the memory holds them. Padding as in an empty target: farthest depth, opaque black.
+[[nodiscard]] Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config);
+
+/// Depth test and rop of one stamp. `stored`: the depth codes of its samples in the tile RAM.
+[[nodiscard]] WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
+                                     const Config& config, const Widths& widths);
+
+/// The whole chip and the memory behind it, after reset. `sink` must outlive it.
+class HardwareModel final : private MemoryPort {
+ public:
+  HardwareModel(const Config& config, PacketSink& sink);
+  /// One primitive, to its last write: every packet that follows from it.
+  void run(const PrimitivePacket& primitive);
+  [[nodiscard]] const CounterPacket& counters() const { return counters_; }
+  [[nodiscard]] const TileMemory& memory() const { return memory_; }
+
+ private:
+  void shade(const FragmentPacket& fragment);
+  void write(const MemoryRequest& request) override;
+  const MemoryResponse& read(const MemoryRequest& request) override;
+
+  Config config_;
+  Widths widths_;
+  PacketSink& sink_;
+  CounterPacket counters_;
+  Hiz hiz_;
+  TileVisit visit_;  ///< what the stamps of the current tile visit have done so far
+  TileCache cache_;
+  TileMemory memory_;
+  MemoryResponse response_;
+  std::uint8_t slot_ = 0;  ///< context slot of the next primitive
+};
+
+/// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
+/// least one piece passed cull.
+void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters);
+
+/// Renders `scene` by the hardware model, flush included. Fills frame and counters, not count, ids, visible and
+/// triangles; of options it takes progress. Throws InputError as check_hardware_scene().
+[[nodiscard]] Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options = {});
+
+}  // namespace halfplane

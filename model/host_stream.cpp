@@ -1,0 +1,132 @@
+#include "host_stream.hpp"
+
+namespace halfplane {
+namespace {
+
+/// A primitive without vertices: one depth and one colour over its whole box.
+PrimitivePacket flat_packet(PrimitiveKind kind, const Rect& rect) {
+  PrimitivePacket packet;
+  packet.kind = static_cast<std::uint8_t>(kind);
+  packet.depth_test = static_cast<std::uint8_t>(DepthFunc::always);
+  set_box(packet, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
+  return packet;
+}
+
+void clear_depth(PrimitivePacket& packet, std::uint32_t code) {
+  packet.depth_write = 1;
+  packet.z.fill(code);
+}
+
+void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, const Widths& widths) {
+  std::array<std::uint8_t, 4> code;
+  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(color[c]);
+  packet.color_write = 1;
+  packet.rgba.fill(packet_color(code, widths));
+}
+
+}  // namespace
+
+HostStream::HostStream(const Scene& scene, const Config& config)
+    : scene_(scene), config_(config), vertices_(scene.vertices.size()) {
+  validate(config);
+  check_hardware_scene(scene, config);
+  widths_ = derive_widths(config);
+  PrimitivePacket first = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene.width, scene.height});
+  clear_depth(first, snap_depth(1.0, config.depth_bits));
+  clear_color(first, {0, 0, 0, 255}, widths_);
+  send(first, 0);
+  pending_.back().command = HostPrimitive::kNoCommand;
+}
+
+std::optional<HostPrimitive> HostStream::next() {
+  while (pending_first_ == pending_.size()) {
+    if (is_finished_) return std::nullopt;
+    pending_.clear();
+    pending_first_ = 0;
+    advance();
+  }
+  return pending_[pending_first_++];
+}
+
+/// Does the next piece of work; it may send nothing.
+void HostStream::advance() {
+  if (triangle_ < triangles_.size()) {
+    send_next_triangle();
+  } else if (command_ < scene_.commands.size()) {
+    const Command& command = scene_.commands[command_++];
+    if (const auto* clear = std::get_if<Clear>(&command)) send_clear(*clear);
+    if (const auto* draw = std::get_if<Draw>(&command)) start_draw(*draw);
+  } else {
+    send(flat_packet(PrimitiveKind::flush, {0, 0, scene_.width, scene_.height}), primitive_);
+    pending_.back().command = HostPrimitive::kNoCommand;
+    is_finished_ = true;
+  }
+}
+
+void HostStream::start_draw(const Draw& draw) {
+  context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
+  triangles_.clear();
+  triangle_ = 0;
+  for_each_triangle(scene_, draw, [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    triangles_.push_back({a, b, c});
+  });
+}
+
+void HostStream::send_next_triangle() {
+  pieces_.clear();
+  bool is_cut = false;
+  const auto index = triangles_[triangle_++];
+  if (context_->rect.width > 0 && context_->rect.height > 0) {
+    is_cut = geometry_for_hardware(*context_, vertices_, index, primitive_, counters_, pieces_);
+  } else {  // no packet can say so: culled here
+    geometry(*context_, vertices_, index, primitive_, Skip{}, counters_, pieces_);
+    pieces_.clear();
+  }
+  for (const Triangle& piece : pieces_) send_triangle(piece, is_cut);
+  ++primitive_;
+}
+
+void HostStream::send_triangle(const Triangle& triangle, bool is_clipped) {
+  const State& state = context_->state;
+  const Rect& rect = context_->rect;
+  PrimitivePacket packet;
+  packet.kind = static_cast<std::uint8_t>(PrimitiveKind::triangle);
+  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
+  packet.depth_write = state.depth_write ? 1 : 0;
+  packet.color_write = state.color_write ? 1 : 0;
+  packet.cull = static_cast<std::uint8_t>(is_clipped ? Cull::none : state.cull);
+  packet.front_cw = state.front == FrontFace::cw ? 1 : 0;
+  set_box(packet, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
+  set_vertices(packet, triangle.v, widths_);
+  send(packet, triangle.primitive);
+}
+
+void HostStream::send_clear(const Clear& command) {
+  const Rect rect = clear_rect(scene_, command);
+  if (rect.width <= 0 || rect.height <= 0 || (!command.depth && !command.color)) return;
+  const bool is_whole = rect == Rect{0, 0, scene_.width, scene_.height};
+  PrimitivePacket packet = flat_packet(is_whole ? PrimitiveKind::fast_clear : PrimitiveKind::rectangle, rect);
+  if (command.depth) clear_depth(packet, snap_depth(*command.depth, config_.depth_bits));
+  if (command.color) clear_color(packet, *command.color, widths_);
+  send(packet, primitive_);
+}
+
+void HostStream::send(const PrimitivePacket& packet, std::uint32_t primitive) {
+  HostPrimitive sent{packet, primitive, static_cast<std::uint32_t>(command_ - 1)};
+  sent.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  pending_.push_back(sent);
+}
+
+double HostStream::progress() const {
+  if (is_finished_) return 1;
+  const auto part = [](std::size_t done, std::size_t all) {
+    return all == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(all);
+  };
+  const auto commands = static_cast<double>(scene_.commands.size());
+  const double left_of_draw = triangles_.empty() ? 0.0 : 1.0 - part(triangle_, triangles_.size());
+  return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
+}
+
+void check_hardware_scene(const Scene& scene, const Config& config) { check_scene(scene, config); }
+
+}  // namespace halfplane

@@ -1,0 +1,103 @@
+// HiZ: a bound on the depths of each tile, by which coarse_raster drops tiles that cannot pass the depth test.
+//
+// In: the retired tile visits and the fast clears, in program order. Out: whether a tile of a primitive can be left
+// out. The bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above
+// it.
+#pragma once
+
+#include <bit>
+#include <vector>
+
+#include "../packets.hpp"
+#include "../scene.hpp"
+
+namespace halfplane {
+
+/// The bounds of all tiles. Before the first clear they are all ones: nothing is left out.
+class Hiz {
+ public:
+  explicit Hiz(const Config& config, const Widths& widths)
+      : bits_(config.hiz_bits),
+        low_bits_(config.depth_bits - config.hiz_bits),
+        tiles_x_(static_cast<std::size_t>(widths.tiles_x)),
+        code_(tiles_x_ * static_cast<std::size_t>(widths.tiles_y),
+              static_cast<std::uint32_t>(widths.hiz_code.range.hi)) {}
+
+  /// Whether the primitive may be tested at all. Those of up to 2 x 2 tiles are not: reading the bound would cost more
+  /// than it saves.
+  [[nodiscard]] bool is_eligible(const SetupPacket& setup, const Widths& widths) const {
+    const auto tiles = [&widths](int first, int last) {
+      return (last >> widths.tile_shift) - (first >> widths.tile_shift) + 1;
+    };
+    const auto func = static_cast<DepthFunc>(setup.depth_test);
+    return bits_ > 0 && setup.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) &&
+           (tiles(setup.left, setup.right) > 2 || tiles(setup.top, setup.bottom) > 2) &&
+           (func == DepthFunc::less || func == DepthFunc::lequal || func == DepthFunc::equal);
+  }
+
+  /// Whether no sample of an eligible primitive can pass in this tile.
+  [[nodiscard]] bool rejects(const SetupPacket& setup, int tile_x, int tile_y) const {
+    const std::uint64_t nearest = setup.depth_min, farthest = bound(tile_x, tile_y);
+    return setup.depth_test == static_cast<std::uint8_t>(DepthFunc::less) ? nearest >= farthest : nearest > farthest;
+  }
+
+  void update(const RetirePacket& retired) {
+    if (retired.update != static_cast<std::uint8_t>(HizUpdate::none))
+      code_[index(retired.tile_x, retired.tile_y)] = retired.hiz_code;
+  }
+
+  /// Tiles (0, 0) to (last_x, last_y) now hold the clear depth.
+  void clear(int last_x, int last_y, std::uint32_t depth) {
+    if (bits_ == 0) return;
+    for (int y = 0; y <= last_y; ++y)
+      for (int x = 0; x <= last_x; ++x) code_[index(x, y)] = depth >> low_bits_;
+  }
+
+  /// No depth code of the tile is above this.
+  [[nodiscard]] std::uint64_t bound(int tile_x, int tile_y) const {
+    return ((std::uint64_t{code_[index(tile_x, tile_y)]} + 1) << low_bits_) - 1;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * tiles_x_ + static_cast<std::size_t>(x);
+  }
+  int bits_, low_bits_;  ///< bits stored, and dropped, of a depth code
+  std::size_t tiles_x_;
+  std::vector<std::uint32_t> code_;
+};
+
+/// What depth_test gathers over the stamps of one tile visit.
+class TileVisit {
+ public:
+  void add(const FragmentPacket& fragment, std::uint64_t passed, const Widths& widths) {
+    full_stamps_ += std::popcount(passed) == widths.samples ? 1 : 0;
+    has_passed_ = has_passed_ || passed != 0;
+    for (std::uint64_t rest = passed; rest != 0; rest &= rest - 1)
+      largest_ = std::max(largest_, fragment.depth[static_cast<std::size_t>(std::countr_zero(rest))]);
+  }
+
+  /// The end of the visit; `last` is its last stamp.
+  [[nodiscard]] RetirePacket retire(const FragmentPacket& last, const Config& config, const Widths& widths) const {
+    RetirePacket packet;
+    packet.primitive_id = last.primitive_id;
+    packet.tile_x = last.tile_x;
+    packet.tile_y = last.tile_y;
+    if (config.hiz_bits == 0 || last.depth_write == 0) return packet;
+    if (full_stamps_ == widths.stamps_per_row * widths.stamps_per_row) {
+      packet.update = static_cast<std::uint8_t>(HizUpdate::set);
+      packet.hiz_code = largest_ >> (config.depth_bits - config.hiz_bits);
+    } else if (has_passed_ && last.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
+      packet.update = static_cast<std::uint8_t>(HizUpdate::clear);  // these tests can raise a depth
+      packet.hiz_code = static_cast<std::uint32_t>(widths.hiz_code.range.hi);
+    }
+    return packet;
+  }
+
+ private:
+  int full_stamps_ = 0;  ///< stamps of which every sample was covered and passed
+  bool has_passed_ = false;
+  std::uint32_t largest_ = 0;  ///< depth code
+};
+
+}  // namespace halfplane

@@ -1,0 +1,97 @@
+# Faults that the co-simulation must catch. cmake/Mutants.cmake says how they get into the design.
+
+# cull
+mutant(1 stages/cull.sv "tie rule: bottom edges take the samples on them, top edges leave them"
+  [=[(edge_dx < 0) == is_negative]=] [=[(edge_dx < 0) != is_negative]=])
+mutant(2 stages/cull.sv "sign: the front face is the other one"
+  [=[is_negative != p_q.front_cw]=] [=[is_negative == p_q.front_cw]=])
+mutant(3 stages/cull.sv "off by one: the box loses a first column whose centre is on the leftmost vertex"
+  [=[(B'(x_min) + HALF - B'(1)) >>> S]=] [=[(B'(x_min) + HALF) >>> S]=])
+mutant(4 stages/cull.sv "order: of vertices 1 and 2 the larger one comes first"
+  [=[key1 <= key2]=] [=[key1 >= key2]=])
+mutant(5 stages/cull.sv "carry: turned edges lose the +1 of their negation"
+  [=[(~exact + E'(is_top_left ? 1 : 0))]=] [=[(~exact)]=])
+mutant(6 stages/cull.sv "counter: empty triangles count when they face away, too"
+  [=[is_triangle && !is_zero && !is_back && is_empty_q]=] [=[is_triangle && !is_zero && is_empty_q]=])
+
+# triangle_setup
+mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
+  [=[R'(g_quotient_q[QUOTIENT-R-1])]=] [=[R'(0)]=])
+mutant(8 stages/triangle_setup.sv "rounding: the x gradient is truncated"
+  [=[P'(shifted_x[0])]=] [=[P'(0)]=])
+mutant(9 stages/triangle_setup.sv "divider: a remainder that equals the divisor is not taken off"
+  [=[remainder_d >= {1'b0, t_q.area}]=] [=[remainder_d > {1'b0, t_q.area}]=])
+mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third vertex"
+  [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
+  [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
+mutant(11 stages/triangle_setup.sv "carry: planes start half a local unit low"
+  [=[(value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS)]=]
+  [=[(value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS) - (P'(1) << (F - L - 1))]=])
+
+# coarse_raster
+mutant(12 stages/coarse_raster.sv "trivial reject: a tile whose best sample is on the edge is skipped"
+  [=[largest < 0]=] [=[largest <= 0]=])
+mutant(13 stages/coarse_raster.sv "trivial accept: a tile whose worst sample is on the edge is not accepted"
+  [=[smallest >= 0]=] [=[smallest > 0]=])
+mutant(14 stages/coarse_raster.sv "saturation: large edge values wrap"
+  [=[{value_q[V-1], {(TE - 1) {~value_q[V-1]}}}]=] [=[value_q[TE-1:0]]=])
+mutant(15 stages/coarse_raster.sv "stale HiZ: a tile's bound is read while an earlier visit is under way"
+  [=[is_eligible && !conflicts]=] [=[is_eligible]=])
+mutant(16 stages/coarse_raster.sv "HiZ: a bound that equals the smallest depth rejects, whatever the depth test"
+  [=[(s_q.depth_test == 3'd1 && is_equal)]=] [=[is_equal]=])
+mutant(17 stages/coarse_raster.sv "HiZ: greater and its like are tested"
+  [=[s_q.depth_test != 3'd0 && !s_q.depth_test[2]]=] [=[s_q.depth_test != 3'd0]=])
+mutant(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
+  [=[depth_row_q + (s_q.depth_step_y << (TS + S))]=] [=[depth_q + (s_q.depth_step_y << (TS + S))]=])
+mutant(19 stages/coarse_raster.sv "off by one: the last column of a tile that the box crosses is left out"
+  [=[is_last_column ? s_q.right[TS-1:0] : '1]=] [=[is_last_column ? s_q.right[TS-1:0] : ~TS'(1)]=])
+mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is truncated"
+  [=[LD'(setup_i.depth_step_x[NARROW-1])]=] [=[LD'(0)]=])
+mutant(21 stages/coarse_raster.sv "counter: rectangles count as triangles"
+  [=[steps && is_triangle]=] [=[steps]=])
+mutant(22 stages/coarse_raster.sv "context: a fifth primitive takes a slot that is still read"
+  [=[used_q != (SLOT + 1)'(SLOTS)]=] [=[used_q != (SLOT + 1)'(SLOTS + 1)]=])
+
+# fine_raster
+mutant(23 stages/fine_raster.sv "tie rule: samples on an edge are outside"
+  [=[sample < 0]=] [=[sample <= 0]=])
+mutant(24 stages/fine_raster.sv "scissor: the right side of the box is not looked at"
+  [=[PIXEL'(i) <= tile_q.right]=] [=[(PIXEL'(i) <= '1)]=])
+mutant(25 stages/fine_raster.sv "end of visit: told with every row"
+  [=[stamps_last_row_q && is_last_stamp && stamp_tile_q.is_visit]=] [=[is_last_stamp && stamp_tile_q.is_visit]=])
+mutant(26 stages/fine_raster.sv "dropped stall: a row moves on before its stamps are taken over"
+  [=[stamps_ready || !row_is_sent]=] [=[1'b1]=])
+
+# interpolate
+mutant(27 stages/interpolate.sv "clamp: nothing is clamped from below"
+  [=[code < $signed((B + 2)'(low))]=] [=[1'b0]=])
+mutant(28 stages/interpolate.sv "dropped stall: a slot is given back on every cycle that its last stamp waits"
+  [=[context_valid_q && x_ready && context_stamp_q.ends_primitive]=] [=[context_valid_q && context_stamp_q.ends_primitive]=])
+mutant(29 stages/interpolate.sv "off by one: the half-tile offset in y is taken from x"
+  [=[(to_y[PIXEL-1] ? x_step_y << (PIXEL - 1) : '0)]=] [=[(to_y[PIXEL-1] ? x_step_y << PIXEL : '0)]=])
+mutant_text(30 lib/skid_buffer.sv "dropped stall: a full buffer takes one more"
+  [=[assign ready_o = !tail_valid_q;]=] [=[assign ready_o = !tail_valid_q || raster_cosim.mutant_i == 16'd30;]=])
+
+# depth_test and rop
+mutant(31 stages/depth_test.sv "hazard: the mask of the stamp ahead is ignored, its depth is not seen"
+  [=[valid_q && fragment_q.depth_write && fragment_q.tile_x == fragment_i.tile_x]=] [=[1'b0 && fragment_q.tile_x == fragment_i.tile_x]=])
+mutant(32 stages/depth_test.sv "depth test: gequal fails on equal codes"
+  [=[func == 3'd5]=] [=[1'b0]=])
+mutant(33 stages/depth_test.sv "HiZ: the bound comes from the stamp's first sample"
+  [=[corner > max_q ? corner : max_q]=] [=[corner_00 > max_q ? corner_00 : max_q]=])
+mutant(34 stages/depth_test.sv "stale HiZ: greater and its like leave the bound as it was"
+  [=[fragment_q.depth_write && func[2] && any_passed]=] [=[1'b0]=])
+mutant(35 stages/depth_test.sv "counter: samples count as written with both masks off"
+  [=[is_counted && writes]=] [=[is_counted]=])
+
+# framebuffer
+mutant(36 stages/framebuffer.sv "write back: colour is always taken for dirty"
+  [=[valid_q[line] && dirty_color_q[line]]=] [=[valid_q[line]]=])
+mutant(37 stages/framebuffer.sv "fast clear: the flag of a plane outlives its write back"
+  [=[{2{is_write_back && ends_plane}} & {plane_q, !plane_q}]=] [=[{2{state_q == CLEAR && ends_plane}} & {plane_q, !plane_q}]=])
+mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
+  [=[tag_y == access_i.tile_y >> LINE_Y]=] [=[1'b1]=])
+
+# reset
+mutant_text(39 stages/coarse_raster.sv "wrong reset: the ring of visits starts with its ends apart"
+  [=[      newest_q      <= '0;]=] [=[      newest_q      <= VISIT'(raster_cosim.mutant_i == 16'd39);]=])

@@ -1,0 +1,282 @@
+// The raster pipeline: snapped primitives in, tiles of depth and colour in memory out.
+//
+//   cull -> triangle_setup -> coarse_raster -> fine_raster -> interpolate -> depth_test -> framebuffer -> memory
+//                                 ^ the retirement of tile visits (HiZ)  <-----'
+//
+// Every arrow is a stream: a packet moves when valid and ready are both high. stall_i holds a stream back for a cycle,
+// for tests; hardware ties it to 0. Nothing in here depends on when packets come, only on what they say.
+// docs/pipeline.md says what each stage takes and how long; the host must clear depth and colour once before it draws.
+module raster_top (
+    input logic clk_i,
+    input logic rst_ni,
+
+    input logic [7:0] stall_i,  // primitive, triangle, setup, tile, stamp, fragment, request, response
+
+    // From the host
+    input  logic                          primitive_valid_i,
+    output logic                          primitive_ready_o,
+    input  raster_pkg::primitive_packet_t primitive_i,
+
+    // To memory: one stamp of one plane a request, reads answered in order
+    output logic                         request_valid_o,
+    input  logic                         request_ready_i,
+    output raster_pkg::memory_request_t  request_o,
+    input  logic                         response_valid_i,
+    output logic                         response_ready_o,
+    input  raster_pkg::memory_response_t response_i,
+
+    output raster_pkg::counter_packet_t counters_o,
+    output logic                        idle_o  // nothing is under way
+);
+
+  localparam int COUNTER = raster_pkg::COUNTER_BITS;
+  localparam int COUNT = $clog2(raster_pkg::SAMPLES + 1);
+
+  // The streams, as the consumer sees them.
+  logic triangle_valid, triangle_ready, setup_valid, setup_ready, tile_valid, tile_ready;
+  logic stamp_valid, stamp_ready, fragment_valid, fragment_ready;
+  var raster_pkg::triangle_packet_t triangle_data;
+  var raster_pkg::setup_packet_t    setup_data;
+  var raster_pkg::context_packet_t  context_data;
+  var raster_pkg::tile_packet_t     tile_data;
+  var raster_pkg::edge_context_t    edges_data;
+  var raster_pkg::stamp_packet_t    stamp_data;
+  var raster_pkg::fragment_packet_t fragment_data;
+  logic                             write_valid, retire_valid;
+  var raster_pkg::write_packet_t    write_data;
+  var raster_pkg::retire_packet_t   retire_data;
+
+  // The same at the producer, before a stall.
+  logic primitive_ready, triangle_offered, setup_offered, tile_offered, stamp_offered, fragment_offered;
+  logic request_offered, response_ready;
+  logic triangle_accepted, setup_accepted, tile_accepted, stamp_accepted, fragment_accepted;
+
+  assign primitive_ready_o = primitive_ready && !stall_i[0];
+  assign triangle_valid    = triangle_offered && !stall_i[1];
+  assign triangle_ready    = triangle_accepted && !stall_i[1];
+  assign setup_valid       = setup_offered && !stall_i[2];
+  assign setup_ready       = setup_accepted && !stall_i[2];
+  assign tile_valid        = tile_offered && !stall_i[3];
+  assign tile_ready        = tile_accepted && !stall_i[3];
+  assign stamp_valid       = stamp_offered && !stall_i[4];
+  assign stamp_ready       = stamp_accepted && !stall_i[4];
+  assign fragment_valid    = fragment_offered && !stall_i[5];
+  assign fragment_ready    = fragment_accepted && !stall_i[5];
+  assign request_valid_o   = request_offered && !stall_i[6];
+  assign response_ready_o  = response_ready && !stall_i[7];
+
+  logic is_triangle, is_zero_area, is_backface, is_empty, is_dropped;
+  cull u_cull (
+      .clk_i,
+      .rst_ni,
+      .primitive_valid_i(primitive_valid_i && !stall_i[0]),
+      .primitive_ready_o(primitive_ready),
+      .primitive_i,
+      .triangle_valid_o (triangle_offered),
+      .triangle_ready_i (triangle_ready),
+      .triangle_o       (triangle_data),
+      .is_triangle_o    (is_triangle),
+      .is_zero_area_o   (is_zero_area),
+      .is_backface_o    (is_backface),
+      .is_empty_o       (is_empty),
+      .is_dropped_o     (is_dropped)
+  );
+
+  generate
+    if (raster_pkg::SETUP_KIND == 0) begin : gen_pipelined
+      triangle_setup u_triangle_setup (
+          .clk_i,
+          .rst_ni,
+          .triangle_valid_i(triangle_valid),
+          .triangle_ready_o(triangle_accepted),
+          .triangle_i      (triangle_data),
+          .setup_valid_o   (setup_offered),
+          .setup_ready_i   (setup_ready),
+          .setup_o         (setup_data)
+      );
+    end else begin : gen_serial
+      triangle_setup_serial u_triangle_setup (
+          .clk_i,
+          .rst_ni,
+          .triangle_valid_i(triangle_valid),
+          .triangle_ready_o(triangle_accepted),
+          .triangle_i      (triangle_data),
+          .setup_valid_o   (setup_offered),
+          .setup_ready_i   (setup_ready),
+          .setup_o         (setup_data)
+      );
+    end
+  endgenerate
+
+  logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
+  logic                             slot_free;
+  logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
+  logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
+  coarse_raster u_coarse_raster (
+      .clk_i,
+      .rst_ni,
+      .setup_valid_i   (setup_valid),
+      .setup_ready_o   (setup_accepted),
+      .setup_i         (setup_data),
+      .context_slot_o  (context_slot),
+      .context_o       (context_data),
+      .slot_free_i     (slot_free),
+      .tile_valid_o    (tile_offered),
+      .tile_ready_i    (tile_ready),
+      .tile_o          (tile_data),
+      .edges_o         (edges_data),
+      .retire_valid_i  (retire_valid),
+      .retire_i        (retire_data),
+      .is_visited_o    (is_visited),
+      .is_outside_o    (is_outside),
+      .is_accepted_o   (is_accepted),
+      .is_hiz_o        (is_hiz),
+      .samples_tested_o(samples_tested),
+      .visits_are_done_o(visits_are_done)
+  );
+
+  logic                             context_read;
+  var raster_pkg::context_packet_t  stamp_context;
+  sram #(
+      .WIDTH(raster_pkg::CONTEXT_PACKET_BITS),
+      .DEPTH(raster_pkg::CONTEXT_SLOTS)
+  ) u_context (
+      .clk_i,
+      .read_i         (context_read),
+      .read_address_i (read_slot),
+      .data_o         (stamp_context),
+      .write_i        (setup_valid && setup_accepted),
+      .write_address_i(context_slot),
+      .data_i         (context_data)
+  );
+
+  logic fine_valid, fine_ready;
+  var raster_pkg::stamp_packet_t fine_data;
+  fine_raster u_fine_raster (
+      .clk_i,
+      .rst_ni,
+      .tile_valid_i (tile_valid),
+      .tile_ready_o (tile_accepted),
+      .tile_i       (tile_data),
+      .edges_i      (edges_data),
+      .stamp_valid_o(fine_valid),
+      .stamp_ready_i(fine_ready),
+      .stamp_o      (fine_data)
+  );
+
+  // Behind here every step waits for the next one combinationally; the buffer keeps that out of the stages before.
+  skid_buffer #(
+      .WIDTH(raster_pkg::STAMP_PACKET_BITS)
+  ) u_stamps (
+      .clk_i,
+      .rst_ni,
+      .valid_i(fine_valid),
+      .ready_o(fine_ready),
+      .data_i (fine_data),
+      .valid_o(stamp_offered),
+      .ready_i(stamp_ready),
+      .data_o (stamp_data)
+  );
+
+  interpolate u_interpolate (
+      .clk_i,
+      .rst_ni,
+      .stamp_valid_i   (stamp_valid),
+      .stamp_ready_o   (stamp_accepted),
+      .stamp_i         (stamp_data),
+      .context_read_o  (context_read),
+      .context_slot_o  (read_slot),
+      .context_i       (stamp_context),
+      .slot_free_o     (slot_free),
+      .fragment_valid_o(fragment_offered),
+      .fragment_ready_i(fragment_ready),
+      .fragment_o      (fragment_data)
+  );
+
+  logic                                                       access_valid, access_ready;
+  var raster_pkg::fragment_packet_t                           access;
+  logic [raster_pkg::STORED_COLOR_BITS-1:0]                   access_color;
+  logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth;
+  logic [COUNT-1:0]                                           covered, passed, written;
+  depth_test u_depth_test (
+      .clk_i,
+      .rst_ni,
+      .fragment_valid_i(fragment_valid),
+      .fragment_ready_o(fragment_accepted),
+      .fragment_i      (fragment_data),
+      .access_valid_o  (access_valid),
+      .access_ready_i  (access_ready),
+      .access_o        (access),
+      .access_color_o  (access_color),
+      .stored_depth_i  (stored_depth),
+      .write_valid_o   (write_valid),
+      .write_o         (write_data),
+      .retire_valid_o  (retire_valid),
+      .retire_o        (retire_data),
+      .covered_o       (covered),
+      .passed_o        (passed),
+      .written_o       (written)
+  );
+
+  logic [1:0] fill, evict, clear;
+  logic       framebuffer_idle;
+  framebuffer u_framebuffer (
+      .clk_i,
+      .rst_ni,
+      .access_valid_i  (access_valid),
+      .access_ready_o  (access_ready),
+      .access_i        (access),
+      .access_color_i  (access_color),
+      .stored_depth_o  (stored_depth),
+      .write_valid_i   (write_valid),
+      .write_i         (write_data),
+      .request_valid_o (request_offered),
+      .request_ready_i (request_ready_i && !stall_i[6]),
+      .request_o,
+      .response_valid_i(response_valid_i && !stall_i[7]),
+      .response_ready_o(response_ready),
+      .response_i,
+      .fill_o          (fill),
+      .evict_o         (evict),
+      .clear_o         (clear),
+      .idle_o          (framebuffer_idle)
+  );
+
+  // Primitives between the host and the end of their last stamp.
+  localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 16);
+  logic [UNDER_WAY-1:0] under_way_q;
+  logic                 enters, ends;
+  assign enters = primitive_valid_i && primitive_ready_o;
+  assign ends   = fragment_valid && fragment_accepted && fragment_data.ends_primitive;
+  assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) under_way_q <= '0;
+    else under_way_q <= under_way_q + UNDER_WAY'(enters) - UNDER_WAY'(ends) - UNDER_WAY'(is_dropped);
+  end
+
+  // Performance counters: the work of triangles, and the tile traffic of everything, since reset.
+  var raster_pkg::counter_packet_t counters_q;
+  assign counters_o = counters_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) counters_q <= '0;
+    else begin
+      counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_triangle);
+      counters_q.zero_area          <= counters_q.zero_area + COUNTER'(is_zero_area);
+      counters_q.backface           <= counters_q.backface + COUNTER'(is_backface);
+      counters_q.empty              <= counters_q.empty + COUNTER'(is_empty);
+      counters_q.tiles_visited      <= counters_q.tiles_visited + COUNTER'(is_visited);
+      counters_q.tiles_outside      <= counters_q.tiles_outside + COUNTER'(is_outside);
+      counters_q.trivially_accepted <= counters_q.trivially_accepted + COUNTER'(is_accepted);
+      counters_q.tiles_hiz          <= counters_q.tiles_hiz + COUNTER'(is_hiz);
+      counters_q.samples_tested     <= counters_q.samples_tested + COUNTER'(samples_tested);
+      counters_q.covered            <= counters_q.covered + COUNTER'(covered);
+      counters_q.depth_passed       <= counters_q.depth_passed + COUNTER'(passed);
+      counters_q.written            <= counters_q.written + COUNTER'(written);
+      counters_q.tile_fills         <= counters_q.tile_fills + COUNTER'(fill);
+      counters_q.tile_evictions     <= counters_q.tile_evictions + COUNTER'(evict);
+      counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear);
+    end
+  end
+
+endmodule

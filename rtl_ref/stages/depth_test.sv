@@ -1,0 +1,232 @@
+// Depth test: a stamp's depth codes against the stored ones, and what follows from the result.
+//
+// In: fragments. Out: an access of the framebuffer for each stamp with a covered sample and for each token (fast clear,
+// flush); one cycle later, with the stored codes, the write of what passed; another cycle later the retirement of the
+// tile visit. One stamp a cycle. A stamp waits one cycle behind a stamp whose depth it has to see.
+// Specification: model/stages/depth_test.hpp.
+module depth_test (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From interpolate
+    input  logic                         fragment_valid_i,
+    output logic                         fragment_ready_o,
+    input  raster_pkg::fragment_packet_t fragment_i,
+
+    // To framebuffer: the access, and what it answers in the cycle after it
+    output logic                                                    access_valid_o,
+    input  logic                                                    access_ready_i,
+    output raster_pkg::fragment_packet_t                            access_o,
+    output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // of sample 0: a clear's colour
+    input  logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth_i,
+
+    // To framebuffer; never waits
+    output logic                      write_valid_o,
+    output raster_pkg::write_packet_t write_o,
+
+    // To coarse_raster; never waits
+    output logic                       retire_valid_o,
+    output raster_pkg::retire_packet_t retire_o,
+
+    // Samples of triangles that this cycle adds to the counters
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] covered_o,
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] passed_o,
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int STAMP = raster_pkg::STAMP_SIZE;
+  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int RGBA = raster_pkg::VERTEX_COLOR_BITS;
+  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
+  localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
+  localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
+  localparam int COUNT = $clog2(SAMPLES + 1);
+  localparam logic [1:0] TRIANGLE = 2'd0;
+  localparam logic [1:0] RETIRE_NONE = 2'd0;
+  localparam logic [1:0] RETIRE_SET = 2'd1;
+  localparam logic [1:0] RETIRE_CLEAR = 2'd2;
+
+  // D0: the fragment on offer. Tokens have kind[1] set and no covered sample.
+  logic needs_access, must_wait, takes_fragment;
+  logic [SAMPLES*COLOR-1:0] color;
+
+  // D1: never stalls.
+  logic valid_q;
+  /* verilator lint_off UNUSEDSIGNAL */  // kind, ends_primitive and rgba end here
+  var raster_pkg::fragment_packet_t fragment_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [SAMPLES*COLOR-1:0] color_q;
+  logic [SAMPLES-1:0]       passed;
+  logic                     is_stamp;
+
+  assign needs_access = fragment_i.kind[1] || fragment_i.mask != '0;
+  assign must_wait = valid_q && fragment_q.depth_write && fragment_q.tile_x == fragment_i.tile_x &&
+                     fragment_q.tile_y == fragment_i.tile_y && fragment_q.stamp == fragment_i.stamp &&
+                     (fragment_q.mask & fragment_i.mask) != '0;
+  assign access_valid_o   = fragment_valid_i && needs_access && !must_wait;
+  assign access_o         = fragment_i;
+  assign access_color_o   = color[0+:COLOR];
+  assign fragment_ready_o = !needs_access || (access_ready_i && !must_wait);
+  assign takes_fragment   = fragment_valid_i && fragment_ready_o;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) valid_q <= 1'b0;
+    else valid_q <= takes_fragment;
+  end
+
+  always_ff @(posedge clk_i) begin
+    fragment_q <= fragment_i;
+    color_q    <= color;
+  end
+
+  // The depth function as the three orders in which it lets a sample pass.
+  logic [2:0] func;
+  logic       less_passes, equal_passes, greater_passes;
+  assign func           = fragment_q.depth_test;
+  assign less_passes    = func == 3'd1 || func == 3'd2 || func[2:1] == 2'd3;
+  assign equal_passes   = func == 3'd2 || func == 3'd3 || func == 3'd5 || func == 3'd7;
+  assign greater_passes = func[2];
+
+  genvar s;
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_sample
+      logic is_less, is_equal;
+      assign is_less  = fragment_q.depth[s*CODE+:CODE] < stored_depth_i[s*CODE+:CODE];
+      assign is_equal = fragment_q.depth[s*CODE+:CODE] == stored_depth_i[s*CODE+:CODE];
+      assign passed[s] = fragment_q.mask[s] &&
+                         (is_less ? less_passes : (is_equal ? equal_passes : greater_passes));
+
+      rop u_rop (
+          .rgba_i (fragment_i.rgba[s*RGBA+:RGBA]),
+          .color_o(color[s*COLOR+:COLOR])
+      );
+    end
+  endgenerate
+
+  assign is_stamp             = valid_q && fragment_q.mask != '0;
+  assign write_valid_o        = is_stamp;
+  assign write_o.primitive_id = fragment_q.primitive_id;
+  assign write_o.tile_x       = fragment_q.tile_x;
+  assign write_o.tile_y       = fragment_q.tile_y;
+  assign write_o.stamp        = fragment_q.stamp;
+  assign write_o.passed       = passed;
+  assign write_o.write_depth  = fragment_q.depth_write ? passed : '0;
+  assign write_o.write_color  = fragment_q.color_write ? passed : '0;
+  assign write_o.depth        = fragment_q.depth;
+  assign write_o.color        = color_q;
+
+  // Counters, one cycle late: the sums stay out of the path from the RAM to its write enable.
+  function automatic [COUNT-1:0] popcount(input [SAMPLES-1:0] mask);
+    popcount = '0;
+    for (int i = 0; i < SAMPLES; i++) popcount = popcount + COUNT'(mask[i]);
+  endfunction
+
+  logic is_counted, writes;
+  assign is_counted = valid_q && fragment_q.kind == TRIANGLE;
+  assign writes     = fragment_q.depth_write || fragment_q.color_write;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      covered_o <= '0;
+      passed_o  <= '0;
+      written_o <= '0;
+    end else begin
+      covered_o <= is_counted ? popcount(fragment_q.mask) : '0;
+      passed_o  <= is_counted ? popcount(passed) : '0;
+      written_o <= is_counted && writes ? popcount(passed) : '0;
+    end
+  end
+
+  // The retirement of a visit.
+  logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] retire_primitive_q;
+  logic [raster_pkg::TILE_X_BITS-1:0]       retire_tile_x_q;
+  logic [raster_pkg::TILE_Y_BITS-1:0]       retire_tile_y_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) retire_valid_o <= 1'b0;
+    else retire_valid_o <= valid_q && fragment_q.ends_visit;
+  end
+
+  always_ff @(posedge clk_i) begin
+    retire_primitive_q <= fragment_q.primitive_id;
+    retire_tile_x_q    <= fragment_q.tile_x;
+    retire_tile_y_q    <= fragment_q.tile_y;
+  end
+
+  assign retire_o.primitive_id = retire_primitive_q;
+  assign retire_o.tile_x       = retire_tile_x_q;
+  assign retire_o.tile_y       = retire_tile_y_q;
+
+  generate
+    if (raster_pkg::HIZ_BITS == 0) begin : gen_no_hiz
+      assign retire_o.update   = RETIRE_NONE;
+      assign retire_o.hiz_code = '0;
+    end else begin : gen_hiz
+      // What the visit has done before this stamp. The visit covers its tile when the last of STAMPS full stamps comes.
+      logic [STAMP_BITS-1:0] full_stamps_q;
+      logic                  any_passed_q;
+      logic [HIZ-1:0]        max_q;
+      logic                  is_full, any_passed, covers_tile;
+      logic [HIZ-1:0]        max;
+      logic [1:0]            update, update_q;
+      logic [HIZ-1:0]        code_q;
+
+      assign is_full     = passed == '1;
+      assign any_passed  = any_passed_q || passed != '0;
+      assign covers_tile = is_full && full_stamps_q == STAMP_BITS'(STAMPS - 1);
+
+      // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a
+      // corner of the tile. So one sample of a stamp is enough, the one towards the tile's corner on the stamp's side.
+      logic [HIZ-1:0] corner_00, corner_01, corner_10, corner_11, corner;  // row, column
+      assign corner_00 = fragment_q.depth[CODE-1-:HIZ];
+      assign corner_01 = fragment_q.depth[STAMP*CODE-1-:HIZ];
+      assign corner_10 = fragment_q.depth[(SAMPLES-STAMP+1)*CODE-1-:HIZ];
+      assign corner_11 = fragment_q.depth[SAMPLES*CODE-1-:HIZ];
+
+      if (STAMPS == 1) begin : gen_one_stamp
+        logic [HIZ-1:0] top, bottom;
+        assign top    = corner_00 > corner_01 ? corner_00 : corner_01;
+        assign bottom = corner_10 > corner_11 ? corner_10 : corner_11;
+        assign corner = top > bottom ? top : bottom;
+      end else begin : gen_stamps
+        logic is_bottom, is_right;
+        assign is_bottom = fragment_q.stamp[STAMP_BITS-1];
+        assign is_right  = fragment_q.stamp[STAMP_BITS/2-1];
+        assign corner    = is_bottom ? (is_right ? corner_11 : corner_10) : (is_right ? corner_01 : corner_00);
+      end
+      assign max = corner > max_q ? corner : max_q;
+
+      always_comb begin
+        update = RETIRE_NONE;
+        if (fragment_q.depth_write && covers_tile) update = RETIRE_SET;
+        else if (fragment_q.depth_write && func[2] && any_passed) update = RETIRE_CLEAR;
+      end
+
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          full_stamps_q <= '0;
+          any_passed_q  <= 1'b0;
+          max_q         <= '0;
+        end else if (valid_q && fragment_q.ends_visit) begin
+          full_stamps_q <= '0;
+          any_passed_q  <= 1'b0;
+          max_q         <= '0;
+        end else if (is_stamp) begin
+          full_stamps_q <= full_stamps_q + STAMP_BITS'(is_full);
+          any_passed_q  <= any_passed;
+          max_q         <= max;
+        end
+      end
+
+      always_ff @(posedge clk_i) begin
+        update_q <= update;
+        code_q   <= update == RETIRE_SET ? max : {HIZ{update == RETIRE_CLEAR}};
+      end
+      assign retire_o.update   = update_q;
+      assign retire_o.hiz_code = code_q;
+    end
+  endgenerate
+
+endmodule

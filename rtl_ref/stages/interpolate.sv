@@ -1,0 +1,216 @@
+// Interpolate: depth and colour codes at the samples of a stamp.
+//
+// In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
+// form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; then its code, clamped to
+// the range of the vertices. Latency 5 cycles, one stamp per cycle; each step holds one stamp and passes it on when the
+// next step is free:
+//   context  the context is read
+//   x, y     from the anchor to the stamp's first sample
+//   samples  from there to each sample
+//   codes    read back and clamped
+// Specification: model/stages/interpolate.hpp.
+module interpolate (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From fine_raster
+    input  logic                      stamp_valid_i,
+    output logic                      stamp_ready_o,
+    input  raster_pkg::stamp_packet_t stamp_i,
+
+    // Context RAM: a read, and its answer in the next cycle, which stays until the next read
+    output logic                             context_read_o,
+    output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
+    input  raster_pkg::context_packet_t      context_i,
+    output logic                             slot_free_o,  // the oldest slot will not be read again
+
+    // To depth_test
+    output logic                         fragment_valid_o,
+    input  logic                         fragment_ready_i,
+    output raster_pkg::fragment_packet_t fragment_o
+);
+
+  localparam int STAMP = raster_pkg::STAMP_SIZE;
+  localparam int STAMP_SHIFT = $clog2(STAMP);
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
+  localparam int PLANES = 1 + CHANNELS;
+  localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
+  localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
+  localparam int LD = raster_pkg::LOCAL_DEPTH_BITS;
+  localparam int LC = raster_pkg::LOCAL_COLOR_BITS;
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
+  localparam int K = raster_pkg::COLOR_CODE_BITS;
+  localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
+
+  /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x
+  var raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  /* verilator lint_off UNUSEDSIGNAL */  // steps end after the step samples
+  var raster_pkg::context_packet_t x_context_q, y_context_q, samples_context_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q, codes_valid_q;
+  logic context_ready, x_ready, y_ready, samples_ready, codes_ready;
+
+  assign codes_ready   = !codes_valid_q || fragment_ready_i;
+  assign samples_ready = !samples_valid_q || codes_ready;
+  assign y_ready       = !y_valid_q || samples_ready;
+  assign x_ready       = !x_valid_q || y_ready;
+  assign context_ready = !context_valid_q || x_ready;
+  assign stamp_ready_o = context_ready;
+
+  assign context_read_o = stamp_valid_i && stamp_ready_o;
+  assign context_slot_o = stamp_i.slot;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      context_valid_q <= 1'b0;
+      x_valid_q       <= 1'b0;
+      y_valid_q       <= 1'b0;
+      samples_valid_q <= 1'b0;
+      codes_valid_q   <= 1'b0;
+      slot_free_o     <= 1'b0;
+    end else begin
+      if (context_ready) context_valid_q <= stamp_valid_i;
+      if (x_ready) x_valid_q <= context_valid_q;
+      if (y_ready) y_valid_q <= x_valid_q;
+      if (samples_ready) samples_valid_q <= y_valid_q;
+      if (codes_ready) codes_valid_q <= samples_valid_q;
+      slot_free_o <= context_valid_q && x_ready && context_stamp_q.ends_primitive;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (context_read_o) context_stamp_q <= stamp_i;
+    if (x_ready) begin
+      x_stamp_q   <= context_stamp_q;
+      x_context_q <= context_i;
+    end
+    if (y_ready) begin
+      y_stamp_q   <= x_stamp_q;
+      y_context_q <= x_context_q;
+    end
+    if (samples_ready) begin
+      samples_stamp_q   <= y_stamp_q;
+      samples_context_q <= y_context_q;
+    end
+  end
+
+  // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
+  logic signed [PIXEL-1:0] to_x, to_y;  // pixels
+  generate
+    if (PER_ROW_BITS > 0) begin : gen_offset
+      logic signed [PER_ROW_BITS-1:0] column, row;
+      assign column = context_stamp_q.stamp[0+:PER_ROW_BITS] ^ {1'b1, {(PER_ROW_BITS - 1) {1'b0}}};
+      assign row    = x_stamp_q.stamp[PER_ROW_BITS+:PER_ROW_BITS] ^ {1'b1, {(PER_ROW_BITS - 1) {1'b0}}};
+      assign to_x   = PIXEL'(column) <<< STAMP_SHIFT;
+      assign to_y   = PIXEL'(row) <<< STAMP_SHIFT;
+    end else begin : gen_whole_tile
+      assign to_x = PIXEL'(STAMP / 2);
+      assign to_y = PIXEL'(STAMP / 2);
+    end
+  endgenerate
+
+  logic [SAMPLES*Z-1:0]          depth_q;
+  logic [SAMPLES*CHANNELS*K-1:0] rgba_q;
+
+  genvar p, s;
+  generate
+    for (p = 0; p < PLANES; p++) begin : gen_plane
+      localparam int W = p == 0 ? LD : LC;  // of a local value
+      localparam int B = p == 0 ? Z : K;    // of a code
+      logic [W-1:0] anchor, context_step_x, x_step_y, x_value_q, y_value_q;
+      logic signed [W-1:0] first, y_step_x, y_step_y;  // for edge_offset; modulo 2^W signs do not matter
+      assign first = y_value_q;
+      logic [B-1:0] low, high;
+      if (p == 0) begin : gen_depth
+        assign anchor         = context_stamp_q.depth_anchor;
+        assign context_step_x = context_i.depth_step_x;
+        assign x_step_y       = x_context_q.depth_step_y;
+        assign y_step_x       = y_context_q.depth_step_x;
+        assign y_step_y       = y_context_q.depth_step_y;
+        assign low            = samples_context_q.depth_min;
+        assign high           = samples_context_q.depth_max;
+      end else begin : gen_color
+        assign anchor         = context_stamp_q.color_anchor[(p-1)*LC+:LC];
+        assign context_step_x = context_i.color_step_x[(p-1)*LC+:LC];
+        assign x_step_y       = x_context_q.color_step_y[(p-1)*LC+:LC];
+        assign y_step_x       = y_context_q.color_step_x[(p-1)*LC+:LC];
+        assign y_step_y       = y_context_q.color_step_y[(p-1)*LC+:LC];
+        assign low            = samples_context_q.color_min[(p-1)*K+:K];
+        assign high           = samples_context_q.color_max[(p-1)*K+:K];
+      end
+
+      // x and y: a multiple of a step, as shifts and adds; the highest bit counts negative.
+      logic [W-1:0] x_value, y_value;
+      always_comb begin
+        x_value = anchor - (to_x[PIXEL-1] ? context_step_x << (PIXEL - 1) : '0);
+        y_value = x_value_q - (to_y[PIXEL-1] ? x_step_y << (PIXEL - 1) : '0);
+        for (int b = STAMP_SHIFT; b < PIXEL - 1; b++) begin
+          x_value = x_value + (to_x[b] ? context_step_x << b : '0);
+          y_value = y_value + (to_y[b] ? x_step_y << b : '0);
+        end
+      end
+      always_ff @(posedge clk_i) begin
+        if (x_ready) x_value_q <= x_value;
+        if (y_ready) y_value_q <= y_value;
+      end
+
+      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
+        logic signed [W-1:0] value;
+        logic [W-1:0]        value_q;
+        /* verilator lint_on UNUSEDSIGNAL */
+        logic signed [B+1:0] code;  // of the window [-2^(B-1), 3 * 2^(B-1))
+        logic [B-1:0]        clamped;
+        edge_offset #(
+            .WIDTH (W),
+            .OFFSET(PIXEL)
+        ) u_value (
+            .value_i (first),
+            .step_x_i(y_step_x),
+            .step_y_i(y_step_y),
+            .x_i     (PIXEL'(s % STAMP)),
+            .y_i     (PIXEL'(s / STAMP)),
+            .value_o (value)
+        );
+        always_ff @(posedge clk_i) if (samples_ready) value_q <= value;
+
+        assign code    = $signed({1'b0, value_q[W-1:L]}) - $signed((B + 2)'(1) << (B - 1));
+        assign clamped = code < $signed((B + 2)'(low)) ? low : code > $signed((B + 2)'(high)) ? high : code[B-1:0];
+        if (p == 0) begin : gen_depth_code
+          always_ff @(posedge clk_i) if (codes_ready) depth_q[s*Z+:Z] <= clamped;
+        end else begin : gen_color_code
+          always_ff @(posedge clk_i) if (codes_ready) rgba_q[(s*CHANNELS+p-1)*K+:K] <= clamped;
+        end
+      end
+    end
+  endgenerate
+
+  /* verilator lint_off UNUSEDSIGNAL */
+  var raster_pkg::stamp_packet_t   codes_stamp_q;
+  var raster_pkg::context_packet_t codes_context_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  always_ff @(posedge clk_i) begin
+    if (codes_ready) begin
+      codes_stamp_q   <= samples_stamp_q;
+      codes_context_q <= samples_context_q;
+    end
+  end
+
+  assign fragment_valid_o          = codes_valid_q;
+  assign fragment_o.kind           = codes_stamp_q.kind;
+  assign fragment_o.ends_visit     = codes_stamp_q.ends_visit;
+  assign fragment_o.ends_primitive = codes_stamp_q.ends_primitive;
+  assign fragment_o.primitive_id   = codes_stamp_q.primitive_id;
+  assign fragment_o.tile_x         = codes_stamp_q.tile_x;
+  assign fragment_o.tile_y         = codes_stamp_q.tile_y;
+  assign fragment_o.stamp          = codes_stamp_q.stamp;
+  assign fragment_o.mask           = codes_stamp_q.mask;
+  assign fragment_o.depth_test     = codes_context_q.depth_test;
+  assign fragment_o.depth_write    = codes_context_q.depth_write;
+  assign fragment_o.color_write    = codes_context_q.color_write;
+  assign fragment_o.depth          = depth_q;
+  assign fragment_o.rgba           = rgba_q;
+
+endmodule

@@ -1,0 +1,159 @@
+#include <iostream>
+#include <memory>
+
+#include "sim/cli/commands.hpp"
+#include "sim/cli/cosim_options.hpp"
+#include "sim/cosim/report.hpp"
+#include "sim/image/whole_file.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr double kReduceSeconds = 20;
+
+/// Runs the whole stimulus, with progress over all of it.
+Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut, SceneSource source) {
+  Progress progress(options, "co-simulating");
+  LockstepOptions lockstep = lockstep_options(options);
+  std::uint64_t triangles = 0, before = 0;  // given out, and of those before the scene at work
+  const auto counted = [&]() -> std::optional<Scene> {
+    auto scene = source();
+    before = triangles;
+    if (scene) triangles += scene->indices.size() / 3;
+    return scene;
+  };
+  lockstep.progress = [&](double fraction) {
+    const double total = static_cast<double>(options.random != 0 ? options.random : triangles);
+    progress((static_cast<double>(before) + fraction * static_cast<double>(triangles - before)) / total);
+    return true;
+  };
+  return run_session(dut, config, lockstep, counted);
+}
+
+Json session_json(const CosimOptions& options, const Config& config, const DutFactory& factory,
+                  const Session& session) {
+  const LockstepResult& r = session.result;
+  Json result = result_head("cosim", options, config);
+  result["seed"] = options.seed;
+  result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
+  result["rtl"] = factory.name;
+  result["stalls"] = options.stalls;
+  result["memory_latency"] = options.memory_latency;
+  result["mutant"] = options.mutant;
+  Json stages = Json::object(), arrows = Json::object();
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    const std::string stage(kArrowInfo[i].stage);
+    stages[stage] = stages.value(stage, std::uint64_t{0}) + r.compared[i];
+    arrows[std::string(kArrowInfo[i].name)] = r.compared[i];
+  }
+  result["packets"] = stages;
+  result["arrows"] = arrows;
+  result["memory_stamps"] = r.memory_compared;
+  result["counters"] = r.counters_compared;
+  result["triangles"] = r.triangles;
+  result["scenes"] = session.scenes;
+  result["mismatches"] = r.mismatch ? 1 : 0;  // the run stops at the first
+  result["first_mismatch"] = nullptr;
+  result["cycles"] = {
+      {"model", nullptr}, {"rtl", r.cycles}, {"raster", r.raster_cycles}, {"max_primitive_error", nullptr}};
+  result["rtl_cycles_per_s"] = session.seconds > 0 ? static_cast<double>(r.clocks) / session.seconds : 0.0;
+  return result;
+}
+
+void print_equal(std::ostream& out, const CosimOptions& options, const Config& config, const Session& session) {
+  const LockstepResult& r = session.result;
+  out << (options.random != 0
+              ? with_commas(r.triangles) + " random triangles in " + with_commas(session.scenes) + " scenes"
+              : options.scene + ", " + with_commas(r.triangles) + " triangles")
+      << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2) << '\n';
+  for (const Mutant& mutant : mutants())
+    if (mutant.id == options.mutant)
+      out << "mutant      " << mutant.id << ", " << mutant.file << ": " << mutant.what << '\n';
+  std::string line = "compared    ";
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    const std::string word = std::string(kArrowInfo[i].name) + " " + with_commas(r.compared[i]) + ", ";
+    if (line.size() + word.size() > 100) {
+      out << line << '\n';
+      line = std::string(12, ' ');
+    }
+    line += word;
+  }
+  out << line << "memory " << with_commas(r.memory_compared) << " stamps, counters " << with_commas(r.counters_compared)
+      << '\n'
+      << "cycles      " << with_commas(r.cycles) << " in all, " << with_commas(r.raster_cycles)
+      << " from the first triangle to the last write; "
+      << fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) << " M cycles/s\n";
+}
+
+int run(const CosimOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  if (options.scene.empty() == (options.random == 0))
+    throw InputError(options.scene.empty() ? "nothing to run; give a SCENE or --random N"
+                                           : "a scene and --random together; give one of them");
+  const Config config = effective_config(options);
+  check_output(options.save_path, ".hpt");
+  check_output(options.junit_path);
+  const DutFactory& factory = dut_for(options, config);
+  double load_s = 0;
+  std::optional<Scene> scene;
+  if (options.random == 0) {
+    scene = load_scene(options, config, load_s);
+    check_hardware_scene(*scene, config);
+  }
+  const std::unique_ptr<Dut> dut = make_dut(factory);
+  const Session session =
+      run_stimulus(options, config, *dut,
+                   scene ? single_scene(std::move(*scene)) : random_scenes(config, options.seed, options.random));
+  const bool is_empty = session.result.total() == 0;
+
+  Json result = session_json(options, config, factory, session);
+  std::optional<SavedFinding> saved;
+  if (session.failed) {
+    saved = save_finding(options, config, *dut, *session.failed, *session.result.mismatch, kReduceSeconds);
+    result["first_mismatch"] = mismatch_json(*session.result.mismatch,
+                                             repeat_command(options, config, options.scene, lockstep_options(options)));
+    result["reduced"] = mismatch_json(saved->finding.mismatch, saved->repeat);
+    result["reduced"]["capture"] = saved->capture;
+    result["reduced"]["trace"] = saved->trace.empty() ? Json(nullptr) : Json(saved->trace);
+    result["reduced"]["triangles"] =
+        saved->finding.reduced ? Json(saved->finding.reduced->triangles_after) : Json(nullptr);
+  }
+  if (!options.junit_path.empty()) {
+    const std::string xml = junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds);
+    write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+  }
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+
+  std::ostream& out = human(options);
+  print_equal(out, options, config, session);
+  if (saved) {
+    out << "first seen  " << mismatch_line(*session.result.mismatch) << "\n\n";
+    print_finding(out, *saved);
+  } else {
+    out << (is_empty ? "FAILED: nothing was compared\n"
+                     : "equal       every bit of every packet, of memory and counters\n");
+  }
+  return session.failed || is_empty ? exit_mismatch : exit_ok;
+}
+
+}  // namespace
+
+void add_cosim_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("cosim", "RTL against model, packet by packet");
+  auto options = std::make_shared<CosimOptions>();
+  add_scene_options(*command, *options);
+  command->get_option("SCENE")->required(false);
+  command->add_option("--random", options->random, "N random triangles of all sizes and states instead of a scene")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->type_name("N");
+  add_cosim_options(*command, *options);
+  add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");
+  add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
+  command->footer(
+      "\nA mismatch is reduced to the fewest triangles, saved as a capture with a waveform, and printed bit by bit.\n"
+      "\nExample:\n  halfplane cosim --random 10000 --stalls 0.3 --seed 7");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane

@@ -1,0 +1,159 @@
+#include "sim/cli/cosim_options.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <ostream>
+#include <sstream>
+
+#include "sim/cosim/report.hpp"
+#include "sim/image/whole_file.hpp"
+#include "sim/scene/capture.hpp"
+
+namespace halfplane {
+namespace {
+
+/// As a POSIX shell takes it.
+std::string quoted(const std::string& word) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_-+=./:,%@").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
+std::string default_save_path(const CosimOptions& options) {
+  std::string name = options.random != 0 ? "random-" + std::to_string(options.seed)
+                                         : std::filesystem::path(options.scene).stem().string();
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_' && c != '.') c = '-';
+  return "out/" + std::string(name.starts_with("cosim-") ? "" : "cosim-") + name +
+         (options.random == 0 && options.scene.ends_with(".hpt") ? "-reduced.hpt" : ".hpt");
+}
+
+void create_folder_of(const std::string& path) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+}
+
+std::string probability_text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+void add_cosim_options(CLI::App& app, CosimOptions& options) {
+  app.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
+      ->check(CLI::Range(0.0, 0.95))
+      ->capture_default_str();
+  app.add_option("--memory-latency", options.memory_latency, "cycles from a read request to its answer")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  add_file_option(app, "--trace", options.trace_path,
+                  "waveform around a mismatch, .fst (default beside the saved capture)");
+}
+
+const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
+  check_output(options.trace_path, ".fst");
+  const DutFactory& factory = find_dut(config);
+  if (options.mutant != 0 && !factory.has_mutants)
+    throw InputError("--mutant: the RTL of " + factory.name + " has no mutants; use --config embedded");
+  const auto all = mutants();
+  const bool is_known = std::any_of(all.begin(), all.end(), [&](const Mutant& m) { return m.id == options.mutant; });
+  if (options.mutant != 0 && !is_known)
+    throw InputError("--mutant: there is no number " + std::to_string(options.mutant) + "; give one of 1 to " +
+                     std::to_string(all.empty() ? 0 : all.back().id));
+  return factory;
+}
+
+LockstepOptions lockstep_options(const CosimOptions& options) {
+  LockstepOptions lockstep;
+  lockstep.seed = options.seed;
+  lockstep.stall_probability = options.stalls;
+  lockstep.memory_latency = options.memory_latency;
+  lockstep.mutant = static_cast<std::uint16_t>(options.mutant);
+  return lockstep;
+}
+
+std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& scene,
+                           const LockstepOptions& lockstep) {
+  std::string command = "halfplane cosim";
+  if (scene.empty())
+    command += " --random " + std::to_string(options.random);
+  else
+    command += " " + quoted(scene);
+  command += " --config " + label(config, " --set ");
+  if (scene == options.scene && !options.size.empty()) command += " --size " + quoted(options.size);
+  if (scene == options.scene && !options.camera.empty()) command += " --camera " + quoted(options.camera);
+  command += " --seed " + std::to_string(lockstep.seed);
+  if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);
+  if (lockstep.memory_latency != 8) command += " --memory-latency " + std::to_string(lockstep.memory_latency);
+  if (lockstep.mutant != 0) command += " --mutant " + std::to_string(lockstep.mutant);
+  return command;
+}
+
+SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut& dut, const Scene& failed,
+                          const Mismatch& mismatch, double seconds) {
+  SavedFinding saved;
+  saved.capture = options.save_path.empty() ? default_save_path(options) : options.save_path;
+  if (options.save_path.empty()) create_folder_of(saved.capture);
+  saved.trace = options.trace_path.empty() ? std::filesystem::path(saved.capture).replace_extension(".fst").string()
+                                           : options.trace_path;
+  Progress progress(options, "reducing");
+  ReduceOptions reducing;
+  reducing.seconds = seconds;
+  reducing.progress = [&progress](double fraction) { progress(fraction); };
+  saved.finding = investigate(dut, config, lockstep_options(options), failed, mismatch, saved.trace, reducing);
+  if (!saved.finding.has_trace) saved.trace.clear();
+  std::ostringstream text;
+  write_capture(saved.finding.scene, text);
+  const std::string bytes = text.str();
+  write_whole_file(saved.capture, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  saved.repeat =
+      repeat_command(options, config, saved.finding.reduced || options.random == 0 ? saved.capture : std::string(),
+                     saved.finding.lockstep);
+  return saved;
+}
+
+void print_finding(std::ostream& out, const SavedFinding& saved) {
+  const Finding& f = saved.finding;
+  out << mismatch_report(f.mismatch) << "  saved     " << saved.capture;
+  if (f.reduced)
+    out << ", " << f.reduced->triangles_after << " of " << f.reduced->triangles_before << " triangles ("
+        << f.reduced->runs << " runs" << (f.reduced->is_minimal ? "" : "; out of time, it may get smaller") << ")\n";
+  else
+    out << ", the whole scene: after a reset it does not fail alone\n";
+  out << "  waveform  " << (saved.trace.empty() ? "none: this design is built without tracing" : saved.trace) << '\n'
+      << "  repeat    " << saved.repeat << '\n';
+}
+
+Json mismatch_json(const Mismatch& m, const std::string& repeat) {
+  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
+  Json fields = Json::array();
+  for (const FieldPair& field : m.fields)
+    if (field.differs())
+      fields.push_back({{"name", field.name}, {"model", field.model_text()}, {"rtl", field.rtl_text()}});
+  constexpr std::array kKinds{"differs", "extra", "missing", "memory", "counters", "protocol"};
+  return {{"stage", m.stage},
+          {"arrow", m.arrow},
+          {"kind", kKinds[static_cast<std::size_t>(m.kind)]},
+          {"key",
+           {{"primitive", or_null(m.primitive)},
+            {"tile_x", or_null(m.tile_x)},
+            {"tile_y", or_null(m.tile_y)},
+            {"stamp", or_null(m.stamp)},
+            {"packet", m.number}}},
+          {"cycle", m.cycle},
+          {"fields", fields},
+          {"repro", repeat}};
+}
+
+}  // namespace halfplane

@@ -1,0 +1,48 @@
+// What `cosim` and `reduce` share: their options, and what they do with a scene that fails.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "sim/cli/options.hpp"
+#include "sim/cosim/session.hpp"
+
+namespace halfplane {
+
+struct CosimOptions : CommonOptions {
+  std::uint64_t random = 0;  ///< triangles; 0: a scene
+  double stalls = 0;
+  int mutant = 0;
+  int memory_latency = 8;
+  std::string junit_path, trace_path, save_path;
+};
+
+/// Adds everything but --random and --junit.
+void add_cosim_options(CLI::App& app, CosimOptions& options);
+
+/// The design for this configuration. Throws InputError for a mutant that it does not have, std::runtime_error (exit
+/// status 3) when there is no such design.
+[[nodiscard]] const DutFactory& dut_for(const CosimOptions& options, const Config& config);
+
+[[nodiscard]] LockstepOptions lockstep_options(const CosimOptions& options);
+
+/// The command that repeats a run of `scene` ("" for the same --random).
+[[nodiscard]] std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& scene,
+                                         const LockstepOptions& lockstep);
+
+/// Reduces the failing scene, saves it to `save_path` (creating its folder) and its waveform beside it.
+struct SavedFinding {
+  Finding finding;
+  std::string capture, trace;  ///< files; trace is empty when there is none
+  std::string repeat;          ///< command
+};
+[[nodiscard]] SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut& dut,
+                                        const Scene& failed, const Mismatch& mismatch, double seconds);
+
+/// The report that a person acts on.
+void print_finding(std::ostream& out, const SavedFinding& saved);
+
+/// {stage, arrow, key, cycle, fields, repro, ...}.
+[[nodiscard]] Json mismatch_json(const Mismatch& mismatch, const std::string& repeat);
+
+}  // namespace halfplane

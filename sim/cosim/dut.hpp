@@ -1,0 +1,82 @@
+// The design under test as the harness sees it: packed words in, packed words out, one clock at a time. Verilated designs
+// implement it (verilated_dut.hpp), and so do the fakes of the harness' own tests.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/config.hpp"
+#include "sim/cosim/arrows.hpp"
+
+namespace halfplane {
+
+/// The elastic streams inside, in the order of raster_cosim's stream_valid_o: triangle, setup, tile, stamp, fragment.
+inline constexpr std::size_t kStreams = 5;
+inline constexpr std::array<std::string_view, kStreams> kStreamStages{"cull", "triangle_setup", "coarse_raster",
+                                                                      "fine_raster", "interpolate"};
+
+/// What the design shows in one cycle, before the clock edge.
+struct DutOutputs {
+  std::uint32_t fired = 0;  ///< bit per Arrow but `request`: this packet moves now
+  bool primitive_ready = false, request_valid = false, response_ready = false, idle = false;
+  std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit per stream
+  std::array<const void*, kArrows> packet{};         ///< little-endian bytes of each arrow's packet, rounded up
+  const void* counters = nullptr;                    ///< CounterPacket, likewise
+};
+
+class Dut {
+ public:
+  virtual ~Dut() = default;
+  /// raster_pkg::CONFIG_ID of the Verilated sources.
+  [[nodiscard]] virtual std::uint64_t config_id() = 0;
+  /// A new instance with registers of random content from `seed`, reset. Nothing is offered to it.
+  virtual void reset(std::uint64_t seed) = 0;
+  /// Which mutation is active, 0 for none.
+  virtual void set_mutant(std::uint16_t mutant) = 0;
+  /// Offers a packet from now on; null takes the offer back. The words are copied.
+  virtual void set_primitive(const std::uint32_t* words) = 0;
+  virtual void set_response(const std::uint32_t* words) = 0;
+  /// Settles this cycle's outputs; they stay valid until clock().
+  virtual const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) = 0;
+  virtual void clock() = 0;
+  [[nodiscard]] virtual bool can_trace() const { return false; }
+  /// Records a waveform from here to close_trace(); false when the design was built without. Closing flushes the file.
+  [[nodiscard]] virtual bool open_trace(const std::string&) { return false; }
+  virtual void close_trace() {}
+};
+
+/// A design that this program was built with.
+struct DutFactory {
+  std::string name;  ///< "embedded"
+  Config config;
+  bool has_mutants = false, has_trace = false;
+  std::function<std::unique_ptr<Dut>()> make;
+};
+
+/// The Verilated designs in this build; none without Verilator.
+[[nodiscard]] const std::vector<DutFactory>& verilated_duts();
+
+/// A seeded fault of the designs that have mutants: rtl_ref/cosim/mutants.cmake.
+struct Mutant {
+  int id = 0;             ///< raster_cosim's mutant_i
+  std::string_view file;  ///< relative to rtl_ref
+  std::string_view what;
+};
+
+/// All of them; none without Verilator.
+[[nodiscard]] std::span<const Mutant> mutants();
+
+/// The design with exactly this configuration, whatever its preset is called. Throws std::runtime_error, one line with
+/// the configurations that there are, when none has it: exit status 3.
+[[nodiscard]] const DutFactory& find_dut(const Config& config);
+
+/// Makes the design and checks that it was Verilated from this configuration. Throws std::runtime_error if not.
+[[nodiscard]] std::unique_ptr<Dut> make_dut(const DutFactory& factory);
+
+}  // namespace halfplane

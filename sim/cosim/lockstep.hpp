@@ -1,0 +1,144 @@
+// Lock-step: a scene into the design, every packet on every arrow compared with the model's, in order and bit by bit.
+//
+// The model runs one primitive at a time, when that primitive is first offered to the design, and queues what it expects.
+// Arrows are compared each for itself, so nothing here knows how many cycles a stage takes.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/engines/hardware.hpp"
+#include "model/host_stream.hpp"
+#include "sim/cosim/dut.hpp"
+#include "sim/cosim/memory_model.hpp"
+#include "sim/cosim/mismatch.hpp"
+#include "sim/cosim/stalls.hpp"
+
+namespace halfplane {
+
+struct LockstepOptions {
+  std::uint64_t seed = 1;        ///< of stalls and start values
+  double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
+  int memory_latency = 8;        ///< cycles
+  std::uint16_t mutant = 0;
+  bool compares = true;  ///< false: the design alone, for its image and counters
+  std::string trace;     ///< FST file, empty: none; holds the cycles of the window
+  std::uint64_t trace_first = 0, trace_last = ~0ULL;
+  /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
+  std::function<bool(double fraction)> progress;
+};
+
+/// What one stream did, in cycles.
+struct StreamUse {
+  std::uint64_t busy = 0;     ///< moved a packet
+  std::uint64_t stalled = 0;  ///< had one that was not taken
+  std::uint64_t starved = 0;  ///< had none
+};
+
+struct LockstepResult {
+  std::array<std::uint64_t, kArrows> compared{};  ///< packets, by arrow
+  std::uint64_t memory_compared = 0;              ///< stamps of either plane in the final memory
+  std::uint64_t counters_compared = 0;
+  std::optional<Mismatch> mismatch;
+  bool is_stopped = false;          ///< by options.progress: neither equal nor different
+  std::uint64_t triangles = 0;      ///< taken by the RTL
+  std::uint64_t cycles = 0;         ///< to the last packet anywhere, memory included
+  std::uint64_t raster_cycles = 0;  ///< from the first triangle taken to the last write into the on-chip tiles
+  std::uint64_t clocks = 0;         ///< simulated, those that waited for a packet too many included
+  std::uint64_t drawn = 0;          ///< input triangles of which a piece passed cull; only when nothing is compared
+  std::array<StreamUse, kStreams> use{};  ///< only when nothing is compared
+
+  [[nodiscard]] std::uint64_t total() const;
+  /// Adds a later run of the same Lockstep.
+  void add(const LockstepResult& later);
+};
+
+/// Takes the model's packets into one queue per arrow.
+class ExpectedPackets final : public PacketSink {
+ public:
+  explicit ExpectedPackets(const Widths& widths);
+  void set_sequence(std::uint32_t sequence) { sequence_ = sequence; }
+  [[nodiscard]] PacketQueue& operator[](Arrow arrow) { return queue_[static_cast<std::size_t>(arrow)]; }
+  [[nodiscard]] bool empty() const;
+
+  void take(const TrianglePacket& p) override { push(Arrow::triangle, p); }
+  void take(const SetupPacket& p) override { push(Arrow::setup, p); }
+  void take(const ContextPacket& p) override { push(Arrow::context, p); }
+  void take(const TilePacket& p) override { push(Arrow::tile, p); }
+  void take(const EdgeContext& p) override { push(Arrow::edges, p); }
+  void take(const StampPacket& p) override { push(Arrow::stamp, p); }
+  void take(const FragmentPacket& p) override { push(Arrow::fragment, p); }
+  void take(const WritePacket& p) override { push(Arrow::write, p); }
+  void take(const RetirePacket& p) override { push(Arrow::retire, p); }
+  void take(const MemoryRequest& p) override { push(Arrow::request, p); }
+
+ private:
+  template <class Packet>
+  void push(Arrow arrow, const Packet& packet) {
+    pack_words(packet, widths_, (*this)[arrow].push(sequence_));
+  }
+  const Widths& widths_;
+  std::vector<PacketQueue> queue_;
+  std::uint32_t sequence_ = 0;  ///< of the primitive at work: comes back as the tag of its packets
+};
+
+/// A design and its model, side by side since reset.
+class Lockstep {
+ public:
+  /// Resets `dut`, which must outlive this.
+  Lockstep(Dut& dut, const Config& config, LockstepOptions options);
+  ~Lockstep();
+  Lockstep(const Lockstep&) = delete;
+  Lockstep& operator=(const Lockstep&) = delete;
+
+  /// One scene, to its flush, without a reset before it. Not after a run that has failed or was stopped. Throws
+  /// InputError for a scene that the hardware cannot take.
+  [[nodiscard]] LockstepResult run(const Scene& scene);
+
+  [[nodiscard]] const TileMemory& memory() const { return memory_.tiles(); }  ///< the RTL's
+  [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, in this cycle
+  [[nodiscard]] const Counters& host_counters() const { return host_counters_; }
+
+ private:
+  void offer(HostStream& host);
+  void step(HostStream& host);
+  void compare(Arrow arrow, const void* rtl);
+  void watch_request(const DutOutputs& out, std::uint8_t stalls, bool taken);
+  void count_use(const DutOutputs& out);
+  void trace();
+  [[nodiscard]] bool has_finished() const;
+  void report_missing();
+  [[nodiscard]] std::string waiting();
+  void compare_counters();
+  void compare_memory();
+  Mismatch packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::uint32_t* model, const std::uint32_t* rtl,
+                           std::uint32_t tag) const;
+  void fail_protocol(const std::string& stage, const std::string& hint);
+
+  Dut& dut_;
+  Config config_;
+  Widths widths_;
+  LockstepOptions options_;
+  std::uint64_t threshold_;  // of the stalls
+  std::array<std::size_t, kArrows> bytes_{};
+  ExpectedPackets expected_;
+  HardwareModel model_;
+  MemoryModel memory_;
+  Counters host_counters_;
+
+  LockstepResult result_;                 // of the run at work
+  std::vector<HostPrimitive> sent_;       // of the run at work, without their packets: tags index it
+  std::vector<std::uint32_t> primitive_;  // words of the primitive on offer
+  std::vector<std::uint32_t> held_;       // words of a request on offer
+  bool has_primitive_ = false, all_sent_ = false, has_response_ = false, has_held_ = false;
+  bool is_tracing_ = false, was_idle_ = false;
+  std::uint64_t cycle_ = 0;           // since reset
+  std::uint64_t first_triangle_ = 0;  // when it was taken
+  std::uint64_t last_drawn_ = ~0ULL;  // input triangle that was counted last
+  std::uint64_t last_moved_ = 0;      // the last cycle in which a packet moved anywhere
+};
+
+}  // namespace halfplane

@@ -1,0 +1,221 @@
+#include "sim/cosim/random_scene.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "model/widths.hpp"
+#include "sim/scene/random.hpp"
+
+namespace halfplane {
+namespace {
+
+using Point = std::array<std::int64_t, 2>;  // subpixels of 2^-s pixel
+
+class Generator {
+ public:
+  Generator(const Config& config, std::uint64_t seed) : config_(config), widths_(derive_widths(config)), random_(seed) {
+    unit_ = std::int64_t{1} << widths_.grid_bits;
+    step_ = config.subpixel_bits == 0 ? 2 : 1;  // at S = 0 a vertex has even coordinates
+    scene_.name = "random-" + std::to_string(seed);
+    const int limit = config.stamp_size == 1 ? 2 : 1;
+    scene_.width = extent(std::min(640 / limit, config.target_width));
+    scene_.height = extent(std::min(480 / limit, config.target_height));
+    hiz_chunk_ = chance(0.3);
+  }
+
+  Scene make(std::size_t count) {
+    for (std::size_t made = 0; made < count;) {
+      if (chance(0.04)) clear();
+      scene_.states.push_back(state());
+      const std::size_t run = std::min<std::size_t>(count - made, 1 + static_cast<std::size_t>(below(12)));
+      const Draw draw{static_cast<std::uint32_t>(scene_.states.size() - 1),
+                      0,
+                      Topology::triangles,
+                      scene_.indices.size(),
+                      3 * run,
+                      0};
+      for (std::size_t i = 0; i < run; ++i) triangle();
+      scene_.commands.push_back(draw);
+      made += run;
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  std::int64_t below(std::int64_t n) {
+    return static_cast<std::int64_t>(random_.next() % static_cast<std::uint64_t>(std::max<std::int64_t>(1, n)));
+  }
+  bool chance(double probability) { return random_.uniform(0, 1) < probability; }
+  /// In [1, largest], each octave as likely as the next; in whole numbers, so that machines agree.
+  std::int64_t sized(std::int64_t largest) {
+    const int octaves = floor_log2(static_cast<uint128>(largest)) + 1;
+    const std::int64_t octave = std::int64_t{1} << below(octaves);
+    return std::min(largest, octave + below(octave));
+  }
+  int extent(int largest) { return chance(0.1) ? largest : static_cast<int>(sized(largest)); }
+
+  State state();
+  void clear();
+  void triangle();
+  std::array<Point, 3> shape();
+  std::array<Point, 3> around(Point center, std::int64_t reach);
+  std::array<Point, 3> tile_half();
+  Point snapped(Point p, int where) const;
+  Rect scissor();
+  double depth();
+
+  const Config& config_;
+  Widths widths_;
+  Random random_;
+  Scene scene_;
+  std::int64_t unit_ = 1;   // subpixels of a pixel
+  std::int64_t step_ = 1;   // subpixels between two vertices
+  bool hiz_chunk_ = false;  // large triangles and `less`: many tiles to be rejected by their bound
+  std::array<Point, 3> last_{};
+  std::uint64_t last_depth_ = 0;  // code
+};
+
+State Generator::state() {
+  State s;
+  s.space = Space::window;
+  constexpr std::array<DepthFunc, 3> kUsual{DepthFunc::less, DepthFunc::lequal, DepthFunc::equal};
+  s.depth_test = chance(hiz_chunk_ ? 0.9 : 0.5) ? kUsual[static_cast<std::size_t>(below(hiz_chunk_ ? 2 : 3))]
+                                                : static_cast<DepthFunc>(below(8));
+  s.depth_write = chance(0.85);
+  s.color_write = chance(0.85);
+  s.cull = chance(0.6) ? Cull::none : static_cast<Cull>(below(4));
+  s.front = chance(0.5) ? FrontFace::ccw : FrontFace::cw;
+  s.shade = chance(0.8) ? Shade::smooth : Shade::flat;
+  if (chance(0.25)) s.scissor = scissor();
+  return s;
+}
+
+Rect Generator::scissor() {
+  const int x = static_cast<int>(below(scene_.width + 8)) - 4, y = static_cast<int>(below(scene_.height + 8)) - 4;
+  return {x, y, static_cast<int>(sized(scene_.width)), static_cast<int>(sized(scene_.height))};
+}
+
+void Generator::clear() {
+  State s;
+  s.space = Space::window;
+  if (chance(0.6)) s.scissor = scissor();
+  scene_.states.push_back(s);
+  Clear clear{static_cast<std::uint32_t>(scene_.states.size() - 1), {}, {}};
+  const auto planes = below(4);  // depth, colour, or (twice as often) both
+  if (planes != 1) clear.depth = chance(0.5) ? 1.0 : depth();
+  if (planes != 0) {
+    clear.color.emplace();
+    for (double& c : *clear.color) c = static_cast<double>(below(256));
+  }
+  scene_.commands.push_back(clear);
+}
+
+/// A window z that snaps to a random code: often the last one again, or one beside it, or an end of the range.
+double Generator::depth() {
+  const std::uint64_t largest = (std::uint64_t{1} << config_.depth_bits) - 1;
+  switch (below(8)) {
+    case 0:
+    case 1: break;
+    case 2: last_depth_ = std::min(largest, last_depth_ + 1); break;
+    case 3: last_depth_ = last_depth_ == 0 ? 0 : last_depth_ - 1; break;
+    case 4: last_depth_ = chance(0.5) ? 0 : largest; break;
+    default: last_depth_ = static_cast<std::uint64_t>(random_.uniform(0, 1) * static_cast<double>(largest + 1)); break;
+  }
+  return static_cast<double>(last_depth_) / static_cast<double>(largest);
+}
+
+/// Moves a point: 0 nowhere, 1 to a pixel centre, 2 to a tile's corner, 3 to a pixel's corner.
+Point Generator::snapped(Point p, int where) const {
+  const std::int64_t tile = unit_ * config_.tile_size;
+  const auto floored = [](std::int64_t v, std::int64_t to) { return v - ((v % to) + to) % to; };
+  for (std::int64_t& v : p) {
+    if (where == 1) v = floored(v, unit_) + unit_ / 2;
+    if (where == 2) v = floored(v + tile / 2, tile);
+    if (where == 3) v = floored(v, unit_);
+    v = std::clamp(floored(v, step_), static_cast<std::int64_t>(widths_.coordinate.range.lo),
+                   floored(static_cast<std::int64_t>(widths_.coordinate.range.hi), step_));
+  }
+  return p;
+}
+
+std::array<Point, 3> Generator::around(Point center, std::int64_t reach) {
+  std::array<Point, 3> p;
+  for (Point& q : p) {
+    q[0] = center[0] + below(2 * reach + 1) - reach;
+    q[1] = center[1] + below(2 * reach + 1) - reach;
+  }
+  return p;
+}
+
+/// Half of a rectangle of whole tiles; twice in a row it covers them.
+std::array<Point, 3> Generator::tile_half() {
+  const std::int64_t tile = unit_ * config_.tile_size;
+  const std::int64_t x = below(scene_.width * unit_ / tile + 1) * tile,
+                     y = below(scene_.height * unit_ / tile + 1) * tile;
+  const std::int64_t w = sized(8) * tile, h = sized(8) * tile;
+  return {Point{x, y}, Point{x + 2 * w, y}, Point{x, y + 2 * h}};
+}
+
+std::array<Point, 3> Generator::shape() {
+  const std::int64_t band = static_cast<std::int64_t>(config_.guard_band) * unit_;
+  const std::int64_t screen = std::max(scene_.width, scene_.height) * unit_;
+  const std::int64_t reach = hiz_chunk_ && chance(0.5) ? screen / 4 + below(screen) : sized(band);
+  const Point center{below(scene_.width * unit_), below(scene_.height * unit_)};
+  switch (below(16)) {
+    case 0: return tile_half();
+    case 1: {  // shares an edge with the triangle before
+      const Point far = around(center, reach)[0];
+      return {last_[1], last_[0], far};
+    }
+    case 2: return last_;  // the same pixels again
+    case 3: {              // the same place again, small
+      return around(last_[0], sized(4 * unit_));
+    }
+    case 4: {  // a sliver: the third corner beside the middle of the others
+      auto p = around(center, reach);
+      p[2] = {(p[0][0] + p[1][0]) / 2 + below(3) - 1, (p[0][1] + p[1][1]) / 2 + below(3) - 1};
+      return p;
+    }
+    case 5: {  // no area, or next to none
+      auto p = around(center, reach);
+      p[2] = chance(0.5) ? p[static_cast<std::size_t>(below(2))] : Point{2 * p[1][0] - p[0][0], 2 * p[1][1] - p[0][1]};
+      return p;
+    }
+    case 6: {  // axis-parallel legs
+      const auto p = around(center, reach);
+      return {p[0], Point{p[1][0], p[0][1]}, Point{p[0][0], p[1][1]}};
+    }
+    case 7: return around({below(2 * band) - band, below(2 * band) - band}, reach);  // anywhere, mostly unseen
+    case 8: return around(center, below(band) + 1);                                  // large
+    default: return around(center, std::max<std::int64_t>(1, sized(band)));
+  }
+}
+
+void Generator::triangle() {
+  std::array<Point, 3> p = shape();
+  const int all = static_cast<int>(below(8));  // 1 to 3: all three to the same kind of point
+  for (Point& q : p) q = snapped(q, all < 4 ? all : chance(0.2) ? static_cast<int>(below(4)) : 0);
+  last_ = p;
+  const double flat_depth = depth();
+  const bool is_flat = chance(0.25);
+  const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+  const bool is_plain = chance(0.1);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    Vertex v;
+    v.x = static_cast<double>(p[i][0]) / static_cast<double>(unit_);
+    v.y = static_cast<double>(p[i][1]) / static_cast<double>(unit_);
+    v.z = is_flat ? flat_depth : depth();
+    for (double& c : v.rgba)
+      c = is_plain ? 255 : chance(0.1) ? 255.0 * static_cast<double>(below(2)) : static_cast<double>(below(256));
+    scene_.vertices.push_back(v);
+    scene_.indices.push_back(first + i);
+  }
+}
+
+}  // namespace
+
+Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count) {
+  return Generator(config, seed).make(count);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,41 @@
+// Delta debugging (Zeller and Hildebrandt 2002): the fewest primitives and the simplest states that still fail.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "model/config.hpp"
+#include "model/scene.hpp"
+#include "sim/cosim/lockstep.hpp"
+
+namespace halfplane {
+
+/// The mismatch of a scene, if it has one: any counts, not only the first one seen.
+using FailTest = std::function<std::optional<Mismatch>(const Scene&, const LockstepOptions&)>;
+
+/// A test that resets the design and runs the scene; a run beyond the deadline counts as equal.
+[[nodiscard]] FailTest lockstep_test(Dut& dut, const Config& config);
+
+struct ReduceOptions {
+  double seconds = 20;                            ///< stops after that and returns what it has
+  std::function<void(double fraction)> progress;  ///< of the time; may be empty
+};
+
+struct Reduced {
+  Scene scene;
+  LockstepOptions lockstep;  ///< without stalls, if it fails without
+  Mismatch mismatch;         ///< of `scene`
+  std::size_t triangles_before = 0, triangles_after = 0;
+  std::size_t runs = 0;
+  bool is_minimal = false;  ///< the time was enough: nothing more can be taken away singly
+};
+
+/// Reduces a scene that fails; none when it does not fail (from reset, with these options).
+[[nodiscard]] std::optional<Reduced> reduce(const Scene& scene, const Config& config, const LockstepOptions& lockstep,
+                                            const FailTest& test, const ReduceOptions& options = {});
+
+/// The same primitives in window space, clipped and snapped: what the hardware is sent.
+[[nodiscard]] Scene window_scene(const Scene& scene, const Config& config);
+
+}  // namespace halfplane

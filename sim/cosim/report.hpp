@@ -1,0 +1,24 @@
+// A mismatch as a person reads it: where, model above rtl, the differing bits marked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/cosim/junit.hpp"
+#include "sim/cosim/lockstep.hpp"
+
+namespace halfplane {
+
+/// One line: "fine_raster: mask differs in packet 12 of stamp, triangle 3, tile (4, 2), stamp 5, cycle 678".
+[[nodiscard]] std::string mismatch_line(const Mismatch& mismatch);
+
+/// The whole of it, in lines of at most 120 characters.
+[[nodiscard]] std::string mismatch_report(const Mismatch& mismatch);
+
+/// "triangle 12 · setup 12 · ...": what was compared, arrow by arrow.
+[[nodiscard]] std::string compared_report(const LockstepResult& result);
+
+/// A test case for each arrow, the memory image and the counters, and one that fails when nothing was compared.
+[[nodiscard]] std::vector<JunitCase> junit_cases(const LockstepResult& result);
+
+}  // namespace halfplane

@@ -1,0 +1,29 @@
+#include "sim/cosim/rtl_engine.hpp"
+
+#include <chrono>
+#include <stdexcept>
+
+namespace halfplane {
+
+RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, const RenderOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  check_hardware_scene(scene, config);
+  LockstepOptions lockstep_options;
+  lockstep_options.compares = false;
+  if (options.progress)
+    lockstep_options.progress = [&options](double fraction) {
+      options.progress(fraction);
+      return true;
+    };
+  Lockstep lockstep(dut, config, lockstep_options);
+  RtlRendering result;
+  result.run = lockstep.run(scene);
+  if (result.run.mismatch) throw std::runtime_error("the RTL hangs: " + result.run.mismatch->hint);
+  result.rendering.frame = to_framebuffer(lockstep.memory(), scene.width, scene.height, config);
+  result.rendering.counters = lockstep.host_counters();
+  count_hardware(lockstep.counters(), result.run.drawn, result.rendering.counters);
+  result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,18 @@
+// The RTL as an engine: a scene in, its image, counters and cycles out; nothing is compared.
+#pragma once
+
+#include "model/engines/render.hpp"
+#include "sim/cosim/lockstep.hpp"
+
+namespace halfplane {
+
+struct RtlRendering {
+  Rendering rendering;  ///< frame and counters; no count, ids and triangles
+  LockstepResult run;   ///< cycles and use of the streams
+};
+
+/// Renders `scene` by `dut`, flush included. Of `options` it takes progress. Throws InputError for a scene that the
+/// hardware does not take, std::runtime_error when the RTL hangs.
+[[nodiscard]] RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, const RenderOptions& options);
+
+}  // namespace halfplane

@@ -1,0 +1,67 @@
+#include "sim/cosim/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "sim/cosim/random_scene.hpp"
+#include "sim/scene/random.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::uint64_t kLargestChunk = 2000;                  // triangles
+constexpr std::uint64_t kTraceBefore = 200, kTraceAfter = 20;  // cycles around the mismatch
+
+}  // namespace
+
+SceneSource single_scene(Scene scene) {
+  return [left = std::make_shared<std::optional<Scene>>(std::move(scene))] { return std::exchange(*left, {}); };
+}
+
+SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count) {
+  return [config, random = Random(seed), left = count, chunk = std::uint64_t{50}]() mutable -> std::optional<Scene> {
+    if (left == 0) return {};
+    const std::uint64_t n = std::min(left, chunk);
+    left -= n;
+    chunk = std::min(kLargestChunk, 2 * chunk);
+    return random_scene(config, random.next(), n);
+  };
+}
+
+Session run_session(Dut& dut, const Config& config, const LockstepOptions& options, const SceneSource& next) {
+  const auto start = std::chrono::steady_clock::now();
+  Session session;
+  Lockstep lockstep(dut, config, options);
+  while (auto scene = next()) {
+    const LockstepResult result = lockstep.run(*scene);
+    session.result.add(result);
+    ++session.scenes;
+    if (result.mismatch) session.failed = std::move(*scene);
+    if (result.mismatch || result.is_stopped) break;
+  }
+  session.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return session;
+}
+
+Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
+                    const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing) {
+  Finding finding{failed, options, mismatch, reduce(failed, config, options, lockstep_test(dut, config), reducing), {}};
+  if (!finding.reduced) return finding;
+  finding.scene = finding.reduced->scene;
+  finding.lockstep = finding.reduced->lockstep;
+  finding.mismatch = finding.reduced->mismatch;
+  if (trace.empty() || !dut.can_trace()) return finding;
+  LockstepOptions traced = finding.lockstep;
+  traced.progress = {};
+  traced.trace = trace;
+  traced.trace_first = finding.mismatch.cycle - std::min(finding.mismatch.cycle, kTraceBefore);
+  traced.trace_last = finding.mismatch.cycle + kTraceAfter;
+  Lockstep rerun(dut, config, traced);
+  (void)rerun.run(finding.scene);
+  finding.has_trace = true;
+  return finding;
+}
+
+}  // namespace halfplane

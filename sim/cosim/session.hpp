@@ -1,0 +1,47 @@
+// A whole co-simulation: scene after scene into one design, and what to do about the first that fails.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sim/cosim/lockstep.hpp"
+#include "sim/cosim/reduce.hpp"
+
+namespace halfplane {
+
+/// Gives one scene after the other; none at the end.
+using SceneSource = std::function<std::optional<Scene>()>;
+
+/// One scene.
+[[nodiscard]] SceneSource single_scene(Scene scene);
+
+/// `count` random triangles, in scenes of up to 2,000 so that a failing one is small. The first are smaller still.
+[[nodiscard]] SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count);
+
+struct Session {
+  LockstepResult result;        ///< of all scenes together
+  std::optional<Scene> failed;  ///< the scene with the mismatch
+  std::uint64_t scenes = 0;
+  double seconds = 0;  ///< the model's work included
+};
+
+/// Runs all scenes without a reset between them, up to the first mismatch. `options.progress` gets the part of the scene
+/// at work.
+[[nodiscard]] Session run_session(Dut& dut, const Config& config, const LockstepOptions& options,
+                                  const SceneSource& next);
+
+/// A failing scene made small, with its waveform.
+struct Finding {
+  Scene scene;                     ///< reduced; as it failed if it does not fail alone
+  LockstepOptions lockstep;        ///< with which it fails
+  Mismatch mismatch;               ///< of `scene`
+  std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail
+  bool has_trace = false;          ///< `trace` has been written
+};
+
+/// Reduces, and writes the waveform around the mismatch to `trace` (empty: none, likewise when the design has none).
+[[nodiscard]] Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
+                                  const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing);
+
+}  // namespace halfplane

@@ -1,0 +1,132 @@
+// A Verilated raster_cosim as a Dut. Included only where the generated classes are (duts.cpp).
+#pragma once
+
+#include <verilated.h>
+
+#include <cstring>
+#include <type_traits>
+
+#include "sim/cosim/dut.hpp"
+
+namespace halfplane {
+
+/// V: the generated class. Trace: its VerilatedFstC, or void for a class without.
+template <class V, class Trace = void>
+class VerilatedDut final : public Dut {
+ public:
+  explicit VerilatedDut(std::uint64_t seed = 1) { build(seed); }
+  ~VerilatedDut() override {
+    VerilatedDut::close_trace();
+    if (top_) top_->final();
+  }
+  VerilatedDut(const VerilatedDut&) = delete;
+  VerilatedDut& operator=(const VerilatedDut&) = delete;
+
+  std::uint64_t config_id() override { return top_->config_id_o; }
+  void reset(std::uint64_t seed) override { build(seed); }
+  void set_mutant(std::uint16_t mutant) override { top_->mutant_i = mutant; }
+
+  void set_primitive(const std::uint32_t* words) override {
+    top_->primitive_valid_i = words != nullptr;
+    if (words != nullptr) std::memcpy(first_word(top_->primitive_i), words, sizeof top_->primitive_i);
+  }
+  void set_response(const std::uint32_t* words) override {
+    top_->response_valid_i = words != nullptr;
+    if (words != nullptr) std::memcpy(first_word(top_->response_i), words, sizeof top_->response_i);
+  }
+
+  const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) override {
+    top_->stall_i = stalls;
+    top_->request_ready_i = request_ready;
+    top_->eval();
+    dump();
+    out_.fired = top_->fire_o;
+    out_.primitive_ready = top_->primitive_ready_o != 0;
+    out_.request_valid = top_->request_valid_o != 0;
+    out_.response_ready = top_->response_ready_o != 0;
+    out_.idle = top_->idle_o != 0;
+    out_.stream_valid = top_->stream_valid_o;
+    out_.stream_ready = top_->stream_ready_o;
+    return out_;
+  }
+
+  void clock() override {
+    top_->clk_i = 1;
+    top_->eval();
+    dump();
+    top_->clk_i = 0;  // settles in the next evaluate(), together with the new inputs
+  }
+
+  [[nodiscard]] bool can_trace() const override { return !std::is_void_v<Trace>; }
+  [[nodiscard]] bool open_trace([[maybe_unused]] const std::string& path) override {
+    if constexpr (!std::is_void_v<Trace>) {
+      close_trace();
+      trace_ = std::make_unique<TraceFile>();
+      top_->trace(&trace_->fst, 99);
+      trace_->fst.open(path.c_str());
+      return trace_->fst.isOpen();
+    }
+    return false;
+  }
+  void close_trace() override {
+    if (trace_) trace_->fst.close();
+  }
+
+ private:
+  struct NoTrace {
+    void close() {}
+  };
+  struct TraceFile {
+    std::conditional_t<std::is_void_v<Trace>, NoTrace, Trace> fst;
+  };
+
+  void build(std::uint64_t seed) {
+    close_trace();
+    top_.reset();
+    trace_.reset();
+    context_ = std::make_unique<VerilatedContext>();
+    context_->randReset(2);  // random start values: a register that needs a reset and has none shows
+    context_->randSeed(static_cast<int>(seed % 0x7fffffff + 1));
+    if constexpr (!std::is_void_v<Trace>) context_->traceEverOn(true);
+    top_ = std::make_unique<V>(context_.get());
+    // The inputs were filled at random as well.
+    top_->clk_i = 0;
+    top_->mutant_i = 0;
+    top_->stall_i = 0;
+    top_->request_ready_i = 0;
+    std::memset(first_word(top_->primitive_i), 0, sizeof top_->primitive_i);
+    std::memset(first_word(top_->response_i), 0, sizeof top_->response_i);
+    set_primitive(nullptr);
+    set_response(nullptr);
+    top_->rst_ni = 1;
+    top_->eval();
+    top_->rst_ni = 0;
+    for (int i = 0; i < 4; ++i) {
+      top_->eval();
+      clock();
+    }
+    top_->rst_ni = 1;
+    top_->eval();
+    out_.packet = {&top_->triangle_o, &top_->setup_o,    &top_->context_o, &top_->tile_o,   &top_->edges_o,
+                   &top_->stamp_o,    &top_->fragment_o, &top_->write_o,   &top_->retire_o, &top_->request_o};
+    out_.counters = &top_->counters_o;
+  }
+
+  template <class Port>
+  static void* first_word(Port& port) {
+    return static_cast<void*>(&port);
+  }
+  void dump() {
+    if constexpr (!std::is_void_v<Trace>)
+      if (trace_ && trace_->fst.isOpen()) trace_->fst.dump(time_);
+    ++time_;
+  }
+
+  std::unique_ptr<VerilatedContext> context_;
+  std::unique_ptr<TraceFile> trace_;
+  std::unique_ptr<V> top_;
+  DutOutputs out_;
+  std::uint64_t time_ = 0;  // half cycles
+};
+
+}  // namespace halfplane

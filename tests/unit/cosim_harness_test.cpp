@@ -1,0 +1,385 @@
+// The co-simulation harness itself, on designs that replay the model's packets and are then tampered with: what is equal
+// must pass, and every single fault must be named.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "sim/cosim/random_scene.hpp"
+#include "sim/cosim/report.hpp"
+#include "sim/cosim/session.hpp"
+#include "sim/scene/capture.hpp"
+#include "sim/scene/random.hpp"
+#include "tests/scene_builder.hpp"
+
+namespace halfplane {
+namespace {
+
+/// What a faulty design does with packet `number` of `arrow`.
+struct Fault {
+  enum class Kind { none, flip, lose, repeat, stop, counter, withdraw, busy } kind = Kind::none;
+  Arrow arrow = Arrow::stamp;
+  std::uint64_t number = 0;
+  int bit = 0;
+};
+
+/// Takes a primitive when it has sent everything of the one before; every arrow moves a packet in every cycle in which it
+/// is not stalled.
+class FakeDut final : public Dut {
+ public:
+  FakeDut(const Config& config, const Fault& fault)
+      : config_(config), widths_(derive_widths(config)), fault_(fault), planned_(fault) {
+    FakeDut::reset(0);
+  }
+  std::uint64_t config_id() override { return 0; }
+  void reset(std::uint64_t) override {
+    expected_ = std::make_unique<ExpectedPackets>(widths_);
+    model_ = std::make_unique<HardwareModel>(config_, *expected_);
+    sent_ = {};
+    fault_ = planned_;
+    withdrawn_ = false;
+    offered_.clear();
+  }
+  void set_mutant(std::uint16_t) override {}
+  void set_primitive(const std::uint32_t* words) override {
+    offered_.clear();
+    if (words != nullptr) offered_.assign(words, words + words_of(packet_bits<PrimitivePacket>(widths_)));
+  }
+  void set_response(const std::uint32_t*) override {}
+
+  const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) override;
+  void clock() override;
+
+ private:
+  [[nodiscard]] bool hits(Arrow arrow, Fault::Kind kind) const {
+    return fault_.kind == kind && fault_.arrow == arrow && sent_[static_cast<std::size_t>(arrow)] == fault_.number;
+  }
+  [[nodiscard]] const std::uint32_t* content(Arrow arrow);
+
+  Config config_;
+  Widths widths_;
+  Fault fault_, planned_;
+  std::unique_ptr<ExpectedPackets> expected_;
+  std::unique_ptr<HardwareModel> model_;
+  std::array<std::uint64_t, kArrows> sent_{};
+  std::vector<std::uint32_t> offered_;
+  std::array<std::vector<std::uint32_t>, kArrows> words_;
+  std::vector<std::uint32_t> counters_;
+  DutOutputs out_;
+  bool takes_request_ = false, withdrawn_ = false;
+};
+
+const std::uint32_t* FakeDut::content(Arrow arrow) {
+  PacketQueue& queue = (*expected_)[arrow];
+  if (hits(arrow, Fault::Kind::lose)) {
+    queue.pop();
+    fault_.kind = Fault::Kind::none;
+  }
+  if (queue.empty()) return nullptr;
+  auto& words = words_[static_cast<std::size_t>(arrow)];
+  words.assign(queue.front(), queue.front() + queue.words());
+  if (hits(arrow, Fault::Kind::flip)) words[static_cast<std::size_t>(fault_.bit / 32)] ^= 1U << (fault_.bit % 32);
+  return words.data();
+}
+
+const DutOutputs& FakeDut::evaluate(std::uint8_t stalls, bool request_ready) {
+  constexpr std::array<int, kArrows> kStalledBy{stall_triangle, stall_setup,  stall_setup,    stall_tile,
+                                                stall_tile,     stall_stamp,  stall_fragment, stall_fragment,
+                                                stall_fragment, stall_request};
+  out_ = {};
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    const auto arrow = static_cast<Arrow>(i);
+    if ((stalls >> kStalledBy[i] & 1) != 0 || hits(arrow, Fault::Kind::stop)) continue;
+    out_.packet[i] = content(arrow);
+    if (out_.packet[i] == nullptr) continue;
+    if (arrow == Arrow::request)
+      out_.request_valid = true;
+    else
+      out_.fired |= 1U << i;
+  }
+  if (fault_.kind == Fault::Kind::withdraw && out_.request_valid && !request_ready) {
+    fault_.kind = Fault::Kind::none;
+    withdrawn_ = true;
+  } else if (withdrawn_ && out_.request_valid) {
+    withdrawn_ = out_.request_valid = false;
+  }
+  takes_request_ = out_.request_valid && request_ready;
+  out_.response_ready = true;
+  out_.primitive_ready = expected_->empty() && (stalls & 1) == 0;
+  out_.idle = expected_->empty() && offered_.empty() && fault_.kind != Fault::Kind::busy;
+  counters_ = packed(model_->counters(), widths_);
+  if (fault_.kind == Fault::Kind::counter) ++counters_[2];
+  out_.counters = counters_.data();
+  return out_;
+}
+
+void FakeDut::clock() {
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    const auto arrow = static_cast<Arrow>(i);
+    const bool moves = arrow == Arrow::request ? takes_request_ : (out_.fired >> i & 1) != 0;
+    if (!moves) continue;
+    if (hits(arrow, Fault::Kind::repeat)) {
+      fault_.kind = Fault::Kind::none;
+      continue;
+    }
+    (*expected_)[arrow].pop();
+    ++sent_[i];
+  }
+  if (out_.primitive_ready && !offered_.empty()) {
+    model_->run(unpack_words<PrimitivePacket>(offered_.data(), widths_));
+    offered_.clear();
+  }
+}
+
+LockstepOptions with_stalls(double probability, std::uint64_t seed = 3) {
+  LockstepOptions options;
+  options.stall_probability = probability;
+  options.seed = seed;
+  return options;
+}
+
+/// One scene, so that packets are numbered from its beginning.
+LockstepResult run(const Config& config, const Fault& fault, const LockstepOptions& options, std::size_t count = 150) {
+  FakeDut dut(config, fault);
+  return run_session(dut, config, options, single_scene(random_scene(config, 5, count))).result;
+}
+
+class CosimHarness : public ::testing::TestWithParam<const char*> {
+ protected:
+  Config config = preset(GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(Presets, CosimHarness, ::testing::Values("tiny", "embedded", "full"));
+
+TEST_P(CosimHarness, AnEqualDesignPassesWithAndWithoutStallsAndEveryArrowIsCompared) {
+  for (const double stalls : {0.0, 0.3, 0.8}) {
+    FakeDut dut(config, {});
+    const Session session = run_session(dut, config, with_stalls(stalls), random_scenes(config, 5, 150));
+    const LockstepResult& result = session.result;
+    EXPECT_EQ(session.scenes, 2u);
+    EXPECT_FALSE(result.mismatch.has_value()) << mismatch_report(*result.mismatch);
+    for (std::size_t i = 0; i < kArrows; ++i) EXPECT_GT(result.compared[i], 0u) << kArrowInfo[i].name;
+    EXPECT_GT(result.memory_compared, 0u);
+    EXPECT_GT(result.counters_compared, 0u);
+    EXPECT_GE(result.triangles, 100u);
+  }
+}
+
+TEST_P(CosimHarness, OneFlippedBitOnAnyArrowIsNamedWithItsField) {
+  const Widths widths = derive_widths(config);
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    const auto arrow = static_cast<Arrow>(i);
+    const int size =
+        with_packet_type(arrow, [&]<class Packet>(std::type_identity<Packet>) { return packet_bits<Packet>(widths); });
+    for (const int bit : {0, size / 3, size - 1}) {
+      const LockstepResult result = run(config, {Fault::Kind::flip, arrow, 20, bit}, with_stalls(0.2));
+      ASSERT_TRUE(result.mismatch.has_value()) << info(arrow).name << " bit " << bit;
+      EXPECT_EQ(result.mismatch->arrow, info(arrow).name);
+      EXPECT_EQ(result.mismatch->number, 20u);
+      EXPECT_EQ(result.mismatch->differing().size(), 1u);
+      EXPECT_GT(result.mismatch->cycle, 0u);
+    }
+  }
+}
+
+TEST_P(CosimHarness, ALostARepeatedAndANeverSentPacketAreNamedOnEveryArrow) {
+  for (std::size_t i = 0; i < kArrows; ++i)
+    for (const auto kind : {Fault::Kind::lose, Fault::Kind::repeat, Fault::Kind::stop}) {
+      const auto arrow = static_cast<Arrow>(i);
+      const LockstepResult result = run(config, {kind, arrow, 20, 0}, with_stalls(0));
+      ASSERT_TRUE(result.mismatch.has_value()) << info(arrow).name << " fault " << static_cast<int>(kind);
+      EXPECT_EQ(result.mismatch->arrow, info(arrow).name);
+    }
+}
+
+TEST_P(CosimHarness, AWrongCounterIsNamed) {
+  const LockstepResult result = run(config, {Fault::Kind::counter, {}, 0, 0}, {});
+  ASSERT_TRUE(result.mismatch.has_value());
+  EXPECT_EQ(result.mismatch->arrow, "counters");
+  EXPECT_EQ(result.mismatch->differing(), std::vector<std::string>{"tile_fills"});
+}
+
+TEST_P(CosimHarness, ARequestThatIsTakenBackBreaksTheProtocol) {
+  const LockstepResult result = run(config, {Fault::Kind::withdraw, {}, 0, 0}, with_stalls(0.5));
+  ASSERT_TRUE(result.mismatch.has_value());
+  EXPECT_EQ(result.mismatch->kind, Mismatch::Kind::protocol);
+}
+
+TEST_P(CosimHarness, ADesignThatNeverRestsBreaksTheProtocol) {
+  const LockstepResult result = run(config, {Fault::Kind::busy, {}, 0, 0}, {}, 10);
+  ASSERT_TRUE(result.mismatch.has_value());
+  EXPECT_NE(mismatch_line(*result.mismatch).find("idle_o"), std::string::npos);
+}
+
+TEST_P(CosimHarness, ARunThatIsStoppedIsNeitherEqualNorDifferent) {
+  LockstepOptions options;
+  options.progress = [](double) { return false; };
+  const LockstepResult result = run(config, {Fault::Kind::stop, Arrow::tile, 30, 0}, options);
+  EXPECT_TRUE(result.is_stopped);
+  EXPECT_FALSE(result.mismatch.has_value());
+}
+
+TEST(CosimReport, ModelStandsAboveRtlAndDifferingBitsAreMarked) {
+  const Config config = preset("embedded");
+  const LockstepResult result = run(config, {Fault::Kind::flip, Arrow::tile, 20, 0}, {});
+  ASSERT_TRUE(result.mismatch.has_value());
+  const std::string text = mismatch_report(*result.mismatch);
+  const auto model = text.find("model  "), rtl = text.find("rtl    "), mark = text.find('^');
+  ASSERT_NE(mark, std::string::npos) << text;
+  EXPECT_LT(model, rtl);
+  EXPECT_LT(rtl, mark);
+  EXPECT_NE(text.find("coarse_raster"), std::string::npos);
+  EXPECT_NE(text.find("color_anchor[0]"), std::string::npos) << text;
+  EXPECT_NE(text.find("cycle"), std::string::npos);
+  for (std::size_t start = 0; start < text.size(); start = text.find('\n', start) + 1)
+    EXPECT_LE(text.find('\n', start) - start, 120u);
+}
+
+TEST(CosimReport, JunitHasACaseForEveryArrowAndEscapesWhatXmlReserves) {
+  const Config config = preset("tiny");
+  const auto cases = junit_cases(run(config, {}, {}));
+  EXPECT_EQ(cases.size(), kArrows + 2);
+  EXPECT_EQ(junit_xml("cosim", cases, 1).find("<failure"), std::string::npos);
+  const auto failed = junit_cases(run(config, {Fault::Kind::lose, Arrow::stamp, 20, 0}, {}));
+  EXPECT_NE(junit_xml("cosim", failed, 1).find("failures=\"1\""), std::string::npos);
+  EXPECT_NE(junit_xml("a<&\"b", {}, 1).find("a&lt;&amp;&quot;b"), std::string::npos);
+  EXPECT_EQ(junit_cases({}).back().failure, "nothing was compared");
+}
+
+TEST(CosimStalls, AreTheirProbabilityAndNoneAtZero) {
+  for (const double probability : {0.0, 0.1, 0.5, 0.9}) {
+    std::array<int, kStallStreams> stalled{};
+    int together = 0;
+    constexpr int kCycles = 20000;
+    for (std::uint64_t cycle = 0; cycle < kCycles; ++cycle) {
+      for (int stream = 0; stream < kStallStreams; ++stream)
+        stalled[static_cast<std::size_t>(stream)] += is_stalled(9, stream, cycle, stall_threshold(probability)) ? 1 : 0;
+      const auto bits = stall_bits(9, cycle, stall_threshold(probability));
+      together += (bits & 3) == 3 ? 1 : 0;
+    }
+    for (const int n : stalled) EXPECT_NEAR(n, probability * kCycles, 400);
+    EXPECT_NEAR(together, probability * probability * kCycles, 400);
+  }
+}
+
+TEST(CosimWords, PackAndUnpackAsPacketBitsDoes) {
+  for (const auto preset_name : preset_names()) {
+    const Config config = preset(preset_name);
+    const Widths widths = derive_widths(config);
+    Random random(1);
+    for (std::size_t i = 0; i < kArrows; ++i)
+      with_packet_type(static_cast<Arrow>(i), [&]<class Packet>(std::type_identity<Packet>) {
+        PacketBits bits(packet_bits<Packet>(widths));
+        for (auto& word : bits.word) word = static_cast<std::uint32_t>(random.next());
+        if (bits.size % 32 != 0) bits.word.back() &= ~0U >> (32 - bits.size % 32);
+        const auto packet = unpack<Packet>(bits, widths);
+        EXPECT_EQ(packed(packet, widths), bits.word) << Packet::name;
+        EXPECT_EQ(packed(unpack_words<Packet>(bits.word.data(), widths), widths), bits.word) << Packet::name;
+      });
+  }
+}
+
+TEST(CosimWords, AQueueGivesBackInOrderWhileItGrows) {
+  PacketQueue queue(2);
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    queue.push(i)[1] = 7 * i;
+    if (i % 3 == 2) {
+      EXPECT_EQ(queue.front_tag(), next);
+      EXPECT_EQ(queue.front()[1], 7 * next);
+      queue.pop();
+      ++next;
+    }
+  }
+  for (; !queue.empty(); queue.pop()) EXPECT_EQ(queue.front_tag(), next++);
+  EXPECT_EQ(next, 1000u);
+}
+
+TEST(CosimRandomScene, IsTheSameForTheSameSeedAndRichInStates) {
+  for (const auto name : preset_names()) {
+    const Config config = preset(name);
+    const Scene a = random_scene(config, 7, 2000), b = random_scene(config, 7, 2000);
+    EXPECT_TRUE(same_scene(a, b));
+    EXPECT_FALSE(same_scene(a, random_scene(config, 8, 2000)));
+    EXPECT_EQ(a.indices.size(), 6000u);
+    std::array<int, 8> functions{};
+    for (const State& state : a.states) ++functions[static_cast<std::size_t>(state.depth_test)];
+    for (const int n : functions) EXPECT_GT(n, 0) << name;
+    HostStream host(a, config);
+    CounterPacket counters;
+    const Widths widths = derive_widths(config);
+    while (const auto primitive = host.next()) (void)cull(primitive->packet, widths, counters);
+    EXPECT_GT(counters.zero_area, 10u) << name;
+    EXPECT_GT(counters.backface, 100u) << name;
+    EXPECT_GT(counters.empty, 10u) << name;
+  }
+}
+
+TEST(CosimReduce, FindsTheTwoTrianglesThatAreToBlame) {
+  const Config config = preset("embedded");
+  const Scene scene = random_scene(config, 11, 400);
+  // "Fails" while two certain vertices are there: independent of any hardware.
+  const auto has = [](const Scene& s, double x) {
+    return std::any_of(s.vertices.begin(), s.vertices.end(), [x](const Vertex& v) { return v.x == x; });
+  };
+  const double first = scene.vertices[300].x, second = scene.vertices[900].x;
+  std::size_t runs = 0;
+  const FailTest test = [&](const Scene& s, const LockstepOptions&) -> std::optional<Mismatch> {
+    ++runs;
+    if (!has(s, first) || !has(s, second)) return {};
+    return Mismatch{};
+  };
+  const auto reduced = reduce(scene, config, with_stalls(0.5), test);
+  ASSERT_TRUE(reduced.has_value());
+  EXPECT_TRUE(reduced->is_minimal);
+  EXPECT_LE(reduced->triangles_after, 2u);
+  EXPECT_EQ(reduced->triangles_before, 400u);
+  EXPECT_EQ(reduced->lockstep.stall_probability, 0);
+  EXPECT_EQ(reduced->scene.width, 1);
+  EXPECT_EQ(reduced->runs, runs);
+  EXPECT_TRUE(has(reduced->scene, first) && has(reduced->scene, second));
+  for (const Vertex& v : reduced->scene.vertices) EXPECT_EQ(v.rgba, (std::array<double, 4>{255, 255, 255, 255}));
+}
+
+TEST(CosimReduce, ASceneThatDoesNotFailIsNotReduced) {
+  const Config config = preset("tiny");
+  FakeDut dut(config, {});
+  EXPECT_FALSE(reduce(random_scene(config, 1, 20), config, {}, lockstep_test(dut, config)).has_value());
+}
+
+TEST(CosimReduce, AFaultInTheDesignLeavesOneTriangle) {
+  const Config config = preset("tiny");
+  FakeDut dut(config, {Fault::Kind::flip, Arrow::fragment, 3, 5});
+  const Scene scene = random_scene(config, 4, 200);
+  const LockstepOptions options = with_stalls(0.3);
+  const auto mismatch = lockstep_test(dut, config)(scene, options);
+  ASSERT_TRUE(mismatch.has_value());
+  const Finding finding = investigate(dut, config, options, scene, *mismatch, "", {});
+  ASSERT_TRUE(finding.reduced.has_value());
+  EXPECT_LE(finding.reduced->triangles_after, 4u);
+  EXPECT_TRUE(lockstep_test(dut, config)(finding.scene, finding.lockstep).has_value()) << "it must still fail";
+}
+
+TEST(CosimReduce, WindowSpaceSendsTheSamePrimitives) {
+  const Config config = preset("embedded");
+  test::SceneBuilder builder(64, 48, State{});
+  builder.triangle(test::clip_at(-0.5, -0.5, 0.1, 1, {255, 0, 9, 255}), test::clip_at(0.5, -0.5, 0.2, 1),
+                   test::clip_at(0, 0.7, 0.3, 1.5));
+  State culled;
+  culled.cull = Cull::front;
+  culled.scissor = Rect{3, 4, 20, 20};
+  builder.with_state(culled).triangle(test::clip_at(-0.5, -0.5, 0.1, 1), test::clip_at(0.5, -0.5, 0.2, 1),
+                                      test::clip_at(0, 0.7, 0.3, 1.5));
+  HostStream a(builder.scene, config);
+  const Scene window = window_scene(builder.scene, config);
+  HostStream b(window, config);
+  const Widths widths = derive_widths(config);
+  while (const auto from_clip = a.next()) {
+    const auto from_window = b.next();
+    ASSERT_TRUE(from_window.has_value());
+    EXPECT_EQ(to_string(from_clip->packet, widths), to_string(from_window->packet, widths));
+  }
+  EXPECT_FALSE(b.next().has_value());
+}
+
+}  // namespace
+}  // namespace halfplane

@@ -1,0 +1,591 @@
+// The hardware engine against the functional one, and the packets that it sends on the way.
+#include "model/engines/hardware.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../scene_builder.hpp"
+#include "model/engines/functional.hpp"
+#include "model/host_stream.hpp"
+#include "model/packet_bits.hpp"
+#include "model/pipeline.hpp"
+
+namespace halfplane {
+namespace {
+
+using test::at;
+using test::clip_at;
+using test::Random;
+using test::SceneBuilder;
+
+Config with(const char* preset_name, std::initializer_list<std::pair<const char*, const char*>> settings) {
+  Config config = preset(preset_name);
+  for (const auto& [key, value] : settings) set(config, key, value);
+  validate(config);
+  return config;
+}
+
+const std::vector<Config>& configurations() {
+  static const std::vector<Config> all{
+      preset("tiny"),
+      preset("embedded"),
+      preset("full"),
+      with("embedded", {{"stamp.size", "1"}, {"hiz.bits", "0"}, {"cache.lines", "1"}}),
+      with("embedded", {{"stamp.size", "4"}, {"hiz.bits", "8"}, {"cache.lines", "4"}, {"tile.size", "4"}}),
+      with("full", {{"stamp.size", "8"}, {"hiz.bits", "1"}, {"cache.lines", "2"}, {"key.primitive_bits", "4"}}),
+      with("tiny", {{"hiz.bits", "3"}, {"tile.size", "4"}, {"cache.lines", "1"}, {"color.format", "rgba8888"}})};
+  return all;
+}
+
+Rect random_rect(Random& random, int width, int height) {
+  Rect rect;
+  rect.x = random.index(width + 10) - 5;
+  rect.y = random.index(height + 10) - 5;
+  rect.width = random.index(width + 5);
+  rect.height = random.index(height + 5);
+  return rect;
+}
+
+State random_state(Random& random, int width, int height) {
+  State state = SceneBuilder::window_state();
+  state.space = random.unit() < 0.3 ? Space::clip : Space::window;
+  state.depth_test = random.unit() < 0.5 ? DepthFunc::less : static_cast<DepthFunc>(random.index(8));
+  state.depth_write = random.unit() < 0.8;
+  state.color_write = random.unit() < 0.8;
+  state.cull = static_cast<Cull>(random.unit() < 0.6 ? 0 : random.index(4));
+  state.front = static_cast<FrontFace>(random.index(2));
+  state.shade = random.unit() < 0.3 ? Shade::flat : Shade::smooth;
+  if (random.unit() < 0.25) state.scissor = random_rect(random, width, height);
+  return state;
+}
+
+Clear random_clear(Random& random, std::uint32_t state) {
+  Clear clear;
+  clear.state = state;
+  const int planes = random.index(4);  // 3: none, which the reader of a capture would refuse
+  if (planes != 1) clear.depth = random.unit();
+  if (planes != 0) {
+    clear.color.emplace();
+    for (double& channel : *clear.color) channel = random.between(0, 255);
+  }
+  return clear;
+}
+
+/// Triangles of all sizes and states in both spaces, some across the eye, with clears in between.
+Scene random_scene(std::uint32_t seed, int width, int height, double band, int triangles) {
+  Random random(seed);
+  SceneBuilder builder(width, height);
+  if (seed % 3 == 0) builder.scene.commands.clear();
+  State state;
+  for (int n = 0; n < triangles; ++n) {
+    if (n % 5 == 0) {
+      state = random_state(random, width, height);
+      builder.with_state(state);
+      if (random.unit() < 0.25)
+        builder.scene.commands.push_back(
+            random_clear(random, static_cast<std::uint32_t>(builder.scene.states.size() - 1)));
+      if (builder.scene.commands.empty()) builder.scene.commands.push_back(EndFrame{});
+    }
+    const bool is_flat = random.unit() < 0.2;  // one depth: ties, and bounds that HiZ can use
+    const double reach = std::exp2(random.between(-4, std::log2(band) + 1));
+    const double x = random.between(0, width), y = random.between(0, height), z = random.unit();
+    std::array<Vertex, 3> v;
+    for (auto& vertex : v) {
+      const double dx = random.between(-reach, reach), dy = random.between(-reach, reach);
+      if (state.space == Space::clip) {
+        vertex.x = random.between(-3, 3);
+        vertex.y = random.between(-3, 3);
+        vertex.z = random.between(-1.5, 1.5);
+        vertex.w = random.between(-0.5, 2);
+      } else {
+        const double low = 1 - band, high = band - 1;
+        vertex = at(std::clamp(x + dx, low, high), std::clamp(y + dy, low, high), is_flat ? z : random.unit());
+        if (random.unit() < 0.3) vertex.x = std::floor(vertex.x) + 0.5;  // onto a pixel centre
+      }
+      for (auto& channel : vertex.rgba) channel = random.between(0, 255);
+    }
+    if (random.unit() < 0.05) v[2] = v[1];
+    builder.triangle(v[0], v[1], v[2]);
+  }
+  return builder.scene;
+}
+
+Scene random_scene(std::uint32_t seed, const Config& config, int triangles = 80) {
+  const bool is_tiny = config.target_width < 64;
+  return random_scene(seed, is_tiny ? 15 : 93, is_tiny ? 13 : 71, is_tiny ? 32 : 500, triangles);
+}
+
+/// Counts and remembers what the tests ask about.
+struct Recorder : PacketSink {
+  using PacketSink::take;
+  void take(const TilePacket& packet) override { tiles.push_back(packet); }
+  void take(const StampPacket& packet) override { stamps.push_back(packet); }
+  void take(const RetirePacket& packet) override { retired.push_back(packet); }
+  void take(const MemoryRequest& packet) override { requests.push_back(packet); }
+  std::vector<TilePacket> tiles;
+  std::vector<StampPacket> stamps;
+  std::vector<RetirePacket> retired;
+  std::vector<MemoryRequest> requests;
+};
+
+CounterPacket run_scene(const Scene& scene, const Config& config, PacketSink& sink) {
+  HostStream host(scene, config);
+  HardwareModel hardware(config, sink);
+  while (const auto primitive = host.next()) hardware.run(primitive->packet);
+  return hardware.counters();
+}
+
+TEST(Hardware, ImageAndCountersAreThoseOfTheFunctionalEngineOnRandomScenes) {
+  std::uint64_t written = 0, hiz = 0, clipped = 0;
+  for (const Config& config : configurations())
+    for (std::uint32_t seed = 1; seed <= 25; ++seed) {
+      SCOPED_TRACE(label(config) + ", seed " + std::to_string(seed));
+      const Scene scene = random_scene(seed, config);
+      const Rendering expected = render_functional(scene, config), hardware = render_hardware(scene, config);
+      ASSERT_EQ(hardware.frame.depth, expected.frame.depth);
+      ASSERT_EQ(hardware.frame.color, expected.frame.color);
+      const Counters &a = hardware.counters, &b = expected.counters;
+      EXPECT_EQ(a.primitives_in, b.primitives_in);
+      EXPECT_EQ(a.culled, b.culled);
+      EXPECT_EQ(a.drawn, b.drawn);
+      EXPECT_EQ(a.clipped, b.clipped);
+      EXPECT_EQ(a.skipped.frustum, b.skipped.frustum);
+      EXPECT_EQ(a.skipped.backface, b.skipped.backface);
+      EXPECT_EQ(a.skipped.zero_area, b.skipped.zero_area);
+      EXPECT_EQ(a.skipped.empty, b.skipped.empty);
+      EXPECT_EQ(a.tiles_visited, b.tiles_visited);
+      EXPECT_EQ(a.skipped.tiles_outside, b.skipped.tiles_outside);
+      EXPECT_EQ(a.depth_passed, b.depth_passed);
+      EXPECT_EQ(a.written, b.written);
+      EXPECT_LE(a.covered, b.covered);
+      if (a.skipped.tiles_hiz == 0) {
+        EXPECT_EQ(a.covered, b.covered);
+        EXPECT_EQ(a.samples_tested, b.samples_tested);
+        EXPECT_EQ(a.skipped.trivially_accepted, b.skipped.trivially_accepted);
+        EXPECT_EQ(a.skipped.fragments_early_z, b.skipped.fragments_early_z);
+      }
+      written += a.written;
+      hiz += a.skipped.tiles_hiz;
+      clipped += a.clipped;
+    }
+  EXPECT_GT(written, 100000u);
+  EXPECT_GT(hiz, 100u);
+  EXPECT_GT(clipped, 100u);
+}
+
+/// Packs and unpacks every packet: one that comes back changed has a value that its field does not hold.
+class RoundTrip : public PacketSink {
+ public:
+  explicit RoundTrip(const Widths& widths) : widths_(widths) {}
+  void take(const TrianglePacket& packet) override { check(packet); }
+  void take(const SetupPacket& packet) override { check(packet); }
+  void take(const ContextPacket& packet) override { check(packet); }
+  void take(const TilePacket& packet) override { check(packet); }
+  void take(const EdgeContext& packet) override { check(packet); }
+  void take(const StampPacket& packet) override { check(packet); }
+  void take(const FragmentPacket& packet) override { check(packet); }
+  void take(const WritePacket& packet) override { check(packet); }
+  void take(const RetirePacket& packet) override { check(packet); }
+  void take(const MemoryRequest& packet) override { check(packet); }
+  void take(const MemoryResponse& packet) override { check(packet); }
+
+  template <class Packet>
+  void check(const Packet& packet) {
+    const auto changed = differing_fields(unpack<Packet>(pack(packet, widths_), widths_), packet, widths_);
+    ASSERT_TRUE(changed.empty()) << changed.front() << ": " << to_string(packet, widths_);
+  }
+
+ private:
+  Widths widths_;
+};
+
+TEST(Hardware, EveryPacketFitsItsFields) {
+  for (const Config& config : configurations()) {
+    SCOPED_TRACE(label(config));
+    const Widths widths = derive_widths(config);
+    RoundTrip sink(widths);
+    const Scene scene = random_scene(77, config, 40);
+    HostStream host(scene, config);
+    HardwareModel hardware(config, sink);
+    while (const auto primitive = host.next()) {
+      sink.check(primitive->packet);
+      hardware.run(primitive->packet);
+      if (HasFatalFailure()) return;
+    }
+    sink.check(hardware.counters());
+  }
+}
+
+/// Every field of the packet fits the member that holds it in C++.
+template <class... Packets>
+void expect_members_wide_enough(const Widths& widths) {
+  const auto one = [&widths]<class Packet>(const Packet&) {
+    for_each_element<Packet>(widths, [](const auto& field, const Width& width, std::size_t i, int) {
+      Packet packet;
+      using Member = std::decay_t<decltype(element(packet, field.member, i))>;
+      EXPECT_LE(width.bits, static_cast<int>(8 * sizeof(Member))) << Packet::name << '.' << field.name;
+      EXPECT_EQ(width.is_signed, std::is_signed_v<Member>) << Packet::name << '.' << field.name;
+    });
+  };
+  (one(Packets{}), ...);
+}
+
+TEST(Hardware, EveryMemberHoldsItsFieldInTheWidestConfiguration) {
+  Config config = preset("full");
+  config.tile_size = 4;
+  config.stamp_size = 1;
+  config.local_guard_bits = 8;
+  config.context_slots = 64;
+  config.primitive_id_bits = 32;
+  config.guard_band = config.target_width = config.target_height = 16384;
+  for (const int stamp : {1, 4, 8}) {
+    config.stamp_size = stamp;
+    config.tile_size = std::max(4, stamp);
+    validate(config);
+    expect_members_wide_enough<PrimitivePacket, TrianglePacket, SetupPacket, ContextPacket, FragmentPacket, WritePacket,
+                               RetirePacket, MemoryRequest, MemoryResponse, CounterPacket>(derive_widths(config));
+  }
+}
+
+TEST(Hardware, StampInterpolatedFromItsTileEqualsTheClosedFormAtEveryPixel) {
+  Random random(31);
+  for (const Config& config : configurations()) {
+    SCOPED_TRACE(label(config));
+    const Widths widths = derive_widths(config);
+    const int size = config.stamp_size;
+    for (int n = 0; n < 300; ++n) {
+      Triangle triangle;
+      const int reach = 1 << (1 + random.index(widths.coordinate.bits - 2));
+      for (auto& v : triangle.v) {
+        v.x = random.index(2 * reach) - reach;
+        v.y = random.index(2 * reach) - reach;
+        v.z = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth_code.range.hi)));
+        for (auto& channel : v.rgba) channel = static_cast<std::uint8_t>(random.index(256));
+      }
+      const TriangleSetup setup =
+          setup_triangle(triangle, config, widths, {0, 0, config.target_width, config.target_height});
+      if (setup.area == 0 || setup.is_empty()) continue;
+      const SetupPacket packet = to_setup_packet(setup, widths);
+      const int tile_x = setup.right >> widths.tile_shift, tile_y = setup.bottom >> widths.tile_shift;
+      StampPacket stamp = empty_stamp(make_tile_packet(packet, tile_x, tile_y, 0, widths));
+      stamp.stamp = static_cast<std::uint16_t>(random.index(widths.stamps_per_row * widths.stamps_per_row));
+      const FragmentPacket fragment = interpolate(stamp, make_context(packet, widths), config, widths);
+      const int x = tile_x * config.tile_size + stamp.stamp % widths.stamps_per_row * size;
+      const int y = tile_y * config.tile_size + stamp.stamp / widths.stamps_per_row * size;
+      for (int s = 0; s < size * size; ++s) {
+        const auto sample = static_cast<std::size_t>(s);
+        const Interpolated expected = interpolate_at(setup, widths, x + s % size, y + s / size);
+        ASSERT_EQ(fragment.depth[sample], expected.depth_code);
+        ASSERT_EQ(fragment.rgba[sample], packet_color(expected.color_code, widths));
+      }
+    }
+  }
+}
+
+TEST(Hardware, SetupOfAPacketIsTheSetupOfItsTriangle) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  Random random(32);
+  std::size_t compared = 0;
+  for (int n = 0; n < 1000; ++n) {
+    Triangle triangle;
+    triangle.primitive = static_cast<std::uint32_t>(n);
+    PrimitivePacket packet;
+    packet.primitive_id = triangle.primitive;
+    for (auto& v : triangle.v) {
+      v.x = random.index(2000) - 500;
+      v.y = random.index(2000) - 500;
+      v.z = static_cast<std::uint32_t>(random.index(65536));
+      for (std::size_t c = 0; c < 3; ++c) v.rgba[c] = static_cast<std::uint8_t>(random.index(256));
+    }
+    set_vertices(packet, triangle.v, widths);
+    set_box(static_cast<PixelBox&>(packet), {3, 5, 60, 50});
+    const TriangleSetup expected = setup_triangle(triangle, config, widths, {3, 5, 58, 46});
+    CounterPacket counters;
+    const auto kept = cull(packet, widths, counters);
+    ASSERT_EQ(kept.has_value(), !expected.is_empty());
+    if (!kept) continue;
+    ++compared;
+    const auto fields =
+        differing_fields(to_setup_packet(expected, widths), setup_packet(*kept, config, widths), widths);
+    ASSERT_TRUE(fields.empty()) << fields.front();
+  }
+  EXPECT_GT(compared, 300u);
+}
+
+TEST(Hardware, EveryVisitEndsOnceWithItsLastStampAndRetiresOnce) {
+  for (const Config& config : configurations()) {
+    SCOPED_TRACE(label(config));
+    Recorder sink;
+    (void)run_scene(random_scene(5, config), config, sink);
+    std::size_t stamp = 0, visits = 0, empty_ends = 0;
+    for (const TilePacket& tile : sink.tiles) {
+      for (bool is_last = false; !is_last; ++stamp) {
+        ASSERT_LT(stamp, sink.stamps.size());
+        const StampPacket& s = sink.stamps[stamp];
+        is_last = tile.is_visit == 0 || s.ends_visit != 0;
+        EXPECT_EQ(s.tile_x, tile.tile_x);
+        EXPECT_EQ(s.tile_y, tile.tile_y);
+        EXPECT_EQ(s.slot, tile.slot);
+        EXPECT_EQ(s.ends_primitive, is_last ? tile.ends_primitive : 0);
+        EXPECT_EQ(s.ends_visit, is_last ? tile.is_visit : 0);
+        if (!is_last) {
+          EXPECT_NE(s.mask, 0u);
+        } else if (s.mask == 0) {
+          ++empty_ends;
+          const int row = tile.is_visit != 0 ? tile.bottom / config.stamp_size : 0;
+          EXPECT_EQ(s.stamp, row * derive_widths(config).stamps_per_row);
+        }
+      }
+      if (tile.is_visit == 0) continue;
+      ASSERT_LT(visits, sink.retired.size());
+      const RetirePacket& retired = sink.retired[visits++];
+      EXPECT_EQ(retired.tile_x, tile.tile_x);
+      EXPECT_EQ(retired.tile_y, tile.tile_y);
+      EXPECT_EQ(retired.primitive_id, tile.primitive_id);
+    }
+    EXPECT_EQ(stamp, sink.stamps.size());
+    EXPECT_EQ(visits, sink.retired.size());
+    EXPECT_GT(empty_ends, 0u) << "the case was never met";
+  }
+}
+
+/// Two window-space triangles that fill the target.
+void fill_target(SceneBuilder& builder, double z) {
+  const double w = builder.scene.width, h = builder.scene.height;
+  builder.triangle(at(0, 0, z), at(w, 0, z), at(0, h, z));
+  builder.triangle(at(w, 0, z), at(w, h, z), at(0, h, z));
+}
+
+TEST(Hiz, FrontToBackSceneSkipsTilesAndShowsTheSameImage) {
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::less;
+  SceneBuilder builder(96, 96, state);
+  for (int layer = 1; layer <= 8; ++layer) fill_target(builder, 0.1 * layer);
+  const Config config = preset("embedded");
+  const Rendering expected = render_functional(builder.scene, config),
+                  hardware = render_hardware(builder.scene, config);
+  EXPECT_EQ(hardware.frame.depth, expected.frame.depth);
+  EXPECT_EQ(hardware.frame.color, expected.frame.color);
+  EXPECT_EQ(hardware.counters.written, 96u * 96u);
+  // The tiles on the diagonal are never covered by one triangle alone: their bound stays where the clear put it.
+  EXPECT_EQ(hardware.counters.skipped.tiles_hiz, 7u * 2u * 66u);
+  EXPECT_LT(hardware.counters.covered, expected.counters.covered / 3);
+}
+
+TEST(Hiz, BoundOfATileFollowsTheDepthsInIt) {
+  const Config config = with("embedded", {{"hiz.bits", "8"}});
+  const Widths widths = derive_widths(config);
+  Hiz hiz(config, widths);
+  EXPECT_EQ(hiz.bound(3, 2), 65535u);
+  hiz.clear(5, 5, 0x1234);
+  EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
+  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::none), 0});
+  EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
+  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::set), 0x05});
+  EXPECT_EQ(hiz.bound(3, 2), 0x05FFu);
+  EXPECT_EQ(hiz.bound(2, 3), 0x12FFu);
+  SetupPacket setup;
+  setup.depth_min = 0x05FF;
+  setup.depth_test = static_cast<std::uint8_t>(DepthFunc::less);
+  EXPECT_TRUE(hiz.rejects(setup, 3, 2));
+  setup.depth_test = static_cast<std::uint8_t>(DepthFunc::lequal);
+  EXPECT_FALSE(hiz.rejects(setup, 3, 2));
+  setup.depth_min = 0x0600;
+  EXPECT_TRUE(hiz.rejects(setup, 3, 2));
+  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::clear), 0xFF});
+  EXPECT_FALSE(hiz.rejects(setup, 3, 2));
+}
+
+TEST(Hiz, DepthThatCanRiseTakesTheBoundAway) {
+  // A near wall, then one test that raises part of a tile, then something between: it must be seen.
+  for (const DepthFunc raising : {DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always}) {
+    State state = SceneBuilder::window_state();
+    state.depth_test = DepthFunc::less;
+    SceneBuilder builder(64, 64, state);
+    fill_target(builder, 0.2);
+    state.depth_test = raising;
+    builder.with_state(state).triangle(at(1, 1, 0.9), at(30, 2, 0.9), at(3, 33, 0.9));
+    state.depth_test = DepthFunc::less;
+    builder.with_state(state);
+    fill_target(builder, 0.5);
+    const Config config = preset("embedded");
+    EXPECT_EQ(render_hardware(builder.scene, config).frame.depth, render_functional(builder.scene, config).frame.depth);
+  }
+}
+
+TEST(TileCache, FastClearedSceneThatFitsReadsNoMemory) {
+  const Config config = preset("embedded");
+  SceneBuilder builder(32, 32);  // 4 x 4 tiles, 16 lines
+  for (int n = 0; n < 5; ++n) fill_target(builder, 0.1 * n);
+  Recorder sink;
+  const CounterPacket counters = run_scene(builder.scene, config, sink);
+  for (const MemoryRequest& request : sink.requests) EXPECT_EQ(request.is_write, 1);
+  EXPECT_EQ(sink.requests.size(), 32u * 32u / 4 * 2) << "each plane of each tile is written once";
+  EXPECT_EQ(counters.tile_fills, 0u);
+  EXPECT_EQ(counters.tile_clears, 32u);
+  EXPECT_EQ(counters.tile_evictions, 32u);
+}
+
+TEST(TileCache, TileNobodyTouchesIsWrittenOnlyAtTheFlush) {
+  const Config config = preset("embedded");
+  SceneBuilder builder(64, 8);
+  builder.triangle(at(1, 1), at(7, 1), at(1, 7));
+  Recorder sink;
+  const CounterPacket counters = run_scene(builder.scene, config, sink);
+  EXPECT_EQ(counters.tile_clears, 2u);
+  EXPECT_EQ(counters.tile_evictions, 2u * 8u);
+  ASSERT_EQ(sink.requests.size(), 2u * 8u * 16u);
+  for (std::size_t n = 0; n < sink.requests.size(); ++n) {  // the dirty line, then the flags, depth before colour
+    EXPECT_EQ(sink.requests[n].tile_x, n / 32);
+    EXPECT_EQ(sink.requests[n].is_color, n / 16 % 2);
+    EXPECT_EQ(sink.requests[n].stamp, n % 16);
+  }
+}
+
+TEST(TileCache, SecondReadOfATileIsAHit) {
+  // Two tiles that share a line take it from each other; staying in one costs nothing.
+  const Config config = with("embedded", {{"cache.lines", "1"}});
+  const auto fills = [&config](std::initializer_list<double> xs) {
+    SceneBuilder builder(64, 8);
+    for (const double x : xs) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
+    Recorder sink;
+    return run_scene(builder.scene, config, sink).tile_fills;
+  };
+  EXPECT_EQ(fills({0, 0, 0}), 0u);
+  EXPECT_EQ(fills({0, 8}), 0u);
+  EXPECT_EQ(fills({0, 8, 0}), 2u);
+  EXPECT_EQ(fills({0, 8, 0, 0, 8}), 4u);
+}
+
+TEST(TileCache, PlaneThatNobodyWroteIsNotWrittenBack) {
+  const Config config = with("embedded", {{"cache.lines", "1"}});
+  State state = SceneBuilder::window_state();
+  state.depth_write = false;
+  SceneBuilder builder(16, 8, state);
+  for (const double x : {0.0, 8.0, 0.0}) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
+  Recorder sink;
+  const CounterPacket counters = run_scene(builder.scene, config, sink);
+  EXPECT_EQ(counters.tile_fills, 1u) << "colour of the first tile, when it comes back";
+  EXPECT_EQ(counters.tile_clears, 5u) << "three times depth, twice colour";
+  EXPECT_EQ(counters.tile_evictions, 5u) << "three times colour; depth of both tiles at the flush";
+}
+
+TEST(TileCache, ClearOfOnePlaneKeepsTheOther) {
+  SceneBuilder builder(40, 40);
+  fill_target(builder, 0.5);
+  builder.scene.commands.push_back(Clear{0, std::nullopt, 0.25});
+  builder.triangle(at(1, 1, 0.75, {255, 0, 0, 255}), at(20, 1, 0.75, {255, 0, 0, 255}),
+                   at(1, 30, 0.75, {255, 0, 0, 255}));
+  builder.scene.commands.push_back(Clear{0, std::array<double, 4>{0, 255, 0, 255}, std::nullopt});
+  for (const char* lines : {"1", "4", "64"}) {
+    const Config config = with("embedded", {{"cache.lines", lines}});
+    const Rendering expected = render_functional(builder.scene, config),
+                    hardware = render_hardware(builder.scene, config);
+    EXPECT_EQ(hardware.frame.depth, expected.frame.depth) << lines;
+    EXPECT_EQ(hardware.frame.color, expected.frame.color) << lines;
+  }
+}
+
+TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  TileMemory memory(config);
+  std::array<std::uint32_t, 64> data{}, back{};
+  for (std::uint32_t s = 0; s < 4; ++s) data[s] = s + 1;
+  memory.write(true, 2, 3, 5, data);
+  memory.read(true, 2, 3, 5, back);
+  EXPECT_EQ(back, data);
+  memory.read(true, 2, 3, 6, back);
+  for (int s = 0; s < 4; ++s) EXPECT_EQ(back[static_cast<std::size_t>(s)], memory_garbage(true, 2, 3, 6, s, widths));
+  EXPECT_TRUE(memory.is_written(true, 2, 3));
+  EXPECT_FALSE(memory.is_written(false, 2, 3));
+  memory.read(false, 2, 3, 5, back);
+  EXPECT_EQ(back[0], memory_garbage(false, 2, 3, 5, 0, widths));
+  EXPECT_NE(memory_garbage(false, 2, 3, 5, 0, widths), memory_garbage(false, 2, 3, 5, 1, widths));
+}
+
+TEST(HostStream, BeginsWithAClearOfBothPlanesAndEndsWithAFlush) {
+  SceneBuilder builder(20, 10);
+  builder.scene.commands.clear();
+  builder.scene.commands.push_back(EndFrame{});
+  State scissored = SceneBuilder::window_state();
+  scissored.scissor = Rect{5, 2, 100, 3};
+  builder.with_state(scissored);
+  builder.scene.commands.push_back(Clear{1, std::nullopt, 1.0});
+  builder.scene.commands.push_back(Clear{0, std::array<double, 4>{255, 1, 2, 3}, std::nullopt});
+  builder.scene.commands.push_back(Clear{0, std::nullopt, std::nullopt});
+  builder.triangle(at(1, 1), at(1, 1), at(1, 1));  // of no area: the hardware's to drop
+  HostStream host(builder.scene, preset("embedded"));
+  const auto kind = [](PrimitiveKind k) { return static_cast<std::uint8_t>(k); };
+  auto p = host.next();
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::fast_clear));
+  EXPECT_EQ(p->packet.z[2], 65535u);
+  EXPECT_EQ(p->packet.rgba[0], 0u);
+  EXPECT_EQ(p->packet.right, 19);
+  EXPECT_EQ(p->packet.depth_write + p->packet.color_write, 2);
+  p = host.next();
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::rectangle));
+  EXPECT_EQ(p->packet.left, 5);
+  EXPECT_EQ(p->packet.right, 19);
+  EXPECT_EQ(p->packet.bottom, 4);
+  EXPECT_EQ(p->packet.color_write, 0);
+  EXPECT_EQ(p->command, 1u);
+  p = host.next();
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::fast_clear));
+  EXPECT_EQ(p->packet.rgba[1], 0x0201FFu);
+  EXPECT_EQ(p->packet.depth_write, 0);
+  p = host.next();
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::triangle));
+  EXPECT_EQ(p->packet.left, 5) << "the scissor rides along";
+  p = host.next();
+  ASSERT_TRUE(p);
+  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::flush));
+  EXPECT_EQ(p->command, HostPrimitive::kNoCommand);
+  EXPECT_FALSE(host.next());
+  EXPECT_FALSE(host.next());
+}
+
+TEST(HostStream, DrawIntoAnEmptyRectangleSendsNothing) {
+  State state = SceneBuilder::window_state();
+  state.scissor = Rect{30, 0, 5, 5};
+  SceneBuilder builder(20, 10, state);
+  builder.triangle(at(1, 1), at(9, 1), at(1, 9));
+  HostStream host(builder.scene, preset("embedded"));
+  std::size_t triangles = 0;
+  while (const auto p = host.next()) triangles += p->packet.kind == 0 ? 1 : 0;
+  EXPECT_EQ(triangles, 0u);
+  EXPECT_EQ(host.counters().culled, 1u);
+}
+
+TEST(HostStream, NumberOfATriangleDoesNotWrapWhereItsKeyDoes) {
+  const Config config = with("embedded", {{"key.primitive_bits", "4"}});
+  SceneBuilder builder(20, 10);
+  for (int n = 0; n < 20; ++n) builder.triangle(at(1, 1), at(9, 1), at(1, 9));
+  HostStream host(builder.scene, config);
+  std::uint32_t expected = 0;
+  while (const auto p = host.next()) {
+    if (p->packet.kind != 0) continue;
+    EXPECT_EQ(p->primitive, expected);
+    EXPECT_EQ(p->packet.primitive_id, expected % 16);
+    ++expected;
+  }
+  EXPECT_EQ(expected, 20u);
+}
+
+TEST(HostStream, RefusesWhatTheHardwareDoesNotHave) {
+  State state = SceneBuilder::window_state();
+  state.color_interp = ColorInterp::perspective;
+  SceneBuilder builder(20, 10, state);
+  builder.triangle(at(1, 1), at(9, 1), at(1, 9));
+  EXPECT_THROW((void)render_hardware(builder.scene, preset("embedded")), InputError);
+}
+
+}  // namespace
+}  // namespace halfplane
