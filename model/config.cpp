@@ -31,7 +31,7 @@ const std::array kSettings{
             &Config::primitive_id_bits},
     Setting{"context.slots", "slots", "triangles whose constants the context RAM holds; a power of two", 2, 64,
             &Config::context_slots},
-    Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, at most depth.bits; 0: no HiZ", 0, 32, &Config::hiz_bits},
+    Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32, &Config::hiz_bits},
     Setting{"cache.lines", "tiles", "tiles that the on-chip depth and colour RAM holds; a power of two", 1, 256,
             &Config::cache_lines},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
@@ -163,8 +163,6 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
   refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
   refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
-  refuse_unless(config.hiz_bits <= config.depth_bits,
-                "a HiZ bound has no more bits than a depth: hiz.bits <= depth.bits");
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");

@@ -2,6 +2,7 @@
 // is derived from it by model/widths.hpp.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -36,12 +37,15 @@ struct Config {
   int stamp_size = 2;          ///< pixels along the side of the stamp that fine_raster tests in one clock
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
-  int hiz_bits = 16;           ///< bits of a tile's HiZ bound, at most depth_bits; 0: no HiZ
+  int hiz_bits = 16;           ///< bits of a tile's HiZ bound, see hiz_code_bits(); 0: no HiZ
   int cache_lines = 16;        ///< tiles that the on-chip depth and colour RAM holds; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
 
   bool operator==(const Config&) const = default;
 };
+
+/// The highest bits of a depth code that a tile's HiZ bound keeps: hiz.bits, or all where a code has fewer; 0: no HiZ.
+[[nodiscard]] constexpr int hiz_code_bits(const Config& config) { return std::min(config.hiz_bits, config.depth_bits); }
 
 /// One setting: its key in TOML and `--set`, its range, and where it lives.
 struct Setting {

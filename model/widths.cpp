@@ -1,5 +1,6 @@
 #include "widths.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace halfplane {
@@ -109,7 +110,7 @@ Widths derive_widths(const Config& config) {
   w.pixel_x = count("pixel x", "target width", config.target_width);
   w.pixel_y = count("pixel y", "target height", config.target_height);
   w.vertex_color = bits("vertex color", "8 bits a stored channel", 8 * w.color_channels);
-  w.hiz_code = bits("hiz code", "hiz.bits, at least 1", config.hiz_bits > 0 ? config.hiz_bits : 1);
+  w.hiz_code = bits("hiz code", "hiz.bits, at most depth.bits, at least 1", std::max(1, hiz_code_bits(config)));
   w.hiz_update = count("hiz update", "HizUpdate", 3);
   w.counter = bits("counter", "modulo 2^32", 32);
   w.memory_lane = bits("memory lane", "a depth code or a stored colour", B > color_bits ? B : color_bits);

@@ -15,7 +15,7 @@ package raster_pkg;
   localparam int STAMP_SIZE = 2;  // side of the stamp tested in one clock: 1, 2, 4 or 8
   localparam int KEY_PRIMITIVE_BITS = 16;  // bits of the primitive number in an RTL packet key
   localparam int CONTEXT_SLOTS = 4;  // triangles whose constants the context RAM holds; a power of two
-  localparam int HIZ_BITS = 16;  // bits of a tile's HiZ bound, at most depth.bits; 0: no HiZ
+  localparam int HIZ_BITS = 16;  // bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ
   localparam int CACHE_LINES = 16;  // tiles that the on-chip depth and colour RAM holds; a power of two
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam logic [63:0] CONFIG_ID = 64'h03b8b979ef5ed178;  // hash of the above
@@ -70,7 +70,7 @@ package raster_pkg;
   localparam int PIXEL_X_BITS = 11;  // target width
   localparam int PIXEL_Y_BITS = 11;  // target height
   localparam int VERTEX_COLOR_BITS = 24;  // 8 bits a stored channel
-  localparam int HIZ_CODE_BITS = 16;  // hiz.bits, at least 1
+  localparam int HIZ_CODE_BITS = 16;  // hiz.bits, at most depth.bits, at least 1
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
   localparam int MEMORY_LANE_BITS = 16;  // a depth code or a stored colour
   localparam int COUNTER_BITS = 32;  // modulo 2^32

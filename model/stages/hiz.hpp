@@ -18,7 +18,7 @@ class Hiz {
  public:
   explicit Hiz(const Config& config, const Widths& widths)
       : bits_(config.hiz_bits),
-        low_bits_(config.depth_bits - config.hiz_bits),
+        low_bits_(config.depth_bits - hiz_code_bits(config)),
         tiles_x_(static_cast<std::size_t>(widths.tiles_x)),
         code_(tiles_x_ * static_cast<std::size_t>(widths.tiles_y),
               static_cast<std::uint32_t>(widths.hiz_code.range.hi)) {}
@@ -86,7 +86,7 @@ class TileVisit {
     if (config.hiz_bits == 0 || last.depth_write == 0) return packet;
     if (full_stamps_ == widths.stamps_per_row * widths.stamps_per_row) {
       packet.update = static_cast<std::uint8_t>(HizUpdate::set);
-      packet.hiz_code = largest_ >> (config.depth_bits - config.hiz_bits);
+      packet.hiz_code = largest_ >> (config.depth_bits - hiz_code_bits(config));
     } else if (has_passed_ && last.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
       packet.update = static_cast<std::uint8_t>(HizUpdate::clear);  // these tests can raise a depth
       packet.hiz_code = static_cast<std::uint32_t>(widths.hiz_code.range.hi);

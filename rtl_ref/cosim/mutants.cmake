@@ -19,8 +19,8 @@ mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
   [=[R'(g_quotient_q[QUOTIENT-R-1])]=] [=[R'(0)]=])
 mutant(8 stages/triangle_setup.sv "rounding: the x gradient is truncated"
   [=[P'(shifted_x[0])]=] [=[P'(0)]=])
-mutant(9 stages/triangle_setup.sv "divider: a remainder that equals the divisor is not taken off"
-  [=[remainder_d >= {1'b0, t_q.area}]=] [=[remainder_d > {1'b0, t_q.area}]=])
+mutant(9 stages/triangle_setup.sv "divider: an area that is a power of two has no quotient"
+  [=[QUOTIENT'(t_q.area == highest)]=] [=[QUOTIENT'(0)]=])
 mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third vertex"
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
@@ -93,5 +93,5 @@ mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
   [=[tag_y == access_i.tile_y >> LINE_Y]=] [=[1'b1]=])
 
 # reset
-mutant_text(39 stages/coarse_raster.sv "wrong reset: the ring of visits starts with its ends apart"
-  [=[      newest_q      <= '0;]=] [=[      newest_q      <= VISIT'(raster_cosim.mutant_i == 16'd39);]=])
+mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"
+  [=[      slot_q  <= '0;]=] [=[      slot_q  <= SLOT'(raster_cosim.mutant_i == 16'd39);]=])

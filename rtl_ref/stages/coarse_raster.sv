@@ -58,7 +58,7 @@ module coarse_raster (
   localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
   localparam int S = raster_pkg::GRID_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int HIZ = raster_pkg::HIZ_BITS;
+  localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
   localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses

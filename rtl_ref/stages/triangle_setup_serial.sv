@@ -10,8 +10,8 @@
 //   GRADIENT  numerator * R, shifted and rounded, into a step chain. These three for y, then for x
 //   VALUE     step * way to the anchor, added to the value chain; for x, then for y
 // The multiplier's operand is the lowest word of the ring, which turns between the passes.
-// Occupancy: about 1300 cycles and 8 for each bit of the area. triangle_i must stay until triangle_ready_o, which comes with the
-// result: what only passes through is not stored. Specification: model/stages/triangle_setup.hpp.
+// Occupancy: about 1300 cycles and 8 for each bit of the area. triangle_i must stay until triangle_ready_o, which
+// comes after the result: what only passes through is not stored. Specification: model/stages/triangle_setup.hpp.
 module triangle_setup_serial (
     input logic clk_i,
     input logic rst_ni,
@@ -59,12 +59,13 @@ module triangle_setup_serial (
 
   // ---------------------------------------------------------------------------------------------------------- control
   localparam logic [3:0] IDLE = 4'd0, SUBTRACT = 4'd1, FIRST = 4'd2, TURN_A = 4'd3, SECOND = 4'd4, GRADIENT = 4'd5,
-      TURN_B = 4'd6, TURN_C = 4'd7, VALUE_X = 4'd8, TURN_D = 4'd9, VALUE_Y = 4'd10, OFFER = 4'd11;
+      TURN_B = 4'd6, TURN_C = 4'd7, VALUE_X = 4'd8, TURN_D = 4'd9, VALUE_Y = 4'd10, OFFER = 4'd11, TAKE = 4'd12;
   (* fsm_encoding = "none" *) logic [3:0] state_q;
   logic             is_x_q;  // the numerators and gradients at work
   logic [2:0]       unit_q;  // plane, or word of the ring
   logic [COUNT-1:0] bit_q, last_bit, shift_q;  // shift_q: SHIFT + LEAD - 1
   logic             keeps_q;  // GRADIENT: the bits that are dropped have gone by
+  logic             waits_q, has_moved;  // and so have those that are kept, but not all of the numerator
   logic [2:0]       last_unit;
   logic             is_numerator, is_gradient, is_value, is_turn, is_last_bit, unit_ends, state_ends, load;
 
@@ -86,13 +87,17 @@ module triangle_setup_serial (
     endcase
   end
   assign is_last_bit = bit_q == last_bit;
-  assign unit_ends   = is_last_bit && !(is_gradient && !keeps_q);
+  always_comb begin
+    unit_ends = is_last_bit;
+    if (is_gradient) unit_ends = waits_q ? has_moved : keeps_q && is_last_bit && (LEAD < 2 || has_moved);
+  end
   assign state_ends  = unit_ends && unit_q == last_unit;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) state_q <= IDLE;
     else if (load) state_q <= triangle_valid_i ? SUBTRACT : IDLE;
-    else if (state_q == OFFER) state_q <= setup_ready_i ? IDLE : OFFER;
+    else if (state_q == OFFER) state_q <= setup_ready_i ? TAKE : OFFER;
+    else if (state_q == TAKE) state_q <= triangle_valid_i ? IDLE : TAKE;
     else if (state_ends) begin
       case (state_q)
         GRADIENT: state_q <= is_x_q ? TURN_C : TURN_B;
@@ -104,14 +109,16 @@ module triangle_setup_serial (
   end
 
   always_ff @(posedge clk_i) begin
-    if (load || is_last_bit) bit_q <= '0;
+    if (load || is_last_bit || waits_q) bit_q <= '0;
     else bit_q <= bit_q + COUNT'(1);
     if (load || state_ends) unit_q <= '0;
     else if (unit_ends) unit_q <= unit_q + 3'd1;
     if (load) is_x_q <= 1'b0;
     else if (is_gradient && state_ends) is_x_q <= !is_x_q;
     if (load) keeps_q <= 1'b0;
-    else if (is_gradient && is_last_bit) keeps_q <= !keeps_q;
+    else if (is_gradient && is_last_bit && !waits_q) keeps_q <= !keeps_q;
+    if (load || unit_ends) waits_q <= 1'b0;
+    else if (keeps_q && is_last_bit && LEAD >= 2) waits_q <= 1'b1;
   end
 
   // ------------------------------------------------------------------------------------------------------- reciprocal
@@ -256,7 +263,10 @@ module triangle_setup_serial (
   logic [ACC-1:0]     acc_q;
 
   assign all_moved       = unit_q == 3'd0 ? MOVED'(P + LEAD) : MOVED'(CP + LEAD);
-  assign moves_numerator = is_gradient && moved_q != all_moved && (moved_q > MOVED'(LEAD - 1) || LEAD == 0);
+  assign has_moved       = moved_q == all_moved;
+  /* verilator lint_off UNSIGNED */  // LEAD may be 0
+  assign moves_numerator = is_gradient && moved_q >= MOVED'(LEAD) && !has_moved;
+  /* verilator lint_on UNSIGNED */
   always_comb begin
     case (state_q)
       FIRST: factor = bc;
@@ -287,7 +297,7 @@ module triangle_setup_serial (
     end else begin
       sign_q <= factor;
       acc_q  <= total[ACC+1:2];
-      if (moved_q != all_moved) moved_q <= moved_q + MOVED'(1);
+      if (!has_moved) moved_q <= moved_q + MOVED'(1);
       if (is_gradient && !keeps_q) carry_q <= product;  // the last one that is dropped rounds
       else carry_q <= addend ? (product ^ negates) || carry_q : (product ^ negates) && carry_q;
     end
@@ -295,7 +305,7 @@ module triangle_setup_serial (
 
   // ----------------------------------------------------------------------------------------------------------- result
   assign setup_valid_o    = state_q == OFFER;
-  assign triangle_ready_o = setup_valid_o && setup_ready_i;
+  assign triangle_ready_o = state_q == TAKE;
 
   assign setup_o.kind         = triangle_i.kind;
   assign setup_o.primitive_id = triangle_i.primitive_id;

@@ -69,17 +69,17 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
   for (const Mutant& mutant : mutants())
     if (mutant.id == options.mutant)
       out << "mutant      " << mutant.id << ", " << mutant.file << ": " << mutant.what << '\n';
-  std::string line = "compared    ";
+  std::string line = "compared   ";
   for (std::size_t i = 0; i < kArrows; ++i) {
-    const std::string word = std::string(kArrowInfo[i].name) + " " + with_commas(r.compared[i]) + ", ";
+    const std::string word = " " + std::string(kArrowInfo[i].name) + " " + with_commas(r.compared[i]) + ",";
     if (line.size() + word.size() > 100) {
       out << line << '\n';
-      line = std::string(12, ' ');
+      line = std::string(11, ' ');
     }
     line += word;
   }
-  out << line << "memory " << with_commas(r.memory_compared) << " stamps, counters " << with_commas(r.counters_compared)
-      << '\n'
+  out << line << " memory " << with_commas(r.memory_compared) << " stamps, counters "
+      << with_commas(r.counters_compared) << '\n'
       << "cycles      " << with_commas(r.cycles) << " in all, " << with_commas(r.raster_cycles)
       << " from the first triangle to the last write; "
       << fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) << " M cycles/s\n";

@@ -35,10 +35,9 @@ class Dut {
   virtual ~Dut() = default;
   /// raster_pkg::CONFIG_ID of the Verilated sources.
   [[nodiscard]] virtual std::uint64_t config_id() = 0;
-  /// A new instance with registers of random content from `seed`, reset. Nothing is offered to it.
-  virtual void reset(std::uint64_t seed) = 0;
-  /// Which mutation is active, 0 for none.
-  virtual void set_mutant(std::uint16_t mutant) = 0;
+  /// A new instance with registers of random content from `seed`, reset. Nothing is offered to it. `mutant`: the fault in
+  /// it, 0 for none.
+  virtual void reset(std::uint64_t seed, std::uint16_t mutant) = 0;
   /// Offers a packet from now on; null takes the offer back. The words are copied.
   virtual void set_primitive(const std::uint32_t* words) = 0;
   virtual void set_response(const std::uint32_t* words) = 0;

@@ -85,8 +85,7 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       memory_(config_, widths_, options_.memory_latency),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
       held_(words_of(packet_bits<MemoryRequest>(widths_))) {
-  dut_.reset(options_.seed);
-  dut_.set_mutant(options_.mutant);
+  dut_.reset(options_.seed, options_.mutant);
 }
 
 Lockstep::~Lockstep() {
@@ -279,20 +278,21 @@ Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::
   return m;
 }
 
-/// Which streams hold a packet that nobody takes: a hang starts behind the last of them.
-std::string Lockstep::waiting() {
+/// Says which streams hold a packet that nobody takes, and blames the stage behind the last of them.
+void Lockstep::explain_standstill(Mismatch& mismatch) {
+  constexpr std::array<Arrow, kStreams> kArrowOf{Arrow::triangle, Arrow::setup, Arrow::tile, Arrow::stamp,
+                                                 Arrow::fragment};
+  constexpr std::array<std::string_view, kStreams> kConsumer{"triangle_setup", "coarse_raster", "fine_raster",
+                                                             "interpolate", "depth_test"};
   const DutOutputs& out = dut_.evaluate(0, true);
-  std::string text;
-  const auto add = [&text](bool is_waiting, std::string_view stream) {
-    if (is_waiting) text += (text.empty() ? "offered and not taken: " : ", ") + std::string(stream);
-  };
-  constexpr std::array<Arrow, kStreams> kArrowOfStream{Arrow::triangle, Arrow::setup, Arrow::tile, Arrow::stamp,
-                                                       Arrow::fragment};
-  add(has_primitive_ && !out.primitive_ready, "primitive");
-  for (std::size_t i = 0; i < kStreams; ++i)
-    add((out.stream_valid >> i & ~(out.stream_ready >> i) & 1) != 0, info(kArrowOfStream[i]).name);
-  add(has_response_ && !out.response_ready, "response");
-  return text.empty() ? "no stream holds a packet" : text;
+  std::string waiting;
+  for (std::size_t i = 0; i < kStreams; ++i) {
+    if ((out.stream_valid >> i & ~(out.stream_ready >> i) & 1) == 0) continue;
+    waiting += (waiting.empty() ? "" : ", ") + std::string(info(kArrowOf[i]).name);
+    mismatch.stage = kConsumer[i];
+  }
+  mismatch.hint = "nothing moves after cycle " + std::to_string(last_moved_) + "; " +
+                  (waiting.empty() ? "no stream holds a packet" : "offered and not taken: " + waiting);
 }
 
 /// Of the packets that never came, the one of the earliest primitive: behind it everything else is waiting.
@@ -308,7 +308,7 @@ void Lockstep::report_missing() {
   const std::vector<std::uint32_t> nothing(queue.words());
   result_.mismatch = packet_mismatch(Mismatch::Kind::missing, arrow, queue.front(), nothing.data(), queue.front_tag());
   result_.mismatch->cycle = last_moved_;
-  result_.mismatch->hint = "nothing moves after cycle " + std::to_string(last_moved_) + "; " + waiting();
+  explain_standstill(*result_.mismatch);
 }
 
 void Lockstep::fail_protocol(const std::string& stage, const std::string& hint) {

@@ -111,7 +111,7 @@ class Lockstep {
   void trace();
   [[nodiscard]] bool has_finished() const;
   void report_missing();
-  [[nodiscard]] std::string waiting();
+  void explain_standstill(Mismatch& mismatch);
   void compare_counters();
   void compare_memory();
   Mismatch packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::uint32_t* model, const std::uint32_t* rtl,

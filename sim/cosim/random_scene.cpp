@@ -26,6 +26,7 @@ class Generator {
   Scene make(std::size_t count) {
     for (std::size_t made = 0; made < count;) {
       if (chance(0.04)) clear();
+      is_pile_ = chance(0.15);
       scene_.states.push_back(state());
       const std::size_t run = std::min<std::size_t>(count - made, 1 + static_cast<std::size_t>(below(12)));
       const Draw draw{static_cast<std::uint32_t>(scene_.states.size() - 1),
@@ -34,7 +35,7 @@ class Generator {
                       scene_.indices.size(),
                       3 * run,
                       0};
-      for (std::size_t i = 0; i < run; ++i) triangle();
+      for (std::size_t i = 0; i < run; ++i) triangle(is_pile_ && i > 0);
       scene_.commands.push_back(draw);
       made += run;
     }
@@ -56,7 +57,7 @@ class Generator {
 
   State state();
   void clear();
-  void triangle();
+  void triangle(bool is_again);
   std::array<Point, 3> shape();
   std::array<Point, 3> around(Point center, std::int64_t reach);
   std::array<Point, 3> tile_half();
@@ -71,6 +72,7 @@ class Generator {
   std::int64_t unit_ = 1;   // subpixels of a pixel
   std::int64_t step_ = 1;   // subpixels between two vertices
   bool hiz_chunk_ = false;  // large triangles and `less`: many tiles to be rejected by their bound
+  bool is_pile_ = false;    // one triangle again and again: a stamp meets the one right ahead, a tile its last visit
   std::array<Point, 3> last_{};
   std::uint64_t last_depth_ = 0;  // code
 };
@@ -87,6 +89,12 @@ State Generator::state() {
   s.front = chance(0.5) ? FrontFace::ccw : FrontFace::cw;
   s.shade = chance(0.8) ? Shade::smooth : Shade::flat;
   if (chance(0.25)) s.scissor = scissor();
+  if (is_pile_ && chance(0.5)) {  // a few whole tiles
+    const int tile = config_.tile_size;
+    s.scissor = {static_cast<int>(below(scene_.width / tile)) * tile,
+                 static_cast<int>(below(scene_.height / tile)) * tile, static_cast<int>(sized(6)) * tile,
+                 static_cast<int>(sized(6)) * tile};
+  }
   return s;
 }
 
@@ -191,13 +199,13 @@ std::array<Point, 3> Generator::shape() {
   }
 }
 
-void Generator::triangle() {
-  std::array<Point, 3> p = shape();
-  const int all = static_cast<int>(below(8));  // 1 to 3: all three to the same kind of point
+void Generator::triangle(bool is_again) {
+  std::array<Point, 3> p = is_again ? last_ : shape();
+  const int all = is_again ? 0 : static_cast<int>(below(8));  // 1 to 3: all three to the same kind of point
   for (Point& q : p) q = snapped(q, all < 4 ? all : chance(0.2) ? static_cast<int>(below(4)) : 0);
   last_ = p;
   const double flat_depth = depth();
-  const bool is_flat = chance(0.25);
+  const bool is_flat = chance(is_pile_ ? 0.7 : 0.25);
   const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
   const bool is_plain = chance(0.1);
   for (std::uint32_t i = 0; i < 3; ++i) {

@@ -13,7 +13,7 @@ namespace halfplane {
 /// arguments on every machine. Every vertex snaps.
 ///
 /// What it is rich in: vertices on pixel centres and tile corners, shared edges, slivers, triangles of zero area and
-/// outside, the same pixels again and again, equal depths, every depth function, mask, cull, front and scissor, partial
+/// outside, piles of one triangle, equal depths, every depth function, mask, cull, front and scissor, partial
 /// and whole clears, tiles covered completely.
 [[nodiscard]] Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count);
 

@@ -14,7 +14,7 @@ namespace halfplane {
 template <class V, class Trace = void>
 class VerilatedDut final : public Dut {
  public:
-  explicit VerilatedDut(std::uint64_t seed = 1) { build(seed); }
+  explicit VerilatedDut(std::uint64_t seed = 1) { build(seed, 0); }
   ~VerilatedDut() override {
     VerilatedDut::close_trace();
     if (top_) top_->final();
@@ -23,8 +23,7 @@ class VerilatedDut final : public Dut {
   VerilatedDut& operator=(const VerilatedDut&) = delete;
 
   std::uint64_t config_id() override { return top_->config_id_o; }
-  void reset(std::uint64_t seed) override { build(seed); }
-  void set_mutant(std::uint16_t mutant) override { top_->mutant_i = mutant; }
+  void reset(std::uint64_t seed, std::uint16_t mutant) override { build(seed, mutant); }
 
   void set_primitive(const std::uint32_t* words) override {
     top_->primitive_valid_i = words != nullptr;
@@ -80,7 +79,7 @@ class VerilatedDut final : public Dut {
     std::conditional_t<std::is_void_v<Trace>, NoTrace, Trace> fst;
   };
 
-  void build(std::uint64_t seed) {
+  void build(std::uint64_t seed, std::uint16_t mutant) {
     close_trace();
     top_.reset();
     trace_.reset();
@@ -91,7 +90,7 @@ class VerilatedDut final : public Dut {
     top_ = std::make_unique<V>(context_.get());
     // The inputs were filled at random as well.
     top_->clk_i = 0;
-    top_->mutant_i = 0;
+    top_->mutant_i = mutant;
     top_->stall_i = 0;
     top_->request_ready_i = 0;
     std::memset(first_word(top_->primitive_i), 0, sizeof top_->primitive_i);

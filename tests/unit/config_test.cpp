@@ -116,14 +116,19 @@ TEST(Widths, IntervalsNeedExactlyTheBitsOfTheirEnds) {
 TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   EXPECT_EQ(file_text("raster_pkg.sv"), raster_pkg(preset("embedded")));
   EXPECT_EQ(file_text("presets/tiny/raster_pkg.sv"), raster_pkg(preset("tiny")));
+  EXPECT_EQ(file_text("presets/small/raster_pkg.sv"), raster_pkg(preset("small")));
   EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
 }
 
 TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
   for (const Setting& setting : settings()) {
     Config config;
-    set(config, setting.key,
-        std::holds_alternative<int Config::*>(setting.member) ? std::to_string(setting.max) : "rgba8888");
+    if (std::holds_alternative<ColorFormat Config::*>(setting.member))
+      config.color_format = ColorFormat::rgba8888;
+    else if (std::holds_alternative<SetupKind Config::*>(setting.member))
+      config.setup_kind = SetupKind::serial;
+    else
+      set(config, setting.key, std::to_string(setting.max));
     EXPECT_NE(config_id(config), config_id(Config())) << setting.key;
   }
 }

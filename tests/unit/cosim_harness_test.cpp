@@ -29,10 +29,10 @@ class FakeDut final : public Dut {
  public:
   FakeDut(const Config& config, const Fault& fault)
       : config_(config), widths_(derive_widths(config)), fault_(fault), planned_(fault) {
-    FakeDut::reset(0);
+    FakeDut::reset(0, 0);
   }
   std::uint64_t config_id() override { return 0; }
-  void reset(std::uint64_t) override {
+  void reset(std::uint64_t, std::uint16_t) override {
     expected_ = std::make_unique<ExpectedPackets>(widths_);
     model_ = std::make_unique<HardwareModel>(config_, *expected_);
     sent_ = {};
@@ -40,7 +40,6 @@ class FakeDut final : public Dut {
     withdrawn_ = false;
     offered_.clear();
   }
-  void set_mutant(std::uint16_t) override {}
   void set_primitive(const std::uint32_t* words) override {
     offered_.clear();
     if (words != nullptr) offered_.assign(words, words + words_of(packet_bits<PrimitivePacket>(widths_)));

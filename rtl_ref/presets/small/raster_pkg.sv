@@ -15,7 +15,7 @@ package raster_pkg;
   localparam int STAMP_SIZE = 1;  // side of the stamp tested in one clock: 1, 2, 4 or 8
   localparam int KEY_PRIMITIVE_BITS = 8;  // bits of the primitive number in an RTL packet key
   localparam int CONTEXT_SLOTS = 2;  // triangles whose constants the context RAM holds; a power of two
-  localparam int HIZ_BITS = 8;  // bits of a tile's HiZ bound, at most depth.bits; 0: no HiZ
+  localparam int HIZ_BITS = 8;  // bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ
   localparam int CACHE_LINES = 4;  // tiles that the on-chip depth and colour RAM holds; a power of two
   localparam int SETUP_KIND = 1;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam logic [63:0] CONFIG_ID = 64'h8b07271e58560af8;  // hash of the above
@@ -70,7 +70,7 @@ package raster_pkg;
   localparam int PIXEL_X_BITS = 9;  // target width
   localparam int PIXEL_Y_BITS = 8;  // target height
   localparam int VERTEX_COLOR_BITS = 24;  // 8 bits a stored channel
-  localparam int HIZ_CODE_BITS = 8;  // hiz.bits, at least 1
+  localparam int HIZ_CODE_BITS = 8;  // hiz.bits, at most depth.bits, at least 1
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
   localparam int MEMORY_LANE_BITS = 16;  // a depth code or a stored colour
   localparam int COUNTER_BITS = 32;  // modulo 2^32
