@@ -1,11 +1,11 @@
-# Seeded faults in copies of the RTL, all in one build, chosen at run time by raster_cosim.mutant_i.
+# Seeded faults in copies of the RTL, all in one build, chosen at run time by raster_cosim.mutant_q.
 #
 #   halfplane_mutants_begin(folder)              copies of changed files go here
 #   mutant(id file "what is wrong" [[good]] [[bad]])
 #       in `file` (relative to rtl_ref) the expression `good`, which must occur exactly once, becomes
-#       (raster_cosim.mutant_i == id ? bad : good)
+#       (raster_cosim.mutant_q == id ? bad : good)
 #   mutant_text(id file "what is wrong" [[good]] [[text]])
-#       the same for what is no expression: `text` reads raster_cosim.mutant_i itself
+#       the same for what is no expression: `text` reads raster_cosim.mutant_q itself
 #   halfplane_mutants_end(include files_var)     writes a list for C++, {id, "file", "what"}, and the changed sources
 
 function(halfplane_mutants_begin folder)
@@ -15,7 +15,7 @@ function(halfplane_mutants_begin folder)
 endfunction()
 
 function(mutant id file what good bad)
-  mutant_text(${id} "${file}" "${what}" "${good}" "(raster_cosim.mutant_i == 16'd${id} ? (${bad}) : (${good}))")
+  mutant_text(${id} "${file}" "${what}" "${good}" "(raster_cosim.mutant_q == 16'd${id} ? (${bad}) : (${good}))")
 endfunction()
 
 function(mutant_text id file what good text_with_mutant)

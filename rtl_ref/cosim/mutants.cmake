@@ -70,7 +70,7 @@ mutant(28 stages/interpolate.sv "dropped stall: a slot is given back on every cy
 mutant(29 stages/interpolate.sv "off by one: the half-tile offset in y is taken from x"
   [=[(to_y[PIXEL-1] ? x_step_y << (PIXEL - 1) : '0)]=] [=[(to_y[PIXEL-1] ? x_step_y << PIXEL : '0)]=])
 mutant_text(30 lib/skid_buffer.sv "dropped stall: a full buffer takes one more"
-  [=[assign ready_o = !tail_valid_q;]=] [=[assign ready_o = !tail_valid_q || raster_cosim.mutant_i == 16'd30;]=])
+  [=[assign ready_o = !tail_valid_q;]=] [=[assign ready_o = !tail_valid_q || raster_cosim.mutant_q == 16'd30;]=])
 
 # depth_test and rop
 mutant(31 stages/depth_test.sv "hazard: the mask of the stamp ahead is ignored, its depth is not seen"
@@ -94,4 +94,4 @@ mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
 
 # reset
 mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"
-  [=[      slot_q  <= '0;]=] [=[      slot_q  <= SLOT'(raster_cosim.mutant_i == 16'd39);]=])
+  [=[      slot_q  <= '0;]=] [=[      slot_q  <= SLOT'(raster_cosim.mutant_q == 16'd39);]=])

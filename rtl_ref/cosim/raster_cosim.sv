@@ -3,12 +3,15 @@
 // fire_o: which arrows transfer a packet in this cycle, in the order of sim/cosim/arrows.hpp: triangle, setup, context,
 // tile, edges, stamp, fragment, write, retire. X_o is the packet of arrow X, valid while its bit is set.
 // stream_valid_o, stream_ready_o: the elastic streams among them: triangle, setup, tile, stamp, fragment.
+//
+// Every input is registered: what lies here at a clock edge is what the design sees in the cycle that begins with it. So
+// no logic hangs on a port, and Verilator settles the design once a cycle, at the edge.
 module raster_cosim (
     input logic clk_i,
     input logic rst_ni,
 
     input logic [7:0]  stall_i,  // bit s: stream s moves nothing in this cycle
-    input logic [15:0] mutant_i, // which mutation is active, 0: none; read by mutated sources by this hierarchical name
+    input logic [15:0] mutant_i, // which mutation is active, 0: none; mutated sources read raster_cosim.mutant_q
 
     // From the host
     input  logic                          primitive_valid_i,
@@ -25,6 +28,7 @@ module raster_cosim (
 
     output raster_pkg::counter_packet_t counters_o,
     output logic                        idle_o,
+    output logic                        moves_tiles_o,  // the framebuffer is busy with memory or a clear
     output logic [63:0]                 config_id_o,
 
     // The taps
@@ -42,26 +46,44 @@ module raster_cosim (
     output raster_pkg::retire_packet_t   retire_o
 );
 
+  logic [7:0]                    stall_q;
+  logic [15:0]                   mutant_q;
+  logic                          primitive_valid_q, request_ready_q, response_valid_q;
+  var raster_pkg::primitive_packet_t primitive_q;
+  var raster_pkg::memory_response_t  response_q;
+
+  always_ff @(posedge clk_i) begin
+    stall_q           <= stall_i;
+    mutant_q          <= mutant_i;
+    primitive_valid_q <= primitive_valid_i;
+    primitive_q       <= primitive_i;
+    request_ready_q   <= request_ready_i;
+    response_valid_q  <= response_valid_i;
+    response_q        <= response_i;
+  end
+
   raster_top u_raster (
       .clk_i,
       .rst_ni,
-      .stall_i,
-      .primitive_valid_i,
+      .stall_i(stall_q),
+      .primitive_valid_i(primitive_valid_q),
       .primitive_ready_o,
-      .primitive_i,
+      .primitive_i(primitive_q),
       .request_valid_o,
-      .request_ready_i,
+      .request_ready_i(request_ready_q),
       .request_o,
-      .response_valid_i,
+      .response_valid_i(response_valid_q),
       .response_ready_o,
-      .response_i,
+      .response_i(response_q),
       .counters_o,
       .idle_o
   );
 
+  assign moves_tiles_o = u_raster.u_framebuffer.state_q != '0;
+
   /* verilator lint_off UNUSEDSIGNAL */  // the sources as they are have no mutations
   logic unused_mutant;
-  assign unused_mutant = ^mutant_i;
+  assign unused_mutant = ^mutant_q;
   /* verilator lint_on UNUSEDSIGNAL */
 
   assign config_id_o = raster_pkg::CONFIG_ID;

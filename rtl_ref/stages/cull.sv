@@ -3,7 +3,7 @@
 // In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its box
 // and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
 // multiplication is spent on deciding alone. One cross product in turn for the three edges.
-// Occupancy: 8 cycles with the multipliers in parallel; latency 8 cycles.
+// Occupancy and latency: 7 or 8 cycles with the multipliers in parallel.
 // Specification: model/stages/cull.hpp, edge_function() in model/stages/triangle_setup.hpp.
 module cull (
     input logic clk_i,
@@ -42,8 +42,8 @@ module cull (
   localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
 
   // One step per cycle, but for the edges, which take what the cross product takes.
-  localparam logic [2:0] IDLE = 3'd0, ROTATE = 3'd1, BOX = 3'd2, EDGES = 3'd3, OFFER = 3'd4;
-  logic [2:0] step_q;
+  localparam logic [1:0] IDLE = 2'd0, ROTATE = 2'd1, EDGES = 2'd2, OFFER = 2'd3;
+  logic [1:0] step_q;
 
   /* verilator lint_off UNUSEDSIGNAL */  // x, y, z, rgba are in the registers below from the first step on
   var raster_pkg::primitive_packet_t p_q;
@@ -64,7 +64,8 @@ module cull (
   assign primitive_ready_o = step_q == IDLE || (step_q == OFFER && (triangle_ready_i || is_dropped));
   assign takes             = primitive_valid_i && primitive_ready_o;
 
-  // --- ROTATE: the smallest (Y, X, Z) first. Flipping the sign bits makes signed numbers comparable as unsigned ones.
+  // --- ROTATE, once or twice: the smallest (Y, X, Z) first. Flipping the sign bits makes signed numbers comparable as
+  // unsigned ones.
   logic [KEY-1:0] key0, key1, key2;
   logic           is_0_first, is_1_first;
   assign key0 = {~y_q[C-1], y_q[0+:C-1], ~x_q[C-1], x_q[0+:C-1], z_q[0+:Z]};
@@ -73,10 +74,10 @@ module cull (
   assign is_0_first = key0 <= key1 && key0 <= key2;
   assign is_1_first = key1 <= key2;
 
-  // --- BOX: pixel centres within the vertices' bounds, cut by the scissor. After the rotation vertex 0 is the highest.
+  // --- Meanwhile the box: pixel centres within the vertices' bounds, cut by the scissor.
   localparam int B = C + 1;  // a coordinate plus half a pixel
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
-  logic signed [C-1:0] x0, x1, x2, y0, y1, y2, x_min, x_max, y_max;
+  logic signed [C-1:0] x0, x1, x2, y0, y1, y2, x_min, x_max, y_min, y_max;
   logic signed [B-1:0] first_x, first_y, last_x, last_y;  // pixels
   logic signed [B-1:0] left, top, right, bottom;
   assign x0 = x_q[0+:C];
@@ -90,10 +91,13 @@ module cull (
     x_min = x_min < x2 ? x_min : x2;
     x_max = x0 < x1 ? x1 : x0;
     x_max = x_max < x2 ? x2 : x_max;
-    y_max = y1 < y2 ? y2 : y1;
+    y_min = y0 < y1 ? y0 : y1;
+    y_min = y_min < y2 ? y_min : y2;
+    y_max = y0 < y1 ? y1 : y0;
+    y_max = y_max < y2 ? y2 : y_max;
   end
   assign first_x = (B'(x_min) + HALF - B'(1)) >>> S;
-  assign first_y = (B'(y0) + HALF - B'(1)) >>> S;
+  assign first_y = (B'(y_min) + HALF - B'(1)) >>> S;
   assign last_x  = (B'(x_max) - HALF) >>> S;
   assign last_y  = (B'(y_max) - HALF) >>> S;
   assign left    = is_triangle && first_x > $signed(B'(p_q.left)) ? first_x : $signed(B'(p_q.left));
@@ -158,8 +162,7 @@ module cull (
     else if (takes) step_q <= ROTATE;
     else begin
       case (step_q)
-        ROTATE: step_q <= BOX;
-        BOX: step_q <= is_triangle ? EDGES : OFFER;
+        ROTATE: if (is_0_first || is_1_first) step_q <= is_triangle ? EDGES : OFFER;  // otherwise once more
         EDGES: if (edge_done && edge_count_q == 2'd2) step_q <= OFFER;
         OFFER: if (leaves) step_q <= IDLE;
         default: step_q <= IDLE;
@@ -184,13 +187,7 @@ module cull (
       z_q    <= {z_q[0+:Z], z_q[Z+:2*Z]};
       rgba_q <= {rgba_q[0+:R], rgba_q[R+:2*R]};
     end
-    if (step_q == ROTATE && !is_0_first && !is_1_first) begin
-      x_q    <= {x_q[0+:2*C], x_q[2*C+:C]};
-      y_q    <= {y_q[0+:2*C], y_q[2*C+:C]};
-      z_q    <= {z_q[0+:2*Z], z_q[2*Z+:Z]};
-      rgba_q <= {rgba_q[0+:2*R], rgba_q[2*R+:R]};
-    end
-    if (step_q == BOX) begin
+    if (step_q == ROTATE) begin
       left_q     <= PX'(left);
       top_q      <= PY'(top);
       right_q    <= PX'(right);

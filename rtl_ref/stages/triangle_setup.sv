@@ -50,6 +50,7 @@ module triangle_setup (
   localparam int GRADIENT_LAST = PLANES + 2;
   localparam int VALUE_LAST = PLANES + 1;
   localparam int STEP = $clog2(DIVIDE_LAST + 1);
+  localparam int COLOR = raster_pkg::VERTEX_COLOR_BITS;
 
   // ----------------------------------------------------------------------------------------------------------- divide
   var raster_pkg::triangle_packet_t t_q;
@@ -103,44 +104,40 @@ module triangle_setup (
     end
   end
 
-  // Differences from vertex 0, and the range of each attribute. Plane 0 is depth.
-  logic signed [D-1:0]  ax_q, ay_q, bx_q, by_q, to_anchor_x_q, to_anchor_y_q;
-  logic [PLANES*DC-1:0] ac, bc, ac_q, bc_q;
-  logic [PLANES*Z-1:0]  base, low, high, low_q, high_q;  // attribute at vertex 0, smallest, largest
-
-  genvar i;
-  generate
-    for (i = 0; i < PLANES; i++) begin : gen_plane
-      logic [Z-1:0] c0, c1, c2;
-      if (i == 0) begin : gen_depth
-        assign c0 = t_q.z[0+:Z];
-        assign c1 = t_q.z[Z+:Z];
-        assign c2 = t_q.z[2*Z+:Z];
-      end else begin : gen_color
-        localparam int V = raster_pkg::VERTEX_COLOR_BITS;
-        assign c0 = Z'(t_q.rgba[(i-1)*K+:K]);
-        assign c1 = Z'(t_q.rgba[V+(i-1)*K+:K]);
-        assign c2 = Z'(t_q.rgba[2*V+(i-1)*K+:K]);
+  // One plane a cycle: its code at each vertex, the differences from vertex 0, the range. Plane 0 is depth.
+  logic signed [D-1:0] ax_q, ay_q, bx_q, by_q, to_anchor_x_q, to_anchor_y_q;
+  logic [Z-1:0]        c0, c1, c2, low, high;
+  logic signed [DC-1:0] ac, bc, ac_q, bc_q;
+  logic [PLANES*Z-1:0] low_q, high_q;  // the newest is the highest
+  logic                is_1_below_0, is_2_below_0, is_2_below_1;
+  always_comb begin
+    c0 = t_q.z[0+:Z];
+    c1 = t_q.z[Z+:Z];
+    c2 = t_q.z[2*Z+:Z];
+    for (int c = 0; c < CHANNELS; c++) begin
+      if (divide_step_q == STEP'(c + 1)) begin
+        c0 = Z'(t_q.rgba[c*K+:K]);
+        c1 = Z'(t_q.rgba[COLOR+c*K+:K]);
+        c2 = Z'(t_q.rgba[2*COLOR+c*K+:K]);
       end
-      logic is_1_below_0, is_2_below_0, is_2_below_1;
-      assign ac[i*DC+:DC]  = DC'(c1) - DC'(c0);
-      assign bc[i*DC+:DC]  = DC'(c2) - DC'(c0);
-      assign is_1_below_0  = ac[i*DC+DC-1];
-      assign is_2_below_0  = bc[i*DC+DC-1];
-      assign is_2_below_1  = c2 < c1;
-      assign base[i*Z+:Z]  = c0;
-      assign low[i*Z+:Z]   = is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0);
-      assign high[i*Z+:Z]  = is_1_below_0 ? (is_2_below_0 ? c0 : c2) : (is_2_below_1 ? c1 : c2);
     end
-  endgenerate
+  end
+  assign ac           = $signed(DC'(c1) - DC'(c0));
+  assign bc           = $signed(DC'(c2) - DC'(c0));
+  assign is_1_below_0 = ac[DC-1];
+  assign is_2_below_0 = bc[DC-1];
+  assign is_2_below_1 = c2 < c1;
+  assign low          = is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0);
+  assign high         = is_1_below_0 ? (is_2_below_0 ? c0 : c2) : (is_2_below_1 ? c1 : c2);
 
   // From vertex 0 to the centre of pixel (T/2, T/2) of the first tile, subpixels.
   logic signed [C:0] anchor_x, anchor_y;
   assign anchor_x = $signed((C + 1)'({t_q.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
   assign anchor_y = $signed((C + 1)'({t_q.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
 
-  // The numerators: N_x = ac by - bc ay, N_y = ax bc - bx ac, one plane a cycle.
-  logic                issues_numerator, numerator_done;
+  // The numerators: N_x = ac by - bc ay, N_y = ax bc - bx ac, one plane a cycle, into a chain that the gradients take them
+  // from. A part is never a step behind the one before it, so whatever moves the chain moves it for both.
+  logic                issues_numerator, numerator_done, takes_numerator;
   logic signed [N-1:0] numerator_x, numerator_y;
   logic [PLANES*N-1:0] numerators_x_q, numerators_y_q;  // the newest is the highest
   assign issues_numerator = divide_busy_q && divide_step_q >= STEP'(1) && divide_step_q <= STEP'(PLANES);
@@ -153,8 +150,8 @@ module triangle_setup (
       .clk_i,
       .rst_ni,
       .start_i (issues_numerator),
-      .a_i     ($signed(ac_q[0+:DC])),
-      .b_i     ($signed(bc_q[0+:DC])),
+      .a_i     (ac_q),
+      .b_i     (bc_q),
       .c_i     (ay_q),
       .d_i     (by_q),
       .done_o  (numerator_done),
@@ -172,8 +169,8 @@ module triangle_setup (
       .start_i (issues_numerator),
       .a_i     (ax_q),
       .b_i     (bx_q),
-      .c_i     ($signed(ac_q[0+:DC])),
-      .d_i     ($signed(bc_q[0+:DC])),
+      .c_i     (ac_q),
+      .d_i     (bc_q),
       .done_o  (),
       .result_o(numerator_y)
   );
@@ -191,21 +188,17 @@ module triangle_setup (
       by_q          <= D'($signed(t_q.y[2*C+:C])) - D'($signed(t_q.y[0+:C]));
       to_anchor_x_q <= D'(anchor_x) - D'($signed(t_q.x[0+:C]));
       to_anchor_y_q <= D'(anchor_y) - D'($signed(t_q.y[0+:C]));
-      ac_q          <= ac;
-      bc_q          <= bc;
-      low_q         <= low;
-      high_q        <= high;
-    end else begin
-      if (divide_step_q < STEP'(DIVIDE_CYCLES < DIVIDE_LAST ? DIVIDE_CYCLES + 1 : DIVIDE_LAST)) begin
-        remainder_q <= remainder_d;
-        quotient_q  <= quotient_d;
-      end
-      if (issues_numerator) begin
-        ac_q <= ac_q >> DC;
-        bc_q <= bc_q >> DC;
-      end
+    end else if (divide_step_q < STEP'(DIVIDE_CYCLES < DIVIDE_LAST ? DIVIDE_CYCLES + 1 : DIVIDE_LAST)) begin
+      remainder_q <= remainder_d;
+      quotient_q  <= quotient_d;
     end
-    if (numerator_done) begin
+    if (divide_step_q < STEP'(PLANES)) begin
+      ac_q   <= ac;
+      bc_q   <= bc;
+      low_q  <= {low, low_q[Z+:(PLANES-1)*Z]};
+      high_q <= {high, high_q[Z+:(PLANES-1)*Z]};
+    end
+    if (numerator_done || takes_numerator) begin
       numerators_x_q <= {numerator_x, numerators_x_q[N+:(PLANES-1)*N]};
       numerators_y_q <= {numerator_y, numerators_y_q[N+:(PLANES-1)*N]};
     end
@@ -221,14 +214,16 @@ module triangle_setup (
   logic [QUOTIENT-1:0]  g_quotient_q;
   logic [R-1:0]         reciprocal_q;
   logic [M-1:0]         g_log2_area_q;
-  logic [PLANES*N-1:0]  g_numerators_x_q, g_numerators_y_q;
-  logic [PLANES*P-1:0]  steps_x_q, steps_y_q;  // gradients per subpixel, the newest is the highest
-  logic [PLANES*Z-1:0]  g_base_q, g_low_q, g_high_q;
+  logic [PLANES*P-1:0]  steps_x_q, steps_y_q;  // gradients per subpixel, the newest is the highest: a chain to the values
+  logic                 gives_step, takes_step;
+  logic [PLANES*Z-1:0]  g_low_q, g_high_q;
   logic signed [D-1:0]  g_to_anchor_x_q, g_to_anchor_y_q;
   logic [3*D-1:0]       g_dx_q, g_dy_q;
 
   assign gradient_hands_over = gradient_busy_q && gradient_step_q == STEP'(GRADIENT_LAST) && value_ready;
   assign gradient_ready      = !gradient_busy_q || gradient_hands_over;
+  assign takes_numerator     = gradient_step_q >= STEP'(1) && gradient_step_q <= STEP'(PLANES);
+  assign gives_step          = gradient_step_q >= STEP'(2) && gradient_step_q <= STEP'(PLANES + 1);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -265,9 +260,6 @@ module triangle_setup (
       g_q              <= t_q;
       g_quotient_q     <= DIVIDE_LAST == DIVIDE_CYCLES ? quotient_d : quotient_q;  // the last bits may be new
       g_log2_area_q    <= log2_area_q;
-      g_numerators_x_q <= numerators_x_q;
-      g_numerators_y_q <= numerators_y_q;
-      g_base_q         <= base;
       g_low_q          <= low_q;
       g_high_q         <= high_q;
       g_to_anchor_x_q  <= to_anchor_x_q;
@@ -277,13 +269,14 @@ module triangle_setup (
     end else if (gradient_step_q == '0) begin
       // Spare quotient bits are dropped, the last one that counts is rounded.
       reciprocal_q <= g_quotient_q[QUOTIENT-R+:R] + R'(g_quotient_q[QUOTIENT-R-1]);
-    end else if (gradient_step_q != STEP'(GRADIENT_LAST)) begin
-      product_x_q      <= $signed(g_numerators_x_q[0+:N]) * $signed({1'b0, reciprocal_q});
-      product_y_q      <= $signed(g_numerators_y_q[0+:N]) * $signed({1'b0, reciprocal_q});
-      g_numerators_x_q <= g_numerators_x_q >> N;
-      g_numerators_y_q <= g_numerators_y_q >> N;
-      steps_x_q        <= {step_x, steps_x_q[P+:(PLANES-1)*P]};
-      steps_y_q        <= {step_y, steps_y_q[P+:(PLANES-1)*P]};
+    end
+    if (takes_numerator) begin
+      product_x_q <= $signed(numerators_x_q[0+:N]) * $signed({1'b0, reciprocal_q});
+      product_y_q <= $signed(numerators_y_q[0+:N]) * $signed({1'b0, reciprocal_q});
+    end
+    if (gives_step || takes_step) begin
+      steps_x_q <= {step_x, steps_x_q[P+:(PLANES-1)*P]};
+      steps_y_q <= {step_y, steps_y_q[P+:(PLANES-1)*P]};
     end
   end
 
@@ -293,8 +286,7 @@ module triangle_setup (
   /* verilator lint_on UNUSEDSIGNAL */
   logic                value_busy_q;
   logic [STEP-1:0]     value_step_q;
-  logic [PLANES*P-1:0] v_steps_x_q, v_steps_y_q, values_q;  // the steps turn round once
-  logic [PLANES*Z-1:0] v_base_q;
+  logic [PLANES*P-1:0] v_steps_x_q, v_steps_y_q, values_q;
   /* verilator lint_off UNUSEDSIGNAL */  // colours have fewer bits than depth
   logic [PLANES*Z-1:0] v_low_q, v_high_q;
   /* verilator lint_on UNUSEDSIGNAL */
@@ -303,6 +295,7 @@ module triangle_setup (
   logic [P-1:0]        move_x_q, move_y_q, start_q;  // modulo 2^P
 
   assign setup_valid_o = value_busy_q && value_step_q == STEP'(VALUE_LAST);
+  assign takes_step    = value_busy_q && value_step_q < STEP'(PLANES);
   assign value_ready   = !value_busy_q || (setup_valid_o && setup_ready_i);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -320,29 +313,30 @@ module triangle_setup (
   localparam logic [P-1:0] DEPTH_BIAS = P'(1) << (F - L - 1) | P'(1) << (F - 1) | P'(1) << (F + Z - 1);
   localparam logic [P-1:0] COLOR_BIAS = P'(1) << (F - L - 1) | P'(1) << (F - 1) | P'(1) << (F + K - 1);
 
+  logic [Z-1:0] v_c0;  // the plane's code at vertex 0
+  always_comb begin
+    v_c0 = v_q.z[0+:Z];
+    for (int c = 0; c < CHANNELS; c++) if (value_step_q == STEP'(c + 1)) v_c0 = Z'(v_q.rgba[c*K+:K]);
+  end
+
   always_ff @(posedge clk_i) begin
     if (value_ready) begin
       v_q             <= g_q;
-      v_steps_x_q     <= steps_x_q;
-      v_steps_y_q     <= steps_y_q;
-      v_base_q        <= g_base_q;
       v_low_q         <= g_low_q;
       v_high_q        <= g_high_q;
       v_to_anchor_x_q <= g_to_anchor_x_q;
       v_to_anchor_y_q <= g_to_anchor_y_q;
       v_dx_q          <= g_dx_q;
       v_dy_q          <= g_dy_q;
-    end else if (value_step_q != STEP'(VALUE_LAST)) begin
-      move_x_q <= $signed(v_steps_x_q[0+:P]) * v_to_anchor_x_q;
-      move_y_q <= $signed(v_steps_y_q[0+:P]) * v_to_anchor_y_q;
-      start_q  <= (P'(v_base_q[0+:Z]) << F) + (value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS);
-      values_q <= {start_q + move_x_q + move_y_q, values_q[P+:(PLANES-1)*P]};
-      if (value_step_q != STEP'(PLANES)) begin
-        v_steps_x_q <= {v_steps_x_q[0+:P], v_steps_x_q[P+:(PLANES-1)*P]};
-        v_steps_y_q <= {v_steps_y_q[0+:P], v_steps_y_q[P+:(PLANES-1)*P]};
-        v_base_q    <= v_base_q >> Z;
-      end
     end
+    if (takes_step) begin
+      move_x_q    <= $signed(steps_x_q[0+:P]) * v_to_anchor_x_q;
+      move_y_q    <= $signed(steps_y_q[0+:P]) * v_to_anchor_y_q;
+      start_q     <= (P'(v_c0) << F) + (value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS);
+      v_steps_x_q <= {steps_x_q[0+:P], v_steps_x_q[P+:(PLANES-1)*P]};
+      v_steps_y_q <= {steps_y_q[0+:P], v_steps_y_q[P+:(PLANES-1)*P]};
+    end
+    if (value_step_q != STEP'(VALUE_LAST)) values_q <= {start_q + move_x_q + move_y_q, values_q[P+:(PLANES-1)*P]};
   end
 
   assign setup_o.kind         = v_q.kind;
@@ -365,6 +359,7 @@ module triangle_setup (
 
   logic [CHANNELS*CP-1:0] color_value, color_step_x, color_step_y;
   logic [CHANNELS*K-1:0]  color_min, color_max;
+  genvar i;
   generate
     for (i = 0; i < CHANNELS; i++) begin : gen_channel
       assign color_value[i*CP+:CP]  = values_q[(i+1)*P+:CP];

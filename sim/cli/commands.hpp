@@ -13,6 +13,7 @@ void add_render_command(CLI::App& app, Action& selected);
 void add_compare_command(CLI::App& app, Action& selected);
 void add_cosim_command(CLI::App& app, Action& selected);
 void add_reduce_command(CLI::App& app, Action& selected);
+void add_mutants_command(CLI::App& app, Action& selected);
 void add_scenes_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
 

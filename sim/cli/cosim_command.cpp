@@ -54,8 +54,11 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["scenes"] = session.scenes;
   result["mismatches"] = r.mismatch ? 1 : 0;  // the run stops at the first
   result["first_mismatch"] = nullptr;
-  result["cycles"] = {
-      {"model", nullptr}, {"rtl", r.cycles}, {"raster", r.raster_cycles}, {"max_primitive_error", nullptr}};
+  result["cycles"] = {{"model", nullptr},
+                      {"rtl", r.cycles},
+                      {"raster", r.raster_cycles},
+                      {"tiles", r.tile_cycles},
+                      {"max_primitive_error", nullptr}};
   result["rtl_cycles_per_s"] = session.seconds > 0 ? static_cast<double>(r.clocks) / session.seconds : 0.0;
   return result;
 }
@@ -81,7 +84,7 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
   out << line << " memory " << with_commas(r.memory_compared) << " stamps, counters "
       << with_commas(r.counters_compared) << '\n'
       << "cycles      " << with_commas(r.cycles) << " in all, " << with_commas(r.raster_cycles)
-      << " from the first triangle to the last write; "
+      << " from the first triangle to the last write, " << with_commas(r.tile_cycles) << " of them moving tiles; "
       << fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) << " M cycles/s\n";
 }
 

@@ -47,10 +47,14 @@ std::string probability_text(double value) {
 
 }  // namespace
 
-void add_cosim_options(CLI::App& app, CosimOptions& options) {
+void add_stalls_option(CLI::App& app, CosimOptions& options) {
   app.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
       ->check(CLI::Range(0.0, 0.95))
       ->capture_default_str();
+}
+
+void add_cosim_options(CLI::App& app, CosimOptions& options) {
+  add_stalls_option(app, options);
   app.add_option("--memory-latency", options.memory_latency, "cycles from a read request to its answer")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

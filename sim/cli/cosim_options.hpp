@@ -17,6 +17,9 @@ struct CosimOptions : CommonOptions {
   std::string junit_path, trace_path, save_path;
 };
 
+/// Adds --stalls.
+void add_stalls_option(CLI::App& app, CosimOptions& options);
+
 /// Adds everything but --random and --junit.
 void add_cosim_options(CLI::App& app, CosimOptions& options);
 

@@ -55,11 +55,17 @@ constexpr SkipName kSkipNames[] = {{"frustum", &Skip::frustum},
 }  // namespace
 
 void add_output_options(CLI::App& app, CommonOptions& options) {
-  app.add_option("--config", options.config, "preset (tiny, embedded, full) or FILE.toml")->capture_default_str();
+  app.add_option("--config", options.config, "preset (tiny, small, embedded, full) or FILE.toml")
+      ->capture_default_str();
   app.add_option("--set", options.settings, "key=value: one setting, repeatable (halfplane config --list)")
       ->allow_extra_args(false);
   app.add_flag("--json{-}", options.json, "result as JSON on stdout, human text on stderr; --json=FILE: to a file");
   app.add_flag("--quiet", options.quiet, "no human text");
+}
+
+void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning) {
+  const auto set_seed = [&options](const std::string& text) { options.seed = parse_seed(text); };
+  app.add_option_function<std::string>("--seed", set_seed, meaning)->default_str("1")->type_name("N");
 }
 
 void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning) {
@@ -73,10 +79,7 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
       ->check(refuse_empty);
   app.add_option("--camera", options.camera,
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT'");
-  const auto set_seed = [&options](const std::string& text) { options.seed = parse_seed(text); };
-  app.add_option_function<std::string>("--seed", set_seed, "seed of scenes with something random in them")
-      ->default_str("1")
-      ->type_name("N");
+  add_seed_option(app, options, "seed of scenes with something random in them");
   app.add_option("--threads", options.threads, "use at most N threads (this version uses one)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")

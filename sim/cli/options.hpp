@@ -38,6 +38,9 @@ struct CommonOptions {
 /// Adds --config, --set, --json and --quiet.
 void add_output_options(CLI::App& app, CommonOptions& options);
 
+/// Adds --seed.
+void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning);
+
 /// Adds an option that takes the name of a file to write; an empty name is refused.
 void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning);
 

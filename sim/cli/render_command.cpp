@@ -144,6 +144,7 @@ int run(const RenderCommand& options) {
   if (options.engine == "rtl") {
     result["cycles"] = rtl_run.cycles;
     result["raster_cycles"] = rtl_run.raster_cycles;
+    result["tile_cycles"] = rtl_run.tile_cycles;
     result["stages"] = stages_json(rtl_run);
   }
   if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
@@ -167,7 +168,8 @@ int run(const RenderCommand& options) {
       << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
   if (options.engine == "rtl")
     out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
-        << " from the first triangle to the last write\n";
+        << " from the first triangle to the last write, " << with_commas(rtl_run.tile_cycles)
+        << " of them moving tiles\n";
   if (options.repeat > 0)
     out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
         << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';

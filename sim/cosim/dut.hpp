@@ -25,6 +25,7 @@ inline constexpr std::array<std::string_view, kStreams> kStreamStages{"cull", "t
 struct DutOutputs {
   std::uint32_t fired = 0;  ///< bit per Arrow but `request`: this packet moves now
   bool primitive_ready = false, request_valid = false, response_ready = false, idle = false;
+  bool moves_tiles = false;                          ///< the framebuffer is busy with memory or a clear
   std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit per stream
   std::array<const void*, kArrows> packet{};         ///< little-endian bytes of each arrow's packet, rounded up
   const void* counters = nullptr;                    ///< CounterPacket, likewise
@@ -63,7 +64,7 @@ struct DutFactory {
 
 /// A seeded fault of the designs that have mutants: rtl_ref/cosim/mutants.cmake.
 struct Mutant {
-  int id = 0;             ///< raster_cosim's mutant_i
+  int id = 0;             ///< raster_cosim's mutant_q
   std::string_view file;  ///< relative to rtl_ref
   std::string_view what;
 };

@@ -1,4 +1,5 @@
 // The Verilated designs of this build: rtl_ref/CMakeLists.txt makes the classes.
+#include <sstream>
 #include <stdexcept>
 
 #include "model/raster_pkg.hpp"
@@ -7,12 +8,7 @@
 #ifdef HALFPLANE_HAS_RTL
 #include <verilated_fst_c.h>
 
-#include "VRasterEmbedded.h"
-#include "VRasterFull.h"
-#include "VRasterTiny.h"
-#if __has_include("VRasterSmall.h")
-#include "VRasterSmall.h"
-#endif
+#include "dut_classes.inc"  // written by rtl_ref/CMakeLists.txt
 #include "sim/cosim/verilated_dut.hpp"
 #endif
 
@@ -20,19 +16,25 @@ namespace halfplane {
 namespace {
 
 #ifdef HALFPLANE_HAS_RTL
+/// `label`: a preset and the settings that differ from it, with blanks between.
+Config labelled(const std::string& label) {
+  std::istringstream words(label);
+  std::string word;
+  words >> word;
+  Config config = preset(word);
+  while (words >> word) set(config, word.substr(0, word.find('=')), word.substr(word.find('=') + 1));
+  return config;
+}
+
 template <class V>
-DutFactory verilated(const char* name) {
-  return {name, preset(name), false, true, [] { return std::make_unique<VerilatedDut<V, VerilatedFstC>>(); }};
+DutFactory verilated(const char* label, bool has_mutants) {
+  return {label, labelled(label), has_mutants, true, [] { return std::make_unique<VerilatedDut<V, VerilatedFstC>>(); }};
 }
 
 std::vector<DutFactory> make_duts() {
-  std::vector<DutFactory> duts{verilated<VRasterEmbedded>("embedded"), verilated<VRasterTiny>("tiny")};
-  duts[0].has_mutants = true;
-#if __has_include("VRasterSmall.h")
-  duts.push_back(verilated<VRasterSmall>("small"));
-#endif
-  duts.push_back(verilated<VRasterFull>("full"));
-  return duts;
+  return {
+#include "dut_list.inc"
+  };
 }
 
 constexpr Mutant kMutants[] = {
@@ -76,7 +78,8 @@ const DutFactory& find_dut(const Config& config) {
     if (same_hardware(dut.config, config)) return dut;
     choices += (choices.empty() ? "" : "; or ") + options_of(dut.config);
   }
-  throw std::runtime_error("no RTL was Verilated for " + label(config) + "; this build has " + choices);
+  throw std::runtime_error("no RTL was Verilated for " + label(config) + "; run ./dev build " + options_of(config) +
+                           "; this build has " + choices);
 }
 
 std::unique_ptr<Dut> make_dut(const DutFactory& factory) {

@@ -53,6 +53,7 @@ void LockstepResult::add(const LockstepResult& later) {
   cycles += later.cycles;
   clocks += later.clocks;
   raster_cycles += later.raster_cycles;
+  tile_cycles += later.tile_cycles;
   for (std::size_t i = 0; i < kStreams; ++i) {
     use[i].busy += later.use[i].busy;
     use[i].stalled += later.use[i].stalled;
@@ -199,8 +200,11 @@ void Lockstep::step(HostStream& host) {
     if (sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) && result_.triangles++ == 0)
       first_triangle_ = cycle_;
   }
-  if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.triangles != 0)
+  if (result_.triangles != 0 && out.moves_tiles) ++tile_cycles_;
+  if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.triangles != 0) {
     result_.raster_cycles = cycle_ - first_triangle_ + 1;
+    result_.tile_cycles = tile_cycles_;
+  }
   was_idle_ = out.idle;
   if (moved) last_moved_ = cycle_;
   if (!options_.compares) count_use(out);

@@ -16,12 +16,15 @@ class MemoryModel {
 
   void accept(const std::uint32_t* words, std::uint64_t cycle) {
     const auto request = unpack_words<MemoryRequest>(words, widths_);
+    const bool is_inside =  // a faulty design may ask for what is not there: nothing is kept of it
+        request.tile_x < tiles_.tiles_x() && request.tile_y < tiles_.tiles_y() && request.stamp < tiles_.stamps();
     if (request.is_write != 0) {
+      if (!is_inside) return;
       tiles_.write(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, request.data);
       return;
     }
     MemoryResponse response;
-    tiles_.read(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, response.data);
+    if (is_inside) tiles_.read(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, response.data);
     pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(cycle)));
   }
 

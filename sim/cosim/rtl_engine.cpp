@@ -26,4 +26,21 @@ RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, cons
   return result;
 }
 
+FaultyFrame render_faulty(Dut& dut, const Scene& scene, const Config& config, std::uint16_t mutant,
+                          std::uint64_t most_cycles) {
+  LockstepOptions options;
+  options.compares = false;
+  options.mutant = mutant;
+  // Called every 2^16 cycles.
+  options.progress = [most_cycles, spent = std::uint64_t{0}](double) mutable {
+    return (spent += std::uint64_t{1} << 16) < most_cycles;
+  };
+  Lockstep lockstep(dut, config, options);
+  const LockstepResult run = lockstep.run(scene);
+  FaultyFrame result{{}, run.cycles};
+  if (!run.mismatch && !run.is_stopped)
+    result.frame = to_framebuffer(lockstep.memory(), scene.width, scene.height, config);
+  return result;
+}
+
 }  // namespace halfplane

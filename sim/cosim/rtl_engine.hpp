@@ -15,4 +15,13 @@ struct RtlRendering {
 /// hardware does not take, std::runtime_error when the RTL hangs.
 [[nodiscard]] RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, const RenderOptions& options);
 
+struct FaultyFrame {
+  std::optional<Framebuffer> frame;  ///< none: it hangs, or has not ended within the cycles
+  std::uint64_t cycles = 0;
+};
+
+/// The image that `dut` makes of `scene` with a fault in it (0: none), given about `most_cycles`.
+[[nodiscard]] FaultyFrame render_faulty(Dut& dut, const Scene& scene, const Config& config, std::uint16_t mutant,
+                                        std::uint64_t most_cycles);
+
 }  // namespace halfplane

@@ -34,9 +34,12 @@ class VerilatedDut final : public Dut {
     if (words != nullptr) std::memcpy(first_word(top_->response_i), words, sizeof top_->response_i);
   }
 
+  /// raster_cosim registers its inputs, so the edge that ends the last cycle is the one at which they are taken over.
   const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) override {
+    if (top_->clk_i != 0) fall();  // a cycle more that nobody counts, as for the counters after the last
     top_->stall_i = stalls;
     top_->request_ready_i = request_ready;
+    top_->clk_i = 1;
     top_->eval();
     dump();
     out_.fired = top_->fire_o;
@@ -44,17 +47,13 @@ class VerilatedDut final : public Dut {
     out_.request_valid = top_->request_valid_o != 0;
     out_.response_ready = top_->response_ready_o != 0;
     out_.idle = top_->idle_o != 0;
+    out_.moves_tiles = top_->moves_tiles_o != 0;
     out_.stream_valid = top_->stream_valid_o;
     out_.stream_ready = top_->stream_ready_o;
     return out_;
   }
 
-  void clock() override {
-    top_->clk_i = 1;
-    top_->eval();
-    dump();
-    top_->clk_i = 0;  // settles in the next evaluate(), together with the new inputs
-  }
+  void clock() override { fall(); }
 
   [[nodiscard]] bool can_trace() const override { return !std::is_void_v<Trace>; }
   [[nodiscard]] bool open_trace([[maybe_unused]] const std::string& path) override {
@@ -101,7 +100,7 @@ class VerilatedDut final : public Dut {
     top_->eval();
     top_->rst_ni = 0;
     for (int i = 0; i < 4; ++i) {
-      top_->eval();
+      (void)evaluate(0, false);
       clock();
     }
     top_->rst_ni = 1;
@@ -109,6 +108,12 @@ class VerilatedDut final : public Dut {
     out_.packet = {&top_->triangle_o, &top_->setup_o,    &top_->context_o, &top_->tile_o,   &top_->edges_o,
                    &top_->stamp_o,    &top_->fragment_o, &top_->write_o,   &top_->retire_o, &top_->request_o};
     out_.counters = &top_->counters_o;
+  }
+
+  void fall() {
+    top_->clk_i = 0;
+    top_->eval();  // nothing but Verilator's note of the level
+    dump();
   }
 
   template <class Port>

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "model/engines/functional.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/cosim_options.hpp"
+#include "sim/cosim/report.hpp"
+#include "sim/cosim/rtl_engine.hpp"
+#include "sim/scene/builtin.hpp"
+
+namespace halfplane {
+namespace {
+
+struct MutantsCommand : CosimOptions {
+  bool scenes = false;
+};
+
+/// A built-in scene and what the model shows of it.
+struct Picture {
+  Scene scene;
+  std::string color, depth;      ///< hashes
+  std::uint64_t cycles = ~0ULL;  ///< that it may take: four times the RTL's own
+};
+
+/// One seeded fault and what became of it.
+struct Verdict {
+  Mutant mutant;
+  std::optional<Mismatch> mismatch;
+  std::vector<std::string> pictures;  ///< scenes of which colour or depth differ, or which never end
+};
+
+std::vector<Picture> model_pictures(const MutantsCommand& options, const Config& config) {
+  std::vector<Picture> pictures;
+  CommonOptions request = options;
+  for (const Builtin& builtin : builtin_scenes()) {
+    request.scene = builtin.name;
+    double load_s = 0;
+    Picture picture;
+    picture.scene = load_scene(request, config, load_s);
+    check_hardware_scene(picture.scene, config);
+    const Rendering model = render_functional(picture.scene, config, {});
+    picture.color = color_hash(model.frame, config.color_format);
+    picture.depth = depth_hash(model.frame);
+    pictures.push_back(std::move(picture));
+  }
+  return pictures;
+}
+
+bool shows(Dut& dut, const Config& config, const Picture& picture, std::uint16_t mutant) {
+  const auto [frame, cycles] = render_faulty(dut, picture.scene, config, mutant, picture.cycles);
+  return frame && color_hash(*frame, config.color_format) == picture.color && depth_hash(*frame) == picture.depth;
+}
+
+Verdict judge(const MutantsCommand& options, const Config& config, Dut& dut, const Mutant& mutant,
+              const std::vector<Picture>& pictures) {
+  LockstepOptions lockstep = lockstep_options(options);
+  lockstep.mutant = static_cast<std::uint16_t>(mutant.id);
+  const Session session = run_session(dut, config, lockstep, random_scenes(config, options.seed, options.random));
+  Verdict verdict{mutant, session.result.mismatch, {}};
+  for (const Picture& picture : pictures)
+    if (!shows(dut, config, picture, lockstep.mutant)) verdict.pictures.push_back(picture.scene.name);
+  return verdict;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  if (words.size() == builtin_scenes().size()) return "all";
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text.empty() ? "none" : text;
+}
+
+std::string column(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text + "  ";
+}
+
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(width - std::min(width, text.size()), ' ') + text + "  ";
+}
+
+std::string stage_of(const Mutant& mutant) { return std::filesystem::path(mutant.file).stem().string(); }
+
+/// "setup depth_step_x", "counters tiles_hiz +1", "tile never comes".
+std::string where(const Mismatch& m) {
+  const auto fields = m.differing();
+  const std::string more = fields.size() > 1 ? " +" + std::to_string(fields.size() - 1) : "";
+  const std::string what = m.kind == Mismatch::Kind::extra      ? "one too many"
+                           : m.kind == Mismatch::Kind::missing  ? "never comes"
+                           : m.kind == Mismatch::Kind::protocol ? "broken"
+                           : fields.empty()                     ? ""
+                                                                : fields.front() + more;
+  return m.arrow + " " + what;
+}
+
+void print_table(std::ostream& out, const std::vector<Verdict>& verdicts, bool has_pictures) {
+  out << right("id", 3) << column("where", 14) << column("caught in", 30) << right("cycle", 9)
+      << (has_pictures ? column("pictures changed", 41) : "") << "what is wrong\n";
+  for (const Verdict& v : verdicts)
+    out << right(std::to_string(v.mutant.id), 3) << column(stage_of(v.mutant), 14)
+        << column(v.mismatch ? where(*v.mismatch) : "NOT CAUGHT", 30)
+        << right(v.mismatch ? with_commas(v.mismatch->cycle) : "", 9)
+        << (has_pictures ? column(joined(v.pictures), 41) : "") << v.mutant.what << '\n';
+}
+
+Json verdict_json(const Verdict& v, bool has_pictures) {
+  Json row{{"id", v.mutant.id}, {"file", v.mutant.file}, {"what", v.mutant.what}, {"caught", v.mismatch.has_value()}};
+  row["stage"] = v.mismatch ? Json(v.mismatch->stage) : Json(nullptr);
+  row["arrow"] = v.mismatch ? Json(v.mismatch->arrow) : Json(nullptr);
+  row["fields"] = v.mismatch ? Json(v.mismatch->differing()) : Json::array();
+  row["cycle"] = v.mismatch ? Json(v.mismatch->cycle) : Json(nullptr);
+  if (has_pictures) row["pictures"] = v.pictures;
+  return row;
+}
+
+/// Every picture of the design as it is must be the model's: otherwise no change could be blamed on a mutant. With one it
+/// gets four times the cycles.
+void check_pictures(const Config& config, Dut& dut, std::vector<Picture>& pictures) {
+  for (Picture& picture : pictures) {
+    const auto [frame, cycles] = render_faulty(dut, picture.scene, config, 0, ~0ULL);
+    picture.cycles = 4 * cycles;
+    if (!frame || color_hash(*frame, config.color_format) != picture.color || depth_hash(*frame) != picture.depth)
+      throw std::runtime_error("without a mutant the RTL shows another picture of " + picture.scene.name +
+                               " than the model; run halfplane cosim " + picture.scene.name);
+  }
+}
+
+int run(const MutantsCommand& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Config config = effective_config(options);
+  const DutFactory& factory = find_dut(config);
+  if (!factory.has_mutants) throw InputError("the RTL of " + factory.name + " has no mutants; use --config embedded");
+  const std::unique_ptr<Dut> dut = make_dut(factory);
+  std::vector<Picture> pictures = options.scenes ? model_pictures(options, config) : std::vector<Picture>();
+  check_pictures(config, *dut, pictures);
+
+  std::vector<Verdict> verdicts;
+  {
+    Progress progress(options, "running mutants");
+    for (const Mutant& mutant : mutants()) {
+      progress(static_cast<double>(verdicts.size()) / static_cast<double>(mutants().size()));
+      verdicts.push_back(judge(options, config, *dut, mutant, pictures));
+    }
+  }
+  const auto caught = std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.mismatch; });
+  const auto unseen =
+      std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.pictures.empty(); });
+  const bool all_caught = static_cast<std::size_t>(caught) == verdicts.size();
+
+  Json result = result_head("mutants", options, config);
+  result["seed"] = options.seed;
+  result["random"] = options.random;
+  result["stalls"] = options.stalls;
+  result["caught"] = caught;
+  result["pictures_unchanged"] = options.scenes ? Json(unseen) : Json(nullptr);
+  result["mutants"] = Json::array();
+  for (const Verdict& verdict : verdicts) result["mutants"].push_back(verdict_json(verdict, options.scenes));
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+
+  std::ostream& out = human(options);
+  print_table(out, verdicts, options.scenes);
+  out << caught << " of " << verdicts.size() << " mutants caught by " << with_commas(options.random)
+      << " random triangles, " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2)
+      << '\n';
+  if (options.scenes)
+    out << unseen << " of them change no picture of the " << pictures.size() << " built-in scenes at " << options.size
+        << ": only the comparison of packets and counters shows them\n";
+  return all_caught ? exit_ok : exit_mismatch;
+}
+
+}  // namespace
+
+void add_mutants_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("mutants", "seeded faults of the RTL, each of which co-simulation must catch");
+  auto options = std::make_shared<MutantsCommand>();
+  options->random = 6000;
+  options->stalls = 0.2;
+  options->size = "160x120";
+  add_output_options(*command, *options);
+  add_seed_option(*command, *options, "seed of the random run and its stalls");
+  command->add_option("--random", options->random, "triangles of the random run")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->capture_default_str();
+  add_stalls_option(*command, *options);
+  command->add_flag("--scenes", options->scenes, "also says which pictures of the built-in scenes each mutant changes");
+  command->add_option("--size", options->size, "of these pictures, WxH pixels")->capture_default_str();
+  command->footer("\nExit status 1 when a mutant is not caught.\n\nExample:\n  halfplane mutants --json=mutants.json");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane
