@@ -67,8 +67,8 @@ mutant(27 stages/interpolate.sv "clamp: nothing is clamped from below"
   [=[code < $signed((B + 2)'(low))]=] [=[1'b0]=])
 mutant(28 stages/interpolate.sv "dropped stall: a slot is given back on every cycle that its last stamp waits"
   [=[context_valid_q && x_ready && context_stamp_q.ends_primitive]=] [=[context_valid_q && context_stamp_q.ends_primitive]=])
-mutant(29 stages/interpolate.sv "off by one: the half-tile offset in y is taken from x"
-  [=[(to_y[PIXEL-1] ? x_step_y << (PIXEL - 1) : '0)]=] [=[(to_y[PIXEL-1] ? x_step_y << PIXEL : '0)]=])
+mutant(29 stages/interpolate.sv "sign: rows of stamps above the tile's centre count as below"
+  [=[PIXEL'(row) << STAMP_SHIFT]=] [=[PIXEL'(row[PER_ROW_BITS-2:0]) << STAMP_SHIFT]=])
 mutant_text(30 lib/skid_buffer.sv "dropped stall: a full buffer takes one more"
   [=[assign ready_o = !tail_valid_q;]=] [=[assign ready_o = !tail_valid_q || raster_cosim.mutant_q == 16'd30;]=])
 

@@ -1,8 +1,12 @@
-// Edge offset: the edge function moved by a few pixels, value + x * step_x + y * step_y, as shifts and adds. With a
-// constant x and y it is the adders of one sample; with a variable one it finds the first stamp of a tile's box.
+// Edge offset: the edge function (or any plane) moved by a few pixels, value + x * step_x + y * step_y, as shifts and adds.
+// With a constant x and y it is the adders of one sample; with a variable one it finds the first stamp of a tile's box.
+//
+// Bit b of a pixel offset changes the value from bit b up: narrow adders in a row, highest bit first, so that neighbours
+// share them.
 module edge_offset #(
-    parameter int WIDTH  = 1,  // bits of a value; the caller has proven that the sum fits
-    parameter int OFFSET = 1   // bits of x and y, pixels
+    parameter int WIDTH  = 1,  // bits of a value; the caller has proven that the sum fits, or wants a residue
+    parameter int OFFSET = 1,  // bits of x and y, pixels
+    parameter int SIGNED = 0   // 1: the highest bit of x and y counts negative
 ) (
     input  logic signed [WIDTH-1:0]  value_i,
     input  logic signed [WIDTH-1:0]  step_x_i,
@@ -12,11 +16,17 @@ module edge_offset #(
     output logic signed [WIDTH-1:0]  value_o
 );
 
-  always_comb begin
-    value_o = value_i;
-    for (int b = 0; b < OFFSET; b++) begin
-      value_o = value_o + (x_i[b] ? step_x_i <<< b : '0) + (y_i[b] ? step_y_i <<< b : '0);
+  function automatic logic signed [WIDTH-1:0] moved(input logic signed [WIDTH-1:0] value, input logic signed [WIDTH-1:0] step,
+                                                    input logic [OFFSET-1:0] offset);
+    logic signed [WIDTH-1:0] term;
+    moved = value;
+    for (int b = OFFSET - 1; b >= 0; b--) begin
+      term  = offset[b] ? step : '0;
+      moved = (((SIGNED != 0 && b == OFFSET - 1) ? (moved >>> b) - term : (moved >>> b) + term) <<< b) |
+              (moved & WIDTH'((1 << b) - 1));
     end
-  end
+  endfunction
+
+  assign value_o = moved(moved(value_i, step_y_i, y_i), step_x_i, x_i);
 
 endmodule

@@ -97,14 +97,14 @@ module interpolate (
   end
 
   // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
-  logic signed [PIXEL-1:0] to_x, to_y;  // pixels
+  logic [PIXEL-1:0] to_x, to_y;  // pixels
   generate
     if (PER_ROW_BITS > 0) begin : gen_offset
-      logic signed [PER_ROW_BITS-1:0] column, row;
+      logic [PER_ROW_BITS-1:0] column, row;
       assign column = context_stamp_q.stamp[0+:PER_ROW_BITS] ^ {1'b1, {(PER_ROW_BITS - 1) {1'b0}}};
       assign row    = x_stamp_q.stamp[PER_ROW_BITS+:PER_ROW_BITS] ^ {1'b1, {(PER_ROW_BITS - 1) {1'b0}}};
-      assign to_x   = PIXEL'(column) <<< STAMP_SHIFT;
-      assign to_y   = PIXEL'(row) <<< STAMP_SHIFT;
+      assign to_x   = PIXEL'(column) << STAMP_SHIFT;
+      assign to_y   = PIXEL'(row) << STAMP_SHIFT;
     end else begin : gen_whole_tile
       assign to_x = PIXEL'(STAMP / 2);
       assign to_y = PIXEL'(STAMP / 2);
@@ -119,9 +119,8 @@ module interpolate (
     for (p = 0; p < PLANES; p++) begin : gen_plane
       localparam int W = p == 0 ? LD : LC;  // of a local value
       localparam int B = p == 0 ? Z : K;    // of a code
-      logic [W-1:0] anchor, context_step_x, x_step_y, x_value_q, y_value_q;
-      logic signed [W-1:0] first, y_step_x, y_step_y;  // for edge_offset; modulo 2^W signs do not matter
-      assign first = y_value_q;
+      logic signed [W-1:0] anchor, context_step_x, x_step_y, y_step_x, y_step_y;  // modulo 2^W signs do not matter
+      logic signed [W-1:0] x_value_q, y_value_q;
       logic [B-1:0] low, high;
       if (p == 0) begin : gen_depth
         assign anchor         = context_stamp_q.depth_anchor;
@@ -141,16 +140,32 @@ module interpolate (
         assign high           = samples_context_q.color_max[(p-1)*K+:K];
       end
 
-      // x and y: a multiple of a step, as shifts and adds; the highest bit counts negative.
-      logic [W-1:0] x_value, y_value;
-      always_comb begin
-        x_value = anchor - (to_x[PIXEL-1] ? context_step_x << (PIXEL - 1) : '0);
-        y_value = x_value_q - (to_y[PIXEL-1] ? x_step_y << (PIXEL - 1) : '0);
-        for (int b = STAMP_SHIFT; b < PIXEL - 1; b++) begin
-          x_value = x_value + (to_x[b] ? context_step_x << b : '0);
-          y_value = y_value + (to_y[b] ? x_step_y << b : '0);
-        end
-      end
+      // x, then y; the stamp lies on either side of the centre.
+      logic signed [W-1:0] x_value, y_value;
+      edge_offset #(
+          .WIDTH (W),
+          .OFFSET(PIXEL),
+          .SIGNED(1)
+      ) u_x (
+          .value_i (anchor),
+          .step_x_i(context_step_x),
+          .step_y_i('0),
+          .x_i     (to_x),
+          .y_i     ('0),
+          .value_o (x_value)
+      );
+      edge_offset #(
+          .WIDTH (W),
+          .OFFSET(PIXEL),
+          .SIGNED(1)
+      ) u_y (
+          .value_i (x_value_q),
+          .step_x_i('0),
+          .step_y_i(x_step_y),
+          .x_i     ('0),
+          .y_i     (to_y),
+          .value_o (y_value)
+      );
       always_ff @(posedge clk_i) begin
         if (x_ready) x_value_q <= x_value;
         if (y_ready) y_value_q <= y_value;
@@ -167,7 +182,7 @@ module interpolate (
             .WIDTH (W),
             .OFFSET(PIXEL)
         ) u_value (
-            .value_i (first),
+            .value_i (y_value_q),
             .step_x_i(y_step_x),
             .step_y_i(y_step_y),
             .x_i     (PIXEL'(s % STAMP)),

@@ -52,7 +52,7 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
-  for (const char* command : {"render", "compare", "scenes", "config"})
+  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "scenes", "config"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {
     const std::string help = run({command, "--help"}).out;

@@ -2,8 +2,11 @@
 // stalls, and every seeded fault caught by the same run.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/session.hpp"
+#include "sim/scene/builtin.hpp"
 #include "sim/scene/load.hpp"
 
 namespace halfplane {
@@ -50,6 +53,22 @@ TEST(Cosim, TheTeapotIsEqualInEveryPacket) {
   const Session session = run(factory, {}, single_scene(load_scene({"teapot:8", 320, 240, "", 1}, warnings)));
   EXPECT_EQ(describe(session), "");
   EXPECT_GT(session.result.total(), 10000u);
+}
+
+TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacket) {
+  for (const DutFactory& factory : verilated_duts()) {
+    // A scene that fits the smallest target, and light enough for the serial setup.
+    const int width = std::min(96, factory.config.target_width), height = std::min(64, factory.config.target_height);
+    for (const Builtin& builtin : builtin_scenes()) {
+      std::string name(builtin.name);
+      if (builtin.default_size != 0) name += ":" + std::to_string(std::max(3, builtin.min_size));
+      SCOPED_TRACE(factory.name + ", " + name);
+      std::vector<std::string> warnings;
+      const Session session = run(factory, {}, single_scene(load_scene({name, width, height, "", 1}, warnings)));
+      EXPECT_EQ(describe(session), "");
+      EXPECT_GT(session.result.total(), 10u);
+    }
+  }
 }
 
 // Must fail: each mutant differs from the design by one expression.

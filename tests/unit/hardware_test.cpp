@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/host_stream.hpp"
@@ -18,14 +19,10 @@ namespace {
 using test::at;
 using test::clip_at;
 using test::Random;
+using test::Recorder;
+using test::run_scene;
 using test::SceneBuilder;
-
-Config with(const char* preset_name, std::initializer_list<std::pair<const char*, const char*>> settings) {
-  Config config = preset(preset_name);
-  for (const auto& [key, value] : settings) set(config, key, value);
-  validate(config);
-  return config;
-}
+using test::with;
 
 const std::vector<Config>& configurations() {
   static const std::vector<Config> all{
@@ -115,26 +112,6 @@ Scene random_scene(std::uint32_t seed, int width, int height, double band, int t
 Scene random_scene(std::uint32_t seed, const Config& config, int triangles = 80) {
   const bool is_tiny = config.target_width < 64;
   return random_scene(seed, is_tiny ? 15 : 93, is_tiny ? 13 : 71, is_tiny ? 32 : 500, triangles);
-}
-
-/// Counts and remembers what the tests ask about.
-struct Recorder : PacketSink {
-  using PacketSink::take;
-  void take(const TilePacket& packet) override { tiles.push_back(packet); }
-  void take(const StampPacket& packet) override { stamps.push_back(packet); }
-  void take(const RetirePacket& packet) override { retired.push_back(packet); }
-  void take(const MemoryRequest& packet) override { requests.push_back(packet); }
-  std::vector<TilePacket> tiles;
-  std::vector<StampPacket> stamps;
-  std::vector<RetirePacket> retired;
-  std::vector<MemoryRequest> requests;
-};
-
-CounterPacket run_scene(const Scene& scene, const Config& config, PacketSink& sink) {
-  HostStream host(scene, config);
-  HardwareModel hardware(config, sink);
-  while (const auto primitive = host.next()) hardware.run(primitive->packet);
-  return hardware.counters();
 }
 
 TEST(Hardware, ImageAndCountersAreThoseOfTheFunctionalEngineOnRandomScenes) {
@@ -350,241 +327,6 @@ TEST(Hardware, EveryVisitEndsOnceWithItsLastStampAndRetiresOnce) {
     EXPECT_EQ(visits, sink.retired.size());
     EXPECT_GT(empty_ends, 0u) << "the case was never met";
   }
-}
-
-/// Two window-space triangles that fill the target.
-void fill_target(SceneBuilder& builder, double z) {
-  const double w = builder.scene.width, h = builder.scene.height;
-  builder.triangle(at(0, 0, z), at(w, 0, z), at(0, h, z));
-  builder.triangle(at(w, 0, z), at(w, h, z), at(0, h, z));
-}
-
-TEST(Hiz, FrontToBackSceneSkipsTilesAndShowsTheSameImage) {
-  State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::less;
-  SceneBuilder builder(96, 96, state);
-  for (int layer = 1; layer <= 8; ++layer) fill_target(builder, 0.1 * layer);
-  const Config config = preset("embedded");
-  const Rendering expected = render_functional(builder.scene, config),
-                  hardware = render_hardware(builder.scene, config);
-  EXPECT_EQ(hardware.frame.depth, expected.frame.depth);
-  EXPECT_EQ(hardware.frame.color, expected.frame.color);
-  EXPECT_EQ(hardware.counters.written, 96u * 96u);
-  // The tiles on the diagonal are never covered by one triangle alone: their bound stays where the clear put it.
-  EXPECT_EQ(hardware.counters.skipped.tiles_hiz, 7u * 2u * 66u);
-  EXPECT_LT(hardware.counters.covered, expected.counters.covered / 3);
-}
-
-TEST(Hiz, BoundOfATileFollowsTheDepthsInIt) {
-  const Config config = with("embedded", {{"hiz.bits", "8"}});
-  const Widths widths = derive_widths(config);
-  Hiz hiz(config, widths);
-  EXPECT_EQ(hiz.bound(3, 2), 65535u);
-  hiz.clear(5, 5, 0x1234);
-  EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
-  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::none), 0});
-  EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
-  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::set), 0x05});
-  EXPECT_EQ(hiz.bound(3, 2), 0x05FFu);
-  EXPECT_EQ(hiz.bound(2, 3), 0x12FFu);
-  SetupPacket setup;
-  setup.depth_min = 0x05FF;
-  setup.depth_test = static_cast<std::uint8_t>(DepthFunc::less);
-  EXPECT_TRUE(hiz.rejects(setup, 3, 2));
-  setup.depth_test = static_cast<std::uint8_t>(DepthFunc::lequal);
-  EXPECT_FALSE(hiz.rejects(setup, 3, 2));
-  setup.depth_min = 0x0600;
-  EXPECT_TRUE(hiz.rejects(setup, 3, 2));
-  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::clear), 0xFF});
-  EXPECT_FALSE(hiz.rejects(setup, 3, 2));
-}
-
-TEST(Hiz, DepthThatCanRiseTakesTheBoundAway) {
-  // A near wall, then one test that raises part of a tile, then something between: it must be seen.
-  for (const DepthFunc raising : {DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always}) {
-    State state = SceneBuilder::window_state();
-    state.depth_test = DepthFunc::less;
-    SceneBuilder builder(64, 64, state);
-    fill_target(builder, 0.2);
-    state.depth_test = raising;
-    builder.with_state(state).triangle(at(1, 1, 0.9), at(30, 2, 0.9), at(3, 33, 0.9));
-    state.depth_test = DepthFunc::less;
-    builder.with_state(state);
-    fill_target(builder, 0.5);
-    const Config config = preset("embedded");
-    EXPECT_EQ(render_hardware(builder.scene, config).frame.depth, render_functional(builder.scene, config).frame.depth);
-  }
-}
-
-TEST(TileCache, FastClearedSceneThatFitsReadsNoMemory) {
-  const Config config = preset("embedded");
-  SceneBuilder builder(32, 32);  // 4 x 4 tiles, 16 lines
-  for (int n = 0; n < 5; ++n) fill_target(builder, 0.1 * n);
-  Recorder sink;
-  const CounterPacket counters = run_scene(builder.scene, config, sink);
-  for (const MemoryRequest& request : sink.requests) EXPECT_EQ(request.is_write, 1);
-  EXPECT_EQ(sink.requests.size(), 32u * 32u / 4 * 2) << "each plane of each tile is written once";
-  EXPECT_EQ(counters.tile_fills, 0u);
-  EXPECT_EQ(counters.tile_clears, 32u);
-  EXPECT_EQ(counters.tile_evictions, 32u);
-}
-
-TEST(TileCache, TileNobodyTouchesIsWrittenOnlyAtTheFlush) {
-  const Config config = preset("embedded");
-  SceneBuilder builder(64, 8);
-  builder.triangle(at(1, 1), at(7, 1), at(1, 7));
-  Recorder sink;
-  const CounterPacket counters = run_scene(builder.scene, config, sink);
-  EXPECT_EQ(counters.tile_clears, 2u);
-  EXPECT_EQ(counters.tile_evictions, 2u * 8u);
-  ASSERT_EQ(sink.requests.size(), 2u * 8u * 16u);
-  for (std::size_t n = 0; n < sink.requests.size(); ++n) {  // the dirty line, then the flags, depth before colour
-    EXPECT_EQ(sink.requests[n].tile_x, n / 32);
-    EXPECT_EQ(sink.requests[n].is_color, n / 16 % 2);
-    EXPECT_EQ(sink.requests[n].stamp, n % 16);
-  }
-}
-
-TEST(TileCache, SecondReadOfATileIsAHit) {
-  // Two tiles that share a line take it from each other; staying in one costs nothing.
-  const Config config = with("embedded", {{"cache.lines", "1"}});
-  const auto fills = [&config](std::initializer_list<double> xs) {
-    SceneBuilder builder(64, 8);
-    for (const double x : xs) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
-    Recorder sink;
-    return run_scene(builder.scene, config, sink).tile_fills;
-  };
-  EXPECT_EQ(fills({0, 0, 0}), 0u);
-  EXPECT_EQ(fills({0, 8}), 0u);
-  EXPECT_EQ(fills({0, 8, 0}), 2u);
-  EXPECT_EQ(fills({0, 8, 0, 0, 8}), 4u);
-}
-
-TEST(TileCache, PlaneThatNobodyWroteIsNotWrittenBack) {
-  const Config config = with("embedded", {{"cache.lines", "1"}});
-  State state = SceneBuilder::window_state();
-  state.depth_write = false;
-  SceneBuilder builder(16, 8, state);
-  for (const double x : {0.0, 8.0, 0.0}) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
-  Recorder sink;
-  const CounterPacket counters = run_scene(builder.scene, config, sink);
-  EXPECT_EQ(counters.tile_fills, 1u) << "colour of the first tile, when it comes back";
-  EXPECT_EQ(counters.tile_clears, 5u) << "three times depth, twice colour";
-  EXPECT_EQ(counters.tile_evictions, 5u) << "three times colour; depth of both tiles at the flush";
-}
-
-TEST(TileCache, ClearOfOnePlaneKeepsTheOther) {
-  SceneBuilder builder(40, 40);
-  fill_target(builder, 0.5);
-  builder.scene.commands.push_back(Clear{0, std::nullopt, 0.25});
-  builder.triangle(at(1, 1, 0.75, {255, 0, 0, 255}), at(20, 1, 0.75, {255, 0, 0, 255}),
-                   at(1, 30, 0.75, {255, 0, 0, 255}));
-  builder.scene.commands.push_back(Clear{0, std::array<double, 4>{0, 255, 0, 255}, std::nullopt});
-  for (const char* lines : {"1", "4", "64"}) {
-    const Config config = with("embedded", {{"cache.lines", lines}});
-    const Rendering expected = render_functional(builder.scene, config),
-                    hardware = render_hardware(builder.scene, config);
-    EXPECT_EQ(hardware.frame.depth, expected.frame.depth) << lines;
-    EXPECT_EQ(hardware.frame.color, expected.frame.color) << lines;
-  }
-}
-
-TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
-  const Config config = preset("embedded");
-  const Widths widths = derive_widths(config);
-  TileMemory memory(config);
-  std::array<std::uint32_t, 64> data{}, back{};
-  for (std::uint32_t s = 0; s < 4; ++s) data[s] = s + 1;
-  memory.write(true, 2, 3, 5, data);
-  memory.read(true, 2, 3, 5, back);
-  EXPECT_EQ(back, data);
-  memory.read(true, 2, 3, 6, back);
-  for (int s = 0; s < 4; ++s) EXPECT_EQ(back[static_cast<std::size_t>(s)], memory_garbage(true, 2, 3, 6, s, widths));
-  EXPECT_TRUE(memory.is_written(true, 2, 3));
-  EXPECT_FALSE(memory.is_written(false, 2, 3));
-  memory.read(false, 2, 3, 5, back);
-  EXPECT_EQ(back[0], memory_garbage(false, 2, 3, 5, 0, widths));
-  EXPECT_NE(memory_garbage(false, 2, 3, 5, 0, widths), memory_garbage(false, 2, 3, 5, 1, widths));
-}
-
-TEST(HostStream, BeginsWithAClearOfBothPlanesAndEndsWithAFlush) {
-  SceneBuilder builder(20, 10);
-  builder.scene.commands.clear();
-  builder.scene.commands.push_back(EndFrame{});
-  State scissored = SceneBuilder::window_state();
-  scissored.scissor = Rect{5, 2, 100, 3};
-  builder.with_state(scissored);
-  builder.scene.commands.push_back(Clear{1, std::nullopt, 1.0});
-  builder.scene.commands.push_back(Clear{0, std::array<double, 4>{255, 1, 2, 3}, std::nullopt});
-  builder.scene.commands.push_back(Clear{0, std::nullopt, std::nullopt});
-  builder.triangle(at(1, 1), at(1, 1), at(1, 1));  // of no area: the hardware's to drop
-  HostStream host(builder.scene, preset("embedded"));
-  const auto kind = [](PrimitiveKind k) { return static_cast<std::uint8_t>(k); };
-  auto p = host.next();
-  ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::fast_clear));
-  EXPECT_EQ(p->packet.z[2], 65535u);
-  EXPECT_EQ(p->packet.rgba[0], 0u);
-  EXPECT_EQ(p->packet.right, 19);
-  EXPECT_EQ(p->packet.depth_write + p->packet.color_write, 2);
-  p = host.next();
-  ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::rectangle));
-  EXPECT_EQ(p->packet.left, 5);
-  EXPECT_EQ(p->packet.right, 19);
-  EXPECT_EQ(p->packet.bottom, 4);
-  EXPECT_EQ(p->packet.color_write, 0);
-  EXPECT_EQ(p->command, 1u);
-  p = host.next();
-  ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::fast_clear));
-  EXPECT_EQ(p->packet.rgba[1], 0x0201FFu);
-  EXPECT_EQ(p->packet.depth_write, 0);
-  p = host.next();
-  ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::triangle));
-  EXPECT_EQ(p->packet.left, 5) << "the scissor rides along";
-  p = host.next();
-  ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::flush));
-  EXPECT_EQ(p->command, HostPrimitive::kNoCommand);
-  EXPECT_FALSE(host.next());
-  EXPECT_FALSE(host.next());
-}
-
-TEST(HostStream, DrawIntoAnEmptyRectangleSendsNothing) {
-  State state = SceneBuilder::window_state();
-  state.scissor = Rect{30, 0, 5, 5};
-  SceneBuilder builder(20, 10, state);
-  builder.triangle(at(1, 1), at(9, 1), at(1, 9));
-  HostStream host(builder.scene, preset("embedded"));
-  std::size_t triangles = 0;
-  while (const auto p = host.next()) triangles += p->packet.kind == 0 ? 1 : 0;
-  EXPECT_EQ(triangles, 0u);
-  EXPECT_EQ(host.counters().culled, 1u);
-}
-
-TEST(HostStream, NumberOfATriangleDoesNotWrapWhereItsKeyDoes) {
-  const Config config = with("embedded", {{"key.primitive_bits", "4"}});
-  SceneBuilder builder(20, 10);
-  for (int n = 0; n < 20; ++n) builder.triangle(at(1, 1), at(9, 1), at(1, 9));
-  HostStream host(builder.scene, config);
-  std::uint32_t expected = 0;
-  while (const auto p = host.next()) {
-    if (p->packet.kind != 0) continue;
-    EXPECT_EQ(p->primitive, expected);
-    EXPECT_EQ(p->packet.primitive_id, expected % 16);
-    ++expected;
-  }
-  EXPECT_EQ(expected, 20u);
-}
-
-TEST(HostStream, RefusesWhatTheHardwareDoesNotHave) {
-  State state = SceneBuilder::window_state();
-  state.color_interp = ColorInterp::perspective;
-  SceneBuilder builder(20, 10, state);
-  builder.triangle(at(1, 1), at(9, 1), at(1, 9));
-  EXPECT_THROW((void)render_hardware(builder.scene, preset("embedded")), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,185 @@
+// The commands that run the RTL: `cosim`, `reduce`, `mutants` and `render --engine rtl`.
+#include <algorithm>
+
+#include "program.hpp"
+#include "sim/cosim/dut.hpp"
+#include "sim/scene/builtin.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class RtlCommands : public Cli {
+ protected:
+  void SetUp() override {
+    if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
+  }
+  /// The words after "halfplane" of the last line that begins with "  repeat".
+  [[nodiscard]] static Arguments repeat_command(const std::string& report) {
+    Arguments words;
+    for (const std::string& line : lines_of(report))
+      if (line.starts_with("  repeat")) words = split_words(line);
+    if (words.size() > 2) words.erase(words.begin(), words.begin() + 2);
+    return words;
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    const Bytes bytes = read(name);
+    return {bytes.begin(), bytes.end()};
+  }
+};
+
+/// Every tag is closed in order, and attributes have quotes: what a reader of JUnit needs.
+bool is_well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
+    const std::size_t end = xml.find('>', at);
+    if (end == std::string::npos) return false;
+    const std::string tag = xml.substr(at + 1, end - at - 1);
+    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0 || tag.find('<') != std::string::npos) return false;
+    if (tag.starts_with('?') || tag.ends_with('/')) continue;
+    if (!tag.starts_with('/')) {
+      open.push_back(tag.substr(0, tag.find(' ')));
+    } else if (open.empty() || open.back() != tag.substr(1)) {
+      return false;
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() && xml.starts_with("<?xml");
+}
+
+TEST_F(RtlCommands, CosimOfABuiltInSceneIsEqualAndSaysWhatItCompared) {
+  const Outcome outcome = run({"cosim", "teapot:3", "--size", "160x120", "--stalls", "0.2"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (const char* part : {"teapot:3", "triangles", "embedded", "seed 1", "compared", "stamp", "memory", "cycles",
+                           "equal       every bit"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
+  EXPECT_EQ(outcome.out.find("MISMATCH"), std::string::npos);
+  EXPECT_TRUE(listing().empty()) << "nothing is saved when nothing differs";
+}
+
+TEST_F(RtlCommands, CosimResultHasEveryKeyOfTheContract) {
+  const Json json = result({"cosim", "--random", "200", "--seed", "7", "--junit", "equal.xml"});
+  EXPECT_EQ(json["schema"], "halfplane.cosim/1");
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["mismatches"], 0);
+  EXPECT_TRUE(json["first_mismatch"].is_null());
+  EXPECT_TRUE(json["scene"].is_null());
+  for (const char* stage :
+       {"cull", "triangle_setup", "coarse_raster", "fine_raster", "interpolate", "depth_test", "rop", "framebuffer"})
+    EXPECT_GT(json["packets"][stage], 0u) << stage;
+  for (const char* key : {"model", "rtl", "max_primitive_error"}) EXPECT_TRUE(json["cycles"].contains(key)) << key;
+  EXPECT_GT(json["cycles"]["rtl"], 0u);
+  EXPECT_GT(json["rtl_cycles_per_s"], 0.0);
+  EXPECT_TRUE(json["wall_s"].is_number());
+  EXPECT_TRUE(is_well_formed(text("equal.xml"))) << text("equal.xml");
+  EXPECT_NE(text("equal.xml").find("failures=\"0\""), std::string::npos);
+}
+
+TEST_F(RtlCommands, AMutantIsNamedSavedReducedAndRepeated) {
+  const Outcome outcome =
+      run({"cosim", "--random", "6000", "--stalls", "0.2", "--mutant", "1", "--junit", "failed.xml", "--json=r.json"});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  const std::size_t model = outcome.out.find(" model "), rtl = outcome.out.find(" rtl ");
+  EXPECT_NE(outcome.out.find("MISMATCH in cull: triangle packet"), std::string::npos) << outcome.out;
+  EXPECT_NE(model, std::string::npos) << outcome.out;
+  EXPECT_LT(model, rtl) << "model above rtl";
+  EXPECT_NE(outcome.out.find('^'), std::string::npos) << "the bits that differ are marked";
+  EXPECT_TRUE(is_well_formed(text("failed.xml"))) << text("failed.xml");
+  EXPECT_NE(text("failed.xml").find("<failure "), std::string::npos);
+
+  const Json json = Json::parse(text("r.json"));
+  EXPECT_EQ(json["mismatches"], 1);
+  for (const char* key : {"stage", "key", "cycle", "fields", "repro"})
+    EXPECT_TRUE(json["first_mismatch"].contains(key)) << key;
+  EXPECT_EQ(json["first_mismatch"]["stage"], "cull");
+  EXPECT_FALSE(json["first_mismatch"]["fields"].empty());
+  const std::string capture = json["reduced"]["capture"], trace = json["reduced"]["trace"];
+  EXPECT_TRUE(exists(capture));
+  EXPECT_TRUE(exists(trace));
+  EXPECT_LE(json["reduced"]["triangles"], 3u);
+
+  EXPECT_EQ(run(repeat_command(outcome.out)).status, 1) << "the printed command shows the same again";
+  Arguments first = split_words(json["first_mismatch"]["repro"].get<std::string>());
+  first.erase(first.begin());
+  EXPECT_EQ(run(first).status, 1) << "and so does the one of the whole run";
+  EXPECT_EQ(run({"cosim", capture}).status, 0) << "without the mutant there is nothing wrong with it";
+}
+
+TEST_F(RtlCommands, ReduceOfAFailingSceneStillFailsAndIsSmall) {
+  const Json json = result({"reduce", "teapot:3", "--size", "160x120", "--mutant", "23", "-o", "small.hpt"});
+  EXPECT_EQ(json["schema"], "halfplane.reduce/1");
+  EXPECT_EQ(json["capture"], "small.hpt");
+  EXPECT_GT(json["triangles"]["before"], 100u);
+  EXPECT_LE(json["triangles"]["after"], 3u);
+  EXPECT_EQ(run({"cosim", "small.hpt", "--mutant", "23"}).status, 1);
+  expect_refused({"reduce", "small.hpt"}, "does not fail");
+}
+
+TEST_F(RtlCommands, WhatTheHardwareLacksIsNamed) {
+  write("perspective.hpt",
+        "halfplane 1\ntarget 32 32\nspace window\nstate color_interp perspective\nv 1 1 .5 1\nv 9 1 .5 1\nv 1 9 .5 1\n"
+        "t 0 1 2\n");
+  for (const Arguments& command : {Arguments{"cosim"}, {"render", "--engine", "rtl"}, {"reduce", "--mutant", "1"}}) {
+    Arguments words = command;
+    words.insert(words.begin() + 1, "perspective.hpt");
+    expect_refused(words, "color_interp");
+  }
+  expect_refused({"cosim", "triangle", "--size", "4000x40"}, "4000x40");
+  expect_refused({"cosim"}, "--random");
+  expect_refused({"cosim", "triangle", "--random", "5"}, "one of them");
+  expect_refused({"cosim", "triangle", "--mutant", "1000"}, "no number 1000");
+  expect_refused({"cosim", "triangle", "--mutant", "1", "--config", "tiny", "--size", "8x8"}, "has no mutants");
+  expect_refused({"mutants", "--config", "tiny"}, "has no mutants");
+  expect_refused({"render", "triangle", "--engine", "rtl", "--ids", "ids.npy"}, "leave out --count and --ids");
+  expect_refused({"render", "triangle", "--engine", "rtl", "--count", "count.npy"}, "leave out --count and --ids");
+}
+
+TEST_F(RtlCommands, AConfigurationWithoutRtlIsRefusedWithTheCommandThatBuildsIt) {
+  const std::string part = "run ./dev build --config embedded --set stamp.size=8";
+  const Arguments settings{"--config", "embedded", "--set", "stamp.size=8"};
+  for (const Arguments& command : {Arguments{"cosim", "triangle"},
+                                   {"render", "triangle", "--engine", "rtl"},
+                                   {"reduce", "triangle"},
+                                   {"mutants"}}) {
+    Arguments words = command;
+    words.insert(words.end(), settings.begin(), settings.end());
+    expect_refused(words, part, 3);
+  }
+}
+
+TEST_F(RtlCommands, EveryBuiltInSceneHasTheSameHashesInRtlAndFunctionalEngine) {
+  for (const Builtin& builtin : builtin_scenes()) {
+    std::string name(builtin.name);
+    if (builtin.default_size != 0) name += ":" + std::to_string(std::max(builtin.min_size, builtin.default_size / 4));
+    const Json rtl = result({"render", name, "--size", "160x120", "--engine", "rtl"});
+    const Json functional = result({"render", name, "--size", "160x120"});
+    for (const char* key : {"color_hash", "depth_hash", "primitives"}) EXPECT_EQ(rtl[key], functional[key]) << name;
+    EXPECT_EQ(rtl["fragments"]["written"], functional["fragments"]["written"]) << name;
+    EXPECT_GT(rtl["cycles"], 0u);
+    EXPECT_GT(rtl["stages"]["fine_raster"]["items"], 0u);
+  }
+}
+
+TEST_F(RtlCommands, TilesThatHizSkipsAreCountedWhereAnEngineHasHiz) {
+  std::string capture = "halfplane 1\ntarget 96 96\nspace window\n";
+  for (const char* z : {"0.1", "0.2", "0.3"})
+    capture += std::string("v 0 0 ") + z + " 1\nv 200 0 " + z + " 1\nv 0 200 " + z + " 1\n";
+  write("layers.hpt", capture + "t 0 1 2\nt 3 4 5\nt 6 7 8\n");
+  EXPECT_GT(result({"render", "layers.hpt", "--engine", "rtl"})["skipped"]["tiles_hiz"], 200u);
+  for (const char* engine : {"functional", "scalar", "golden"})
+    EXPECT_EQ(result({"render", "layers.hpt", "--engine", engine})["skipped"]["tiles_hiz"], 0u) << engine;
+}
+
+TEST_F(RtlCommands, MutantsThatARunTooShortMissesAreAFailure) {
+  const Outcome outcome = run({"mutants", "--random", "50", "--stalls", "0", "--json=m.json"});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("NOT CAUGHT"), std::string::npos) << outcome.out;
+  const Json json = Json::parse(text("m.json"));
+  EXPECT_EQ(json["mutants"].size(), mutants().size());
+  EXPECT_LT(json["caught"], mutants().size());
+  EXPECT_TRUE(json["pictures_unchanged"].is_null());
+}
+
+}  // namespace
+}  // namespace halfplane::cli
