@@ -140,6 +140,11 @@ bool Lockstep::has_finished() const { return all_sent_ && was_idle_ && memory_.i
 /// Keeps a primitive on offer, and lets the model run it before the design can have seen it.
 void Lockstep::offer(HostStream& host) {
   if (has_primitive_ || all_sent_) return;
+  if (drains_) {
+    dut_.set_primitive(nullptr);
+    if (!was_idle_) return;
+    drains_ = false;
+  }
   const auto next = host.next();
   if (!next) {
     all_sent_ = true;
@@ -194,18 +199,22 @@ void Lockstep::step(HostStream& host) {
     has_response_ = false;
     moved = true;
   }
-  if (has_primitive_ && out.primitive_ready) {
+  const bool taken = has_primitive_ && out.primitive_ready;
+  if (taken) {
     has_primitive_ = false;
     moved = true;
-    if (sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) && result_.triangles++ == 0)
+    drains_ = options_.drains_clears && sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear);
+    if (sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) && result_.triangles++ == 0) {
       first_triangle_ = cycle_;
+      tile_cycles_ = 0;
+    }
   }
   if (result_.triangles != 0 && out.moves_tiles) ++tile_cycles_;
   if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.triangles != 0) {
     result_.raster_cycles = cycle_ - first_triangle_ + 1;
     result_.tile_cycles = tile_cycles_;
   }
-  was_idle_ = out.idle;
+  was_idle_ = out.idle && !taken;  // what is taken now is not yet under way
   if (moved) last_moved_ = cycle_;
   if (!options_.compares) count_use(out);
   dut_.clock();

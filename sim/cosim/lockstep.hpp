@@ -24,8 +24,9 @@ struct LockstepOptions {
   double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
   int memory_latency = 8;        ///< cycles
   std::uint16_t mutant = 0;
-  bool compares = true;  ///< false: the design alone, for its image and counters
-  std::string trace;     ///< FST file, empty: none; holds the cycles of the window
+  bool drains_clears = false;  ///< nothing goes in behind a fast clear until it is done: for cycles of triangles alone
+  bool compares = true;        ///< false: the design alone, for its image and counters
+  std::string trace;           ///< FST file, empty: none; holds the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
   /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
   std::function<bool(double fraction)> progress;
@@ -135,7 +136,7 @@ class Lockstep {
   std::vector<std::uint32_t> primitive_;  // words of the primitive on offer
   std::vector<std::uint32_t> held_;       // words of a request on offer
   bool has_primitive_ = false, all_sent_ = false, has_response_ = false, has_held_ = false;
-  bool is_tracing_ = false, was_idle_ = false;
+  bool is_tracing_ = false, was_idle_ = false, drains_ = false;
   std::uint64_t cycle_ = 0;           // since reset
   std::uint64_t first_triangle_ = 0;  // when it was taken
   std::uint64_t tile_cycles_ = 0;     // since then

@@ -1,0 +1,110 @@
+// Cycles of the RTL, pipelined setup, stamp 2x2: from the first triangle taken to the last write into the on-chip tiles,
+// without the cycles in which tiles move between chip and memory. Cycles are exact, so these bounds are no timings.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "sim/cosim/dut.hpp"
+#include "sim/cosim/session.hpp"
+#include "sim/scene/random.hpp"
+
+namespace halfplane {
+namespace {
+
+using Triangle = std::array<std::array<double, 2>, 3>;  // pixels
+
+struct Cycles {
+  double each = 0;       ///< per triangle
+  double per_pixel = 0;  ///< per covered sample
+};
+
+Scene scene_of(int width, int height, const std::vector<Triangle>& triangles) {
+  Scene scene;
+  scene.name = "cycles";
+  scene.width = width;
+  scene.height = height;
+  State state;
+  state.space = Space::window;
+  state.depth_test = DepthFunc::always;  // every covered sample is written
+  scene.states.push_back(state);
+  scene.commands.push_back(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
+  Random random(2);
+  for (const Triangle& triangle : triangles)
+    for (const auto& corner : triangle) {
+      Vertex v;
+      v.x = corner[0];
+      v.y = corner[1];
+      v.z = random.uniform(0, 1);
+      for (double& c : v.rgba) c = std::floor(random.uniform(0, 256));
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.push_back(v);
+    }
+  scene.commands.push_back(Draw{0, 0, Topology::triangles, 0, scene.indices.size(), 0});
+  return scene;
+}
+
+Cycles measure(const Scene& scene, const char* name) {
+  const DutFactory& factory = find_dut(preset("embedded"));
+  const auto dut = make_dut(factory);
+  LockstepOptions options;
+  options.drains_clears = true;
+  const LockstepResult r = run_session(*dut, factory.config, options, single_scene(scene)).result;
+  EXPECT_FALSE(r.mismatch.has_value());
+  const auto counters = render_hardware(scene, factory.config).counters;
+  const auto cycles = static_cast<double>(r.raster_cycles - r.tile_cycles);
+  const Cycles result{cycles / static_cast<double>(r.triangles), cycles / static_cast<double>(counters.covered)};
+  std::printf("%s: %.2f cycles a triangle, %.3f a pixel (%llu triangles, %llu cycles, %llu more moving tiles)\n", name,
+              result.each, result.per_pixel, static_cast<unsigned long long>(r.triangles),
+              static_cast<unsigned long long>(r.raster_cycles - r.tile_cycles),
+              static_cast<unsigned long long>(r.tile_cycles));
+  return result;
+}
+
+std::vector<Triangle> random_in_boxes(double size, int width, int height, std::size_t count) {
+  Random random(3);
+  std::vector<Triangle> triangles(count);
+  for (Triangle& t : triangles) {
+    double area = 0;
+    do {
+      const double x = random.uniform(0, width - size), y = random.uniform(0, height - size);
+      for (auto& corner : t) corner = {x + random.uniform(0, size), y + random.uniform(0, size)};
+      area = (t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]);
+    } while (std::abs(area) < 0.5);
+  }
+  return triangles;
+}
+
+Triangle two_by_two(double x, double y) { return {{{x, y}, {x + 2.5, y}, {x, y + 2.5}}}; }
+
+TEST(Cycles, AnIsolatedTriangleOfTwoByTwoPixelsTakesAtMost64) {
+  EXPECT_LE(measure(scene_of(32, 32, {two_by_two(4, 4)}), "isolated").each, 64);
+}
+
+TEST(Cycles, AStreamOfThemTakesAtMost8Each) {
+  Random random(1);
+  std::vector<Triangle> triangles(2000);
+  for (Triangle& t : triangles) t = two_by_two(std::floor(random.uniform(0, 29)), std::floor(random.uniform(0, 29)));
+  // One latency in all: the last of 2000 leaves 50 cycles after the first could have.
+  EXPECT_LE(measure(scene_of(32, 32, triangles), "stream").each, 8);
+}
+
+TEST(Cycles, RandomTrianglesInBoxesOf8PixelsTakeAtMost14Each) {
+  EXPECT_LE(measure(scene_of(640, 480, random_in_boxes(8, 640, 480, 2000)), "8 px boxes, 640x480").each, 14);
+  EXPECT_LE(measure(scene_of(32, 32, random_in_boxes(8, 32, 32, 2000)), "8 px boxes, 32x32").each, 14);
+}
+
+TEST(Cycles, RandomTrianglesInBoxesOf32PixelsTakeAtMost65HundredthsPerPixel) {
+  EXPECT_LE(measure(scene_of(640, 480, random_in_boxes(32, 640, 480, 2000)), "32 px boxes, 640x480").per_pixel, 0.65);
+  EXPECT_LE(measure(scene_of(32, 32, random_in_boxes(32, 32, 32, 2000)), "32 px boxes, 32x32").per_pixel, 0.65);
+}
+
+TEST(Cycles, ATriangleOf128By128TakesAtMost28HundredthsPerPixel) {
+  EXPECT_LE(measure(scene_of(128, 128, {{{{0, 0}, {128, 0}, {0, 128}}}}), "128x128").per_pixel, 0.28);
+  EXPECT_LE(measure(scene_of(640, 480, {{{{100.3, 50.1}, {228.2, 60.7}, {140.4, 178}}}}), "128x128 askew").per_pixel,
+            0.28);
+}
+
+}  // namespace
+}  // namespace halfplane
