@@ -4,7 +4,7 @@
 // and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
 // multiplication is spent on deciding alone. One cross product in turn for the three edges.
 // Occupancy and latency: 7 or 8 cycles with the multipliers in parallel.
-// Specification: model/stages/cull.hpp, edge_function() in model/stages/triangle_setup.hpp.
+// Specification: model/stages/cull.hpp, edge_function() in model/stages/edge_function.hpp.
 module cull (
     input logic clk_i,
     input logic rst_ni,
@@ -105,7 +105,7 @@ module cull (
   assign right   = is_triangle && last_x < $signed(B'(p_q.right)) ? last_x : $signed(B'(p_q.right));
   assign bottom  = is_triangle && last_y < $signed(B'(p_q.bottom)) ? last_y : $signed(B'(p_q.bottom));
 
-  // --- EDGES: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from vertex 0 to 1, 1 to 2,
+  // --- EDGES, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from vertex 0 to 1, 1 to 2,
   // 2 to 0. The vertices turn round once, so that the operands are always those of the lowest two.
   logic signed [C:0]   px, py;  // subpixels; the box is inside the target
   logic signed [D-1:0] dx, dy, to_px, to_py;
@@ -125,7 +125,7 @@ module cull (
       .D_BITS  (D),
       .OUT_BITS(E),
       .SERIAL  (SERIAL)
-  ) u_edge (
+  ) u_edge_function (
       .clk_i,
       .rst_ni,
       .start_i (edge_start),

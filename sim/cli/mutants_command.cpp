@@ -8,6 +8,7 @@
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/rtl_engine.hpp"
+#include "sim/image/framebuffer_files.hpp"
 #include "sim/scene/builtin.hpp"
 
 namespace halfplane {

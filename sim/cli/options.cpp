@@ -121,7 +121,10 @@ Skip parse_skip(const std::string& text) {
   Skip skip{false, false, false, false, false};
   if (text == "none") return skip;
   std::string names;
-  for (const auto& entry : kSkipNames) names += std::string(names.empty() ? "" : ", ") + entry.name;
+  for (const auto& entry : kSkipNames) {
+    if (!names.empty()) names += ", ";
+    names += entry.name;
+  }
   for (std::size_t start = 0; start <= text.size();) {
     const std::size_t end = std::min(text.find(',', start), text.size());
     const std::string name = text.substr(start, end - start);

@@ -203,7 +203,8 @@ void Lockstep::step(HostStream& host) {
   if (taken) {
     has_primitive_ = false;
     moved = true;
-    drains_ = options_.drains_clears && sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear);
+    drains_ =
+        options_.drains_clears && sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear);
     if (sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) && result_.triangles++ == 0) {
       first_triangle_ = cycle_;
       tile_cycles_ = 0;

@@ -17,8 +17,8 @@ enum StallStream : int {
   stall_request,
   stall_response,
   stall_memory,  ///< the memory takes no request
-  kStallStreams
 };
+inline constexpr int kStallStreams = stall_memory + 1;
 
 /// A probability in [0, 1) as the threshold that is_stalled() takes, in 2^-32.
 [[nodiscard]] inline std::uint64_t stall_threshold(double probability) {
