@@ -66,24 +66,33 @@ module raster_top (
   assign response_ready_o  = response_ready && !stall_i[7];
 
   logic is_triangle, is_zero_area, is_backface, is_empty, is_dropped;
-  cull u_cull (
-      .clk_i,
-      .rst_ni,
-      .primitive_valid_i(primitive_valid_i && !stall_i[0]),
-      .primitive_ready_o(primitive_ready),
-      .primitive_i,
-      .triangle_valid_o (triangle_offered),
-      .triangle_ready_i (triangle_ready),
-      .triangle_o       (triangle_data),
-      .is_triangle_o    (is_triangle),
-      .is_zero_area_o   (is_zero_area),
-      .is_backface_o    (is_backface),
-      .is_empty_o       (is_empty),
-      .is_dropped_o     (is_dropped)
-  );
+  logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
+  logic                             slot_free;
+  logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
+  logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
+  logic                              context_read;
+  var raster_pkg::context_packet_t   stamp_context;
 
+  // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
+  // until they are through with it and do one thing at a time.
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_pipelined
+      cull u_cull (
+          .clk_i,
+          .rst_ni,
+          .primitive_valid_i(primitive_valid_i && !stall_i[0]),
+          .primitive_ready_o(primitive_ready),
+          .primitive_i,
+          .triangle_valid_o (triangle_offered),
+          .triangle_ready_i (triangle_ready),
+          .triangle_o       (triangle_data),
+          .is_triangle_o    (is_triangle),
+          .is_zero_area_o   (is_zero_area),
+          .is_backface_o    (is_backface),
+          .is_empty_o       (is_empty),
+          .is_dropped_o     (is_dropped)
+      );
+
       triangle_setup u_triangle_setup (
           .clk_i,
           .rst_ni,
@@ -94,7 +103,89 @@ module raster_top (
           .setup_ready_i   (setup_ready),
           .setup_o         (setup_data)
       );
+
+      coarse_raster u_coarse_raster (
+          .clk_i,
+          .rst_ni,
+          .setup_valid_i   (setup_valid),
+          .setup_ready_o   (setup_accepted),
+          .setup_i         (setup_data),
+          .context_slot_o  (context_slot),
+          .context_o       (context_data),
+          .slot_free_i     (slot_free),
+          .tile_valid_o    (tile_offered),
+          .tile_ready_i    (tile_ready),
+          .tile_o          (tile_data),
+          .edges_o         (edges_data),
+          .retire_valid_i  (retire_valid),
+          .retire_i        (retire_data),
+          .is_visited_o    (is_visited),
+          .is_outside_o    (is_outside),
+          .is_accepted_o   (is_accepted),
+          .is_hiz_o        (is_hiz),
+          .samples_tested_o(samples_tested),
+          .visits_are_done_o(visits_are_done)
+      );
+
+      logic fine_valid, fine_ready;
+      var raster_pkg::stamp_packet_t fine_data;
+      fine_raster u_fine_raster (
+          .clk_i,
+          .rst_ni,
+          .tile_valid_i (tile_valid),
+          .tile_ready_o (tile_accepted),
+          .tile_i       (tile_data),
+          .edges_i      (edges_data),
+          .stamp_valid_o(fine_valid),
+          .stamp_ready_i(fine_ready),
+          .stamp_o      (fine_data)
+      );
+
+      // Behind here every step waits for the next one combinationally; the buffer keeps that out of the stages before.
+      skid_buffer #(
+          .WIDTH(raster_pkg::STAMP_PACKET_BITS)
+      ) u_stamps (
+          .clk_i,
+          .rst_ni,
+          .valid_i(fine_valid),
+          .ready_o(fine_ready),
+          .data_i (fine_data),
+          .valid_o(stamp_offered),
+          .ready_i(stamp_ready),
+          .data_o (stamp_data)
+      );
+
+      interpolate u_interpolate (
+          .clk_i,
+          .rst_ni,
+          .stamp_valid_i   (stamp_valid),
+          .stamp_ready_o   (stamp_accepted),
+          .stamp_i         (stamp_data),
+          .context_read_o  (context_read),
+          .context_slot_o  (read_slot),
+          .context_i       (stamp_context),
+          .slot_free_o     (slot_free),
+          .fragment_valid_o(fragment_offered),
+          .fragment_ready_i(fragment_ready),
+          .fragment_o      (fragment_data)
+      );
     end else begin : gen_serial
+      cull_serial u_cull (
+          .clk_i,
+          .rst_ni,
+          .primitive_valid_i(primitive_valid_i && !stall_i[0]),
+          .primitive_ready_o(primitive_ready),
+          .primitive_i,
+          .triangle_valid_o (triangle_offered),
+          .triangle_ready_i (triangle_ready),
+          .triangle_o       (triangle_data),
+          .is_triangle_o    (is_triangle),
+          .is_zero_area_o   (is_zero_area),
+          .is_backface_o    (is_backface),
+          .is_empty_o       (is_empty),
+          .is_dropped_o     (is_dropped)
+      );
+
       triangle_setup_serial u_triangle_setup (
           .clk_i,
           .rst_ni,
@@ -105,41 +196,80 @@ module raster_top (
           .setup_ready_i   (setup_ready),
           .setup_o         (setup_data)
       );
+
+      coarse_raster_serial u_coarse_raster (
+          .clk_i,
+          .rst_ni,
+          .setup_valid_i   (setup_valid),
+          .setup_ready_o   (setup_accepted),
+          .setup_i         (setup_data),
+          .context_slot_o  (context_slot),
+          .context_o       (context_data),
+          .slot_free_i     (slot_free),
+          .tile_valid_o    (tile_offered),
+          .tile_ready_i    (tile_ready),
+          .tile_o          (tile_data),
+          .edges_o         (edges_data),
+          .retire_valid_i  (retire_valid),
+          .retire_i        (retire_data),
+          .is_visited_o    (is_visited),
+          .is_outside_o    (is_outside),
+          .is_accepted_o   (is_accepted),
+          .is_hiz_o        (is_hiz),
+          .samples_tested_o(samples_tested),
+          .visits_are_done_o(visits_are_done)
+      );
+
+      fine_raster_serial u_fine_raster (
+          .clk_i,
+          .rst_ni,
+          .tile_valid_i (tile_valid),
+          .tile_ready_o (tile_accepted),
+          .tile_i       (tile_data),
+          .edges_i      (edges_data),
+          .stamp_valid_o(stamp_offered),
+          .stamp_ready_i(stamp_ready),
+          .stamp_o      (stamp_data)
+      );
+
+      // Behind here a step waits for the framebuffer combinationally; the buffer keeps that out of the stages before.
+      logic made_valid, made_ready;
+      var raster_pkg::fragment_packet_t made_data;
+      interpolate_serial u_interpolate (
+          .clk_i,
+          .rst_ni,
+          .stamp_valid_i   (stamp_valid),
+          .stamp_ready_o   (stamp_accepted),
+          .stamp_i         (stamp_data),
+          .context_read_o  (context_read),
+          .context_slot_o  (read_slot),
+          .context_i       (stamp_context),
+          .slot_free_o     (slot_free),
+          .fragment_valid_o(made_valid),
+          .fragment_ready_i(made_ready),
+          .fragment_o      (made_data)
+      );
+
+      skid_buffer #(
+          .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS)
+      ) u_fragments (
+          .clk_i,
+          .rst_ni,
+          .valid_i(made_valid),
+          .ready_o(made_ready),
+          .data_i (made_data),
+          .valid_o(fragment_offered),
+          .ready_i(fragment_ready),
+          .data_o (fragment_data)
+      );
     end
   endgenerate
 
-  logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
-  logic                             slot_free;
-  logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
-  logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
-  coarse_raster u_coarse_raster (
-      .clk_i,
-      .rst_ni,
-      .setup_valid_i   (setup_valid),
-      .setup_ready_o   (setup_accepted),
-      .setup_i         (setup_data),
-      .context_slot_o  (context_slot),
-      .context_o       (context_data),
-      .slot_free_i     (slot_free),
-      .tile_valid_o    (tile_offered),
-      .tile_ready_i    (tile_ready),
-      .tile_o          (tile_data),
-      .edges_o         (edges_data),
-      .retire_valid_i  (retire_valid),
-      .retire_i        (retire_data),
-      .is_visited_o    (is_visited),
-      .is_outside_o    (is_outside),
-      .is_accepted_o   (is_accepted),
-      .is_hiz_o        (is_hiz),
-      .samples_tested_o(samples_tested),
-      .visits_are_done_o(visits_are_done)
-  );
-
-  logic                             context_read;
-  var raster_pkg::context_packet_t  stamp_context;
   sram #(
       .WIDTH(raster_pkg::CONTEXT_PACKET_BITS),
-      .DEPTH(raster_pkg::CONTEXT_SLOTS)
+      .DEPTH(raster_pkg::CONTEXT_SLOTS),
+      .READS_OLD(0),  // a slot is not written before it is free
+      .BLOCK(raster_pkg::SETUP_KIND != 0)
   ) u_context (
       .clk_i,
       .read_i         (context_read),
@@ -148,49 +278,6 @@ module raster_top (
       .write_i        (setup_valid && setup_accepted),
       .write_address_i(context_slot),
       .data_i         (context_data)
-  );
-
-  logic fine_valid, fine_ready;
-  var raster_pkg::stamp_packet_t fine_data;
-  fine_raster u_fine_raster (
-      .clk_i,
-      .rst_ni,
-      .tile_valid_i (tile_valid),
-      .tile_ready_o (tile_accepted),
-      .tile_i       (tile_data),
-      .edges_i      (edges_data),
-      .stamp_valid_o(fine_valid),
-      .stamp_ready_i(fine_ready),
-      .stamp_o      (fine_data)
-  );
-
-  // Behind here every step waits for the next one combinationally; the buffer keeps that out of the stages before.
-  skid_buffer #(
-      .WIDTH(raster_pkg::STAMP_PACKET_BITS)
-  ) u_stamps (
-      .clk_i,
-      .rst_ni,
-      .valid_i(fine_valid),
-      .ready_o(fine_ready),
-      .data_i (fine_data),
-      .valid_o(stamp_offered),
-      .ready_i(stamp_ready),
-      .data_o (stamp_data)
-  );
-
-  interpolate u_interpolate (
-      .clk_i,
-      .rst_ni,
-      .stamp_valid_i   (stamp_valid),
-      .stamp_ready_o   (stamp_accepted),
-      .stamp_i         (stamp_data),
-      .context_read_o  (context_read),
-      .context_slot_o  (read_slot),
-      .context_i       (stamp_context),
-      .slot_free_o     (slot_free),
-      .fragment_valid_o(fragment_offered),
-      .fragment_ready_i(fragment_ready),
-      .fragment_o      (fragment_data)
   );
 
   logic                                                       access_valid, access_ready;

@@ -8,6 +8,7 @@ module sram #(
     parameter int DEPTH = 2,               // words, at least 2
     /* verilator lint_off UNUSEDPARAM */   // for synthesis only
     parameter bit READS_OLD = 1,
+    parameter bit BLOCK = 0,               // 1: in block RAM even where it fills little of it
     /* verilator lint_on UNUSEDPARAM */
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
@@ -22,7 +23,7 @@ module sram #(
     input logic [WIDTH-1:0]   data_i
 );
 
-  (* no_rw_check = !READS_OLD *)
+  (* no_rw_check = !READS_OLD, ram_style = BLOCK ? "block" : "auto" *)
   logic [WIDTH-1:0] memory_q[0:DEPTH-1];
   logic [WIDTH-1:0] data_q;
 

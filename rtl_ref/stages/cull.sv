@@ -3,7 +3,7 @@
 // In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its box
 // and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
 // multiplication is spent on deciding alone. One cross product in turn for the three edges.
-// Occupancy and latency: 7 or 8 cycles with the multipliers in parallel.
+// Occupancy and latency: 7 or 8 cycles.
 // Specification: model/stages/cull.hpp, edge_function() in model/stages/edge_function.hpp.
 module cull (
     input logic clk_i,
@@ -27,7 +27,6 @@ module cull (
     output logic is_dropped_o  // whatever the kind
 );
 
-  localparam int SERIAL = raster_pkg::SETUP_KIND;
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
@@ -41,7 +40,7 @@ module cull (
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
   localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
 
-  // One step per cycle, but for the edges, which take what the cross product takes.
+  // One step per cycle, but for the edges.
   localparam logic [1:0] IDLE = 2'd0, ROTATE = 2'd1, EDGES = 2'd2, OFFER = 2'd3;
   logic [1:0] step_q;
 
@@ -105,8 +104,8 @@ module cull (
   assign right   = is_triangle && last_x < $signed(B'(p_q.right)) ? last_x : $signed(B'(p_q.right));
   assign bottom  = is_triangle && last_y < $signed(B'(p_q.bottom)) ? last_y : $signed(B'(p_q.bottom));
 
-  // --- EDGES, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from vertex 0 to 1, 1 to 2,
-  // 2 to 0. The vertices turn round once, so that the operands are always those of the lowest two.
+  // --- EDGES, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from vertex
+  // 0 to 1, 1 to 2, 2 to 0. The vertices turn round once, so that the operands are always those of the lowest two.
   logic signed [C:0]   px, py;  // subpixels; the box is inside the target
   logic signed [D-1:0] dx, dy, to_px, to_py;
   logic                edge_start, edge_done;
@@ -117,14 +116,12 @@ module cull (
   assign dy    = D'(y1) - D'(y0);
   assign to_px = D'(px) - D'(x0);
   assign to_py = D'(py) - D'(y0);
-  // In parallel one start per cycle; in series each after the one before.
-  assign edge_start = step_q == EDGES && issued_q != 2'd3 && (SERIAL == 0 || issued_q == edge_count_q);
+  assign edge_start = step_q == EDGES && issued_q != 2'd3;
 
   cross_product #(
       .A_BITS  (D),
       .D_BITS  (D),
-      .OUT_BITS(E),
-      .SERIAL  (SERIAL)
+      .OUT_BITS(E)
   ) u_edge_function (
       .clk_i,
       .rst_ni,
@@ -136,9 +133,6 @@ module cull (
       .done_o  (edge_done),
       .result_o(edge_value)
   );
-
-  logic turns;  // the next edge becomes the lowest
-  assign turns = SERIAL == 0 ? edge_start : edge_done && step_q == EDGES;
 
   // --- OFFER, or drop
   logic is_negative, is_front;
@@ -181,7 +175,7 @@ module cull (
       issued_q     <= 2'd0;
       edge_q       <= '0;
       area_q       <= '0;
-    end else if ((step_q == ROTATE && !is_0_first) || turns) begin
+    end else if ((step_q == ROTATE && !is_0_first) || edge_start) begin
       x_q    <= {x_q[0+:C], x_q[C+:2*C]};
       y_q    <= {y_q[0+:C], y_q[C+:2*C]};
       z_q    <= {z_q[0+:Z], z_q[Z+:2*Z]};
@@ -194,8 +188,8 @@ module cull (
       bottom_q   <= PY'(bottom);
       is_empty_q <= left > right || top > bottom;
     end
-    if (edge_start) issued_q <= issued_q + 2'd1;
-    if (turns) begin
+    if (edge_start) begin
+      issued_q <= issued_q + 2'd1;
       dx_q <= {dx, dx_q[D+:2*D]};
       dy_q <= {dy, dy_q[D+:2*D]};
     end

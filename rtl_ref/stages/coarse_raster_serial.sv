@@ -1,0 +1,398 @@
+// Coarse raster for the smallest parts: the bits of coarse_raster.sv with one edge stepped and tested a cycle.
+//
+// The edges stand in a ring of three. TURN moves it round once: each edge is stepped to the next tile as it leaves the
+// front, and tested in the cycle after that at the back. The planes are stepped meanwhile. A primitive that reads HiZ
+// bounds waits at a tile until every earlier visit has retired, not only those of this tile.
+// Occupancy: 5 cycles a tile, one more for a visit, one more where a HiZ bound is read; a visited tile is offered until
+// fine_raster is through with it. Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
+module coarse_raster_serial (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From triangle_setup
+    input  logic                      setup_valid_i,
+    output logic                      setup_ready_o,
+    input  raster_pkg::setup_packet_t setup_i,
+
+    // To the context RAM, with the setup packet
+    output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
+    output raster_pkg::context_packet_t      context_o,
+    input  logic                             slot_free_i,  // interpolate has read a slot for the last time
+
+    // To fine_raster; edges_o is the context of the tile's primitive
+    output logic                      tile_valid_o,
+    input  logic                      tile_ready_i,
+    output raster_pkg::tile_packet_t  tile_o,
+    output raster_pkg::edge_context_t edges_o,
+
+    // From depth_test: a tile visit has retired
+    input logic                       retire_valid_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ only its coming counts
+    input raster_pkg::retire_packet_t retire_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // Counters: pulses for the tiles of triangles, and samples
+    output logic                                 is_visited_o,
+    output logic                                 is_outside_o,
+    output logic                                 is_accepted_o,
+    output logic                                 is_hiz_o,
+    output logic [2*raster_pkg::TILE_SHIFT:0]    samples_tested_o,
+
+    output logic visits_are_done_o  // every tile visit has retired
+);
+
+  localparam int V = raster_pkg::EDGE_VALUE_BITS;
+  localparam int D = raster_pkg::DELTA_BITS;
+  localparam int TE = raster_pkg::TILE_EDGE_BITS;
+  localparam int TS = raster_pkg::TILE_SHIFT;
+  localparam int TX = raster_pkg::TILE_X_BITS;
+  localparam int TY = raster_pkg::TILE_Y_BITS;
+  localparam int PX = raster_pkg::PIXEL_X_BITS;
+  localparam int PY = raster_pkg::PIXEL_Y_BITS;
+  localparam int DP = raster_pkg::DEPTH_PLANE_BITS;
+  localparam int CP = raster_pkg::COLOR_PLANE_BITS;
+  localparam int LD = raster_pkg::LOCAL_DEPTH_BITS;
+  localparam int LC = raster_pkg::LOCAL_COLOR_BITS;
+  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
+  localparam int S = raster_pkg::GRID_BITS;
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
+  localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
+  localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
+  localparam int SLOT = raster_pkg::SLOT_BITS;
+  localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses
+  localparam int VISITS = 3;  // bits of the number of visits under way
+
+  localparam logic [1:0] TRIANGLE = 2'd0, FAST_CLEAR = 2'd2;
+
+  // ------------------------------------------------------------------------------------------------------------- walk
+  localparam logic [2:0] IDLE = 3'd0, TURN = 3'd1, WALK = 3'd2, BOUND = 3'd3, END = 3'd4, CLEAR = 3'd5,
+      VISIT = 3'd6;
+  logic [2:0] state_q;
+  logic [1:0] turn_q;     // cycle of TURN
+  logic       is_new_q;   // TURN for the first tile, without a step
+
+  /* verilator lint_off UNUSEDSIGNAL */  // edges and planes are in the registers below
+  var raster_pkg::setup_packet_t s_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [TX-1:0]   tile_x_q;
+  logic [TY-1:0]   tile_y_q;
+  logic [SLOT-1:0] slot_q;   // of the primitive in s_q
+  logic [SLOT:0]   used_q;   // slots that are not free
+
+  logic takes, steps, turns_end, is_last_column, is_last_tile, is_token, clears_bounds, clears, finishes;
+  logic is_eligible, is_eligible_q;  // HiZ may reject tiles
+  logic is_behind, visit_is_full, visits_are_done, is_skipped, tile_taken;
+  logic outside_q, inside_q;  // some edge, all edges
+  assign is_token       = s_q.kind[1];
+  assign clears_bounds  = s_q.kind == FAST_CLEAR && s_q.depth_write != 1'b0 && HIZ != 0;
+  assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // one tile's bound per cycle
+  assign is_last_column = tile_x_q == s_q.right[PX-1:TS];
+  assign is_last_tile   = is_last_column && tile_y_q == s_q.bottom[PY-1:TS];
+  assign setup_ready_o  = state_q == IDLE && used_q != (SLOT + 1)'(SLOTS);
+  assign takes          = setup_valid_i && setup_ready_o;
+  assign context_slot_o = slot_q;
+  assign turns_end      = state_q == TURN && turn_q == 2'd3;
+
+  assign is_skipped   = (state_q == WALK && outside_q) || (state_q == BOUND && is_behind);
+  assign tile_valid_o = state_q == VISIT || state_q == END;
+  assign tile_taken   = tile_valid_o && tile_ready_i;
+  assign steps        = is_skipped || (tile_taken && state_q != END);
+  assign finishes     = tile_taken && (state_q == END || is_last_tile);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      state_q <= IDLE;
+      slot_q  <= '0;
+      used_q  <= '0;
+    end else begin
+      if (finishes) begin
+        state_q <= IDLE;
+        slot_q  <= slot_q + SLOT'(1);
+      end else if (steps) state_q <= is_last_tile ? END : TURN;
+      else begin
+        case (state_q)
+          IDLE: if (takes) state_q <= TURN;
+          TURN: if (turns_end) state_q <= is_token ? CLEAR : WALK;
+          WALK:
+          if (!is_eligible_q) state_q <= visit_is_full ? WALK : VISIT;
+          else if (visits_are_done) state_q <= BOUND;
+          BOUND: state_q <= VISIT;
+          CLEAR: if ((clears || !clears_bounds) && is_last_tile) state_q <= END;
+          default: state_q <= state_q;
+        endcase
+      end
+      used_q <= used_q + (SLOT + 1)'(takes) - (SLOT + 1)'(slot_free_i);
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    turn_q <= state_q == TURN ? turn_q + 2'd1 : 2'd0;
+    is_eligible_q <= is_eligible;
+    if (takes) is_new_q <= 1'b1;
+    else if (turns_end) is_new_q <= 1'b0;
+
+    if (takes) begin
+      s_q      <= setup_i;
+      tile_x_q <= setup_i.left[PX-1:TS];
+      tile_y_q <= setup_i.top[PY-1:TS];
+    end else if (turns_end && is_token && !clears_bounds) begin
+      tile_x_q <= s_q.right[PX-1:TS];  // nothing to clear here
+      tile_y_q <= s_q.bottom[PY-1:TS];
+    end else if ((turns_end && !is_new_q) || (clears && !is_last_tile)) begin
+      tile_x_q <= is_last_column ? s_q.left[PX-1:TS] : tile_x_q + TX'(1);
+      if (is_last_column) tile_y_q <= tile_y_q + TY'(1);
+    end
+  end
+
+  // ------------------------------------------------------------------------------------------------------------ edges
+  // Edge 0 lowest. value: at the tile's first pixel; row: at the first tile of its row, in use after the first turn;
+  // right, down: one pixel that way. right comes as dy, its sign is turned on the first turn.
+  logic [3*V-1:0]      value_q, row_q;
+  logic [3*D-1:0]      right_q, down_q;
+  logic                moves_ring, goes_down;
+  logic signed [V-1:0] from, next;
+  logic signed [D-1:0] step, right;
+  assign moves_ring = state_q == TURN && turn_q != 2'd3;
+  assign goes_down  = is_last_column && !is_new_q;
+  assign from       = goes_down ? row_q[0+:V] : value_q[0+:V];
+  assign step       = is_new_q ? '0 : goes_down ? down_q[0+:D] : right_q[0+:D];
+  assign next       = from + (V'(step) <<< TS);
+  assign right      = (right_q[0+:D] ^ {D{is_new_q}}) + D'(is_new_q);
+
+  always_ff @(posedge clk_i) begin
+    if (takes) begin
+      value_q <= setup_i.edge_value;
+      right_q <= setup_i.dy;
+      down_q  <= setup_i.dx;
+    end else if (moves_ring) begin
+      value_q <= {next, value_q[V+:2*V]};
+      right_q <= {right, right_q[D+:2*D]};
+      down_q  <= {down_q[0+:D], down_q[D+:2*D]};
+    end
+    if (moves_ring) row_q <= {is_new_q || goes_down ? next : row_q[0+:V], row_q[V+:2*V]};
+  end
+
+  // The edge at the back, at the tile's best and at its worst corner: T - 1 pixels away.
+  logic signed [D-1:0]  test_right, test_down;
+  logic signed [V-1:0]  test_value;
+  logic signed [D:0]    best, worst;
+  logic signed [TE-1:0] to_best, to_worst;
+  logic signed [V:0]    largest, smallest;
+  assign test_right = right_q[2*D+:D];
+  assign test_down  = down_q[2*D+:D];
+  assign test_value = value_q[2*V+:V];
+  assign best       = (test_right[D-1] ? '0 : (D + 1)'(test_right)) + (test_down[D-1] ? '0 : (D + 1)'(test_down));
+  assign worst      = (test_right[D-1] ? (D + 1)'(test_right) : '0) + (test_down[D-1] ? (D + 1)'(test_down) : '0);
+  assign to_best    = (TE'(best) <<< TS) - TE'(best);
+  assign to_worst   = (TE'(worst) <<< TS) - TE'(worst);
+  assign largest    = (V + 1)'(test_value) + (V + 1)'(to_best);
+  assign smallest   = (V + 1)'(test_value) + (V + 1)'(to_worst);
+
+  always_ff @(posedge clk_i) begin
+    if (state_q == TURN) begin
+      outside_q <= turn_q != 2'd0 && (outside_q || largest < 0);
+      inside_q  <= turn_q == 2'd0 || (inside_q && smallest >= 0);
+    end
+  end
+
+  logic [3*TE-1:0] edge_value;
+  genvar i;
+  generate
+    for (i = 0; i < 3; i++) begin : gen_edge
+      if (V > TE) begin : gen_saturate
+        logic sign, fits;
+        assign sign = value_q[i*V+V-1];
+        assign fits = value_q[i*V+TE-1+:V-TE+1] == {(V - TE + 1) {sign}};
+        assign edge_value[i*TE+:TE] = fits ? value_q[i*V+:TE] : {sign, {(TE - 1) {~sign}}};
+      end else begin : gen_extend
+        assign edge_value[i*TE+:TE] = TE'($signed(value_q[i*V+:V]));
+      end
+    end
+  endgenerate
+
+  // ----------------------------------------------------------------------------------------------------------- planes
+  // The wide value at the tile's anchor; setup added what makes the local anchor its high bits.
+  // A step right takes the first cycle of TURN, a step down two: to the start of the next row, which is ready, and from
+  // there to the one after it. A new primitive's first value comes in the same way.
+  logic starts_row, finishes_row, goes_right;
+  assign starts_row   = state_q == TURN && turn_q == 2'd0 && (is_last_column || is_new_q);
+  assign finishes_row = state_q == TURN && turn_q == 2'd1 && (is_last_column || is_new_q);
+  assign goes_right   = state_q == TURN && turn_q == 2'd0;
+
+  logic [LD-1:0]          depth_anchor, context_depth_step_x, context_depth_step_y;
+  logic [CHANNELS*LC-1:0] color_anchor, context_color_step_x, context_color_step_y;
+
+  generate
+    for (i = 0; i <= CHANNELS; i++) begin : gen_plane
+      localparam int P = i == 0 ? DP : CP;  // of a value
+      localparam int B = i == 0 ? LD : LC;  // of a local value
+      localparam int M = P - TS - S;        // a tile's step leaves the bits below as they are
+      /* verilator lint_off UNUSEDSIGNAL */
+      logic [P-1:0] value;
+      /* verilator lint_on UNUSEDSIGNAL */
+      logic [P-1:0] step_x, step_y;
+      logic [M-1:0] plane_q, next_row_q, step_q, other_step_q, plane_next;
+      logic [B-1:0] local_x, local_y;  // steps per pixel, narrowed to the local guard bits
+      assign plane_next    = plane_q + step_q;
+      assign local_x = B'($signed(step_x) >>> NARROW) + B'(step_x[NARROW-1]);
+      assign local_y = B'($signed(step_y) >>> NARROW) + B'(step_y[NARROW-1]);
+
+      always_ff @(posedge clk_i) begin
+        if (takes) begin
+          step_q       <= step_x[M-1:0];
+          other_step_q <= step_y[M-1:0];
+        end else if (starts_row || finishes_row) begin
+          step_q       <= other_step_q;
+          other_step_q <= step_q;
+        end
+        if (takes) next_row_q <= value[P-1:TS+S];
+        else if (finishes_row) next_row_q <= plane_next;
+        if (goes_right) plane_q <= starts_row ? next_row_q : plane_next;
+      end
+
+      if (i == 0) begin : gen_depth
+        assign value                = setup_i.depth_value;
+        assign step_x               = setup_i.depth_step_x;
+        assign step_y               = setup_i.depth_step_y;
+        assign depth_anchor         = plane_q[M-1-:LD];
+        assign context_depth_step_x = local_x;
+        assign context_depth_step_y = local_y;
+      end else begin : gen_color
+        assign value                                = setup_i.color_value[(i-1)*CP+:CP];
+        assign step_x                               = setup_i.color_step_x[(i-1)*CP+:CP];
+        assign step_y                               = setup_i.color_step_y[(i-1)*CP+:CP];
+        assign color_anchor[(i-1)*LC+:LC]           = plane_q[M-1-:LC];
+        assign context_color_step_x[(i-1)*LC+:LC]   = local_x;
+        assign context_color_step_y[(i-1)*LC+:LC]   = local_y;
+      end
+    end
+  endgenerate
+
+  assign context_o.depth_test   = setup_i.depth_test;
+  assign context_o.depth_write  = setup_i.depth_write;
+  assign context_o.color_write  = setup_i.color_write;
+  assign context_o.depth_step_x = context_depth_step_x;
+  assign context_o.depth_step_y = context_depth_step_y;
+  assign context_o.color_step_x = context_color_step_x;
+  assign context_o.color_step_y = context_color_step_y;
+  assign context_o.depth_min    = setup_i.depth_min;
+  assign context_o.depth_max    = setup_i.depth_max;
+  assign context_o.color_min    = setup_i.color_min;
+  assign context_o.color_max    = setup_i.color_max;
+
+  // ----------------------------------------------------------------------------------------------------- visits, HiZ
+  logic [VISITS-1:0] visits_q;  // under way
+  logic             starts_visit;
+  assign starts_visit    = tile_taken && state_q != END;
+  assign visit_is_full   = visits_q == '1;
+  assign visits_are_done = visits_q == '0;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) visits_q <= '0;
+    else visits_q <= visits_q + VISITS'(starts_visit) - VISITS'(retire_valid_i);
+  end
+
+  // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
+  generate
+    if (HIZ > 0) begin : gen_hiz
+      logic [HIZ-1:0] bound;
+      logic           is_wide, is_high, writes;
+      /* verilator lint_off CMPCONST */  // a small target has no such box
+      assign is_wide     = s_q.right[PX-1:TS] - s_q.left[PX-1:TS] > TX'(1);
+      assign is_high     = s_q.bottom[PY-1:TS] - s_q.top[PY-1:TS] > TY'(1);
+      /* verilator lint_on CMPCONST */
+      assign is_eligible = s_q.kind == TRIANGLE && (is_wide || is_high) && s_q.depth_test != 3'd0 && !s_q.depth_test[2];
+      assign writes      = clears || (retire_valid_i && retire_i.update != 2'd0);
+
+      sram #(
+          .WIDTH    (HIZ),
+          .DEPTH    (raster_pkg::TILES_Y << TX),
+          .READS_OLD(0)  // a bound that is looked at was read when no visit was under way
+      ) u_bound (
+          .clk_i,
+          .read_i         (state_q == WALK),
+          .read_address_i ({tile_y_q, tile_x_q}),
+          .data_o         (bound),
+          .write_i        (writes),
+          .write_address_i(clears ? {tile_y_q, tile_x_q} : {retire_i.tile_y, retire_i.tile_x}),
+          .data_i         (clears ? s_q.depth_min[Z-1-:HIZ] : retire_i.hiz_code)
+      );
+
+      // Behind: depth_min > bound; for `less` equality will do.
+      logic is_equal;
+      if (HIZ == Z) begin : gen_exact
+        assign is_equal = s_q.depth_min == bound;
+      end else begin : gen_high_bits
+        assign is_equal = s_q.depth_min[Z-1-:HIZ] == bound && s_q.depth_min[Z-HIZ-1:0] == '1;
+      end
+      assign is_behind = s_q.depth_min[Z-1-:HIZ] > bound || (s_q.depth_test == 3'd1 && is_equal);
+    end else begin : gen_no_hiz
+      assign is_eligible = 1'b0;
+      assign is_behind   = 1'b0;
+    end
+  endgenerate
+
+  // ----------------------------------------------------------------------------------------------------------- result
+  // The tile's part of the box comes a cycle after the tile's coordinates, before a packet is offered.
+  logic [TS-1:0] left, top, right_pixel, bottom, left_q, top_q, right_pixel_q, bottom_q;
+  assign left        = tile_x_q == s_q.left[PX-1:TS] ? s_q.left[TS-1:0] : '0;
+  assign top         = tile_y_q == s_q.top[PY-1:TS] ? s_q.top[TS-1:0] : '0;
+  assign right_pixel = is_last_column ? s_q.right[TS-1:0] : '1;
+  assign bottom      = tile_y_q == s_q.bottom[PY-1:TS] ? s_q.bottom[TS-1:0] : '1;
+
+  always_ff @(posedge clk_i) begin
+    left_q        <= left;
+    top_q         <= top;
+    right_pixel_q <= right_pixel;
+    bottom_q      <= bottom;
+  end
+
+  assign tile_o.kind           = s_q.kind;
+  assign tile_o.is_visit       = state_q != END;
+  assign tile_o.ends_primitive = is_last_tile;
+  assign tile_o.primitive_id   = s_q.primitive_id;
+  assign tile_o.slot           = slot_q;
+  assign tile_o.tile_x         = tile_x_q;
+  assign tile_o.tile_y         = tile_y_q;
+  assign tile_o.left           = left_q;
+  assign tile_o.top            = top_q;
+  assign tile_o.right          = right_pixel_q;
+  assign tile_o.bottom         = bottom_q;
+  assign tile_o.is_inside      = inside_q && state_q != END;
+  assign tile_o.edge_value     = edge_value;
+  assign tile_o.depth_anchor   = depth_anchor;
+  assign tile_o.color_anchor   = color_anchor;
+  assign edges_o.step_x        = right_q;
+  assign edges_o.step_y        = down_q;
+
+  // Counters
+  logic            is_triangle;
+  logic [TS:0]     width, height;
+  logic [2*TS:0]   area;
+  assign is_triangle = s_q.kind == TRIANGLE;
+  assign width       = (TS + 1)'(right_pixel_q) - (TS + 1)'(left_q) + (TS + 1)'(1);
+  assign height      = (TS + 1)'(bottom_q) - (TS + 1)'(top_q) + (TS + 1)'(1);
+  always_comb begin  // no multiplier for a counter
+    area = '0;
+    for (int b = 0; b <= TS; b++) area = area + (height[b] ? (2 * TS + 1)'(width) << b : '0);
+  end
+  // One cycle late: what takes a tile comes late enough without the counters behind it.
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      is_visited_o     <= 1'b0;
+      is_outside_o     <= 1'b0;
+      is_hiz_o         <= 1'b0;
+      is_accepted_o    <= 1'b0;
+      samples_tested_o <= '0;
+    end else begin
+      is_visited_o     <= steps && is_triangle;
+      is_outside_o     <= state_q == WALK && outside_q && is_triangle;
+      is_hiz_o         <= state_q == BOUND && is_behind && is_triangle;
+      is_accepted_o    <= starts_visit && inside_q && is_triangle;
+      samples_tested_o <= starts_visit && !inside_q && is_triangle ? area : '0;
+    end
+  end
+
+  assign visits_are_done_o = visits_are_done;
+
+endmodule

@@ -1,0 +1,253 @@
+// Cull for the smallest parts: the bits of cull.sv from one comparator and one bit-serial cross product.
+//
+// The vertices stand in a ring of three. Two moves bring them into any order: turn (0 <- 1 <- 2 <- 0) and swap (0 <-> 1).
+//   SORT   the smallest (Y, X, Z) to the front: compare, swap, turn twice, compare, swap
+//   BOX    pixel centres within the bounds, cut by the scissor, one vertex a cycle
+//   AREA   edge 0 at vertex 2, which is twice the area; a negative one swaps vertices 1 and 2 (FLIP) and comes again
+//   EDGES  the edge functions at the first pixel of the box's first tile
+// Occupancy: about 4 to 5 times the bits of an edge function. primitive_i must stay until primitive_ready_o, which comes
+// with the result: what only passes through is not stored. Specification: model/stages/cull.hpp.
+module cull_serial (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From the host
+    input  logic                          primitive_valid_i,
+    output logic                          primitive_ready_o,
+    input  raster_pkg::primitive_packet_t primitive_i,
+
+    // To triangle_setup
+    output logic                         triangle_valid_o,
+    input  logic                         triangle_ready_i,
+    output raster_pkg::triangle_packet_t triangle_o,
+
+    // Counters: one pulse for each triangle
+    output logic is_triangle_o,
+    output logic is_zero_area_o,
+    output logic is_backface_o,
+    output logic is_empty_o,
+    output logic is_dropped_o  // whatever the kind
+);
+
+  localparam int C = raster_pkg::COORDINATE_BITS;
+  localparam int D = raster_pkg::DELTA_BITS;
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
+  localparam int K = raster_pkg::VERTEX_COLOR_BITS;
+  localparam int S = raster_pkg::GRID_BITS;
+  localparam int TS = raster_pkg::TILE_SHIFT;
+  localparam int PX = raster_pkg::PIXEL_X_BITS;
+  localparam int PY = raster_pkg::PIXEL_Y_BITS;
+  localparam int A = raster_pkg::AREA_BITS;
+  localparam int V = raster_pkg::EDGE_VALUE_BITS;
+  localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
+  localparam int LAST = A > S + V - 1 ? A : S + V - 1;  // the highest bit of a product that matters; A: its sign
+  localparam int COUNT = $clog2(LAST + 2);
+
+  // ---------------------------------------------------------------------------------------------------------- control
+  localparam logic [2:0] IDLE = 3'd0, SORT = 3'd1, BOX = 3'd2, AREA = 3'd3, JUDGE = 3'd4, FLIP = 3'd5, EDGES = 3'd6,
+      OFFER = 3'd7;
+  logic [2:0]       state_q;
+  logic [COUNT-1:0] count_q;  // cycles in this state, or of this edge
+  logic [1:0]       edge_q;
+  logic             is_triangle, takes, leaves, is_dropped, multiplies, product_ends;
+  logic             is_negative_q;  // the area
+  assign is_triangle  = primitive_i.kind == 2'd0;
+  assign takes        = state_q == IDLE && primitive_valid_i;
+  assign multiplies   = state_q == AREA || state_q == EDGES;
+  assign product_ends = multiplies && count_q == COUNT'(LAST + 1);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) state_q <= IDLE;
+    else begin
+      case (state_q)
+        IDLE: if (takes) state_q <= SORT;
+        SORT: if (count_q == COUNT'(5)) state_q <= BOX;
+        BOX: if (count_q == COUNT'(3)) state_q <= is_triangle ? AREA : OFFER;
+        AREA: if (product_ends) state_q <= JUDGE;
+        JUDGE:
+        if (is_dropped) state_q <= leaves ? IDLE : JUDGE;
+        else state_q <= is_negative_q ? FLIP : EDGES;
+        FLIP: state_q <= AREA;
+        EDGES: if (product_ends && edge_q == 2'd2) state_q <= OFFER;
+        default: if (leaves) state_q <= IDLE;
+      endcase
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (state_q == IDLE || state_q == JUDGE || state_q == FLIP || product_ends) count_q <= '0;
+    else if (state_q == SORT ? count_q == COUNT'(5) : !multiplies && count_q == COUNT'(3)) count_q <= '0;
+    else count_q <= count_q + COUNT'(1);
+    if (state_q != EDGES) edge_q <= 2'd0;
+    else if (product_ends) edge_q <= edge_q + 2'd1;
+  end
+
+  // --------------------------------------------------------------------------------------------------------- vertices
+  logic [C-1:0] x0_q, x1_q, x2_q, y0_q, y1_q, y2_q;
+  logic [Z-1:0] z0_q, z1_q, z2_q;
+  logic [K-1:0] rgba0_q, rgba1_q, rgba2_q;
+  logic         turns, swaps, is_odd_q;  // is_odd_q: the order runs round the other way than the host's
+
+  // Flipping the sign bits makes signed numbers comparable as unsigned ones. Equal keys: no area, dropped in any order.
+  logic [KEY-1:0] key0, key1;
+  logic           is_1_first_q;  // in the cycle before
+  assign key0 = {~y0_q[C-1], y0_q[0+:C-1], ~x0_q[C-1], x0_q[0+:C-1], z0_q};
+  assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1], z1_q};
+
+  assign turns = (state_q == SORT && count_q[1]) || (state_q == BOX && count_q != COUNT'(3)) || state_q == FLIP ||
+                 (state_q == EDGES && product_ends);
+  assign swaps = (state_q == SORT && !count_q[1] && count_q[0] && is_1_first_q) || (state_q == JUDGE && is_negative_q && !is_dropped);
+
+  always_ff @(posedge clk_i) begin
+    is_1_first_q <= key1 < key0;
+    if (takes) begin
+      {x2_q, x1_q, x0_q}          <= primitive_i.x;
+      {y2_q, y1_q, y0_q}          <= primitive_i.y;
+      {z2_q, z1_q, z0_q}          <= primitive_i.z;
+      {rgba2_q, rgba1_q, rgba0_q} <= primitive_i.rgba;
+      is_odd_q                    <= 1'b0;
+    end else if (turns || swaps) begin
+      {x0_q, y0_q, z0_q, rgba0_q} <= {x1_q, y1_q, z1_q, rgba1_q};
+      {x1_q, y1_q, z1_q, rgba1_q} <= swaps ? {x0_q, y0_q, z0_q, rgba0_q} : {x2_q, y2_q, z2_q, rgba2_q};
+      if (!swaps) {x2_q, y2_q, z2_q, rgba2_q} <= {x0_q, y0_q, z0_q, rgba0_q};
+      is_odd_q <= is_odd_q ^ swaps;
+    end
+  end
+
+  // -------------------------------------------------------------------------------------------------------------- box
+  // The first and the last pixel whose centre is not before, not behind a vertex, no farther than the scissor. The box is
+  // from the smallest first to the largest last of the three vertices.
+  localparam int B = C + 1;      // a coordinate plus half a pixel
+  localparam int N = C - S + 1;  // a pixel in the guard band, or one outside of it
+  localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
+  /* verilator lint_off UNUSEDSIGNAL */  // the fractions end here
+  logic signed [B-1:0] above_x, below_x, above_y, below_y;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic signed [N-1:0] first_x, last_x, first_y, last_y, scissor_left, scissor_top, scissor_right, scissor_bottom;
+  logic signed [N-1:0] left, right, top, bottom, left_q, right_q, top_q, bottom_q;
+  logic                is_first, is_empty, is_empty_q;
+  assign above_x        = B'($signed(x0_q)) + HALF - B'(1);
+  assign below_x        = B'($signed(x0_q)) - HALF;
+  assign above_y        = B'($signed(y0_q)) + HALF - B'(1);
+  assign below_y        = B'($signed(y0_q)) - HALF;
+  assign first_x        = above_x[B-1:S];
+  assign last_x         = below_x[B-1:S];
+  assign first_y        = above_y[B-1:S];
+  assign last_y         = below_y[B-1:S];
+  assign scissor_left   = N'(primitive_i.left);
+  assign scissor_top    = N'(primitive_i.top);
+  assign scissor_right  = N'(primitive_i.right);
+  assign scissor_bottom = N'(primitive_i.bottom);
+  assign left           = is_triangle && first_x > scissor_left ? first_x : scissor_left;
+  assign top            = is_triangle && first_y > scissor_top ? first_y : scissor_top;
+  assign right          = is_triangle && last_x < scissor_right ? last_x : scissor_right;
+  assign bottom         = is_triangle && last_y < scissor_bottom ? last_y : scissor_bottom;
+  assign is_first       = count_q == '0;
+  assign is_empty       = left_q > right_q || top_q > bottom_q;
+
+  always_ff @(posedge clk_i) begin
+    is_empty_q <= is_empty;  // the fourth cycle of BOX is for this
+    if (state_q == BOX && count_q != COUNT'(3)) begin
+      if (is_first || left < left_q) left_q <= left;
+      if (is_first || right > right_q) right_q <= right;
+      if (is_first) top_q <= top;  // vertex 0 is the highest
+      if (is_first || bottom > bottom_q) bottom_q <= bottom;
+    end
+  end
+
+  // ---------------------------------------------------------------------------------------------------- cross product
+  // dx * (y - y0) - dy * (x - x0), from vertex 0 to 1; (x, y) is vertex 2 or the first pixel's centre. One bit of the
+  // differences a cycle, lowest first and on with their signs, so the product comes out modulo any power of two.
+  logic signed [D-1:0] dx, dy, x, y;
+  logic [D-1:0]        to_x_q, to_y_q;
+  logic signed [D:0]   wide_dx, wide_dy, both_q;  // both: dx - dy
+  logic signed [D:0]   addend, acc_q;
+  /* verilator lint_off UNUSEDSIGNAL */
+  logic [D+2:0]        total;  // its lowest bit only makes the carry
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic                starts, subtracts, bit_out;
+  assign starts = multiplies && count_q == '0;
+  assign dx     = D'($signed(x1_q)) - D'($signed(x0_q));
+  assign dy     = D'($signed(y1_q)) - D'($signed(y0_q));
+  assign x      = state_q == AREA ? D'($signed(x2_q)) : D'({left_q[PX-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
+  assign y      = state_q == AREA ? D'($signed(y2_q)) : D'({top_q[PY-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
+
+  assign wide_dx   = (D + 1)'(dx);
+  assign wide_dy   = (D + 1)'(dy);
+  assign subtracts = to_x_q[0] && !to_y_q[0];
+  always_comb begin
+    addend = to_x_q[0] ? ~wide_dy : '0;
+    if (to_y_q[0]) addend = to_x_q[0] ? both_q : wide_dx;
+  end
+  assign total   = {acc_q[D], acc_q, 1'b1} + {addend[D], addend, subtracts};
+  assign bit_out = total[1];
+
+  always_ff @(posedge clk_i) begin
+    if (starts) begin
+      to_x_q <= x - D'($signed(x0_q));
+      to_y_q <= y - D'($signed(y0_q));
+      both_q <= wide_dx - wide_dy;
+      acc_q  <= '0;
+    end else begin
+      to_x_q <= {to_x_q[D-1], to_x_q[D-1:1]};
+      to_y_q <= {to_y_q[D-1], to_y_q[D-1:1]};
+      acc_q  <= total[D+2:2];
+    end
+  end
+
+  // Results, the newest bit highest. An edge that is neither a top nor a left one leaves the samples on it: 1 less.
+  logic [A-1:0]   area_q;
+  logic [3*V-1:0] value_q;
+  logic           any_q, borrow_q, is_top_left, is_value_bit;
+  logic [COUNT-1:0] number;  // of the bit that comes out
+  assign number       = count_q - COUNT'(1);
+  assign is_top_left  = dy < 0 || (dy == 0 && dx >= 0);
+  assign is_value_bit = number >= COUNT'(S) && number < COUNT'(S + V);
+
+  always_ff @(posedge clk_i) begin
+    if (starts) begin
+      any_q    <= 1'b0;
+      borrow_q <= !is_top_left;
+    end else if (multiplies) begin
+      any_q    <= any_q || bit_out;
+      borrow_q <= borrow_q && !bit_out;
+    end
+    if (takes) area_q <= '0;
+    else if (state_q == AREA && !starts && number < COUNT'(A)) area_q <= {bit_out, area_q[A-1:1]};
+    if (state_q == AREA && number == COUNT'(A)) is_negative_q <= bit_out;
+    if (takes) value_q <= '0;
+    else if (state_q == EDGES && !starts && is_value_bit) value_q <= {bit_out ^ borrow_q, value_q[3*V-1:1]};
+  end
+
+  // ------------------------------------------------------------------------------------------------------------ judge
+  logic is_zero, is_front, is_back;
+  assign is_zero    = state_q == JUDGE && !any_q;
+  assign is_front   = (is_negative_q ^ is_odd_q) != primitive_i.front_cw;  // positive area: clockwise as seen
+  assign is_back    = state_q == JUDGE && any_q && (is_front ? primitive_i.cull[1] : primitive_i.cull[0]);
+  assign is_dropped = is_zero || is_back || ((state_q == JUDGE || state_q == OFFER) && is_empty_q);
+  assign primitive_ready_o = is_dropped || (state_q == OFFER && triangle_ready_i);
+  assign leaves            = primitive_valid_i && primitive_ready_o;
+  assign is_triangle_o     = leaves && is_triangle;
+  assign is_zero_area_o    = leaves && is_zero;
+  assign is_backface_o     = leaves && is_back;
+  assign is_empty_o        = leaves && is_triangle && is_empty_q && !is_zero && !is_back;
+  assign is_dropped_o      = leaves && is_dropped;
+
+  assign triangle_valid_o        = state_q == OFFER && primitive_valid_i && !is_empty_q;
+  assign triangle_o.kind         = primitive_i.kind;
+  assign triangle_o.primitive_id = primitive_i.primitive_id;
+  assign triangle_o.left         = PX'(left_q);
+  assign triangle_o.top          = PY'(top_q);
+  assign triangle_o.right        = PX'(right_q);
+  assign triangle_o.bottom       = PY'(bottom_q);
+  assign triangle_o.depth_test   = primitive_i.depth_test;
+  assign triangle_o.depth_write  = primitive_i.depth_write;
+  assign triangle_o.color_write  = primitive_i.color_write;
+  assign triangle_o.x            = {x2_q, x1_q, x0_q};
+  assign triangle_o.y            = {y2_q, y1_q, y0_q};
+  assign triangle_o.z            = {z2_q, z1_q, z0_q};
+  assign triangle_o.rgba         = {rgba2_q, rgba1_q, rgba0_q};
+  assign triangle_o.area         = area_q;
+  assign triangle_o.edge_value   = value_q;
+
+endmodule

@@ -1,0 +1,186 @@
+// Interpolate for the smallest parts: the bits of interpolate.sv with one context under way instead of one a step.
+//
+// The context RAM's output is the only copy of a context: it is read when the first stamp of a primitive waits and
+// everything of the primitive before has left. Then one stamp a cycle; latency 2 cycles:
+//   x, y  from the anchor to the stamp's first sample; from there to each sample, read back and clamped
+// The fragment is not stored: behind this stage is a skid buffer.
+// Specification: model/stages/interpolate.hpp.
+module interpolate_serial (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From fine_raster
+    input  logic                      stamp_valid_i,
+    output logic                      stamp_ready_o,
+    input  raster_pkg::stamp_packet_t stamp_i,
+
+    // Context RAM: a read, and its answer in the next cycle, which stays until the next read
+    output logic                             context_read_o,
+    output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
+    input  raster_pkg::context_packet_t      context_i,
+    output logic                             slot_free_o,  // the oldest slot will not be read again
+
+    // To depth_test
+    output logic                         fragment_valid_o,
+    input  logic                         fragment_ready_i,
+    output raster_pkg::fragment_packet_t fragment_o
+);
+
+  localparam int STAMP = raster_pkg::STAMP_SIZE;
+  localparam int STAMP_SHIFT = $clog2(STAMP);
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
+  localparam int PLANES = 1 + CHANNELS;
+  localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
+  localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
+  localparam int LD = raster_pkg::LOCAL_DEPTH_BITS;
+  localparam int LC = raster_pkg::LOCAL_COLOR_BITS;
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
+  localparam int K = raster_pkg::COLOR_CODE_BITS;
+  localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
+
+  /* verilator lint_off UNUSEDSIGNAL */  // anchors end in the step x
+  var raster_pkg::stamp_packet_t x_stamp_q, y_stamp_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic has_context_q, x_valid_q, y_valid_q;
+  logic x_ready, y_ready, is_empty;
+
+  assign y_ready        = !y_valid_q || fragment_ready_i;
+  assign x_ready        = !x_valid_q || y_ready;
+  assign stamp_ready_o  = has_context_q && x_ready;
+  assign is_empty       = !x_valid_q && !y_valid_q;
+  assign context_read_o = stamp_valid_i && !has_context_q && is_empty;
+  assign context_slot_o = stamp_i.slot;
+
+  logic takes;
+  assign takes = stamp_valid_i && stamp_ready_o;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      has_context_q <= 1'b0;
+      x_valid_q     <= 1'b0;
+      y_valid_q     <= 1'b0;
+      slot_free_o   <= 1'b0;
+    end else begin
+      if (context_read_o) has_context_q <= 1'b1;
+      else if (takes && stamp_i.ends_primitive) has_context_q <= 1'b0;
+      if (x_ready) x_valid_q <= takes;
+      if (y_ready) y_valid_q <= x_valid_q;
+      slot_free_o <= context_read_o;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (x_ready) x_stamp_q <= stamp_i;
+    if (y_ready) y_stamp_q <= x_stamp_q;
+  end
+
+  // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
+  logic signed [PIXEL-1:0] to_x, to_y;  // pixels
+  generate
+    if (PER_ROW_BITS > 0) begin : gen_offset
+      logic signed [PER_ROW_BITS-1:0] column, row;
+      assign column = stamp_i.stamp[0+:PER_ROW_BITS] ^ {1'b1, {(PER_ROW_BITS - 1) {1'b0}}};
+      assign row    = x_stamp_q.stamp[PER_ROW_BITS+:PER_ROW_BITS] ^ {1'b1, {(PER_ROW_BITS - 1) {1'b0}}};
+      assign to_x   = PIXEL'(column) <<< STAMP_SHIFT;
+      assign to_y   = PIXEL'(row) <<< STAMP_SHIFT;
+    end else begin : gen_whole_tile
+      assign to_x = PIXEL'(STAMP / 2);
+      assign to_y = PIXEL'(STAMP / 2);
+    end
+  endgenerate
+
+  logic [SAMPLES*Z-1:0]          depth;
+  logic [SAMPLES*CHANNELS*K-1:0] rgba;
+
+  genvar p, s;
+  generate
+    for (p = 0; p < PLANES; p++) begin : gen_plane
+      localparam int W = p == 0 ? LD : LC;  // of a local value
+      localparam int B = p == 0 ? Z : K;    // of a code
+      logic [W-1:0] anchor, step_x, step_y, x_value, y_value, x_value_q, y_value_q;
+      logic [B-1:0] low, high;
+      if (p == 0) begin : gen_depth
+        assign anchor = stamp_i.depth_anchor;
+        assign step_x = context_i.depth_step_x;
+        assign step_y = context_i.depth_step_y;
+        assign low    = context_i.depth_min;
+        assign high   = context_i.depth_max;
+      end else begin : gen_color
+        assign anchor = stamp_i.color_anchor[(p-1)*LC+:LC];
+        assign step_x = context_i.color_step_x[(p-1)*LC+:LC];
+        assign step_y = context_i.color_step_y[(p-1)*LC+:LC];
+        assign low    = context_i.color_min[(p-1)*K+:K];
+        assign high   = context_i.color_max[(p-1)*K+:K];
+      end
+
+      plane_offset #(
+          .WIDTH (W),
+          .OFFSET(PIXEL),
+          .LOWEST(STAMP_SHIFT)
+      ) u_x (
+          .value_i (anchor),
+          .step_i  (step_x),
+          .offset_i(to_x),
+          .value_o (x_value)
+      );
+      plane_offset #(
+          .WIDTH (W),
+          .OFFSET(PIXEL),
+          .LOWEST(STAMP_SHIFT)
+      ) u_y (
+          .value_i (x_value_q),
+          .step_i  (step_y),
+          .offset_i(to_y),
+          .value_o (y_value)
+      );
+      always_ff @(posedge clk_i) begin
+        if (x_ready) x_value_q <= x_value;
+        if (y_ready) y_value_q <= y_value;
+      end
+
+      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
+        logic signed [W-1:0] value;
+        /* verilator lint_on UNUSEDSIGNAL */
+        logic [B:0]          code, low_code, high_code;  // plus 2^(B-1): the window [-2^(B-1), 3 * 2^(B-1)) from 0
+        logic [B-1:0]        clamped;
+        edge_offset #(
+            .WIDTH (W),
+            .OFFSET(PIXEL)
+        ) u_value (
+            .value_i (y_value_q),
+            .step_x_i(step_x),
+            .step_y_i(step_y),
+            .x_i     (PIXEL'(s % STAMP)),
+            .y_i     (PIXEL'(s / STAMP)),
+            .value_o (value)
+        );
+        assign code      = value[W-1:L];
+        assign low_code  = {low[B-1], !low[B-1], low[B-2:0]};
+        assign high_code = {high[B-1], !high[B-1], high[B-2:0]};
+        assign clamped   = code < low_code ? low : code > high_code ? high : {!code[B-1], code[B-2:0]};
+        if (p == 0) begin : gen_depth_code
+          assign depth[s*Z+:Z] = clamped;
+        end else begin : gen_color_code
+          assign rgba[(s*CHANNELS+p-1)*K+:K] = clamped;
+        end
+      end
+    end
+  endgenerate
+
+  assign fragment_valid_o          = y_valid_q;
+  assign fragment_o.kind           = y_stamp_q.kind;
+  assign fragment_o.ends_visit     = y_stamp_q.ends_visit;
+  assign fragment_o.ends_primitive = y_stamp_q.ends_primitive;
+  assign fragment_o.primitive_id   = y_stamp_q.primitive_id;
+  assign fragment_o.tile_x         = y_stamp_q.tile_x;
+  assign fragment_o.tile_y         = y_stamp_q.tile_y;
+  assign fragment_o.stamp          = y_stamp_q.stamp;
+  assign fragment_o.mask           = y_stamp_q.mask;
+  assign fragment_o.depth_test     = context_i.depth_test;
+  assign fragment_o.depth_write    = context_i.depth_write;
+  assign fragment_o.color_write    = context_i.color_write;
+  assign fragment_o.depth          = depth;
+  assign fragment_o.rgba           = rgba;
+
+endmodule
