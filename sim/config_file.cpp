@@ -204,7 +204,7 @@ Config config_of(const std::vector<Entry>& entries, std::string_view file) {
     const auto* name = entry.value->as_string();
     if (name == nullptr) fail(place, "preset: give a name in quotes, as in preset = \"embedded\"");
     if (std::ranges::find(preset_names(), name->get()) == preset_names().end())
-      fail(place, "no preset " + shown(name->get()) + "; the presets are tiny, embedded and full");
+      fail(place, "no preset " + shown(name->get()) + "; the presets are tiny, small, embedded and full");
     config = preset(name->get());
   }
   for (const Entry& entry : entries) {
@@ -225,7 +225,7 @@ std::string read_text(const std::string& path) {
   if (file) text.resize(std::fread(text.data(), 1, text.size(), file.get()));
   if (!file || std::ferror(file.get()) != 0)
     throw InputError("cannot read configuration '" + path + "': " + std::strerror(errno) +
-                     "; give a preset (tiny, embedded, full) or a .toml file");
+                     "; give a preset (tiny, small, embedded, full) or a .toml file");
   return text;
 }
 
@@ -250,7 +250,7 @@ Config config_from_option(const std::string& option) {
   if (std::ranges::find(preset_names(), option) != preset_names().end()) return preset(option);
   const bool is_file = std::filesystem::path(option).extension() == ".toml" || option.find('/') != std::string::npos;
   if (is_file) return read_config_file(option);
-  throw InputError("--config: no preset " + shown(option) + "; give tiny, embedded, full or a .toml file");
+  throw InputError("--config: no preset " + shown(option) + "; give tiny, small, embedded, full or a .toml file");
 }
 
 }  // namespace halfplane

@@ -65,10 +65,9 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
 
 void print_equal(std::ostream& out, const CosimOptions& options, const Config& config, const Session& session) {
   const LockstepResult& r = session.result;
-  out << (options.random != 0
-              ? with_commas(r.triangles) + " random triangles in " + with_commas(session.scenes) + " scenes"
-              : options.scene + ", " + with_commas(r.triangles) + " triangles")
-      << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2) << '\n';
+  out << (options.random != 0 ? "random scenes" : options.scene) << ", " << with_commas(r.triangles)
+      << (options.random != 0 ? " of " + with_commas(options.random) : "") << " triangles sent to the RTL";
+  out << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2) << '\n';
   for (const Mutant& mutant : mutants())
     if (mutant.id == options.mutant)
       out << "mutant      " << mutant.id << ", " << mutant.file << ": " << mutant.what << '\n';
@@ -121,13 +120,6 @@ int run(const CosimOptions& options) {
     result["reduced"]["triangles"] =
         saved->finding.reduced ? Json(saved->finding.reduced->triangles_after) : Json(nullptr);
   }
-  if (!options.junit_path.empty()) {
-    const std::string xml = junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds);
-    write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
-  }
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
-
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
   if (saved) {
@@ -137,6 +129,12 @@ int run(const CosimOptions& options) {
     out << (is_empty ? "FAILED: nothing was compared\n"
                      : "equal       every bit of every packet, of memory and counters\n");
   }
+  if (!options.junit_path.empty()) {
+    const std::string xml = junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds);
+    write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+  }
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
   return session.failed || is_empty ? exit_mismatch : exit_ok;
 }
 

@@ -29,6 +29,7 @@ std::string default_save_path(const CosimOptions& options) {
                                          : std::filesystem::path(options.scene).stem().string();
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_' && c != '.') c = '-';
+  if (options.mutant != 0) name += "-mutant-" + std::to_string(options.mutant);
   return "out/" + std::string(name.starts_with("cosim-") ? "" : "cosim-") + name +
          (options.random == 0 && options.scene.ends_with(".hpt") ? "-reduced.hpt" : ".hpt");
 }
@@ -36,7 +37,12 @@ std::string default_save_path(const CosimOptions& options) {
 void create_folder_of(const std::string& path) {
   const auto folder = std::filesystem::path(path).parent_path();
   std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);  // writing into it says what is wrong
+}
+
+/// CLI::Range lets NaN pass.
+std::string is_number(const std::string& text) {
+  return std::isalpha(static_cast<unsigned char>(text.back())) != 0 ? "'" + text + "' is no number" : "";
 }
 
 std::string probability_text(double value) {
@@ -50,6 +56,7 @@ std::string probability_text(double value) {
 void add_stalls_option(CLI::App& app, CosimOptions& options) {
   app.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
       ->check(CLI::Range(0.0, 0.95))
+      ->check(is_number)
       ->capture_default_str();
 }
 
@@ -120,7 +127,11 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   std::ostringstream text;
   write_capture(saved.finding.scene, text);
   const std::string bytes = text.str();
-  write_whole_file(saved.capture, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  try {
+    write_whole_file(saved.capture, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  } catch (const std::exception& error) {  // the mismatch is worth more than the file
+    saved.failure = error.what();
+  }
   saved.repeat =
       repeat_command(options, config, saved.finding.reduced || options.random == 0 ? saved.capture : std::string(),
                      saved.finding.lockstep);
@@ -129,13 +140,16 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
 
 void print_finding(std::ostream& out, const SavedFinding& saved) {
   const Finding& f = saved.finding;
-  out << mismatch_report(f.mismatch) << "  saved     " << saved.capture;
+  out << mismatch_report(f.mismatch) << "  saved     " << (saved.failure.empty() ? saved.capture : saved.failure);
   if (f.reduced)
     out << ", " << f.reduced->triangles_after << " of " << f.reduced->triangles_before << " triangles ("
         << f.reduced->runs << " runs" << (f.reduced->is_minimal ? "" : "; out of time, it may get smaller") << ")\n";
   else
     out << ", the whole scene: after a reset it does not fail alone\n";
-  out << "  waveform  " << (saved.trace.empty() ? "none: this design is built without tracing" : saved.trace) << '\n'
+  out << "  waveform  "
+      << (saved.trace.empty() ? "none: this design is built without tracing, or the file cannot be written"
+                              : saved.trace + ", mismatch at time " + std::to_string(2 * f.mismatch.cycle))
+      << '\n'
       << "  repeat    " << saved.repeat << '\n';
 }
 

@@ -105,6 +105,7 @@ class VerilatedDut final : public Dut {
     }
     top_->rst_ni = 1;
     top_->eval();
+    time_ = 0;  // so that cycle c begins at time 2 c
     out_.packet = {&top_->triangle_o, &top_->setup_o,    &top_->context_o, &top_->tile_o,   &top_->edges_o,
                    &top_->stamp_o,    &top_->fragment_o, &top_->write_o,   &top_->retire_o, &top_->request_o};
     out_.counters = &top_->counters_o;

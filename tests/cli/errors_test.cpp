@@ -106,8 +106,8 @@ TEST_F(BadInput, SettingsAreCheckedForNameRangeAndTogether) {
 
 TEST_F(BadInput, ConfigurationFileIsNamedWithItsLine) {
   std::filesystem::create_directory(folder_ / "folder.toml");
-  expect_refused({"render", "triangle", "--config", "nosuch"}, "tiny, embedded, full");
-  expect_refused({"render", "triangle", "--config", ""}, "tiny, embedded, full");
+  expect_refused({"render", "triangle", "--config", "nosuch"}, "tiny, small, embedded, full");
+  expect_refused({"render", "triangle", "--config", ""}, "tiny, small, embedded, full");
   expect_refused({"render", "triangle", "--config", "nosuch.toml"}, "nosuch.toml");
   expect_refused({"render", "triangle", "--config", "folder.toml"}, "folder.toml");
   write("bad.toml", "preset = \"tiny\"\n[depth]\nbits = 99\n");

@@ -145,7 +145,7 @@ TEST(ConfigOption, WhatIsNeitherIsRefusedWithTheChoices) {
     }
     return std::string("no error");
   };
-  EXPECT_NE(message("huge").find("give tiny, embedded, full or a .toml file"), std::string::npos);
+  EXPECT_NE(message("huge").find("give tiny, small, embedded, full or a .toml file"), std::string::npos);
   EXPECT_NE(message("missing.toml").find("'missing.toml': No such file"), std::string::npos);
   EXPECT_NE(message(testing::TempDir()).find("directory"), std::string::npos);
 }
