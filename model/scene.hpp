@@ -19,6 +19,8 @@ enum class FrontFace { ccw, cw };
 enum class Shade { smooth, flat };
 enum class ColorInterp { affine, perspective };
 enum class ClipZ { minus_one_one, zero_one };
+/// Which pixels a line covers; see "Lines" in docs/spec.md.
+enum class LineRule { midpoint, bresenham, diamond };
 
 /// A vertex as it was given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down,
 /// pixel centres at half-integers), z in [0, 1], w as the clip-space w.

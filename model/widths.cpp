@@ -25,6 +25,28 @@ Width modular(std::string_view name, std::string_view bound, int bits) {
   return {name, bound, {-half, half - 1}, bits, true, true};
 }
 
+/// A residue that is never negative.
+Width residue(std::string_view name, std::string_view bound, int bits) {
+  return {name, bound, {0, (int128{1} << bits) - 1}, bits, false, true};
+}
+
+void derive_line_widths(Widths& w, const Config& config) {
+  const int128 side = w.delta.range.hi, pixel = int128{1} << w.grid_bits;
+  w.line_guard_bits = ceil_log2(static_cast<uint128>(int128{2} * config.guard_band)) + 2;
+  // From the start's row, at the line's first column. o: from the start to its centre, -2^(s-1) <= o <= 2^s subpixels.
+  w.line_numerator = exact("line numerator", "f D + d o - 1, f < 2^s", {-pixel / 2 * side - 1, (2 * pixel - 1) * side});
+  w.line_position = exact("line position", "(line numerator >> s) + d n, n columns: d n <= L^2 / 2^s",
+                          (w.line_numerator.range >> w.grid_bits) + (Interval{0, side * side} >> w.grid_bits));
+  w.line_product = exact("line product", "depth delta * reciprocal", w.depth_delta.range * w.reciprocal.range);
+  w.line_stay = exact("line stay", "d, 0 <= d <= D <= L", {0, side});
+  w.line_move = exact("line move", "d - D", {-side, 0});
+  w.line_error = exact("line error", "d - D <= p < d", {-side, side - 1});
+  w.line_count = exact("line count", "longer side of the target, less the first pixel",
+                       {0, std::max(config.target_width, config.target_height) - 1});
+  w.line_depth = residue("line depth", "modulo 2^(B + G'), G' = log2(2 g) + 2", config.depth_bits + w.line_guard_bits);
+  w.line_color = residue("line color", "modulo 2^(8 + G')", 8 + w.line_guard_bits);
+}
+
 }  // namespace
 
 Widths derive_widths(const Config& config) {
@@ -114,6 +136,7 @@ Widths derive_widths(const Config& config) {
   w.hiz_update = count("hiz update", "HizUpdate", 3);
   w.counter = bits("counter", "modulo 2^32", 32);
   w.memory_lane = bits("memory lane", "a depth code or a stored colour", B > color_bits ? B : color_bits);
+  derive_line_widths(w, config);
   return w;
 }
 
@@ -123,6 +146,19 @@ double depth_error_bound(const Config& config) {
          + std::ldexp(1.0, -config.reciprocal_extra_bits)              // the reciprocal, over the full depth range
          + (config.tile_size + 1) * local                              // T/2 steps in x and in y, and the anchor
          + std::ldexp(1.0, -5);  // wide gradients over the guard band: guard_bits is chosen so
+}
+
+double line_depth_error_bound(const Config& config) {
+  const Widths widths = derive_widths(config);
+  return 0.5                                               // storage
+         + std::ldexp(1.0, -config.reciprocal_extra_bits)  // the reciprocal, over the full depth range
+         // One rounding of the gradient over at most 2g pixels, and one of the first value.
+         + (2.0 * config.guard_band + 1) * std::ldexp(1.0, -widths.line_guard_bits - 1);
+}
+
+std::vector<const Width*> Widths::lines() const& {
+  return {&line_numerator, &line_position, &line_product, &line_error, &line_stay,
+          &line_move,      &line_count,    &line_depth,   &line_color};
 }
 
 std::vector<const Width*> Widths::all() const& {

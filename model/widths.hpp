@@ -52,6 +52,7 @@ struct Widths {
   int samples = 0;         ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
   int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's x and y that choose its cache line
+  int line_guard_bits = 0;               ///< fraction bits of depth and colour along a line
 
   // Coverage.
   Width coordinate, delta, edge_product, area, edge_value, edge_step, tile_edge, sample_edge;
@@ -62,10 +63,16 @@ struct Widths {
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, memory_lane, counter;
+  // Lines.
+  Width line_numerator, line_position, line_product;                           // line_setup
+  Width line_error, line_stay, line_move, line_count, line_depth, line_color;  // registers and steps of line_raster
 
   /// All of them, in the order above: for tables and for raster_pkg.sv.
   [[nodiscard]] std::vector<const Width*> all() const&;
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
+  /// Those of the line stages, which no RTL has yet: they join all() with it.
+  [[nodiscard]] std::vector<const Width*> lines() const&;
+  std::vector<const Width*> lines() const&& = delete;
 };
 
 /// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to say.
@@ -73,5 +80,9 @@ struct Widths {
 
 /// The largest depth error, in LSB, against the exact plane through the snapped vertices. validate() refuses above 1.
 [[nodiscard]] double depth_error_bound(const Config& config);
+
+/// The same along a line, against the exact value at the pixel's major coordinate. Without the 1/2 of storage it is
+/// below 1/2 in every legal configuration, so no code ever leaves the range of the two ends, and none is clamped.
+[[nodiscard]] double line_depth_error_bound(const Config& config);
 
 }  // namespace halfplane

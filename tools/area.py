@@ -14,8 +14,14 @@ import subprocess
 import sys
 
 BUILD = pathlib.Path('build/area')
-ECP5 = {'default': '', '-nowidelut': '-nowidelut'}
+SYNTH_ECP5 = 'synth_ecp5 -top raster_top -nowidelut'
+# What the options of synth_ecp5 do, shown for one configuration without any module kept apart.
+FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_top', 'synth_ecp5 -top raster_top -abc9']
+FLAT = 'embedded, 2x2'
 SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper -abc9'
+# The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
+STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'fine_raster', 'interpolate', 'depth_test', 'framebuffer']
+KEEP = ('setattr -mod -set keep_hierarchy 1 raster_top *skid_buffer* ' + ' '.join(f'{s} {s}_serial' for s in STAGES))
 PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 1'
 # Title, preset, settings.
 CONFIGURATIONS = [
@@ -27,7 +33,6 @@ CONFIGURATIONS = [
     ('full, 2x2', 'full', ['stamp.size=2']),
     ('full, 4x4', 'full', ['stamp.size=4']),
 ]
-BLOCKS = ['embedded, 2x2', 'small, 1x1']  # broken down by module
 PLACED = ['small, 1x1']
 
 
@@ -69,31 +74,45 @@ def yosys(title, tag, script):
     return cells(stat.read_text(encoding='utf-8'))
 
 
-def ecp5(title, option):
-    found = yosys(title, '-ecp5' + option, f'{read_verilog(title)}; synth_ecp5 -top raster_top {option}')
-    return found['raster_top']
+def flat(title, command):
+    """ECP5 cells of the whole design as one module."""
+    tag = '-flat' + command.split('raster_top')[1].replace(' ', '')
+    return yosys(title, tag, f'{read_verilog(title)}; {command}')['raster_top']
+
+
+def module_label(name):
+    return re.sub(r'^\$paramod(\$[0-9a-f]+)?\\?', '', name).split('\\')[0]
 
 
 def blocks(title):
-    """ECP5 cells of each module without what is below it, all instances together."""
-    found = yosys(title, '-blocks', f'{read_verilog(title)}; synth_ecp5 -noflatten -nowidelut -top raster_top')
-    found.pop('design hierarchy', None)
-
-    instances = collections.Counter()
-
-    def visit(name):
-        instances[name] += 1
-        for cell, count in found[name].items():
-            for _ in range(count if cell in found else 0):
-                visit(cell)
-
-    visit('raster_top')
+    """ECP5 cells of each stage, flattened inside, and what is left in raster_top."""
+    found = yosys(title, '-blocks', f'{read_verilog(title)}; hierarchy -top raster_top; {KEEP}; {SYNTH_ECP5}')
     total = collections.defaultdict(collections.Counter)
-    for name, count in instances.items():
-        label = re.sub(r'^\$paramod(\$[0-9a-f]+)?\\?', '', name).split('\\')[0]
-        for cell, each in found[name].items():
-            if cell not in found:
-                total[label][cell] += each * count
+    for name, cells_of in found.items():
+        if name != 'design hierarchy':
+            total[module_label(name)].update({c: n for c, n in cells_of.items() if c not in found})
+    return total
+
+
+def packed_blocks(title):
+    """iCE40 logic cells of each stage, as nextpnr packs them, of a netlist with the stages kept apart."""
+    netlist, out = BUILD / f'{slug(title)}-blocks.json', BUILD / f'{slug(title)}-packed.json'
+    run(['yosys', '-q', '-p', f'{read_verilog(title, wrapper=True)}; hierarchy -top pin_wrapper; {KEEP}; '
+                              f'{SYNTH_ICE40} -json {netlist}'], BUILD / f'{slug(title)}-ice40-blocks.log')
+    run([*PLACE.split(), '--pack-only', '--json', netlist, '--write', out], BUILD / f'{slug(title)}-pack.log')
+    modules = json.loads(out.read_text(encoding='utf-8'))['modules'].values()
+    total = collections.defaultdict(collections.Counter)
+    for name, cell in max((module['cells'] for module in modules), key=len).items():
+        inside = [part for part in name.split('.')[:-1] if part.startswith('u_')]
+        # u_core is raster_top; a kept stage is the first instance in it, unless that is one of its own RAMs.
+        block = 'pin_wrapper' if not inside else 'raster_top'
+        if len(inside) > 1 and inside[1] != 'u_context':
+            block = inside[1][2:]
+        bits = {key: int(value, 2) for key, value in cell['parameters'].items() if key.endswith('_ENABLE')}
+        if cell['type'] == 'ICESTORM_LC':
+            total[block].update(cells=1, ffs=bits['DFF_ENABLE'], carries=bits['CARRY_ENABLE'])
+        elif cell['type'] == 'ICESTORM_RAM':
+            total[block].update(rams=1)
     return total
 
 
@@ -110,56 +129,74 @@ def placed(title):
 
 def version(command):
     out = subprocess.run(command, capture_output=True, text=True, check=True)
-    return (out.stdout + out.stderr).strip().splitlines()[0].split(' (git')[0]
+    first = (out.stdout + out.stderr).strip().splitlines()[0]
+    return re.sub(r'.*"?(nextpnr-ice40).*Version ([^)]*)\).*', r'\1 \2', first.split(' (git')[0])
 
 
-def ecp5_row(title, count):
-    default, narrow = count['default'], count['-nowidelut']
-    return (f"| {title} | {narrow['LUT4']:,} | {default['LUT4']:,} | {narrow['CCU2C']:,} | {narrow['TRELLIS_FF']:,} "
-            f"| {narrow['MULT18X18D']} | {narrow['DP16KD']} | {narrow['TRELLIS_DPR16X4']} |")
+def places(count):
+    """LUT4 places taken: a CCU2C sits in two, a 16-word RAM in four and its write port in two more."""
+    return count['LUT4'] + 2 * count['CCU2C'] + 6 * count['TRELLIS_DPR16X4']
 
 
-def block_row(name, count):
-    return (f"| `{name}` | {count['LUT4']:,} | {count['CCU2C']:,} | {count['TRELLIS_FF']:,} | {count['MULT18X18D']} "
-            f"| {count['DP16KD']} | {count['TRELLIS_DPR16X4']} |")
+def ecp5_cells(count):
+    return [count['LUT4'], count['CCU2C'], count['TRELLIS_DPR16X4'], places(count), count['TRELLIS_FF'],
+            count['MULT18X18D'], count['DP16KD']]
 
 
-def page(luts, parts, fitted):
-    lines = [
-        '# Area and speed',
-        '',
-        f'Written by `./dev area` on {datetime.date.today()}: {version(["yosys", "-V"])}, '
-        f'{version(["nextpnr-ice40", "--version"]).replace("Next Generation Place and Route ", "")}.',
-        '',
-        '## ECP5: `synth_ecp5 -top raster_top`',
-        '',
-        'LUT4 with `-nowidelut`, and with the default options, which build wide multiplexers out of more LUTs and count '
-        'those as LUT4 too. A CCU2C is two bits of carry chain and takes the place of two more LUT4. A 16-bit word of '
-        'the HiZ bound of every tile, and two flags, are in the DP16KD; so most of those are the size of the target.',
-        '',
-        '| preset, stamp | LUT4 | LUT4, default | CCU2C | FF | MULT18X18D | DP16KD | DPR16X4 |',
-        '| --- | --- | --- | --- | --- | --- | --- | --- |',
-    ]
-    lines += [ecp5_row(title, luts[title]) for title, _, _ in CONFIGURATIONS if title in luts]
-    for title, part in parts.items():
-        lines += [
-            '', f'### Which block costs what: {title}', '',
-            'Each module with `-noflatten -nowidelut`, all its instances together, without the modules inside it; the '
-            'sum is more than the flattened design, in which what is constant or unused across modules goes away.', '',
-            '| module | LUT4 | CCU2C | FF | MULT18X18D | DP16KD | DPR16X4 |',
-            '| --- | --- | --- | --- | --- | --- | --- |',
-        ]
-        lines += [block_row(*entry) for entry in sorted(part.items(), key=lambda e: -e[1]['LUT4'] - 2 * e[1]['CCU2C'])]
+def table(head, rows):
+    """Markdown; numbers with thousands apart."""
+    cell = lambda value: f'{value:,}' if isinstance(value, int) else value
+    return ['', '| ' + ' | '.join(head) + ' |', '|' + ' --- |' * len(head),
+            *('| ' + ' | '.join(map(cell, row)) + ' |' for row in rows), '']
+
+
+def ecp5_part(parts, flats):
+    head = ['LUT4', 'CCU2C', 'DPR16X4', 'LUT4 places', 'FF', 'MULT18X18D', 'DP16KD']
+    total = {title: sum(part.values(), collections.Counter()) for title, part in parts.items()}
+    names = sorted({name for part in parts.values() for name in part}, key=lambda name: -sum(
+        places(part[name]) for part in parts.values()))
+    lines = ['## ECP5', '', f'`{SYNTH_ECP5}`, every stage flattened inside and kept apart from the others '
+             '(`keep_hierarchy`), so that each block has its own cells and they add up. Behind "LUT4 places" is what the '
+             'cells take up in the part: a CCU2C (two bits of a carry chain) two places, a DPR16X4 (16 words of 4 bits) '
+             'four and two more for its write port.']
+    lines += table(['configuration', *head], [[title, *ecp5_cells(count)] for title, count in total.items()])
+    lines += ['Which block costs what, in LUT4 places. `raster_top` is the counters, the context RAM and what joins the '
+              'stages; `depth_test` contains `rop`; `framebuffer` contains the tags, the flags and the way to its RAMs.']
+    lines += table(['block', *parts], [[f'`{name}`', *(places(part[name]) for part in parts.values())] for name in names])
+    lines += ['Flip-flops and multipliers (`FF + MULT18X18D`).']
+    lines += table(['block', *parts], [[f'`{name}`', *(f"{part[name]['TRELLIS_FF']:,} + {part[name]['MULT18X18D']}"
+                                                      for part in parts.values())] for name in names])
+    if flats:
+        lines += [f'What the options do: {FLAT} as one flat module. The default options make wide multiplexers '
+                  '(PFUMX, L6MUX21) out of more LUT4.']
+        lines += table(['command', *head], [[f'`{command}`', *ecp5_cells(count)] for command, count in flats.items()])
+    return lines
+
+
+def ice40_part(fitted, packed):
+    lines = ['## iCE40 HX8K', '', f'`{SYNTH_ICE40}`, then `{PLACE}`: placed and routed with the design flat, behind '
+             '`rtl_ref/area/pin_wrapper.sv` (a shift register before every input, a parity of all outputs behind them). '
+             'The wrapper\'s cells are in these figures. The part has no multipliers; none are needed by `small`.']
+    lines += table(['configuration', 'logic cells of 7,680', 'RAM of 32', 'MHz'],
+                   [[title, f['cells'], f['rams'], f"{f['mhz']:.1f}"] for title, f in fitted.items()])
+    for title, part in packed.items():
+        lines += [f'Which block costs what: {title}, the stages kept apart, packed by nextpnr (`--pack-only`). A logic '
+                  'cell is a LUT4, a bit of carry chain and a flip-flop; it counts once, whichever of them it holds.']
+        rows = sorted(part.items(), key=lambda entry: -entry[1]['cells'])
+        total = sum(part.values(), collections.Counter())
+        lines += table(['block', 'logic cells', 'with a flip-flop', 'with a carry', 'RAM'],
+                       [[name, c['cells'], c['ffs'], c['carries'], c['rams']]
+                        for name, c in [*((f'`{n}`', c) for n, c in rows), ('all', total)]])
+    return lines
+
+
+def page(parts, flats, fitted, packed):
+    lines = ['# Area and speed', '', f'Written by `./dev area` on {datetime.date.today()} with {version(["yosys", "-V"])} '
+             f'and {version(["nextpnr-ice40", "--version"])}. Configurations: preset, stamp.', '']
+    lines += ecp5_part(parts, flats)
     if fitted:
-        lines += [
-            '', '## iCE40 HX8K, placed and routed', '',
-            f'`{SYNTH_ICE40}`, `{PLACE}`, behind `rtl_ref/area/pin_wrapper.sv`: a shift register in front of all inputs, '
-            'a parity of all outputs behind; its cells are counted too. No multipliers are used: the part has none.', '',
-            '| preset, stamp | logic cells of 7,680 | RAM blocks of 32 | MHz |', '| --- | --- | --- | --- |',
-        ]
-        lines += [f"| {title} | {f['cells']['used']:,} | {f['rams']['used']} | {f['mhz']:.1f} |"
-                  for title, f in fitted.items()]
-    return '\n'.join(lines) + '\n'
+        lines += ice40_part(fitted, packed)
+    return '\n'.join(lines).replace('\n\n\n', '\n\n').rstrip() + '\n'
 
 
 def main():
@@ -176,11 +213,13 @@ def main():
         run([options.program, 'config', '--config', preset, *sets, '--sv'], BUILD / f'{slug(title)}.sv')
     titles = [title for title, _, _ in chosen]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        fits = {t: pool.submit(placed, t) for t in PLACED if t in titles}
-        parts = {t: pool.submit(blocks, t) for t in BLOCKS if t in titles}
-        luts = {t: {name: pool.submit(ecp5, t, option) for name, option in ECP5.items()} for t in titles}
-        text = page({t: {name: job.result() for name, job in jobs.items()} for t, jobs in luts.items()},
-                    {t: job.result() for t, job in parts.items()}, {t: job.result() for t, job in fits.items()})
+        jobs = {
+            'fitted': {t: pool.submit(placed, t) for t in PLACED if t in titles},
+            'packed': {t: pool.submit(packed_blocks, t) for t in PLACED[:1] if t in titles},
+            'parts': {t: pool.submit(blocks, t) for t in titles},
+            'flats': {c: pool.submit(flat, FLAT, c) for c in FLAT_ECP5 if FLAT in titles},
+        }
+        text = page(**{name: {key: job.result() for key, job in group.items()} for name, group in jobs.items()})
     print(text, end='')
     if options.only is None:
         pathlib.Path('docs/area.md').write_text(text, encoding='utf-8')

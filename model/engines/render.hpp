@@ -8,6 +8,7 @@
 
 #include "../config.hpp"
 #include "../packets.hpp"
+#include "../rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
 
@@ -29,7 +30,7 @@ struct Counters {
   std::uint64_t covered = 0;         ///< samples that the fine raster produced
   std::uint64_t depth_passed = 0;    ///< in program order: equal for every engine and skip setting
   std::uint64_t written = 0;         ///< of those, with depth or colour writes enabled
-  std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated
+  std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated; scanline: samples visited
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   struct {
     std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
@@ -46,6 +47,7 @@ using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int t
 
 struct RenderOptions {
   Skip skip;
+  StudyRules rules;                               ///< anything but the default: render_scalar alone has it
   bool want_count = false;                        ///< fill Rendering::count
   bool want_ids = false;                          ///< fill Rendering::ids
   bool want_triangles = false;                    ///< keep Rendering::triangles (and fill `visible` beside `ids`)

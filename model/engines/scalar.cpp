@@ -1,5 +1,8 @@
 #include "scalar.hpp"
 
+#include <optional>
+
+#include "../stages/traversal.hpp"
 #include "commands.hpp"
 
 namespace halfplane {
@@ -28,51 +31,129 @@ void shade_sample(const DrawContext& context, const TriangleSetup& setup, const 
   if (!rendering.visible.empty()) rendering.visible[plain] = static_cast<std::int32_t>(index);
 }
 
+/// What stays the same over a scene.
+struct ScalarEngine {
+  const Config& config;
+  const RenderOptions& options;
+  const Widths widths = derive_widths(config);
+};
+
+/// The pipeline's own traversal: coarse_raster and fine_raster.
+void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const TriangleSetup& setup,
+                  std::uint32_t index, Rendering& rendering) {
+  const Config& config = engine.config;
+  const Widths& widths = engine.widths;
+  const Skip& skip = engine.options.skip;
+  const int stamp = config.stamp_size, shift = widths.tile_shift;
+  const SetupPacket packet = to_setup_packet(setup, widths);
+  const EdgeContext edges = make_edge_context(setup);
+  Counters& counters = rendering.counters;
+  for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y) {
+    for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x) {
+      ++counters.tiles_visited;
+      const TileClass kind = classify(setup, edges_at_tile(setup, tile_x, tile_y, widths), config.tile_size);
+      if (kind == TileClass::outside && skip.tiles_outside) {
+        ++counters.skipped.tiles_outside;
+        continue;
+      }
+      TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, widths);
+      tile.is_inside = tile.is_inside != 0 && skip.trivially_accepted;
+      if (tile.is_inside != 0)
+        ++counters.skipped.trivially_accepted;
+      else
+        counters.samples_tested +=
+            static_cast<std::uint64_t>((tile.right - tile.left + 1) * (tile.bottom - tile.top + 1));
+      TileMask mask{};
+      fine_raster(tile, edges, config, widths, [&](const StampPacket& covered) {
+        const int column = covered.stamp % widths.stamps_per_row * stamp,
+                  row = covered.stamp / widths.stamps_per_row * stamp;
+        for (int s = 0; s < stamp * stamp; ++s) {
+          if ((covered.mask >> s & 1) == 0) continue;
+          const int i = column + s % stamp, j = row + s / stamp;
+          mask[static_cast<std::size_t>(j)] |= 1U << i;
+          shade_sample(context, setup, widths, index, (tile_x << shift) + i, (tile_y << shift) + j, skip, rendering);
+        }
+      });
+      if (engine.options.coverage_tap) engine.options.coverage_tap(index, tile_x, tile_y, mask);
+    }
+  }
+}
+
+/// Gathers samples that come in any order into the masks that a coverage tap takes.
+class TapTiles {
+ public:
+  TapTiles(const TriangleSetup& setup, int tile_shift)
+      : shift_(tile_shift),
+        first_x_(setup.left >> tile_shift),
+        first_y_(setup.top >> tile_shift),
+        columns_((setup.right >> tile_shift) - first_x_ + 1),
+        masks_(static_cast<std::size_t>(columns_) *
+               static_cast<std::size_t>((setup.bottom >> tile_shift) - first_y_ + 1)) {}
+
+  void add(int x, int y) {
+    const int column = (x >> shift_) - first_x_, row = (y >> shift_) - first_y_;
+    const int last = (1 << shift_) - 1;
+    masks_[static_cast<std::size_t>(row * columns_ + column)][static_cast<std::size_t>(y & last)] |= 1U << (x & last);
+  }
+
+  void send(const CoverageTap& tap, std::uint32_t index) const {
+    for (std::size_t i = 0; i < masks_.size(); ++i)
+      tap(index, first_x_ + static_cast<int>(i) % columns_, first_y_ + static_cast<int>(i) / columns_, masks_[i]);
+  }
+
+ private:
+  int shift_, first_x_, first_y_, columns_;
+  std::vector<TileMask> masks_;
+};
+
+/// A triangle by another traversal or fill rule than the pipeline's.
+void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, const Triangle& triangle,
+                     TriangleSetup& setup, std::uint32_t index, Rendering& rendering) {
+  const StudyRules& rules = engine.options.rules;
+  const int grid_bits = engine.widths.grid_bits;
+  const auto v = canonical(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
+  set_fill_rule(setup, v, rules.fill_rule, engine.widths);
+  const bool taps = static_cast<bool>(engine.options.coverage_tap) && !setup.is_empty();
+  std::optional<TapTiles> tiles;
+  if (taps && rules.traversal != Traversal::tiled) tiles.emplace(setup, engine.widths.tile_shift);
+  const auto emit = [&](int x, int y) {
+    if (tiles) tiles->add(x, y);
+    shade_sample(context, setup, engine.widths, index, x, y, engine.options.skip, rendering);
+  };
+  std::uint64_t& tested = rendering.counters.samples_tested;
+  switch (rules.traversal) {
+    case Traversal::tiled: raster_tiles(engine, context, setup, index, rendering); break;
+    case Traversal::bbox: tested += traverse_bbox(setup, engine.widths, emit); break;
+    case Traversal::scanline: {
+      const PixelBounds box{setup.left, setup.top, setup.right, setup.bottom};
+      tested += traverse_scanline(v, box, rules.fill_rule, grid_bits, emit);
+      break;
+    }
+    case Traversal::brute: {
+      const Framebuffer& frame = rendering.frame;
+      tested += traverse_brute(v, context.rect, frame.width, frame.height, rules.fill_rule, grid_bits, emit);
+      break;
+    }
+  }
+  if (tiles) tiles->send(engine.options.coverage_tap, index);
+}
+
 }  // namespace
 
 Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options) {
   validate(config);
-  const Widths widths = derive_widths(config);
-  const int stamp = config.stamp_size, shift = widths.tile_shift;
-  const Skip& skip = options.skip;
+  const ScalarEngine engine{config, options};
+  const bool is_default = options.rules == StudyRules{};
   return run_commands(
       scene, config, options,
       [&](const DrawContext& context, const Triangle& triangle, std::uint32_t index, Rendering& rendering) {
-        const TriangleSetup setup = setup_triangle(triangle, config, widths, context.rect);
-        if (setup.is_empty()) return;
-        const SetupPacket packet = to_setup_packet(setup, widths);
-        const EdgeContext edges = make_edge_context(setup);
-        Counters& counters = rendering.counters;
-        for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y) {
-          for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x) {
-            ++counters.tiles_visited;
-            const TileClass kind = classify(setup, edges_at_tile(setup, tile_x, tile_y, widths), config.tile_size);
-            if (kind == TileClass::outside && skip.tiles_outside) {
-              ++counters.skipped.tiles_outside;
-              continue;
-            }
-            TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, widths);
-            tile.is_inside = tile.is_inside != 0 && skip.trivially_accepted;
-            if (tile.is_inside != 0)
-              ++counters.skipped.trivially_accepted;
-            else
-              counters.samples_tested +=
-                  static_cast<std::uint64_t>((tile.right - tile.left + 1) * (tile.bottom - tile.top + 1));
-            TileMask mask{};
-            fine_raster(tile, edges, config, widths, [&](const StampPacket& covered) {
-              const int column = covered.stamp % widths.stamps_per_row * stamp,
-                        row = covered.stamp / widths.stamps_per_row * stamp;
-              for (int s = 0; s < stamp * stamp; ++s) {
-                if ((covered.mask >> s & 1) == 0) continue;
-                const int i = column + s % stamp, j = row + s / stamp;
-                mask[static_cast<std::size_t>(j)] |= 1U << i;
-                shade_sample(context, setup, widths, index, (tile_x << shift) + i, (tile_y << shift) + j, skip,
-                             rendering);
-              }
-            });
-            if (options.coverage_tap) options.coverage_tap(index, tile_x, tile_y, mask);
-          }
-        }
+        TriangleSetup setup = setup_triangle(triangle, config, engine.widths, context.rect);
+        // brute visits the whole target whatever the box is.
+        if (setup.is_empty() && (options.rules.traversal != Traversal::brute || setup.area == 0)) return;
+        if (is_default)
+          raster_tiles(engine, context, setup, index, rendering);
+        else
+          raster_by_rules(engine, context, triangle, setup, index, rendering);
       });
 }
 

@@ -5,7 +5,8 @@
 
 namespace halfplane {
 
-/// As render_functional, with the same image, counts and ids, bit for bit.
+/// As render_functional, with the same image, counts and ids, bit for bit. Has every traversal (the same image from
+/// each) and fill rule of RenderOptions::rules.
 [[nodiscard]] Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options = {});
 
 }  // namespace halfplane

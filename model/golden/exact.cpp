@@ -44,17 +44,21 @@ Rational plane_at(const Triangle& t, const std::array<int128, 3>& codes, int x, 
 
 }  // namespace
 
-bool covers(const Triangle& t, int x, int y, int grid_bits) {
+bool covers(const Triangle& t, int x, int y, int grid_bits, FillRule rule) {
   const int128 area = doubled_area(t);
   if (area == 0) return false;
   const auto weight = weights(t, centre(x, y, grid_bits), area);
+  const std::int64_t pixel = std::int64_t{1} << grid_bits;
+  const auto offset = weights(t, {-pixel, -pixel}, area);  // of the point (-1, -1)
   for (std::size_t i = 0; i < 3; ++i) {
     if (weight[i] > 0) continue;
     if (weight[i] < 0) return false;
     // On the edge opposite vertex i, which a triangle of negative area runs through the other way round.
     const Point from = point(t.v[(i + (area > 0 ? 1 : 2)) % 3]), to = point(t.v[(i + (area > 0 ? 2 : 1)) % 3]);
     const bool is_left = to.y < from.y, is_top = to.y == from.y && to.x > from.x;
-    if (!is_left && !is_top) return false;
+    const bool owns = rule == FillRule::inclusive || (rule == FillRule::top_left && (is_left || is_top)) ||
+                      (rule == FillRule::offset_point && offset[i] > 0);
+    if (!owns) return false;
   }
   return true;
 }

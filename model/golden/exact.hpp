@@ -9,6 +9,7 @@
 
 #include "../fixed.hpp"
 #include "../packets.hpp"
+#include "../rules.hpp"
 
 namespace halfplane::exact {
 
@@ -23,7 +24,7 @@ struct Rational {
 
 /// Does the triangle cover the centre of pixel (x, y)? Both orientations; zero area covers nothing. Coordinates in
 /// units of 2^-grid_bits pixel, grid_bits >= 1 (Widths::grid_bits).
-[[nodiscard]] bool covers(const Triangle& triangle, int x, int y, int grid_bits);
+[[nodiscard]] bool covers(const Triangle& triangle, int x, int y, int grid_bits, FillRule rule = FillRule::top_left);
 
 /// Is that centre on the closed triangle's border: exactly on an edge or a vertex?
 [[nodiscard]] bool is_on_border(const Triangle& triangle, int x, int y, int grid_bits);

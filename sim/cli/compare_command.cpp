@@ -5,6 +5,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/study_options.hpp"
 #include "sim/image/framebuffer_files.hpp"
 #include "sim/image/panel.hpp"
 #include "sim/image/png.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 struct CompareCommand : CommonOptions {
   std::string golden = "binary64";
+  StudyOptions study;
   std::string sheet_path, model_path, golden_path;
 };
 
@@ -113,6 +115,7 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
 int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
+  const StudyRules rules = study_rules(options.study);
   for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
     check_output(*path, ".png");
   double load_s = 0;
@@ -122,6 +125,7 @@ int run(const CompareCommand& options) {
     Progress progress(options, "comparing");
     CompareOptions compare_options;
     compare_options.skip = parse_skip(options.skip);
+    compare_options.rules = rules;
     compare_options.precision =
         options.golden == "binary32" ? golden::Precision::binary32 : golden::Precision::binary64;
     compare_options.progress = [&progress](double fraction) { progress(fraction); };
@@ -129,8 +133,12 @@ int run(const CompareCommand& options) {
   }
   const std::vector<std::string> broken = broken_bounds(c, config);
   const auto lines = summary_lines(c, broken);
-  const std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
-                            ", " + label(config) + ", seed " + std::to_string(options.seed);
+  std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) + ", " +
+                      label(config) + ", seed " + std::to_string(options.seed);
+  Json study;
+  add_study_json(study, rules, scene, config);
+  const bool is_study = rules != StudyRules{};
+  if (is_study) title += ", " + study_text(study);
   if (!options.model_path.empty()) write_png(options.model_path, color_picture(c.rendering.frame, config.color_format));
   if (!options.golden_path.empty()) write_png(options.golden_path, color_picture(c.golden.frame, config.color_format));
   if (!options.sheet_path.empty())
@@ -140,6 +148,10 @@ int run(const CompareCommand& options) {
   result["golden"] = options.golden;
   result["width"] = scene.width;
   result["height"] = scene.height;
+  result["engine"] = is_study ? "scalar" : "functional";
+  result.update(study);
+  result["samples_tested"] = c.rendering.counters.samples_tested;
+  result["time_s"] = {{"load", load_s}, {"geometry", c.rendering.geometry_s}, {"raster", c.rendering.raster_s}};
   result.update(comparison_json(c));
   result["broken_bounds"] = broken;
   result["wall_s"] = seconds_since(start);
@@ -149,7 +161,7 @@ int run(const CompareCommand& options) {
   if (&out == &std::cout && terminal_style(1) == TerminalStyle::color)
     out << terminal_preview(color_picture(c.rendering.frame, config.color_format), terminal_size(1, 24),
                             TerminalStyle::color);
-  out << title << "; model (functional) against golden (" << options.golden << ")\n";
+  out << title << "; model (" << result["engine"].get<std::string>() << ") against golden (" << options.golden << ")\n";
   print_lines(out, lines);
   return broken.empty() ? exit_ok : exit_mismatch;
 }
@@ -164,6 +176,7 @@ void add_compare_command(CLI::App& app, Action& selected) {
   command->add_option("--golden", options->golden, "binary64, or binary32 to see what single precision would show")
       ->check(CLI::IsMember({"binary64", "binary32"}))
       ->capture_default_str();
+  add_study_options(*command, options->study);
   add_file_option(*command, "-o", options->sheet_path,
                   "one sheet: model, golden, coverage, depth and colour difference, .png");
   add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");

@@ -73,12 +73,14 @@ void add_file_option(CLI::App& app, const std::string& name, std::string& path, 
 }
 
 void add_scene_options(CLI::App& app, CommonOptions& options) {
-  app.add_option("SCENE", options.scene, "built-in name (halfplane scenes), .obj or .hpt file")->required();
+  app.add_option("SCENE", options.scene, "built-in name (halfplane scenes), or a file: .obj, .gltf, .glb, .hpt")
+      ->required();
   add_output_options(app, options);
   app.add_option("--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)")
       ->check(refuse_empty);
   app.add_option("--camera", options.camera,
-                 "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT'");
+                 "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT' or "
+                 "'name=NAME' for one of a glTF file's own");
   add_seed_option(app, options, "seed of scenes with something random in them");
   app.add_option("--threads", options.threads, "use at most N threads (this version uses one)")
       ->check(CLI::Range(1, 1024));

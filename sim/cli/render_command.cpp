@@ -10,8 +10,10 @@
 #include "model/golden/golden.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/study_options.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/image/framebuffer_files.hpp"
+#include "sim/image/panel.hpp"
 #include "sim/image/png.hpp"
 #include "sim/image/terminal.hpp"
 
@@ -20,7 +22,8 @@ namespace {
 
 struct RenderCommand : CommonOptions {
   std::string engine = "functional";
-  std::string color_path, depth_path, count_path, ids_path;
+  StudyOptions study;
+  std::string color_path, depth_path, count_path, ids_path, draws_path;
   int repeat = 0;
 };
 
@@ -47,7 +50,8 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   Progress progress(options, "rendering");
   RenderOptions render;
   render.skip = parse_skip(options.skip);
-  render.want_count = !options.count_path.empty();
+  render.rules = study_rules(options.study);
+  render.want_count = !options.count_path.empty() || !options.draws_path.empty();
   render.want_ids = !options.ids_path.empty();
   render.progress = [&progress](double fraction) { progress(fraction); };
   if (options.engine == "functional") return render_functional(scene, config, render);
@@ -66,8 +70,11 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (std::find(kEngines.begin(), kEngines.end(), options.engine) == kEngines.end())
     throw InputError("--engine: no engine '" + options.engine +
                      "' in this version; give functional, scalar, rtl, golden or golden32");
+  check_study_rules(study_rules(options.study), options.engine);
   if (options.engine == "rtl" && !(options.count_path.empty() && options.ids_path.empty()))
     throw InputError("--engine rtl: hardware keeps neither counts nor ids; leave out --count and --ids");
+  if (options.engine == "rtl" && !options.draws_path.empty())
+    throw InputError("--engine rtl: hardware keeps no counts; leave out --draws");
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
@@ -75,6 +82,7 @@ void check_options(const RenderCommand& options, const Config& config) {
   check_output(options.depth_path);
   check_output(options.count_path, ".npy");
   check_output(options.ids_path, ".npy");
+  check_output(options.draws_path, ".png");
 }
 
 Json counters_json(const Counters& c) {
@@ -116,12 +124,43 @@ Json measure(const RenderCommand& options, const Scene& scene, const Config& con
   return {{"min", times.front()}, {"median", times[times.size() / 2]}};
 }
 
-void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config) {
+void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config,
+                 const std::string& title) {
   const Framebuffer& frame = rendering.frame;
   if (!options.color_path.empty()) write_png(options.color_path, color_picture(frame, config.color_format));
   if (!options.depth_path.empty()) write_depth(options.depth_path, frame, config.depth_bits);
   if (!options.count_path.empty()) write_npy(options.count_path, frame.width, frame.height, rendering.count);
   if (!options.ids_path.empty()) write_npy(options.ids_path, frame.width, frame.height, rendering.ids);
+  if (!options.draws_path.empty())
+    write_png(options.draws_path, draws_sheet(title, color_picture(frame, config.color_format), rendering.count));
+}
+
+/// What people read; the figures are those of `result`.
+void print_result(const RenderCommand& options, const Config& config, const Rendering& rendering,
+                  const LockstepResult& rtl_run, const Json& result) {
+  const Counters& c = rendering.counters;
+  std::ostream& out = human(options);
+  if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
+    out << terminal_preview(color_picture(rendering.frame, config.color_format), terminal_size(1),
+                            TerminalStyle::color);
+  out << options.scene << ", " << rendering.frame.width << "x" << rendering.frame.height << ", " << label(config)
+      << ", engine " << options.engine << ", seed " << options.seed << '\n'
+      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, "
+      << with_commas(c.drawn) << " drawn (" << with_commas(c.clipped) << " clipped)\n"
+      << "fragments   " << with_commas(c.covered) << " covered, " << with_commas(c.depth_passed) << " passed, "
+      << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
+      << "time        load " << fixed(1e3 * result["time_s"]["load"].get<double>(), 1) << " ms, geometry "
+      << fixed(1e3 * rendering.geometry_s, 2) << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
+  if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
+  if (options.engine == "rtl")
+    out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
+        << " from the first triangle to the last write, " << with_commas(rtl_run.tile_cycles)
+        << " of them moving tiles\n";
+  if (options.repeat > 0)
+    out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
+        << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
+  out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
+      << result["depth_hash"].get<std::string>() << '\n';
 }
 
 int run(const RenderCommand& options) {
@@ -132,14 +171,13 @@ int run(const RenderCommand& options) {
   const Scene scene = load_scene(options, config, load_s);
   LockstepResult rtl_run;
   const Rendering rendering = run_engine(options, scene, config, rtl_run);
-  const Counters& c = rendering.counters;
-
   Json result = result_head("render", options, config);
   result["engine"] = options.engine;
   result["width"] = scene.width;
   result["height"] = scene.height;
   result["threads"] = 1;
-  result.update(counters_json(c));
+  if (options.engine == "scalar") add_study_json(result, study_rules(options.study), scene, config);
+  result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
   if (options.engine == "rtl") {
     result["cycles"] = rtl_run.cycles;
@@ -150,31 +188,13 @@ int run(const RenderCommand& options) {
   if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
   result["depth_hash"] = depth_hash(rendering.frame);
-  write_files(options, rendering, config);
+  const bool is_study = study_rules(options.study) != StudyRules{};
+  const std::string title = is_study ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
+                                     : "engine " + options.engine;
+  write_files(options, rendering, config, title);
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
-
-  std::ostream& out = human(options);
-  if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
-    out << terminal_preview(color_picture(rendering.frame, config.color_format), terminal_size(1),
-                            TerminalStyle::color);
-  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << label(config) << ", engine "
-      << options.engine << ", seed " << options.seed << '\n'
-      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, "
-      << with_commas(c.drawn) << " drawn (" << with_commas(c.clipped) << " clipped)\n"
-      << "fragments   " << with_commas(c.covered) << " covered, " << with_commas(c.depth_passed) << " passed, "
-      << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
-      << "time        load " << fixed(1e3 * load_s, 1) << " ms, geometry " << fixed(1e3 * rendering.geometry_s, 2)
-      << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
-  if (options.engine == "rtl")
-    out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
-        << " from the first triangle to the last write, " << with_commas(rtl_run.tile_cycles)
-        << " of them moving tiles\n";
-  if (options.repeat > 0)
-    out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
-        << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
-  out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
-      << result["depth_hash"].get<std::string>() << '\n';
+  print_result(options, config, rendering, rtl_run, result);
   return exit_ok;
 }
 
@@ -189,10 +209,13 @@ void add_render_command(CLI::App& app, Action& selected) {
                    "functional (fast), scalar (the stages, one packet at a time), rtl (the Verilated hardware), "
                    "golden, golden32")
       ->capture_default_str();
+  add_study_options(*command, options->study);
   add_file_option(*command, "-o", options->color_path, "colour picture, .png");
   add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
   add_file_option(*command, "--count", options->count_path, "covered samples per pixel before the depth test, .npy");
   add_file_option(*command, "--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
+  add_file_option(*command, "--draws", options->draws_path,
+                  "sheet: the picture, and how often each sample was drawn, .png");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(CLI::Range(1, 100000));
   command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json");

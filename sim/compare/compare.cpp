@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "../../model/engines/functional.hpp"
+#include "../../model/engines/scalar.hpp"
 #include "../../model/golden/exact.hpp"
 #include "../../model/stages/interpolate.hpp"
 #include "../../model/stages/rop.hpp"
@@ -187,6 +188,7 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   CoverageLog log(config.tile_size);
   RenderOptions render_options;
   render_options.skip = options.skip;
+  render_options.rules = options.rules;
   render_options.want_count = render_options.want_ids = render_options.want_triangles = true;
   render_options.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
     log.add(triangle, tile_x, tile_y, mask);
@@ -198,11 +200,13 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
     render_options.progress = [&options](double fraction) { options.progress(0.5 * fraction); };
     golden_options.progress = [&options](double fraction) { options.progress(0.5 + 0.5 * fraction); };
   }
-  result.rendering = (options.engine ? options.engine : render_functional)(scene, config, render_options);
+  const bool is_default = options.rules == StudyRules{};
+  const Engine engine = options.engine ? options.engine : is_default ? render_functional : render_scalar;
+  result.rendering = engine(scene, config, render_options);
   result.golden = golden::render(scene, config, golden_options);
 
   log.sort();
-  result.oracle = check_coverage(scene, config, result.rendering.triangles, log);
+  result.oracle = check_coverage(scene, config, result.rendering.triangles, log, options.rules.fill_rule);
   result.coverage = compare_counts(result.rendering.count, result.golden, config.subpixel_bits);
   const std::size_t pixels = result.rendering.count.size();
   result.coverage_class.resize(pixels);

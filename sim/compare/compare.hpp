@@ -24,7 +24,8 @@ namespace halfplane {
 using Engine = std::function<Rendering(const Scene&, const Config&, const RenderOptions&)>;
 
 struct CompareOptions {
-  Engine engine;  ///< none: render_functional
+  Engine engine;     ///< none: render_functional, or render_scalar for rules that it alone has
+  StudyRules rules;  ///< the oracle follows the fill rule; the golden stays top_left
   golden::Precision precision = golden::Precision::binary64;
   Skip skip;
   std::function<void(double fraction)> progress;  ///< 0...1 over engine and golden; may be empty

@@ -29,8 +29,8 @@ PixelBox box_of(const Triangle& t, int grid_bits) {
 /// Compares triangle by triangle; one object so that the result and the inputs need not be passed around.
 class OracleCheck {
  public:
-  OracleCheck(const Config& config, const CoverageLog& log)
-      : log_(log), tile_size_(config.tile_size), grid_bits_(derive_widths(config).grid_bits) {}
+  OracleCheck(const Config& config, const CoverageLog& log, FillRule rule)
+      : log_(log), tile_size_(config.tile_size), grid_bits_(derive_widths(config).grid_bits), rule_(rule) {}
 
   /// `visit` runs over the log's visits; those of triangle `index` are consumed.
   void triangle(const Triangle& t, std::uint32_t index, const PixelBox& region,
@@ -73,7 +73,7 @@ class OracleCheck {
     for (int y = std::max(box.top, y0); y < std::min(box.bottom, y0 + tile_size_); ++y) {
       for (int x = std::max(box.left, x0); x < std::min(box.right, x0 + tile_size_); ++x) {
         const bool drawn = visit != nullptr && log_.test(*visit, x - x0, y - y0);
-        const bool expected = exact::covers(t, x, y, grid_bits_);
+        const bool expected = exact::covers(t, x, y, grid_bits_, rule_);
         drawn_inside += drawn ? 1 : 0;
         ++result_.samples;
         if (drawn != expected) report(t, index, x, y, expected, 1);
@@ -84,6 +84,7 @@ class OracleCheck {
 
   const CoverageLog& log_;
   int tile_size_, grid_bits_;
+  FillRule rule_;
   OracleResult result_;
 };
 
@@ -161,8 +162,8 @@ std::uint64_t CoverageLog::sample_count(const Visit& visit) const {
 }
 
 OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
-                            const CoverageLog& log) {
-  OracleCheck check(config, log);
+                            const CoverageLog& log, FillRule rule) {
+  OracleCheck check(config, log, rule);
   auto visit = log.visits().begin();
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const State& state = scene.states[std::get<Draw>(scene.commands[triangles[i].draw]).state];

@@ -52,9 +52,9 @@ struct OracleResult {
   std::optional<CoverageMismatch> first;
 };
 
-/// Holds the logged coverage of every triangle against exact::covers, tiles that were never visited included.
+/// Holds the logged coverage of every triangle against exact::covers by `rule`, tiles that were never visited included.
 [[nodiscard]] OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
-                                          const CoverageLog& log);
+                                          const CoverageLog& log, FillRule rule = FillRule::top_left);
 
 struct PixelCoverage {
   std::uint64_t missing = 0;    ///< samples that U covers and the model does not

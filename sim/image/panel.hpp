@@ -52,6 +52,9 @@ struct Panel {
 [[nodiscard]] Panel error_panel(std::string_view caption, int width, int height, std::span<const float> errors,
                                 std::string_view unit, bool diverging);
 
+/// How often each sample was drawn: cracks and double draws at a glance. `counts` holds width * height values.
+[[nodiscard]] Panel draws_panel(int width, int height, std::span<const std::uint32_t> counts);
+
 /// Panels in rows of `columns`, aligned, under one title. Columns share a width and rows a height.
 [[nodiscard]] Picture compose_sheet(std::string_view title, std::span<const Panel> panels, int columns);
 
@@ -65,6 +68,9 @@ struct ComparisonSheet {
   std::vector<float> color_error;    ///< largest absolute error of the channels, LSB; NaN where not compared
   std::vector<std::string> summary;  ///< the sixth cell: figures and bounds, one per line
 };
+
+/// Colour picture and draws panel side by side.
+[[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);
 
 [[nodiscard]] Picture comparison_sheet(const ComparisonSheet& sheet);
 

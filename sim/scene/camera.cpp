@@ -72,9 +72,10 @@ void read_part(CameraRequest& request, std::string_view key, std::string_view va
   } else if (key == "far") {
     request.far = read_positive(key, value);
   } else if (key == "name") {
-    fail("name=" + printable(value) + ": this scene has no cameras of its own", kExample);
+    if (value.empty()) fail("name= without a name", "write name=NAME");
+    request.name = std::string(value);
   } else {
-    fail("unknown part " + in_quotes(key), "the parts are eye, target, up, fov, ortho, near and far");
+    fail("unknown part " + in_quotes(key), "the parts are eye, target, up, fov, ortho, near, far and name");
   }
 }
 
@@ -170,10 +171,14 @@ CameraRequest merged(const CameraRequest& request, const CameraRequest& defaults
     result.fov = defaults.fov;
     result.ortho = defaults.ortho;
   }
+  if (result.ortho && result.far && std::isinf(*result.far)) result.far.reset();
   return result;
 }
 
 Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect) {
+  if (request.name) {
+    fail("name=" + printable(*request.name) + ": this scene has no cameras of its own", kExample);
+  }
   const Sphere bounds = bounding_sphere(mesh);
   Camera camera;
   camera.target = request.target.value_or(bounds.center);
@@ -216,6 +221,9 @@ Mat4 projection_matrix(const Camera& camera, double aspect) {
             Vec4{0, 0, 0, 1}};
   }
   const double scale = 1 / std::tan(half_fov(camera.fov));
+  if (std::isinf(f)) {  // the limit of the matrix below
+    return {Vec4{scale / aspect, 0, 0, 0}, Vec4{0, scale, 0, 0}, Vec4{0, 0, -1, -2 * n}, Vec4{0, 0, -1, 0}};
+  }
   return {Vec4{scale / aspect, 0, 0, 0}, Vec4{0, scale, 0, 0}, Vec4{0, 0, -(f + n) / (f - n), -2 * f * n / (f - n)},
           Vec4{0, 0, -1, 0}};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "sim/scene/mesh.hpp"
@@ -17,7 +18,8 @@ struct CameraRequest {
   std::optional<Vec3> eye, target, up;
   std::optional<double> fov;        ///< vertical, degrees
   std::optional<double> ortho;      ///< height of the view in world units: orthographic instead of fov
-  std::optional<double> near, far;  ///< distances along the view
+  std::optional<double> near, far;  ///< distances along the view; far may be infinite with fov
+  std::optional<std::string> name;  ///< a camera of the file's own, which gives what the rest leaves out
   bool operator==(const CameraRequest&) const = default;
 };
 
@@ -26,21 +28,21 @@ struct Camera {
   Vec3 eye{}, target{}, up{0, 1, 0};
   double fov = 45;               ///< vertical, degrees, in (0, 180)
   double ortho = 0;              ///< height of an orthographic view; 0 for perspective
-  double near = 0.1, far = 100;  ///< distances along the view, 0 < near < far
+  double near = 0.1, far = 100;  ///< distances along the view, 0 < near < far (perspective: far may be infinite)
 };
 
-/// Reads `eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100` or `ortho=2`; empty asks for nothing. Throws
-/// InputError that names the part and the mend; also for `name=NAME`, since no input of this version has cameras of its
-/// own.
+/// Reads `eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100` or `ortho=2`; empty asks for nothing. `name=NAME`
+/// asks for a camera of the file's own. Throws InputError that names the part and the mend.
 [[nodiscard]] CameraRequest parse_camera(std::string_view text);
 
-/// `request`, with what it leaves out taken from `defaults`. A user's fov or ortho replaces either default.
+/// `request`, with what it leaves out taken from `defaults`. A user's fov or ortho replaces either default;
+/// an orthographic view takes no infinite far.
 [[nodiscard]] CameraRequest merged(const CameraRequest& request, const CameraRequest& defaults);
 
 /// Fills a request in for a mesh with at least one vertex: a three-quarter view (from the front, right and above) of
 /// the middle of its bounding box, as near as holds every vertex at this aspect (width / height); near and far just
 /// around the mesh. An `up` along the view is replaced. Throws InputError if the whole makes no camera: eye = target,
-/// near >= far.
+/// near >= far; or asks for a name, which whoever has named cameras has looked up before.
 [[nodiscard]] Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect);
 
 [[nodiscard]] Mat4 view_matrix(const Camera& camera);

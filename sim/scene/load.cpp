@@ -9,6 +9,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/capture.hpp"
+#include "sim/scene/gltf.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/obj.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -42,7 +43,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   }
   const std::string hint = nearest.empty() ? "" : " did you mean " + std::string(nearest) + "?";
   throw InputError("unknown scene " + in_quotes(name) + ";" + hint + " built in are " + names +
-                   "; a file ends in .obj or .hpt");
+                   "; a file ends in .obj, .gltf, .glb or .hpt");
 }
 
 std::string lower_extension(const std::string& name) {
@@ -80,10 +81,14 @@ Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings
   const bool given = request.width > 0;
   const int width = given ? request.width : 640, height = given ? request.height : 480;
   if (extension == ".gltf" || extension == ".glb") {
-    throw InputError(request.name + ": glTF is not in this version; export the model as .obj");
+    const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
+    const GltfModel model = read_gltf_file(request.name, warnings);
+    Scene scene = mesh_scene(model.mesh, choose_camera(model.cameras, camera), width, height);
+    scene.name = request.name;
+    return scene;
   }
   if (extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
-  const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
+  const CameraRequest camera = parse_camera(request.camera);
   if (extension != ".obj") return make_builtin(request.name, width, height, camera, request.seed);
   Scene scene = mesh_scene(read_obj_file(request.name, warnings), camera, width, height);
   scene.name = request.name;

@@ -10,7 +10,7 @@
 namespace halfplane {
 
 struct SceneRequest {
-  std::string name;           ///< a built-in ("teapot", "city:64") or a file: .obj, .hpt
+  std::string name;           ///< a built-in ("teapot", "city:64") or a file: .obj, .gltf, .glb, .hpt
   int width = 0, height = 0;  ///< pixels; both 0: 640x480, or what a capture says
   std::string camera{};       ///< as `--camera` takes it; empty for the default framing
   std::uint64_t seed = 1;     ///< for the built-in scenes with something random in them

@@ -1,4 +1,4 @@
-// An indexed triangle mesh in world space: what OBJ files and the built-in models become before a camera sees them.
+// An indexed triangle mesh in world space: what OBJ and glTF files and the built-in models become before a camera sees them.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +26,7 @@ struct MeshPart {
   std::size_t first = 0;     ///< first of its triangles
   std::size_t count = 0;     ///< how many
   std::uint32_t line = 0;    ///< line of its first face in the file, 0 for none
+  bool two_sided = true;     ///< false: its back faces are not seen
 };
 
 /// Invariants (kept by every maker): indices < vertices.size(), all numbers finite, parts cover all triangles in order.

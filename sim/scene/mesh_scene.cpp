@@ -65,7 +65,13 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   }
   for (const MeshPart& part : mesh.parts) {
     const std::uint32_t object = numbers[part.object];
-    scene.commands.push_back(Draw{0, object, Topology::triangles, part.first * 3, part.count * 3, part.line});
+    const bool is_culled = !part.two_sided && cull == Cull::none;
+    if (is_culled && scene.states.size() == 1) {
+      scene.states.push_back(scene.states[0]);
+      scene.states[1].cull = Cull::back;
+    }
+    scene.commands.push_back(
+        Draw{is_culled ? 1U : 0U, object, Topology::triangles, part.first * 3, part.count * 3, part.line});
   }
   return scene;
 }

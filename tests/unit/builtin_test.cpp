@@ -236,7 +236,8 @@ TEST(Load, UnknownNamesAreListedAndTheNearestSuggested) {
 }
 
 TEST(Load, WhatIsNotInThisVersionOrMakesNoSenseIsSaid) {
-  EXPECT_NE(message_of({.name = "a.glb"}).find("glTF is not in this version"), std::string::npos);
+  EXPECT_NE(message_of({.name = "a.glb"}).find("a.glb: cannot be read"), std::string::npos);
+  EXPECT_NE(message_of({.name = "a.glb", .camera = "fob=3"}).find("unknown part"), std::string::npos);
   EXPECT_NE(message_of({.name = "a.hpt", .camera = "fov=3"}).find("is a capture"), std::string::npos);
   EXPECT_NE(message_of({.name = "triangle", .camera = "fov=3"}).find("clip space"), std::string::npos);
   EXPECT_NE(message_of({.name = "teapot", .width = 640}).find("--size"), std::string::npos);

@@ -74,6 +74,7 @@ TEST(Camera, BadPartsAreRefusedByName) {
                                                       {"fov=40;fov=50", "'fov' is given twice"},
                                                       {"fov=40;ortho=2", "fov and ortho together"},
                                                       {"name=Main", "no cameras of its own"},
+                                                      {"name=", "without a name"},
                                                       {"far=1e31", "beyond"},
                                                       {"ortho=0", "not above 0"}};
   for (const auto& [text, part] : cases) {

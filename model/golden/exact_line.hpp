@@ -1,0 +1,33 @@
+// The exact oracle for lines: pixel by pixel, straight from each rule's definition. No stepping, no octants, no shared
+// code with the stages: a pixel is asked whether it belongs to the line, whatever its neighbours are.
+//
+// Bounds: as in exact.hpp; with |X|, |Y| < 2^31 every product is below 2^70.
+#pragma once
+
+#include "../scene.hpp"
+#include "exact.hpp"
+
+namespace halfplane::exact {
+
+/// A line from `start` to `end`, in units of 2^-grid_bits pixel, grid_bits >= 1 (Widths::grid_bits).
+struct Line {
+  SnappedVertex start, end;
+  LineRule rule = LineRule::diamond;
+  bool drops_last = true;  ///< must be true for diamond exit
+  int grid_bits = 1;
+};
+
+/// Does the line cover pixel (x, y)?
+/// midpoint, bresenham: its centre is within half a pixel of the line through the centres of the two end pixels,
+/// measured across the major axis, and between the ends; of two centres at just half a pixel it is the one that lies on
+/// the left end's side. diamond: the segment, moved by (-e, -e^2) for every small enough e > 0, meets the open diamond
+/// |x - x_c| + |y - y_c| < 1/2, and does not end in it.
+[[nodiscard]] bool covers(const Line& line, int x, int y);
+
+/// Depth at the pixel's major coordinate, clamped to the ends; in LSB. A line without length has its start's depth.
+[[nodiscard]] Rational depth_at(const Line& line, int x, int y);
+
+/// The same for one channel of the colour, in LSB of 8 bits.
+[[nodiscard]] Rational color_at(const Line& line, int x, int y, int channel);
+
+}  // namespace halfplane::exact

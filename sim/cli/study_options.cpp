@@ -1,0 +1,59 @@
+#include "sim/cli/study_options.hpp"
+
+#include <algorithm>
+
+#include "sim/compare/double_draws.hpp"
+
+namespace halfplane {
+namespace {
+
+/// The enumerator of a name; CLI11 let no other through.
+template <class Enum, class Names>
+Enum enumerator(const Names& names, const std::string& name) {
+  return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+template <class Names>
+std::vector<std::string> as_strings(const Names& names) {
+  return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+void add_study_options(CLI::App& app, StudyOptions& options) {
+  app.add_option("--traversal", options.traversal,
+                 "study, scalar engine: how samples are found; the image stays the same")
+      ->check(CLI::IsMember(as_strings(kTraversalNames)))
+      ->capture_default_str();
+  app.add_option("--fill-rule", options.fill_rule, "study, scalar engine: who owns samples exactly on an edge")
+      ->check(CLI::IsMember(as_strings(kFillRuleNames)))
+      ->capture_default_str();
+}
+
+StudyRules study_rules(const StudyOptions& options) {
+  return {enumerator<Traversal>(kTraversalNames, options.traversal),
+          enumerator<FillRule>(kFillRuleNames, options.fill_rule)};
+}
+
+void check_study_rules(const StudyRules& rules, const std::string& engine) {
+  if (engine == "scalar") return;
+  const std::string rest = ": the engine " + engine + " does not have it; add --engine scalar";
+  if (rules.traversal != Traversal::tiled)
+    throw InputError("--traversal " + std::string(name_of(rules.traversal)) + rest);
+  if (rules.fill_rule != FillRule::top_left)
+    throw InputError("--fill-rule " + std::string(name_of(rules.fill_rule)) + rest);
+}
+
+void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config) {
+  result["traversal"] = name_of(rules.traversal);
+  result["fill_rule"] = name_of(rules.fill_rule);
+  result["double_draws"] = count_double_draws(scene, config, rules.fill_rule);
+}
+
+std::string study_text(const Json& result) {
+  return "traversal " + result["traversal"].get<std::string>() + ", fill rule " +
+         result["fill_rule"].get<std::string>() + ", " + with_commas(result["double_draws"].get<std::uint64_t>()) +
+         " double draws";
+}
+
+}  // namespace halfplane

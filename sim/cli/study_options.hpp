@@ -1,0 +1,31 @@
+// --traversal and --fill-rule: the study rules of docs/rules.md, for the commands that can run the scalar engine.
+#pragma once
+
+#include <string>
+
+#include "model/rules.hpp"
+#include "sim/cli/options.hpp"
+
+namespace halfplane {
+
+/// As typed; the names are those of model/rules.hpp.
+struct StudyOptions {
+  std::string traversal{name_of(Traversal::tiled)};
+  std::string fill_rule{name_of(FillRule::top_left)};
+};
+
+/// Adds both options.
+void add_study_options(CLI::App& app, StudyOptions& options);
+
+[[nodiscard]] StudyRules study_rules(const StudyOptions& options);
+
+/// Throws InputError, naming the option, when an engine other than scalar is asked for what it does not have.
+void check_study_rules(const StudyRules& rules, const std::string& engine);
+
+/// Adds {traversal, fill_rule, double_draws} to a result.
+void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config);
+
+/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, from what add_study_json() added.
+[[nodiscard]] std::string study_text(const Json& result);
+
+}  // namespace halfplane

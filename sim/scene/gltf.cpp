@@ -1,0 +1,299 @@
+#include "sim/scene/gltf.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <unordered_map>
+
+#include "model/config.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+using Rgba = std::array<double, 4>;
+
+struct Material {
+  Rgba base{1, 1, 1, 1};  // linear
+  bool is_two_sided = false;
+  bool is_lit = true;
+};
+
+// What one primitive reads from, all of the same count.
+struct Attributes {
+  const GltfAccessor* position = nullptr;
+  const GltfAccessor* normal = nullptr;
+  const GltfAccessor* color = nullptr;
+  const GltfAccessor* uv = nullptr;
+  const GltfAccessor* indices = nullptr;
+};
+
+// A transform of places and of directions that stand on faces.
+struct Placing {
+  Mat4 world{};
+  std::array<Vec3, 3> normal_rows{};  // cofactors: the inverse transpose times the determinant
+  bool is_mirrored = false;           // turns counter-clockwise into clockwise
+};
+
+Placing placing_of(const Mat4& m) {
+  Placing result;
+  result.world = m;
+  const std::array<Vec3, 3> rows{Vec3{m[0][0], m[0][1], m[0][2]}, Vec3{m[1][0], m[1][1], m[1][2]},
+                                 Vec3{m[2][0], m[2][1], m[2][2]}};
+  for (std::size_t i = 0; i < 3; ++i) result.normal_rows[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
+  result.is_mirrored = dot(rows[0], result.normal_rows[0]) < 0;
+  return result;
+}
+
+const GltfAccessor* checked(const GltfAccessor& accessor, const JsonPlace& place, int least, int most) {
+  if (accessor.width < least || accessor.width > most) {
+    const std::string wanted = most == 1 ? "SCALAR" : "VEC" + std::to_string(least);
+    place.fail("an accessor of " + std::to_string(accessor.width) + " numbers an element", "use " + wanted);
+  }
+  return &accessor;
+}
+
+class GltfMeshBuilder {
+ public:
+  GltfMeshBuilder(GltfFile& file, std::vector<std::string>& warnings, std::size_t most_triangles)
+      : file_(file), warnings_(warnings), left_(most_triangles) {}
+
+  GltfModel run() {
+    GltfNodes nodes = walk_nodes(file_, warnings_);
+    for (const GltfInstance& instance : nodes.instances) {
+      if (instance.is_skinned) warn("skins are not read: meshes are shown as they were before any joint moved");
+      placing_ = placing_of(instance.world);
+      object_ = object_number(instance.name);
+      const JsonPlace list = file_.item("meshes", instance.mesh).at("primitives");
+      for (std::size_t i = 0; i < list.size(); ++i) add_primitive(list[i]);
+    }
+    if (mesh_.triangles.empty()) {
+      throw InputError(file_.name() + ": no triangles in its scene, so nothing to draw; export it with its meshes");
+    }
+    return {std::move(mesh_), std::move(nodes.cameras)};
+  }
+
+ private:
+  void warn(const std::string& text) {
+    if (warned_.insert(text).second) warnings_.push_back(file_.name() + ": " + text);
+  }
+
+  // Nodes of one name are one object.
+  std::uint32_t object_number(const std::string& name) {
+    const auto [place, added] = object_numbers_.try_emplace(name, static_cast<std::uint32_t>(mesh_.objects.size()));
+    if (added) mesh_.objects.push_back(name);
+    return place->second;
+  }
+
+  void add_primitive(const JsonPlace& place) {
+    spend(place, 1);  // its triangles come later: many empty ones cost time, too
+    const std::uint64_t mode = place.whole_or("mode", 6, 4);
+    if (mode < 4) {
+      constexpr std::array<const char*, 4> kNames{"points", "lines", "line loops", "line strips"};
+      place.at("mode").fail(std::string(kNames[mode]) + " are not read from glTF in this version",
+                            "export triangles only");
+    }
+    if (place.find("targets")) warn("morph targets are not read: the base shape is shown");
+    const JsonPlace attributes = place.at("attributes");
+    if (!attributes.find("POSITION")) {
+      warn("primitives without POSITION are passed over");
+      return;
+    }
+    if (const auto extensions = place.find("extensions");
+        extensions && extensions->find("KHR_draco_mesh_compression")) {
+      if (!file_.follow(attributes.at("POSITION"), "accessors").find("bufferView")) {
+        place.fail("compressed with KHR_draco_mesh_compression, which is not read here", "export it uncompressed");
+      }
+    }
+    material_ = read_material(place);
+    attributes_ = read_attributes(place, attributes);
+    material_.is_lit = material_.is_lit && attributes_.color == nullptr;
+    add_triangles(place, mode);
+  }
+
+  Material read_material(const JsonPlace& primitive) {
+    Material result;
+    const std::optional<JsonPlace> index = primitive.find("material");
+    if (!index) return result;  // the format's default: white, back faces not seen
+    const JsonPlace place = file_.follow(*index, "materials");
+    result.is_two_sided = place.flag_or("doubleSided", false);
+    if (const auto extensions = place.find("extensions")) result.is_lit = !extensions->find("KHR_materials_unlit");
+    const std::string alpha = place.text_or("alphaMode", "OPAQUE");
+    if (alpha != "OPAQUE") warn("alphaMode " + in_quotes(alpha) + " is not read: everything is drawn opaque");
+    const std::optional<JsonPlace> shading = place.find("pbrMetallicRoughness");
+    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) warn_of_texture(place, key);
+    if (!shading) return result;
+    for (const char* key : {"baseColorTexture", "metallicRoughnessTexture"}) warn_of_texture(*shading, key);
+    if (const std::optional<JsonPlace> factor = shading->find("baseColorFactor")) {
+      if (factor->size() != 4) factor->fail(std::to_string(factor->size()) + " numbers", "write 4");
+      for (std::size_t i = 0; i < 4; ++i) result.base[i] = std::clamp((*factor)[i].number(), 0.0, 1.0);
+    }
+    return result;
+  }
+
+  void warn_of_texture(const JsonPlace& place, const char* key) {
+    if (place.find(key)) warn("textures are not in this version: base colours are shown without them");
+  }
+
+  Attributes read_attributes(const JsonPlace& primitive, const JsonPlace& list) {
+    Attributes result;
+    const auto read = [&](const char* key, int least, int most) -> const GltfAccessor* {
+      const std::optional<JsonPlace> index = list.find(key);
+      if (!index) return nullptr;
+      const GltfAccessor* accessor = checked(file_.accessor(*index), *index, least, most);
+      if (result.position != nullptr && accessor->count != result.position->count) {
+        index->fail(
+            std::to_string(accessor->count) + " elements for " + std::to_string(result.position->count) + " positions",
+            "export the file again");
+      }
+      return accessor;
+    };
+    result.position = read("POSITION", 3, 3);
+    result.normal = read("NORMAL", 3, 3);
+    result.color = read("COLOR_0", 3, 4);
+    result.uv = read("TEXCOORD_0", 2, 2);
+    if (result.color != nullptr && result.color->component != GltfComponent::f32 && !result.color->normalized) {
+      list.at("COLOR_0").fail("colours of whole numbers that are not normalized", "add \"normalized\": true");
+    }
+    if (const std::optional<JsonPlace> index = primitive.find("indices")) {
+      result.indices = checked(file_.accessor(*index), *index, 1, 1);
+      const GltfComponent kind = result.indices->component;
+      const bool is_unsigned = kind == GltfComponent::u8 || kind == GltfComponent::u16 || kind == GltfComponent::u32;
+      if (!is_unsigned || result.indices->normalized) {
+        index->fail("indices that are no unsigned whole numbers", "use component type 5121, 5123 or 5125");
+      }
+    }
+    return result;
+  }
+
+  void spend(const JsonPlace& place, std::uint64_t count) {
+    if (count > left_) place.fail("the scene has more triangles than are read here", "export fewer, or in parts");
+    left_ -= static_cast<std::size_t>(count);
+  }
+
+  void add_triangles(const JsonPlace& place, std::uint64_t mode) {
+    const GltfAccessor* indices = attributes_.indices;
+    const std::uint64_t corners = indices != nullptr ? indices->count : attributes_.position->count;
+    if (corners < 3 || (mode == 4 && corners % 3 != 0)) {
+      place.fail(std::to_string(corners) + " corners make no whole triangles", "export the file again");
+    }
+    const std::uint64_t count = mode == 4 ? corners / 3 : corners - 2;
+    spend(place, count);
+    mesh_.parts.push_back(
+        {object_, mesh_.triangles.size(), static_cast<std::size_t>(count), 0, material_.is_two_sided});
+    new_index_ = {};  // clear() would keep a table as long as the largest primitive
+    for (std::uint64_t i = 0; i < count; ++i) {
+      // A strip turns every other triangle round; a fan keeps its first vertex, as its last corner.
+      std::array<std::uint64_t, 3> at{3 * i, 3 * i + 1, 3 * i + 2};
+      if (mode == 5) at = {i, i + 1 + i % 2, i + 2 - i % 2};
+      if (mode == 6) at = {i + 1, i + 2, 0};
+      if (placing_.is_mirrored) std::swap(at[1], at[2]);
+      for (std::uint64_t& corner : at) corner = source_vertex(corner);
+      add_triangle(at);
+    }
+  }
+
+  std::uint64_t source_vertex(std::uint64_t corner) const {
+    if (attributes_.indices == nullptr) return corner;
+    const auto vertex = static_cast<std::uint64_t>(read_element(*attributes_.indices, corner)[0]);
+    if (vertex >= attributes_.position->count) {
+      throw InputError(attributes_.indices->place + ": element " + std::to_string(corner) + " is vertex " +
+                       std::to_string(vertex) + " of " + std::to_string(attributes_.position->count) +
+                       "; correct it, or export the file again");
+    }
+    return vertex;
+  }
+
+  // Only vertices that are used get into the mesh, each once: primitives often share one long list.
+  void add_triangle(const std::array<std::uint64_t, 3>& from) {
+    const bool is_flat = material_.is_lit && attributes_.normal == nullptr;  // the format asks for it
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
+      if (is_flat) {
+        triangle[i] = next;
+        mesh_.vertices.push_back(make_vertex(from[i]));
+        continue;
+      }
+      const auto [place, added] = new_index_.try_emplace(from[i], next);
+      triangle[i] = place->second;
+      if (added) mesh_.vertices.push_back(make_vertex(from[i]));
+    }
+    if (is_flat) {
+      const auto corner = [&](std::size_t i) -> MeshVertex& { return mesh_.vertices[triangle[i]]; };
+      const Vec3 a = subtract(corner(1).position, corner(0).position);
+      const Vec3 normal = normalized(cross(a, subtract(corner(2).position, corner(0).position)));
+      for (std::size_t i = 0; i < 3; ++i) corner(i).normal = normal;
+    }
+    mesh_.triangles.push_back(triangle);
+  }
+
+  MeshVertex make_vertex(std::uint64_t i) const {
+    MeshVertex made;
+    const Rgba p = read_element(*attributes_.position, i);
+    const Vec4 world = transform(placing_.world, {p[0], p[1], p[2], 1});
+    for (std::size_t k = 0; k < 3; ++k) {
+      made.position[k] = world[k];
+      if (!(std::abs(world[k]) <= kLargestCoordinate)) {
+        throw InputError(attributes_.position->place + ": element " + std::to_string(i) +
+                         " is beyond 1e30 in the world; scale the model down");
+      }
+    }
+    if (attributes_.normal != nullptr && material_.is_lit) {
+      const Rgba n = read_element(*attributes_.normal, i);
+      Vec3 turned{};
+      for (std::size_t k = 0; k < 3; ++k) turned[k] = dot(placing_.normal_rows[k], {n[0], n[1], n[2]});
+      made.normal = normalized(turned);
+    }
+    Rgba color = material_.base;
+    if (attributes_.color != nullptr) {
+      const Rgba own = read_element(*attributes_.color, i);
+      for (std::size_t k = 0; k < 3; ++k) color[k] *= own[k];
+      if (attributes_.color->width == 4) color[3] *= own[3];
+    }
+    for (std::size_t k = 0; k < 3; ++k) made.rgba[k] = display_code(color[k]);
+    made.rgba[3] = std::clamp(color[3], 0.0, 1.0) * 255;  // opacity is linear in both worlds
+    if (attributes_.uv != nullptr) {
+      const Rgba uv = read_element(*attributes_.uv, i);
+      made.u = uv[0];
+      made.v = uv[1];
+    }
+    return made;
+  }
+
+  GltfFile& file_;
+  std::vector<std::string>& warnings_;
+  std::size_t left_;  // triangles that may still be made
+  Mesh mesh_;
+  std::set<std::string> warned_;
+  std::unordered_map<std::string, std::uint32_t> object_numbers_;
+  std::uint32_t object_ = 0;
+  Placing placing_;    // of the instance at hand
+  Material material_;  // of the primitive at hand, as are the next two
+  Attributes attributes_;
+  std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
+};
+
+}  // namespace
+
+double display_code(double linear) {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 255;  // the curve's own end is one unit in the last place off
+  return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
+}
+
+GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
+                     std::vector<std::string>& warnings, std::size_t most_triangles) {
+  GltfFile parsed(std::move(bytes), file, source);
+  return GltfMeshBuilder(parsed, warnings, most_triangles).run();
+}
+
+GltfModel read_gltf_file(const std::string& path, std::vector<std::string>& warnings) {
+  std::optional<std::string> bytes = read_regular_file(path);
+  if (!bytes) throw InputError(path + ": cannot be read as a file; check the name and its permissions");
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  const auto beside = [&folder](const std::string& name) { return read_regular_file((folder / name).string()); };
+  return parse_gltf(std::move(*bytes), path, beside, warnings);
+}
+
+}  // namespace halfplane

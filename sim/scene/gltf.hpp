@@ -1,0 +1,31 @@
+// glTF 2.0 files into meshes: positions, normals, colours, one set of texture coordinates, indices, triangle modes,
+// base colours, culling, node transforms, cameras. What is left out, and the colour space, is in docs/gltf.md.
+//
+// Container, JSON, buffers and accessors are ours, on nlohmann-json: docs/adr/0008-own-gltf-reader.md says why.
+#pragma once
+
+#include "sim/scene/gltf_nodes.hpp"
+#include "sim/scene/mesh.hpp"
+
+namespace halfplane {
+
+struct GltfModel {
+  Mesh mesh;                        ///< in world space; colours as display codes, 0...255
+  std::vector<GltfCamera> cameras;  ///< of the scene that was read
+};
+
+/// A small file can ask for any number of triangles (one mesh at many nodes): at most so many are made.
+inline constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 25;
+
+/// Reads the default scene. `file` is the name for messages. Each kind of warning comes once. Throws InputError
+/// "file: place: what; the mend", also when the file has more than `most_triangles`, or none.
+[[nodiscard]] GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
+                                   std::vector<std::string>& warnings, std::size_t most_triangles = kMostGltfTriangles);
+
+/// Reads a .gltf or .glb file (its first bytes decide which); external buffers are looked for beside it.
+[[nodiscard]] GltfModel read_gltf_file(const std::string& path, std::vector<std::string>& warnings);
+
+/// A linear colour component of 0...1 (clamped) as an sRGB display code, 0...255, not rounded (IEC 61966-2-1).
+[[nodiscard]] double display_code(double linear);
+
+}  // namespace halfplane

@@ -1,0 +1,189 @@
+#include "sim/scene/gltf_file.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "model/config.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+// Extensions that change nothing here, or that we know: quantization only allows more kinds of number.
+constexpr std::array<std::string_view, 2> kKnownExtensions{"KHR_materials_unlit", "KHR_mesh_quantization"};
+
+constexpr std::uint32_t kMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
+
+// Four bytes, little-endian; at + 4 <= bytes.size().
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    word |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  }
+  return word;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+// %20 and its like; a % that starts no code stands for itself.
+std::string percent_decoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(text[i + 2]) : -1;
+    if (text[i] == '%' && low >= 0) {
+      result += static_cast<char>(high * 16 + low);
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
+  return result;
+}
+
+// The name of a file beside this one, and not a place on a disk or a network.
+bool is_relative(const std::string& name) {
+  return !name.empty() && name.front() != '/' && name.front() != '\\' && name.find(':') == std::string::npos &&
+         name.find('\0') == std::string::npos;
+}
+
+}  // namespace
+
+std::optional<std::string> decode_base64(std::string_view text) {
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  std::string result;
+  result.reserve(text.size() * 3 / 4);
+  std::uint32_t bits = 0;  // what is not yet written, in the low `held` bits
+  int held = 0;
+  for (const char c : text) {
+    std::uint32_t value = 0;
+    if (c >= 'A' && c <= 'Z') {
+      value = static_cast<std::uint32_t>(c - 'A');
+    } else if (c >= 'a' && c <= 'z') {
+      value = static_cast<std::uint32_t>(c - 'a' + 26);
+    } else if (c >= '0' && c <= '9') {
+      value = static_cast<std::uint32_t>(c - '0' + 52);
+    } else if (c == '+' || c == '/') {
+      value = c == '+' ? 62 : 63;
+    } else {
+      return std::nullopt;
+    }
+    bits = (bits << 6 | value) & 0xffff;
+    held += 6;
+    if (held < 8) continue;
+    held -= 8;
+    result += static_cast<char>(bits >> held & 0xff);
+  }
+  return text.size() % 4 == 1 ? std::nullopt : std::optional(result);  // a single letter left holds no byte
+}
+
+GltfFile::GltfFile(std::string bytes, std::string name, BufferSource source)
+    : bytes_(std::move(bytes)), name_(std::move(name)), source_(std::move(source)), text_(bytes_) {
+  if (bytes_.size() >= 4 && word_at(bytes_, 0) == kMagic) split_glb();
+  json_ = parse_json(text_, name_);
+  check_head();
+}
+
+// Header: magic, version, length; then chunks of length, type, bytes: JSON first, BIN second, others passed over.
+void GltfFile::split_glb() {
+  const auto refuse = [this](const std::string& what) {
+    throw InputError(name_ + ": " + what + "; export the file again");
+  };
+  if (bytes_.size() < 20) refuse("a .glb that ends in its header");
+  if (word_at(bytes_, 4) != 2) refuse("a .glb of version " + std::to_string(word_at(bytes_, 4)) + ", not 2");
+  const std::size_t length = word_at(bytes_, 8);
+  if (length > bytes_.size() || length < 20) {
+    refuse("a .glb of " + std::to_string(length) + " bytes in a file of " + std::to_string(bytes_.size()));
+  }
+  const std::string_view all = std::string_view(bytes_).substr(0, length);
+  for (std::size_t at = 12, number = 0; at + 8 <= length; ++number) {
+    const std::size_t size = word_at(all, at);
+    const std::uint32_t type = word_at(all, at + 4);
+    if (size > length - at - 8) refuse("chunk " + std::to_string(number) + " goes past the end of the .glb");
+    if (number == 0 && type != kJsonChunk) refuse("the first chunk of the .glb is not JSON");
+    if (number == 0) text_ = all.substr(at + 8, size);
+    if (number == 1 && type == kBinChunk) chunk_ = all.substr(at + 8, size);
+    at += 8 + size;
+  }
+}
+
+void GltfFile::check_head() const {
+  const JsonPlace asset = root().at("asset");
+  const std::string version = asset.at("version").text(), least = asset.text_or("minVersion", "2.0");
+  if (version.substr(0, 2) != "2." || least != "2.0") {
+    asset.fail("glTF of version " + in_quotes(version.substr(0, 2) == "2." ? least : version), "export it as glTF 2.0");
+  }
+  const std::optional<JsonPlace> required = root().find("extensionsRequired");
+  for (std::size_t i = 0; required && i < required->size(); ++i) {
+    const std::string extension = (*required)[i].text();
+    if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), extension) != kKnownExtensions.end()) continue;
+    const bool is_packed =
+        extension.find("draco") != std::string::npos || extension.find("meshopt") != std::string::npos;
+    (*required)[i].fail("the file needs " + in_quotes(extension) + ", which is not read here",
+                        is_packed ? "export it without compression" : "export it without that extension");
+  }
+}
+
+std::size_t GltfFile::count(std::string_view list) const {
+  const std::optional<JsonPlace> found = root().find(list);
+  return found ? found->size() : 0;
+}
+
+const std::string& GltfFile::buffer(const JsonPlace& index) {
+  const std::size_t number = index.index(count("buffers"), "buffers");
+  const auto known = buffers_.find(number);
+  if (known != buffers_.end()) return known->second;
+  const JsonPlace place = item("buffers", number);
+  const std::uint64_t length = place.at("byteLength").whole(std::uint64_t{1} << 40);
+  std::optional<std::string> data;
+  const std::optional<JsonPlace> uri = place.find("uri");
+  if (!uri) {
+    if (number != 0 || !chunk_) place.fail("no uri, and no bytes for it in the file", "export the file again");
+    data = std::string(*chunk_);
+  } else if (const std::string text = uri->text(); text.substr(0, 5) == "data:") {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view head = std::string_view(text).substr(0, comma);
+    if (comma < text.size() && head.size() >= 7 && head.substr(head.size() - 7) == ";base64") {
+      data = decode_base64(std::string_view(text).substr(comma + 1));
+    }
+    if (!data) uri->fail("a data: URI that is not base64", "export the file again, or with a .bin file");
+  } else {
+    const std::string file = percent_decoded(text);
+    if (!is_relative(file)) uri->fail(in_quotes(file) + " is no file beside this one", "give a relative name");
+    data = source_(file);
+    if (!data) uri->fail(in_quotes(file) + " cannot be read", "put it beside the glTF file");
+  }
+  if (data->size() < length) {
+    place.fail("byteLength " + std::to_string(length) + ", but there are " + std::to_string(data->size()) + " bytes",
+               "export the file again; this one is cut off");
+  }
+  data->resize(static_cast<std::size_t>(length));
+  return buffers_.emplace(number, std::move(*data)).first->second;
+}
+
+ByteSpan GltfFile::view(const JsonPlace& view_place) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 40;  // so that a sum of two is exact
+  const std::string& data = buffer(view_place.at("buffer"));
+  const std::uint64_t offset = view_place.whole_or("byteOffset", kMost, 0);
+  const std::uint64_t length = view_place.at("byteLength").whole(kMost);
+  if (offset + length > data.size()) {
+    view_place.fail("bytes " + std::to_string(offset) + "..." + std::to_string(offset + length) + " of a buffer of " +
+                        std::to_string(data.size()),
+                    "correct byteOffset or byteLength");
+  }
+  return ByteSpan(reinterpret_cast<const std::uint8_t*>(data.data()), data.size())
+      .subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+}
+
+const GltfAccessor& GltfFile::accessor(const JsonPlace& index) {
+  const std::size_t number = index.index(count("accessors"), "accessors");
+  const auto known = accessors_.find(number);
+  if (known != accessors_.end()) return known->second;
+  return accessors_.emplace(number, make_accessor(item("accessors", number))).first->second;
+}
+
+}  // namespace halfplane

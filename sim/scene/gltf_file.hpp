@@ -1,0 +1,88 @@
+// A glTF 2.0 file in either container (.gltf: JSON; .glb: JSON and bytes), its buffers, and the numbers in them. Every
+// offset and length is checked against what it lies in before anything is read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/scene/json_place.hpp"
+
+namespace halfplane {
+
+using ByteSpan = std::span<const std::uint8_t>;
+
+/// The bytes of an external buffer by its (decoded) relative name, or nothing when there is none.
+using BufferSource = std::function<std::optional<std::string>(const std::string& name)>;
+
+/// The kinds of number in a buffer, by the codes of the file format.
+enum class GltfComponent : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+
+/// A checked window on `count` elements of 1...4 numbers: every read of element i < count lies inside the bytes.
+struct GltfAccessor {
+  std::uint64_t count = 0;
+  int width = 1;  ///< numbers per element
+  GltfComponent component = GltfComponent::f32;
+  bool normalized = false;  ///< integers stand for 0...1 or -1...1
+  ByteSpan bytes;           ///< from the first element on; empty: all zero
+  std::size_t stride = 0;   ///< bytes from one element to the next
+
+  // Elements that are replaced: ascending element numbers and the values for them, packed.
+  std::uint64_t sparse_count = 0;
+  GltfComponent sparse_component = GltfComponent::u32;
+  ByteSpan sparse_indices, sparse_values;
+
+  std::string place;  ///< for messages: "file: accessors[3]"
+};
+
+/// Element i < count, converted as the format says (binary32 exactly); what an element does not have is 0. Throws
+/// InputError for a number that is NaN or infinite.
+[[nodiscard]] std::array<double, 4> read_element(const GltfAccessor& accessor, std::uint64_t i);
+
+class GltfFile {
+ public:
+  /// Parses the container and the JSON; checks version and required extensions. Throws InputError.
+  GltfFile(std::string bytes, std::string name, BufferSource source);
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] JsonPlace root() const { return {*json_, name_}; }
+  /// How many entries a top-level list ("nodes") has; 0 when it is left out.
+  [[nodiscard]] std::size_t count(std::string_view list) const;
+  /// Entry i < count(list) of a top-level list.
+  [[nodiscard]] JsonPlace item(std::string_view list, std::size_t i) const { return root().at(list)[i]; }
+  /// The entry of `list` that an index stands for.
+  [[nodiscard]] JsonPlace follow(const JsonPlace& index, std::string_view list) const {
+    return item(list, index.index(count(list), list));
+  }
+  /// The accessor that an index stands for. Buffers are loaded when first used. The reference holds as long as this.
+  [[nodiscard]] const GltfAccessor& accessor(const JsonPlace& index);
+
+ private:
+  void split_glb();
+  void check_head() const;
+  [[nodiscard]] GltfAccessor make_accessor(const JsonPlace& place);
+  void add_sparse(GltfAccessor& accessor, const JsonPlace& place);
+  [[nodiscard]] ByteSpan view(const JsonPlace& view_place);
+  [[nodiscard]] const std::string& buffer(const JsonPlace& index);
+
+  std::string bytes_;  // the whole file
+  std::string name_;
+  BufferSource source_;
+  std::string_view text_;                  // the JSON in bytes_
+  std::optional<std::string_view> chunk_;  // the BIN chunk in bytes_
+  std::shared_ptr<const nlohmann::json> json_;
+  std::map<std::size_t, std::string> buffers_;  // those that were used; maps keep what they hold in place
+  std::map<std::size_t, GltfAccessor> accessors_;
+};
+
+/// The bytes of a base64 text (RFC 4648; the padding may be left out), or nothing when it is none.
+[[nodiscard]] std::optional<std::string> decode_base64(std::string_view text);
+
+}  // namespace halfplane

@@ -1,0 +1,227 @@
+#include "sim/scene/gltf_nodes.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numbers>
+
+#include "model/config.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr Mat4 kIdentity{Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 0}, Vec4{0, 0, 1, 0}, Vec4{0, 0, 0, 1}};
+
+Mat4 product(const Mat4& a, const Mat4& b) {
+  Mat4 result{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      for (std::size_t i = 0; i < 4; ++i) result[row][column] += a[row][i] * b[i][column];
+    }
+  }
+  return result;
+}
+
+// A list of exactly N numbers, each within kLargestCoordinate.
+template <std::size_t N>
+std::array<double, N> numbers_of(const JsonPlace& place) {
+  if (place.size() != N) place.fail(std::to_string(place.size()) + " numbers", "write " + std::to_string(N));
+  std::array<double, N> result{};
+  for (std::size_t i = 0; i < N; ++i) {
+    result[i] = place[i].number();
+    if (std::abs(result[i]) > kLargestCoordinate) place[i].fail("beyond +-1e30", "choose a smaller number");
+  }
+  return result;
+}
+
+// The rotation of a quaternion x, y, z, w, taken to length 1: exporters write binary32.
+Mat4 rotation_matrix(const JsonPlace& place) {
+  std::array<double, 4> q = numbers_of<4>(place);
+  const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+  if (!(norm > 0)) place.fail("a rotation of length 0", "write 0, 0, 0, 1 for none");
+  for (double& part : q) part /= norm;
+  const double x = q[0], y = q[1], z = q[2], w = q[3];
+  return {Vec4{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
+          Vec4{2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
+          Vec4{2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}, Vec4{0, 0, 0, 1}};
+}
+
+// matrix (16 numbers, column by column), or translation x rotation x scale, each of them optional.
+Mat4 local_transform(const JsonPlace& node) {
+  const std::optional<JsonPlace> matrix = node.find("matrix"), translation = node.find("translation"),
+                                 rotation = node.find("rotation"), scale = node.find("scale");
+  if (matrix) {
+    if (translation || rotation || scale) node.fail("a matrix besides translation, rotation or scale", "keep one");
+    const std::array<double, 16> m = numbers_of<16>(*matrix);
+    Mat4 result{};
+    for (std::size_t i = 0; i < 16; ++i) result[i % 4][i / 4] = m[i];
+    if (result[3] != kIdentity[3]) matrix->fail("a last row that is not 0, 0, 0, 1", "export the file again");
+    return result;
+  }
+  Mat4 result = rotation ? rotation_matrix(*rotation) : kIdentity;
+  const Vec3 factors = scale ? numbers_of<3>(*scale) : Vec3{1, 1, 1};
+  const Vec3 offset = translation ? numbers_of<3>(*translation) : Vec3{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) result[row][column] *= factors[column];
+    result[row][3] = offset[row];
+  }
+  return result;
+}
+
+Vec3 column(const Mat4& m, std::size_t i) { return {m[0][i], m[1][i], m[2][i]}; }
+
+double positive(const JsonPlace& lens, const char* key) {
+  const double value = lens.at(key).number();
+  if (!(value > 0) || value > kLargestCoordinate) lens.at(key).fail("not a number above 0", "choose one up to 1e30");
+  return value;
+}
+
+// near, far and what the lens sees. Width follows from the target's aspect, so that nothing is stretched.
+void read_lens(const JsonPlace& camera, CameraRequest& request) {
+  const std::string type = camera.at("type").text();
+  if (type != "perspective" && type != "orthographic") {
+    camera.fail("type " + in_quotes(type), "it is perspective or orthographic");
+  }
+  const JsonPlace lens = camera.at(type);
+  if (type == "perspective") {
+    request.fov = positive(lens, "yfov") * 180 / std::numbers::pi;
+    if (!(*request.fov < 180)) lens.at("yfov").fail("not below pi", "choose an angle in radians");
+    request.near = positive(lens, "znear");
+    request.far = lens.find("zfar") ? positive(lens, "zfar") : std::numeric_limits<double>::infinity();
+  } else {
+    request.ortho = 2 * positive(lens, "ymag");
+    request.near = lens.at("znear").number();
+    if (*request.near < 0) lens.at("znear").fail("below 0", "choose 0 or more");
+    request.far = positive(lens, "zfar");
+  }
+  if (!(*request.near < *request.far)) lens.fail("znear is not nearer than zfar", "choose znear < zfar");
+}
+
+class Walker {
+ public:
+  Walker(const GltfFile& file, std::vector<std::string>& warnings) : file_(file), warnings_(warnings) {}
+
+  GltfNodes run() {
+    reached_.assign(file_.count("nodes"), false);
+    push_roots();
+    while (!stack_.empty()) {
+      const Entry entry = std::move(stack_.back());
+      stack_.pop_back();
+      visit(entry);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Entry {
+    std::size_t node = 0;
+    Mat4 parent{};
+  };
+
+  // The stack gives back what was pushed last, so lists are pushed from their ends.
+  void push_roots() {
+    const std::size_t scenes = file_.count("scenes"), nodes = file_.count("nodes");
+    if (scenes == 0) {
+      std::vector<bool> is_child(nodes, false);
+      for (std::size_t i = 0; i < nodes; ++i) {
+        const std::optional<JsonPlace> children = file_.item("nodes", i).find("children");
+        for (std::size_t k = 0; children && k < children->size(); ++k) {
+          is_child[(*children)[k].index(nodes, "nodes")] = true;
+        }
+      }
+      for (std::size_t i = nodes; i-- > 0;) {
+        if (!is_child[i]) stack_.push_back({i, kIdentity});
+      }
+      return;
+    }
+    const std::optional<JsonPlace> chosen = file_.root().find("scene");
+    const std::size_t number = chosen ? chosen->index(scenes, "scenes") : 0;
+    if (scenes > 1) {
+      warnings_.push_back(file_.name() + ": scene " + std::to_string(number) + " of " + std::to_string(scenes) +
+                          " is drawn, the file's default");
+    }
+    if (const std::optional<JsonPlace> roots = file_.item("scenes", number).find("nodes")) push(*roots, kIdentity);
+  }
+
+  void push(const JsonPlace& list, const Mat4& parent) {
+    for (std::size_t i = list.size(); i-- > 0;) stack_.push_back({list[i].index(reached_.size(), "nodes"), parent});
+  }
+
+  void visit(const Entry& entry) {
+    const JsonPlace node = file_.item("nodes", entry.node);
+    if (reached_[entry.node]) node.fail("reached on two ways or in a ring", "give every node one parent");
+    reached_[entry.node] = true;
+    const Mat4 world = product(entry.parent, local_transform(node));
+    for (const Vec4& row : world) {
+      for (const double number : row) {
+        if (!(std::abs(number) <= kLargestCoordinate)) node.fail("its place in the world is beyond 1e30", "move it");
+      }
+    }
+    if (const std::optional<JsonPlace> index = node.find("mesh")) {
+      const std::size_t mesh = index->index(file_.count("meshes"), "meshes");
+      const std::string name = node.text_or("name", file_.item("meshes", mesh).text_or("name", ""));
+      result_.instances.push_back({mesh, world, name, node.find("skin").has_value()});
+    }
+    if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, world);
+    if (const std::optional<JsonPlace> children = node.find("children")) push(*children, world);
+  }
+
+  void add_camera(const JsonPlace& node, const JsonPlace& index, const Mat4& world) {
+    GltfCamera made;
+    made.number = index.index(file_.count("cameras"), "cameras");
+    const JsonPlace camera = file_.item("cameras", made.number);
+    made.name = camera.text_or("name", "");
+    made.node_name = node.text_or("name", "");
+    read_lens(camera, made.request);
+    const Vec3 eye = column(world, 3), back = normalized(column(world, 2)), up = normalized(column(world, 1));
+    if (back == Vec3{} || up == Vec3{}) node.fail("a camera whose axes are scaled to 0", "scale its node by 1");
+    // Far enough away that a target at an eye far from the origin is not lost in binary64.
+    made.request.eye = eye;
+    made.request.target = subtract(eye, scaled(back, std::max(1.0, length(eye))));
+    made.request.up = up;
+    result_.cameras.push_back(made);
+  }
+
+  const GltfFile& file_;
+  std::vector<std::string>& warnings_;
+  std::vector<Entry> stack_;
+  std::vector<bool> reached_;
+  GltfNodes result_;
+};
+
+bool is_called(const GltfCamera& camera, const std::string& name) {
+  return camera.name == name || camera.node_name == name;
+}
+
+}  // namespace
+
+GltfNodes walk_nodes(const GltfFile& file, std::vector<std::string>& warnings) { return Walker(file, warnings).run(); }
+
+CameraRequest choose_camera(const std::vector<GltfCamera>& cameras, const CameraRequest& request) {
+  if (!request.name) return request == CameraRequest() && !cameras.empty() ? cameras.front().request : request;
+  if (cameras.empty()) return request;  // frame() says that there are none
+  const std::string& name = *request.name;
+  auto found = std::find_if(cameras.begin(), cameras.end(), [&](const GltfCamera& c) { return is_called(c, name); });
+  if (found == cameras.end()) {  // many exporters give no names
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error == std::errc() && end == name.data() + name.size()) {
+      found = std::find_if(cameras.begin(), cameras.end(), [&](const GltfCamera& c) { return c.number == number; });
+    }
+  }
+  if (found == cameras.end()) {
+    std::string names;
+    for (const GltfCamera& camera : cameras) {
+      const std::string& shown = camera.name.empty() ? camera.node_name : camera.name;
+      names += (names.empty() ? "" : ", ") + (shown.empty() ? std::to_string(camera.number) : printable(shown));
+      if (names.size() > 200) break;
+    }
+    throw InputError("--camera: no camera " + in_quotes(name) + " in this scene; there are " + names);
+  }
+  CameraRequest rest = request;
+  rest.name.reset();
+  return merged(rest, found->request);
+}
+
+}  // namespace halfplane

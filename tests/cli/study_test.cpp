@@ -1,0 +1,87 @@
+// `--traversal` and `--fill-rule`: what they change in results, and who refuses them.
+#include "program.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class StudyRules : public Cli {};
+
+TEST_F(StudyRules, EveryTraversalGivesTheSameHashesAtItsOwnCost) {
+  const Arguments base{"render", "teapot", "--size", "96x72"};
+  const Json functional = result(base);
+  std::uint64_t covered = 0;
+  for (const char* traversal : {"tiled", "bbox", "scanline", "brute"}) {
+    Arguments arguments = base;
+    arguments.insert(arguments.end(), {"--engine", "scalar", "--traversal", traversal});
+    const Json json = result(arguments);
+    EXPECT_EQ(json["traversal"], traversal);
+    EXPECT_EQ(json["fill_rule"], "top_left");
+    EXPECT_EQ(json["double_draws"], 0u);
+    EXPECT_EQ(json["color_hash"], functional["color_hash"]) << traversal;
+    EXPECT_EQ(json["depth_hash"], functional["depth_hash"]) << traversal;
+    EXPECT_GT(json["time_s"]["raster"], 0.0);
+    covered = json["fragments"]["covered"];
+    const std::uint64_t tested = json["samples_tested"], drawn = json["primitives"]["drawn"];
+    if (std::string(traversal) == "scanline") {
+      EXPECT_EQ(tested, covered);
+    }
+    if (std::string(traversal) == "bbox") {
+      EXPECT_GT(tested, covered);
+    }
+    if (std::string(traversal) == "brute") {
+      EXPECT_EQ(tested, drawn * 96 * 72);
+    }
+  }
+}
+
+const char* const kSquare =
+    "halfplane 1\ntarget 24 24\nclear color 0 0 0 255 depth 1\nspace window\n"
+    "v 2 2 .5\nv 20 20 .5\nv 20 2 .5\nv 2 20 .5\nt 0 1 2 1 0 3\n";
+
+TEST_F(StudyRules, FillRulesShowInTheResultOfRenderAndCompare) {
+  write("square.hpt", kSquare);
+  const Json inclusive = result({"render", "square.hpt", "--engine", "scalar", "--fill-rule", "inclusive"});
+  EXPECT_EQ(inclusive["fill_rule"], "inclusive");
+  EXPECT_EQ(inclusive["double_draws"], 18u);
+  EXPECT_EQ(inclusive["fragments"]["covered"], 18u * 18u + 18u);
+  const Json offset = result({"compare", "square.hpt", "--fill-rule", "offset_point", "--traversal", "bbox"});
+  EXPECT_EQ(offset["engine"], "scalar");
+  EXPECT_EQ(offset["traversal"], "bbox");
+  EXPECT_EQ(offset["coverage"]["missing"], 18u);
+  EXPECT_EQ(offset["coverage"]["oracle_mismatches"], 0u);  // the oracle has the same rule
+  EXPECT_EQ(offset["samples_tested"], 2u * 18u * 18u);
+  const Json plain = result({"compare", "square.hpt"});
+  EXPECT_EQ(plain["engine"], "functional");
+  EXPECT_EQ(plain["fill_rule"], "top_left");
+  EXPECT_EQ(plain["coverage"]["missing"], 0u);
+}
+
+TEST_F(StudyRules, DrawsSheetIsWrittenByEveryEngineThatCountsAndShowsTheRule) {
+  write("square.hpt", kSquare);
+  for (const char* engine : {"functional", "scalar", "golden"})
+    EXPECT_EQ(run({"render", "square.hpt", "--engine", engine, "--draws", std::string(engine) + ".png"}).status, 0);
+  const Arguments inclusive{"render",      "square.hpt", "--engine", "scalar",
+                            "--fill-rule", "inclusive",  "--draws",  "inclusive.png"};
+  EXPECT_EQ(run(inclusive).status, 0);
+  EXPECT_GT(read("functional.png").size(), 500u);
+  EXPECT_NE(read("inclusive.png"), read("scalar.png"));
+  expect_refused({"render", "square.hpt", "--draws", "draws.npy"}, ".png");
+}
+
+TEST_F(StudyRules, OtherEnginesRefuseThemByName) {
+  for (const char* engine : {"functional", "golden", "golden32"}) {
+    expect_refused({"render", "triangle", "--engine", engine, "--traversal", "brute"}, "--traversal brute");
+    expect_refused({"render", "triangle", "--engine", engine, "--fill-rule", "inclusive"}, "--fill-rule inclusive");
+    expect_refused({"render", "triangle", "--engine", engine, "--fill-rule", "inclusive"}, engine);
+  }
+  expect_refused({"render", "triangle", "--traversal", "scanline"}, "add --engine scalar");
+  EXPECT_EQ(run({"render", "triangle", "--traversal", "tiled", "--fill-rule", "top_left"}).status, 0);
+}
+
+TEST_F(StudyRules, UnknownNamesAreRefusedWithTheLegalOnes) {
+  expect_refused({"render", "triangle", "--engine", "scalar", "--traversal", "spiral"}, "tiled,bbox,scanline,brute");
+  expect_refused({"compare", "triangle", "--fill-rule", "bottom_right"}, "top_left,offset_point,inclusive");
+}
+
+}  // namespace
+}  // namespace halfplane::cli
