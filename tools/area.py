@@ -22,7 +22,7 @@ SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper -abc9'
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
 STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'fine_raster', 'interpolate', 'depth_test', 'framebuffer']
 KEEP = ('setattr -mod -set keep_hierarchy 1 raster_top *skid_buffer* ' + ' '.join(f'{s} {s}_serial' for s in STAGES))
-PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 1'
+PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
 # Title, preset, settings.
 CONFIGURATIONS = [
     ('tiny, 1x1', 'tiny', []),
@@ -123,7 +123,7 @@ def placed(title):
         BUILD / f'{slug(title)}-ice40.log')
     run([*PLACE.split(), '--timing-allow-fail', '--json', netlist, '--report', report], BUILD / f'{slug(title)}-nextpnr.log')
     result = json.loads(report.read_text(encoding='utf-8'))
-    return {'cells': result['utilization']['ICESTORM_LC'], 'rams': result['utilization']['ICESTORM_RAM'],
+    return {'cells': result['utilization']['ICESTORM_LC']['used'], 'rams': result['utilization']['ICESTORM_RAM']['used'],
             'mhz': min(clock['achieved'] for clock in result['fmax'].values())}
 
 
