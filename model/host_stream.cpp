@@ -67,7 +67,7 @@ void HostStream::start_draw(const Draw& draw) {
   context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
   triangles_.clear();
   triangle_ = 0;
-  for_each_triangle(scene_, draw, [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  for_each_triangle(scene_, draw, context_->state.provoking, [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     triangles_.push_back({a, b, c});
   });
 }
@@ -112,7 +112,7 @@ void HostStream::send_clear(const Clear& command) {
 }
 
 void HostStream::send(const PrimitivePacket& packet, std::uint32_t primitive) {
-  HostPrimitive sent{packet, primitive, static_cast<std::uint32_t>(command_ - 1)};
+  HostPrimitive sent{packet, std::nullopt, primitive, static_cast<std::uint32_t>(command_ - 1)};
   sent.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
   pending_.push_back(sent);
 }

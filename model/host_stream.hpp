@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline.hpp"
+#include "stages/line_setup.hpp"
 
 namespace halfplane {
 
@@ -17,6 +18,7 @@ struct HostPrimitive {
   static constexpr std::uint32_t kNoCommand = ~0U;
 
   PrimitivePacket packet;
+  std::optional<LineSetup> line;  ///< beside a packet of kind line
   std::uint32_t primitive = 0;  ///< number of the input triangle over the whole scene; otherwise: of the next one
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
 };

@@ -63,12 +63,15 @@ struct Triangle {
   std::array<SnappedVertex, 3> v{};
 };
 
-/// What a primitive is. Everything but a triangle covers its whole box with one depth and one colour.
+/// What a primitive is. Rectangles and points cover their whole box with one depth and one colour. Bit 1 set: a token,
+/// which visits no tile on its way to depth_test.
 enum class PrimitiveKind : std::uint8_t {
-  triangle,
-  rectangle,   ///< a clear inside the scissor: drawn like a triangle that covers every pixel, and not counted
-  fast_clear,  ///< a clear of the whole target: marks tiles, writes no pixel
-  flush        ///< writes back all that is on the chip; the box is the whole target
+  triangle = 0,
+  rectangle = 1,   ///< a clear inside the scissor: drawn like a triangle that covers every pixel, and not counted
+  fast_clear = 2,  ///< a clear of the whole target: marks tiles, writes no pixel
+  flush = 3,       ///< writes back all that is on the chip; the box is the whole target
+  point = 4,       ///< a rectangle that is counted
+  line = 6         ///< the place of a line in program order; its pixels come from line_raster
 };
 
 /// The states that ride with a primitive.

@@ -12,12 +12,18 @@
 namespace halfplane {
 
 enum class Space { clip, window };
-enum class Topology { triangles, triangle_strip, triangle_fan };
+enum class Topology { triangles, triangle_strip, triangle_fan, lines, line_strip, line_loop, points };
 enum class DepthFunc { never, less, lequal, equal, greater, gequal, notequal, always };
 enum class Cull { none, back, front, both };
 enum class FrontFace { ccw, cw };
 enum class Shade { smooth, flat };
 enum class ColorInterp { affine, perspective };
+/// What is drawn of a triangle that is not culled: its samples, its three edges as lines, or its three corners as points.
+enum class PolygonMode { fill, line, point };
+/// Which vertex of a primitive gives the colour when `shade` is flat.
+enum class Provoking { first, last };
+/// Who is clipped when a point's centre is outside: its pixels only, or the point as a whole.
+enum class PointClip { pixel, center };
 enum class ClipZ { minus_one_one, zero_one };
 /// Which pixels a line covers; see "Lines" in docs/spec.md.
 enum class LineRule { midpoint, bresenham, diamond };
@@ -50,14 +56,24 @@ struct State {
   bool color_write = true;
   Cull cull = Cull::none;
   FrontFace front = FrontFace::ccw;  ///< as seen on the screen
-  Shade shade = Shade::smooth;       ///< flat: the colour of the first vertex of each triangle
+  Shade shade = Shade::smooth;       ///< flat: the colour of the provoking vertex
+  Provoking provoking = Provoking::first;
   ColorInterp color_interp = ColorInterp::affine;
+  PolygonMode polygon_mode = PolygonMode::fill;
+  std::array<double, 2> polygon_offset{0.0, 0.0};  ///< slope factor, constant in depth LSB; see "Polygon offset"
+  LineRule line_rule = LineRule::diamond;
+  std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: as the rule has it
+  double point_size = 1;          ///< side of the square, pixels, at least 1
+  PointClip point_clip = PointClip::pixel;
   ClipZ clip_z = ClipZ::minus_one_one;
   std::optional<Rect> scissor;       ///< none: the whole target
   std::optional<Viewport> viewport;  ///< none: the whole target
   std::array<double, 2> depth_range{0.0, 1.0};
   bool operator==(const State&) const = default;
 };
+
+/// Among the indices of a draw: ends a strip, fan, loop or list, and begins the next one (primitive restart).
+inline constexpr std::uint32_t kRestart = ~0U;
 
 /// Fills colour and depth inside the scissor of `state`.
 struct Clear {
@@ -81,7 +97,8 @@ struct EndFrame {};
 
 using Command = std::variant<Clear, Draw, EndFrame>;
 
-/// A whole input. Invariants (kept by every reader): indices < vertices.size(), all numbers finite, sizes positive.
+/// A whole input. Invariants (kept by every reader): indices < vertices.size() or kRestart, all numbers finite, sizes
+/// positive.
 struct Scene {
   std::string name;
   int width = 640, height = 480;  ///< target, pixels

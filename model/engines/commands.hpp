@@ -50,7 +50,7 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
       started = Clock::now();
     } else if (const auto* draw = std::get_if<Draw>(&scene.commands[i])) {
       const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
-      for_each_triangle(scene, *draw, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      for_each_triangle(scene, *draw, context.state.provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         geometry(context, cache, {a, b, c}, primitive++, options.skip, rendering.counters, batch);
         entries_done += 3;
         if (batch.size() >= kBatch) flush(context);

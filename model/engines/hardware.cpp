@@ -129,7 +129,9 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
       return;
     case PrimitiveKind::flush: cache_.flush(fragment, *this, counters_); return;
     case PrimitiveKind::triangle:
-    case PrimitiveKind::rectangle: break;
+    case PrimitiveKind::rectangle:
+    case PrimitiveKind::point:
+    case PrimitiveKind::line: break;
   }
   if (fragment.mask != 0) {
     cache_.access(fragment.tile_x, fragment.tile_y, *this, counters_);

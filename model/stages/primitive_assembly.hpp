@@ -1,29 +1,81 @@
-// Primitive assembly: indices and a topology in, triangles out, in program order.
+// Primitive assembly: indices and a topology in; triangles, lines or points out, in program order.
 //
-// In: a Draw and the scene's indices. Out: three vertex indices per triangle, the provoking vertex first.
-// Host side; it takes no cycles of the pipeline.
+// In: a Draw and the scene's indices. Out: the vertex indices of each primitive. kRestart among the indices ends a run;
+// what is left over at the end of a run makes no primitive. Host side; it takes no cycles of the pipeline.
 #pragma once
+
+#include <algorithm>
+#include <span>
 
 #include "../scene.hpp"
 
 namespace halfplane {
 
-/// The triangles of one draw, in order: calls visit(a, b, c) with indices into Scene::vertices, the provoking vertex first.
-/// Odd triangles of a strip swap their last two vertices, so that all of a strip faces one way.
-template <class Visit>
-void for_each_triangle(const Scene& scene, const Draw& draw, Visit&& visit) {
-  const std::uint32_t* index = scene.indices.data() + draw.first;
-  switch (draw.topology) {
+enum class PrimitiveType { triangle, line, point };
+
+/// What a topology's primitives are, before polygon_mode.
+[[nodiscard]] constexpr PrimitiveType primitive_type(Topology topology) {
+  switch (topology) {
     case Topology::triangles:
-      for (std::size_t i = 0; i + 2 < draw.count; i += 3) visit(index[i], index[i + 1], index[i + 2]);
-      break;
     case Topology::triangle_strip:
-      for (std::size_t i = 0; i + 2 < draw.count; ++i) visit(index[i], index[i + 1 + i % 2], index[i + 2 - i % 2]);
-      break;
-    case Topology::triangle_fan:
-      for (std::size_t i = 1; i + 1 < draw.count; ++i) visit(index[i], index[i + 1], index[0]);
-      break;
+    case Topology::triangle_fan: return PrimitiveType::triangle;
+    case Topology::lines:
+    case Topology::line_strip:
+    case Topology::line_loop: return PrimitiveType::line;
+    case Topology::points: break;
   }
+  return PrimitiveType::point;
+}
+
+/// Calls visit(indices) for each run of indices between restarts.
+template <class Visit>
+void for_each_run(const Scene& scene, const Draw& draw, Visit&& visit) {
+  std::span<const std::uint32_t> rest(scene.indices.data() + draw.first, draw.count);
+  while (!rest.empty()) {
+    const auto length = static_cast<std::size_t>(std::ranges::find(rest, kRestart) - rest.begin());
+    if (length > 0) visit(rest.first(length));
+    rest = rest.subspan(std::min(length + 1, rest.size()));
+  }
+}
+
+/// The triangles of one draw, in order: calls visit(a, b, c) with indices into Scene::vertices, the provoking vertex first,
+/// the others in the order that keeps the facing. Odd triangles of a strip are turned, so that all of it faces one way.
+template <class Visit>
+void for_each_triangle(const Scene& scene, const Draw& draw, Provoking provoking, Visit&& visit) {
+  const bool is_first = provoking == Provoking::first;
+  for_each_run(scene, draw, [&](std::span<const std::uint32_t> v) {
+    const std::size_t step = draw.topology == Topology::triangles ? 3 : 1;
+    for (std::size_t i = 0; i + 2 < v.size(); i += step) {
+      // In the order of the facing, and which of the three the rule for `first` and the rule for `last` name.
+      std::size_t a = i, b = i + 1, c = i + 2;
+      if (draw.topology == Topology::triangle_fan) a = i + 1, b = i + 2, c = 0;
+      if (draw.topology == Topology::triangle_strip && i % 2 == 1) std::swap(b, c);
+      if (is_first)
+        visit(v[a], v[b], v[c]);
+      else if (b == i + 2)
+        visit(v[b], v[c], v[a]);
+      else
+        visit(v[c], v[a], v[b]);
+    }
+  });
+}
+
+/// The lines of one draw, in order: calls visit(start, end). The last line of a loop runs from its last vertex to its first.
+template <class Visit>
+void for_each_line(const Scene& scene, const Draw& draw, Visit&& visit) {
+  for_each_run(scene, draw, [&](std::span<const std::uint32_t> v) {
+    const std::size_t step = draw.topology == Topology::lines ? 2 : 1;
+    for (std::size_t i = 0; i + 1 < v.size(); i += step) visit(v[i], v[i + 1]);
+    if (draw.topology == Topology::line_loop && v.size() > 1) visit(v.back(), v.front());
+  });
+}
+
+/// The points of one draw, in order: calls visit(vertex).
+template <class Visit>
+void for_each_point(const Scene& scene, const Draw& draw, Visit&& visit) {
+  for_each_run(scene, draw, [&](std::span<const std::uint32_t> v) {
+    for (const std::uint32_t index : v) visit(index);
+  });
 }
 
 }  // namespace halfplane

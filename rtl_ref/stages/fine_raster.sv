@@ -46,10 +46,14 @@ module fine_raster (
   logic             takes_tile, row_leaves, row_is_sent, is_last_row, stamps_ready;
   logic [ROW-1:0]   covered;
   logic [3*ROW-1:0] outside;  // by edge
+  logic [TILE-1:0]  column_in_box;
+  logic [STAMP-1:0] row_in_box;
+  logic [ROW-1:0]   in_box;
   logic [PIXEL-1:0] first_y;
 
   assign first_y      = (tile_i.top >> STAMP_SHIFT) << STAMP_SHIFT;
   assign is_last_row  = !tile_q.is_visit || (y_q >> STAMP_SHIFT) == (tile_q.bottom >> STAMP_SHIFT);
+  assign covered      = in_box & ({ROW{tile_q.is_inside}} | ~(outside[0+:ROW] | outside[ROW+:ROW] | outside[2*ROW+:ROW]));
   assign row_is_sent  = covered != '0 || is_last_row;
   assign row_leaves   = row_valid_q && (stamps_ready || !row_is_sent);
   assign tile_ready_o = !row_valid_q || (row_leaves && is_last_row);
@@ -114,15 +118,16 @@ module fine_raster (
       end
     end
 
+    // The box as columns and rows of pixels, and as samples in the order of `covered`.
     /* verilator lint_off UNSIGNED */  // the first and the last column compare with a constant
     /* verilator lint_off CMPCONST */
+    for (i = 0; i < TILE; i++) begin : gen_box_column
+      assign column_in_box[i] = PIXEL'(i) >= tile_q.left && PIXEL'(i) <= tile_q.right;
+    end
     for (j = 0; j < STAMP; j++) begin : gen_box_row
-      for (i = 0; i < TILE; i++) begin : gen_box_column
-        localparam int AT = (i / STAMP) * SAMPLES + j * STAMP + i % STAMP;
-        logic is_in_box;
-        assign is_in_box = tile_q.is_visit && PIXEL'(i) >= tile_q.left && PIXEL'(i) <= tile_q.right &&
-                           y_q + PIXEL'(j) >= tile_q.top && y_q + PIXEL'(j) <= tile_q.bottom;
-        assign covered[AT] = is_in_box && (tile_q.is_inside || !(outside[AT] || outside[ROW+AT] || outside[2*ROW+AT]));
+      assign row_in_box[j] = tile_q.is_visit && y_q + PIXEL'(j) >= tile_q.top && y_q + PIXEL'(j) <= tile_q.bottom;
+      for (i = 0; i < TILE; i++) begin : gen_sample
+        assign in_box[(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = column_in_box[i] && row_in_box[j];
       end
     end
     /* verilator lint_on CMPCONST */
