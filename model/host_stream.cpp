@@ -50,8 +50,8 @@ std::optional<HostPrimitive> HostStream::next() {
 
 /// Does the next piece of work; it may send nothing.
 void HostStream::advance() {
-  if (triangle_ < triangles_.size()) {
-    send_next_triangle();
+  if (assembled_next_ < assembled_.size()) {
+    send_next_primitive();
   } else if (command_ < scene_.commands.size()) {
     const Command& command = scene_.commands[command_++];
     if (const auto* clear = std::get_if<Clear>(&command)) send_clear(*clear);
@@ -65,38 +65,67 @@ void HostStream::advance() {
 
 void HostStream::start_draw(const Draw& draw) {
   context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
-  triangles_.clear();
-  triangle_ = 0;
-  for_each_triangle(scene_, draw, context_->state.provoking, [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    triangles_.push_back({a, b, c});
-  });
+  assembled_.clear();
+  assembled_next_ = 0;
+  for_each_primitive(scene_, draw, context_->state.provoking,
+                     [this](const AssembledPrimitive& assembled) { assembled_.push_back(assembled); });
 }
 
-void HostStream::send_next_triangle() {
-  pieces_.clear();
-  bool is_cut = false;
-  const auto index = triangles_[triangle_++];
-  if (context_->rect.width > 0 && context_->rect.height > 0) {
-    is_cut = geometry_for_hardware(*context_, vertices_, index, primitive_, counters_, pieces_);
-  } else {  // no packet can say so: culled here
-    geometry(*context_, vertices_, index, primitive_, Skip{}, counters_, pieces_);
+void HostStream::send_next_primitive() {
+  const AssembledPrimitive& assembled = assembled_[assembled_next_++];
+  if (drawn_as(context_->state, context_->draw.topology) != PrimitiveType::triangle) {
+    send_outline(assembled);
+  } else {
     pieces_.clear();
+    bool is_cut = false;
+    if (context_->rect.width > 0 && context_->rect.height > 0) {
+      is_cut = geometry_for_hardware(*context_, vertices_, assembled.index, primitive_, counters_, pieces_);
+    } else {  // no packet can say so: culled here
+      geometry(*context_, vertices_, assembled.index, primitive_, Skip{}, counters_, pieces_);
+      pieces_.clear();
+    }
+    for (const Triangle& piece : pieces_) send_triangle(piece, is_cut);
   }
-  for (const Triangle& piece : pieces_) send_triangle(piece, is_cut);
   ++primitive_;
+}
+
+/// Lines go beside a packet that holds their place, points as boxes: both with a pixel at least.
+void HostStream::send_outline(const AssembledPrimitive& assembled) {
+  outline_.lines.clear();
+  outline_.points.clear();
+  geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
+  for (const LinePrimitive& line : outline_.lines) {
+    const LineSetup& setup = line.setup;
+    send(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
+    pending_.back().line = setup;
+    pending_.back().line->primitive_id = pending_.back().packet.primitive_id;
+  }
+  for (const PointPrimitive& point : outline_.points) {
+    PrimitivePacket packet = draw_packet(PrimitiveKind::point, point.box);
+    packet.z.fill(point.drawn.at.z);
+    packet.rgba.fill(packet_color(point.drawn.at.rgba, widths_));
+    send(packet, primitive_);
+  }
+}
+
+PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
+  const State& state = context_->state;
+  PrimitivePacket packet;
+  packet.kind = static_cast<std::uint8_t>(kind);
+  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
+  packet.depth_write = state.depth_write ? 1 : 0;
+  packet.color_write = state.color_write ? 1 : 0;
+  set_box(packet, box);
+  return packet;
 }
 
 void HostStream::send_triangle(const Triangle& triangle, bool is_clipped) {
   const State& state = context_->state;
   const Rect& rect = context_->rect;
-  PrimitivePacket packet;
-  packet.kind = static_cast<std::uint8_t>(PrimitiveKind::triangle);
-  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
-  packet.depth_write = state.depth_write ? 1 : 0;
-  packet.color_write = state.color_write ? 1 : 0;
+  PrimitivePacket packet =
+      draw_packet(PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
   packet.cull = static_cast<std::uint8_t>(is_clipped ? Cull::none : state.cull);
   packet.front_cw = state.front == FrontFace::cw ? 1 : 0;
-  set_box(packet, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
   set_vertices(packet, triangle.v, widths_);
   send(packet, triangle.primitive);
 }
@@ -123,7 +152,7 @@ double HostStream::progress() const {
     return all == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(all);
   };
   const auto commands = static_cast<double>(scene_.commands.size());
-  const double left_of_draw = triangles_.empty() ? 0.0 : 1.0 - part(triangle_, triangles_.size());
+  const double left_of_draw = assembled_.empty() ? 0.0 : 1.0 - part(assembled_next_, assembled_.size());
   return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
 }
 

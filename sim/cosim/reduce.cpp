@@ -22,9 +22,10 @@ Items items_of(const Scene& scene) {
   for (const Command& command : scene.commands) {
     if (const auto* clear = std::get_if<Clear>(&command)) items.push_back({scene.states[clear->state], *clear, {}});
     if (const auto* draw = std::get_if<Draw>(&command))
-      for_each_triangle(scene, *draw, scene.states[draw->state].provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        items.push_back({scene.states[draw->state], {}, {scene.vertices[a], scene.vertices[b], scene.vertices[c]}});
-      });
+      for_each_triangle(
+          scene, *draw, scene.states[draw->state].provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+            items.push_back({scene.states[draw->state], {}, {scene.vertices[a], scene.vertices[b], scene.vertices[c]}});
+          });
   }
   return items;
 }
