@@ -1,7 +1,17 @@
 #include "host_stream.hpp"
 
+#include <cmath>
+
+#include "stages/point_raster.hpp"
+
 namespace halfplane {
 namespace {
+
+void set_state(PrimitivePacket& packet, const State& state) {
+  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
+  packet.depth_write = state.depth_write ? 1 : 0;
+  packet.color_write = state.color_write ? 1 : 0;
+}
 
 /// A primitive without vertices: one depth and one colour over its whole box.
 PrimitivePacket flat_packet(PrimitiveKind kind, const Rect& rect) {
@@ -67,6 +77,8 @@ void HostStream::start_draw(const Draw& draw) {
   context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
   triangles_.clear();
   triangle_ = 0;
+  if (primitive_type(draw.topology) == PrimitiveType::line) return send_lines(draw);
+  if (primitive_type(draw.topology) == PrimitiveType::point) return send_points(draw);
   for_each_triangle(scene_, draw, context_->state.provoking, [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     triangles_.push_back({a, b, c});
   });
@@ -91,14 +103,55 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_clipped) {
   const Rect& rect = context_->rect;
   PrimitivePacket packet;
   packet.kind = static_cast<std::uint8_t>(PrimitiveKind::triangle);
-  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
-  packet.depth_write = state.depth_write ? 1 : 0;
-  packet.color_write = state.color_write ? 1 : 0;
+  set_state(packet, state);
   packet.cull = static_cast<std::uint8_t>(is_clipped ? Cull::none : state.cull);
   packet.front_cw = state.front == FrontFace::cw ? 1 : 0;
   set_box(packet, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
   set_vertices(packet, triangle.v, widths_);
   send(packet, triangle.primitive);
+}
+
+void HostStream::send_lines(const Draw& draw) {
+  const State& state = context_->state;
+  const Rect& rect = context_->rect;
+  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  for_each_line(scene_, draw, [&](std::uint32_t a, std::uint32_t b) {
+    const SnappedVertex start = vertices_.get(*context_, a).snapped;
+    SnappedVertex end = vertices_.get(*context_, b).snapped;
+    if (state.shade == Shade::flat) end.rgba = start.rgba;
+    const bool drops_last = !state.line_last.value_or(!drops_last_by_default(state.line_rule));
+    ++counters_.primitives_in;
+    const auto line = setup_line(start, end, state.line_rule, drops_last, limit, config_, widths_);
+    if (line) {
+      PrimitivePacket packet = flat_packet(PrimitiveKind::line, {line->x, line->y, 1, 1});
+      set_state(packet, state);
+      send(packet, primitive_);
+      pending_.back().line = *line;
+      pending_.back().line->primitive_id = pending_.back().packet.primitive_id;
+    }
+    ++primitive_;
+  });
+}
+
+void HostStream::send_points(const Draw& draw) {
+  const State& state = context_->state;
+  const Rect& rect = context_->rect;
+  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  const auto size = static_cast<std::int32_t>(std::lround(std::ldexp(state.point_size, widths_.grid_bits)));
+  for_each_point(scene_, draw, [&](std::uint32_t index) {
+    const SnappedVertex v = vertices_.get(*context_, index).snapped;
+    ++counters_.primitives_in;
+    const PixelBounds box = point_bounds(v, size, limit, widths_.grid_bits);
+    if (!box.is_empty()) {
+      PrimitivePacket packet = flat_packet(PrimitiveKind::point, {});
+      set_box(packet, box);
+      set_state(packet, state);
+      packet.z.fill(v.z);
+      packet.rgba.fill(packet_color(v.rgba, widths_));
+      send(packet, primitive_);
+    }
+    ++primitive_;
+  });
 }
 
 void HostStream::send_clear(const Clear& command) {
@@ -127,6 +180,18 @@ double HostStream::progress() const {
   return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
 }
 
-void check_hardware_scene(const Scene& scene, const Config& config) { check_scene(scene, config); }
+void check_hardware_scene(const Scene& scene, const Config& config) {
+  check_scene(scene, config);
+  if (config.line_units != 0) return;
+  for (const Command& command : scene.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw == nullptr) continue;
+    const bool has_edges = primitive_type(draw->topology) == PrimitiveType::triangle &&
+                           scene.states[draw->state].polygon_mode == PolygonMode::line;
+    if (has_edges || primitive_type(draw->topology) == PrimitiveType::line)
+      throw InputError(place_of_draw(scene.name, draw->line) +
+                       ": lines, but this hardware has no unit that draws them; use --set lines.unit=1");
+  }
+}
 
 }  // namespace halfplane

@@ -19,7 +19,7 @@ struct HostPrimitive {
 
   PrimitivePacket packet;
   std::optional<LineSetup> line;  ///< beside a packet of kind line
-  std::uint32_t primitive = 0;  ///< number of the input triangle over the whole scene; otherwise: of the next one
+  std::uint32_t primitive = 0;    ///< number of the input triangle over the whole scene; otherwise: of the next one
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
 };
 
@@ -45,6 +45,8 @@ class HostStream {
   void advance();
   void start_draw(const Draw& draw);
   void send_next_triangle();
+  void send_lines(const Draw& draw);
+  void send_points(const Draw& draw);
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_clipped);
   void send(const PrimitivePacket& packet, std::uint32_t primitive);

@@ -10,7 +10,10 @@
 #include "stages/framebuffer.hpp"         // stored codes            -> the two images
 #include "stages/hiz.hpp"                 // retired tile visits     -> a bound on the depths of each tile
 #include "stages/interpolate.hpp"         // planes at the tile      -> depth and colour at a sample
+#include "stages/line_raster.hpp"         // line setup              -> pixels
+#include "stages/line_setup.hpp"          // two snapped vertices    -> first pixel, error, steps            host
 #include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles                            host
+#include "stages/primitive_join.hpp"      // line pixels, stamps     -> fragments in program order
 #include "stages/rop.hpp"                 // passed fragment         -> stored colour
 #include "stages/tile_cache.hpp"          // passed stamps           -> on-chip tiles, memory requests
 #include "stages/triangle_setup.hpp"      // three snapped vertices  -> edges, reciprocal, planes
