@@ -37,6 +37,8 @@ const std::array kSettings{
             &Config::cache_lines},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
             &Config::setup_kind},
+    Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
+            &Config::line_units},
 };
 
 constexpr std::array<std::string_view, 4> kPresetNames{"tiny", "small", "embedded", "full"};

@@ -40,6 +40,7 @@ struct Config {
   int hiz_bits = 16;           ///< bits of a tile's HiZ bound, see hiz_code_bits(); 0: no HiZ
   int cache_lines = 16;        ///< tiles that the on-chip depth and colour RAM holds; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
+  int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
 
   bool operator==(const Config&) const = default;
 };

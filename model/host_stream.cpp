@@ -156,6 +156,15 @@ double HostStream::progress() const {
   return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
 }
 
-void check_hardware_scene(const Scene& scene, const Config& config) { check_scene(scene, config); }
+void check_hardware_scene(const Scene& scene, const Config& config) {
+  check_scene(scene, config);
+  if (config.line_units != 0) return;
+  for (const Command& command : scene.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw != nullptr && drawn_as(scene.states[draw->state], draw->topology) == PrimitiveType::line)
+      throw InputError(place_of_draw(scene.name, draw->line) +
+                       ": lines, but this hardware has no unit that draws them; use --set lines.unit=1");
+  }
+}
 
 }  // namespace halfplane

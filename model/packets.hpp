@@ -74,6 +74,13 @@ enum class PrimitiveKind : std::uint8_t {
   line = 6         ///< the place of a line in program order; its pixels come from line_raster
 };
 
+/// What the counters count; clears and flushes are the host's own.
+[[nodiscard]] constexpr bool is_counted(std::uint8_t kind) {
+  return kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) ||
+         kind == static_cast<std::uint8_t>(PrimitiveKind::point) ||
+         kind == static_cast<std::uint8_t>(PrimitiveKind::line);
+}
+
 /// The states that ride with a primitive.
 struct PrimitiveState {
   std::uint8_t depth_test = 0;   ///< DepthFunc
@@ -292,7 +299,7 @@ struct StampPacket {
   }
 };
 
-/// interpolate -> depth_test: a stamp with its attributes. Samples that are not covered carry values too.
+/// interpolate -> primitive_join -> depth_test: a stamp with its attributes. Samples that are not covered carry values too.
 struct FragmentPacket : PrimitiveState {
   std::uint8_t kind = 0, ends_visit = 0, ends_primitive = 0;
   std::uint32_t primitive_id = 0;
@@ -398,7 +405,7 @@ struct MemoryResponse {
 
 /// The performance counters of the hardware: items since reset, modulo 2^32. Names as in Counters (engines/render.hpp).
 struct CounterPacket {
-  std::uint32_t primitives_in = 0;  ///< triangles that came to cull
+  std::uint32_t primitives_in = 0;  ///< triangles, points and lines that came to cull
   std::uint32_t zero_area = 0, backface = 0, empty = 0;
   std::uint32_t tiles_visited = 0, tiles_outside = 0, trivially_accepted = 0, tiles_hiz = 0, samples_tested = 0;
   std::uint32_t covered = 0, depth_passed = 0, written = 0;

@@ -14,6 +14,7 @@
 #include "stages/line_setup.hpp"          // two snapped vertices    -> first pixel, error term, steps       host
 #include "stages/point_raster.hpp"        // a snapped vertex        -> the box of its pixels                host
 #include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles, lines, points             host
+#include "stages/primitive_join.hpp"      // line pixels, stamps     -> fragments in program order
 #include "stages/rop.hpp"                 // passed fragment         -> stored colour
 #include "stages/tile_cache.hpp"          // passed stamps           -> on-chip tiles, memory requests
 #include "stages/triangle_setup.hpp"      // three snapped vertices  -> edges, reciprocal, planes

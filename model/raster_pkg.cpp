@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "packets.hpp"
+#include "stages/line_raster.hpp"
 
 namespace halfplane {
 namespace {
@@ -81,6 +82,7 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "GUARD_BITS", widths.guard_bits, "G: fraction bits of a gradient per pixel");
   print_constant(out, "PLANE_FRACTION", widths.plane_fraction, "F = G + s");
   print_constant(out, "TILE_SHIFT", widths.tile_shift, "log2 of the tile size");
+  print_constant(out, "LINE_GUARD_BITS", widths.line_guard_bits, "G': fraction bits of depth and colour along a line");
   print_constant(out, "STAMPS_PER_ROW", widths.stamps_per_row, "stamps along the side of a tile");
   print_constant(out, "COLOR_CHANNELS", widths.color_channels, "channels that the colour format stores");
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
@@ -99,6 +101,8 @@ std::string raster_pkg(const Config& config) {
   print_packet<TilePacket>(out, widths);
   print_packet<EdgeContext>(out, widths);
   print_packet<StampPacket>(out, widths);
+  print_packet<LineSetup>(out, widths);
+  print_packet<LinePixel>(out, widths);
   print_packet<FragmentPacket>(out, widths);
   print_packet<WritePacket>(out, widths);
   print_packet<RetirePacket>(out, widths);

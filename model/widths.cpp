@@ -125,7 +125,7 @@ Widths derive_widths(const Config& config) {
   w.stored_color = bits("stored color", "color.format", color_bits);
 
   // What rides with a primitive.
-  w.kind = count("kind", "PrimitiveKind", 4);
+  w.kind = count("kind", "PrimitiveKind", 8);
   w.flag = count("flag", "yes or no", 2);
   w.depth_func = count("depth func", "DepthFunc", 8);
   w.cull_mode = count("cull mode", "Cull", 4);
@@ -154,11 +154,6 @@ double line_depth_error_bound(const Config& config) {
          + std::ldexp(1.0, -config.reciprocal_extra_bits)  // the reciprocal, over the full depth range
          // One rounding of the gradient over at most 2g pixels, and one of the first value.
          + (2.0 * config.guard_band + 1) * std::ldexp(1.0, -widths.line_guard_bits - 1);
-}
-
-std::vector<const Width*> Widths::lines() const& {
-  return {&line_numerator, &line_position, &line_product, &line_error, &line_stay,
-          &line_move,      &line_count,    &line_depth,   &line_color};
 }
 
 std::vector<const Width*> Widths::all() const& {
@@ -201,7 +196,16 @@ std::vector<const Width*> Widths::all() const& {
           &hiz_code,
           &hiz_update,
           &memory_lane,
-          &counter};
+          &counter,
+          &line_numerator,
+          &line_position,
+          &line_product,
+          &line_error,
+          &line_stay,
+          &line_move,
+          &line_count,
+          &line_depth,
+          &line_color};
 }
 
 }  // namespace halfplane

@@ -70,9 +70,6 @@ struct Widths {
   /// All of them, in the order above: for tables and for raster_pkg.sv.
   [[nodiscard]] std::vector<const Width*> all() const&;
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
-  /// Those of the line stages, which no RTL has yet: they join all() with it.
-  [[nodiscard]] std::vector<const Width*> lines() const&;
-  std::vector<const Width*> lines() const&& = delete;
 };
 
 /// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to say.

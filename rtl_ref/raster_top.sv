@@ -1,7 +1,8 @@
 // The raster pipeline: snapped primitives in, tiles of depth and colour in memory out.
 //
-//   cull -> triangle_setup -> coarse_raster -> fine_raster -> interpolate -> depth_test -> framebuffer -> memory
-//                                 ^ the retirement of tile visits (HiZ)  <-----'
+//   cull -> triangle_setup -> coarse_raster -> fine_raster -> interpolate -> primitive_join -> depth_test -> framebuffer
+//                                 ^                                   line_raster ^              |              ^ v
+//                                 '-- the retirement of tile visits (HiZ) <----------------------'             memory
 //
 // Every arrow is a stream: a packet moves when valid and ready are both high. stall_i holds a stream back for a cycle,
 // for tests; hardware ties it to 0. Nothing in here depends on when packets come, only on what they say.
@@ -10,12 +11,21 @@ module raster_top (
     input logic clk_i,
     input logic rst_ni,
 
-    input logic [7:0] stall_i,  // primitive, triangle, setup, tile, stamp, fragment, request, response
+    /* verilator lint_off UNUSEDSIGNAL */  // without the unit of lines
+    input logic [9:0] stall_i,  // primitive, triangle, setup, tile, stamp, fragment, request, response, line, line_pixel
+    /* verilator lint_on UNUSEDSIGNAL */
 
     // From the host
     input  logic                          primitive_valid_i,
     output logic                          primitive_ready_o,
     input  raster_pkg::primitive_packet_t primitive_i,
+
+    // From the host: the lines, in the order of the primitives of kind line that hold their places
+    /* verilator lint_off UNUSEDSIGNAL */  // without the unit
+    input  logic                    line_valid_i,
+    output logic                    line_ready_o,
+    input  raster_pkg::line_setup_t line_i,
+    /* verilator lint_on UNUSEDSIGNAL */
 
     // To memory: one stamp of one plane a request, reads answered in order
     output logic                         request_valid_o,
@@ -35,6 +45,10 @@ module raster_top (
   // The streams, as the consumer sees them.
   logic triangle_valid, triangle_ready, setup_valid, setup_ready, tile_valid, tile_ready;
   logic stamp_valid, stamp_ready, fragment_valid, fragment_ready;
+  /* verilator lint_off UNUSEDSIGNAL */  // for the taps of the co-simulation where there is no unit of lines
+  logic line_pixel_valid, line_pixel_ready;
+  var raster_pkg::line_pixel_t      line_pixel_data;
+  /* verilator lint_on UNUSEDSIGNAL */
   var raster_pkg::triangle_packet_t triangle_data;
   var raster_pkg::setup_packet_t    setup_data;
   var raster_pkg::context_packet_t  context_data;
@@ -65,13 +79,17 @@ module raster_top (
   assign request_valid_o   = request_offered && !stall_i[6];
   assign response_ready_o  = response_ready && !stall_i[7];
 
-  logic is_triangle, is_zero_area, is_backface, is_empty, is_dropped;
+  logic is_primitive, is_zero_area, is_backface, is_empty, is_dropped;
   logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
   logic                             slot_free;
   logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
   logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
   logic                              context_read;
   var raster_pkg::context_packet_t   stamp_context;
+
+  logic shaded_valid, shaded_ready;  // what interpolate sends
+  var raster_pkg::fragment_packet_t shaded_data;
+  logic                             lines_are_done;  // none is in the unit
 
   // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
   // until they are through with it and do one thing at a time.
@@ -86,7 +104,7 @@ module raster_top (
           .triangle_valid_o (triangle_offered),
           .triangle_ready_i (triangle_ready),
           .triangle_o       (triangle_data),
-          .is_triangle_o    (is_triangle),
+          .is_primitive_o   (is_primitive),
           .is_zero_area_o   (is_zero_area),
           .is_backface_o    (is_backface),
           .is_empty_o       (is_empty),
@@ -165,9 +183,9 @@ module raster_top (
           .context_slot_o  (read_slot),
           .context_i       (stamp_context),
           .slot_free_o     (slot_free),
-          .fragment_valid_o(fragment_offered),
-          .fragment_ready_i(fragment_ready),
-          .fragment_o      (fragment_data)
+          .fragment_valid_o(shaded_valid),
+          .fragment_ready_i(shaded_ready),
+          .fragment_o      (shaded_data)
       );
     end else begin : gen_serial
       cull_serial u_cull (
@@ -179,7 +197,7 @@ module raster_top (
           .triangle_valid_o (triangle_offered),
           .triangle_ready_i (triangle_ready),
           .triangle_o       (triangle_data),
-          .is_triangle_o    (is_triangle),
+          .is_primitive_o   (is_primitive),
           .is_zero_area_o   (is_zero_area),
           .is_backface_o    (is_backface),
           .is_empty_o       (is_empty),
@@ -258,10 +276,53 @@ module raster_top (
           .valid_i(made_valid),
           .ready_o(made_ready),
           .data_i (made_data),
-          .valid_o(fragment_offered),
-          .ready_i(fragment_ready),
-          .data_o (fragment_data)
+          .valid_o(shaded_valid),
+          .ready_i(shaded_ready),
+          .data_o (shaded_data)
       );
+    end
+  endgenerate
+
+  // Lines: drawn beside all that, joined where their pixels are tested.
+  generate
+    if (raster_pkg::LINES_UNIT != 0) begin : gen_lines
+      logic line_ready, pixel_offered, pixel_accepted;
+      assign line_ready_o     = line_ready && !stall_i[8];
+      assign line_pixel_valid = pixel_offered && !stall_i[9];
+      assign line_pixel_ready = pixel_accepted && !stall_i[9];
+      assign lines_are_done   = !pixel_offered;
+
+      line_raster u_line_raster (
+          .clk_i,
+          .rst_ni,
+          .line_valid_i (line_valid_i && !stall_i[8]),
+          .line_ready_o (line_ready),
+          .line_i,
+          .pixel_valid_o(pixel_offered),
+          .pixel_ready_i(line_pixel_ready),
+          .pixel_o      (line_pixel_data)
+      );
+
+      primitive_join u_primitive_join (
+          .fragment_valid_i(shaded_valid),
+          .fragment_ready_o(shaded_ready),
+          .fragment_i      (shaded_data),
+          .pixel_valid_i   (line_pixel_valid),
+          .pixel_ready_o   (pixel_accepted),
+          .pixel_i         (line_pixel_data),
+          .fragment_valid_o(fragment_offered),
+          .fragment_ready_i(fragment_ready),
+          .fragment_o      (fragment_data)
+      );
+    end else begin : gen_no_lines
+      assign line_ready_o     = 1'b0;
+      assign line_pixel_valid = 1'b0;
+      assign line_pixel_ready = 1'b0;
+      assign line_pixel_data  = '0;
+      assign lines_are_done   = 1'b1;
+      assign fragment_offered = shaded_valid;
+      assign shaded_ready     = fragment_ready;
+      assign fragment_data    = shaded_data;
     end
   endgenerate
 
@@ -335,20 +396,20 @@ module raster_top (
   logic                 enters, ends;
   assign enters = primitive_valid_i && primitive_ready_o;
   assign ends   = fragment_valid && fragment_accepted && fragment_data.ends_primitive;
-  assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle;
+  assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle && lines_are_done;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) under_way_q <= '0;
     else under_way_q <= under_way_q + UNDER_WAY'(enters) - UNDER_WAY'(ends) - UNDER_WAY'(is_dropped);
   end
 
-  // Performance counters: the work of triangles, and the tile traffic of everything, since reset.
+  // Performance counters: the work of triangles, points and lines, and the tile traffic of everything, since reset.
   var raster_pkg::counter_packet_t counters_q;
   assign counters_o = counters_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) counters_q <= '0;
     else begin
-      counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_triangle);
+      counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_primitive);
       counters_q.zero_area          <= counters_q.zero_area + COUNTER'(is_zero_area);
       counters_q.backface           <= counters_q.backface + COUNTER'(is_backface);
       counters_q.empty              <= counters_q.empty + COUNTER'(is_empty);

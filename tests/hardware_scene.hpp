@@ -35,7 +35,7 @@ struct Recorder : PacketSink {
 inline CounterPacket run_scene(const Scene& scene, const Config& config, PacketSink& sink) {
   HostStream host(scene, config);
   HardwareModel hardware(config, sink);
-  while (const auto primitive = host.next()) hardware.run(primitive->packet);
+  while (const auto primitive = host.next()) hardware.run(primitive->packet, primitive->line);
   return hardware.counters();
 }
 

@@ -5,6 +5,7 @@
 
 #include "../host_stream.hpp"
 #include "../pipeline.hpp"
+#include "../stages/primitive_join.hpp"
 
 namespace halfplane {
 namespace {
@@ -99,7 +100,7 @@ HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
       cache_(config, widths_),
       memory_(config) {}
 
-void HardwareModel::run(const PrimitivePacket& primitive) {
+void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
   const auto triangle = cull(primitive, widths_, counters_);
   if (!triangle) return;
   sink_.take(*triangle);
@@ -114,11 +115,22 @@ void HardwareModel::run(const PrimitivePacket& primitive) {
     fine_raster(tile, edges, config_, widths_, [&](const StampPacket& stamp) {
       sink_.take(stamp);
       const FragmentPacket fragment = interpolate(stamp, context, config_, widths_);
-      sink_.take(fragment);
-      shade(fragment);
+      if (line) {
+        line_raster(*line, widths_, [&](const LinePixel& pixel) {
+          sink_.take(pixel);
+          join(line_fragment(fragment, pixel, config_, widths_));
+        });
+      } else {
+        join(fragment);
+      }
     });
   });
   slot_ = static_cast<std::uint8_t>((slot_ + 1) % config_.context_slots);
+}
+
+void HardwareModel::join(const FragmentPacket& fragment) {
+  sink_.take(fragment);
+  shade(fragment);
 }
 
 /// depth_test, rop and framebuffer.
@@ -139,8 +151,8 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     const WritePacket packet = depth_test(fragment, stored, config_, widths_);
     sink_.take(packet);
     cache_.write(packet);
-    visit_.add(fragment, packet.passed, widths_);
-    if (fragment.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+    if (fragment.kind != static_cast<std::uint8_t>(PrimitiveKind::line)) visit_.add(fragment, packet.passed, widths_);
+    if (is_counted(fragment.kind)) {
       const auto passed = static_cast<std::uint32_t>(std::popcount(packet.passed));
       counters_.covered += static_cast<std::uint32_t>(std::popcount(fragment.mask));
       counters_.depth_passed += passed;
@@ -200,9 +212,8 @@ Rendering render_hardware(const Scene& scene, const Config& config, const Render
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
     const std::uint32_t dropped_before = dropped();
-    hardware.run(primitive->packet);
-    const bool is_triangle = primitive->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle);
-    if (is_triangle && dropped() == dropped_before && last_drawn != primitive->primitive) {
+    hardware.run(primitive->packet, primitive->line);
+    if (is_counted(primitive->packet.kind) && dropped() == dropped_before && last_drawn != primitive->primitive) {
       ++drawn;
       last_drawn = primitive->primitive;
     }

@@ -2,10 +2,12 @@
 // a PacketSink on its way; the co-simulation compares the RTL's with them, and a cycle model can put time between them.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "../stages/hiz.hpp"
+#include "../stages/line_raster.hpp"
 #include "../stages/tile_cache.hpp"
 #include "render.hpp"
 
@@ -21,7 +23,8 @@ struct PacketSink {
   virtual void take(const TilePacket&) {}      ///< coarse_raster -> fine_raster
   virtual void take(const EdgeContext&) {}     ///< beside each TilePacket
   virtual void take(const StampPacket&) {}     ///< fine_raster -> interpolate
-  virtual void take(const FragmentPacket&) {}  ///< interpolate -> depth_test
+  virtual void take(const LinePixel&) {}       ///< line_raster -> primitive_join
+  virtual void take(const FragmentPacket&) {}  ///< primitive_join -> depth_test
   virtual void take(const WritePacket&) {}     ///< depth_test, rop -> framebuffer
   virtual void take(const RetirePacket&) {}    ///< depth_test -> coarse_raster
   virtual void take(const MemoryRequest&) {}   ///< framebuffer -> memory
@@ -75,12 +78,13 @@ class TileMemory {
 class HardwareModel final : private MemoryPort {
  public:
   HardwareModel(const Config& config, PacketSink& sink);
-  /// One primitive, to its last write: every packet that follows from it.
-  void run(const PrimitivePacket& primitive);
+  /// One primitive, to its last write: every packet that follows from it. `line`: there if and only if its kind is line.
+  void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);
   [[nodiscard]] const CounterPacket& counters() const { return counters_; }
   [[nodiscard]] const TileMemory& memory() const { return memory_; }
 
  private:
+  void join(const FragmentPacket& fragment);
   void shade(const FragmentPacket& fragment);
   void write(const MemoryRequest& request) override;
   const MemoryResponse& read(const MemoryRequest& request) override;
@@ -98,7 +102,7 @@ class HardwareModel final : private MemoryPort {
 };
 
 /// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
-/// least one piece passed cull.
+/// least one piece passed cull, and lines and points.
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters);
 
 /// Renders `scene` by the hardware model, flush included. Fills frame and counters, not count, ids, visible and

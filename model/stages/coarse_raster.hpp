@@ -103,8 +103,9 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
     emit(packet);
   };
   const auto kind = static_cast<PrimitiveKind>(setup.kind);
-  if (kind == PrimitiveKind::fast_clear || kind == PrimitiveKind::flush) {
+  if (kind == PrimitiveKind::fast_clear || kind == PrimitiveKind::flush || kind == PrimitiveKind::line) {
     if (kind == PrimitiveKind::fast_clear && setup.depth_write != 0) hiz.clear(last_x, last_y, setup.depth_max);
+    if (kind == PrimitiveKind::line) hiz.pass_line(setup);
     emit_end();
     return;
   }

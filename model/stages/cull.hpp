@@ -107,13 +107,16 @@ inline void set_box(PixelBox& box, const PixelBounds& bounds) {
   out.kind = in.kind;
   out.primitive_id = in.primitive_id;
   const auto v = vertices_of(in);
+  if (is_counted(in.kind)) ++counters.primitives_in;
   if (in.kind != static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
-    if (in.left > in.right || in.top > in.bottom) return std::nullopt;
+    if (in.left > in.right || in.top > in.bottom) {
+      if (is_counted(in.kind)) ++counters.empty;
+      return std::nullopt;
+    }
     static_cast<PixelBox&>(out) = in;
     set_vertices(out, v, widths);
     return out;
   }
-  ++counters.primitives_in;
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
   const CullResult result = cull(area, static_cast<Cull>(in.cull), in.front_cw != 0 ? FrontFace::cw : FrontFace::ccw);
   if (result != CullResult::keep) {

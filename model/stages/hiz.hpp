@@ -3,6 +3,11 @@
 // In: the retired tile visits and the fast clears, in program order. Out: whether a tile of a primitive can be left
 // out. The bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above
 // it.
+//
+// Lines are not in any tile visit, so nothing retires that could raise a bound behind them. One whose depth test can raise
+// a depth (greater, gequal, notequal, always) makes all bounds worthless as it passes coarse_raster: later triangles are
+// not tested, until a fast clear of depth makes all bounds anew. Program order alone, one flip-flop and no wait; the
+// other tests only lower depths, which leaves bounds what they are.
 #pragma once
 
 #include <bit>
@@ -30,7 +35,7 @@ class Hiz {
       return (last >> widths.tile_shift) - (first >> widths.tile_shift) + 1;
     };
     const auto func = static_cast<DepthFunc>(setup.depth_test);
-    return bits_ > 0 && setup.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) &&
+    return bits_ > 0 && holds_ && setup.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) &&
            (tiles(setup.left, setup.right) > 2 || tiles(setup.top, setup.bottom) > 2) &&
            (func == DepthFunc::less || func == DepthFunc::lequal || func == DepthFunc::equal);
   }
@@ -46,8 +51,14 @@ class Hiz {
       code_[index(retired.tile_x, retired.tile_y)] = retired.hiz_code;
   }
 
-  /// Tiles (0, 0) to (last_x, last_y) now hold the clear depth.
+  /// A line follows; its pixels do not show here.
+  void pass_line(const SetupPacket& line) {
+    if (line.depth_write != 0 && line.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) holds_ = false;
+  }
+
+  /// Tiles (0, 0) to (last_x, last_y), the whole target, now hold the clear depth.
   void clear(int last_x, int last_y, std::uint32_t depth) {
+    holds_ = true;
     if (bits_ == 0) return;
     for (int y = 0; y <= last_y; ++y)
       for (int x = 0; x <= last_x; ++x) code_[index(x, y)] = depth >> low_bits_;
@@ -62,6 +73,7 @@ class Hiz {
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * tiles_x_ + static_cast<std::size_t>(x);
   }
+  bool holds_ = true;    ///< no line can have raised a depth since the last fast clear
   int bits_, low_bits_;  ///< bits stored, and dropped, of a depth code
   std::size_t tiles_x_;
   std::vector<std::uint32_t> code_;

@@ -19,8 +19,9 @@ struct LineState {
   std::array<std::uint64_t, 4> color{};  ///< Widths::line_color
 };
 
-/// line_raster -> depth_test: one covered pixel.
+/// line_raster -> primitive_join: one covered pixel.
 struct LinePixel {
+  std::uint32_t primitive_id = 0;
   std::int32_t x = 0, y = 0;
   std::uint8_t is_last = 0;  ///< 1: the line ends here
   std::uint32_t depth = 0;   ///< code
@@ -30,8 +31,11 @@ struct LinePixel {
   static constexpr std::string_view name = "line_pixel";
   static constexpr auto fields() {
     using P = LinePixel;
-    return std::tuple{Field{"x", &P::x, &Widths::pixel_x}, Field{"y", &P::y, &Widths::pixel_y},
-                      Field{"is_last", &P::is_last, &Widths::flag}, Field{"depth", &P::depth, &Widths::depth_code},
+    return std::tuple{Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
+                      Field{"x", &P::x, &Widths::pixel_x},
+                      Field{"y", &P::y, &Widths::pixel_y},
+                      Field{"is_last", &P::is_last, &Widths::flag},
+                      Field{"depth", &P::depth, &Widths::depth_code},
                       Field{"color", &P::color, &Widths::vertex_color}};
   }
 };
@@ -43,8 +47,8 @@ struct LinePixel {
 
 /// The pixel that the registers stand for.
 [[nodiscard]] inline LinePixel pixel_of(const LineState& state, const LineSetup& line, const Widths& widths) {
-  LinePixel pixel{state.x, state.y, static_cast<std::uint8_t>(state.remaining == 0), line.depth_start,
-                  line.color_start};
+  LinePixel pixel{line.primitive_id, state.x,         state.y, static_cast<std::uint8_t>(state.remaining == 0),
+                  line.depth_start,  line.color_start};
   if (state.is_before_start != 0) return pixel;
   pixel.depth = static_cast<std::uint32_t>(state.depth >> widths.line_guard_bits);
   pixel.color = 0;

@@ -26,8 +26,9 @@
 namespace halfplane {
 
 /// line_setup -> line_raster: a line with at least one pixel inside the scissor.
-struct LineSetup : PrimitiveState {
-  std::uint32_t primitive_id = 0;    ///< left at 0 by setup_line, like the state
+/// The states ride with the line's place in program order, a PrimitivePacket of kind line.
+struct LineSetup {
+  std::uint32_t primitive_id = 0;    ///< that of the PrimitivePacket; left at 0 by setup_line
   std::int32_t x = 0, y = 0;         ///< the first pixel; inside the target when it goes to the RTL
   std::uint8_t is_x_major = 0;       ///< 1: every step changes x
   std::uint8_t is_x_negative = 0;    ///< 1: x falls
@@ -47,9 +48,6 @@ struct LineSetup : PrimitiveState {
   static constexpr auto fields() {
     using P = LineSetup;
     return std::tuple{Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"depth_test", &P::depth_test, &Widths::depth_func},
-                      Field{"depth_write", &P::depth_write, &Widths::flag},
-                      Field{"color_write", &P::color_write, &Widths::flag},
                       Field{"x", &P::x, &Widths::pixel_x},
                       Field{"y", &P::y, &Widths::pixel_y},
                       Field{"is_x_major", &P::is_x_major, &Widths::flag},

@@ -6,12 +6,13 @@ module pin_wrapper (
     input  logic rst_ni,
     input  logic data_i,    // the next bit of the inputs
     input  logic shift_i,   // move them by one; otherwise they stay
-    input  logic valid_i,   // a primitive is offered
+    input  logic valid_i,   // a primitive and a line are offered
     output logic data_o     // parity of all outputs, some cycles ago
 );
 
-  localparam int IN = raster_pkg::PRIMITIVE_PACKET_BITS + raster_pkg::MEMORY_RESPONSE_BITS + 2;
-  localparam int OUT = raster_pkg::MEMORY_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS + 4;
+  localparam int LINE = raster_pkg::LINE_SETUP_BITS;  // at the end of the register: gone with the unit of lines
+  localparam int IN = raster_pkg::PRIMITIVE_PACKET_BITS + raster_pkg::MEMORY_RESPONSE_BITS + LINE + 2;
+  localparam int OUT = raster_pkg::MEMORY_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS + 5;
 
   logic [IN-1:0] in_q;
   logic          valid_q, shift_q, data_q;
@@ -30,12 +31,15 @@ module pin_wrapper (
       .primitive_valid_i(valid_q),
       .primitive_ready_o(out[0]),
       .primitive_i      (in_q[2+:raster_pkg::PRIMITIVE_PACKET_BITS]),
+      .line_valid_i     (valid_q),
+      .line_ready_o     (out[4]),
+      .line_i           (in_q[IN-1-:LINE]),
       .request_valid_o  (out[1]),
       .request_ready_i  (in_q[0]),
-      .request_o        (out[4+:raster_pkg::MEMORY_REQUEST_BITS]),
+      .request_o        (out[5+:raster_pkg::MEMORY_REQUEST_BITS]),
       .response_valid_i (in_q[1]),
       .response_ready_o (out[2]),
-      .response_i       (in_q[IN-1-:raster_pkg::MEMORY_RESPONSE_BITS]),
+      .response_i       (in_q[2+raster_pkg::PRIMITIVE_PACKET_BITS+:raster_pkg::MEMORY_RESPONSE_BITS]),
       .counters_o       (out[OUT-1-:raster_pkg::COUNTER_PACKET_BITS]),
       .idle_o           (out[3])
   );

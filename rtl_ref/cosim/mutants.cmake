@@ -12,7 +12,7 @@ mutant(4 stages/cull.sv "order: of vertices 1 and 2 the larger one comes first"
 mutant(5 stages/cull.sv "carry: turned edges lose the +1 of their negation"
   [=[(~exact + E'(is_top_left ? 1 : 0))]=] [=[(~exact)]=])
 mutant(6 stages/cull.sv "counter: empty triangles count when they face away, too"
-  [=[is_triangle && !is_zero && !is_back && is_empty_q]=] [=[is_triangle && !is_zero && is_empty_q]=])
+  [=[is_counted && !is_zero && !is_back && is_empty_q]=] [=[is_counted && !is_zero && is_empty_q]=])
 
 # triangle_setup
 mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
@@ -95,3 +95,44 @@ mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
 # reset
 mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"
   [=[      slot_q  <= '0;]=] [=[      slot_q  <= SLOT'(raster_cosim.mutant_q == 16'd39);]=])
+
+# line_raster
+mutant(40 stages/line_raster.sv "tie rule: an error of 0 stays in the row"
+  [=[error_q >= 0]=] [=[error_q > 0]=])
+mutant(41 stages/line_raster.sv "error: a step to the next row gains what a step within it gains"
+  [=[(moves ? step_move : step_stay)]=] [=[step_stay]=])
+mutant(42 stages/line_raster.sv "direction: every line goes down"
+  [=[line_q.is_y_negative ? '1 : PY'(1)]=] [=[PY'(1)]=])
+mutant(43 stages/line_raster.sv "off by one: the last pixel of a line is left out"
+  [=[remaining_q == '0]=] [=[remaining_q <= COUNT'(1)]=])
+mutant(44 stages/line_raster.sv "start: a pixel before the line's start shows an extrapolated depth"
+  [=[is_before_start_q ? line_q.depth_start : depth_q[D-1-:CODE]]=] [=[depth_q[D-1-:CODE]]=])
+mutant(45 stages/line_raster.sv "depth: only steps to the next row change it"
+  [=[depth_q + line_q.depth_step]=] [=[depth_q + (moves ? line_q.depth_step : '0)]=])
+mutant(46 stages/line_raster.sv "dropped stall: the next line is taken while the last pixel waits"
+  [=[!valid_q || (pixel_ready_i && is_last)]=] [=[!valid_q || is_last]=])
+
+# primitive_join
+mutant(47 stages/primitive_join.sv "mask: row and column of the sample are swapped"
+  [=[inner_x == TS'(s % SIZE) && inner_y == TS'(s / SIZE)]=]
+  [=[inner_y == TS'(s % SIZE) && inner_x == TS'(s / SIZE)]=])
+mutant(48 stages/primitive_join.sv "end of line: a line's place is gone after one pixel"
+  [=[(pixel_valid_i && pixel_i.is_last)]=] [=[pixel_valid_i]=])
+mutant_text(49 stages/primitive_join.sv "state: lines write depth, whatever the mask"
+  [=[      fragment_o.mask           = mask;]=]
+  [=[      fragment_o.mask           = mask;
+      if (raster_cosim.mutant_q == 16'd49) fragment_o.depth_write = 1'b1;]=])
+mutant(50 stages/primitive_join.sv "order: a pixel goes first when it is there first"
+  [=[fragment_i.kind == 3'd6]=] [=[pixel_valid_i]=])
+
+# lines and points on their way through the other stages
+mutant(51 stages/coarse_raster.sv "stale HiZ: bounds are read behind a line that can raise depths"
+  [=[bounds_hold_q && s_q.kind == TRIANGLE]=] [=[s_q.kind == TRIANGLE]=])
+mutant(52 stages/depth_test.sv "HiZ: pixels of a line count for the tile visit behind it"
+  [=[is_stamp && !fragment_q.kind[1]]=] [=[is_stamp]=])
+mutant(53 stages/depth_test.sv "counter: samples of points and lines are left out"
+  [=[(fragment_q.kind == TRIANGLE || fragment_q.kind[2])]=] [=[fragment_q.kind == TRIANGLE]=])
+mutant(54 stages/cull.sv "counter: points and lines do not count as primitives"
+  [=[is_triangle || p_q.kind[2]]=] [=[is_triangle]=])
+mutant(55 stages/framebuffer.sv "token: pixels of a line are taken for a fast clear"
+  [=[access_i.kind[1] && !access_i.kind[2]]=] [=[access_i.kind[1]]=])

@@ -62,7 +62,7 @@ module coarse_raster_serial (
   localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses
   localparam int VISITS = 3;  // bits of the number of visits under way
 
-  localparam logic [1:0] TRIANGLE = 2'd0, FAST_CLEAR = 2'd2;
+  localparam logic [2:0] TRIANGLE = 3'd0, FAST_CLEAR = 3'd2;
 
   // ------------------------------------------------------------------------------------------------------------- walk
   localparam logic [2:0] IDLE = 3'd0, TURN = 3'd1, WALK = 3'd2, BOUND = 3'd3, END = 3'd4, CLEAR = 3'd5,
@@ -295,14 +295,24 @@ module coarse_raster_serial (
   // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
   generate
     if (HIZ > 0) begin : gen_hiz
+      localparam logic [2:0] LINE = 3'd6;
       logic [HIZ-1:0] bound;
       logic           is_wide, is_high, writes;
+      logic           bounds_hold_q;  // no line can have raised a depth since the last fast clear
       /* verilator lint_off CMPCONST */  // a small target has no such box
       assign is_wide     = s_q.right[PX-1:TS] - s_q.left[PX-1:TS] > TX'(1);
       assign is_high     = s_q.bottom[PY-1:TS] - s_q.top[PY-1:TS] > TY'(1);
       /* verilator lint_on CMPCONST */
-      assign is_eligible = s_q.kind == TRIANGLE && (is_wide || is_high) && s_q.depth_test != 3'd0 && !s_q.depth_test[2];
+      assign is_eligible = bounds_hold_q && s_q.kind == TRIANGLE && (is_wide || is_high) && s_q.depth_test != 3'd0 && !s_q.depth_test[2];
       assign writes      = clears || (retire_valid_i && retire_i.update != 2'd0);
+
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) bounds_hold_q <= 1'b1;
+        else if (state_q == CLEAR && s_q.depth_write) begin
+          if (s_q.kind == FAST_CLEAR) bounds_hold_q <= 1'b1;
+          if (raster_pkg::LINES_UNIT != 0 && s_q.kind == LINE && s_q.depth_test[2]) bounds_hold_q <= 1'b0;
+        end
+      end
 
       sram #(
           .WIDTH    (HIZ),

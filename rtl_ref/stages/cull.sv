@@ -19,8 +19,8 @@ module cull (
     input  logic                         triangle_ready_i,
     output raster_pkg::triangle_packet_t triangle_o,
 
-    // Counters: one pulse for each triangle
-    output logic is_triangle_o,
+    // Counters: one pulse for each
+    output logic is_primitive_o,  // triangles, points and lines
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
@@ -58,8 +58,9 @@ module cull (
   logic [1:0]     edge_count_q, issued_q;
   logic signed [E-1:0] area_q;
 
-  logic is_triangle, takes, is_zero, is_back, is_dropped;
-  assign is_triangle       = p_q.kind == 2'd0;
+  logic is_triangle, is_counted, takes, is_zero, is_back, is_dropped;
+  assign is_triangle       = p_q.kind == 3'd0;
+  assign is_counted        = is_triangle || p_q.kind[2];
   assign primitive_ready_o = step_q == IDLE || (step_q == OFFER && (triangle_ready_i || is_dropped));
   assign takes             = primitive_valid_i && primitive_ready_o;
 
@@ -144,10 +145,10 @@ module cull (
 
   logic leaves;
   assign leaves      = step_q == OFFER && primitive_ready_o;
-  assign is_triangle_o  = leaves && is_triangle;
+  assign is_primitive_o = leaves && is_counted;
   assign is_zero_area_o = leaves && is_zero;
   assign is_backface_o  = leaves && is_back;
-  assign is_empty_o     = leaves && is_triangle && !is_zero && !is_back && is_empty_q;
+  assign is_empty_o     = leaves && is_counted && !is_zero && !is_back && is_empty_q;
 
   assign is_dropped_o   = leaves && is_dropped;
 

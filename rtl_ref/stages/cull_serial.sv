@@ -22,7 +22,7 @@ module cull_serial (
     output raster_pkg::triangle_packet_t triangle_o,
 
     // Counters: one pulse for each triangle
-    output logic is_triangle_o,
+    output logic is_primitive_o,  // triangles, points and lines
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
@@ -49,9 +49,10 @@ module cull_serial (
   logic [2:0]       state_q;
   logic [COUNT-1:0] count_q;  // cycles in this state, or of this edge
   logic [1:0]       edge_q;
-  logic             is_triangle, takes, leaves, is_dropped, multiplies, product_ends;
+  logic             is_triangle, is_counted, takes, leaves, is_dropped, multiplies, product_ends;
   logic             is_negative_q;  // the area
-  assign is_triangle  = primitive_i.kind == 2'd0;
+  assign is_triangle  = primitive_i.kind == 3'd0;
+  assign is_counted   = is_triangle || primitive_i.kind[2];
   assign takes        = state_q == IDLE && primitive_valid_i;
   assign multiplies   = state_q == AREA || state_q == EDGES;
   assign product_ends = multiplies && count_q == COUNT'(LAST + 1);
@@ -227,10 +228,10 @@ module cull_serial (
   assign is_dropped = is_zero || is_back || ((state_q == JUDGE || state_q == OFFER) && is_empty_q);
   assign primitive_ready_o = is_dropped || (state_q == OFFER && triangle_ready_i);
   assign leaves            = primitive_valid_i && primitive_ready_o;
-  assign is_triangle_o     = leaves && is_triangle;
+  assign is_primitive_o    = leaves && is_counted;
   assign is_zero_area_o    = leaves && is_zero;
   assign is_backface_o     = leaves && is_back;
-  assign is_empty_o        = leaves && is_triangle && is_empty_q && !is_zero && !is_back;
+  assign is_empty_o        = leaves && is_counted && is_empty_q && !is_zero && !is_back;
   assign is_dropped_o      = leaves && is_dropped;
 
   assign triangle_valid_o        = state_q == OFFER && primitive_valid_i && !is_empty_q;

@@ -8,7 +8,7 @@ module depth_test (
     input logic clk_i,
     input logic rst_ni,
 
-    // From interpolate
+    // From primitive_join
     input  logic                         fragment_valid_i,
     output logic                         fragment_ready_o,
     input  raster_pkg::fragment_packet_t fragment_i,
@@ -28,7 +28,7 @@ module depth_test (
     output logic                       retire_valid_o,
     output raster_pkg::retire_packet_t retire_o,
 
-    // Samples of triangles that this cycle adds to the counters
+    // Samples of triangles, points and lines that this cycle adds to the counters
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] covered_o,
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] passed_o,
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o
@@ -43,12 +43,12 @@ module depth_test (
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
   localparam int COUNT = $clog2(SAMPLES + 1);
-  localparam logic [1:0] TRIANGLE = 2'd0;
+  localparam logic [2:0] TRIANGLE = 3'd0;
   localparam logic [1:0] RETIRE_NONE = 2'd0;
   localparam logic [1:0] RETIRE_SET = 2'd1;
   localparam logic [1:0] RETIRE_CLEAR = 2'd2;
 
-  // D0: the fragment on offer. Tokens have kind[1] set and no covered sample.
+  // D0: the fragment on offer. Tokens have kind[1] set and no covered sample; those of lines have become pixels by now.
   logic needs_access, must_wait, takes_fragment;
   logic [SAMPLES*COLOR-1:0] color;
 
@@ -124,7 +124,7 @@ module depth_test (
   endfunction
 
   logic is_counted, writes;
-  assign is_counted = valid_q && fragment_q.kind == TRIANGLE;
+  assign is_counted = valid_q && (fragment_q.kind == TRIANGLE || fragment_q.kind[2]);
   assign writes     = fragment_q.depth_write || fragment_q.color_write;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -213,7 +213,7 @@ module depth_test (
           full_stamps_q <= '0;
           any_passed_q  <= 1'b0;
           max_q         <= '0;
-        end else if (is_stamp) begin
+        end else if (is_stamp && !fragment_q.kind[1]) begin  // a pixel of a line belongs to no visit
           full_stamps_q <= full_stamps_q + STAMP_BITS'(is_full);
           any_passed_q  <= any_passed;
           max_q         <= max;

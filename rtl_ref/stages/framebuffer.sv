@@ -106,7 +106,7 @@ module framebuffer (
   logic [TILE_Y-1:0] tile_y;
   logic [1:0]        flag_write;  // colour, depth
 
-  assign is_token    = access_i.kind[1];
+  assign is_token    = access_i.kind[1] && !access_i.kind[2];  // not a pixel of a line
   assign clears_all  = !access_i.kind[0] && access_i.depth_write && access_i.color_write;
   assign access_line = (LINE'(access_i.tile_x) & LINE_X_MASK) | ((LINE'(access_i.tile_y) & LINE_Y_MASK) << LINE_X);
   assign write_line  = (LINE'(write_i.tile_x) & LINE_X_MASK) | ((LINE'(write_i.tile_y) & LINE_Y_MASK) << LINE_X);

@@ -51,6 +51,8 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["memory_stamps"] = r.memory_compared;
   result["counters"] = r.counters_compared;
   result["triangles"] = r.triangles;
+  result["lines"] = r.lines;
+  result["points"] = r.points;
   result["scenes"] = session.scenes;
   result["mismatches"] = r.mismatch ? 1 : 0;  // the run stops at the first
   result["first_mismatch"] = nullptr;
@@ -65,8 +67,10 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
 
 void print_equal(std::ostream& out, const CosimOptions& options, const Config& config, const Session& session) {
   const LockstepResult& r = session.result;
-  out << (options.random != 0 ? "random scenes" : options.scene) << ", " << with_commas(r.triangles)
-      << (options.random != 0 ? " of " + with_commas(options.random) : "") << " triangles sent to the RTL";
+  out << (options.random != 0 ? "random scenes" : options.scene) << ", " << with_commas(r.triangles) << " triangles";
+  if (r.lines != 0) out << ", " << with_commas(r.lines) << " lines";
+  if (r.points != 0) out << ", " << with_commas(r.points) << " points";
+  out << (options.random != 0 ? " of " + with_commas(options.random) + " primitives" : "") << " sent to the RTL";
   out << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2) << '\n';
   for (const Mutant& mutant : mutants())
     if (mutant.id == options.mutant)
@@ -83,7 +87,7 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
   out << line << " memory " << with_commas(r.memory_compared) << " stamps, counters "
       << with_commas(r.counters_compared) << '\n'
       << "cycles      " << with_commas(r.cycles) << " in all, " << with_commas(r.raster_cycles)
-      << " from the first triangle to the last write, " << with_commas(r.tile_cycles) << " of them moving tiles; "
+      << " from the first primitive to the last write, " << with_commas(r.tile_cycles) << " of them moving tiles; "
       << fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) << " M cycles/s\n";
 }
 
@@ -118,7 +122,7 @@ int run(const CosimOptions& options) {
     result["reduced"]["capture"] = saved->capture;
     result["reduced"]["trace"] = saved->trace.empty() ? Json(nullptr) : Json(saved->trace);
     result["reduced"]["triangles"] =
-        saved->finding.reduced ? Json(saved->finding.reduced->triangles_after) : Json(nullptr);
+        saved->finding.reduced ? Json(saved->finding.reduced->primitives_after) : Json(nullptr);
   }
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
@@ -145,14 +149,16 @@ void add_cosim_command(CLI::App& app, Action& selected) {
   auto options = std::make_shared<CosimOptions>();
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
-  command->add_option("--random", options->random, "N random triangles of all sizes and states instead of a scene")
+  command
+      ->add_option("--random", options->random,
+                   "N random triangles, lines and points of all sizes and states instead of a scene")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
   add_cosim_options(*command, *options);
   add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer(
-      "\nA mismatch is reduced to the fewest triangles, saved as a capture with a waveform, and printed bit by bit.\n"
+      "\nA mismatch is reduced to the fewest primitives, saved as a capture with a waveform, and printed bit by bit.\n"
       "\nExample:\n  halfplane cosim --random 10000 --stalls 0.3 --seed 7");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

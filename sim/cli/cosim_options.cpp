@@ -142,7 +142,7 @@ void print_finding(std::ostream& out, const SavedFinding& saved) {
   const Finding& f = saved.finding;
   out << mismatch_report(f.mismatch) << "  saved     " << (saved.failure.empty() ? saved.capture : saved.failure);
   if (f.reduced)
-    out << ", " << f.reduced->triangles_after << " of " << f.reduced->triangles_before << " triangles ("
+    out << ", " << f.reduced->primitives_after << " of " << f.reduced->primitives_before << " primitives ("
         << f.reduced->runs << " runs" << (f.reduced->is_minimal ? "" : "; out of time, it may get smaller") << ")\n";
   else
     out << ", the whole scene: after a reset it does not fail alone\n";

@@ -163,7 +163,7 @@ int run(const MutantsCommand& options) {
   std::ostream& out = human(options);
   print_table(out, verdicts, options.scenes);
   out << caught << " of " << verdicts.size() << " mutants caught by " << with_commas(options.random)
-      << " random triangles, " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2)
+      << " random primitives, " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2)
       << '\n';
   if (options.scenes)
     out << unseen << " of them change no picture of the " << pictures.size() << " built-in scenes at " << options.size
@@ -181,7 +181,7 @@ void add_mutants_command(CLI::App& app, Action& selected) {
   options->size = "160x120";
   add_output_options(*command, *options);
   add_seed_option(*command, *options, "seed of the random run and its stalls");
-  command->add_option("--random", options->random, "triangles of the random run")
+  command->add_option("--random", options->random, "primitives of the random run")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
       ->capture_default_str();
   add_stalls_option(*command, *options);

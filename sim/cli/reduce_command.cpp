@@ -32,8 +32,8 @@ int run(const ReduceCommand& options) {
   result["capture"] = saved.capture;
   result["trace"] = saved.trace.empty() ? Json(nullptr) : Json(saved.trace);
   if (saved.finding.reduced) {
-    result["triangles"] = {{"before", saved.finding.reduced->triangles_before},
-                           {"after", saved.finding.reduced->triangles_after}};
+    result["triangles"] = {{"before", saved.finding.reduced->primitives_before},
+                           {"after", saved.finding.reduced->primitives_after}};
     result["runs"] = saved.finding.reduced->runs;
     result["minimal"] = saved.finding.reduced->is_minimal;
   }

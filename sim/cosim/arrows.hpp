@@ -9,12 +9,25 @@
 #include <vector>
 
 #include "model/packets.hpp"
+#include "model/stages/line_raster.hpp"
 
 namespace halfplane {
 
 /// In this order they are the bits of raster_cosim's fire_o; `request` is a port of its own.
-enum class Arrow : std::uint8_t { triangle, setup, context, tile, edges, stamp, fragment, write, retire, request };
-inline constexpr std::size_t kArrows = 10;
+enum class Arrow : std::uint8_t {
+  triangle,
+  setup,
+  context,
+  tile,
+  edges,
+  stamp,
+  line_pixel,
+  fragment,
+  write,
+  retire,
+  request
+};
+inline constexpr std::size_t kArrows = 11;
 
 struct ArrowInfo {
   std::string_view name;
@@ -26,6 +39,7 @@ inline constexpr std::array<ArrowInfo, kArrows> kArrowInfo{{{"triangle", "cull"}
                                                             {"tile", "coarse_raster"},
                                                             {"edges", "coarse_raster"},
                                                             {"stamp", "fine_raster"},
+                                                            {"line_pixel", "line_raster"},
                                                             {"fragment", "interpolate"},
                                                             {"write", "rop"},
                                                             {"retire", "depth_test"},
@@ -43,6 +57,7 @@ decltype(auto) with_packet_type(Arrow arrow, Visit&& visit) {
     case Arrow::tile: return visit(std::type_identity<TilePacket>{});
     case Arrow::edges: return visit(std::type_identity<EdgeContext>{});
     case Arrow::stamp: return visit(std::type_identity<StampPacket>{});
+    case Arrow::line_pixel: return visit(std::type_identity<LinePixel>{});
     case Arrow::fragment: return visit(std::type_identity<FragmentPacket>{});
     case Arrow::write: return visit(std::type_identity<WritePacket>{});
     case Arrow::retire: return visit(std::type_identity<RetirePacket>{});

@@ -16,15 +16,16 @@
 
 namespace halfplane {
 
-/// The elastic streams inside, in the order of raster_cosim's stream_valid_o: triangle, setup, tile, stamp, fragment.
-inline constexpr std::size_t kStreams = 5;
-inline constexpr std::array<std::string_view, kStreams> kStreamStages{"cull", "triangle_setup", "coarse_raster",
-                                                                      "fine_raster", "interpolate"};
+/// The elastic streams inside, in the order of raster_cosim's stream_valid_o: triangle, setup, tile, stamp, line_pixel,
+/// fragment.
+inline constexpr std::size_t kStreams = 6;
+inline constexpr std::array<std::string_view, kStreams> kStreamStages{"cull",        "triangle_setup", "coarse_raster",
+                                                                      "fine_raster", "line_raster",    "interpolate"};
 
 /// What the design shows in one cycle, before the clock edge.
 struct DutOutputs {
   std::uint32_t fired = 0;  ///< bit per Arrow but `request`: this packet moves now
-  bool primitive_ready = false, request_valid = false, response_ready = false, idle = false;
+  bool primitive_ready = false, line_ready = false, request_valid = false, response_ready = false, idle = false;
   bool moves_tiles = false;                          ///< the framebuffer is busy with memory or a clear
   std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit per stream
   std::array<const void*, kArrows> packet{};         ///< little-endian bytes of each arrow's packet, rounded up
@@ -41,9 +42,10 @@ class Dut {
   virtual void reset(std::uint64_t seed, std::uint16_t mutant) = 0;
   /// Offers a packet from now on; null takes the offer back. The words are copied.
   virtual void set_primitive(const std::uint32_t* words) = 0;
+  virtual void set_line(const std::uint32_t* words) = 0;
   virtual void set_response(const std::uint32_t* words) = 0;
   /// Settles this cycle's outputs; they stay valid until clock().
-  virtual const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) = 0;
+  virtual const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) = 0;
   virtual void clock() = 0;
   [[nodiscard]] virtual bool can_trace() const { return false; }
   /// Records a waveform from here to close_trace(); false when the design was built without. Closing flushes the file.

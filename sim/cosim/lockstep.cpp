@@ -27,8 +27,12 @@ std::vector<std::uint32_t> words_from(const void* bytes, std::size_t count) {
   return words;
 }
 
-/// The stage to look at first. A write packet carries the results of two stages.
+/// The stage to look at first. A write packet carries the results of two stages, and so does the fragment of a line.
 std::string suspect(Arrow arrow, const Mismatch& mismatch) {
+  if (arrow == Arrow::fragment && mismatch.kind == Mismatch::Kind::differs)
+    for (const FieldPair& field : mismatch.fields)
+      if (field.name == "kind" && field.model == static_cast<std::uint64_t>(PrimitiveKind::line))
+        return "primitive_join";
   if (arrow != Arrow::write || mismatch.kind != Mismatch::Kind::differs) return std::string(info(arrow).stage);
   for (const std::string& name : mismatch.differing())
     if (!name.starts_with("color[")) return "depth_test";
@@ -50,6 +54,8 @@ void LockstepResult::add(const LockstepResult& later) {
   if (!mismatch) mismatch = later.mismatch;
   is_stopped |= later.is_stopped;
   triangles += later.triangles;
+  lines += later.lines;
+  points += later.points;
   cycles += later.cycles;
   clocks += later.clocks;
   raster_cycles += later.raster_cycles;
@@ -85,6 +91,7 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       model_(config_, expected_),
       memory_(config_, widths_, options_.memory_latency),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
+      lines_(words_of(packet_bits<LineSetup>(widths_))),
       held_(words_of(packet_bits<MemoryRequest>(widths_))) {
   dut_.reset(options_.seed, options_.mutant);
 }
@@ -135,10 +142,19 @@ LockstepResult Lockstep::run(const Scene& scene) {
   return result_;
 }
 
-bool Lockstep::has_finished() const { return all_sent_ && was_idle_ && memory_.is_idle() && expected_.empty(); }
+bool Lockstep::has_finished() const {
+  return all_sent_ && was_idle_ && lines_.empty() && memory_.is_idle() && expected_.empty();
+}
 
-/// Keeps a primitive on offer, and lets the model run it before the design can have seen it.
+/// Keeps a primitive and a line on offer, and lets the model run it before the design can have seen it.
 void Lockstep::offer(HostStream& host) {
+  offer_primitive(host);
+  if (has_line_) return;
+  has_line_ = !lines_.empty();
+  dut_.set_line(has_line_ ? lines_.front() : nullptr);
+}
+
+void Lockstep::offer_primitive(HostStream& host) {
   if (has_primitive_ || all_sent_) return;
   if (drains_) {
     dut_.set_primitive(nullptr);
@@ -154,11 +170,12 @@ void Lockstep::offer(HostStream& host) {
   pack_words(next->packet, widths_, primitive_.data());
   dut_.set_primitive(primitive_.data());
   has_primitive_ = true;
+  if (next->line) pack_words(*next->line, widths_, lines_.push(0));
   if (options_.compares) {
     expected_.set_sequence(static_cast<std::uint32_t>(sent_.size()));
-    model_.run(next->packet);
-  } else if (next->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
-    CounterPacket ignored;  // pieces of one input triangle follow each other
+    model_.run(next->packet, next->line);
+  } else if (is_counted(next->packet.kind)) {
+    CounterPacket ignored;  // pieces of one input primitive follow each other
     if (cull(next->packet, widths_, ignored) && std::exchange(last_drawn_, next->primitive) != next->primitive)
       ++result_.drawn;
   }
@@ -173,7 +190,7 @@ void Lockstep::step(HostStream& host) {
     dut_.set_response(due);  // here and not when it is taken: the clock edge must still see it
     has_response_ = due != nullptr;
   }
-  const std::uint8_t stalls = stall_bits(options_.seed, cycle_, threshold_);
+  const std::uint32_t stalls = stall_bits(options_.seed, cycle_, threshold_);
   const bool request_ready = !is_stalled(options_.seed, stall_memory, cycle_, threshold_);
   const DutOutputs& out = dut_.evaluate(stalls, request_ready);
 
@@ -205,14 +222,16 @@ void Lockstep::step(HostStream& host) {
     moved = true;
     drains_ =
         options_.drains_clears && sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear);
-    if (sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) && result_.triangles++ == 0) {
-      first_triangle_ = cycle_;
-      tile_cycles_ = 0;
-    }
+    count_taken();
   }
-  if (result_.triangles != 0 && out.moves_tiles) ++tile_cycles_;
-  if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.triangles != 0) {
-    result_.raster_cycles = cycle_ - first_triangle_ + 1;
+  if (has_line_ && out.line_ready) {
+    lines_.pop();
+    has_line_ = false;
+    moved = true;
+  }
+  if (result_.primitives() != 0 && out.moves_tiles) ++tile_cycles_;
+  if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.primitives() != 0) {
+    result_.raster_cycles = cycle_ - first_taken_ + 1;
     result_.tile_cycles = tile_cycles_;
   }
   was_idle_ = out.idle && !taken;  // what is taken now is not yet under way
@@ -220,6 +239,19 @@ void Lockstep::step(HostStream& host) {
   if (!options_.compares) count_use(out);
   dut_.clock();
   ++cycle_;
+}
+
+/// The primitive on offer has been taken.
+void Lockstep::count_taken() {
+  const std::uint8_t kind = sent_.back().packet.kind;
+  if (!is_counted(kind)) return;
+  if (result_.primitives() == 0) {
+    first_taken_ = cycle_;
+    tile_cycles_ = 0;
+  }
+  ++(kind == static_cast<std::uint8_t>(PrimitiveKind::line)    ? result_.lines
+     : kind == static_cast<std::uint8_t>(PrimitiveKind::point) ? result_.points
+                                                               : result_.triangles);
 }
 
 void Lockstep::compare(Arrow arrow, const void* rtl) {
@@ -242,7 +274,7 @@ void Lockstep::compare(Arrow arrow, const void* rtl) {
 }
 
 /// Under back-pressure a request must wait unchanged. A cycle that stalls the stream itself shows no offer.
-void Lockstep::watch_request(const DutOutputs& out, std::uint8_t stalls, bool taken) {
+void Lockstep::watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken) {
   const void* request = out.packet[static_cast<std::size_t>(Arrow::request)];
   const std::size_t bytes = bytes_[static_cast<std::size_t>(Arrow::request)];
   const bool is_hidden = (stalls >> stall_request & 1) != 0;
@@ -281,8 +313,7 @@ Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::
   m.cycle = cycle_;
   const std::uint64_t compared = result_.compared[static_cast<std::size_t>(arrow)];
   m.number = kind == Mismatch::Kind::missing ? compared : compared - 1;
-  if (tag < sent_.size() && sent_[tag].packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle))
-    m.primitive = sent_[tag].primitive;
+  if (tag < sent_.size() && is_counted(sent_[tag].packet.kind)) m.primitive = sent_[tag].primitive;
   for (const FieldPair& field : m.fields) {
     const std::uint64_t value = kind == Mismatch::Kind::extra ? field.rtl : field.model;
     if (field.name == "tile_x") m.tile_x = value;
@@ -294,10 +325,10 @@ Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::
 
 /// Says which streams hold a packet that nobody takes, and blames the stage behind the last of them.
 void Lockstep::explain_standstill(Mismatch& mismatch) {
-  constexpr std::array<Arrow, kStreams> kArrowOf{Arrow::triangle, Arrow::setup, Arrow::tile, Arrow::stamp,
-                                                 Arrow::fragment};
-  constexpr std::array<std::string_view, kStreams> kConsumer{"triangle_setup", "coarse_raster", "fine_raster",
-                                                             "interpolate", "depth_test"};
+  constexpr std::array<Arrow, kStreams> kArrowOf{Arrow::triangle, Arrow::setup,      Arrow::tile,
+                                                 Arrow::stamp,    Arrow::line_pixel, Arrow::fragment};
+  constexpr std::array<std::string_view, kStreams> kConsumer{"triangle_setup", "coarse_raster",  "fine_raster",
+                                                             "interpolate",    "primitive_join", "depth_test"};
   const DutOutputs& out = dut_.evaluate(0, true);
   std::string waiting;
   for (std::size_t i = 0; i < kStreams; ++i) {

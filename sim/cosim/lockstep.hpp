@@ -24,7 +24,7 @@ struct LockstepOptions {
   double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
   int memory_latency = 8;        ///< cycles
   std::uint16_t mutant = 0;
-  bool drains_clears = false;  ///< nothing goes in behind a fast clear until it is done: for cycles of triangles alone
+  bool drains_clears = false;  ///< nothing goes in behind a fast clear until it is done: for cycles of primitives alone
   bool compares = true;        ///< false: the design alone, for its image and counters
   std::string trace;           ///< FST file, empty: none; holds the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
@@ -44,16 +44,17 @@ struct LockstepResult {
   std::uint64_t memory_compared = 0;              ///< stamps of either plane in the final memory
   std::uint64_t counters_compared = 0;
   std::optional<Mismatch> mismatch;
-  bool is_stopped = false;          ///< by options.progress: neither equal nor different
-  std::uint64_t triangles = 0;      ///< taken by the RTL
-  std::uint64_t cycles = 0;         ///< to the last packet anywhere, memory included
-  std::uint64_t raster_cycles = 0;  ///< from the first triangle taken to the last write into the on-chip tiles
+  bool is_stopped = false;                             ///< by options.progress: neither equal nor different
+  std::uint64_t triangles = 0, lines = 0, points = 0;  ///< taken by the RTL
+  std::uint64_t cycles = 0;                            ///< to the last packet anywhere, memory included
+  std::uint64_t raster_cycles = 0;  ///< from the first of them taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
   std::uint64_t clocks = 0;         ///< simulated, those that waited for a packet too many included
-  std::uint64_t drawn = 0;          ///< input triangles of which a piece passed cull; only when nothing is compared
+  std::uint64_t drawn = 0;          ///< input primitives of which a piece passed cull; only when nothing is compared
   std::array<StreamUse, kStreams> use{};  ///< only when nothing is compared
 
   [[nodiscard]] std::uint64_t total() const;
+  [[nodiscard]] std::uint64_t primitives() const { return triangles + lines + points; }
   /// Adds a later run of the same Lockstep.
   void add(const LockstepResult& later);
 };
@@ -72,6 +73,7 @@ class ExpectedPackets final : public PacketSink {
   void take(const TilePacket& p) override { push(Arrow::tile, p); }
   void take(const EdgeContext& p) override { push(Arrow::edges, p); }
   void take(const StampPacket& p) override { push(Arrow::stamp, p); }
+  void take(const LinePixel& p) override { push(Arrow::line_pixel, p); }
   void take(const FragmentPacket& p) override { push(Arrow::fragment, p); }
   void take(const WritePacket& p) override { push(Arrow::write, p); }
   void take(const RetirePacket& p) override { push(Arrow::retire, p); }
@@ -106,9 +108,11 @@ class Lockstep {
 
  private:
   void offer(HostStream& host);
+  void offer_primitive(HostStream& host);
   void step(HostStream& host);
   void compare(Arrow arrow, const void* rtl);
-  void watch_request(const DutOutputs& out, std::uint8_t stalls, bool taken);
+  void count_taken();
+  void watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken);
   void count_use(const DutOutputs& out);
   void trace();
   [[nodiscard]] bool has_finished() const;
@@ -134,13 +138,14 @@ class Lockstep {
   LockstepResult result_;                 // of the run at work
   std::vector<HostPrimitive> sent_;       // of the run at work, without their packets: tags index it
   std::vector<std::uint32_t> primitive_;  // words of the primitive on offer
+  PacketQueue lines_;                     // of the primitives in sent_, not yet taken: a stream of its own
   std::vector<std::uint32_t> held_;       // words of a request on offer
-  bool has_primitive_ = false, all_sent_ = false, has_response_ = false, has_held_ = false;
+  bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_response_ = false, has_held_ = false;
   bool is_tracing_ = false, was_idle_ = false, drains_ = false;
   std::uint64_t cycle_ = 0;           // since reset
-  std::uint64_t first_triangle_ = 0;  // when it was taken
+  std::uint64_t first_taken_ = 0;     // cycle of the first primitive that counts
   std::uint64_t tile_cycles_ = 0;     // since then
-  std::uint64_t last_drawn_ = ~0ULL;  // input triangle that was counted last
+  std::uint64_t last_drawn_ = ~0ULL;  // input primitive that was counted last
   std::uint64_t last_moved_ = 0;      // the last cycle in which a packet moved anywhere
 };
 

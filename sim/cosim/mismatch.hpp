@@ -25,7 +25,7 @@ struct Mismatch {
   std::vector<FieldPair> fields;           ///< all of them; one side is 0 when it has no packet
   std::uint64_t cycle = 0;                 ///< since reset
   std::uint64_t number = 0;                ///< of the packet on its arrow, from 0 at the scene's beginning
-  std::optional<std::uint32_t> primitive;  ///< number of the input triangle; none for a clear, the flush, or unknown
+  std::optional<std::uint32_t> primitive;  ///< number of the input primitive; none for a clear, the flush, or unknown
   std::optional<std::uint64_t> tile_x, tile_y, stamp;
 
   /// Names of the fields that differ.

@@ -21,21 +21,24 @@ class Generator {
     scene_.width = extent(std::min(640 / limit, config.target_width));
     scene_.height = extent(std::min(480 / limit, config.target_height));
     hiz_chunk_ = chance(0.3);
+    has_lines_ = config.line_units != 0 && chance(0.7);
+    has_points_ = chance(0.6);
   }
 
   Scene make(std::size_t count) {
     for (std::size_t made = 0; made < count;) {
       if (chance(0.04)) clear();
+      const Topology topology = has_lines_ && chance(0.25)    ? Topology::lines
+                                : has_points_ && chance(0.15) ? Topology::points
+                                                              : Topology::triangles;
       is_pile_ = chance(0.15);
       scene_.states.push_back(state());
+      if (topology != Topology::triangles) line_and_point_state(scene_.states.back());
       const std::size_t run = std::min<std::size_t>(count - made, 1 + static_cast<std::size_t>(below(12)));
-      const Draw draw{static_cast<std::uint32_t>(scene_.states.size() - 1),
-                      0,
-                      Topology::triangles,
-                      scene_.indices.size(),
-                      3 * run,
-                      0};
-      for (std::size_t i = 0; i < run; ++i) triangle(is_pile_ && i > 0);
+      const std::size_t corners = topology == Topology::triangles ? 3 : topology == Topology::lines ? 2 : 1;
+      const Draw draw{
+          static_cast<std::uint32_t>(scene_.states.size() - 1), 0, topology, scene_.indices.size(), corners * run, 0};
+      for (std::size_t i = 0; i < run; ++i) primitive(corners, is_pile_ && i > 0);
       scene_.commands.push_back(draw);
       made += run;
     }
@@ -57,7 +60,8 @@ class Generator {
 
   State state();
   void clear();
-  void triangle(bool is_again);
+  void line_and_point_state(State& s);
+  void primitive(std::size_t corners, bool is_again);
   std::array<Point, 3> shape();
   std::array<Point, 3> around(Point center, std::int64_t reach);
   std::array<Point, 3> tile_half();
@@ -72,7 +76,8 @@ class Generator {
   std::int64_t unit_ = 1;   // subpixels of a pixel
   std::int64_t step_ = 1;   // subpixels between two vertices
   bool hiz_chunk_ = false;  // large triangles and `less`: many tiles to be rejected by their bound
-  bool is_pile_ = false;    // one triangle again and again: a stamp meets the one right ahead, a tile its last visit
+  bool has_lines_ = false, has_points_ = false;
+  bool is_pile_ = false;  // one triangle again and again: a stamp meets the one right ahead, a tile its last visit
   std::array<Point, 3> last_{};
   std::uint64_t last_depth_ = 0;  // code
 };
@@ -96,6 +101,14 @@ State Generator::state() {
                  static_cast<int>(sized(6)) * tile};
   }
   return s;
+}
+
+/// Behind a line that can raise depths HiZ rests until the next fast clear: rare where it is to be seen at work.
+void Generator::line_and_point_state(State& s) {
+  if (hiz_chunk_ && s.depth_test >= DepthFunc::greater && chance(0.8)) s.depth_write = false;
+  s.line_rule = static_cast<LineRule>(below(3));
+  if (chance(0.5)) s.line_last = chance(0.5);
+  s.point_size = static_cast<double>(unit_ + (chance(0.4) ? 0 : below(sized(12 * unit_)))) / static_cast<double>(unit_);
 }
 
 Rect Generator::scissor() {
@@ -199,8 +212,10 @@ std::array<Point, 3> Generator::shape() {
   }
 }
 
-void Generator::triangle(bool is_again) {
+/// A line or a point is that of the first corners of a triangle, near each other or as far apart as the guard band.
+void Generator::primitive(std::size_t corners, bool is_again) {
   std::array<Point, 3> p = is_again ? last_ : shape();
+  if (corners == 2 && chance(0.3)) p[1] = around(p[0], sized(24 * unit_))[0];  // in the picture if p[0] is
   const int all = is_again ? 0 : static_cast<int>(below(8));  // 1 to 3: all three to the same kind of point
   for (Point& q : p) q = snapped(q, all < 4 ? all : chance(0.2) ? static_cast<int>(below(4)) : 0);
   last_ = p;
@@ -208,7 +223,7 @@ void Generator::triangle(bool is_again) {
   const bool is_flat = chance(is_pile_ ? 0.7 : 0.25);
   const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
   const bool is_plain = chance(0.1);
-  for (std::uint32_t i = 0; i < 3; ++i) {
+  for (std::uint32_t i = 0; i < corners; ++i) {
     Vertex v;
     v.x = static_cast<double>(p[i][0]) / static_cast<double>(unit_);
     v.y = static_cast<double>(p[i][1]) / static_cast<double>(unit_);

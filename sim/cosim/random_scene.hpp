@@ -8,7 +8,7 @@
 
 namespace halfplane {
 
-/// A scene of `count` window-space triangles on a random target within 640x480 and the configuration's (a quarter of that
+/// A scene of `count` window-space triangles, lines and points on a random target within 640x480 and the configuration's (a quarter of that
 /// with stamps of one sample). Sizes are log-uniform from one subpixel to the whole guard band. The same for the same
 /// arguments on every machine. Every vertex snaps.
 ///

@@ -3,40 +3,65 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "model/host_stream.hpp"
 
 namespace halfplane {
 namespace {
 
-/// A triangle or a clear with a state of its own, so that anything can be taken out.
+/// A triangle, line, point or clear with a state of its own, so that anything can be taken out.
 struct Item {
   State state;
   std::optional<Clear> clear;
+  Topology topology = Topology::triangles;  ///< or lines or points: a list
   std::array<Vertex, 3> v{};
+
+  [[nodiscard]] std::span<Vertex> corners() {
+    return std::span(v).first(topology == Topology::triangles ? 3 : topology == Topology::lines ? 2 : 1);
+  }
 };
 using Items = std::vector<Item>;
+
+void add_draw(Items& items, const Scene& scene, const Draw& draw) {
+  Item item{scene.states[draw.state], {}, Topology::triangles, {}};
+  const auto add = [&](std::array<std::uint32_t, 3> index) {
+    for (std::size_t i = 0; i < item.corners().size(); ++i) item.v[i] = scene.vertices[index[i]];
+    items.push_back(item);
+  };
+  switch (primitive_type(draw.topology)) {
+    case PrimitiveType::triangle: {
+      const Provoking provoking = std::exchange(item.state.provoking, Provoking::first);  // it comes first from now on
+      for_each_triangle(scene, draw, provoking, [&](auto a, auto b, auto c) { add({a, b, c}); });
+      return;
+    }
+    case PrimitiveType::line:
+      item.topology = Topology::lines;
+      for_each_line(scene, draw, [&](auto start, auto end) { add({start, end, 0}); });
+      return;
+    case PrimitiveType::point:
+      item.topology = Topology::points;
+      for_each_point(scene, draw, [&](auto index) { add({index, 0, 0}); });
+  }
+}
 
 Items items_of(const Scene& scene) {
   Items items;
   for (const Command& command : scene.commands) {
-    if (const auto* clear = std::get_if<Clear>(&command)) items.push_back({scene.states[clear->state], *clear, {}});
-    if (const auto* draw = std::get_if<Draw>(&command))
-      for_each_triangle(
-          scene, *draw, scene.states[draw->state].provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-            items.push_back({scene.states[draw->state], {}, {scene.vertices[a], scene.vertices[b], scene.vertices[c]}});
-          });
+    if (const auto* clear = std::get_if<Clear>(&command))
+      items.push_back({scene.states[clear->state], *clear, Topology::triangles, {}});
+    if (const auto* draw = std::get_if<Draw>(&command)) add_draw(items, scene, *draw);
   }
   return items;
 }
 
-/// Neighbours of one state become one draw.
-Scene scene_of(const Items& items, const Scene& like, int width, int height) {
+/// Neighbours of one state and kind become one draw.
+Scene scene_of(Items items, const Scene& like, int width, int height) {
   Scene scene;
   scene.name = like.name;
   scene.width = width;
   scene.height = height;
-  for (const Item& item : items) {
+  for (Item& item : items) {
     if (scene.states.empty() || !(scene.states.back() == item.state)) scene.states.push_back(item.state);
     const auto state = static_cast<std::uint32_t>(scene.states.size() - 1);
     if (item.clear) {
@@ -46,20 +71,20 @@ Scene scene_of(const Items& items, const Scene& like, int width, int height) {
       continue;
     }
     Draw* draw = scene.commands.empty() ? nullptr : std::get_if<Draw>(&scene.commands.back());
-    if (draw == nullptr || draw->state != state) {
-      scene.commands.push_back(Draw{state, 0, Topology::triangles, scene.indices.size(), 0, 0});
+    if (draw == nullptr || draw->state != state || draw->topology != item.topology) {
+      scene.commands.push_back(Draw{state, 0, item.topology, scene.indices.size(), 0, 0});
       draw = std::get_if<Draw>(&scene.commands.back());
     }
-    for (const Vertex& v : item.v) {
+    for (const Vertex& v : item.corners()) {
       scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
       scene.vertices.push_back(v);
     }
-    draw->count += 3;
+    draw->count += item.corners().size();
   }
   return scene;
 }
 
-std::size_t triangles_in(const Items& items) {
+std::size_t primitives_in(const Items& items) {
   return static_cast<std::size_t>(std::count_if(items.begin(), items.end(), [](const Item& i) { return !i.clear; }));
 }
 
@@ -69,7 +94,7 @@ class Reducer {
           const ReduceOptions& options)
       : config_(config), test_(test), options_(options), scene_(scene), items_(items_of(scene)) {
     best_.lockstep = lockstep;
-    best_.triangles_before = triangles_in(items_);
+    best_.primitives_before = primitives_in(items_);
     width_ = scene.width;
     height_ = scene.height;
   }
@@ -87,7 +112,7 @@ class Reducer {
     simplify_vertices();
     crop();
     remove();
-    best_.triangles_after = triangles_in(items_);
+    best_.primitives_after = primitives_in(items_);
     best_.is_minimal = !is_late();
     return best_;
   }
@@ -215,7 +240,14 @@ void Reducer::simplify_states() {
   reset(&State::scissor);
   reset(&State::viewport);
   reset(&State::depth_range);
+  reset(&State::polygon_mode);
+  reset(&State::polygon_offset);
+  reset(&State::line_rule);
+  reset(&State::line_last);
+  reset(&State::point_size);
+  reset(&State::point_clip);
   reset(&State::shade);
+  reset(&State::provoking);
   reset(&State::cull);
   reset(&State::front);
   reset(&State::color_write);
@@ -228,7 +260,7 @@ void Reducer::simplify_vertices() {
     simplify([&](Item& item) {
       bool has_changed = false;
       if (!item.clear)
-        for (Vertex& v : item.v) has_changed |= change(v, item);
+        for (Vertex& v : item.corners()) has_changed |= change(v, item);
       return has_changed;
     });
   };
@@ -261,8 +293,31 @@ std::optional<Reduced> reduce(const Scene& scene, const Config& config, const Lo
   return Reducer(scene, config, lockstep, test, options).run();
 }
 
+/// From its first pixel to its last: as good a line as any for looking for a fault, if not always the same pixels.
+template <class Color>
+void to_window_line(Item& item, const LineSetup& line, const Widths& widths, const Color& color) {
+  item.topology = Topology::lines;
+  item.state.line_rule = LineRule::bresenham;
+  item.state.scissor.reset();  // its box is where it begins
+  bool is_first = true;
+  line_raster(line, widths, [&](const LinePixel& pixel) {
+    const Vertex v{pixel.x + 0.5, pixel.y + 0.5, pixel.depth / static_cast<double>(widths.depth_code.range.hi), 1,
+                   color(pixel.color)};
+    if (std::exchange(is_first, false)) item.v[0] = v;
+    item.v[1] = v;
+  });
+}
+
+/// A square round the middle of its box, which is the scissor.
+template <class Color>
+void to_window_point(Item& item, const PrimitivePacket& p, double largest, const Color& color) {
+  item.topology = Topology::points;
+  item.state.point_size = std::max(p.right - p.left, p.bottom - p.top) + 1;
+  item.v[0] = {(p.left + p.right + 1) / 2.0, (p.top + p.bottom + 1) / 2.0, p.z[0] / largest, 1, color(p.rgba[0])};
+}
+
 Scene window_scene(const Scene& scene, const Config& config) {
-  const int channels = derive_widths(config).color_channels;
+  const Widths widths = derive_widths(config);
   const double grid = std::ldexp(1.0, std::max(1, config.subpixel_bits));
   const double largest = std::ldexp(1.0, config.depth_bits) - 1;
   HostStream host(scene, config);
@@ -276,10 +331,10 @@ Scene window_scene(const Scene& scene, const Config& config) {
       item.state.scissor = Rect{p.left, p.top, p.right - p.left + 1, p.bottom - p.top + 1};
     const auto color = [&](std::uint32_t rgba) {
       std::array<double, 4> c{0, 0, 0, 255};
-      for (int i = 0; i < channels; ++i) c[static_cast<std::size_t>(i)] = rgba >> (8 * i) & 0xff;
+      for (int i = 0; i < widths.color_channels; ++i) c[static_cast<std::size_t>(i)] = rgba >> (8 * i) & 0xff;
       return c;
     };
-    if (p.kind != static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+    if (!is_counted(p.kind)) {
       Clear clear;
       if (p.depth_write != 0) clear.depth = p.z[0] / largest;
       if (p.color_write != 0) clear.color = color(p.rgba[0]);
@@ -290,12 +345,17 @@ Scene window_scene(const Scene& scene, const Config& config) {
       item.state.color_write = p.color_write != 0;
       item.state.cull = static_cast<Cull>(p.cull);
       item.state.front = p.front_cw != 0 ? FrontFace::cw : FrontFace::ccw;
-      for (std::size_t i = 0; i < 3; ++i) {
-        item.v[i].x = p.x[i] / grid;
-        item.v[i].y = p.y[i] / grid;
-        item.v[i].z = p.z[i] / largest;
-        item.v[i].rgba = color(p.rgba[i]);
-      }
+      if (p.kind == static_cast<std::uint8_t>(PrimitiveKind::line))
+        to_window_line(item, *sent->line, widths, color);
+      else if (p.kind == static_cast<std::uint8_t>(PrimitiveKind::point))
+        to_window_point(item, p, largest, color);
+      else
+        for (std::size_t i = 0; i < 3; ++i) {
+          item.v[i].x = p.x[i] / grid;
+          item.v[i].y = p.y[i] / grid;
+          item.v[i].z = p.z[i] / largest;
+          item.v[i].rgba = color(p.rgba[i]);
+        }
     }
     items.push_back(item);
   }

@@ -26,7 +26,7 @@ struct Reduced {
   Scene scene;
   LockstepOptions lockstep;  ///< without stalls, if it fails without
   Mismatch mismatch;         ///< of `scene`
-  std::size_t triangles_before = 0, triangles_after = 0;
+  std::size_t primitives_before = 0, primitives_after = 0;
   std::size_t runs = 0;
   bool is_minimal = false;  ///< the time was enough: nothing more can be taken away singly
 };
@@ -35,7 +35,8 @@ struct Reduced {
 [[nodiscard]] std::optional<Reduced> reduce(const Scene& scene, const Config& config, const LockstepOptions& lockstep,
                                             const FailTest& test, const ReduceOptions& options = {});
 
-/// The same primitives in window space, clipped and snapped: what the hardware is sent.
+/// The same primitives in window space, clipped and snapped: what the hardware is sent. Lines begin and end at their first
+/// and last pixel.
 [[nodiscard]] Scene window_scene(const Scene& scene, const Config& config);
 
 }  // namespace halfplane

@@ -66,7 +66,7 @@ std::string values(const std::vector<FieldPair>& fields, const std::string& titl
 
 std::string place(const Mismatch& m) {
   std::string text;
-  if (m.primitive) text += ", triangle " + std::to_string(*m.primitive);
+  if (m.primitive) text += ", primitive " + std::to_string(*m.primitive);
   if (m.tile_x && m.tile_y) text += ", tile (" + std::to_string(*m.tile_x) + ", " + std::to_string(*m.tile_y) + ")";
   if (m.stamp) text += ", stamp " + std::to_string(*m.stamp);
   return text + ", cycle " + std::to_string(m.cycle);

@@ -9,7 +9,7 @@
 
 namespace halfplane {
 
-/// One line: "fine_raster: mask differs in packet 12 of stamp, triangle 3, tile (4, 2), stamp 5, cycle 678".
+/// One line: "fine_raster: mask differs in packet 12 of stamp, primitive 3, tile (4, 2), stamp 5, cycle 678".
 [[nodiscard]] std::string mismatch_line(const Mismatch& mismatch);
 
 /// The whole of it, in lines of at most 120 characters.

@@ -11,7 +11,7 @@
 namespace halfplane {
 namespace {
 
-constexpr std::uint64_t kLargestChunk = 2000;                  // triangles
+constexpr std::uint64_t kLargestChunk = 2000;                  // primitives
 constexpr std::uint64_t kTraceBefore = 200, kTraceAfter = 20;  // cycles around the mismatch
 
 }  // namespace

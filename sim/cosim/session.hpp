@@ -16,7 +16,7 @@ using SceneSource = std::function<std::optional<Scene>()>;
 /// One scene.
 [[nodiscard]] SceneSource single_scene(Scene scene);
 
-/// `count` random triangles, in scenes of up to 2,000 so that a failing one is small. The first are smaller still.
+/// `count` random triangles, lines and points, in scenes of up to 2,000 so that a failing one is small. The first are smaller still.
 [[nodiscard]] SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count);
 
 struct Session {

@@ -6,7 +6,7 @@
 
 namespace halfplane {
 
-/// The streams that can be stalled. 0 to 7 are the bits of raster_top's stall_i, the last is the memory's own.
+/// The streams that can be stalled. All but the last are the bits of raster_top's stall_i, the last is the memory's own.
 enum StallStream : int {
   stall_primitive,
   stall_triangle,
@@ -16,6 +16,8 @@ enum StallStream : int {
   stall_fragment,
   stall_request,
   stall_response,
+  stall_line,
+  stall_line_pixel,
   stall_memory,  ///< the memory takes no request
 };
 inline constexpr int kStallStreams = stall_memory + 1;
@@ -36,12 +38,13 @@ inline constexpr int kStallStreams = stall_memory + 1;
   return ((z ^ (z >> 31)) >> 32) < threshold;
 }
 
-/// The streams 0 to 7 of one cycle as raster_top's stall_i.
-[[nodiscard]] constexpr std::uint8_t stall_bits(std::uint64_t seed, std::uint64_t cycle, std::uint64_t threshold) {
+/// The streams of one cycle as raster_top's stall_i.
+[[nodiscard]] constexpr std::uint32_t stall_bits(std::uint64_t seed, std::uint64_t cycle, std::uint64_t threshold) {
   unsigned bits = 0;
   if (threshold != 0)
-    for (int stream = 0; stream < 8; ++stream) bits |= (is_stalled(seed, stream, cycle, threshold) ? 1U : 0U) << stream;
-  return static_cast<std::uint8_t>(bits);
+    for (int stream = 0; stream < stall_memory; ++stream)
+      bits |= (is_stalled(seed, stream, cycle, threshold) ? 1U : 0U) << stream;
+  return bits;
 }
 
 }  // namespace halfplane

@@ -29,21 +29,26 @@ class VerilatedDut final : public Dut {
     top_->primitive_valid_i = words != nullptr;
     if (words != nullptr) std::memcpy(first_word(top_->primitive_i), words, sizeof top_->primitive_i);
   }
+  void set_line(const std::uint32_t* words) override {
+    top_->line_valid_i = words != nullptr;
+    if (words != nullptr) std::memcpy(first_word(top_->line_i), words, sizeof top_->line_i);
+  }
   void set_response(const std::uint32_t* words) override {
     top_->response_valid_i = words != nullptr;
     if (words != nullptr) std::memcpy(first_word(top_->response_i), words, sizeof top_->response_i);
   }
 
   /// raster_cosim registers its inputs, so the edge that ends the last cycle is the one at which they are taken over.
-  const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) override {
+  const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) override {
     if (top_->clk_i != 0) fall();  // a cycle more that nobody counts, as for the counters after the last
-    top_->stall_i = stalls;
+    top_->stall_i = static_cast<std::uint16_t>(stalls);
     top_->request_ready_i = request_ready;
     top_->clk_i = 1;
     top_->eval();
     dump();
     out_.fired = top_->fire_o;
     out_.primitive_ready = top_->primitive_ready_o != 0;
+    out_.line_ready = top_->line_ready_o != 0;
     out_.request_valid = top_->request_valid_o != 0;
     out_.response_ready = top_->response_ready_o != 0;
     out_.idle = top_->idle_o != 0;
@@ -93,8 +98,10 @@ class VerilatedDut final : public Dut {
     top_->stall_i = 0;
     top_->request_ready_i = 0;
     std::memset(first_word(top_->primitive_i), 0, sizeof top_->primitive_i);
+    std::memset(first_word(top_->line_i), 0, sizeof top_->line_i);
     std::memset(first_word(top_->response_i), 0, sizeof top_->response_i);
     set_primitive(nullptr);
+    set_line(nullptr);
     set_response(nullptr);
     top_->rst_ni = 1;
     top_->eval();
@@ -106,8 +113,9 @@ class VerilatedDut final : public Dut {
     top_->rst_ni = 1;
     top_->eval();
     time_ = 0;  // so that cycle c begins at time 2 c
-    out_.packet = {&top_->triangle_o, &top_->setup_o,    &top_->context_o, &top_->tile_o,   &top_->edges_o,
-                   &top_->stamp_o,    &top_->fragment_o, &top_->write_o,   &top_->retire_o, &top_->request_o};
+    out_.packet = {&top_->triangle_o, &top_->setup_o,  &top_->context_o,    &top_->tile_o,
+                   &top_->edges_o,    &top_->stamp_o,  &top_->line_pixel_o, &top_->fragment_o,
+                   &top_->write_o,    &top_->retire_o, &top_->request_o};
     out_.counters = &top_->counters_o;
   }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 
 #include "sim/cosim/random_scene.hpp"
@@ -39,6 +40,12 @@ class FakeDut final : public Dut {
     fault_ = planned_;
     withdrawn_ = false;
     offered_.clear();
+    line_.reset();
+    lines_.clear();
+  }
+  void set_line(const std::uint32_t* words) override {
+    line_.reset();
+    if (words != nullptr) line_ = unpack_words<LineSetup>(words, widths_);
   }
   void set_primitive(const std::uint32_t* words) override {
     offered_.clear();
@@ -46,7 +53,7 @@ class FakeDut final : public Dut {
   }
   void set_response(const std::uint32_t*) override {}
 
-  const DutOutputs& evaluate(std::uint8_t stalls, bool request_ready) override;
+  const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) override;
   void clock() override;
 
  private:
@@ -62,6 +69,8 @@ class FakeDut final : public Dut {
   std::unique_ptr<HardwareModel> model_;
   std::array<std::uint64_t, kArrows> sent_{};
   std::vector<std::uint32_t> offered_;
+  std::optional<LineSetup> line_;  // on offer
+  std::deque<LineSetup> lines_;    // taken; at the latest with the primitive that holds the line's place
   std::array<std::vector<std::uint32_t>, kArrows> words_;
   std::vector<std::uint32_t> counters_;
   DutOutputs out_;
@@ -81,10 +90,10 @@ const std::uint32_t* FakeDut::content(Arrow arrow) {
   return words.data();
 }
 
-const DutOutputs& FakeDut::evaluate(std::uint8_t stalls, bool request_ready) {
-  constexpr std::array<int, kArrows> kStalledBy{stall_triangle, stall_setup,  stall_setup,    stall_tile,
-                                                stall_tile,     stall_stamp,  stall_fragment, stall_fragment,
-                                                stall_fragment, stall_request};
+const DutOutputs& FakeDut::evaluate(std::uint32_t stalls, bool request_ready) {
+  constexpr std::array<int, kArrows> kStalledBy{stall_triangle, stall_setup,    stall_setup,      stall_tile,
+                                                stall_tile,     stall_stamp,    stall_line_pixel, stall_fragment,
+                                                stall_fragment, stall_fragment, stall_request};
   out_ = {};
   for (std::size_t i = 0; i < kArrows; ++i) {
     const auto arrow = static_cast<Arrow>(i);
@@ -103,7 +112,7 @@ const DutOutputs& FakeDut::evaluate(std::uint8_t stalls, bool request_ready) {
     withdrawn_ = out_.request_valid = false;
   }
   takes_request_ = out_.request_valid && request_ready;
-  out_.response_ready = true;
+  out_.response_ready = out_.line_ready = true;
   out_.primitive_ready = expected_->empty() && (stalls & 1) == 0;
   out_.idle = expected_->empty() && offered_.empty() && fault_.kind != Fault::Kind::busy;
   counters_ = packed(model_->counters(), widths_);
@@ -124,8 +133,15 @@ void FakeDut::clock() {
     (*expected_)[arrow].pop();
     ++sent_[i];
   }
+  if (line_) lines_.push_back(*std::exchange(line_, std::nullopt));
   if (out_.primitive_ready && !offered_.empty()) {
-    model_->run(unpack_words<PrimitivePacket>(offered_.data(), widths_));
+    const auto primitive = unpack_words<PrimitivePacket>(offered_.data(), widths_);
+    std::optional<LineSetup> line;
+    if (primitive.kind == static_cast<std::uint8_t>(PrimitiveKind::line)) {
+      line = lines_.front();
+      lines_.pop_front();
+    }
+    model_->run(primitive, line);
     offered_.clear();
   }
 }
@@ -330,8 +346,8 @@ TEST(CosimReduce, FindsTheTwoTrianglesThatAreToBlame) {
   const auto reduced = reduce(scene, config, with_stalls(0.5), test);
   ASSERT_TRUE(reduced.has_value());
   EXPECT_TRUE(reduced->is_minimal);
-  EXPECT_LE(reduced->triangles_after, 2u);
-  EXPECT_EQ(reduced->triangles_before, 400u);
+  EXPECT_LE(reduced->primitives_after, 2u);
+  EXPECT_EQ(reduced->primitives_before, 400u);
   EXPECT_EQ(reduced->lockstep.stall_probability, 0);
   EXPECT_EQ(reduced->scene.width, 1);
   EXPECT_EQ(reduced->runs, runs);
@@ -354,7 +370,7 @@ TEST(CosimReduce, AFaultInTheDesignLeavesOneTriangle) {
   ASSERT_TRUE(mismatch.has_value());
   const Finding finding = investigate(dut, config, options, scene, *mismatch, "", {});
   ASSERT_TRUE(finding.reduced.has_value());
-  EXPECT_LE(finding.reduced->triangles_after, 4u);
+  EXPECT_LE(finding.reduced->primitives_after, 4u);
   EXPECT_TRUE(lockstep_test(dut, config)(finding.scene, finding.lockstep).has_value()) << "it must still fail";
 }
 

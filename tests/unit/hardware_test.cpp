@@ -162,6 +162,7 @@ class RoundTrip : public PacketSink {
   void take(const TilePacket& packet) override { check(packet); }
   void take(const EdgeContext& packet) override { check(packet); }
   void take(const StampPacket& packet) override { check(packet); }
+  void take(const LinePixel& packet) override { check(packet); }
   void take(const FragmentPacket& packet) override { check(packet); }
   void take(const WritePacket& packet) override { check(packet); }
   void take(const RetirePacket& packet) override { check(packet); }
@@ -188,7 +189,8 @@ TEST(Hardware, EveryPacketFitsItsFields) {
     HardwareModel hardware(config, sink);
     while (const auto primitive = host.next()) {
       sink.check(primitive->packet);
-      hardware.run(primitive->packet);
+      if (primitive->line) sink.check(*primitive->line);
+      hardware.run(primitive->packet, primitive->line);
       if (HasFatalFailure()) return;
     }
     sink.check(hardware.counters());

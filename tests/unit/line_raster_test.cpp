@@ -203,7 +203,7 @@ TEST(Line, LineWithoutLengthIsOnePixelUnlessTheLastIsDropped) {
       EXPECT_TRUE(pixels.empty());
     } else {
       ASSERT_EQ(pixels.size(), 1u);
-      EXPECT_EQ(pixels[0], (LinePixel{6, -4, 1, 1234, 0x030201}));
+      EXPECT_EQ(pixels[0], (LinePixel{0, 6, -4, 1, 1234, 0x030201}));
     }
   }
 }
@@ -403,7 +403,7 @@ TEST(Line, EveryRegisterFitsItsWidthAndEveryPacketItsBits) {
 TEST(Line, WidthsNeedExactlyTheBitsOfTheirRanges) {
   for (const auto name : preset_names()) {
     const Widths widths = derive_widths(preset(name));
-    for (const Width* width : widths.lines()) {
+    for (const Width* width : widths.all()) {
       const int128 half = int128{1} << (width->bits - 1);
       const Interval fits = width->is_signed ? Interval{-half, half - 1} : Interval{0, 2 * half - 1};
       EXPECT_TRUE(width->range.lo >= fits.lo && width->range.hi <= fits.hi) << width->name;

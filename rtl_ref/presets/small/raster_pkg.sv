@@ -18,13 +18,15 @@ package raster_pkg;
   localparam int HIZ_BITS = 8;  // bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ
   localparam int CACHE_LINES = 4;  // tiles that the on-chip depth and colour RAM holds; a power of two
   localparam int SETUP_KIND = 1;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
-  localparam logic [63:0] CONFIG_ID = 64'h8b07271e58560af8;  // hash of the above
+  localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
+  localparam logic [63:0] CONFIG_ID = 64'h4248577d7f2e3b33;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
   localparam int GUARD_BITS = 15;  // G: fraction bits of a gradient per pixel
   localparam int PLANE_FRACTION = 19;  // F = G + s
   localparam int TILE_SHIFT = 3;  // log2 of the tile size
+  localparam int LINE_GUARD_BITS = 12;  // G': fraction bits of depth and colour along a line
   localparam int STAMPS_PER_ROW = 8;  // stamps along the side of a tile
   localparam int COLOR_CHANNELS = 3;  // channels that the colour format stores
   localparam int SAMPLES = 1;  // samples of a stamp
@@ -63,7 +65,7 @@ package raster_pkg;
   localparam int STAMP_INDEX_BITS = 6;  // (T / stamp)^2
   localparam int SAMPLE_MASK_BITS = 1;  // one bit a sample
   localparam int STORED_COLOR_BITS = 16;  // color.format
-  localparam int KIND_BITS = 2;  // PrimitiveKind
+  localparam int KIND_BITS = 3;  // PrimitiveKind
   localparam int FLAG_BITS = 1;  // yes or no
   localparam int DEPTH_FUNC_BITS = 3;  // DepthFunc
   localparam int CULL_MODE_BITS = 2;  // Cull
@@ -74,6 +76,15 @@ package raster_pkg;
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
   localparam int MEMORY_LANE_BITS = 16;  // a depth code or a stored colour
   localparam int COUNTER_BITS = 32;  // modulo 2^32
+  localparam int LINE_NUMERATOR_BITS = 20;  // f D + d o - 1, f < 2^s
+  localparam int LINE_POSITION_BITS = 26;  // (line numerator >> s) + d n, n columns: d n <= L^2 / 2^s
+  localparam int LINE_PRODUCT_BITS = 37;  // depth delta * reciprocal
+  localparam int LINE_ERROR_BITS = 15;  // d - D <= p < d
+  localparam int LINE_STAY_BITS = 14;  // d, 0 <= d <= D <= L
+  localparam int LINE_MOVE_BITS = 15;  // d - D
+  localparam int LINE_COUNT_BITS = 9;  // longer side of the target, less the first pixel
+  localparam int LINE_DEPTH_BITS = 28;  // modulo 2^(B + G'), G' = log2(2 g) + 2
+  localparam int LINE_COLOR_BITS = 20;  // modulo 2^(8 + G')
 
   // Packets. Array fields are flat, element 0 lowest.
   typedef struct packed {
@@ -93,7 +104,7 @@ package raster_pkg;
     logic [3*DEPTH_CODE_BITS-1:0] z;
     logic [3*VERTEX_COLOR_BITS-1:0] rgba;
   } primitive_packet_t;
-  localparam int PRIMITIVE_PACKET_BITS = 256;  // of the struct above
+  localparam int PRIMITIVE_PACKET_BITS = 257;  // of the struct above
 
   typedef struct packed {
     logic [KIND_BITS-1:0] kind;
@@ -112,7 +123,7 @@ package raster_pkg;
     logic [AREA_BITS-1:0] area;
     logic [3*EDGE_VALUE_BITS-1:0] edge_value;
   } triangle_packet_t;
-  localparam int TRIANGLE_PACKET_BITS = 356;  // of the struct above
+  localparam int TRIANGLE_PACKET_BITS = 357;  // of the struct above
 
   typedef struct packed {
     logic [KIND_BITS-1:0] kind;
@@ -138,7 +149,7 @@ package raster_pkg;
     logic [3*COLOR_CODE_BITS-1:0] color_min;
     logic [3*COLOR_CODE_BITS-1:0] color_max;
   } setup_packet_t;
-  localparam int SETUP_PACKET_BITS = 654;  // of the struct above
+  localparam int SETUP_PACKET_BITS = 655;  // of the struct above
 
   typedef struct packed {
     logic [DEPTH_FUNC_BITS-1:0] depth_test;
@@ -172,7 +183,7 @@ package raster_pkg;
     logic signed [LOCAL_DEPTH_BITS-1:0] depth_anchor;
     logic [3*LOCAL_COLOR_BITS-1:0] color_anchor;
   } tile_packet_t;
-  localparam int TILE_PACKET_BITS = 162;  // of the struct above
+  localparam int TILE_PACKET_BITS = 163;  // of the struct above
 
   typedef struct packed {
     logic [3*EDGE_STEP_BITS-1:0] step_x;
@@ -193,7 +204,38 @@ package raster_pkg;
     logic signed [LOCAL_DEPTH_BITS-1:0] depth_anchor;
     logic [3*LOCAL_COLOR_BITS-1:0] color_anchor;
   } stamp_packet_t;
-  localparam int STAMP_PACKET_BITS = 99;  // of the struct above
+  localparam int STAMP_PACKET_BITS = 100;  // of the struct above
+
+  typedef struct packed {
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [PIXEL_X_BITS-1:0] x;
+    logic [PIXEL_Y_BITS-1:0] y;
+    logic [FLAG_BITS-1:0] is_x_major;
+    logic [FLAG_BITS-1:0] is_x_negative;
+    logic [FLAG_BITS-1:0] is_y_negative;
+    logic [FLAG_BITS-1:0] is_before_start;
+    logic [LINE_COUNT_BITS-1:0] remaining;
+    logic signed [LINE_ERROR_BITS-1:0] error;
+    logic [LINE_STAY_BITS-1:0] step_stay;
+    logic signed [LINE_MOVE_BITS-1:0] step_move;
+    logic [LINE_DEPTH_BITS-1:0] depth;
+    logic [LINE_DEPTH_BITS-1:0] depth_step;
+    logic [DEPTH_CODE_BITS-1:0] depth_start;
+    logic [3*LINE_COLOR_BITS-1:0] color;
+    logic [3*LINE_COLOR_BITS-1:0] color_step;
+    logic [VERTEX_COLOR_BITS-1:0] color_start;
+  } line_setup_t;
+  localparam int LINE_SETUP_BITS = 298;  // of the struct above
+
+  typedef struct packed {
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    logic [PIXEL_X_BITS-1:0] x;
+    logic [PIXEL_Y_BITS-1:0] y;
+    logic [FLAG_BITS-1:0] is_last;
+    logic [DEPTH_CODE_BITS-1:0] depth;
+    logic [VERTEX_COLOR_BITS-1:0] color;
+  } line_pixel_t;
+  localparam int LINE_PIXEL_BITS = 66;  // of the struct above
 
   typedef struct packed {
     logic [KIND_BITS-1:0] kind;
@@ -210,7 +252,7 @@ package raster_pkg;
     logic [1*DEPTH_CODE_BITS-1:0] depth;
     logic [1*VERTEX_COLOR_BITS-1:0] rgba;
   } fragment_packet_t;
-  localparam int FRAGMENT_PACKET_BITS = 75;  // of the struct above
+  localparam int FRAGMENT_PACKET_BITS = 76;  // of the struct above
 
   typedef struct packed {
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;

@@ -1,0 +1,99 @@
+// Line raster: the pixels of one line, from its start to its end.
+//
+// In: line setups, from the host. Out: one pixel per cycle. What changes along a line is in registers, one adder each,
+// two of them chosen by the sign of the error. Depth and colour have half an LSB in them, so that a code is the upper
+// bits. The next line is taken in the cycle in which the last pixel leaves; latency 1 cycle.
+// Specification: model/stages/line_raster.hpp.
+module line_raster (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From the host
+    input  logic                    line_valid_i,
+    output logic                    line_ready_o,
+    input  raster_pkg::line_setup_t line_i,
+
+    // To primitive_join
+    output logic                    pixel_valid_o,
+    input  logic                    pixel_ready_i,
+    output raster_pkg::line_pixel_t pixel_o
+);
+
+  localparam int PX = raster_pkg::PIXEL_X_BITS;
+  localparam int PY = raster_pkg::PIXEL_Y_BITS;
+  localparam int E = raster_pkg::LINE_ERROR_BITS;
+  localparam int COUNT = raster_pkg::LINE_COUNT_BITS;
+  localparam int D = raster_pkg::LINE_DEPTH_BITS;
+  localparam int C = raster_pkg::LINE_COLOR_BITS;
+  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
+
+  logic valid_q;  // a pixel is on offer
+  /* verilator lint_off UNUSEDSIGNAL */  // what changes is in the registers below
+  var raster_pkg::line_setup_t line_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [PX-1:0]         x_q;
+  logic [PY-1:0]         y_q;
+  logic signed [E-1:0]   error_q;      // >= 0: the next pixel lies in the next row
+  logic [COUNT-1:0]      remaining_q;  // pixels behind this one
+  logic                  is_before_start_q;
+  logic [D-1:0]          depth_q;
+  logic [CHANNELS*C-1:0] color_q;
+
+  logic is_last, takes, moves;
+  assign is_last       = remaining_q == '0;
+  assign line_ready_o  = !valid_q || (pixel_ready_i && is_last);
+  assign takes         = line_valid_i && line_ready_o;
+  assign pixel_valid_o = valid_q;
+  assign moves         = error_q >= 0;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) valid_q <= 1'b0;
+    else if (line_ready_o) valid_q <= line_valid_i;
+  end
+
+  logic signed [E-1:0] step_stay, step_move;
+  logic [PX-1:0]       step_x;
+  logic [PY-1:0]       step_y;
+  assign step_stay = E'(line_q.step_stay);
+  assign step_move = E'($signed(line_q.step_move));
+  assign step_x    = line_q.is_x_negative ? '1 : PX'(1);
+  assign step_y    = line_q.is_y_negative ? '1 : PY'(1);
+
+  always_ff @(posedge clk_i) begin
+    if (takes) begin
+      line_q            <= line_i;
+      x_q               <= line_i.x;
+      y_q               <= line_i.y;
+      error_q           <= line_i.error;
+      remaining_q       <= line_i.remaining;
+      is_before_start_q <= line_i.is_before_start;
+      depth_q           <= line_i.depth;
+    end else if (pixel_ready_i) begin
+      if (line_q.is_x_major || moves) x_q <= x_q + step_x;
+      if (!line_q.is_x_major || moves) y_q <= y_q + step_y;
+      error_q           <= error_q + (moves ? step_move : step_stay);
+      remaining_q       <= remaining_q - 1'b1;
+      is_before_start_q <= 1'b0;
+      depth_q           <= depth_q + line_q.depth_step;
+    end
+  end
+
+  assign pixel_o.primitive_id = line_q.primitive_id;
+  assign pixel_o.x            = x_q;
+  assign pixel_o.y            = y_q;
+  assign pixel_o.is_last      = is_last;
+  assign pixel_o.depth        = is_before_start_q ? line_q.depth_start : depth_q[D-1-:CODE];
+
+  genvar c;
+  generate
+    for (c = 0; c < CHANNELS; c++) begin : gen_channel
+      always_ff @(posedge clk_i) begin
+        if (takes) color_q[c*C+:C] <= line_i.color[c*C+:C];
+        else if (pixel_ready_i) color_q[c*C+:C] <= color_q[c*C+:C] + line_q.color_step[c*C+:C];
+      end
+      assign pixel_o.color[8*c+:8] = is_before_start_q ? line_q.color_start[8*c+:8] : color_q[(c+1)*C-1-:8];
+    end
+  endgenerate
+
+endmodule

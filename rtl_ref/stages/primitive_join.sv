@@ -1,0 +1,70 @@
+// Primitive join: puts the pixels of lines where program order wants them among the stamps.
+//
+// In: fragments from interpolate, pixels from line_raster. Out: fragments. A fragment of kind line waits for the pixels of
+// one line and becomes one fragment each; every other goes through. Combinational: no latency, one fragment per cycle.
+// Which stream is read next follows from the fragment on offer, never from which of the two has something.
+// Specification: model/stages/primitive_join.hpp.
+module primitive_join (
+    // From interpolate
+    input  logic                         fragment_valid_i,
+    output logic                         fragment_ready_o,
+    input  raster_pkg::fragment_packet_t fragment_i,
+
+    // From line_raster
+    input  logic                    pixel_valid_i,
+    output logic                    pixel_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */  // primitive_id is the fragment's
+    input  raster_pkg::line_pixel_t pixel_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // To depth_test
+    output logic                         fragment_valid_o,
+    input  logic                         fragment_ready_i,
+    output raster_pkg::fragment_packet_t fragment_o
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int TS = raster_pkg::TILE_SHIFT;
+  localparam int SIZE = raster_pkg::STAMP_SIZE;
+  localparam int SS = $clog2(SIZE);
+  localparam int STAMP = raster_pkg::STAMP_INDEX_BITS;
+  localparam int TX = raster_pkg::TILE_X_BITS;
+  localparam int TY = raster_pkg::TILE_Y_BITS;
+
+  logic is_line;
+  assign is_line          = fragment_i.kind == 3'd6;
+  assign fragment_valid_o = fragment_valid_i && (!is_line || pixel_valid_i);
+  assign fragment_ready_o = fragment_ready_i && (!is_line || (pixel_valid_i && pixel_i.is_last));
+  assign pixel_ready_o    = fragment_ready_i && fragment_valid_i && is_line;
+
+  logic [TS-1:0]      x, y;              // in the tile
+  logic [TS-1:0]      inner_x, inner_y;  // in the stamp
+  logic [STAMP-1:0]   stamp;
+  logic [SAMPLES-1:0] mask;
+  assign x       = TS'(pixel_i.x);
+  assign y       = TS'(pixel_i.y);
+  assign inner_x = x & TS'(SIZE - 1);
+  assign inner_y = y & TS'(SIZE - 1);
+  assign stamp   = STAMP'((({{TS{1'b0}}, y} >> SS) << (TS - SS)) | ({{TS{1'b0}}, x} >> SS));
+  genvar s;
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_sample
+      assign mask[s] = inner_x == TS'(s % SIZE) && inner_y == TS'(s / SIZE);
+    end
+  endgenerate
+
+  always_comb begin
+    fragment_o = fragment_i;
+    if (is_line) begin
+      fragment_o.ends_visit     = 1'b0;
+      fragment_o.ends_primitive = pixel_i.is_last;
+      fragment_o.tile_x         = TX'(pixel_i.x >> TS);
+      fragment_o.tile_y         = TY'(pixel_i.y >> TS);
+      fragment_o.stamp          = stamp;
+      fragment_o.mask           = mask;
+      fragment_o.depth          = {SAMPLES{pixel_i.depth}};
+      fragment_o.rgba           = {SAMPLES{pixel_i.color}};
+    end
+  end
+
+endmodule
