@@ -1,7 +1,7 @@
 // Golden clipper: Sutherland-Hodgman on homogeneous coordinates, in the scalar type asked for.
 //
-// In: three clip-space vertices. Out: a convex polygon of up to nine, all inside, its first vertex the fan's centre. In:
-// two. Out: the part of the segment that is inside.
+// In: three clip-space vertices. Out: a convex polygon of up to nine, all inside, its first vertex the fan's centre.
+// In: two vertices. Out: the part of the segment that is inside.
 #pragma once
 
 #include <array>

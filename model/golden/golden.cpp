@@ -225,8 +225,8 @@ class Renderer {
     image_.outlines.push_back(outline);
   }
 
-  /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie shows
-  /// in affine colours, and the real coordinates of a level edge tie only up to rounding.
+  /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie
+  /// shows in affine colours, and the real coordinates of a level edge tie only up to rounding.
   std::size_t fan_start(std::span<const ScreenVertex<Real>> polygon) const {
     std::array<std::array<double, 3>, 9> key{};
     for (std::size_t i = 0; i < polygon.size(); ++i) {

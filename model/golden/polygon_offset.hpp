@@ -32,8 +32,8 @@ template <class Real>
   return n;
 }
 
-/// factor * max(|dz/dx|, |dz/dy|) + constant / `depth_max`, in window depth; `offset` holds the factor and the constant in
-/// depth LSB. dz/dx of the plane is -x / z of its normal.
+/// factor * max(|dz/dx|, |dz/dy|) + constant / `depth_max`, in window depth; `offset` holds the factor and the constant
+/// in depth LSB. dz/dx of the plane is -x / z of its normal.
 template <class Real>
 [[nodiscard]] Real polygon_offset(const PlaneNormal<Real>& n, const std::array<double, 2>& offset, Real depth_max) {
   const Real constant = static_cast<Real>(offset[1]) / depth_max;

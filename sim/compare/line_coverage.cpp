@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "../../model/golden/exact_line.hpp"
 #include "../../model/golden/line.hpp"
@@ -83,10 +84,7 @@ bool point_is_uncertain(double dx, double dy, double half, double reach) {
   return std::abs(outside) <= reach;
 }
 
-}  // namespace
-
-void PixelLog::sort() { std::sort(pixels_.begin(), pixels_.end()); }
-
+/// The pixels of `region` that a line covers by definition. `tested` counts those that were looked at.
 std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const golden::PixelBox& region, int grid_bits,
                                  std::uint64_t& tested) {
   const exact::Line line{drawn.start, drawn.end, rule, drawn.drops_last, grid_bits};
@@ -105,6 +103,7 @@ std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const go
   return pixels;
 }
 
+/// Likewise a point.
 std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelBox& region, int grid_bits,
                                  std::uint64_t& tested) {
   // In halves of a subpixel, so that the border of an odd size is an integer.
@@ -124,6 +123,10 @@ std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelBox
     }
   return pixels;
 }
+
+}  // namespace
+
+void PixelLog::sort() { std::sort(pixels_.begin(), pixels_.end()); }
 
 void check_line_coverage(const Scene& scene, const Config& config, const Rendering& rendering, const PixelLog& log,
                          OracleResult& result) {

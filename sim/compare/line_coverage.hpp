@@ -1,14 +1,12 @@
-// Coverage of lines and points: against the exact oracle, pixel by pixel, and which pixels of the golden's are so close to
-// a border that the snap may decide them.
+// Coverage of lines and points: against the exact oracle, pixel by pixel, and which pixels of the golden's are so close
+// to a border that the snap may decide them.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "../../model/engines/render.hpp"
 #include "../../model/golden/golden.hpp"
-#include "../../model/golden/viewport.hpp"
 #include "coverage.hpp"
 
 namespace halfplane {
@@ -35,14 +33,6 @@ class PixelLog {
 /// it finds to `result`. A line that the engine left out altogether is not seen here: it is missing against U.
 void check_line_coverage(const Scene& scene, const Config& config, const Rendering& rendering, const PixelLog& log,
                          OracleResult& result);
-
-/// The same for one line or one point: the pixels of `region` that it covers by definition. `tested` counts the pixels
-/// that were looked at.
-[[nodiscard]] std::vector<PixelLog::Pixel> oracle_pixels(const DrawnLine& line, LineRule rule,
-                                                         const golden::PixelBox& region, int grid_bits,
-                                                         std::uint64_t& tested);
-[[nodiscard]] std::vector<PixelLog::Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelBox& region,
-                                                         int grid_bits, std::uint64_t& tested);
 
 /// Marks in `near` the pixels of `wanted` whose coverage by the golden's line or point could change when its vertices
 /// move by up to one snap step (2^-subpixel_bits pixels); see "Golden" in docs/spec.md.

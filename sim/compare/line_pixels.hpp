@@ -30,9 +30,9 @@ struct OwnedPixel {
   std::array<std::uint8_t, 4> color_code{};
 };
 
-/// Calls visit for every pixel that a line or point of `rendering` owns. Where several lines of one primitive cover it, it
-/// is one whose codes are stored there. Returns how many pixels are owned by a primitive of which no line or point covers
-/// them.
+/// Calls visit for every pixel that a line or point of `rendering` owns; where several lines of one primitive cover it,
+/// for one whose codes are stored there. Returns how many pixels are owned by a primitive of which no line or point
+/// covers them.
 std::uint64_t for_each_line_pixel(const Scene& scene, const Config& config, const Rendering& rendering,
                                   const std::function<void(const OwnedPixel&)>& visit);
 
