@@ -164,9 +164,7 @@ class Renderer {
                  std::uint32_t primitive, std::uint32_t command) {
     std::array<ScreenVertex<Real>, 3> v;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& p = part[i].position;
-      v[i] = state.space == Space::clip ? to_screen(part[i], state, vp)
-                                        : ScreenVertex<Real>{p[0], p[1], p[2], 1 / p[3], part[i].rgba};
+      v[i] = state.space == Space::clip ? to_screen(part[i], state, vp) : from_window(part[i], state, scene_);
     }
     if (is_culled(signed_area(v), state)) return false;
     if (options_.want_outlines) {

@@ -78,4 +78,16 @@ void for_each_point(const Scene& scene, const Draw& draw, Visit&& visit) {
   });
 }
 
+/// How many primitives a draw makes: lines and points of polygon_mode do not count.
+[[nodiscard]] inline std::size_t primitive_count(const Scene& scene, const Draw& draw) {
+  std::size_t count = 0;
+  const auto add = [&count](auto...) { ++count; };
+  switch (primitive_type(draw.topology)) {
+    case PrimitiveType::triangle: for_each_triangle(scene, draw, Provoking::first, add); break;
+    case PrimitiveType::line: for_each_line(scene, draw, add); break;
+    case PrimitiveType::point: for_each_point(scene, draw, add); break;
+  }
+  return count;
+}
+
 }  // namespace halfplane

@@ -29,7 +29,8 @@ struct StateHash {
     for (const int value :
          {static_cast<int>(state.space), static_cast<int>(state.depth_test), static_cast<int>(state.depth_write),
           static_cast<int>(state.color_write), static_cast<int>(state.cull), static_cast<int>(state.front),
-          static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z)})
+          static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z),
+          static_cast<int>(state.pixel_center), static_cast<int>(state.origin)})
       mix(static_cast<std::size_t>(value));
     const Rect scissor = state.scissor.value_or(Rect{});
     for (const int value : {scissor.x, scissor.y, scissor.width, scissor.height}) mix(static_cast<std::size_t>(value));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/config.hpp"
+#include "sim/scene/object_cull.hpp"
 
 namespace halfplane {
 namespace {
@@ -63,6 +64,9 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     numbers.push_back(name.empty() ? 0 : static_cast<std::uint32_t>(scene.objects.size()));
     if (!name.empty()) scene.objects.push_back(name);
   }
+  const Mat4 to_clip = product(projection, view);
+  std::vector<std::uint8_t> outside;
+  for (const ObjectBounds& bounds : object_bounds(mesh)) outside.push_back(outside_view(bounds, to_clip));
   for (const MeshPart& part : mesh.parts) {
     const std::uint32_t object = numbers[part.object];
     const bool is_culled = !part.two_sided && cull == Cull::none;
@@ -70,8 +74,8 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
       scene.states.push_back(scene.states[0]);
       scene.states[1].cull = Cull::back;
     }
-    scene.commands.push_back(
-        Draw{is_culled ? 1U : 0U, object, Topology::triangles, part.first * 3, part.count * 3, part.line});
+    scene.commands.push_back(Draw{is_culled ? 1U : 0U, object, Topology::triangles, part.first * 3, part.count * 3,
+                                  part.line, outside[part.object]});
   }
   return scene;
 }
