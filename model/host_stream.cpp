@@ -1,17 +1,7 @@
 #include "host_stream.hpp"
 
-#include <cmath>
-
-#include "stages/point_raster.hpp"
-
 namespace halfplane {
 namespace {
-
-void set_state(PrimitivePacket& packet, const State& state) {
-  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
-  packet.depth_write = state.depth_write ? 1 : 0;
-  packet.color_write = state.color_write ? 1 : 0;
-}
 
 /// A primitive without vertices: one depth and one colour over its whole box.
 PrimitivePacket flat_packet(PrimitiveKind kind, const Rect& rect) {
@@ -60,8 +50,8 @@ std::optional<HostPrimitive> HostStream::next() {
 
 /// Does the next piece of work; it may send nothing.
 void HostStream::advance() {
-  if (triangle_ < triangles_.size()) {
-    send_next_triangle();
+  if (assembled_next_ < assembled_.size()) {
+    send_next_primitive();
   } else if (command_ < scene_.commands.size()) {
     const Command& command = scene_.commands[command_++];
     if (const auto* clear = std::get_if<Clear>(&command)) send_clear(*clear);
@@ -75,83 +65,69 @@ void HostStream::advance() {
 
 void HostStream::start_draw(const Draw& draw) {
   context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
-  triangles_.clear();
-  triangle_ = 0;
-  if (primitive_type(draw.topology) == PrimitiveType::line) return send_lines(draw);
-  if (primitive_type(draw.topology) == PrimitiveType::point) return send_points(draw);
-  for_each_triangle(scene_, draw, context_->state.provoking, [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    triangles_.push_back({a, b, c});
-  });
+  assembled_.clear();
+  assembled_next_ = 0;
+  for_each_primitive(scene_, draw, context_->state.provoking,
+                     [this](const AssembledPrimitive& assembled) { assembled_.push_back(assembled); });
 }
 
-void HostStream::send_next_triangle() {
-  pieces_.clear();
-  bool is_cut = false;
-  const auto index = triangles_[triangle_++];
-  if (context_->rect.width > 0 && context_->rect.height > 0) {
-    is_cut = geometry_for_hardware(*context_, vertices_, index, primitive_, counters_, pieces_);
-  } else {  // no packet can say so: culled here
-    geometry(*context_, vertices_, index, primitive_, Skip{}, counters_, pieces_);
+void HostStream::send_next_primitive() {
+  const AssembledPrimitive& assembled = assembled_[assembled_next_++];
+  if (drawn_as(context_->state, context_->draw.topology) != PrimitiveType::triangle) {
+    send_outline(assembled);
+  } else {
     pieces_.clear();
+    bool is_cut = false;
+    if (context_->rect.width > 0 && context_->rect.height > 0) {
+      is_cut = geometry_for_hardware(*context_, vertices_, assembled.index, primitive_, counters_, pieces_);
+    } else {  // no packet can say so: culled here
+      geometry(*context_, vertices_, assembled.index, primitive_, Skip{}, counters_, pieces_);
+      pieces_.clear();
+    }
+    for (const Triangle& piece : pieces_) send_triangle(piece, is_cut);
   }
-  for (const Triangle& piece : pieces_) send_triangle(piece, is_cut);
   ++primitive_;
+}
+
+/// Lines go beside a packet that holds their place, points as boxes: both with a pixel at least.
+void HostStream::send_outline(const AssembledPrimitive& assembled) {
+  outline_.lines.clear();
+  outline_.points.clear();
+  geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
+  for (const LinePrimitive& line : outline_.lines) {
+    const LineSetup& setup = line.setup;
+    send(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
+    pending_.back().line = setup;
+    pending_.back().line->primitive_id = pending_.back().packet.primitive_id;
+  }
+  for (const PointPrimitive& point : outline_.points) {
+    PrimitivePacket packet = draw_packet(PrimitiveKind::point, point.box);
+    packet.z.fill(point.drawn.at.z);
+    packet.rgba.fill(packet_color(point.drawn.at.rgba, widths_));
+    send(packet, primitive_);
+  }
+}
+
+PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
+  const State& state = context_->state;
+  PrimitivePacket packet;
+  packet.kind = static_cast<std::uint8_t>(kind);
+  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
+  packet.depth_write = state.depth_write ? 1 : 0;
+  packet.color_write = state.color_write ? 1 : 0;
+  set_box(packet, box);
+  return packet;
 }
 
 void HostStream::send_triangle(const Triangle& triangle, bool is_clipped) {
   const State& state = context_->state;
   const Rect& rect = context_->rect;
-  PrimitivePacket packet;
-  packet.kind = static_cast<std::uint8_t>(PrimitiveKind::triangle);
-  set_state(packet, state);
+  PrimitivePacket packet =
+      draw_packet(PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
   packet.cull = static_cast<std::uint8_t>(is_clipped ? Cull::none : state.cull);
   packet.front_cw = state.front == FrontFace::cw ? 1 : 0;
-  set_box(packet, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
   set_vertices(packet, triangle.v, widths_);
   send(packet, triangle.primitive);
-}
-
-void HostStream::send_lines(const Draw& draw) {
-  const State& state = context_->state;
-  const Rect& rect = context_->rect;
-  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
-  for_each_line(scene_, draw, [&](std::uint32_t a, std::uint32_t b) {
-    const SnappedVertex start = vertices_.get(*context_, a).snapped;
-    SnappedVertex end = vertices_.get(*context_, b).snapped;
-    if (state.shade == Shade::flat) end.rgba = start.rgba;
-    const bool drops_last = !state.line_last.value_or(!drops_last_by_default(state.line_rule));
-    ++counters_.primitives_in;
-    const auto line = setup_line(start, end, state.line_rule, drops_last, limit, config_, widths_);
-    if (line) {
-      PrimitivePacket packet = flat_packet(PrimitiveKind::line, {line->x, line->y, 1, 1});
-      set_state(packet, state);
-      send(packet, primitive_);
-      pending_.back().line = *line;
-      pending_.back().line->primitive_id = pending_.back().packet.primitive_id;
-    }
-    ++primitive_;
-  });
-}
-
-void HostStream::send_points(const Draw& draw) {
-  const State& state = context_->state;
-  const Rect& rect = context_->rect;
-  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
-  const auto size = static_cast<std::int32_t>(std::lround(std::ldexp(state.point_size, widths_.grid_bits)));
-  for_each_point(scene_, draw, [&](std::uint32_t index) {
-    const SnappedVertex v = vertices_.get(*context_, index).snapped;
-    ++counters_.primitives_in;
-    const PixelBounds box = point_bounds(v, size, limit, widths_.grid_bits);
-    if (!box.is_empty()) {
-      PrimitivePacket packet = flat_packet(PrimitiveKind::point, {});
-      set_box(packet, box);
-      set_state(packet, state);
-      packet.z.fill(v.z);
-      packet.rgba.fill(packet_color(v.rgba, widths_));
-      send(packet, primitive_);
-    }
-    ++primitive_;
-  });
 }
 
 void HostStream::send_clear(const Clear& command) {
@@ -176,7 +152,7 @@ double HostStream::progress() const {
     return all == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(all);
   };
   const auto commands = static_cast<double>(scene_.commands.size());
-  const double left_of_draw = triangles_.empty() ? 0.0 : 1.0 - part(triangle_, triangles_.size());
+  const double left_of_draw = assembled_.empty() ? 0.0 : 1.0 - part(assembled_next_, assembled_.size());
   return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
 }
 
@@ -185,10 +161,7 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
   if (config.line_units != 0) return;
   for (const Command& command : scene.commands) {
     const auto* draw = std::get_if<Draw>(&command);
-    if (draw == nullptr) continue;
-    const bool has_edges = primitive_type(draw->topology) == PrimitiveType::triangle &&
-                           scene.states[draw->state].polygon_mode == PolygonMode::line;
-    if (has_edges || primitive_type(draw->topology) == PrimitiveType::line)
+    if (draw != nullptr && drawn_as(scene.states[draw->state], draw->topology) == PrimitiveType::line)
       throw InputError(place_of_draw(scene.name, draw->line) +
                        ": lines, but this hardware has no unit that draws them; use --set lines.unit=1");
   }

@@ -19,7 +19,7 @@ struct HostPrimitive {
 
   PrimitivePacket packet;
   std::optional<LineSetup> line;  ///< beside a packet of kind line
-  std::uint32_t primitive = 0;    ///< number of the input triangle over the whole scene; otherwise: of the next one
+  std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise: of the next one
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
 };
 
@@ -44,11 +44,11 @@ class HostStream {
  private:
   void advance();
   void start_draw(const Draw& draw);
-  void send_next_triangle();
-  void send_lines(const Draw& draw);
-  void send_points(const Draw& draw);
+  void send_next_primitive();
+  void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_clipped);
+  [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
   void send(const PrimitivePacket& packet, std::uint32_t primitive);
 
   const Scene& scene_;
@@ -56,14 +56,15 @@ class HostStream {
   Widths widths_;
   VertexCache vertices_;
   Counters counters_;
-  std::size_t command_ = 0;                              ///< the next of Scene::commands
-  bool is_finished_ = false;                             ///< the flush has been queued
-  std::uint32_t primitive_ = 0;                          ///< number of the next input triangle
-  std::optional<DrawContext> context_;                   ///< of the draw at work
-  std::vector<std::array<std::uint32_t, 3>> triangles_;  ///< of the draw at work
-  std::size_t triangle_ = 0;                             ///< the next of them
-  std::vector<Triangle> pieces_;                         ///< scratch
-  std::vector<HostPrimitive> pending_;                   ///< made but not yet pulled
+  std::size_t command_ = 0;                    ///< the next of Scene::commands
+  bool is_finished_ = false;                   ///< the flush has been queued
+  std::uint32_t primitive_ = 0;                ///< number of the next input primitive
+  std::optional<DrawContext> context_;         ///< of the draw at work
+  std::vector<AssembledPrimitive> assembled_;  ///< of the draw at work
+  std::size_t assembled_next_ = 0;             ///< the next of them
+  std::vector<Triangle> pieces_;               ///< scratch
+  Outline outline_;                            ///< scratch
+  std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
   std::size_t pending_first_ = 0;
 };
 

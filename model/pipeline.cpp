@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
+#include <span>
 
 namespace halfplane {
 namespace {
@@ -45,9 +47,9 @@ int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
   return best;
 }
 
-/// Clipping cancels digits: a corner is as exact as binary64 is at the size of the triangle's coordinates. Refuses one that
-/// could be off by more than a pixel.
-void require_precision(const ClipPolygon& clipped, const std::array<Vertex, 3>& v, const DrawContext& context) {
+/// Clipping cancels digits: a corner is as exact as binary64 is at the size of the primitive's coordinates. Refuses one
+/// that could be off by more than a pixel.
+void require_precision(std::span<const Vertex> clipped, std::span<const Vertex> v, const DrawContext& context) {
   double largest = 0;
   for (const Vertex& vertex : v)
     for (const double c : {vertex.x, vertex.y, vertex.z, vertex.w}) largest = std::max(largest, std::abs(c));
@@ -55,22 +57,27 @@ void require_precision(const ClipPolygon& clipped, const std::array<Vertex, 3>& 
   const double error = largest * pixels * std::numeric_limits<double>::epsilon();
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", largest);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
-    if (!(error <= clipped.v[i].w))
+  for (const Vertex& corner : clipped)
+    if (!(error <= corner.w))
       throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": clip coordinates as large as " + text +
-                       " leave less than a pixel of precision where the triangle is cut; use smaller coordinates");
+                       " leave less than a pixel of precision where the primitive is cut; use smaller coordinates");
+}
+
+/// A vertex that a cut made, or one that another cut beside it left alone.
+SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uint32_t number) {
+  return snap_vertex(to_window(v, context.state, context.viewport), v.rgba, context.config,
+                     {context.scene.name, context.draw.line, number});
 }
 
 SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
   const auto& vertices = context.scene.vertices;
   std::array<Vertex, 3> v{vertices[index[0]], vertices[index[1]], vertices[index[2]]};
   const ClipPolygon clipped = clip(context.guard_band, v[0], v[1], v[2]);
-  require_precision(clipped, v, context);
+  const auto corners = std::span(clipped.v).first(static_cast<std::size_t>(clipped.size));
+  require_precision(corners, v, context);
   SnappedPolygon polygon;
   polygon.size = clipped.size;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i)
-    polygon.v[i] = snap_vertex(to_window(clipped.v[i], context.state, context.viewport), clipped.v[i].rgba,
-                               context.config, {context.scene.name, context.draw.line, index[0]});
+  for (std::size_t i = 0; i < corners.size(); ++i) polygon.v[i] = snap_clipped(corners[i], context, index[0]);
   return polygon;
 }
 
@@ -78,6 +85,12 @@ bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& cont
   const Rect& rect = context.rect;
   const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
   return pixel_bounds(v, limit, std::max(context.config.subpixel_bits, 1)).is_empty();
+}
+
+std::array<std::uint8_t, 4> flat_color(const DrawContext& context, std::uint32_t provoking) {
+  std::array<std::uint8_t, 4> code;
+  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(context.scene.vertices[provoking].rgba[c]);
+  return code;
 }
 
 /// An input triangle after clip, viewport and snap.
@@ -108,8 +121,7 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
     polygon.v[2] = c.snapped;
   }
   if (context.state.shade == Shade::flat)
-    for (auto& v : polygon.v)
-      for (std::size_t k = 0; k < 4; ++k) v.rgba[k] = snap_color(context.scene.vertices[index[0]].rgba[k]);
+    for (SnappedVertex& v : polygon.v) v.rgba = flat_color(context, index[0]);
   counters.culled += polygon.size < 3 ? 1 : 0;
   return result;
 }
@@ -123,6 +135,36 @@ bool is_culled(std::int64_t area, const State& state, Counters& counters) {
   return true;
 }
 
+/// Polygon offset in depth codes: slope factor times the steeper slope of the plane per pixel, plus the constant. The
+/// slope is that of the fan's largest piece; a polygon without area has none.
+std::int64_t offset_codes(const SnappedPolygon& polygon, const DrawContext& context) {
+  const auto& [factor, constant] = context.state.polygon_offset;
+  if (factor == 0 && constant == 0) return 0;
+  double slope = 0;
+  std::int64_t largest = 0;
+  for (int i = 1; i + 1 < polygon.size; ++i) {
+    const SnappedVertex &a = polygon.at(0), &b = polygon.at(i), &c = polygon.at(i + 1);
+    const std::int64_t area = signed_area(a, b, c);
+    if (std::abs(area) <= largest) continue;
+    largest = std::abs(area);
+    const double dz1 = static_cast<double>(b.z) - a.z, dz2 = static_cast<double>(c.z) - a.z;
+    const double per_x = dz1 * (c.y - a.y) - dz2 * (b.y - a.y), per_y = dz2 * (b.x - a.x) - dz1 * (c.x - a.x);
+    slope = std::max(std::abs(per_x), std::abs(per_y)) / static_cast<double>(largest) *
+            static_cast<double>(std::int64_t{1} << std::max(context.config.subpixel_bits, 1));
+  }
+  const double codes = std::ldexp(1.0, context.config.depth_bits);  // enough to reach either end from the other
+  return snap(std::clamp(factor * slope + constant, -codes, codes), 1.0);
+}
+
+std::uint32_t offset_depth(std::uint32_t z, std::int64_t offset, int depth_bits) {
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(z + offset, 0, (std::int64_t{1} << depth_bits) - 1));
+}
+
+void apply_polygon_offset(SnappedPolygon& polygon, const DrawContext& context) {
+  if (const std::int64_t offset = offset_codes(polygon, context); offset != 0)
+    for (SnappedVertex& v : polygon.v) v.z = offset_depth(v.z, offset, context.config.depth_bits);
+}
+
 /// Calls visit(piece) for the triangles of a polygon's fan. A piece turned over by the snap is left out.
 template <class Visit>
 void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint32_t primitive, std::uint32_t command,
@@ -134,6 +176,70 @@ void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint3
     visit(Triangle{primitive, command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}});
   }
 }
+
+PixelBounds bounds_of(const Rect& rect) { return {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}; }
+
+/// The host side of lines and points, one input primitive at a time.
+class OutlineBuilder {
+ public:
+  OutlineBuilder(const DrawContext& context, const Widths& widths, VertexCache& cache, std::uint32_t number,
+                 Outline& out)
+      : context_(context), widths_(widths), cache_(cache), number_(number), out_(out) {}
+
+  std::optional<std::array<std::uint8_t, 4>> color;  ///< of every vertex, if shading is flat
+  std::int64_t depth_offset = 0;                     ///< codes
+  bool is_cut = false;                               ///< a line so far was
+
+  void add_line(std::uint32_t a, std::uint32_t b) {
+    const VertexCache::Entry from = cache_.get(context_, a), to = cache_.get(context_, b);
+    DrawnLine line{number_, context_.command, from.snapped, to.snapped, drops_last()};
+    if ((from.outside_guard_band | to.outside_guard_band) != 0) {
+      const std::array<Vertex, 2> v{context_.scene.vertices[a], context_.scene.vertices[b]};
+      const auto clipped = clip(context_.guard_band, v[0], v[1]);
+      if (!clipped) return;
+      require_precision(*clipped, v, context_);
+      line.start = snap_clipped((*clipped)[0], context_, a);
+      line.end = snap_clipped((*clipped)[1], context_, b);
+    }
+    finish(line.start);
+    finish(line.end);
+    auto setup = setup_line(line.start, line.end, context_.state.line_rule, line.drops_last, bounds_of(context_.rect),
+                            context_.config, widths_);
+    if (!setup) return;
+    setup->primitive_id = number_;
+    is_cut |= (from.outside_guard_band | to.outside_guard_band) != 0;
+    out_.lines.push_back({line, *setup});
+  }
+
+  void add_point(std::uint32_t index) {
+    const VertexCache::Entry& entry = cache_.get(context_, index);
+    const bool is_inside = context_.state.point_clip == PointClip::pixel || entry.outside_volume == 0;
+    if (entry.outside_guard_band != 0 || !is_inside) return;
+    const double pixel = static_cast<double>(std::int64_t{1} << widths_.grid_bits);
+    DrawnPoint point{number_, context_.command, entry.snapped,
+                     static_cast<std::int32_t>(snap(context_.state.point_size, pixel))};
+    finish(point.at);
+    const PixelBounds box = point_bounds(point.at, point.size, bounds_of(context_.rect), widths_.grid_bits);
+    if (!box.is_empty()) out_.points.push_back({point, box});
+  }
+
+ private:
+  [[nodiscard]] bool drops_last() const {
+    const State& state = context_.state;
+    return state.line_rule == LineRule::diamond ||
+           (state.line_last ? !*state.line_last : drops_last_by_default(state.line_rule));
+  }
+  void finish(SnappedVertex& v) const {
+    if (color) v.rgba = *color;
+    if (depth_offset != 0) v.z = offset_depth(v.z, depth_offset, context_.config.depth_bits);
+  }
+
+  const DrawContext& context_;
+  const Widths& widths_;
+  VertexCache& cache_;
+  std::uint32_t number_;
+  Outline& out_;
+};
 
 }  // namespace
 
@@ -169,11 +275,12 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
 
 void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
               std::uint32_t primitive, const Skip& skip, Counters& counters, std::vector<Triangle>& out) {
-  const Projected projected = project(context, cache, index, skip, counters);
-  const SnappedPolygon& polygon = projected.polygon;
+  Projected projected = project(context, cache, index, skip, counters);
+  SnappedPolygon& polygon = projected.polygon;
   if (polygon.size < 3) return;
   const std::int64_t area = total_area(polygon);
   if (is_culled(area, context.state, counters)) return;
+  apply_polygon_offset(polygon, context);
   bool is_drawn = false;
   for_each_piece(polygon, area, primitive, context.command, [&](const Triangle& piece) {
     const bool is_empty = box_is_empty(piece.v, context);
@@ -189,11 +296,43 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
   }
 }
 
+void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
+              std::uint32_t number, Counters& counters, Outline& out) {
+  OutlineBuilder builder(context, widths, cache, number, out);
+  const std::size_t lines_before = out.lines.size(), points_before = out.points.size();
+  const auto& index = primitive.index;
+  const PrimitiveType type = drawn_as(context.state, context.draw.topology);
+  const std::size_t corners = primitive.type == PrimitiveType::triangle ? 3 : 1;
+  if (primitive.type == PrimitiveType::triangle) {
+    const Skip no_skip{.frustum = false};
+    const Projected projected = project(context, cache, index, no_skip, counters);
+    if (projected.polygon.size < 3 || is_culled(total_area(projected.polygon), context.state, counters)) return;
+    builder.depth_offset = offset_codes(projected.polygon, context);
+  } else {
+    ++counters.primitives_in;
+  }
+  if (context.state.shade == Shade::flat) {
+    const bool is_second = primitive.type == PrimitiveType::line && context.state.provoking == Provoking::last;
+    builder.color = flat_color(context, index[is_second ? 1 : 0]);
+  }
+  if (context.rect.width > 0 && context.rect.height > 0)
+    for (std::size_t i = 0; i < corners; ++i)
+      type == PrimitiveType::line ? builder.add_line(index[i], index[(i + 1) % 3]) : builder.add_point(index[i]);
+  if (out.lines.size() > lines_before || out.points.size() > points_before) {
+    ++counters.drawn;
+    counters.clipped += builder.is_cut ? 1 : 0;
+  } else {
+    ++counters.culled;
+    ++counters.skipped.empty;
+  }
+}
+
 bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
                            std::uint32_t primitive, Counters& counters, std::vector<Triangle>& out) {
-  const Projected projected = project(context, cache, index, Skip{}, counters);
-  const SnappedPolygon& polygon = projected.polygon;
+  Projected projected = project(context, cache, index, Skip{}, counters);
+  SnappedPolygon& polygon = projected.polygon;
   if (polygon.size < 3) return false;
+  apply_polygon_offset(polygon, context);
   if (!projected.is_cut) {
     out.push_back({primitive, context.command, {polygon.v[0], polygon.v[1], polygon.v[2]}});
     return false;
@@ -223,6 +362,14 @@ void check_scene(const Scene& scene, const Config& config) {
       throw InputError(place_of_draw(context.scene.name, context.draw.line) +
                        ": state color_interp perspective: this engine interpolates colours affinely; "
                        "use `render --engine golden`");
+    const State& state = context.state;
+    const double widest = 2 * (config.guard_band - 1 - std::max(scene.width, scene.height));
+    if (drawn_as(state, draw->topology) == PrimitiveType::point &&
+        !(state.point_size >= 1 && state.point_size <= widest))
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) +
+                       ": state point_size: points of this target " + "and guard.band are 1 to " +
+                       std::to_string(static_cast<int>(widest)) +
+                       " pixels wide; use a smaller point, a smaller target or raise guard.band");
     const Viewport& v = context.viewport;
     const double limit = config.guard_band - 1;
     const bool fits = v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1;

@@ -10,9 +10,10 @@
 #include "stages/framebuffer.hpp"         // stored codes            -> the two images
 #include "stages/hiz.hpp"                 // retired tile visits     -> a bound on the depths of each tile
 #include "stages/interpolate.hpp"         // planes at the tile      -> depth and colour at a sample
-#include "stages/line_raster.hpp"         // line setup              -> pixels
-#include "stages/line_setup.hpp"          // two snapped vertices    -> first pixel, error, steps            host
-#include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles                            host
+#include "stages/line_raster.hpp"         // line setup              -> pixels with depth and colour
+#include "stages/line_setup.hpp"          // two snapped vertices    -> first pixel, error term, steps       host
+#include "stages/point_raster.hpp"        // a snapped vertex        -> the box of its pixels                host
+#include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles, lines, points             host
 #include "stages/primitive_join.hpp"      // line pixels, stamps     -> fragments in program order
 #include "stages/rop.hpp"                 // passed fragment         -> stored colour
 #include "stages/tile_cache.hpp"          // passed stamps           -> on-chip tiles, memory requests
@@ -64,6 +65,37 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
 /// primitives_in, clipped, and what is culled here. Returns whether the triangle was cut.
 bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
                            std::uint32_t primitive, Counters& counters, std::vector<Triangle>& out);
+
+/// A line that the host side leaves: with at least one pixel inside the scissor.
+struct LinePrimitive {
+  DrawnLine drawn;
+  LineSetup setup;
+};
+
+/// Likewise a point.
+struct PointPrimitive {
+  DrawnPoint drawn;
+  PixelBounds box;
+};
+
+/// What is left of one primitive that is not filled.
+struct Outline {
+  std::vector<LinePrimitive> lines;
+  std::vector<PointPrimitive> points;
+};
+
+/// What the primitives of a draw end as.
+[[nodiscard]] constexpr PrimitiveType drawn_as(const State& state, Topology topology) {
+  const PrimitiveType type = primitive_type(topology);
+  if (type != PrimitiveType::triangle || state.polygon_mode == PolygonMode::fill) return type;
+  return state.polygon_mode == PolygonMode::line ? PrimitiveType::line : PrimitiveType::point;
+}
+
+/// The host side of one primitive that is not filled: clip, viewport, cull (of triangles), line_setup or point_raster.
+/// Appends to `out`, counts into `counters`. Cull of triangles looks at the clipped triangle; its edges are then clipped
+/// one by one. No side of the view volume drops a line before the clip: a line a hair outside may snap to a pixel inside.
+void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
+              std::uint32_t number, Counters& counters, Outline& out);
 
 /// Throws InputError when `scene` asks for what this configuration or version does not have.
 void check_scene(const Scene& scene, const Config& config);

@@ -182,8 +182,8 @@ const MemoryResponse& HardwareModel::read(const MemoryRequest& request) {
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters) {
   // One input triangle may have sent several pieces: those without a pixel are counted by triangle, not by piece.
   const std::uint64_t culled_before_box = counters.culled + hardware.zero_area + hardware.backface;
-  counters.drawn = drawn;
-  counters.culled = counters.primitives_in - drawn;
+  counters.drawn += drawn;  // the host knows about lines and points
+  counters.culled = counters.primitives_in - counters.drawn;
   counters.skipped.empty += counters.culled - culled_before_box;
   counters.skipped.zero_area += hardware.zero_area;
   counters.skipped.backface += hardware.backface;

@@ -38,12 +38,28 @@ struct Counters {
   } skipped;
 };
 
+/// A line as it went into line_setup, and a point as it went into point_raster.
+struct DrawnLine {
+  std::uint32_t primitive = 0;  ///< number of the input primitive, over the whole scene
+  std::uint32_t draw = 0;       ///< index into Scene::commands
+  SnappedVertex start, end;
+  bool drops_last = false;
+};
+struct DrawnPoint {
+  std::uint32_t primitive = 0, draw = 0;  ///< likewise
+  SnappedVertex at;
+  std::int32_t size = 0;  ///< side of the square, subpixels
+};
+
 /// Which samples of one tile a triangle covers: bit i of row j. Rows beyond the tile size are 0.
 using TileMask = std::array<std::uint32_t, 32>;
 
 /// Called for every tile that was not skipped, also when its mask is empty, in the engine's order: index into Rendering::triangles, tile
 /// column, tile row, mask.
 using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask)>;
+
+/// Called for every covered pixel of a line or a point: its primitive, as in Rendering::ids.
+using PixelTap = std::function<void(std::uint32_t primitive, int x, int y)>;
 
 struct RenderOptions {
   Skip skip;
@@ -52,6 +68,7 @@ struct RenderOptions {
   bool want_ids = false;                          ///< fill Rendering::ids
   bool want_triangles = false;                    ///< keep Rendering::triangles (and fill `visible` beside `ids`)
   CoverageTap coverage_tap;                       ///< implies want_triangles
+  PixelTap pixel_tap;                             ///< may be empty
   std::function<void(double fraction)> progress;  ///< 0...1, called a few times a second at most; may be empty
 
   [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap; }
@@ -61,9 +78,11 @@ struct Rendering {
   Framebuffer frame;
   Counters counters;
   std::vector<std::uint32_t> count;   ///< covered samples per pixel before the depth test, width * height
-  std::vector<std::int32_t> ids;      ///< input triangle that owns the stored colour or depth, -1 none, width * height
-  std::vector<std::int32_t> visible;  ///< index into `triangles` of the same, -1 none, width * height
+  std::vector<std::int32_t> ids;      ///< input primitive that owns the stored colour or depth, -1 none, width * height
+  std::vector<std::int32_t> visible;  ///< index into `triangles` of the same, -1 none, -2 line or point, width * height
   std::vector<Triangle> triangles;    ///< every triangle that reached setup, in program order
+  std::vector<DrawnLine> lines;       ///< every line with a pixel inside the scissor; likewise, and kept with them
+  std::vector<DrawnPoint> points;     ///< likewise
   double geometry_s = 0, raster_s = 0;
 };
 

@@ -8,27 +8,13 @@
 namespace halfplane {
 namespace {
 
-/// One covered sample through interpolate, depth_test and rop.
-void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Widths& widths, std::uint32_t index,
-                  int x, int y, const Skip& skip, Rendering& rendering) {
-  const State& state = context.state;
-  const std::size_t pixel = rendering.frame.at(x, y);
-  const auto plain =
-      static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering.frame.width) + static_cast<std::size_t>(x);
-  ++rendering.counters.covered;
-  if (!rendering.count.empty()) ++rendering.count[plain];
+/// One covered sample of a triangle through interpolate, depth_test and rop.
+void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Widths& widths,
+                  const RenderOptions& options, std::uint32_t index, int x, int y, Rendering& rendering) {
   const Interpolated value = interpolate_at(setup, widths, x, y);
-  if (!depth_passes(state.depth_test, value.depth_code, rendering.frame.depth[pixel])) {
-    rendering.counters.skipped.fragments_early_z += skip.fragments_early_z ? 1 : 0;
-    return;
-  }
-  ++rendering.counters.depth_passed;
-  if (!state.depth_write && !state.color_write) return;
-  ++rendering.counters.written;
-  if (state.depth_write) rendering.frame.depth[pixel] = value.depth_code;
-  if (state.color_write) rendering.frame.color[pixel] = pack_color(context.config.color_format, value.color_code);
-  if (!rendering.ids.empty()) rendering.ids[plain] = static_cast<std::int32_t>(setup.primitive);
-  if (!rendering.visible.empty()) rendering.visible[plain] = static_cast<std::int32_t>(index);
+  shade_sample(
+      context, options, x, y, value.depth_code, [&value] { return value.color_code; }, setup.primitive,
+      static_cast<std::int32_t>(index), rendering);
 }
 
 /// What stays the same over a scene.
@@ -71,7 +57,8 @@ void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const 
           if ((covered.mask >> s & 1) == 0) continue;
           const int i = column + s % stamp, j = row + s / stamp;
           mask[static_cast<std::size_t>(j)] |= 1U << i;
-          shade_sample(context, setup, widths, index, (tile_x << shift) + i, (tile_y << shift) + j, skip, rendering);
+          shade_sample(context, setup, engine.widths, engine.options, index, (tile_x << shift) + i,
+                       (tile_y << shift) + j, rendering);
         }
       });
       if (engine.options.coverage_tap) engine.options.coverage_tap(index, tile_x, tile_y, mask);
@@ -118,7 +105,7 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
   if (taps && rules.traversal != Traversal::tiled) tiles.emplace(setup, engine.widths.tile_shift);
   const auto emit = [&](int x, int y) {
     if (tiles) tiles->add(x, y);
-    shade_sample(context, setup, engine.widths, index, x, y, engine.options.skip, rendering);
+    shade_sample(context, setup, engine.widths, engine.options, index, x, y, rendering);
   };
   std::uint64_t& tested = rendering.counters.samples_tested;
   switch (rules.traversal) {

@@ -1,6 +1,7 @@
 // Golden clipper: Sutherland-Hodgman on homogeneous coordinates, in the scalar type asked for.
 //
 // In: three clip-space vertices. Out: a convex polygon of up to nine, all inside, its first vertex the fan's centre.
+// In: two vertices. Out: the part of the segment that is inside.
 #pragma once
 
 #include <array>
@@ -98,6 +99,29 @@ template <class Real>
     polygon = clip_to_plane(polygon, plane);
   }
   return polygon;
+}
+
+/// Cuts the segment from `a` to `b` by all planes; false when nothing is left of it. `was_cut` as above.
+template <class Real>
+[[nodiscard]] bool clip_segment(ClipVertex<Real>& a, ClipVertex<Real>& b, std::span<const Plane<Real>> planes,
+                                bool& was_cut) {
+  for (const auto& plane : planes) {
+    const bool a_in = distance(plane, a) >= 0, b_in = distance(plane, b) >= 0;
+    if (!a_in && !b_in) return false;
+    if (!a_in) a = intersect(plane, b, a);
+    if (!b_in) b = intersect(plane, a, b);
+    was_cut |= !a_in || !b_in;
+  }
+  return a.position[3] > 0 && b.position[3] > 0;  // w = 0 is the eye itself
+}
+
+/// Whether the vertex is outside near or far, or `whole_volume`: of any plane of the view volume.
+template <class Real>
+[[nodiscard]] bool is_outside(const ClipVertex<Real>& v, ClipZ clip_z, bool whole_volume) {
+  const auto& [x, y, z, w] = v.position;
+  const Real near = clip_z == ClipZ::zero_one ? Real(0) : -w;
+  if (!(w > 0) || z < near || z > w) return true;
+  return whole_volume && (x < -w || x > w || y < -w || y > w);
 }
 
 }  // namespace halfplane::golden

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "clip.hpp"
 #include "depth_test.hpp"
 #include "interpolate.hpp"
+#include "line.hpp"
+#include "polygon_offset.hpp"
 #include "primitive_assembly.hpp"
 #include "triangle_setup.hpp"
 #include "viewport.hpp"
@@ -41,7 +44,7 @@ std::array<double, 4> widen(const std::array<Real, 4>& v) {
   return {v[0], v[1], v[2], v[3]};
 }
 
-/// The scene in one scalar type: the whole pipeline, one triangle after the other.
+/// The scene in one scalar type: the whole pipeline, one primitive after the other.
 template <class Real>
 class Renderer {
  public:
@@ -107,48 +110,127 @@ class Renderer {
     }
   }
 
+  /// One draw, and the primitive of it that is at work.
+  struct DrawState {
+    const State& state;
+    const Viewport vp;
+    const std::array<Plane<Real>, 6> planes;
+    const PixelBox region;
+    const std::uint32_t command;
+    std::uint32_t primitive = 0;
+    Real offset = 0;  ///< polygon offset, window depth
+    bool was_cut = false, was_drawn = false;
+  };
+
   void draw(const Draw& draw, std::uint32_t command) {
     const State& state = scene_.states[draw.state];
     const Viewport vp = viewport_of(scene_, state);
-    const auto planes = clip_planes<Real>(state.clip_z, vp, config_.guard_band);
-    const std::size_t count = triangle_count(draw);
-    for (std::size_t i = 0; i < count; ++i) {
-      auto vertices = triangle_vertices(scene_, draw, i);
-      if (state.shade == Shade::flat) vertices[1].rgba = vertices[2].rgba = vertices[0].rgba;
-      const auto primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);
-      bool was_cut = false, was_drawn = false;
-      Polygon<Real> polygon = assemble(vertices);
-      if (state.space == Space::clip) polygon = clip<Real>(polygon, planes, was_cut);
-      const std::size_t start = polygon.count > 3 ? fan_start(polygon, state, vp) : 0;
-      const auto corner = [&](std::size_t k) { return polygon.vertex[(start + k) % polygon.count]; };
-      for (std::size_t k = 1; k + 1 < polygon.count; ++k) {
-        const std::array<ClipVertex<Real>, 3> part{corner(0), corner(k), corner(k + 1)};
-        was_drawn |= draw_part(part, state, vp, primitive, command);
-      }
-      image_.counters.culled += was_drawn ? 0 : 1;
-      image_.counters.drawn += was_drawn ? 1 : 0;
-      image_.counters.clipped += was_drawn && was_cut ? 1 : 0;
-      if (options_.progress && i % 64 == 0)
-        options_.progress(static_cast<double>(draw.first + i) / static_cast<double>(scene_.indices.size()));
-    }
+    DrawState d{state, vp, clip_planes<Real>(state.clip_z, vp, config_.guard_band), draw_region(scene_, state),
+                command};
+    std::size_t done = 0;
+    for_each_primitive(scene_, draw, state.provoking, [&](const Primitive& p) {
+      d.primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);
+      d.offset = 0;
+      d.was_cut = d.was_drawn = false;
+      std::array<ClipVertex<Real>, 3> v;
+      for (std::size_t i = 0; i < 3; ++i)
+        v[i] = vertex(p.index[i], state.shade == Shade::flat ? p.provoking : p.index[i]);
+      if (p.corners == 3) draw_triangle(v, d);
+      if (p.corners == 2) draw_line(v[0], v[1], d);
+      if (p.corners == 1) draw_point(v[0], d);
+      image_.counters.culled += d.was_drawn ? 0 : 1;
+      image_.counters.drawn += d.was_drawn ? 1 : 0;
+      image_.counters.clipped += d.was_drawn && d.was_cut ? 1 : 0;
+      if (options_.progress && done++ % 64 == 0)
+        options_.progress(static_cast<double>(draw.first + done) / static_cast<double>(scene_.indices.size()));
+    });
   }
 
-  static Polygon<Real> assemble(const std::array<Vertex, 3>& vertices) {
+  /// The position of one vertex with the colour of another.
+  ClipVertex<Real> vertex(std::uint32_t position, std::uint32_t color) const {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const Vertex& v = scene_.vertices[position];
+    const auto& rgba = scene_.vertices[color].rgba;
+    return {{real(v.x), real(v.y), real(v.z), real(v.w)}, {real(rgba[0]), real(rgba[1]), real(rgba[2]), real(rgba[3])}};
+  }
+
+  /// From clip or window space to pixels.
+  static ScreenVertex<Real> screen(const ClipVertex<Real>& v, const DrawState& d) {
+    const auto& p = v.position;
+    return d.state.space == Space::clip ? to_screen(v, d.state, d.vp)
+                                        : ScreenVertex<Real>{p[0], p[1], p[2], 1 / p[3], v.rgba};
+  }
+
+  void draw_triangle(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {
     Polygon<Real> polygon;
-    for (const Vertex& v : vertices) {
-      const auto real = [](double value) { return static_cast<Real>(value); };
-      polygon.push({{real(v.x), real(v.y), real(v.z), real(v.w)},
-                    {real(v.rgba[0]), real(v.rgba[1]), real(v.rgba[2]), real(v.rgba[3])}});
-    }
-    return polygon;
+    for (const auto& corner : v) polygon.push(corner);
+    if (d.state.space == Space::clip) polygon = clip<Real>(polygon, d.planes, d.was_cut);
+    std::array<ScreenVertex<Real>, 9> corners;
+    for (std::size_t i = 0; i < polygon.count; ++i) corners[i] = screen(polygon.vertex[i], d);
+    const std::span<const ScreenVertex<Real>> outline(corners.data(), polygon.count);
+    const PlaneNormal<Real> normal = plane_normal(outline);
+    d.offset = polygon_offset(normal, d.state.polygon_offset, static_cast<Real>(depth_max_));
+    if (d.state.polygon_mode == PolygonMode::fill) return draw_fan(outline, d);
+    if (is_culled(normal.z, d.state)) return;
+    d.was_cut = false;  // what is cut now is an edge
+    for (std::size_t i = 0; i < 3; ++i)
+      d.state.polygon_mode == PolygonMode::line ? draw_line(v[i], v[(i + 1) % 3], d) : draw_point(v[i], d);
   }
 
-  /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie shows
-  /// in affine colours, and the real coordinates of a level edge tie only up to rounding.
-  std::size_t fan_start(const Polygon<Real>& polygon, const State& state, const Viewport& vp) const {
+  void draw_fan(std::span<const ScreenVertex<Real>> polygon, DrawState& d) {
+    const std::size_t start = polygon.size() > 3 ? fan_start(polygon) : 0;
+    const auto corner = [&](std::size_t k) { return polygon[(start + k) % polygon.size()]; };
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+      std::array<ScreenVertex<Real>, 3> v{corner(0), corner(k), corner(k + 1)};
+      if (is_culled(signed_area(v), d.state)) continue;
+      d.was_drawn = true;
+      add_outline(v, d);
+      for (auto& vertex : v) vertex.z += d.offset;
+      rasterize(setup_triangle(v), d);
+    }
+  }
+
+  void draw_line(ClipVertex<Real> a, ClipVertex<Real> b, DrawState& d) {
+    if (d.state.space == Space::clip && !clip_segment<Real>(a, b, d.planes, d.was_cut)) return;
+    std::array<ScreenVertex<Real>, 2> v{screen(a, d), screen(b, d)};
+    add_outline(v, d);
+    d.was_drawn = true;
+    for (auto& end : v) end.z += d.offset;
+    const Line<Real> line{v[0], v[1], d.state.line_rule, drops_last_pixel(d.state)};
+    for_each_candidate(line, d.region, 1, [&](int x, int y) {
+      if (covers(line, x, y)) shade(x, y, interpolate(line, x, y), d);
+    });
+  }
+
+  void draw_point(const ClipVertex<Real>& v, DrawState& d) {
+    if (d.state.space == Space::clip && is_outside(v, d.state.clip_z, d.state.point_clip == PointClip::center)) return;
+    ScreenVertex<Real> at = screen(v, d);
+    add_outline(std::span(&at, 1), d);
+    d.was_drawn = true;
+    const PixelBox box = intersect(d.region, point_box(at, d.state.point_size, scene_));
+    const Fragment<Real> fragment{at.z + d.offset, at.rgba, at.rgba};
+    for (int y = box.top; y < box.bottom; ++y)
+      for (int x = box.left; x < box.right; ++x) shade(x, y, fragment, d);
+  }
+
+  void add_outline(std::span<const ScreenVertex<Real>> v, const DrawState& d) {
+    if (!options_.want_outlines) return;
+    Outline outline{v.size(), d.primitive, d.command, {}, {}, {}, {}};
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      outline.x[i] = v[i].x;
+      outline.y[i] = v[i].y;
+      outline.z[i] = v[i].z;
+      outline.inverse_w[i] = v[i].inverse_w;
+    }
+    image_.outlines.push_back(outline);
+  }
+
+  /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie
+  /// shows in affine colours, and the real coordinates of a level edge tie only up to rounding.
+  std::size_t fan_start(std::span<const ScreenVertex<Real>> polygon) const {
     std::array<std::array<double, 3>, 9> key{};
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      const auto v = to_screen(polygon.vertex[i], state, vp);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const auto& v = polygon[i];
       const auto snapped = [](Real value, int bits) {
         return std::floor(std::ldexp(static_cast<double>(value), bits) + 0.5);
       };
@@ -156,50 +238,28 @@ class Renderer {
                 std::floor(static_cast<double>(v.z) * (std::ldexp(1.0, config_.depth_bits) - 1) + 0.5)};
     }
     return static_cast<std::size_t>(
-        std::min_element(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(polygon.count)) - key.begin());
+        std::min_element(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(polygon.size())) - key.begin());
   }
 
-  /// From clip or window space to pixels. False when it was culled.
-  bool draw_part(const std::array<ClipVertex<Real>, 3>& part, const State& state, const Viewport& vp,
-                 std::uint32_t primitive, std::uint32_t command) {
-    std::array<ScreenVertex<Real>, 3> v;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto& p = part[i].position;
-      v[i] = state.space == Space::clip ? to_screen(part[i], state, vp)
-                                        : ScreenVertex<Real>{p[0], p[1], p[2], 1 / p[3], part[i].rgba};
-    }
-    if (is_culled(signed_area(v), state)) return false;
-    if (options_.want_outlines) {
-      Outline outline{primitive, command, {}, {}, {}, {}};
-      for (std::size_t i = 0; i < 3; ++i) {
-        outline.x[i] = v[i].x;
-        outline.y[i] = v[i].y;
-        outline.z[i] = v[i].z;
-        outline.inverse_w[i] = v[i].inverse_w;
-      }
-      image_.outlines.push_back(outline);
-    }
-    rasterize(setup_triangle(v), state, primitive);
-    return true;
-  }
-
-  void rasterize(const Setup<Real>& t, const State& state, std::uint32_t primitive) {
+  void rasterize(const Setup<Real>& t, const DrawState& d) {
     const auto [left, right] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
     const auto [top, bottom] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
     // One pixel wider on the far sides: a sample on the very border is decided by the edges, not by the box.
-    const PixelBox box = intersect(draw_region(scene_, state), pixel_box(left, top, right + 1, bottom + 1, scene_));
+    const PixelBox box = intersect(d.region, pixel_box(left, top, right + 1, bottom + 1, scene_));
     for (int y = box.top; y < box.bottom; ++y) {
       for (int x = box.left; x < box.right; ++x) {
         const Real px = static_cast<Real>(x) + Real(0.5), py = static_cast<Real>(y) + Real(0.5);
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
         if (!(t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]))) continue;
-        shade(x, y, interpolate(t, e), state, primitive);
+        shade(x, y, interpolate(t, e), d);
       }
     }
   }
 
-  void shade(int x, int y, const Fragment<Real>& fragment, const State& state, std::uint32_t primitive) {
+  void shade(int x, int y, Fragment<Real> fragment, const DrawState& d) {
+    const State& state = d.state;
+    if (d.offset != 0) fragment.z = std::clamp(fragment.z, Real(0), Real(1));
     const std::size_t p = pixel(x, y);
     ++image_.counters.covered;
     ++image_.count[p];
@@ -207,7 +267,7 @@ class Renderer {
     ++image_.counters.depth_passed;
     if (!state.depth_write && !state.color_write) return;
     ++image_.counters.written;
-    image_.ids[p] = static_cast<std::int32_t>(primitive);
+    image_.ids[p] = static_cast<std::int32_t>(d.primitive);
     if (state.depth_write) z_[p] = fragment.z;
     if (state.color_write) write_color(p, widen(fragment.affine), widen(fragment.perspective), state.color_interp);
   }

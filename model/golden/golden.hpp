@@ -18,12 +18,13 @@ namespace halfplane::golden {
 /// binary64 is the reference. binary32 is what a GPU's single precision would show: it cannot judge a 24-bit depth.
 enum class Precision { binary64, binary32 };
 
-/// Where a triangle of the golden lies, after clipping: for distances to edges and for eye-space depth.
+/// Where a triangle, line or point of the golden lies, after clipping: for distances to edges and for eye-space depth.
 struct Outline {
-  std::uint32_t primitive = 0;     ///< input triangle, over the whole scene
+  std::size_t corners = 3;         ///< 3: triangle, 2: line from [0] to [1], 1: point
+  std::uint32_t primitive = 0;     ///< input primitive, over the whole scene
   std::uint32_t draw = 0;          ///< index into Scene::commands
   std::array<double, 3> x{}, y{};  ///< pixels, y down
-  std::array<double, 3> z{};       ///< window depth, 0...1
+  std::array<double, 3> z{};       ///< window depth, 0...1, without polygon offset
   std::array<double, 3> inverse_w{};
 };
 
@@ -31,18 +32,18 @@ struct Outline {
 struct Image {
   int width = 0, height = 0;
   std::vector<std::uint32_t> count;  ///< covered samples before the depth test
-  std::vector<std::int32_t> ids;     ///< input triangle that owns the stored colour or depth, -1 none
+  std::vector<std::int32_t> ids;     ///< input primitive that owns the stored colour or depth, -1 none
   std::vector<double> depth;         ///< depth LSB: z * (2^B - 1), not rounded
   std::vector<std::array<double, 4>> affine, perspective;  ///< colour, 0...255, not rounded, by either rule
   Framebuffer frame;                                       ///< the same, rounded to the stored formats
   Counters counters;              ///< primitives, covered, samples_tested, depth_passed, written
-  std::vector<Outline> outlines;  ///< triangles that were not culled, if asked for
+  std::vector<Outline> outlines;  ///< what was not culled, if asked for
 };
 
 struct Options {
   Precision precision = Precision::binary64;
   bool want_outlines = false;
-  std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 triangles or so; may be empty
+  std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 primitives or so; may be empty
 };
 
 /// Renders every command in program order. Throws InputError for a target that the configuration does not hold: each of

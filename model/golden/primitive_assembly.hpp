@@ -1,28 +1,94 @@
-// Golden primitive assembly: which three vertices make triangle i of a draw, the provoking vertex first.
+// Golden primitive assembly: the vertices of a draw one by one, and a primitive whenever one is complete.
+//
+// In: a draw's indices, kRestart among them. Out: primitives in program order, and which vertex colours each when flat.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "../scene.hpp"
 
 namespace halfplane::golden {
 
-/// How many triangles the draw holds; left-over indices make none.
-[[nodiscard]] inline std::size_t triangle_count(const Draw& draw) {
-  if (draw.topology == Topology::triangles) return draw.count / 3;
-  return draw.count < 3 ? 0 : draw.count - 2;
-}
+/// One input primitive.
+struct Primitive {
+  std::size_t corners = 3;               ///< 3: triangle, 2: line, 1: point
+  std::array<std::uint32_t, 3> index{};  ///< into Scene::vertices; of a triangle the provoking one first
+  std::uint32_t provoking = 0;           ///< into Scene::vertices
+};
 
-/// The vertices of triangle `i`, i < triangle_count(draw).
-[[nodiscard]] inline std::array<Vertex, 3> triangle_vertices(const Scene& scene, const Draw& draw, std::size_t i) {
-  std::array<std::size_t, 3> corner{3 * i, 3 * i + 1, 3 * i + 2};
-  if (draw.topology == Topology::triangle_fan) corner = {i + 1, i + 2, 0};
-  if (draw.topology == Topology::triangle_strip) {
-    corner = i % 2 == 0 ? std::array{i, i + 1, i + 2} : std::array{i, i + 2, i + 1};  // odd ones face the same way
+/// Takes a draw's indices in order. `Visit` is called with every Primitive.
+template <class Visit>
+class Assembler {
+ public:
+  Assembler(Topology topology, Provoking provoking, Visit& visit)
+      : topology_(topology), is_last_(provoking == Provoking::last), visit_(visit) {}
+
+  void take(std::uint32_t index) {
+    if (index == kRestart) return end();
+    if (count_ == 0) first_ = index;
+    ++count_;
+    complete(index);
+    before_ = {before_[1], index};
   }
-  const auto vertex = [&](std::size_t k) { return scene.vertices[scene.indices[draw.first + k]]; };
-  return {vertex(corner[0]), vertex(corner[1]), vertex(corner[2])};
+
+  /// The end of the draw, or of one of its strips: a loop closes, what is incomplete goes.
+  void end() {
+    if (topology_ == Topology::line_loop && count_ > 1) line(before_[1], first_);
+    count_ = 0;
+  }
+
+ private:
+  /// `index` is vertex number count_ of the strip; the two before it are in before_.
+  void complete(std::uint32_t index) {
+    const auto [older, old] = before_;
+    switch (topology_) {
+      case Topology::triangles:
+        if (count_ % 3 == 0) triangle(older, old, index);
+        return;
+      case Topology::triangle_strip:
+        if (count_ < 3) return;
+        // Every other triangle is named the other way round, so that all of them face the same way.
+        if (count_ % 2 == 1) return triangle(older, old, index);
+        return is_last_ ? visit_(Primitive{3, {index, old, older}, index})
+                        : visit_(Primitive{3, {older, index, old}, older});
+      case Topology::triangle_fan:
+        // The centre colours no triangle: the first of the others does, or the last.
+        if (count_ >= 3)
+          is_last_ ? visit_(Primitive{3, {index, first_, old}, index})
+                   : visit_(Primitive{3, {old, index, first_}, old});
+        return;
+      case Topology::lines:
+        if (count_ % 2 == 0) line(old, index);
+        return;
+      case Topology::line_strip:
+      case Topology::line_loop:
+        if (count_ >= 2) line(old, index);
+        return;
+      case Topology::points: return visit_(Primitive{1, {index, index, index}, index});
+    }
+  }
+
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    is_last_ ? visit_(Primitive{3, {c, a, b}, c}) : visit_(Primitive{3, {a, b, c}, a});
+  }
+  void line(std::uint32_t start, std::uint32_t end) { visit_(Primitive{2, {start, end, end}, is_last_ ? end : start}); }
+
+  Topology topology_;
+  bool is_last_;
+  Visit& visit_;
+  std::size_t count_ = 0;                  // vertices since the last restart
+  std::uint32_t first_ = 0;                // of them
+  std::array<std::uint32_t, 2> before_{};  // the two latest of them
+};
+
+/// Calls visit(Primitive) for the primitives of one draw.
+template <class Visit>
+void for_each_primitive(const Scene& scene, const Draw& draw, Provoking provoking, Visit&& visit) {
+  Assembler assembler(draw.topology, provoking, visit);
+  for (std::size_t i = 0; i < draw.count; ++i) assembler.take(scene.indices[draw.first + i]);
+  assembler.end();
 }
 
 }  // namespace halfplane::golden

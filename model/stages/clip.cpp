@@ -70,4 +70,16 @@ ClipPolygon clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b, con
   return polygon;
 }
 
+std::optional<std::array<Vertex, 2>> clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b) {
+  std::array<Vertex, 2> line{a, b};
+  for (const ClipPlane& plane : planes) {
+    const double d_a = distance(plane, line[0]), d_b = distance(plane, line[1]);
+    if (d_a < 0 && d_b < 0) return std::nullopt;
+    if (d_a < 0) line[0] = cut(line[1], line[0], d_b, d_a);
+    if (d_b < 0) line[1] = cut(line[0], line[1], d_a, d_b);
+  }
+  if (!(line[0].w > 0 && line[1].w > 0)) return std::nullopt;
+  return line;
+}
+
 }  // namespace halfplane

@@ -1,4 +1,4 @@
-// Clip: a triangle in homogeneous clip coordinates in, a convex polygon out.
+// Clip: a triangle in homogeneous clip coordinates in, a convex polygon out; a line in, the part of it inside out.
 //
 // Host side, binary64, contraction off. Planes: near and far of the view volume, then the four sides of the guard band
 // (one pixel inside the range of a snapped coordinate). An edge is cut only where it leaves the guard band, so most
@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "../config.hpp"
 #include "../scene.hpp"
@@ -49,5 +50,8 @@ struct ClipPolygon {
 
 /// The part of the triangle inside all planes, corners in the triangle's order. Empty when nothing with w > 0 is left.
 [[nodiscard]] ClipPolygon clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b, const Vertex& c);
+
+/// The part of the line inside all planes, from `a` towards `b`; nothing when that leaves no w > 0.
+[[nodiscard]] std::optional<std::array<Vertex, 2>> clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b);
 
 }  // namespace halfplane

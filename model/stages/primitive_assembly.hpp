@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "../scene.hpp"
@@ -76,6 +77,31 @@ void for_each_point(const Scene& scene, const Draw& draw, Visit&& visit) {
   for_each_run(scene, draw, [&](std::span<const std::uint32_t> v) {
     for (const std::uint32_t index : v) visit(index);
   });
+}
+
+/// One primitive as it was assembled: `type` says how many of the indices there are.
+struct AssembledPrimitive {
+  PrimitiveType type = PrimitiveType::triangle;
+  std::array<std::uint32_t, 3> index{};
+};
+
+/// All of the above: calls visit(AssembledPrimitive).
+template <class Visit>
+void for_each_primitive(const Scene& scene, const Draw& draw, Provoking provoking, Visit&& visit) {
+  switch (primitive_type(draw.topology)) {
+    case PrimitiveType::triangle:
+      return for_each_triangle(scene, draw, provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        visit(AssembledPrimitive{PrimitiveType::triangle, {a, b, c}});
+      });
+    case PrimitiveType::line:
+      return for_each_line(scene, draw, [&](std::uint32_t start, std::uint32_t end) {
+        visit(AssembledPrimitive{PrimitiveType::line, {start, end, end}});
+      });
+    case PrimitiveType::point:
+      return for_each_point(scene, draw, [&](std::uint32_t index) {
+        visit(AssembledPrimitive{PrimitiveType::point, {index, index, index}});
+      });
+  }
 }
 
 }  // namespace halfplane

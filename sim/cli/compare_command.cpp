@@ -47,6 +47,7 @@ Json comparison_json(const Comparison& c) {
               {"storage", part_json(c.color_parts.storage)}}},
             {"datapath",
              {{"depth_lsb", moments_json(c.datapath)},
+              {"line_depth_lsb", moments_json(c.line_datapath)},
               {"depth_bias", c.datapath_bias.mean},
               {"color_lsb", moments_json(c.color_datapath)},
               {"color_bias", c.color_datapath_bias.mean},
@@ -75,6 +76,8 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
       row("colour datapath", c.color_datapath.max, c.color_datapath.rms),
       row("affine - perspective", c.affine.max, c.affine.rms),
       ""};
+  if (c.line_datapath.count > 0)
+    lines.insert(lines.end() - 1, row("lines, points: depth", c.line_datapath.max, c.line_datapath.rms));
   if (broken.empty()) lines.push_back("every bound holds");
   lines.insert(lines.end(), broken.begin(), broken.end());
   return lines;

@@ -15,6 +15,8 @@
 #include "../../model/stages/rop.hpp"
 #include "../../model/stages/triangle_setup.hpp"
 #include "eye_depth.hpp"
+#include "line_coverage.hpp"
+#include "line_pixels.hpp"
 
 namespace halfplane {
 namespace {
@@ -79,8 +81,12 @@ class AttributeComparison {
       ++result_.visible_triangles;
       const Triangle& triangle = result_.rendering.triangles[i];
       const TriangleSetup setup = setup_triangle(triangle, config_, widths_);
-      for (std::size_t k = groups.first[i]; k < groups.first[i + 1]; ++k) pixel(triangle, setup, groups.pixels[k]);
+      for (std::size_t k = groups.first[i]; k < groups.first[i + 1]; ++k)
+        pixel(triangle_pixel(triangle, setup, groups.pixels[k]));
     }
+    const std::uint64_t unexplained =
+        for_each_line_pixel(scene_, config_, result_.rendering, [this](const OwnedPixel& p) { pixel(p); });
+    result_.stage_mismatches += unexplained;
     result_.depth_lsb = depth_.stats();
     result_.color_lsb = color_.stats();
     if (const ErrorStats eye = eye_.stats(); eye.count > 0) result_.depth_eye = eye;
@@ -88,40 +94,62 @@ class AttributeComparison {
     result_.color_parts = color_parts_.stats();
     result_.affine = affine_.stats();
     result_.datapath = datapath_.stats();
+    result_.line_datapath = line_datapath_.stats();
     result_.color_datapath = color_datapath_.stats();
     result_.datapath_bias = datapath_bias_.stats();
     result_.color_datapath_bias = color_datapath_bias_.stats();
   }
 
  private:
-  void pixel(const Triangle& triangle, const TriangleSetup& setup, std::size_t p) {
+  [[nodiscard]] OwnedPixel triangle_pixel(const Triangle& triangle, const TriangleSetup& setup, std::size_t p) const {
     const auto width = static_cast<std::size_t>(result_.golden.width);
     const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
     const State& state = scene_.states[std::get<Draw>(scene_.commands[triangle.draw]).state];
     const Interpolated stages = interpolate_at(setup, widths_, x, y);
-    // The same triangle, not merely some triangle: otherwise U - D would be the distance of two surfaces.
-    const bool same_visible = result_.golden.ids[p] == static_cast<std::int32_t>(triangle.primitive);
-    result_.compared_pixels += same_visible ? 1 : 0;
-    if (state.depth_write) depth(triangle, stages, x, y, p, same_visible);
-    if (state.color_write) color(triangle, stages, state, x, y, p, same_visible);
+    OwnedPixel pixel{p, triangle.primitive, triangle.draw, false, {}, {}, stages.depth_code, stages.color_code};
+    if (state.depth_write)
+      pixel.depth = {exact::depth_at(triangle, x, y, widths_.grid_bits),
+                     {stages.depth, int128{1} << config_.local_guard_bits}};
+    if (!state.color_write) return pixel;
+    for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
+      const auto c = static_cast<std::size_t>(channel);
+      pixel.color[c] = {exact::color_at(triangle, x, y, widths_.grid_bits, channel),
+                        {stages.color[c], int128{1} << config_.local_guard_bits}};
+    }
+    return pixel;
   }
 
-  void depth(const Triangle& triangle, const Interpolated& stages, int x, int y, std::size_t p, bool same_visible) {
-    const std::uint32_t stored = result_.rendering.frame.depth[result_.rendering.frame.at(x, y)];
+  void pixel(const OwnedPixel& pixel) {
+    const State& state = scene_.states[std::get<Draw>(scene_.commands[pixel.draw]).state];
+    // The same primitive, not merely some primitive: otherwise U - D would be the distance of two surfaces.
+    const bool same_visible = result_.golden.ids[pixel.p] == static_cast<std::int32_t>(pixel.primitive);
+    const auto width = static_cast<std::size_t>(result_.golden.width);
+    const std::size_t at =
+        result_.rendering.frame.at(static_cast<int>(pixel.p % width), static_cast<int>(pixel.p / width));
+    result_.compared_pixels += same_visible ? 1 : 0;
+    if (state.depth_write) depth(pixel, result_.rendering.frame.depth[at], same_visible);
+    if (state.color_write) color(pixel, state, result_.rendering.frame.color[at], same_visible);
+  }
+
+  void depth(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     Values v;
-    v.s = exact::on_grid(exact::depth_at(triangle, x, y, widths_.grid_bits));
-    v.h = stages.depth << (exact::kGridBits - config_.local_guard_bits);
+    v.s = exact::on_grid(pixel.depth.exact);
+    v.h = exact::on_grid(pixel.depth.hardware);
     v.d = std::int64_t{stored} << exact::kGridBits;
-    result_.stage_mismatches += stored != stages.depth_code ? 1 : 0;
-    datapath_.add(to_lsb(v.d - v.s));
-    datapath_bias_.add(to_lsb(v.h - v.s));
+    result_.stage_mismatches += stored != pixel.depth_code ? 1 : 0;
+    if (pixel.is_line) {
+      line_datapath_.add(to_lsb(v.d - v.s));
+    } else {
+      datapath_.add(to_lsb(v.d - v.s));
+      datapath_bias_.add(to_lsb(v.h - v.s));
+    }
     if (!same_visible) return;
-    const double u = result_.golden.depth[p];
+    const double u = result_.golden.depth[pixel.p];
     v.u = on_grid(u);
     depth_parts_.add(v);
     depth_.add(to_lsb(v.d - v.u));
-    result_.depth_error_lsb[p] = static_cast<float>(to_lsb(v.d - v.u));
-    if (const auto& mapping = eye_mappings_[triangle.draw]) {
+    result_.depth_error_lsb[pixel.p] = static_cast<float>(to_lsb(v.d - v.u));
+    if (const auto& mapping = eye_mappings_[pixel.draw]) {
       const auto of_d = mapping->eye_depth(stored / depth_max_), of_u = mapping->eye_depth(u / depth_max_);
       if (of_d && of_u)
         eye_.add(*of_d - *of_u);
@@ -130,30 +158,28 @@ class AttributeComparison {
     }
   }
 
-  void color(const Triangle& triangle, const Interpolated& stages, const State& state, int x, int y, std::size_t p,
-             bool same_visible) {
-    const std::uint32_t stored = result_.rendering.frame.color[result_.rendering.frame.at(x, y)];
+  void color(const OwnedPixel& pixel, const State& state, std::uint32_t stored, bool same_visible) {
     const auto max = golden::channel_max(config_.color_format);
-    result_.stage_mismatches += stored != pack_color(config_.color_format, stages.color_code) ? 1 : 0;
+    result_.stage_mismatches += stored != pack_color(config_.color_format, pixel.color_code) ? 1 : 0;
     double worst = 0;
     for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
       const auto c = static_cast<std::size_t>(channel);
       Values v;
-      v.s = exact::on_grid(exact::color_at(triangle, x, y, widths_.grid_bits, channel), max[c], 255);
-      v.h = exact::on_grid({stages.color[c], int128{1} << config_.local_guard_bits}, max[c], 255);
+      v.s = exact::on_grid(pixel.color[c].exact, max[c], 255);
+      v.h = exact::on_grid(pixel.color[c].hardware, max[c], 255);
       v.d = std::int64_t{golden::stored_channel(stored, config_.color_format, channel)} << exact::kGridBits;
       color_datapath_.add(to_lsb(v.d - v.s));
       color_datapath_bias_.add(to_lsb(v.h - v.s));
       if (!same_visible) continue;
-      v.u = on_grid(result_.golden.affine[p][c] * max[c] / 255);
-      const std::int64_t perspective = on_grid(result_.golden.perspective[p][c] * max[c] / 255);
+      v.u = on_grid(result_.golden.affine[pixel.p][c] * max[c] / 255);
+      const std::int64_t perspective = on_grid(result_.golden.perspective[pixel.p][c] * max[c] / 255);
       color_parts_.add(v);
       affine_.add(v.u - perspective);
       const double error = to_lsb(v.d - (state.color_interp == ColorInterp::affine ? v.u : perspective));
       color_.add(error);
       if (std::abs(error) > std::abs(worst)) worst = error;
     }
-    if (same_visible) result_.color_error_lsb[p] = static_cast<float>(worst);
+    if (same_visible) result_.color_error_lsb[pixel.p] = static_cast<float>(worst);
   }
 
   const Scene& scene_;
@@ -163,7 +189,7 @@ class AttributeComparison {
   double depth_max_;  // 2^B - 1
   std::vector<std::optional<EyeMapping>> eye_mappings_;
   ErrorSet depth_, color_, eye_;
-  MomentSet datapath_, color_datapath_, datapath_bias_, color_datapath_bias_;
+  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_;
   PartSets depth_parts_, color_parts_;
   PartSet affine_;
 };
@@ -193,6 +219,8 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   render_options.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
     log.add(triangle, tile_x, tile_y, mask);
   };
+  PixelLog pixel_log;
+  render_options.pixel_tap = [&pixel_log](std::uint32_t primitive, int x, int y) { pixel_log.add(primitive, x, y); };
   golden::Options golden_options;
   golden_options.precision = options.precision;
   golden_options.want_outlines = true;
@@ -207,7 +235,9 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
 
   log.sort();
   result.oracle = check_coverage(scene, config, result.rendering.triangles, log, options.rules.fill_rule);
-  result.coverage = compare_counts(result.rendering.count, result.golden, config.subpixel_bits);
+  pixel_log.sort();
+  check_line_coverage(scene, config, result.rendering, pixel_log, result.oracle);
+  result.coverage = compare_counts(scene, result.rendering.count, result.golden, config.subpixel_bits);
   const std::size_t pixels = result.rendering.count.size();
   result.coverage_class.resize(pixels);
   for (std::size_t p = 0; p < pixels; ++p) {
@@ -226,7 +256,7 @@ std::vector<std::string> broken_bounds(const Comparison& c, const Config& config
   const auto require = [&broken](bool holds, const char* format, double value, double bound) {
     if (!holds) broken.push_back(line(format, value, bound));
   };
-  if (c.rendering.counters.covered == 0) broken.push_back("nothing was compared: no triangle covers a sample");
+  if (c.rendering.counters.covered == 0) broken.push_back("nothing was compared: no primitive covers a sample");
   const double depth_bound = depth_error_bound(config);
   // The mean is a property of many triangles: one alone has the error of its own reciprocal, up to 1/16 LSB.
   const bool has_population = c.visible_triangles >= 100;
@@ -238,6 +268,9 @@ std::vector<std::string> broken_bounds(const Comparison& c, const Config& config
   require(c.datapath.max <= depth_bound,
           "depth: %.3f LSB from the exact plane through the snapped vertices (bound %.2f)", c.datapath.max,
           depth_bound);
+  require(c.line_datapath.max <= line_depth_error_bound(config),
+          "depth of lines: %.3f LSB from the exact value between the snapped ends (bound %.2f)", c.line_datapath.max,
+          line_depth_error_bound(config));
   require(!has_population || std::abs(c.datapath_bias.mean) < 0.05,
           "depth: mean error %.4f LSB before rounding (bound %.2f)", c.datapath_bias.mean, 0.05);
   require(c.color_datapath.max <= 1, "colour: %.3f LSB from the exact plane through the snapped vertices (bound %.0f)",

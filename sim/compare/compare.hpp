@@ -40,9 +40,9 @@ struct Comparison {
   // Coverage.
   PixelCoverage coverage;           ///< against U
   OracleResult oracle;              ///< against S, sample by sample
-  std::uint64_t other_visible = 0;  ///< pixels covered equally often by both, with different triangles visible
+  std::uint64_t other_visible = 0;  ///< pixels covered equally often by both, with different primitives visible
 
-  // Against U, over the pixels where both show the same triangle. LSB of the stored formats.
+  // Against U, over the pixels where both show the same primitive. LSB of the stored formats.
   std::uint64_t compared_pixels = 0;
   ErrorStats depth_lsb, color_lsb;
   std::optional<ErrorStats> depth_eye;  ///< eye-space units; none where no perspective projection is to be found
@@ -54,6 +54,7 @@ struct Comparison {
   ErrorMoments datapath, color_datapath;
   // H - S as well: the storage rounding of a plane that climbs by halves has a mean of its own.
   ErrorMoments datapath_bias, color_datapath_bias;
+  ErrorMoments line_datapath;           ///< the depth of lines and points, whose bound is another; not in `datapath`
   std::uint64_t visible_triangles = 0;  ///< of the model, behind those figures
   std::uint64_t stage_mismatches = 0;   ///< stored values that differ from what the stages compute
 
@@ -61,7 +62,7 @@ struct Comparison {
   std::vector<float> depth_error_lsb, color_error_lsb;
   std::vector<CoverageClass> coverage_class;
 
-  Rendering rendering;   ///< with count, ids, visible and triangles
+  Rendering rendering;   ///< with count, ids, visible, triangles, lines and points
   golden::Image golden;  ///< with outlines
 };
 

@@ -8,6 +8,7 @@
 #include "../../model/golden/exact.hpp"
 #include "../../model/golden/viewport.hpp"
 #include "../../model/widths.hpp"
+#include "line_coverage.hpp"
 
 namespace halfplane {
 namespace {
@@ -174,7 +175,8 @@ OracleResult check_coverage(const Scene& scene, const Config& config, std::span<
   return result;
 }
 
-PixelCoverage compare_counts(std::span<const std::uint32_t> model, const golden::Image& golden, int subpixel_bits) {
+PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> model, const golden::Image& golden,
+                             int subpixel_bits) {
   PixelCoverage result;
   std::vector<bool> differs(model.size());
   for (std::size_t p = 0; p < model.size(); ++p) {
@@ -184,8 +186,13 @@ PixelCoverage compare_counts(std::span<const std::uint32_t> model, const golden:
   }
   if (result.missing + result.extra == 0) return result;
   EdgeMarker marker(golden.width, golden.height, std::ldexp(1.0, -subpixel_bits), differs);
-  for (const golden::Outline& o : golden.outlines)
-    for (std::size_t i = 0; i < 3; ++i) marker.mark(o.x[i], o.y[i], o.x[(i + 1) % 3], o.y[(i + 1) % 3]);
+  for (const golden::Outline& o : golden.outlines) {
+    if (o.corners < 3)
+      mark_uncertain(o, scene.states[std::get<Draw>(scene.commands[o.draw]).state], subpixel_bits, golden, differs,
+                     marker.near);
+    else
+      for (std::size_t i = 0; i < 3; ++i) marker.mark(o.x[i], o.y[i], o.x[(i + 1) % 3], o.y[(i + 1) % 3]);
+  }
   for (std::size_t p = 0; p < model.size(); ++p)
     if (marker.near[p]) result.near_edge += difference(golden.count[p], model[p]);
   return result;

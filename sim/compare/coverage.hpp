@@ -40,14 +40,16 @@ class CoverageLog {
 
 /// A sample on which engine and oracle disagree.
 struct CoverageMismatch {
-  std::uint32_t triangle = 0;   ///< index into Rendering::triangles
-  std::uint32_t primitive = 0;  ///< number of the input triangle
+  std::uint32_t triangle = 0;   ///< index into Rendering::triangles; 0 for lines and points
+  std::uint32_t primitive = 0;  ///< number of the input primitive
   int x = 0, y = 0;             ///< pixels
   bool oracle_covers = false;
 };
 
 struct OracleResult {
-  std::uint64_t samples = 0;     ///< compared: every pixel centre in every triangle's box that the draw may touch
+  std::uint64_t samples =
+      0;  ///< compared: every pixel centre in every triangle's box that the draw may touch; the band of
+          ///< pixels around each line and point
   std::uint64_t mismatches = 0;  ///< disagreements, and samples outside the box or in a tile visited twice
   std::optional<CoverageMismatch> first;
 };
@@ -59,11 +61,12 @@ struct OracleResult {
 struct PixelCoverage {
   std::uint64_t missing = 0;    ///< samples that U covers and the model does not
   std::uint64_t extra = 0;      ///< samples that the model covers and U does not
-  std::uint64_t near_edge = 0;  ///< of both: in pixels whose centre lies within one snap step of an edge of U
+  std::uint64_t near_edge = 0;  ///< of both: in pixels that an edge of U passes, or a line or point would have decided
+                                ///< otherwise, within one snap step
 };
 
 /// Counts per pixel against the golden's; needs Image::outlines.
-[[nodiscard]] PixelCoverage compare_counts(std::span<const std::uint32_t> model, const golden::Image& golden,
-                                           int subpixel_bits);
+[[nodiscard]] PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> model,
+                                           const golden::Image& golden, int subpixel_bits);
 
 }  // namespace halfplane

@@ -42,13 +42,13 @@ std::vector<std::optional<EyeMapping>> fit_eye_mappings(std::span<const golden::
                                                         std::size_t command_count) {
   std::vector<Extremes> extremes(command_count);
   for (const auto& o : outlines)
-    for (std::size_t i = 0; i < 3; ++i) extremes[o.draw].add(o.inverse_w[i], o.z[i]);
+    for (std::size_t i = 0; i < o.corners; ++i) extremes[o.draw].add(o.inverse_w[i], o.z[i]);
   std::vector<std::optional<EyeMapping>> mappings(command_count);
   std::transform(extremes.begin(), extremes.end(), mappings.begin(), mapping_of);
   constexpr double kTolerance = 1e-6;  // of the window depth range: far above rounding, far below another projection
   for (const auto& o : outlines) {
     auto& mapping = mappings[o.draw];
-    for (std::size_t i = 0; i < 3 && mapping; ++i)
+    for (std::size_t i = 0; i < o.corners && mapping; ++i)
       if (!(std::abs(mapping->a + mapping->b * o.inverse_w[i] - o.z[i]) <= kTolerance)) mapping.reset();
   }
   return mappings;

@@ -19,7 +19,7 @@ struct EyeMapping {
 
 /// For every command of the scene, the mapping that its draw was made with: fitted through the two vertices whose 1/w
 /// differ most, and kept only if all its vertices agree. None for orthographic draws, window space without w, and draws
-/// without a visible triangle.
+/// of which nothing is left.
 [[nodiscard]] std::vector<std::optional<EyeMapping>> fit_eye_mappings(std::span<const golden::Outline> outlines,
                                                                       std::size_t command_count);
 

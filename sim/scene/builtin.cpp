@@ -16,13 +16,17 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array<Builtin, 7> kBuiltins{{
+constexpr std::array<Builtin, 10> kBuiltins{{
     {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
     {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
     {"knot", "a torus knot in all hues", "segments along the tube", 256, 16, 4096, true},
     {"coplanar", "two planes that cross at a third of a degree: z-fighting", "", 0, 0, 0, true},
     {"slivers", "a fan of long triangles, pixels to fractions of a pixel thin", "triangles", 600, 1, 1000000, false},
     {"walk", "a chequered corridor round the eye: crosses the near and all other planes", "", 0, 0, 0, true},
+    {"star", "spokes of a star by either rule, with points at their tips", "spokes", 48, 1, 65536, false},
+    {"wires", "a surface drawn as polylines along both axes", "polylines along an axis", 40, 2, 1024, true},
+    {"wireframe", "the teapot with hidden lines removed: polygon offset and polygon mode line", "segments", 6, 1, 64,
+     true},
     {"triangle", "one triangle with red, green and blue corners", "", 0, 0, 0, false},
 }};
 
@@ -57,6 +61,92 @@ Scene triangle_scene(int width, int height) {
                     {0.8, -0.7, 0, 1, {0, 255, 0, 255}, 1, 0},
                     {0, 0.8, 0, 1, {0, 0, 255, 255}, 0.5, 1}};
   add_draw(scene, "triangle");
+  return scene;
+}
+
+// A hue of the colour circle, `turn` in 0...1.
+std::array<double, 4> hue(double turn) {
+  std::array<double, 4> rgba{0, 0, 0, 255};
+  for (std::size_t c = 0; c < 3; ++c)
+    rgba[c] = 150 + 105 * std::cos(2 * std::numbers::pi * (turn - static_cast<double>(c) / 3));
+  return rgba;
+}
+
+// Left the midpoint rule, between pixel centres; right diamond exit, whose ends lie anywhere.
+Scene star_scene(int width, int height, int spokes) {
+  Scene scene = cleared_scene(width, height);
+  scene.objects.emplace_back("star");
+  const double reach = std::min(width / 2.0, static_cast<double>(height)) * 0.46;  // pixels
+  State state;
+  state.space = Space::window;
+  state.point_size = std::max(1.0, std::floor(reach / 40));
+  for (const LineRule rule : {LineRule::midpoint, LineRule::diamond}) {
+    state.line_rule = rule;
+    const auto number = static_cast<std::uint32_t>(scene.states.size());
+    scene.states.push_back(state);
+    const double x = width * (rule == LineRule::midpoint ? 0.25 : 0.75), y = height * 0.5;
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    const auto count = static_cast<std::uint32_t>(spokes);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double turn = static_cast<double>(i) / spokes, angle = 2 * std::numbers::pi * turn;
+      scene.vertices.push_back({x, y, 0.5, 1, {255, 255, 255, 255}, 0, 0});
+      scene.vertices.push_back({x + reach * std::cos(angle), y + reach * std::sin(angle), 0.25, 1, hue(turn), 0, 0});
+    }
+    scene.commands.push_back(Draw{number, 1, Topology::lines, scene.indices.size(), 2 * std::size_t{count}, 0});
+    for (std::uint32_t i = 0; i < 2 * count; ++i) scene.indices.push_back(first + i);
+    scene.commands.push_back(Draw{number, 1, Topology::points, scene.indices.size(), count, 0});
+    for (std::uint32_t i = 0; i < count; ++i) scene.indices.push_back(first + 2 * i + 1);
+  }
+  return scene;
+}
+
+// The surface as polylines: no triangle in it.
+Mesh wires_mesh(int lines) {
+  Mesh mesh;
+  mesh.lit = false;
+  mesh.objects.emplace_back("wires");
+  const auto side = static_cast<std::uint32_t>(lines);
+  for (std::uint32_t j = 0; j < side; ++j)
+    for (std::uint32_t i = 0; i < side; ++i) {
+      const double x = 4.0 * i / (side - 1) - 2, z = 4.0 * j / (side - 1) - 2, r = std::hypot(x, z) * 3;
+      const double y = r == 0 ? 1 : std::sin(r) / r;
+      MeshVertex vertex;
+      vertex.position = {x, y, z};
+      vertex.rgba = hue(y * 0.6);
+      mesh.vertices.push_back(vertex);
+    }
+  for (const bool is_across : {true, false})
+    for (std::uint32_t j = 0; j < side; ++j) {
+      if (!mesh.indices.empty()) mesh.indices.push_back(kRestart);
+      for (std::uint32_t i = 0; i < side; ++i) mesh.indices.push_back(is_across ? j * side + i : i * side + j);
+    }
+  mesh.parts.push_back({0, 0, mesh.indices.size(), 0, true, Topology::line_strip});
+  return mesh;
+}
+
+// Every draw twice: filled with the background's colour and set back, then as lines.
+Scene with_hidden_lines_removed(Scene scene) {
+  const std::vector<Command> draws = scene.commands;
+  scene.commands.clear();
+  const std::vector<State> states = scene.states;
+  for (const Command& command : draws) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw == nullptr) {
+      scene.commands.push_back(command);
+      continue;
+    }
+    for (const PolygonMode mode : {PolygonMode::fill, PolygonMode::line}) {
+      State state = states[draw->state];
+      state.polygon_mode = mode;
+      state.color_write = mode == PolygonMode::line;
+      state.depth_test = DepthFunc::lequal;
+      if (mode == PolygonMode::fill) state.polygon_offset = {1, 1};
+      Draw next = *draw;
+      next.state = static_cast<std::uint32_t>(scene.states.size());
+      scene.states.push_back(state);
+      scene.commands.push_back(next);
+    }
+  }
   return scene;
 }
 
@@ -134,13 +224,16 @@ Scene make_builtin(std::string_view name, int width, int height, const CameraReq
     return mesh_scene(mesh, merged(camera, own), width, height, cull);
   };
   const std::string_view base = builtin->name;
-  Scene scene = base == "teapot"     ? view(teapot_mesh(size), {}, Cull::none)
-                : base == "city"     ? view(city_mesh(size, seed), {}, Cull::back)
-                : base == "knot"     ? view(knot_mesh(size), {}, Cull::back)
-                : base == "coplanar" ? view(coplanar_mesh(), coplanar_camera(), Cull::none)
-                : base == "walk"     ? view(corridor_mesh(), walk_camera(width, height), Cull::none)
-                : base == "slivers"  ? slivers_scene(width, height, size, seed)
-                                     : triangle_scene(width, height);
+  Scene scene = base == "teapot"      ? view(teapot_mesh(size), {}, Cull::none)
+                : base == "city"      ? view(city_mesh(size, seed), {}, Cull::back)
+                : base == "knot"      ? view(knot_mesh(size), {}, Cull::back)
+                : base == "coplanar"  ? view(coplanar_mesh(), coplanar_camera(), Cull::none)
+                : base == "walk"      ? view(corridor_mesh(), walk_camera(width, height), Cull::none)
+                : base == "star"      ? star_scene(width, height, size)
+                : base == "wires"     ? view(wires_mesh(size), {}, Cull::none)
+                : base == "wireframe" ? with_hidden_lines_removed(view(teapot_mesh(size), {}, Cull::none))
+                : base == "slivers"   ? slivers_scene(width, height, size, seed)
+                                      : triangle_scene(width, height);
   scene.name = std::string(name);
   return scene;
 }

@@ -29,13 +29,17 @@ struct StateHash {
     for (const int value :
          {static_cast<int>(state.space), static_cast<int>(state.depth_test), static_cast<int>(state.depth_write),
           static_cast<int>(state.color_write), static_cast<int>(state.cull), static_cast<int>(state.front),
-          static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z)})
+          static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z),
+          static_cast<int>(state.provoking), static_cast<int>(state.polygon_mode), static_cast<int>(state.line_rule),
+          static_cast<int>(state.line_last.value_or(false)), static_cast<int>(state.point_clip)})
       mix(static_cast<std::size_t>(value));
     const Rect scissor = state.scissor.value_or(Rect{});
     for (const int value : {scissor.x, scissor.y, scissor.width, scissor.height}) mix(static_cast<std::size_t>(value));
     const Viewport viewport = state.viewport.value_or(Viewport{});
     for (const double value : {viewport.x, viewport.y, viewport.width, viewport.height}) mix_number(value);
     for (const double value : state.depth_range) mix_number(value);
+    for (const double value : state.polygon_offset) mix_number(value);
+    mix_number(state.point_size);
     return hash;
   }
 };
@@ -64,7 +68,7 @@ class CaptureReader {
   void read_object();
   void read_vertex();
   void grow_vertices();
-  void read_draw(Topology topology, const char* name);
+  void read_draw(const CaptureDraw& draw);
 
   std::uint32_t state_number();
   std::array<double, 4> read_color();
@@ -101,9 +105,8 @@ void CaptureReader::read_header() {
 
 void CaptureReader::read_line(std::string_view word) {
   if (word == "v") return read_vertex();
-  if (word == "t") return read_draw(Topology::triangles, "t");
-  if (word == "ts") return read_draw(Topology::triangle_strip, "ts");
-  if (word == "tf") return read_draw(Topology::triangle_fan, "tf");
+  for (const CaptureDraw& draw : kCaptureDraws)
+    if (word == draw.word) return read_draw(draw);
   if (word == "state") return read_state();
   read_rare_line(word);
 }
@@ -117,8 +120,6 @@ void CaptureReader::read_rare_line(std::string_view word) {
     state_changed_ = true;
   } else if (word == "frame") {
     scene_.commands.emplace_back(EndFrame{});
-  } else if (word == "l" || word == "ll" || word == "ls" || word == "p") {
-    text_.fail("points and lines are not in this version; remove the line, or draw with t, ts or tf");
   } else if (word == "planes") {
     text_.fail("planes is not in this version; remove the line");
   } else if (word == "halfplane") {
@@ -173,7 +174,6 @@ void CaptureReader::read_state() {
     state_changed_ = true;
     return;
   }
-  if (is_later_state(name)) text_.fail("state " + std::string(name) + " is not in this version; remove the line");
   std::string known;
   for (const CaptureState& s : settings) known.append(known.empty() ? "" : ", ").append(s.name);
   text_.fail((name.empty() ? "state without a name" : "state " + quoted_word(name) + " is not known") +
@@ -259,17 +259,31 @@ void CaptureReader::grow_vertices() {
   scene_.vertices.reserve(count < enough_to_tell ? doubled : std::max(doubled, static_cast<std::size_t>(expected)));
 }
 
-/// One `t`, `ts` or `tf` line. A strip or a fan stands on one line; lists of triangles that follow each other join.
-void CaptureReader::read_draw(Topology topology, const char* name) {
+/// One line of indices. A strip, a fan or a loop stands on one line; lists that follow each other join.
+void CaptureReader::read_draw(const CaptureDraw& draw) {
+  const auto [word, topology, primitive, least, is_list] = draw;
   const std::size_t first = scene_.indices.size();
+  std::size_t run = 0;  // indices since the last restart
+  const auto end_run = [&] {
+    if (is_list ? run % least == 0 && run > 0 : run >= least) return;
+    text_.fail(std::string(word) + " with " + std::to_string(run) + (run == 1 ? " index" : " indices") + "; write " +
+               (is_list ? std::to_string(least) + " for each " + std::string(primitive)
+                        : "at least " + std::to_string(least) + ", all on one line"));
+  };
   do {
-    scene_.indices.push_back(text_.index(scene_.vertices.size()));
+    if (text_.take("restart")) {
+      if (is_list)
+        text_.fail("restart in a list; leave it out, " + std::string(primitive) + "s of a list share nothing");
+      end_run();
+      run = 0;
+      scene_.indices.push_back(kRestart);
+    } else {
+      scene_.indices.push_back(text_.index(scene_.vertices.size()));
+      ++run;
+    }
   } while (text_.has_word());
+  end_run();
   const std::size_t count = scene_.indices.size() - first;
-  const bool is_list = topology == Topology::triangles;
-  if (is_list ? count % 3 != 0 : count < 3)
-    text_.fail(name + (" with " + std::to_string(count)) + (count == 1 ? " index" : " indices") + "; write " +
-               (is_list ? "3 for each triangle" : "at least 3, all on one line"));
   const std::uint32_t state = state_number();
   if (is_list && !scene_.commands.empty()) {
     auto* last = std::get_if<Draw>(&scene_.commands.back());

@@ -1,7 +1,7 @@
 #include "capture_states.hpp"
 
-#include <algorithm>
 #include <array>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -21,7 +21,11 @@ constexpr std::array<Name, 2> shade_names{"smooth", "flat"};
 constexpr std::array<Name, 2> interp_names{"affine", "perspective"};
 constexpr std::array<Name, 2> clip_z_names{"minus_one_one", "zero_one"};
 
-constexpr std::array<Name, 4> later_states{"polygon_offset", "polygon_mode", "line_rule", "point_size"};
+constexpr std::array<Name, 2> provoking_names{"first", "last"};
+constexpr std::array<Name, 3> polygon_mode_names{"fill", "line", "point"};
+constexpr std::array<Name, 3> line_rule_names{"midpoint", "bresenham", "diamond"};
+constexpr std::array<Name, 3> line_last_names{"off", "on", "rule"};
+constexpr std::array<Name, 2> point_clip_names{"pixel", "center"};
 
 // Rectangles stay small enough that sums of their numbers fit an int: far beyond any target (16384 pixels).
 constexpr int far_away = 1 << 20;  // pixels
@@ -107,12 +111,44 @@ void write_depth_range(const State& state, std::string& out) {
   }
 }
 
+void read_polygon_offset(CaptureText& text, State& state) {
+  constexpr double limit = 1e12;  // more than any slope between two codes of 32 bits
+  state.polygon_offset[0] = text.number("polygon_offset's slope factor", -limit, limit) + 0.0;
+  state.polygon_offset[1] = text.number("polygon_offset's constant", -limit, limit) + 0.0;
+}
+
+void write_polygon_offset(const State& state, std::string& out) {
+  for (const double part : state.polygon_offset) {
+    out += ' ';
+    append_number(out, part);
+  }
+}
+
+void read_line_last(CaptureText& text, State& state) {
+  const std::size_t value = text.choice("line_last", line_last_names);
+  state.line_last = value == 2 ? std::nullopt : std::optional<bool>(value == 1);
+}
+
+void write_line_last(const State& state, std::string& out) {
+  out += ' ';
+  out += line_last_names[state.line_last ? (*state.line_last ? 1 : 0) : 2];
+}
+
+void read_point_size(CaptureText& text, State& state) { state.point_size = text.number("point_size", 1, far_away); }
+
+void write_point_size(const State& state, std::string& out) {
+  out += ' ';
+  append_number(out, state.point_size);
+}
+
 constexpr Name space = "space", depth_test = "depth_test", depth_write = "depth_write", color_write = "color_write",
-               cull = "cull", front = "front", shade = "shade", color_interp = "color_interp", clip_z = "clip_z";
+               cull = "cull", front = "front", shade = "shade", color_interp = "color_interp", clip_z = "clip_z",
+               provoking = "provoking", polygon_mode = "polygon_mode", line_rule = "line_rule",
+               point_clip = "point_clip";
 
 constexpr CaptureState space_setting = choice<&State::space, space_names, space>();
 
-constexpr std::array<CaptureState, 11> settings_table{{
+constexpr std::array<CaptureState, 18> settings_table{{
     choice<&State::depth_test, depth_names, depth_test>(),
     choice<&State::depth_write, switch_names, depth_write>(),
     choice<&State::color_write, switch_names, color_write>(),
@@ -126,6 +162,16 @@ constexpr std::array<CaptureState, 11> settings_table{{
      [](const State& a, const State& b) { return a.viewport == b.viewport; }},
     {"depth_range", read_depth_range, write_depth_range,
      [](const State& a, const State& b) { return a.depth_range == b.depth_range; }},
+    choice<&State::provoking, provoking_names, provoking>(),
+    choice<&State::polygon_mode, polygon_mode_names, polygon_mode>(),
+    {"polygon_offset", read_polygon_offset, write_polygon_offset,
+     [](const State& a, const State& b) { return a.polygon_offset == b.polygon_offset; }},
+    choice<&State::line_rule, line_rule_names, line_rule>(),
+    {"line_last", read_line_last, write_line_last,
+     [](const State& a, const State& b) { return a.line_last == b.line_last; }},
+    {"point_size", read_point_size, write_point_size,
+     [](const State& a, const State& b) { return a.point_size == b.point_size; }},
+    choice<&State::point_clip, point_clip_names, point_clip>(),
 }};
 
 }  // namespace
@@ -133,9 +179,5 @@ constexpr std::array<CaptureState, 11> settings_table{{
 std::span<const CaptureState> capture_states() { return settings_table; }
 
 const CaptureState& capture_space() { return space_setting; }
-
-bool is_later_state(std::string_view name) {
-  return std::find(later_states.begin(), later_states.end(), name) != later_states.end();
-}
 
 }  // namespace halfplane

@@ -205,6 +205,14 @@ std::uint32_t CaptureText::index(std::size_t count) {
        ", or the missing 'v' lines above");
 }
 
+bool CaptureText::take(std::string_view expected) {
+  if (!has_word() || *at_ != expected.front()) return false;  // in a hurry: this stands before every index
+  const char* before = at_;
+  if (word() == expected) return true;
+  at_ = before;
+  return false;
+}
+
 std::size_t CaptureText::choice(std::string_view what, std::span<const std::string_view> names) {
   const std::string_view found = expect_word("the value of " + std::string(what));
   const auto* name = std::find(names.data(), names.data() + names.size(), found);

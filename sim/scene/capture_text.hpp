@@ -43,6 +43,8 @@ class CaptureText {
   [[nodiscard]] int integer(std::string_view what, int low, int high);
   /// The next word as the index of one of `count` vertices.
   [[nodiscard]] std::uint32_t index(std::size_t count);
+  /// Takes the next word if it is `expected`.
+  [[nodiscard]] bool take(std::string_view expected);
   /// The place in `names` of the next word; `what` names the setting in the message.
   [[nodiscard]] std::size_t choice(std::string_view what, std::span<const std::string_view> names);
 

@@ -8,6 +8,7 @@
 #include "capture.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
+#include "model/stages/primitive_assembly.hpp"
 
 namespace halfplane {
 namespace {
@@ -154,24 +155,34 @@ void CaptureWriter::introduce_objects(std::size_t end) {
   for (; objects_named_ < end; ++objects_named_) write_object(objects_named_);
 }
 
+/// Writes what the pipeline draws: indices that make no primitive are left out.
 void CaptureWriter::write_draw(const Draw& draw) {
-  const bool is_list = draw.topology == Topology::triangles;
-  const std::size_t count = is_list ? draw.count - draw.count % 3 : draw.count;  // what the pipeline draws
-  if (count < 3) return;
+  const auto format = *std::ranges::find(kCaptureDraws, draw.topology, &CaptureDraw::topology);
+  const auto drawn = [&format](std::size_t run) {
+    return format.is_list ? run - run % format.least : run < format.least ? 0 : run;
+  };
+  std::size_t total = 0;
+  for_each_run(scene_, draw, [&](std::span<const std::uint32_t> run) { total += drawn(run.size()); });
+  if (total == 0) return;
   introduce_objects(draw.object);
   if (draw.object != object_) {
     write_object(draw.object);
     objects_named_ = std::max<std::size_t>(objects_named_, draw.object + std::size_t{1});
   }
   write_state(scene_.states[draw.state]);
-  const char* name = is_list ? "t" : draw.topology == Topology::triangle_strip ? "ts" : "tf";
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i == 0 || (is_list && i % 3 == 0)) buffer_ += name;
-    buffer_ += ' ';
-    buffer_ += std::to_string(scene_.indices[draw.first + i]);
-    if (i + 1 == count || (is_list && i % 3 == 2)) buffer_ += '\n';
-    flush_if_full();
-  }
+  bool is_first = true;
+  for_each_run(scene_, draw, [&](std::span<const std::uint32_t> run) {
+    for (std::size_t i = 0; i < drawn(run.size()); ++i) {
+      if (format.is_list ? i % format.least == 0 : is_first) buffer_ += format.word;
+      if (!format.is_list && i == 0 && !is_first) buffer_ += " restart";
+      is_first = false;
+      buffer_ += ' ';
+      buffer_ += std::to_string(run[i]);
+      if (format.is_list && i % format.least == format.least - 1) buffer_ += '\n';
+      flush_if_full();
+    }
+  });
+  if (!format.is_list) buffer_ += '\n';
 }
 
 bool same_command(const Scene& a, const Command& command_a, const Scene& b, const Command& command_b) {

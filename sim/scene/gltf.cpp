@@ -67,8 +67,8 @@ class GltfMeshBuilder {
       const JsonPlace list = file_.item("meshes", instance.mesh).at("primitives");
       for (std::size_t i = 0; i < list.size(); ++i) add_primitive(list[i]);
     }
-    if (mesh_.triangles.empty()) {
-      throw InputError(file_.name() + ": no triangles in its scene, so nothing to draw; export it with its meshes");
+    if (mesh_.parts.empty()) {
+      throw InputError(file_.name() + ": nothing in its scene that could be drawn; export it with its meshes");
     }
     return {std::move(mesh_), std::move(nodes.cameras)};
   }
@@ -88,11 +88,6 @@ class GltfMeshBuilder {
   void add_primitive(const JsonPlace& place) {
     spend(place, 1);  // its triangles come later: many empty ones cost time, too
     const std::uint64_t mode = place.whole_or("mode", 6, 4);
-    if (mode < 4) {
-      constexpr std::array<const char*, 4> kNames{"points", "lines", "line loops", "line strips"};
-      place.at("mode").fail(std::string(kNames[mode]) + " are not read from glTF in this version",
-                            "export triangles only");
-    }
     if (place.find("targets")) warn("morph targets are not read: the base shape is shown");
     const JsonPlace attributes = place.at("attributes");
     if (!attributes.find("POSITION")) {
@@ -108,7 +103,7 @@ class GltfMeshBuilder {
     material_ = read_material(place);
     attributes_ = read_attributes(place, attributes);
     material_.is_lit = material_.is_lit && attributes_.color == nullptr;
-    add_triangles(place, mode);
+    mode < 4 ? add_outline(place, mode) : add_triangles(place, mode);
   }
 
   Material read_material(const JsonPlace& primitive) {
@@ -193,6 +188,22 @@ class GltfMeshBuilder {
     }
   }
 
+  // Points, lines, line loops and line strips, in that order of `mode`. Without normals they are shown unlit.
+  void add_outline(const JsonPlace& place, std::uint64_t mode) {
+    constexpr std::array<Topology, 4> kTopologies{Topology::points, Topology::lines, Topology::line_loop,
+                                                  Topology::line_strip};
+    const GltfAccessor* indices = attributes_.indices;
+    const std::uint64_t corners = indices != nullptr ? indices->count : attributes_.position->count;
+    if (corners < (mode == 0 ? 1U : 2U) || (mode == 1 && corners % 2 != 0)) {
+      place.fail(std::to_string(corners) + " corners make no whole lines", "export the file again");
+    }
+    spend(place, corners);
+    mesh_.parts.push_back({object_, mesh_.indices.size(), static_cast<std::size_t>(corners), 0, true,
+                           kTopologies[static_cast<std::size_t>(mode)]});
+    new_index_ = {};
+    for (std::uint64_t i = 0; i < corners; ++i) mesh_.indices.push_back(shared_vertex(source_vertex(i)));
+  }
+
   std::uint64_t source_vertex(std::uint64_t corner) const {
     if (attributes_.indices == nullptr) return corner;
     const auto vertex = static_cast<std::uint64_t>(read_element(*attributes_.indices, corner)[0]);
@@ -205,19 +216,22 @@ class GltfMeshBuilder {
   }
 
   // Only vertices that are used get into the mesh, each once: primitives often share one long list.
+  std::uint32_t shared_vertex(std::uint64_t from) {
+    const auto [place, added] = new_index_.try_emplace(from, static_cast<std::uint32_t>(mesh_.vertices.size()));
+    if (added) mesh_.vertices.push_back(make_vertex(from));
+    return place->second;
+  }
+
   void add_triangle(const std::array<std::uint64_t, 3>& from) {
     const bool is_flat = material_.is_lit && attributes_.normal == nullptr;  // the format asks for it
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
       if (is_flat) {
-        triangle[i] = next;
+        triangle[i] = static_cast<std::uint32_t>(mesh_.vertices.size());
         mesh_.vertices.push_back(make_vertex(from[i]));
-        continue;
+      } else {
+        triangle[i] = shared_vertex(from[i]);
       }
-      const auto [place, added] = new_index_.try_emplace(from[i], next);
-      triangle[i] = place->second;
-      if (added) mesh_.vertices.push_back(make_vertex(from[i]));
     }
     if (is_flat) {
       const auto corner = [&](std::size_t i) -> MeshVertex& { return mesh_.vertices[triangle[i]]; };

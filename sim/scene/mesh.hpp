@@ -1,10 +1,11 @@
-// An indexed triangle mesh in world space: what OBJ and glTF files and the built-in models become before a camera sees them.
+// An indexed mesh in world space, with lines and points beside its triangles: what OBJ and glTF files and the built-in models become before a camera sees them.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "model/scene.hpp"
 #include "sim/scene/vec3.hpp"
 
 namespace halfplane {
@@ -20,19 +21,22 @@ struct MeshVertex {
   bool operator==(const MeshVertex&) const = default;
 };
 
-/// A run of triangles that belong to one object.
+/// A run of triangles, or of indices of lines or points, that belong to one object.
 struct MeshPart {
   std::uint32_t object = 0;  ///< index into Mesh::objects
-  std::size_t first = 0;     ///< first of its triangles
+  std::size_t first = 0;     ///< first of its triangles; other topologies: first of its entries in Mesh::indices
   std::size_t count = 0;     ///< how many
   std::uint32_t line = 0;    ///< line of its first face in the file, 0 for none
   bool two_sided = true;     ///< false: its back faces are not seen
+  Topology topology = Topology::triangles;
 };
 
-/// Invariants (kept by every maker): indices < vertices.size(), all numbers finite, parts cover all triangles in order.
+/// Invariants (kept by every maker): indices < vertices.size() (or kRestart in Mesh::indices), all numbers finite, parts
+/// cover all triangles in order.
 struct Mesh {
   std::vector<MeshVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside, as far as the source knows
+  std::vector<std::uint32_t> indices;                   ///< of the parts that are lines or points
   std::vector<MeshPart> parts;
   std::vector<std::string> objects;
   bool lit = true;  ///< colours are materials, to be shaded by the header light; false: they are shown as they are

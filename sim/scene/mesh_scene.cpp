@@ -53,10 +53,12 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     }
     scene.vertices.push_back(out);
   }
-  scene.indices.reserve(mesh.triangles.size() * 3);
+  const std::size_t corners = mesh.triangles.size() * 3;  // the indices of lines and points follow those of triangles
+  scene.indices.reserve(corners + mesh.indices.size());
   for (const auto& triangle : mesh.triangles) {
     scene.indices.insert(scene.indices.end(), triangle.begin(), triangle.end());
   }
+  scene.indices.insert(scene.indices.end(), mesh.indices.begin(), mesh.indices.end());
   // Object 0 of a scene is the unnamed one; a mesh's own unnamed part becomes it.
   std::vector<std::uint32_t> numbers;
   for (const std::string& name : mesh.objects) {
@@ -70,8 +72,10 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
       scene.states.push_back(scene.states[0]);
       scene.states[1].cull = Cull::back;
     }
+    const bool is_filled = part.topology == Topology::triangles;
+    const std::size_t first = is_filled ? part.first * 3 : corners + part.first;
     scene.commands.push_back(
-        Draw{is_culled ? 1U : 0U, object, Topology::triangles, part.first * 3, part.count * 3, part.line});
+        Draw{is_culled ? 1U : 0U, object, part.topology, first, is_filled ? part.count * 3 : part.count, part.line});
   }
   return scene;
 }

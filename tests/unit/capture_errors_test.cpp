@@ -78,11 +78,35 @@ TEST(CaptureErrors, UnknownLinesAndStatesAreNamed) {
 }
 
 TEST(CaptureErrors, WhatALaterVersionWillDrawIsNamed) {
-  for (const char* line : {"l 0 1", "ll 0 1 2", "ls 0 1 2", "p 0"})
-    expect_line_refused(line, "points and lines are not in this version");
-  for (const char* name : {"polygon_offset", "polygon_mode", "line_rule", "point_size"})
-    expect_line_refused("state " + std::string(name) + " 1", "state " + std::string(name) + " is not in this version");
   expect_line_refused("planes 0.1 100", "planes is not in this version");
+}
+
+TEST(CaptureErrors, StatesOfLinesAndPointsAreCheckedAsTheOthers) {
+  expect_line_refused("state polygon_mode wire", "'wire' is no value of polygon_mode; write one of fill, line, point");
+  expect_line_refused("state line_rule xiaolin", "write one of midpoint, bresenham, diamond");
+  expect_line_refused("state line_last maybe", "write one of off, on, rule");
+  expect_line_refused("state point_size 0.5", "point_size is 0.5; write a number from 1 to 1048576");
+  expect_line_refused("state polygon_offset 1", "the line ends where polygon_offset's constant should follow");
+  expect_line_refused("state provoking middle", "write one of first, last");
+  expect_line_refused("state point_clip none", "write one of pixel, center");
+}
+
+TEST(CaptureErrors, DrawsNeedWholePrimitives) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+  const auto refused = [&](const std::string& line, const char* what) {
+    const std::string message = message_for("halfplane 1\n" + vertices + line + "\n");
+    EXPECT_NE(message.find(":6: "), std::string::npos) << message;
+    EXPECT_NE(message.find(what), std::string::npos) << message;
+  };
+  refused("l 0 1 2", "l with 3 indices; write 2 for each line");
+  refused("ls 0", "ls with 1 index; write at least 2, all on one line");
+  refused("ll 0", "ll with 1 index; write at least 2");
+  refused("ts 0 1 2 restart 0 1", "ts with 2 indices; write at least 3");
+  refused("ls restart 0 1", "ls with 0 indices");
+  refused("ls 0 1 restart", "ls with 0 indices");
+  refused("l 0 1 restart 2 3", "restart in a list; leave it out, lines of a list share nothing");
+  refused("p 4", "index '4' has no vertex yet");
+  refused("p restarted", "'restarted' is not an index");
 }
 
 TEST(CaptureErrors, TargetIsOneAndWithinItsBounds) {

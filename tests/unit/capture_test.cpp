@@ -278,6 +278,13 @@ State random_state(std::mt19937_64& random) {
   if (random() % 2 != 0) state.scissor = Rect{-3, static_cast<int>(random() % 100), static_cast<int>(random() % 9), 7};
   if (random() % 2 != 0)
     state.viewport = Viewport{random_in(random, -9, 9), random_in(random, -9, 9), random_in(random, 1, 9), 0.125};
+  state.provoking = random_enum<Provoking>(random, 2);
+  state.polygon_mode = random_enum<PolygonMode>(random, 3);
+  state.line_rule = random_enum<LineRule>(random, 3);
+  if (random() % 2 != 0) state.line_last = random() % 2 != 0;
+  if (random() % 2 != 0) state.point_size = random_in(random, 1, 100);
+  state.point_clip = random_enum<PointClip>(random, 2);
+  if (random() % 2 != 0) state.polygon_offset = {random_in(random, -4, 4), random_in(random, -4, 4)};
   if (random() % 2 != 0) state.depth_range = {random_in(random, 0, 1), random_in(random, 0, 1)};
   return state;
 }
@@ -314,11 +321,14 @@ Scene random_scene(std::mt19937_64& random) {
     scene.commands.emplace_back(clear);
     Draw draw{.state = static_cast<std::uint32_t>(random() % scene.states.size()),
               .object = static_cast<std::uint32_t>(random() % scene.objects.size()),
-              .topology = random_enum<Topology>(random, 3),
+              .topology = random_enum<Topology>(random, 7),
               .first = scene.indices.size()};
-    draw.count = draw.topology == Topology::triangles ? 3 * (1 + random() % 5) : 3 + random() % 9;
+    const bool is_list = draw.topology == Topology::triangles || draw.topology == Topology::lines;
+    const bool may_restart = !is_list && draw.topology != Topology::points;
+    draw.count = is_list ? 6 * (1 + random() % 3) : 3 + random() % 9;
     for (std::size_t k = 0; k < draw.count; ++k)
       scene.indices.push_back(static_cast<std::uint32_t>(random() % scene.vertices.size()));
+    if (may_restart && draw.count > 6) scene.indices[draw.first + 3] = kRestart;
     scene.commands.emplace_back(draw);
   }
   return scene;

@@ -1,0 +1,146 @@
+// Golden lines and points: coverage straight from each rule's definition, depth and colour along the line, for ends
+// that are not snapped. A pixel is asked whether it belongs to the line, whatever its neighbours are.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "interpolate.hpp"
+#include "viewport.hpp"
+
+namespace halfplane::golden {
+
+/// A line on the screen.
+template <class Real>
+struct Line {
+  ScreenVertex<Real> start, end;
+  LineRule rule = LineRule::diamond;
+  bool drops_last = true;
+};
+
+/// Diamond exit never draws the last pixel; the other rules do unless told otherwise.
+[[nodiscard]] inline bool drops_last_pixel(const State& state) {
+  return state.line_rule == LineRule::diamond || !state.line_last.value_or(true);
+}
+
+/// Does a midpoint or Bresenham line from pixel (x0, y0) to pixel (x1, y1) cover pixel (x, y)? All are whole numbers.
+/// Seen from left to right, the centre's distance from the line across the major axis is in [-1/2, 1/2), the border
+/// that belongs to it being the one on the left end's side. Exact below 2^25 pixels.
+[[nodiscard]] inline bool connects(double x0, double y0, double x1, double y1, bool drops_last, double x, double y) {
+  if (drops_last && x == x1 && y == y1) return false;
+  if (x < std::min(x0, x1) || x > std::max(x0, x1) || y < std::min(y0, y1) || y > std::max(y0, y1)) return false;
+  if (x1 < x0) {
+    std::swap(x0, x1);
+    std::swap(y0, y1);
+  }
+  const double run = x1 - x0, rise = y1 - y0, length = std::max(run, std::abs(rise));
+  // Twice the distance, times the length; positive: below an x-major line, right of a y-major one.
+  const double below = 2 * ((y - y0) * run - (x - x0) * rise);
+  if (run < std::abs(rise)) {
+    const double right = rise > 0 ? -below : below;
+    return -length <= right && right < length;
+  }
+  if (run == 0) return true;  // a single pixel
+  return rise >= 0 ? -length <= below && below < length : -length < below && below <= length;
+}
+
+/// Diamond exit: does the segment, moved by (-e, -e^2) for every small enough e > 0, meet the open diamond
+/// |x - x_c| + |y - y_c| < 1/2 of the pixel, and not end in it? On the axes x + y and x - y the diamond is a square and
+/// a moved point lies inside it when it was in (-1/2, 1/2]. Segment and square meet unless one of three axes separates
+/// them: the square's own two, and the one across the segment.
+template <class Real>
+[[nodiscard]] bool leaves_diamond(Real x0, Real y0, Real x1, Real y1, int x, int y) {
+  const Real cx = static_cast<Real>(x) + Real(0.5), cy = static_cast<Real>(y) + Real(0.5), half = Real(0.5);
+  x0 -= cx, x1 -= cx, y0 -= cy, y1 -= cy;
+  const auto inside = [half](Real v) { return v > -half && v <= half; };
+  if (inside(x1 + y1) && inside(x1 - y1)) return false;
+  const auto separates = [half](Real a, Real b) { return std::max(a, b) <= -half || std::min(a, b) > half; };
+  if (separates(x0 + y0, x1 + y1) || separates(x0 - y0, x1 - y1)) return false;
+  const Real dx = x1 - x0, dy = y1 - y0;
+  if (dx == 0 && dy == 0) return false;
+  const std::array<std::array<Real, 2>, 4> corners{{{half, 0}, {-half, 0}, {0, half}, {0, -half}}};
+  bool has_left = false, has_right = false;
+  for (const auto& [u, v] : corners) {
+    // The side of the moved segment on which the corner lies: moving it by -e across counts first, then -e^2.
+    const Real side = dx * (v - y0) - dy * (u - x0), moved = dy != 0 ? -dy : dx;
+    has_left |= side != 0 ? side < 0 : moved < 0;
+    has_right |= side != 0 ? side > 0 : moved > 0;
+  }
+  return has_left && has_right;
+}
+
+/// Does the line cover pixel (x, y)?
+template <class Real>
+[[nodiscard]] bool covers(const Line<Real>& line, int x, int y) {
+  if (line.rule == LineRule::diamond) return leaves_diamond(line.start.x, line.start.y, line.end.x, line.end.y, x, y);
+  return connects(std::floor(line.start.x), std::floor(line.start.y), std::floor(line.end.x), std::floor(line.end.y),
+                  line.drops_last, x, y);
+}
+
+/// The ends as coverage and attributes take them: the other rules move them to the centres of their pixels.
+template <class Real>
+struct Track {
+  Real x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  explicit Track(const Line<Real>& line) : x0(line.start.x), y0(line.start.y), x1(line.end.x), y1(line.end.y) {
+    if (line.rule == LineRule::diamond) return;
+    for (Real* v : {&x0, &y0, &x1, &y1}) *v = std::floor(*v) + Real(0.5);
+  }
+  [[nodiscard]] bool is_x_major() const { return std::abs(x1 - x0) >= std::abs(y1 - y0); }
+  /// 0 at the start, 1 at the end, at the pixel's coordinate on the major axis; clamped. 0 for a line without length.
+  [[nodiscard]] Real parameter(int x, int y) const {
+    const Real from = is_x_major() ? x0 : y0, length = is_x_major() ? x1 - x0 : y1 - y0;
+    const Real at = static_cast<Real>(is_x_major() ? x : y) + Real(0.5);
+    return length == 0 ? Real(0) : std::clamp((at - from) / length, Real(0), Real(1));
+  }
+};
+
+/// Calls visit(x, y) for the pixels of `box` that lie within `margin` pixels of the line along both axes: one column of
+/// 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a pixel that is covered holds, or
+/// touches, the point in which the line crosses its column or ends in it.
+template <class Real, class Visit>
+void for_each_candidate(const Line<Real>& line, const PixelBox& box, int margin, Visit&& visit) {
+  const Track<Real> track(line);
+  const bool x_major = track.is_x_major();
+  const double a0 = x_major ? track.x0 : track.y0, a1 = x_major ? track.x1 : track.y1;
+  const double b0 = x_major ? track.y0 : track.x0, b1 = x_major ? track.y1 : track.x1;
+  if (!std::isfinite(a0) || !std::isfinite(a1) || !std::isfinite(b0) || !std::isfinite(b1)) return;
+  const auto pixel = [](double v) { return static_cast<int>(std::floor(std::clamp(v, -1e9, 1e9))); };
+  const int low = x_major ? box.left : box.top, high = x_major ? box.right : box.bottom;
+  const int minor_low = x_major ? box.top : box.left, minor_high = x_major ? box.bottom : box.right;
+  const int end = std::min(high, pixel(std::max(a0, a1)) + margin + 1);
+  for (int i = std::max(low, pixel(std::min(a0, a1)) - margin); i < end; ++i) {
+    const double t = x_major ? track.parameter(i, 0) : track.parameter(0, i);
+    const int row = pixel(b0 + t * (b1 - b0));
+    for (int j = std::max(minor_low, row - margin); j < std::min(minor_high, row + margin + 1); ++j)
+      visit(x_major ? i : j, x_major ? j : i);
+  }
+}
+
+/// The attributes at a pixel of the line, by its coordinate on the major axis.
+template <class Real>
+[[nodiscard]] Fragment<Real> interpolate(const Line<Real>& line, int x, int y) {
+  const Real t = Track<Real>(line).parameter(x, y);
+  const ScreenVertex<Real>&a = line.start, &b = line.end;
+  const auto blend = [](Real from, Real to, Real part) { return part == 1 ? to : from + part * (to - from); };
+  const bool has_w = a.inverse_w > 0 && b.inverse_w > 0;
+  const Real part = has_w ? t * b.inverse_w / blend(a.inverse_w, b.inverse_w, t) : t;
+  Fragment<Real> f;
+  f.z = blend(a.z, b.z, t);
+  for (std::size_t c = 0; c < 4; ++c) {
+    f.affine[c] = blend(a.rgba[c], b.rgba[c], t);
+    f.perspective[c] = blend(a.rgba[c], b.rgba[c], part);
+  }
+  return f;
+}
+
+/// The pixels of a square point of that size, inside the target: centres in [x - size/2, x + size/2), likewise y.
+template <class Real>
+[[nodiscard]] PixelBox point_box(const ScreenVertex<Real>& at, double size, const Scene& scene) {
+  const double x = at.x, y = at.y, half = size / 2;
+  if (!std::isfinite(x) || !std::isfinite(y)) return {};
+  return pixel_box(x - half, y - half, x + half, y + half, scene);
+}
+
+}  // namespace halfplane::golden
