@@ -64,6 +64,13 @@ void HostStream::advance() {
 }
 
 void HostStream::start_draw(const Draw& draw) {
+  if (draw.outside != 0) {
+    const std::size_t count = primitive_count(scene_, draw);
+    primitive_ += static_cast<std::uint32_t>(count);
+    counters_.primitives_in += count;
+    counters_.culled += count;
+    return;
+  }
   context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
   assembled_.clear();
   assembled_next_ = 0;

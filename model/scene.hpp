@@ -25,24 +25,28 @@ enum class Provoking { first, last };
 /// Who is clipped when a point's centre is outside: its pixels only, or the point as a whole.
 enum class PointClip { pixel, center };
 enum class ClipZ { minus_one_one, zero_one };
+/// Where pixel centres lie in window coordinates: the first one at 1/2 or at 0.
+enum class PixelCenter { half, integer };
+/// The corner that window coordinates count from: top left with y down, or bottom left with y up.
+enum class Origin { top_left, bottom_left };
 /// Which pixels a line covers; see "Lines" in docs/spec.md.
 enum class LineRule { midpoint, bresenham, diamond };
 
 /// A vertex as it was given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down,
-/// pixel centres at half-integers), z in [0, 1], w as the clip-space w.
+/// pixel centres at half-integers, unless its state says otherwise), z in [0, 1], w as the clip-space w.
 struct Vertex {
   double x = 0, y = 0, z = 0, w = 1;
   std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
   double u = 0, v = 0;
 };
 
-/// A rectangle of whole pixels: left, top, width, height.
+/// A rectangle of whole pixels: column and row of the corner at the state's origin, width, height.
 struct Rect {
   int x = 0, y = 0, width = 0, height = 0;
   bool operator==(const Rect&) const = default;
 };
 
-/// A viewport: left, top, width, height in pixels, y down. Fractions are allowed.
+/// A viewport in the window coordinates of its state: the corner at the origin, width, height. Fractions are allowed.
 struct Viewport {
   double x = 0, y = 0, width = 0, height = 0;
   bool operator==(const Viewport&) const = default;
@@ -66,8 +70,10 @@ struct State {
   double point_size = 1;          ///< side of the square, pixels, at least 1
   PointClip point_clip = PointClip::pixel;
   ClipZ clip_z = ClipZ::minus_one_one;
-  std::optional<Rect> scissor;       ///< none: the whole target
-  std::optional<Viewport> viewport;  ///< none: the whole target
+  PixelCenter pixel_center = PixelCenter::half;  ///< of window-space vertices and the viewport
+  Origin origin = Origin::top_left;              ///< of the same two and the scissor; `front` is as seen in any case
+  std::optional<Rect> scissor;                   ///< none: the whole target
+  std::optional<Viewport> viewport;              ///< none: the whole target
   std::array<double, 2> depth_range{0.0, 1.0};
   bool operator==(const State&) const = default;
 };
@@ -90,6 +96,8 @@ struct Draw {
   std::size_t first = 0;   ///< first of its entries in Scene::indices
   std::size_t count = 0;   ///< how many entries
   std::uint32_t line = 0;  ///< line in the file it came from, 0 for none: for messages only
+  /// Not 0: known to cover no sample (whole-object culling), so that an engine need only number its primitives.
+  std::uint8_t outside = 0;
 };
 
 /// `frame` in a capture. Buffers keep their contents.

@@ -119,7 +119,13 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
       clear(rendering, scene, *command, config);
       rendering.raster_s += seconds_since(started);
       started = Clock::now();
-    } else if (const auto* draw = std::get_if<Draw>(&scene.commands[i])) {
+    } else if (const auto* draw = std::get_if<Draw>(&scene.commands[i]); draw != nullptr && draw->outside != 0) {
+      const std::size_t count = primitive_count(scene, *draw);
+      primitive += static_cast<std::uint32_t>(count);
+      rendering.counters.primitives_in += count;
+      rendering.counters.culled += count;
+      entries_done += draw->count;
+    } else if (draw != nullptr) {
       const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
       if (drawn_as(context.state, draw->topology) != PrimitiveType::triangle) {
         started = Clock::now();

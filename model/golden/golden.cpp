@@ -155,10 +155,8 @@ class Renderer {
   }
 
   /// From clip or window space to pixels.
-  static ScreenVertex<Real> screen(const ClipVertex<Real>& v, const DrawState& d) {
-    const auto& p = v.position;
-    return d.state.space == Space::clip ? to_screen(v, d.state, d.vp)
-                                        : ScreenVertex<Real>{p[0], p[1], p[2], 1 / p[3], v.rgba};
+  ScreenVertex<Real> screen(const ClipVertex<Real>& v, const DrawState& d) const {
+    return d.state.space == Space::clip ? to_screen(v, d.state, d.vp) : from_window(v, d.state, scene_);
   }
 
   void draw_triangle(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {

@@ -44,11 +44,35 @@ struct PixelBox {
 [[nodiscard]] inline PixelBox clear_region(const Scene& scene, const State& state) {
   if (!state.scissor) return {0, 0, scene.width, scene.height};
   const double x = state.scissor->x, y = state.scissor->y;  // double: x + width may not fit an int
-  return pixel_box(x, y, x + state.scissor->width, y + state.scissor->height, scene);
+  const double bottom = y + state.scissor->height;
+  const bool is_up = state.origin == Origin::bottom_left;
+  return pixel_box(x, is_up ? scene.height - bottom : y, x + state.scissor->width, is_up ? scene.height - y : bottom,
+                   scene);
+}
+
+/// How far the outer corner of the first pixel lies from the origin of the state's window coordinates, along each axis.
+[[nodiscard]] inline double first_pixel_offset(const State& state) {
+  return state.pixel_center == PixelCenter::half ? 0.0 : 0.5;
+}
+
+/// A vertex given in the window coordinates of its state.
+template <class Real>
+[[nodiscard]] ScreenVertex<Real> from_window(const ClipVertex<Real>& v, const State& state, const Scene& scene) {
+  const auto& [x, y, z, w] = v.position;
+  const auto offset = static_cast<Real>(first_pixel_offset(state));
+  const Real from_origin = y + offset;
+  const bool is_up = state.origin == Origin::bottom_left;
+  return {x + offset, is_up ? static_cast<Real>(scene.height) - from_origin : from_origin, z, 1 / w, v.rgba};
 }
 
 [[nodiscard]] inline Viewport viewport_of(const Scene& scene, const State& state) {
-  return state.viewport.value_or(Viewport{0, 0, static_cast<double>(scene.width), static_cast<double>(scene.height)});
+  const double width = scene.width, height = scene.height;
+  if (!state.viewport) return {0, 0, width, height};
+  const double offset = first_pixel_offset(state);
+  const double near_edge = state.viewport->y + offset;  // the edge at the origin's side
+  return {state.viewport->x + offset,
+          state.origin == Origin::bottom_left ? height - near_edge - state.viewport->height : near_edge,
+          state.viewport->width, state.viewport->height};
 }
 
 /// Target, scissor and, in clip space, the viewport: what a draw may touch.

@@ -104,4 +104,11 @@ void for_each_primitive(const Scene& scene, const Draw& draw, Provoking provokin
   }
 }
 
+/// How many primitives a draw makes: lines and points of polygon_mode do not count.
+[[nodiscard]] inline std::size_t primitive_count(const Scene& scene, const Draw& draw) {
+  std::size_t count = 0;
+  for_each_primitive(scene, draw, Provoking::first, [&count](const AssembledPrimitive&) { ++count; });
+  return count;
+}
+
 }  // namespace halfplane

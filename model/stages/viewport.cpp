@@ -8,15 +8,20 @@
 namespace halfplane {
 namespace {
 
-Rect intersect(const Rect& a, const Rect& b) {
-  // 64-bit sums: a scissor may start far outside and be as wide as an int.
-  const auto end = [](int start, int size) { return static_cast<std::int64_t>(start) + size; };
-  const int left = std::max(a.x, b.x), top = std::max(a.y, b.y);
-  const std::int64_t width = std::min(end(a.x, a.width), end(b.x, b.width)) - left;
-  const std::int64_t height = std::min(end(a.y, a.height), end(b.y, b.height)) - top;
-  if (width <= 0 || height <= 0) return {};
-  return {left, top, static_cast<int>(width), static_cast<int>(height)};
+/// The part of `rect` inside columns [left, right) and rows [top, bottom). 64 bits: a scissor may start far outside and be
+/// as wide as an int.
+Rect intersect(const Rect& rect, std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom) {
+  left = std::max<std::int64_t>(left, rect.x);
+  top = std::max<std::int64_t>(top, rect.y);
+  right = std::min<std::int64_t>(right, std::int64_t{rect.x} + rect.width);
+  bottom = std::min<std::int64_t>(bottom, std::int64_t{rect.y} + rect.height);
+  if (left >= right || top >= bottom) return {};
+  return {static_cast<int>(left), static_cast<int>(top), static_cast<int>(right - left),
+          static_cast<int>(bottom - top)};
 }
+
+/// What the state's pixel centres must be moved by to lie at half-integers.
+double center_offset(const State& state) { return state.pixel_center == PixelCenter::integer ? 0.5 : 0.0; }
 
 [[noreturn]] void refuse_vertex(const WindowPosition& p, const VertexSource& source, const Config& config) {
   char position[96];
@@ -33,22 +38,36 @@ std::string place_of_draw(std::string_view file, std::uint32_t line) {
   return std::string(file) + (line != 0 ? ": draw from line " + std::to_string(line) : "");
 }
 
+WindowPosition window_position(const Vertex& v, const State& state, int target_height) {
+  const double x = v.x + center_offset(state), y = v.y + center_offset(state);
+  return {x, state.origin == Origin::bottom_left ? target_height - y : y, v.z};
+}
+
 Viewport effective_viewport(const State& state, int target_width, int target_height) {
-  return state.viewport.value_or(Viewport{0, 0, static_cast<double>(target_width), static_cast<double>(target_height)});
+  if (!state.viewport) return {0, 0, static_cast<double>(target_width), static_cast<double>(target_height)};
+  Viewport v = *state.viewport;
+  v.x += center_offset(state);
+  v.y += center_offset(state);
+  if (state.origin == Origin::bottom_left) v.y = target_height - (v.y + v.height);
+  return v;
 }
 
 Rect raster_rect(const State& state, int target_width, int target_height) {
   Rect rect{0, 0, target_width, target_height};
-  if (state.scissor) rect = intersect(rect, *state.scissor);
+  if (state.scissor) {
+    const std::int64_t x = state.scissor->x, y = state.scissor->y, height = state.scissor->height;
+    const std::int64_t top = state.origin == Origin::bottom_left ? target_height - (y + height) : y;
+    rect = intersect(rect, x, top, x + state.scissor->width, top + height);
+  }
   if (state.space == Space::clip && state.viewport) {
     // Pixel x is inside when its centre is: viewport.x <= x + 1/2 < viewport.x + width. Clamped to the target first.
     const auto first = [](double edge, int limit) {
       return static_cast<int>(std::ceil(std::clamp(edge - 0.5, 0.0, static_cast<double>(limit))));
     };
-    const Viewport& v = *state.viewport;
+    const Viewport v = effective_viewport(state, target_width, target_height);
     const int left = first(v.x, target_width), right = first(v.x + v.width, target_width);
     const int top = first(v.y, target_height), bottom = first(v.y + v.height, target_height);
-    rect = intersect(rect, {left, top, right - left, bottom - top});
+    rect = intersect(rect, left, top, right, bottom);
   }
   return rect;
 }

@@ -19,7 +19,10 @@ struct WindowPosition {
   double x = 0, y = 0, z = 0;
 };
 
-/// The viewport of a state: its own or the whole target.
+/// A window-space vertex as the rasterizer counts: pixel centres at half-integers, y down from the top.
+[[nodiscard]] WindowPosition window_position(const Vertex& v, const State& state, int target_height);
+
+/// The viewport of a state, its own or the whole target, likewise.
 [[nodiscard]] Viewport effective_viewport(const State& state, int target_width, int target_height);
 
 /// The pixels that a draw may touch: target, scissor and (in clip space) the pixel centres inside the viewport.

@@ -104,6 +104,8 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
   command += " --config " + label(config, " --set ");
   if (scene == options.scene && !options.size.empty()) command += " --size " + quoted(options.size);
   if (scene == options.scene && !options.camera.empty()) command += " --camera " + quoted(options.camera);
+  if (scene == options.scene && options.convention != "gl") command += " --convention " + quoted(options.convention);
+  if (scene == options.scene && options.cull_objects != "box") command += " --cull-objects " + options.cull_objects;
   command += " --seed " + std::to_string(lockstep.seed);
   if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);
   if (lockstep.memory_latency != 8) command += " --memory-latency " + std::to_string(lockstep.memory_latency);

@@ -10,6 +10,7 @@
 
 #include "sim/config_file.hpp"
 #include "sim/image/whole_file.hpp"
+#include "sim/scene/convention.hpp"
 #include "sim/scene/load.hpp"
 
 namespace halfplane {
@@ -86,7 +87,12 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
       ->check(CLI::Range(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
       ->capture_default_str();
-  app.add_option("--convention", options.convention, "gl: pixel centres at halves, origin top left, clip z -w...w")
+  app.add_option("--convention", options.convention,
+                 "how the scene is stated: gl, d3d, mit3dcg or fcg (docs/conventions.md); NAME:reversed or "
+                 "NAME:standard sets the order of depth")
+      ->capture_default_str();
+  app.add_option("--cull-objects", options.cull_objects,
+                 "leave out objects outside the view by their bounding: none, sphere, box or both")
       ->capture_default_str();
 }
 
@@ -140,9 +146,9 @@ Skip parse_skip(const std::string& text) {
   return skip;
 }
 
-Scene load_scene(const CommonOptions& options, const Config& config, double& load_s) {
-  if (options.convention != "gl")
-    throw InputError("--convention " + options.convention + " is not in this version; give gl");
+Scene load_scene(const CommonOptions& options, const Config& config, double& load_s, ObjectCounts* objects) {
+  const Convention convention = parse_convention(options.convention);
+  const CullObjects cull_objects = parse_cull_objects(options.cull_objects);
   const auto start = std::chrono::steady_clock::now();
   const Size size = parse_size(options.size);
   SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed};
@@ -153,6 +159,9 @@ Scene load_scene(const CommonOptions& options, const Config& config, double& loa
   std::vector<std::string> warnings;
   Scene scene = load_scene(request, warnings);
   for (const std::string& warning : warnings) std::cerr << "halfplane: warning: " << warning << '\n';
+  const ObjectCounts counts = select_object_culling(scene, cull_objects);
+  if (objects != nullptr) *objects = counts;
+  scene = in_convention(std::move(scene), convention);
   load_s = seconds_since(start);
   return scene;
 }

@@ -12,6 +12,7 @@
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/scene.hpp"
+#include "sim/scene/object_cull.hpp"
 
 namespace halfplane {
 
@@ -31,6 +32,7 @@ struct CommonOptions {
   int threads = 1;
   std::string skip = "all";
   std::string convention = "gl";
+  std::string cull_objects = "box";
   std::string json;  ///< empty: none, "-": stdout, else a file
   bool quiet = false;
 };
@@ -57,9 +59,10 @@ void check_output(const std::string& path, const std::string& extension = "");
 /// `--skip all|none|NAME,NAME...`. Throws InputError naming the legal names.
 [[nodiscard]] Skip parse_skip(const std::string& text);
 
-/// Loads the scene that the options ask for; a size that is not given fits the configuration's target. Prints warnings
-/// to stderr and sets `load_s`.
-[[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s);
+/// Loads the scene that the options ask for, in its convention; a size that is not given fits the configuration's target.
+/// Prints warnings to stderr, sets `load_s`, and `objects` if there is one.
+[[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s,
+                               ObjectCounts* objects = nullptr);
 
 /// Every effective value, keyed as in --set.
 [[nodiscard]] Json config_json(const Config& config);

@@ -151,6 +151,10 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
       << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
       << "time        load " << fixed(1e3 * result["time_s"]["load"].get<double>(), 1) << " ms, geometry "
       << fixed(1e3 * rendering.geometry_s, 2) << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
+  if (const Json& objects = result["objects"]; objects["primitives_skipped"] != 0)
+    out << "objects     " << objects["in"] << " in, outside the view by sphere " << objects["culled_sphere"]
+        << ", by box " << objects["culled_box"] << ": "
+        << with_commas(objects["primitives_skipped"].get<std::uint64_t>()) << " primitives skipped\n";
   if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
   if (options.engine == "rtl")
     out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
@@ -168,7 +172,8 @@ int run(const RenderCommand& options) {
   const Config config = effective_config(options);
   check_options(options, config);
   double load_s = 0;
-  const Scene scene = load_scene(options, config, load_s);
+  ObjectCounts objects;
+  const Scene scene = load_scene(options, config, load_s, &objects);
   LockstepResult rtl_run;
   const Rendering rendering = run_engine(options, scene, config, rtl_run);
   Json result = result_head("render", options, config);
@@ -176,6 +181,10 @@ int run(const RenderCommand& options) {
   result["width"] = scene.width;
   result["height"] = scene.height;
   result["threads"] = 1;
+  result["objects"] = {{"in", objects.in},
+                       {"culled_sphere", objects.culled_sphere},
+                       {"culled_box", objects.culled_box},
+                       {"primitives_skipped", objects.primitives_skipped}};
   if (options.engine == "scalar") add_study_json(result, study_rules(options.study), scene, config);
   result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};

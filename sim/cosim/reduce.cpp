@@ -84,6 +84,11 @@ Scene scene_of(Items items, const Scene& like, int width, int height) {
   return scene;
 }
 
+/// Whether another size of the target moves it on the screen.
+bool depends_on_target(const Item& item) {
+  return item.state.origin == Origin::bottom_left || (!item.clear && item.state.space == Space::clip);
+}
+
 std::size_t primitives_in(const Items& items) {
   return static_cast<std::size_t>(std::count_if(items.begin(), items.end(), [](const Item& i) { return !i.clear; }));
 }
@@ -167,9 +172,8 @@ class Reducer {
 };
 
 void Reducer::to_window_space() {
-  const bool has_clip =
-      std::any_of(items_.begin(), items_.end(), [](const Item& i) { return !i.clear && i.state.space == Space::clip; });
-  if (has_clip) try_items(items_of(window_scene(scene_, config_)));
+  const bool has_other = std::any_of(items_.begin(), items_.end(), depends_on_target);
+  if (has_other) try_items(items_of(window_scene(scene_, config_)));
 }
 
 /// What comes after the primitive that fails is rarely needed, and often little of what comes before it.
@@ -188,7 +192,7 @@ void Reducer::cut_after_failure() {
 /// A smaller target: to the tile that fails, then by halves. A flush of a large one would be most of every run.
 void Reducer::crop() {
   for (const Item& item : items_)
-    if (!item.clear && item.state.space == Space::clip) return;  // it would be another picture
+    if (depends_on_target(item)) return;  // it would be another picture
   const Mismatch& m = best_.mismatch;
   if (m.tile_x && m.tile_y) {
     const int right = (static_cast<int>(*m.tile_x) + 1) * config_.tile_size;

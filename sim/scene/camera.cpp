@@ -228,6 +228,14 @@ Mat4 projection_matrix(const Camera& camera, double aspect) {
           Vec4{0, 0, -1, 0}};
 }
 
+Mat4 product(const Mat4& left, const Mat4& right) {
+  Mat4 result{};
+  for (std::size_t row = 0; row < 4; ++row)
+    for (std::size_t column = 0; column < 4; ++column)
+      for (std::size_t i = 0; i < 4; ++i) result[row][column] += left[row][i] * right[i][column];
+  return result;
+}
+
 Vec4 transform(const Mat4& matrix, const Vec4& point) {
   Vec4 result{};
   for (std::size_t row = 0; row < 4; ++row) {

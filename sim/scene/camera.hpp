@@ -47,6 +47,7 @@ struct Camera {
 
 [[nodiscard]] Mat4 view_matrix(const Camera& camera);
 [[nodiscard]] Mat4 projection_matrix(const Camera& camera, double aspect);
+[[nodiscard]] Mat4 product(const Mat4& left, const Mat4& right);
 [[nodiscard]] Vec4 transform(const Mat4& matrix, const Vec4& point);
 
 }  // namespace halfplane

@@ -31,7 +31,8 @@ struct StateHash {
           static_cast<int>(state.color_write), static_cast<int>(state.cull), static_cast<int>(state.front),
           static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z),
           static_cast<int>(state.provoking), static_cast<int>(state.polygon_mode), static_cast<int>(state.line_rule),
-          static_cast<int>(state.line_last.value_or(false)), static_cast<int>(state.point_clip)})
+          static_cast<int>(state.line_last.value_or(false)), static_cast<int>(state.point_clip),
+          static_cast<int>(state.pixel_center), static_cast<int>(state.origin)})
       mix(static_cast<std::size_t>(value));
     const Rect scissor = state.scissor.value_or(Rect{});
     for (const int value : {scissor.x, scissor.y, scissor.width, scissor.height}) mix(static_cast<std::size_t>(value));

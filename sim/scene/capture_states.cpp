@@ -20,6 +20,8 @@ constexpr std::array<Name, 2> front_names{"ccw", "cw"};
 constexpr std::array<Name, 2> shade_names{"smooth", "flat"};
 constexpr std::array<Name, 2> interp_names{"affine", "perspective"};
 constexpr std::array<Name, 2> clip_z_names{"minus_one_one", "zero_one"};
+constexpr std::array<Name, 2> pixel_center_names{"half", "integer"};
+constexpr std::array<Name, 2> origin_names{"top_left", "bottom_left"};
 
 constexpr std::array<Name, 2> provoking_names{"first", "last"};
 constexpr std::array<Name, 3> polygon_mode_names{"fill", "line", "point"};
@@ -144,11 +146,11 @@ void write_point_size(const State& state, std::string& out) {
 constexpr Name space = "space", depth_test = "depth_test", depth_write = "depth_write", color_write = "color_write",
                cull = "cull", front = "front", shade = "shade", color_interp = "color_interp", clip_z = "clip_z",
                provoking = "provoking", polygon_mode = "polygon_mode", line_rule = "line_rule",
-               point_clip = "point_clip";
+               point_clip = "point_clip", pixel_center = "pixel_center", origin = "origin";
 
 constexpr CaptureState space_setting = choice<&State::space, space_names, space>();
 
-constexpr std::array<CaptureState, 18> settings_table{{
+constexpr std::array<CaptureState, 20> settings_table{{
     choice<&State::depth_test, depth_names, depth_test>(),
     choice<&State::depth_write, switch_names, depth_write>(),
     choice<&State::color_write, switch_names, color_write>(),
@@ -157,6 +159,8 @@ constexpr std::array<CaptureState, 18> settings_table{{
     choice<&State::shade, shade_names, shade>(),
     choice<&State::color_interp, interp_names, color_interp>(),
     choice<&State::clip_z, clip_z_names, clip_z>(),
+    choice<&State::pixel_center, pixel_center_names, pixel_center>(),
+    choice<&State::origin, origin_names, origin>(),
     {"scissor", read_scissor, write_scissor, [](const State& a, const State& b) { return a.scissor == b.scissor; }},
     {"viewport", read_viewport, write_viewport,
      [](const State& a, const State& b) { return a.viewport == b.viewport; }},

@@ -12,6 +12,7 @@
 #include "sim/scene/gltf.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/obj.hpp"
+#include "sim/scene/object_cull.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
@@ -57,6 +58,7 @@ Scene load_capture(const SceneRequest& request) {
     throw InputError("--camera: " + request.name + " is a capture, already projected; leave the camera out");
   }
   Scene scene = read_capture_file(request.name);
+  mark_outside_objects(scene);
   if (request.width == 0) return scene;
   for (const State& state : scene.states) {
     if (state.space == Space::window && (request.width != scene.width || request.height != scene.height)) {

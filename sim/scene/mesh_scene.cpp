@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/config.hpp"
+#include "sim/scene/object_cull.hpp"
 
 namespace halfplane {
 namespace {
@@ -65,6 +66,9 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     numbers.push_back(name.empty() ? 0 : static_cast<std::uint32_t>(scene.objects.size()));
     if (!name.empty()) scene.objects.push_back(name);
   }
+  const Mat4 to_clip = product(projection, view);
+  std::vector<std::uint8_t> outside;
+  for (const ObjectBounds& bounds : object_bounds(mesh)) outside.push_back(outside_view(bounds, to_clip));
   for (const MeshPart& part : mesh.parts) {
     const std::uint32_t object = numbers[part.object];
     const bool is_culled = !part.two_sided && cull == Cull::none;
@@ -74,8 +78,10 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     }
     const bool is_filled = part.topology == Topology::triangles;
     const std::size_t first = is_filled ? part.first * 3 : corners + part.first;
-    scene.commands.push_back(
-        Draw{is_culled ? 1U : 0U, object, part.topology, first, is_filled ? part.count * 3 : part.count, part.line});
+    const std::size_t count = is_filled ? part.count * 3 : part.count;
+    // Pixels of lines and points can reach beyond their vertices.
+    const std::uint8_t is_outside = is_filled ? outside[part.object] : std::uint8_t{0};
+    scene.commands.push_back(Draw{is_culled ? 1U : 0U, object, part.topology, first, count, part.line, is_outside});
   }
   return scene;
 }

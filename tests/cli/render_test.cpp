@@ -221,9 +221,6 @@ TEST_F(RenderCommand, GoldenEnginesDrawWhatTheModelDoesNot) {
 TEST_F(RenderCommand, WhatTheModelHasNotYetIsNamed) {
   for (const char* engine : {"cycle", "nonsense", ""})
     expect_refused({"render", "triangle", "--engine", engine}, std::string("no engine '") + engine + "'");
-  for (const char* convention : {"d3d", "mit3dcg", "fcg", "nonsense"})
-    expect_refused({"render", "triangle", "--convention", convention}, std::string("--convention ") + convention);
-  EXPECT_EQ(run({"render", "triangle", "--convention", "gl"}).status, 0);
 }
 
 }  // namespace

@@ -1,0 +1,139 @@
+#include "sim/scene/object_cull.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "model/config.hpp"
+#include "model/stages/clip.hpp"
+#include "model/stages/primitive_assembly.hpp"
+#include "sim/scene/text_cursor.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, CullObjects>, 4> kNames{{{"none", CullObjects::none},
+                                                                          {"sphere", CullObjects::sphere},
+                                                                          {"box", CullObjects::box},
+                                                                          {"both", CullObjects::both}}};
+
+constexpr double kMargin = 1e-12;  // of the sum of a distance's terms
+
+std::uint8_t bits_of(CullObjects tests) {
+  switch (tests) {
+    case CullObjects::none: return 0;
+    case CullObjects::sphere: return kSphereOutside;
+    case CullObjects::box: return kBoxOutside;
+    case CullObjects::both: break;
+  }
+  return kSphereOutside | kBoxOutside;
+}
+
+/// Whether everything that the draw covers lies outside one and the same plane.
+bool is_outside(const Scene& scene, const Draw& draw) {
+  const State& state = scene.states[draw.state];
+  if (state.space == Space::window || draw.count == 0) return false;
+  const ClipPlanes planes = view_volume_planes(state.clip_z);
+  const bool is_filled =
+      primitive_type(draw.topology) == PrimitiveType::triangle && state.polygon_mode == PolygonMode::fill;
+  unsigned common = is_filled ? 0x3fU : 0x3U;  // near and far are the first two
+  for (std::size_t i = draw.first; i < draw.first + draw.count && common != 0; ++i) {
+    const std::uint32_t index = scene.indices[i];
+    if (index != kRestart) common &= outcode(planes, scene.vertices[index]);
+  }
+  return common != 0;
+}
+
+template <class Visit>
+void for_each_draw(Scene& scene, Visit&& visit) {
+  for (Command& command : scene.commands)
+    if (auto* draw = std::get_if<Draw>(&command)) visit(*draw);
+}
+
+}  // namespace
+
+CullObjects parse_cull_objects(std::string_view text) {
+  for (const auto& [name, tests] : kNames)
+    if (name == text) return tests;
+  throw InputError("--cull-objects: " + in_quotes(text) + " is none; give none, sphere, box or both");
+}
+
+std::vector<ObjectBounds> object_bounds(const Mesh& mesh) {
+  std::vector<ObjectBounds> bounds(mesh.objects.size());
+  const auto for_each_vertex = [&mesh](auto&& visit) {
+    for (const MeshPart& part : mesh.parts) {
+      if (part.topology != Topology::triangles) continue;  // their draws are never left out
+      for (std::size_t t = part.first; t < part.first + part.count; ++t)
+        for (const std::uint32_t index : mesh.triangles[t]) visit(part.object, mesh.vertices[index].position);
+    }
+  };
+  for_each_vertex([&bounds](std::uint32_t object, const Vec3& p) {
+    ObjectBounds& b = bounds[object];
+    const bool is_first = b.radius < 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      b.low[i] = is_first ? p[i] : std::min(b.low[i], p[i]);
+      b.high[i] = is_first ? p[i] : std::max(b.high[i], p[i]);
+    }
+    b.radius = 0;
+  });
+  for (ObjectBounds& b : bounds) b.center = scaled(add(b.low, b.high), 0.5);
+  for_each_vertex([&bounds](std::uint32_t object, const Vec3& p) {  // squares first: coordinates end at 1e30
+    const Vec3 offset = subtract(p, bounds[object].center);
+    bounds[object].radius = std::max(bounds[object].radius, dot(offset, offset));
+  });
+  for (ObjectBounds& b : bounds)
+    if (b.radius > 0) b.radius = std::sqrt(b.radius);
+  return bounds;
+}
+
+std::uint8_t outside_view(const ObjectBounds& bounds, const Mat4& to_clip) {
+  std::uint8_t outside = 0;
+  if (bounds.radius < 0) return outside;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      Vec4 plane{};  // inside: plane . (p, 1) >= 0, which says w + x >= 0 or w - x >= 0
+      for (std::size_t i = 0; i < 4; ++i) plane[i] = to_clip[3][i] + sign * to_clip[axis][i];
+      const Vec3 normal{plane[0], plane[1], plane[2]};
+      Vec3 corner{}, size{};  // the corner farthest inside, and what its coordinates may be as large as
+      for (std::size_t i = 0; i < 3; ++i) {
+        corner[i] = normal[i] > 0 ? bounds.high[i] : bounds.low[i];
+        size[i] = (std::abs(to_clip[3][i]) + std::abs(to_clip[axis][i])) *
+                  std::max(std::abs(bounds.low[i]), std::abs(bounds.high[i]));
+      }
+      const double margin =
+          kMargin * (size[0] + size[1] + size[2] + std::abs(to_clip[3][3]) + std::abs(to_clip[axis][3]));
+      if (dot(normal, bounds.center) + plane[3] + bounds.radius * length(normal) < -margin) outside |= kSphereOutside;
+      if (dot(normal, corner) + plane[3] < -margin) outside |= kBoxOutside;
+    }
+  }
+  return outside;
+}
+
+void mark_outside_objects(Scene& scene) {
+  std::vector<bool> is_seen(scene.objects.size(), false);
+  for_each_draw(scene, [&](const Draw& draw) {
+    if (!is_seen[draw.object] && !is_outside(scene, draw)) is_seen[draw.object] = true;
+  });
+  for_each_draw(scene, [&is_seen](Draw& draw) { draw.outside = is_seen[draw.object] ? 0 : kBoxOutside; });
+}
+
+ObjectCounts select_object_culling(Scene& scene, CullObjects tests) {
+  constexpr std::uint8_t kDrawn = 4;  // beside the two tests' bits
+  std::vector<std::uint8_t> found(scene.objects.size(), 0);
+  ObjectCounts counts;
+  for_each_draw(scene, [&](Draw& draw) {
+    draw.outside &= bits_of(tests);
+    found[draw.object] |= static_cast<std::uint8_t>(draw.outside | kDrawn);
+    if (draw.outside != 0) counts.primitives_skipped += primitive_count(scene, draw);
+  });
+  for (const std::uint8_t bits : found) {
+    counts.in += (bits & kDrawn) != 0 ? 1 : 0;
+    counts.culled_sphere += (bits & kSphereOutside) != 0 ? 1 : 0;
+    counts.culled_box += (bits & kBoxOutside) != 0 ? 1 : 0;
+  }
+  return counts;
+}
+
+}  // namespace halfplane
