@@ -20,7 +20,8 @@ FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_to
 FLAT = 'embedded, 2x2'
 SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper -abc9'
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
-STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'fine_raster', 'interpolate', 'depth_test', 'framebuffer']
+STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'fine_raster', 'interpolate', 'line_raster', 'primitive_join',
+          'depth_test', 'framebuffer']
 KEEP = ('setattr -mod -set keep_hierarchy 1 raster_top *skid_buffer* ' + ' '.join(f'{s} {s}_serial' for s in STAGES))
 PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
 # Title, preset, settings.
@@ -29,11 +30,29 @@ CONFIGURATIONS = [
     ('small, 1x1', 'small', []),
     ('embedded, 1x1', 'embedded', ['stamp.size=1']),
     ('embedded, 2x2', 'embedded', []),
+    ('embedded, 2x2, no lines', 'embedded', ['lines.unit=0']),
     ('embedded, 4x4', 'embedded', ['stamp.size=4']),
     ('full, 2x2', 'full', ['stamp.size=2']),
     ('full, 4x4', 'full', ['stamp.size=4']),
 ]
 PLACED = ['small, 1x1']
+# The unit that draws lines, alone, and the same with nobody looking at depth and colour.
+LINES = ['tiny, 1x1', 'embedded, 2x2', 'full, 4x4']
+LINE_TOPS = {'line_raster': '`line_raster`', 'line_positions': '`line_raster`, positions alone',
+             'primitive_join': '`primitive_join`'}
+LINE_POSITIONS = '''
+module line_positions (
+    input logic clk_i, rst_ni, line_valid_i, pixel_ready_i, output logic line_ready_o, pixel_valid_o, is_last_o,
+    input raster_pkg::line_setup_t line_i,
+    output logic [raster_pkg::PIXEL_X_BITS-1:0] x_o, output logic [raster_pkg::PIXEL_Y_BITS-1:0] y_o);
+  var raster_pkg::line_pixel_t pixel;
+  line_raster u_line_raster (.clk_i, .rst_ni, .line_valid_i, .line_ready_o, .line_i, .pixel_valid_o, .pixel_ready_i,
+                             .pixel_o(pixel));
+  assign x_o = pixel.x;
+  assign y_o = pixel.y;
+  assign is_last_o = pixel.is_last;
+endmodule
+'''
 
 
 def run(command, log):
@@ -78,6 +97,13 @@ def flat(title, command):
     """ECP5 cells of the whole design as one module."""
     tag = '-flat' + command.split('raster_top')[1].replace(' ', '')
     return yosys(title, tag, f'{read_verilog(title)}; {command}')['raster_top']
+
+
+def line_unit(title):
+    """ECP5 cells of each of LINE_TOPS by itself."""
+    positions = BUILD / 'line_positions.sv'
+    return {top: yosys(title, f'-{top}', f'{read_verilog(title)}; read_verilog -sv {positions}; '
+                                         + SYNTH_ECP5.replace('raster_top', top))[top] for top in LINE_TOPS}
 
 
 def module_label(name):
@@ -150,6 +176,14 @@ def table(head, rows):
             *('| ' + ' | '.join(map(cell, row)) + ' |' for row in rows), '']
 
 
+def line_part(units):
+    lines = [f'Lines: `{SYNTH_ECP5}` with each module of its own as the top. What is set up once a line is done by the host '
+             'and comes in a packet; the flip-flops hold its constants as well.']
+    lines += table(['module', *units], [[label, *(f"{places(unit[top]):,} places, {unit[top]['TRELLIS_FF']:,} FF"
+                                                  for unit in units.values())] for top, label in LINE_TOPS.items()])
+    return lines
+
+
 def ecp5_part(parts, flats):
     head = ['LUT4', 'CCU2C', 'DPR16X4', 'LUT4 places', 'FF', 'MULT18X18D', 'DP16KD']
     total = {title: sum(part.values(), collections.Counter()) for title, part in parts.items()}
@@ -190,10 +224,12 @@ def ice40_part(fitted, packed):
     return lines
 
 
-def page(parts, flats, fitted, packed):
+def page(parts, flats, fitted, packed, units):
     lines = ['# Area and speed', '', f'Written by `./dev area` on {datetime.date.today()} with {version(["yosys", "-V"])} '
              f'and {version(["nextpnr-ice40", "--version"])}. Configurations: preset, stamp.', '']
     lines += ecp5_part(parts, flats)
+    if units:
+        lines += line_part(units)
     if fitted:
         lines += ice40_part(fitted, packed)
     return '\n'.join(lines).replace('\n\n\n', '\n\n').rstrip() + '\n'
@@ -212,10 +248,12 @@ def main():
         sets = [word for setting in settings for word in ('--set', setting)]
         run([options.program, 'config', '--config', preset, *sets, '--sv'], BUILD / f'{slug(title)}.sv')
     titles = [title for title, _, _ in chosen]
+    (BUILD / 'line_positions.sv').write_text(LINE_POSITIONS, encoding='utf-8')
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = {
             'fitted': {t: pool.submit(placed, t) for t in PLACED if t in titles},
             'packed': {t: pool.submit(packed_blocks, t) for t in PLACED[:1] if t in titles},
+            'units': {t: pool.submit(line_unit, t) for t in LINES if t in titles},
             'parts': {t: pool.submit(blocks, t) for t in titles},
             'flats': {c: pool.submit(flat, FLAT, c) for c in FLAT_ECP5 if FLAT in titles},
         }

@@ -20,18 +20,23 @@ class Generator {
     const int limit = config.stamp_size == 1 ? 2 : 1;
     scene_.width = extent(std::min(640 / limit, config.target_width));
     scene_.height = extent(std::min(480 / limit, config.target_height));
-    hiz_chunk_ = chance(0.3);
-    has_lines_ = config.line_units != 0 && chance(0.7);
-    has_points_ = chance(0.6);
+    if (chance(0.7)) {  // room for something to happen
+      scene_.width = std::max(scene_.width, std::min(12 * config.tile_size, config.target_width));
+      scene_.height = std::max(scene_.height, std::min(12 * config.tile_size, config.target_height));
+    }
+    start_chunk();
   }
 
   Scene make(std::size_t count) {
     for (std::size_t made = 0; made < count;) {
-      if (chance(0.04)) clear();
+      if (chance(0.04)) {
+        clear();
+        start_chunk();
+      }
       const Topology topology = has_lines_ && chance(0.25)    ? Topology::lines
                                 : has_points_ && chance(0.15) ? Topology::points
                                                               : Topology::triangles;
-      is_pile_ = chance(0.15);
+      is_pile_ = chance(hiz_chunk_ ? 0.3 : 0.15);
       scene_.states.push_back(state());
       if (topology != Topology::triangles) line_and_point_state(scene_.states.back());
       const std::size_t run = std::min<std::size_t>(count - made, 1 + static_cast<std::size_t>(below(12)));
@@ -58,6 +63,12 @@ class Generator {
   }
   int extent(int largest) { return chance(0.1) ? largest : static_cast<int>(sized(largest)); }
 
+  void start_chunk() {
+    hiz_chunk_ = chance(0.3);
+    has_lines_ = config_.line_units != 0 && chance(0.7);
+    has_points_ = chance(0.6);
+    lines_raise_ = chance(0.3);
+  }
   State state();
   void clear();
   void line_and_point_state(State& s);
@@ -77,7 +88,8 @@ class Generator {
   std::int64_t step_ = 1;   // subpixels between two vertices
   bool hiz_chunk_ = false;  // large triangles and `less`: many tiles to be rejected by their bound
   bool has_lines_ = false, has_points_ = false;
-  bool is_pile_ = false;  // one triangle again and again: a stamp meets the one right ahead, a tile its last visit
+  bool lines_raise_ = false;  // lines may raise depths, which puts HiZ to rest until the next fast clear
+  bool is_pile_ = false;      // one triangle again and again: a stamp meets the one right ahead, a tile its last visit
   std::array<Point, 3> last_{};
   std::uint64_t last_depth_ = 0;  // code
 };
@@ -86,8 +98,11 @@ State Generator::state() {
   State s;
   s.space = Space::window;
   constexpr std::array<DepthFunc, 3> kUsual{DepthFunc::less, DepthFunc::lequal, DepthFunc::equal};
-  s.depth_test = chance(hiz_chunk_ ? 0.9 : 0.5) ? kUsual[static_cast<std::size_t>(below(hiz_chunk_ ? 2 : 3))]
-                                                : static_cast<DepthFunc>(below(8));
+  s.depth_test = chance(hiz_chunk_ ? 0.9
+                        : is_pile_ ? 0.25
+                                   : 0.5)
+                     ? kUsual[static_cast<std::size_t>(below(hiz_chunk_ ? 2 : 3))]
+                     : static_cast<DepthFunc>(below(8));
   s.depth_write = chance(0.85);
   s.color_write = chance(0.85);
   s.cull = chance(0.6) ? Cull::none : static_cast<Cull>(below(4));
@@ -103,9 +118,8 @@ State Generator::state() {
   return s;
 }
 
-/// Behind a line that can raise depths HiZ rests until the next fast clear: rare where it is to be seen at work.
 void Generator::line_and_point_state(State& s) {
-  if (hiz_chunk_ && s.depth_test >= DepthFunc::greater && chance(0.8)) s.depth_write = false;
+  if (s.depth_test >= DepthFunc::greater) s.depth_write = s.depth_write && lines_raise_;
   s.line_rule = static_cast<LineRule>(below(3));
   if (chance(0.5)) s.line_last = chance(0.5);
   s.point_size = static_cast<double>(unit_ + (chance(0.4) ? 0 : below(sized(12 * unit_)))) / static_cast<double>(unit_);
@@ -182,6 +196,8 @@ std::array<Point, 3> Generator::shape() {
   const std::int64_t screen = std::max(scene_.width, scene_.height) * unit_;
   const std::int64_t reach = hiz_chunk_ && chance(0.5) ? screen / 4 + below(screen) : sized(band);
   const Point center{below(scene_.width * unit_), below(scene_.height * unit_)};
+  if (is_pile_ && hiz_chunk_ && chance(0.6))  // all of it; the second one reads bounds while the first is drawn
+    return {Point{0, 0}, Point{2 * scene_.width * unit_, 0}, Point{0, 2 * scene_.height * unit_}};
   switch (below(16)) {
     case 0: return tile_half();
     case 1: {  // shares an edge with the triangle before

@@ -1,4 +1,4 @@
-// Cycles of the RTL, pipelined setup, stamp 2x2: from the first triangle taken to the last write into the on-chip tiles,
+// Cycles of the RTL, pipelined setup, stamp 2x2: from the first primitive taken to the last write into the on-chip tiles,
 // without the cycles in which tiles move between chip and memory. Cycles are exact, so these bounds are no timings.
 #include <gtest/gtest.h>
 
@@ -14,13 +14,15 @@ namespace halfplane {
 namespace {
 
 using Triangle = std::array<std::array<double, 2>, 3>;  // pixels
+using Line = std::array<std::array<double, 2>, 2>;      // likewise
 
 struct Cycles {
-  double each = 0;       ///< per triangle
+  double each = 0;       ///< per primitive
   double per_pixel = 0;  ///< per covered sample
 };
 
-Scene scene_of(int width, int height, const std::vector<Triangle>& triangles) {
+template <class Primitive>
+Scene scene_of(int width, int height, const std::vector<Primitive>& primitives) {
   Scene scene;
   scene.name = "cycles";
   scene.width = width;
@@ -31,8 +33,8 @@ Scene scene_of(int width, int height, const std::vector<Triangle>& triangles) {
   scene.states.push_back(state);
   scene.commands.push_back(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
   Random random(2);
-  for (const Triangle& triangle : triangles)
-    for (const auto& corner : triangle) {
+  for (const Primitive& primitive : primitives)
+    for (const auto& corner : primitive) {
       Vertex v;
       v.x = corner[0];
       v.y = corner[1];
@@ -41,7 +43,8 @@ Scene scene_of(int width, int height, const std::vector<Triangle>& triangles) {
       scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
       scene.vertices.push_back(v);
     }
-  scene.commands.push_back(Draw{0, 0, Topology::triangles, 0, scene.indices.size(), 0});
+  scene.commands.push_back(Draw{0, 0, std::tuple_size_v<Primitive> == 2 ? Topology::lines : Topology::triangles, 0,
+                                scene.indices.size(), 0});
   return scene;
 }
 
@@ -53,10 +56,11 @@ Cycles measure(const Scene& scene, const char* name) {
   const LockstepResult r = run_session(*dut, factory.config, options, single_scene(scene)).result;
   EXPECT_FALSE(r.mismatch.has_value());
   const auto counters = render_hardware(scene, factory.config).counters;
+  const auto primitives = static_cast<double>(r.primitives());
   const auto cycles = static_cast<double>(r.raster_cycles - r.tile_cycles);
-  const Cycles result{cycles / static_cast<double>(r.triangles), cycles / static_cast<double>(counters.covered)};
-  std::printf("%s: %.2f cycles a triangle, %.3f a pixel (%llu triangles, %llu cycles, %llu more moving tiles)\n", name,
-              result.each, result.per_pixel, static_cast<unsigned long long>(r.triangles),
+  const Cycles result{cycles / primitives, cycles / static_cast<double>(counters.covered)};
+  std::printf("%s: %.2f cycles each, %.3f a pixel (%llu primitives, %llu cycles, %llu more moving tiles)\n", name,
+              result.each, result.per_pixel, static_cast<unsigned long long>(r.primitives()),
               static_cast<unsigned long long>(r.raster_cycles - r.tile_cycles),
               static_cast<unsigned long long>(r.tile_cycles));
   return result;
@@ -79,7 +83,7 @@ std::vector<Triangle> random_in_boxes(double size, int width, int height, std::s
 Triangle two_by_two(double x, double y) { return {{{x, y}, {x + 2.5, y}, {x, y + 2.5}}}; }
 
 TEST(Cycles, AnIsolatedTriangleOfTwoByTwoPixelsTakesAtMost64) {
-  EXPECT_LE(measure(scene_of(32, 32, {two_by_two(4, 4)}), "isolated").each, 64);
+  EXPECT_LE(measure(scene_of<Triangle>(32, 32, {two_by_two(4, 4)}), "isolated").each, 64);
 }
 
 TEST(Cycles, AStreamOfThemTakesAtMost8Each) {
@@ -101,9 +105,39 @@ TEST(Cycles, RandomTrianglesInBoxesOf32PixelsTakeAtMost65HundredthsPerPixel) {
 }
 
 TEST(Cycles, ATriangleOf128By128TakesAtMost28HundredthsPerPixel) {
-  EXPECT_LE(measure(scene_of(128, 128, {{{{0, 0}, {128, 0}, {0, 128}}}}), "128x128").per_pixel, 0.28);
-  EXPECT_LE(measure(scene_of(640, 480, {{{{100.3, 50.1}, {228.2, 60.7}, {140.4, 178}}}}), "128x128 askew").per_pixel,
+  EXPECT_LE(measure(scene_of<Triangle>(128, 128, {{{{0, 0}, {128, 0}, {0, 128}}}}), "128x128").per_pixel, 0.28);
+  EXPECT_LE(measure(scene_of<Triangle>(640, 480, {{{{100.3, 50.1}, {228.2, 60.7}, {140.4, 178}}}}), "128x128 askew")
+                .per_pixel,
             0.28);
+}
+
+/// Lines of `length` pixels in all directions. Diamond exit: as many pixels as the longer side has.
+std::vector<Line> random_lines(double length, int width, int height, std::size_t count) {
+  Random random(4);
+  std::vector<Line> lines(count);
+  for (Line& line : lines) {
+    const double other = random.uniform(-length, length), sign = random.uniform(-1, 1) < 0 ? -1 : 1;
+    const bool is_x_major = random.uniform(-1, 1) < 0;
+    const double dx = is_x_major ? sign * length : other, dy = is_x_major ? other : sign * length;
+    const double x = random.uniform(std::max(0.0, -dx), width - std::max(0.0, dx));
+    const double y = random.uniform(std::max(0.0, -dy), height - std::max(0.0, dy));
+    line = {{{x, y}, {x + dx, y + dy}}};
+  }
+  return lines;
+}
+
+TEST(Cycles, StreamedLinesOf16PixelsAndMoreTake101HundredthsPerPixelAnd2PerLine) {
+  for (const int length : {16, 24, 100}) {
+    const std::string name = "lines of " + std::to_string(length) + " px";
+    EXPECT_LE(measure(scene_of(128, 128, random_lines(length, 128, 128, 2000)), name.c_str()).each, 1.01 * length + 2);
+  }
+}
+
+TEST(Cycles, ShorterLinesTakeAtMost8MoreThanTheirPixels) {
+  for (const int length : {1, 2, 4, 8, 12}) {
+    const std::string name = "lines of " + std::to_string(length) + " px";
+    EXPECT_LE(measure(scene_of(32, 32, random_lines(length, 32, 32, 2000)), name.c_str()).each, length + 8);
+  }
 }
 
 }  // namespace
