@@ -159,8 +159,9 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
     entry.outside_volume = entry.outside_guard_band = 0;
   }
   if (entry.outside_guard_band == 0) {
-    const WindowPosition p = context.state.space == Space::clip ? to_window(v, context.state, context.viewport)
-                                                                : window_position(v, context.state, context.scene.height);
+    const WindowPosition p = context.state.space == Space::clip
+                                 ? to_window(v, context.state, context.viewport)
+                                 : window_position(v, context.state, context.scene.height);
     entry.snapped = snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, index});
   }
   entry.state = context.draw.state;
