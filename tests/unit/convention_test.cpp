@@ -113,7 +113,7 @@ TEST(Convention, EveryBuiltinSceneIsTheSamePictureAndDepthInEachOfStandardOrder)
   }
 }
 
-// Codes are rounded half up, which the complement turns into half down: a fragment may move by one code against another.
+// Codes are rounded half up, which the complement turns into half down: one may move by a code against another.
 TEST(Convention, UnderReversedZDepthIsTheComplementToOneCodeAndColourFollowsButForTies) {
   for (const char* preset_name : {"embedded", "full"}) {
     const Config config = preset(preset_name);
@@ -145,6 +145,27 @@ TEST(Convention, RandomStatesInBothSpacesAreTheSamePicture) {
         EXPECT_EQ(d.color + d.ids + d.depth, 0) << "seed " << seed << " " << name;
         for (const State& state : restated.states)
           EXPECT_EQ(state.clip_z == ClipZ::zero_one, name == std::string("d3d"));
+      }
+    }
+  }
+}
+
+// Less and greater store the smaller and the larger of two codes: what is off by one at most stays so. Equal does not.
+TEST(Convention, UnderReversedZRandomStatesGiveTheComplementToOneCode) {
+  const Config config = preset("embedded");
+  for (const Space space : {Space::clip, Space::window}) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      Scene scene = random_scene(seed, space);
+      for (State& state : scene.states) {
+        if (state.depth_test == DepthFunc::equal) state.depth_test = DepthFunc::less;
+        if (state.depth_test == DepthFunc::notequal) state.depth_test = DepthFunc::always;
+      }
+      const Rendering gl = draw(scene, config);
+      for (const char* name : kReversed) {
+        const Rendering restated = draw(in_convention(scene, parse_convention(name)), config);
+        EXPECT_EQ(gl.counters.covered, restated.counters.covered) << "seed " << seed << " " << name;
+        const Difference d = difference(gl, restated, true, config.depth_bits);
+        EXPECT_LE(d.largest_depth, 1u) << "seed " << seed << " " << name;
       }
     }
   }
