@@ -213,7 +213,8 @@ Rendering render_hardware(const Scene& scene, const Config& config, const Render
   while (const auto primitive = host.next()) {
     const std::uint32_t dropped_before = dropped();
     hardware.run(primitive->packet, primitive->line);
-    if (is_counted(primitive->packet.kind) && dropped() == dropped_before && last_drawn != primitive->primitive) {
+    const bool is_triangle = primitive->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle);
+    if (is_triangle && dropped() == dropped_before && last_drawn != primitive->primitive) {
       ++drawn;
       last_drawn = primitive->primitive;
     }

@@ -102,7 +102,7 @@ class HardwareModel final : private MemoryPort {
 };
 
 /// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
-/// least one piece passed cull, and lines and points.
+/// least one piece passed cull.
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters);
 
 /// Renders `scene` by the hardware model, flush included. Fills frame and counters, not count, ids, visible and

@@ -50,7 +50,7 @@ struct LockstepResult {
   std::uint64_t raster_cycles = 0;  ///< from the first of them taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
   std::uint64_t clocks = 0;         ///< simulated, those that waited for a packet too many included
-  std::uint64_t drawn = 0;          ///< input primitives of which a piece passed cull; only when nothing is compared
+  std::uint64_t drawn = 0;          ///< input triangles of which a piece passed cull; only when nothing is compared
   std::array<StreamUse, kStreams> use{};  ///< only when nothing is compared
 
   [[nodiscard]] std::uint64_t total() const;
@@ -145,7 +145,7 @@ class Lockstep {
   std::uint64_t cycle_ = 0;           // since reset
   std::uint64_t first_taken_ = 0;     // cycle of the first primitive that counts
   std::uint64_t tile_cycles_ = 0;     // since then
-  std::uint64_t last_drawn_ = ~0ULL;  // input primitive that was counted last
+  std::uint64_t last_drawn_ = ~0ULL;  // input triangle that was counted last
   std::uint64_t last_moved_ = 0;      // the last cycle in which a packet moved anywhere
 };
 

@@ -128,7 +128,8 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       config.setup_kind = SetupKind::serial;
     else
-      set(config, setting.key, std::to_string(setting.max));
+      set(config, setting.key,
+          std::to_string(get(config, setting) == std::to_string(setting.max) ? setting.min : setting.max));
     EXPECT_NE(config_id(config), config_id(Config())) << setting.key;
   }
 }

@@ -156,7 +156,7 @@ LockstepOptions with_stalls(double probability, std::uint64_t seed = 3) {
 /// One scene, so that packets are numbered from its beginning.
 LockstepResult run(const Config& config, const Fault& fault, const LockstepOptions& options, std::size_t count = 150) {
   FakeDut dut(config, fault);
-  return run_session(dut, config, options, single_scene(random_scene(config, 5, count))).result;
+  return run_session(dut, config, options, single_scene(random_scene(config, 16, count))).result;
 }
 
 class CosimHarness : public ::testing::TestWithParam<const char*> {
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(Presets, CosimHarness, ::testing::Values("tiny", "embed
 TEST_P(CosimHarness, AnEqualDesignPassesWithAndWithoutStallsAndEveryArrowIsCompared) {
   for (const double stalls : {0.0, 0.3, 0.8}) {
     FakeDut dut(config, {});
-    const Session session = run_session(dut, config, with_stalls(stalls), random_scenes(config, 5, 150));
+    const Session session = run_session(dut, config, with_stalls(stalls), random_scenes(config, 16, 150));
     const LockstepResult& result = session.result;
     EXPECT_EQ(session.scenes, 2u);
     EXPECT_FALSE(result.mismatch.has_value()) << mismatch_report(*result.mismatch);
@@ -315,7 +315,15 @@ TEST(CosimRandomScene, IsTheSameForTheSameSeedAndRichInStates) {
     const Scene a = random_scene(config, 7, 2000), b = random_scene(config, 7, 2000);
     EXPECT_TRUE(same_scene(a, b));
     EXPECT_FALSE(same_scene(a, random_scene(config, 8, 2000)));
-    EXPECT_EQ(a.indices.size(), 6000u);
+    std::array<std::size_t, 3> primitives{};
+    for (const Command& command : a.commands)
+      if (const auto* draw = std::get_if<Draw>(&command))
+        primitives[static_cast<std::size_t>(primitive_type(draw->topology))] +=
+            draw->count / (draw->topology == Topology::triangles ? 3
+                           : draw->topology == Topology::lines   ? 2
+                                                                 : 1);
+    EXPECT_EQ(primitives[0] + primitives[1] + primitives[2], 2000u);
+    for (const std::size_t n : primitives) EXPECT_GT(n, 50u) << name;
     std::array<int, 8> functions{};
     for (const State& state : a.states) ++functions[static_cast<std::size_t>(state.depth_test)];
     for (const int n : functions) EXPECT_GT(n, 0) << name;
@@ -372,6 +380,16 @@ TEST(CosimReduce, AFaultInTheDesignLeavesOneTriangle) {
   ASSERT_TRUE(finding.reduced.has_value());
   EXPECT_LE(finding.reduced->primitives_after, 4u);
   EXPECT_TRUE(lockstep_test(dut, config)(finding.scene, finding.lockstep).has_value()) << "it must still fail";
+}
+
+TEST(CosimReduce, AFaultInALineLeavesALine) {
+  const Config config = preset("tiny");
+  FakeDut dut(config, {Fault::Kind::flip, Arrow::line_pixel, 1, 2});
+  const auto reduced = reduce(random_scene(config, 16, 150), config, {}, lockstep_test(dut, config));
+  ASSERT_TRUE(reduced.has_value());
+  EXPECT_LE(reduced->primitives_after, 2u);  // its second pixel may be that of another line
+  EXPECT_EQ(reduced->scene.states.at(std::get<Draw>(reduced->scene.commands.at(0)).state).line_rule, State{}.line_rule);
+  EXPECT_EQ(std::get<Draw>(reduced->scene.commands.at(0)).topology, Topology::lines);
 }
 
 TEST(CosimReduce, WindowSpaceSendsTheSamePrimitives) {

@@ -223,9 +223,8 @@ TEST(Hardware, EveryMemberHoldsItsFieldInTheWidestConfiguration) {
     config.stamp_size = stamp;
     config.tile_size = std::max(4, stamp);
     validate(config);
-    expect_members_wide_enough<PrimitivePacket, TrianglePacket, SetupPacket, ContextPacket, LineSetup, LinePixel,
-                               FragmentPacket, WritePacket, RetirePacket, MemoryRequest, MemoryResponse, CounterPacket>(
-        derive_widths(config));
+    expect_members_wide_enough<PrimitivePacket, TrianglePacket, SetupPacket, ContextPacket, FragmentPacket, WritePacket,
+                               RetirePacket, MemoryRequest, MemoryResponse, CounterPacket>(derive_widths(config));
   }
 }
 
