@@ -8,8 +8,8 @@
 namespace halfplane {
 namespace {
 
-/// The part of `rect` inside columns [left, right) and rows [top, bottom). 64 bits: a scissor may start far outside and be
-/// as wide as an int.
+/// The part of `rect` inside columns [left, right) and rows [top, bottom). 64 bits: a scissor may start far outside and
+/// be as wide as an int.
 Rect intersect(const Rect& rect, std::int64_t left, std::int64_t top, std::int64_t right, std::int64_t bottom) {
   left = std::max<std::int64_t>(left, rect.x);
   top = std::max<std::int64_t>(top, rect.y);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "../../model/engines/render.hpp"
@@ -17,7 +18,9 @@ class PixelLog {
   struct Pixel {
     std::uint32_t primitive;
     int y, x;
-    auto operator<=>(const Pixel&) const = default;
+    bool operator<(const Pixel& other) const {
+      return std::tie(primitive, y, x) < std::tie(other.primitive, other.y, other.x);
+    }
   };
 
   void add(std::uint32_t primitive, int x, int y) { pixels_.push_back({primitive, y, x}); }

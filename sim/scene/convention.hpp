@@ -1,5 +1,5 @@
-// Conventions: the same scene as OpenGL, Direct3D 10 or a textbook would state it. docs/conventions.md has the table and
-// the sources.
+// Conventions: the same scene as OpenGL, Direct3D 10 or a textbook would state it. docs/conventions.md has the table
+// and the sources.
 #pragma once
 
 #include <span>
@@ -26,9 +26,9 @@ struct Convention {
 /// Reads `NAME`, `NAME:standard` or `NAME:reversed`. Throws InputError that lists what there is.
 [[nodiscard]] Convention parse_convention(std::string_view text);
 
-/// The same scene stated in another convention: vertices, viewports, scissors, winding, depth tests, depth range, polygon
-/// offset and clears. `gl` leaves a scene as it is, with whatever conventions its states name. In: a scene of standard
-/// depth order. Primitives keep their numbers. Throws InputError if a coordinate leaves binary64.
+/// The same scene stated in another convention: vertices, viewports, scissors, winding, depth tests, depth range,
+/// polygon offset and clears. `gl` leaves a scene as it is, with whatever conventions its states name. In: a scene of
+/// standard depth order. Primitives keep their numbers. Throws InputError if a coordinate leaves binary64.
 [[nodiscard]] Scene in_convention(Scene scene, const Convention& convention);
 
 }  // namespace halfplane

@@ -23,7 +23,7 @@ enum class CullObjects { none, sphere, box, both };
 /// Throws InputError that lists the words.
 [[nodiscard]] CullObjects parse_cull_objects(std::string_view text);
 
-/// The tests that found an object outside: bits of Draw::outside. The box's stands for the vertices where there is none.
+/// The tests that found an object outside: bits of Draw::outside. Without a box its bit stands for the vertices.
 inline constexpr std::uint8_t kSphereOutside = 1, kBoxOutside = 2;
 
 /// Where a mesh's object lies, in world space.
@@ -41,8 +41,8 @@ struct ObjectBounds {
 [[nodiscard]] std::uint8_t outside_view(const ObjectBounds& bounds, const Mat4& to_clip);
 
 /// Marks the draws of every object all of whose draws lie outside one plane of the view volume each, by the vertices
-/// themselves. Window space is never outside; of lines and points, whose pixels can reach beyond their vertices, only near
-/// and far planes are asked. Linear in the indices at worst; a draw in view stops at its first few.
+/// themselves. Window space is never outside; of lines and points, whose pixels can reach beyond their vertices, only
+/// near and far planes are asked. Linear in the indices at worst; a draw in view stops at its first few.
 void mark_outside_objects(Scene& scene);
 
 struct ObjectCounts {
