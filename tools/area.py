@@ -28,6 +28,7 @@ PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
 CONFIGURATIONS = [
     ('tiny, 1x1', 'tiny', []),
     ('small, 1x1', 'small', []),
+    ('small, 1x1, lines', 'small', ['lines.unit=1']),
     ('embedded, 1x1', 'embedded', ['stamp.size=1']),
     ('embedded, 2x2', 'embedded', []),
     ('embedded, 2x2, no lines', 'embedded', ['lines.unit=0']),
@@ -35,7 +36,7 @@ CONFIGURATIONS = [
     ('full, 2x2', 'full', ['stamp.size=2']),
     ('full, 4x4', 'full', ['stamp.size=4']),
 ]
-PLACED = ['small, 1x1']
+PLACED = ['small, 1x1', 'small, 1x1, lines']
 # The unit that draws lines, alone, and the same with nobody looking at depth and colour.
 LINES = ['tiny, 1x1', 'embedded, 2x2', 'full, 4x4']
 LINE_TOPS = {'line_raster': '`line_raster`', 'line_positions': '`line_raster`, positions alone',
