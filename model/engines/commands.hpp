@@ -83,9 +83,9 @@ struct NoOtherPath {
   bool operator()(const DrawContext&, std::uint32_t&, Rendering&) const { return false; }
 };
 
-/// Runs every command of `scene`. Calls raster(context, triangle, index, rendering) for each triangle that the host side
-/// leaves, in program order; `index` counts them over the whole scene. Before a draw of filled triangles, asks
-/// other_path(context, primitive, rendering): true says that it has drawn and counted them all, and `primitive` with them.
+/// Runs every command of `scene`. Calls raster(context, triangle, index, rendering) for each triangle that the host
+/// side leaves, in program order; `index` counts them over the whole scene. Before a draw of filled triangles, asks
+/// other_path(context, primitive, rendering): true says that it has drawn and counted them all, `primitive` included.
 template <class Raster, class OtherPath = NoOtherPath>
 Rendering run_commands(const Scene& scene, const Config& config, const RenderOptions& options, Raster&& raster,
                        OtherPath&& other_path = {}) {

@@ -1,9 +1,9 @@
-// Golden rasterization without clipping, in 2D homogeneous coordinates: Olano and Greer, "Triangle Scan Conversion using
-// 2D Homogeneous Coordinates", Graphics Hardware 1997.
+// Golden rasterization without clipping, in 2D homogeneous coordinates: Olano and Greer, "Triangle Scan Conversion
+// using 2D Homogeneous Coordinates", Graphics Hardware 1997.
 //
 // In: three clip-space vertices, any of them behind the eye. Out: edge functions that hold in front of the eye alone.
-// With v = (X, Y, W), window coordinates times w, a pixel (x, y, 1) is sum b_i v_i with b_i = e_i / det, e_0 = v1 x v2 and
-// so on, and b_i is the weight of vertex i in space over the w of the point seen there. So the point is one of the
+// With v = (X, Y, W), window coordinates times w, a pixel (x, y, 1) is sum b_i v_i with b_i = e_i / det, e_0 = v1 x v2
+// and so on, and b_i is the weight of vertex i in space over the w of the point seen there. So the point is one of the
 // triangle, in front of the eye, when no b_i is negative; and sum b_i f_i is f / w of that point for whatever is linear
 // in clip space. No vertex is divided by its w but for the box.
 #pragma once
@@ -116,7 +116,7 @@ template <class Real>
 template <class Real>
 [[nodiscard]] Fragment<Real> interpolate(const HomogeneousSetup<Real>& t, const std::array<Real, 3>& e) {
   const auto& [v0, v1, v2] = t.v;
-  // sum e_i w_i is the determinant; summed from the same values, a depth equal at all vertices stays that up to one ulp.
+  // sum e_i w_i is the determinant; summed from these values, it keeps a depth equal at all vertices to one ulp or so.
   const Real one = e[0] * v0.w + e[1] * v1.w + e[2] * v2.w, inverse_w = e[0] + e[1] + e[2];
   Fragment<Real> f;
   f.z = (e[0] * v0.z + e[1] * v1.z + e[2] * v2.z) / one;
@@ -128,7 +128,7 @@ template <class Real>
   return f;
 }
 
-/// (dz/dx, dz/dy, 1) of the plane, scaled, as polygon_offset() takes it.
+/// dz/dx and dz/dy of the plane, window depth per pixel.
 template <class Real>
 [[nodiscard]] std::array<Real, 2> depth_slopes(const HomogeneousSetup<Real>& t) {
   const Real determinant = std::abs(t.determinant);

@@ -73,7 +73,8 @@ bool sort_corners(Corners& v) {
 /// Rounds away from zero at 1/2: a negated value gives the negated integer.
 std::int64_t round_symmetric(double value) { return static_cast<std::int64_t>(std::round(value)); }
 
-/// The integer function of a line, at pixel centres. The larger slope keeps m bits; far off, c only has to keep its sign.
+/// The integer function of a line, at pixel centres. The larger slope keeps m bits; far off, c has only to keep its
+/// sign.
 LinearFunction to_bound(const Line& line, const HomogeneousWidths& widths) {
   const double slope = std::max(std::abs(line.a), std::abs(line.b));
   const double at_first = line.c + (line.a + line.b) / 2;  // at the centre of pixel (0, 0)
@@ -110,7 +111,8 @@ std::int64_t residue(double value, int fraction, int bits) {
 Plane to_plane(const Line& codes, const TriangleSetup& box, const HomogeneousFrame& frame, int bits) {
   const Widths& w = frame.widths;
   const auto anchor = [&](int first) {
-    return (first >> w.tile_shift << w.tile_shift) + frame.config.tile_size / 2 + 0.5;
+    const int centre = (first >> w.tile_shift << w.tile_shift) + frame.config.tile_size / 2;
+    return centre + 0.5;
   };
   return {residue(codes.at(anchor(box.left), anchor(box.top)), w.plane_fraction, bits),
           residue(codes.a, w.guard_bits, bits), residue(codes.b, w.guard_bits, bits)};

@@ -7,9 +7,9 @@
 // window depth, and the distances to near and far. All b_i >= 0 says that p sees the triangle, and that w > 0 there.
 //
 // Host side, binary64, up to the coefficients; they are rounded to integers, and what follows is exact:
-//   bounds   E(x, y) = a x + b y + c in whole pixels, the larger of |a|, |b| scaled to m bits; covered where E >= 0, with
-//            the fill rule folded into c. The two triangles on an edge compute it with exchanged ends, which negates
-//            each coefficient to the last bit: every sample belongs to exactly one side of it
+//   bounds   E(x, y) = a x + b y + c in whole pixels, the larger of |a|, |b| scaled to m bits; covered where E >= 0,
+//            with the fill rule folded into c. The two triangles on an edge compute it with exchanged ends, which
+//            negates each coefficient to the last bit: every sample belongs to exactly one side of it
 //   depth    the plane of triangle_setup, with its guard bits, from the unsnapped vertices
 //   colour   affine when every vertex has w > 0; otherwise, where that has no meaning on the screen, perspective:
 //            one division a sample, (sum b_i c_i) / (sum b_i)

@@ -1,4 +1,5 @@
-// --traversal, --fill-rule and --clipping: the study rules of docs/rules.md, for the commands that can run the scalar engine.
+// --traversal, --fill-rule and --clipping: the study rules of docs/rules.md, for the commands that can run the scalar
+// engine.
 #pragma once
 
 #include <string>
