@@ -177,6 +177,14 @@ void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint3
   }
 }
 
+/// Distances to planes are sums of a few coordinates times pixels: they must not leave binary64.
+void require_finite_distances(const Vertex& v, const DrawContext& context, std::uint32_t number) {
+  for (const double c : {v.x, v.y, v.z, v.w})
+    if (!(std::abs(c) <= 1e300))
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": vertex " + std::to_string(number) +
+                       " has a clip coordinate beyond 1e300; use smaller ones, x y z w may be scaled together");
+}
+
 PixelBounds bounds_of(const Rect& rect) { return {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}; }
 
 /// The host side of lines and points, one input primitive at a time.
@@ -259,6 +267,7 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
   if (entry.state == context.draw.state) return entry;
   const Vertex& v = context.scene.vertices[index];
   if (context.state.space == Space::clip) {
+    require_finite_distances(v, context, index);
     entry.outside_volume = outcode(context.view_volume, v);
     entry.outside_guard_band = outcode(context.guard_band, v) | (v.w > 0 ? 0U : 1U);
   } else {

@@ -125,6 +125,7 @@ class Renderer {
 
   void draw(const Draw& draw, std::uint32_t command) {
     const State& state = scene_.states[draw.state];
+    if (state.space == Space::clip) refuse_huge(draw);
     const Viewport vp = viewport_of(scene_, state);
     DrawState d{state, vp, clip_planes<Real>(state.clip_z, vp, config_.guard_band), draw_region(scene_, state),
                 command};
@@ -148,6 +149,18 @@ class Renderer {
   }
 
   /// The position of one vertex with the colour of another.
+  /// Distances to the clip planes are sums of products with coordinates: they must not leave binary64.
+  void refuse_huge(const Draw& draw) const {
+    for (std::size_t i = draw.first; i < draw.first + draw.count; ++i) {
+      if (scene_.indices[i] == kRestart) continue;
+      const Vertex& v = scene_.vertices[scene_.indices[i]];
+      for (const double c : {v.x, v.y, v.z, v.w})
+        if (!(std::abs(c) <= 1e300))
+          throw InputError(scene_.name + ": vertex " + std::to_string(scene_.indices[i]) +
+                           " has a clip coordinate beyond 1e300; use smaller ones, x y z w may be scaled together");
+    }
+  }
+
   ClipVertex<Real> vertex(std::uint32_t position, std::uint32_t color) const {
     const auto real = [](double value) { return static_cast<Real>(value); };
     const Vertex& v = scene_.vertices[position];

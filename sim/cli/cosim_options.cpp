@@ -73,6 +73,11 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
 }
 
 const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
+  if (options.skip != "all") throw InputError("--skip: hardware skips by its own rules; leave it out");
+  if (options.random != 0 && !options.size.empty())
+    throw InputError("--size: random scenes have sizes of their own; leave it out, or name a scene");
+  if (options.random != 0 && !options.camera.empty())
+    throw InputError("--camera: random scenes have none; leave it out, or name a scene");
   check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);
   if (options.mutant != 0 && !factory.has_mutants)

@@ -76,6 +76,8 @@ void check_options(const RenderCommand& options, const Config& config) {
     throw InputError("--engine rtl: hardware keeps neither counts nor ids; leave out --count and --ids");
   if (options.engine == "rtl" && !options.draws_path.empty())
     throw InputError("--engine rtl: hardware keeps no counts; leave out --draws");
+  if (options.engine == "rtl" && options.skip != "all")
+    throw InputError("--engine rtl: hardware skips by its own rules; leave out --skip");
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
@@ -159,7 +161,7 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
   if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
   if (options.engine == "rtl")
     out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
-        << " from the first triangle to the last write, " << with_commas(rtl_run.tile_cycles)
+        << " from the first primitive to the last write, " << with_commas(rtl_run.tile_cycles)
         << " of them moving tiles\n";
   if (options.repeat > 0)
     out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "

@@ -128,7 +128,7 @@ void CaptureReader::read_rare_line(std::string_view word) {
   } else {
     text_.fail(quoted_word(word) +
                " begins no line of a capture; write one of target, clear, space, state, v, t, ts, tf, " +
-               "object, frame, or # before a comment");
+               "l, ls, ll, p, object, frame, or # before a comment");
   }
 }
 
@@ -265,9 +265,11 @@ void CaptureReader::read_draw(const CaptureDraw& draw) {
   const auto [word, topology, primitive, least, is_list] = draw;
   const std::size_t first = scene_.indices.size();
   std::size_t run = 0;  // indices since the last restart
+  bool has_restart = false;
   const auto end_run = [&] {
     if (is_list ? run % least == 0 && run > 0 : run >= least) return;
-    text_.fail(std::string(word) + " with " + std::to_string(run) + (run == 1 ? " index" : " indices") + "; write " +
+    text_.fail(std::string(word) + (has_restart ? " with a run of " : " with ") + std::to_string(run) +
+               (run == 1 ? " index" : " indices") + "; write " +
                (is_list ? std::to_string(least) + " for each " + std::string(primitive)
                         : "at least " + std::to_string(least) + ", all on one line"));
   };
@@ -275,6 +277,7 @@ void CaptureReader::read_draw(const CaptureDraw& draw) {
     if (text_.take("restart")) {
       if (is_list)
         text_.fail("restart in a list; leave it out, " + std::string(primitive) + "s of a list share nothing");
+      has_restart = true;
       end_run();
       run = 0;
       scene_.indices.push_back(kRestart);

@@ -195,7 +195,8 @@ class GltfMeshBuilder {
     const GltfAccessor* indices = attributes_.indices;
     const std::uint64_t corners = indices != nullptr ? indices->count : attributes_.position->count;
     if (corners < (mode == 0 ? 1U : 2U) || (mode == 1 && corners % 2 != 0)) {
-      place.fail(std::to_string(corners) + " corners make no whole lines", "export the file again");
+      place.fail(std::to_string(corners) + (corners == 1 ? " corner makes" : " corners make") + " no whole lines",
+                 "export the file again");
     }
     spend(place, corners);
     mesh_.parts.push_back({object_, mesh_.indices.size(), static_cast<std::size_t>(corners), 0, true,

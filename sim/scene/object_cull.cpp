@@ -31,6 +31,15 @@ std::uint8_t bits_of(CullObjects tests) {
   return kSphereOutside | kBoxOutside;
 }
 
+/// One bit per plane that the vertex lies outside of by more than rounding: the scene may yet be restated in another
+/// convention, whose sums round otherwise.
+unsigned clearly_outside(const ClipPlanes& planes, const Vertex& v) {
+  const double margin = kMargin * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z) + std::abs(v.w));
+  unsigned code = 0;
+  for (std::size_t i = 0; i < planes.size(); ++i) code |= (distance(planes[i], v) < -margin ? 1U : 0U) << i;
+  return code;
+}
+
 /// Whether everything that the draw covers lies outside one and the same plane.
 bool is_outside(const Scene& scene, const Draw& draw) {
   const State& state = scene.states[draw.state];
@@ -41,7 +50,7 @@ bool is_outside(const Scene& scene, const Draw& draw) {
   unsigned common = is_filled ? 0x3fU : 0x3U;  // near and far are the first two
   for (std::size_t i = draw.first; i < draw.first + draw.count && common != 0; ++i) {
     const std::uint32_t index = scene.indices[i];
-    if (index != kRestart) common &= outcode(planes, scene.vertices[index]);
+    if (index != kRestart) common &= clearly_outside(planes, scene.vertices[index]);
   }
   return common != 0;
 }

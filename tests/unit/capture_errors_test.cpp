@@ -101,9 +101,9 @@ TEST(CaptureErrors, DrawsNeedWholePrimitives) {
   refused("l 0 1 2", "l with 3 indices; write 2 for each line");
   refused("ls 0", "ls with 1 index; write at least 2, all on one line");
   refused("ll 0", "ll with 1 index; write at least 2");
-  refused("ts 0 1 2 restart 0 1", "ts with 2 indices; write at least 3");
-  refused("ls restart 0 1", "ls with 0 indices");
-  refused("ls 0 1 restart", "ls with 0 indices");
+  refused("ts 0 1 2 restart 0 1", "ts with a run of 2 indices; write at least 3");
+  refused("ls restart 0 1", "ls with a run of 0 indices");
+  refused("ls 0 1 restart", "ls with a run of 0 indices");
   refused("l 0 1 restart 2 3", "restart in a list; leave it out, lines of a list share nothing");
   refused("p 4", "index '4' has no vertex yet");
   refused("p restarted", "'restarted' is not an index");

@@ -153,6 +153,18 @@ TEST(ObjectCull, CapturesAreCulledByTheirVerticesAndOnlyAsWholeObjects) {
   EXPECT_EQ(counts.primitives_skipped, 2u);
 }
 
+TEST(ObjectCull, AnObjectWithinRoundingOfAPlaneIsKeptForAnyConvention) {
+  Scene scene = read_capture(
+      "halfplane 1\ntarget 8 8\nspace clip\nstate clip_z zero_one\n"
+      "v -1 -1 -1e-17\nv 1 -1 -1e-17\nv -1 1 -1e-17\nt 0 1 2\n",
+      "near.hpt");
+  mark_outside_objects(scene);
+  EXPECT_EQ(std::get<Draw>(scene.commands[0]).outside, 0);
+  for (Vertex& v : scene.vertices) v.z = -1e-9;
+  mark_outside_objects(scene);
+  EXPECT_NE(std::get<Draw>(scene.commands[0]).outside, 0);
+}
+
 TEST(ObjectCull, LinesAndPointsAreAskedForNearAndFarOnly) {
   Scene scene;
   scene.vertices = {

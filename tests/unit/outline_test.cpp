@@ -9,6 +9,7 @@
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/golden/golden.hpp"
 #include "model/pipeline.hpp"
 
 namespace halfplane {
@@ -231,6 +232,23 @@ TEST(Outlines, APointWiderThanTheGuardBandAllowsIsRefused) {
   State state = SceneBuilder::window_state();
   state.point_size = 4096;
   EXPECT_THROW((void)covered(one_draw(state, Topology::points, {at(1, 1)})), InputError);
+}
+
+TEST(Outlines, CoordinatesWhoseDistancesOverflowAreRefusedByModelAndGolden) {
+  State state = SceneBuilder::window_state();
+  state.space = Space::clip;
+  for (const double large : {1e300, 8e307}) {
+    const std::vector<Vertex> v{clip_at(large, large, 0, large), clip_at(-large, -large, 0, large),
+                                clip_at(-large, large, 0, large)};
+    const Scene scene = one_draw(state, Topology::triangles, v);
+    if (large > 1e300) {
+      EXPECT_THROW((void)render_functional(scene, preset("embedded"), {}), InputError);
+      EXPECT_THROW((void)golden::render(scene, preset("embedded")), InputError);
+    } else {
+      EXPECT_GT(render_functional(scene, preset("embedded"), {}).counters.covered, 400u);
+      EXPECT_GT(golden::render(scene, preset("embedded")).counters.covered, 400u);
+    }
+  }
 }
 
 /// Depth codes of a sloped triangle over the whole target, row by row.
