@@ -23,9 +23,16 @@ enum class Traversal {
   brute      ///< every sample of the target, edge functions evaluated directly
 };
 
+/// How triangles in clip space get rid of what lies behind the eye.
+enum class Clipping {
+  polygon,     ///< cut by near, far and the guard band, drawn as a fan: the pipeline's own
+  homogeneous  ///< not cut: edge functions in 2D homogeneous coordinates, after Olano and Greer
+};
+
 /// By enumerator, as typed on the command line and printed in results.
 inline constexpr std::array<std::string_view, 3> kFillRuleNames{"top_left", "offset_point", "inclusive"};
 inline constexpr std::array<std::string_view, 4> kTraversalNames{"tiled", "bbox", "scanline", "brute"};
+inline constexpr std::array<std::string_view, 2> kClippingNames{"polygon", "homogeneous"};
 
 [[nodiscard]] constexpr std::string_view name_of(FillRule rule) {
   return kFillRuleNames[static_cast<std::size_t>(rule)];
@@ -33,11 +40,15 @@ inline constexpr std::array<std::string_view, 4> kTraversalNames{"tiled", "bbox"
 [[nodiscard]] constexpr std::string_view name_of(Traversal traversal) {
   return kTraversalNames[static_cast<std::size_t>(traversal)];
 }
+[[nodiscard]] constexpr std::string_view name_of(Clipping clipping) {
+  return kClippingNames[static_cast<std::size_t>(clipping)];
+}
 
 /// What is studied.
 struct StudyRules {
   Traversal traversal = Traversal::tiled;
   FillRule fill_rule = FillRule::top_left;
+  Clipping clipping = Clipping::polygon;  ///< the golden has both
   bool operator==(const StudyRules&) const = default;
 };
 

@@ -156,6 +156,36 @@ double line_depth_error_bound(const Config& config) {
          + (2.0 * config.guard_band + 1) * std::ldexp(1.0, -widths.line_guard_bits - 1);
 }
 
+HomogeneousWidths derive_homogeneous_widths(const Config& config) {
+  HomogeneousWidths w;
+  const int128 pixels = int128{config.target_width} + config.target_height;
+  const int span = ceil_log2(static_cast<uint128>(pixels));
+  // Three roundings by 1/2 move E by (W + H) / 2 at most, and its slope is 2^(m-1) at least.
+  w.fraction = span + config.subpixel_bits + 1;
+  const Interval coefficient = symmetric(int128{1} << w.fraction), offset = symmetric(pixels << w.fraction);
+  w.coefficient = exact("homogeneous coefficient", "2^m, m = log2(W + H) + S + 1", coefficient);
+  w.offset = exact("homogeneous offset", "saturated at (W + H) 2^m: the sign of E is fixed beyond", offset);
+  w.edge_value = exact("homogeneous edge", "a x + b y + c - 1, x < W, y < H",
+                       coefficient * Interval{0, pixels - 2} + offset + Interval{-1, 0});
+  // 8 bits of colour, the roundings over W + H pixels, and 1/w down to 2^-20 of its largest value in the box.
+  w.weight_scale = 8 + span + 20;
+  const Interval weight = symmetric((int128{1} << w.weight_scale) + pixels);
+  w.weight_step = exact("weight step", "2^P, P = 8 + log2(W + H) + 20", symmetric(int128{1} << w.weight_scale));
+  w.weight = exact("weight", "2^P + W + H", weight);
+  w.color_step = exact("color step", "255 * weight step", w.weight_step.range * Interval{0, 255});
+  w.color_weight = exact("color weight", "255 * 2^P + W + H", symmetric((int128{255} << w.weight_scale) + pixels));
+  return w;
+}
+
+double homogeneous_edge_bound(const Config& config) {
+  const double pixels = config.target_width + config.target_height;
+  return pixels / 2 / std::ldexp(1.0, derive_homogeneous_widths(config).fraction - 1);
+}
+
+std::vector<const Width*> HomogeneousWidths::all() const& {
+  return {&coefficient, &offset, &edge_value, &weight_step, &weight, &color_step, &color_weight};
+}
+
 std::vector<const Width*> Widths::all() const& {
   return {&coordinate,
           &delta,

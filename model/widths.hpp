@@ -75,6 +75,21 @@ struct Widths {
 /// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to say.
 [[nodiscard]] Widths derive_widths(const Config& config);
 
+/// Widths of the scalar engine's path without clipping (stages/homogeneous_setup). No hardware has them.
+struct HomogeneousWidths {
+  int fraction = 0;                       ///< m: the larger of |a|, |b| of an edge lies in [2^(m-1), 2^m]
+  int weight_scale = 0;                   ///< P: the weights of a perspective colour are scaled to at most 2^P
+  Width coefficient, offset, edge_value;  // edges, near and far
+  Width weight_step, weight, color_step, color_weight;  // perspective colour
+
+  [[nodiscard]] std::vector<const Width*> all() const&;
+  std::vector<const Width*> all() const&& = delete;
+};
+[[nodiscard]] HomogeneousWidths derive_homogeneous_widths(const Config& config);
+
+/// The farthest that a rounded edge lies from the true one inside the target, in pixels: at most half a subpixel.
+[[nodiscard]] double homogeneous_edge_bound(const Config& config);
+
 /// The largest depth error, in LSB, against the exact plane through the snapped vertices. validate() refuses above 1.
 [[nodiscard]] double depth_error_bound(const Config& config);
 

@@ -78,10 +78,17 @@ inline void draw_outlines(const DrawContext& context, const Widths& widths, Vert
   });
 }
 
-/// Runs every command of `scene`. Calls raster(context, triangle, index, rendering) for each triangle that the host side
-/// leaves, in program order; `index` counts them over the whole scene.
-template <class Raster>
-Rendering run_commands(const Scene& scene, const Config& config, const RenderOptions& options, Raster&& raster) {
+/// A draw of filled triangles that run_commands() leaves to nobody else.
+struct NoOtherPath {
+  bool operator()(const DrawContext&, std::uint32_t&, Rendering&) const { return false; }
+};
+
+/// Runs every command of `scene`. Calls raster(context, triangle, index, rendering) for each triangle that the host
+/// side leaves, in program order; `index` counts them over the whole scene. Before a draw of filled triangles, asks
+/// other_path(context, primitive, rendering): true says that it has drawn and counted them all, `primitive` included.
+template <class Raster, class OtherPath = NoOtherPath>
+Rendering run_commands(const Scene& scene, const Config& config, const RenderOptions& options, Raster&& raster,
+                       OtherPath&& other_path = {}) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -133,6 +140,12 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
         entries_done += draw->count;
         rendering.raster_s += seconds_since(started);
         started = Clock::now();
+        continue;
+      }
+      started = Clock::now();
+      if (other_path(context, primitive, rendering)) {
+        entries_done += draw->count;
+        rendering.raster_s += seconds_since(started);
         continue;
       }
       for_each_triangle(scene, *draw, context.state.provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {

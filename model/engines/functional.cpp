@@ -283,8 +283,7 @@ Rendering render(const Scene& scene, const Config& config, const RenderOptions& 
 Rendering render_functional(const Scene& scene, const Config& config, const RenderOptions& options) {
   validate(config);
   if (options.rules != StudyRules{})
-    throw InputError("the functional engine has no traversal " + std::string(name_of(options.rules.traversal)) +
-                     " with fill rule " + std::string(name_of(options.rules.fill_rule)) + "; use the scalar engine");
+    throw InputError("the functional engine has no other traversal, fill rule or clipping; use the scalar engine");
   switch (config.tile_size) {
     case 4: return render<4>(scene, config, options);
     case 8: return render<8>(scene, config, options);

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "../stages/homogeneous_setup.hpp"
 #include "../stages/traversal.hpp"
 #include "commands.hpp"
 
@@ -125,10 +126,42 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
   if (tiles) tiles->send(engine.options.coverage_tap, index);
 }
 
+/// The triangles of a draw without geometric clipping.
+void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, std::uint32_t& primitive,
+                      Rendering& rendering) {
+  const HomogeneousFrame frame{engine.config, engine.widths, context.state, context.viewport, context.rect};
+  Counters& counters = rendering.counters;
+  for_each_homogeneous(context.scene, context.draw, frame, [&](const HomogeneousSetup& setup) {
+    const std::uint32_t number = primitive++;
+    ++counters.primitives_in;
+    ++(setup.rejection == Rejection::none ? counters.drawn : counters.culled);
+    counters.skipped.frustum += setup.rejection == Rejection::outside ? 1 : 0;
+    counters.skipped.zero_area += setup.rejection == Rejection::zero_area ? 1 : 0;
+    counters.skipped.backface += setup.rejection == Rejection::backface ? 1 : 0;
+    counters.skipped.empty += setup.rejection == Rejection::empty ? 1 : 0;
+    counters.samples_tested += traverse_homogeneous(setup, [&](int x, int y) {
+      const Interpolated value = interpolate_at(setup, engine.widths, x, y);
+      shade_sample(
+          context, engine.options, x, y, value.depth_code, [&value] { return value.color_code; }, number,
+          kVisibleOutline, rendering);
+    });
+  });
+}
+
+void check_options(const RenderOptions& options) {
+  const StudyRules& rules = options.rules;
+  if (rules.clipping == Clipping::polygon) return;
+  if (rules != StudyRules{.clipping = rules.clipping})
+    throw InputError("--clipping homogeneous finds samples in its own way: leave out --traversal and --fill-rule");
+  if (options.keeps_triangles())
+    throw InputError("--clipping homogeneous has no snapped triangles to keep: use --clipping polygon");
+}
+
 }  // namespace
 
 Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options) {
   validate(config);
+  check_options(options);
   const ScalarEngine engine{config, options};
   const bool is_default = options.rules == StudyRules{};
   return run_commands(
@@ -141,6 +174,11 @@ Rendering render_scalar(const Scene& scene, const Config& config, const RenderOp
           raster_tiles(engine, context, setup, index, rendering);
         else
           raster_by_rules(engine, context, triangle, setup, index, rendering);
+      },
+      [&](const DrawContext& context, std::uint32_t& primitive, Rendering& rendering) {
+        if (options.rules.clipping == Clipping::polygon || context.state.space == Space::window) return false;
+        draw_homogeneous(engine, context, primitive, rendering);
+        return true;
       });
 }
 

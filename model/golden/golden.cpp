@@ -9,6 +9,7 @@
 
 #include "clip.hpp"
 #include "depth_test.hpp"
+#include "homogeneous.hpp"
 #include "interpolate.hpp"
 #include "line.hpp"
 #include "polygon_offset.hpp"
@@ -160,6 +161,9 @@ class Renderer {
   }
 
   void draw_triangle(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {
+    if (options_.clipping == Clipping::homogeneous && d.state.space == Space::clip &&
+        d.state.polygon_mode == PolygonMode::fill)
+      return draw_homogeneous(v, d);
     Polygon<Real> polygon;
     for (const auto& corner : v) polygon.push(corner);
     if (d.state.space == Space::clip) polygon = clip<Real>(polygon, d.planes, d.was_cut);
@@ -185,6 +189,27 @@ class Renderer {
       add_outline(v, d);
       for (auto& vertex : v) vertex.z += d.offset;
       rasterize(setup_triangle(v), d);
+    }
+  }
+
+  void draw_homogeneous(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {
+    const HomogeneousSetup<Real> t = setup_homogeneous(v, d.state, d.vp);
+    if (is_culled(t.determinant, d.state)) return;
+    const PixelBox box = homogeneous_box(t, d.region, scene_);
+    const auto [per_x, per_y] = depth_slopes(t);
+    d.was_drawn = !box.empty();
+    d.offset =
+        polygon_offset(PlaneNormal<Real>{per_x, per_y, 1}, d.state.polygon_offset, static_cast<Real>(depth_max_));
+    for (int y = box.top; y < box.bottom; ++y) {
+      for (int x = box.left; x < box.right; ++x) {
+        const Real px = static_cast<Real>(x) + Real(0.5), py = static_cast<Real>(y) + Real(0.5);
+        const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
+        ++image_.counters.samples_tested;
+        if (!covers(t, e)) continue;
+        Fragment<Real> fragment = interpolate(t, e);
+        fragment.z += d.offset;
+        shade(x, y, fragment, d);
+      }
     }
   }
 

@@ -11,6 +11,7 @@
 
 #include "../config.hpp"
 #include "../engines/render.hpp"
+#include "../rules.hpp"
 #include "../scene.hpp"
 
 namespace halfplane::golden {
@@ -42,7 +43,8 @@ struct Image {
 
 struct Options {
   Precision precision = Precision::binary64;
-  bool want_outlines = false;
+  Clipping clipping = Clipping::polygon;
+  bool want_outlines = false;                     ///< none are kept of triangles that are drawn without clipping
   std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 primitives or so; may be empty
 };
 

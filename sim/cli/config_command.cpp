@@ -32,19 +32,27 @@ std::string bound_text(const Width& width) {
   return text;
 }
 
-void print_widths(std::ostream& out, const Widths& widths) {
-  out << "\nderived width        bits           largest   bound\n";
-  for (const Width* width : widths.all())
-    out << std::left << std::setw(20) << width->name << std::right << std::setw(4) << width->bits
+/// The hardware's, then those that only the scalar engine has.
+std::vector<const Width*> all_widths(const Widths& widths, const HomogeneousWidths& homogeneous) {
+  std::vector<const Width*> all = widths.all();
+  const auto more = homogeneous.all();
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+void print_widths(std::ostream& out, const std::vector<const Width*>& widths) {
+  out << "\nderived width            bits           largest   bound\n";
+  for (const Width* width : widths)
+    out << std::left << std::setw(24) << width->name << std::right << std::setw(4) << width->bits
         << (width->is_modular  ? " modular"
             : width->is_signed ? " signed "
                                : "        ")
         << std::setw(14) << bound_text(*width) << "   " << width->bound << '\n';
 }
 
-Json widths_json(const Widths& widths) {
+Json widths_json(const std::vector<const Width*>& widths) {
   Json list = Json::array();
-  for (const Width* width : widths.all())
+  for (const Width* width : widths)
     list.push_back({{"name", width->name},
                     {"bits", width->bits},
                     {"signed", width->is_signed},
@@ -65,7 +73,9 @@ int run(const ConfigOptions& options) {
     std::cout << raster_pkg(config);
     return exit_ok;
   }
-  const Widths widths = derive_widths(config);
+  const Widths hardware = derive_widths(config);
+  const HomogeneousWidths homogeneous = derive_homogeneous_widths(config);
+  const auto widths = all_widths(hardware, homogeneous);
   Json result = result_head("config", options, config);
   if (options.list) {
     Json list = Json::array();

@@ -33,6 +33,7 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
                         const RenderOptions& render) {
   golden::Options options;
   options.precision = precision;
+  options.clipping = render.rules.clipping;
   options.progress = render.progress;
   const auto start = std::chrono::steady_clock::now();
   golden::Image image = golden::render(scene, config, options);
@@ -186,6 +187,7 @@ int run(const RenderCommand& options) {
                        {"culled_box", objects.culled_box},
                        {"primitives_skipped", objects.primitives_skipped}};
   if (options.engine == "scalar") add_study_json(result, study_rules(options.study), scene, config);
+  if (options.engine == "golden") result["clipping"] = options.study.clipping;
   result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
   if (options.engine == "rtl") {
@@ -197,9 +199,11 @@ int run(const RenderCommand& options) {
   if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
   result["depth_hash"] = depth_hash(rendering.frame);
-  const bool is_study = study_rules(options.study) != StudyRules{};
-  const std::string title = is_study ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
-                                     : "engine " + options.engine;
+  const StudyRules rules = study_rules(options.study);
+  const std::string title = rules.clipping == Clipping::homogeneous ? "clipping homogeneous, engine " + options.engine
+                            : rules != StudyRules{}
+                                ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
+                                : "engine " + options.engine;
   write_files(options, rendering, config, title);
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
@@ -219,6 +223,7 @@ void add_render_command(CLI::App& app, Action& selected) {
                    "golden, golden32")
       ->capture_default_str();
   add_study_options(*command, options->study);
+  add_clipping_option(*command, options->study);
   add_file_option(*command, "-o", options->color_path, "colour picture, .png");
   add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
   add_file_option(*command, "--count", options->count_path, "covered samples per pixel before the depth test, .npy");

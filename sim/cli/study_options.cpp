@@ -30,12 +30,29 @@ void add_study_options(CLI::App& app, StudyOptions& options) {
       ->capture_default_str();
 }
 
+void add_clipping_option(CLI::App& app, StudyOptions& options) {
+  app.add_option(
+         "--clipping", options.clipping,
+         "study, scalar and golden engines: triangles cut to polygons, or homogeneous edge functions and no cut")
+      ->check(CLI::IsMember(as_strings(kClippingNames)))
+      ->capture_default_str();
+}
+
 StudyRules study_rules(const StudyOptions& options) {
   return {enumerator<Traversal>(kTraversalNames, options.traversal),
-          enumerator<FillRule>(kFillRuleNames, options.fill_rule)};
+          enumerator<FillRule>(kFillRuleNames, options.fill_rule),
+          enumerator<Clipping>(kClippingNames, options.clipping)};
 }
 
 void check_study_rules(const StudyRules& rules, const std::string& engine) {
+  if (rules.clipping != Clipping::polygon) {
+    if (rules != StudyRules{.clipping = rules.clipping})
+      throw InputError("--clipping homogeneous finds samples in its own way: leave out --traversal and --fill-rule");
+    if (engine != "scalar" && engine != "golden")
+      throw InputError("--clipping " + std::string(name_of(rules.clipping)) + ": the engine " + engine +
+                       " does not have it; add --engine scalar or --engine golden");
+    return;
+  }
   if (engine == "scalar") return;
   const std::string rest = ": the engine " + engine + " does not have it; add --engine scalar";
   if (rules.traversal != Traversal::tiled)
@@ -47,13 +64,18 @@ void check_study_rules(const StudyRules& rules, const std::string& engine) {
 void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config) {
   result["traversal"] = name_of(rules.traversal);
   result["fill_rule"] = name_of(rules.fill_rule);
-  result["double_draws"] = count_double_draws(scene, config, rules.fill_rule);
+  result["clipping"] = name_of(rules.clipping);
+  result["double_draws"] = count_double_draws(scene, config, rules);
 }
 
 std::string study_text(const Json& result) {
-  return "traversal " + result["traversal"].get<std::string>() + ", fill rule " +
-         result["fill_rule"].get<std::string>() + ", " + with_commas(result["double_draws"].get<std::uint64_t>()) +
-         " double draws";
+  const auto text = [&result](const char* key) { return result[key].get<std::string>(); };
+  std::string line = text("clipping") == name_of(Clipping::homogeneous)
+                         ? "clipping " + text("clipping")
+                         : "traversal " + text("traversal") + ", fill rule " + text("fill_rule");
+  if (result.contains("double_draws"))
+    line += ", " + with_commas(result["double_draws"].get<std::uint64_t>()) + " double draws";
+  return line;
 }
 
 }  // namespace halfplane

@@ -1,4 +1,5 @@
-// --traversal and --fill-rule: the study rules of docs/rules.md, for the commands that can run the scalar engine.
+// --traversal, --fill-rule and --clipping: the study rules of docs/rules.md, for the commands that can run the scalar
+// engine.
 #pragma once
 
 #include <string>
@@ -12,20 +13,25 @@ namespace halfplane {
 struct StudyOptions {
   std::string traversal{name_of(Traversal::tiled)};
   std::string fill_rule{name_of(FillRule::top_left)};
+  std::string clipping{name_of(Clipping::polygon)};
 };
 
-/// Adds both options.
+/// Adds --traversal and --fill-rule.
 void add_study_options(CLI::App& app, StudyOptions& options);
+
+/// Adds --clipping: for commands that need no snapped triangles.
+void add_clipping_option(CLI::App& app, StudyOptions& options);
 
 [[nodiscard]] StudyRules study_rules(const StudyOptions& options);
 
-/// Throws InputError, naming the option, when an engine other than scalar is asked for what it does not have.
+/// Throws InputError, naming the option, when an engine is asked for what it does not have.
 void check_study_rules(const StudyRules& rules, const std::string& engine);
 
-/// Adds {traversal, fill_rule, double_draws} to a result.
+/// Adds {traversal, fill_rule, clipping, double_draws} to a result.
 void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config);
 
-/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, from what add_study_json() added.
+/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, from what add_study_json() added,
+/// or from "clipping" alone.
 [[nodiscard]] std::string study_text(const Json& result);
 
 }  // namespace halfplane

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../../model/engines/commands.hpp"
+#include "../../model/stages/homogeneous_setup.hpp"
 #include "../../model/stages/traversal.hpp"
 
 namespace halfplane {
@@ -64,26 +65,44 @@ bool is_another_mesh(const Scene& scene, std::uint32_t last, std::uint32_t next)
 
 }  // namespace
 
-std::uint64_t count_double_draws(const Scene& scene, const Config& config, FillRule rule) {
-  if (rule == FillRule::top_left) return 0;
+std::uint64_t count_double_draws(const Scene& scene, const Config& config, const StudyRules& rules) {
+  const FillRule rule = rules.fill_rule;
+  const bool is_homogeneous = rules.clipping == Clipping::homogeneous;
+  if (rule == FillRule::top_left && !is_homogeneous) return 0;
   validate(config);
   const Widths widths = derive_widths(config);
   check_scene(scene, config);  // before the counts are as large as it says
   MeshCounts counts(scene.width, scene.height);
   std::optional<std::uint32_t> last_draw;
   std::uint64_t sum = 0;
-  (void)run_commands(scene, config, {},
-                     [&](const DrawContext& context, const Triangle& triangle, std::uint32_t, Rendering&) {
-                       if (last_draw && is_another_mesh(scene, *last_draw, context.command)) sum += counts.finish();
-                       last_draw = context.command;
-                       TriangleSetup setup = setup_triangle(triangle, config, widths, context.rect);
-                       if (setup.is_empty()) return;
-                       counts.touch(setup);
-                       traverse_bbox(setup, widths, [&](int x, int y) { counts.add_by_top_left(x, y); });
-                       const auto area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
-                       set_fill_rule(setup, canonical(triangle.v, area), rule, widths);
-                       traverse_bbox(setup, widths, [&](int x, int y) { counts.add_by_rule(x, y); });
-                     });
+  const auto begin_draw = [&](const DrawContext& context) {
+    if (last_draw && is_another_mesh(scene, *last_draw, context.command)) sum += counts.finish();
+    last_draw = context.command;
+  };
+  (void)run_commands(
+      scene, config, {},
+      [&](const DrawContext& context, const Triangle& triangle, std::uint32_t, Rendering&) {
+        begin_draw(context);
+        TriangleSetup setup = setup_triangle(triangle, config, widths, context.rect);
+        if (setup.is_empty()) return;
+        counts.touch(setup);
+        traverse_bbox(setup, widths, [&](int x, int y) { counts.add_by_top_left(x, y); });
+        if (is_homogeneous && context.state.space == Space::clip) return;
+        const auto area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
+        set_fill_rule(setup, canonical(triangle.v, area), rule, widths);
+        traverse_bbox(setup, widths, [&](int x, int y) { counts.add_by_rule(x, y); });
+      },
+      [&](const DrawContext& context, std::uint32_t&, Rendering&) {
+        if (!is_homogeneous || context.state.space == Space::window) return false;
+        begin_draw(context);
+        const HomogeneousFrame frame{config, widths, context.state, context.viewport, context.rect};
+        for_each_homogeneous(scene, context.draw, frame, [&](const HomogeneousSetup& setup) {
+          if (setup.rejection != Rejection::none) return;
+          counts.touch(setup.triangle);
+          traverse_homogeneous(setup, [&](int x, int y) { counts.add_by_rule(x, y); });
+        });
+        return false;  // the clipped triangles are what it is compared with
+      });
   return sum + counts.finish();
 }
 

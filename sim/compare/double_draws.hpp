@@ -1,4 +1,5 @@
-// Double draws: how often a mesh draws a sample again that it should draw once, because of a fill rule.
+// Double draws: how often a mesh draws a sample again that it should draw once, because of a fill rule,
+// or of edges that are rounded one by one.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +10,9 @@
 
 namespace halfplane {
 
-/// Counts the draws of every sample under `rule` and under top_left, mesh by mesh, before the depth test, and sums
-/// max(0, under `rule` - max(1, under top_left)): draws beyond the first that top_left does not make. A mesh is a run
-/// of draws of one object without a clear or the end of a frame between them. 0 for top_left.
-[[nodiscard]] std::uint64_t count_double_draws(const Scene& scene, const Config& config, FillRule rule);
+/// Counts the draws of every sample under `rules` and under the pipeline's own, mesh by mesh, before the depth test,
+/// and sums max(0, under `rules` - max(1, under its own)): draws beyond the first that the pipeline does not make. A
+/// mesh is a run of draws of one object without a clear or the end of a frame between them. The traversal changes nothing.
+[[nodiscard]] std::uint64_t count_double_draws(const Scene& scene, const Config& config, const StudyRules& rules);
 
 }  // namespace halfplane

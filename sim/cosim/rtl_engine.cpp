@@ -8,7 +8,8 @@ namespace halfplane {
 RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, const RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_hardware_scene(scene, config);
-  if (options.rules != StudyRules{}) throw InputError("the RTL is tiled and top_left; use the scalar engine");
+  if (options.rules != StudyRules{})
+    throw InputError("the RTL has no other traversal, fill rule or clipping; use the scalar engine");
   LockstepOptions lockstep_options;
   lockstep_options.compares = false;
   if (options.progress)

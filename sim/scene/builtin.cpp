@@ -143,8 +143,9 @@ Scene with_hidden_lines_removed(Scene scene) {
       if (mode == PolygonMode::fill) state.polygon_offset = {1, 1};
       Draw next = *draw;
       if (mode == PolygonMode::line) next.outside = 0;  // a line a hair outside can still have a pixel inside
-      next.state = static_cast<std::uint32_t>(scene.states.size());
-      scene.states.push_back(state);
+      const auto known = std::ranges::find(scene.states, state);
+      next.state = static_cast<std::uint32_t>(known - scene.states.begin());
+      if (known == scene.states.end()) scene.states.push_back(state);
       scene.commands.push_back(next);
     }
   }

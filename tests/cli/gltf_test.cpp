@@ -49,7 +49,7 @@ TEST_F(GltfScene, ABrokenFileOrAnUnknownCameraIsRefusedInOneLine) {
   write("alone.gltf", two_cameras().with_uri("gone.bin"));
   expect_refused({"render", "cut.glb"}, "cut.glb: a .glb of");
   expect_refused({"render", "empty.glb"}, "empty.glb:1: not JSON");
-  expect_refused({"compare", "lines.gltf"}, "lines are not read");
+  expect_refused({"compare", "lines.gltf"}, "3 corners make no whole lines");
   expect_refused({"render", "alone.gltf"}, "'gone.bin' cannot be read");
   expect_refused({"render", "good.gltf", "--camera", "name=far"},
                  "no camera 'far' in this scene; there are near, wide");

@@ -1,4 +1,4 @@
-// `--traversal` and `--fill-rule`: what they change in results, and who refuses them.
+// `--traversal`, `--fill-rule` and `--clipping`: what they change in results, and who refuses them.
 #include "program.hpp"
 
 namespace halfplane::cli {
@@ -76,6 +76,30 @@ TEST_F(StudyRules, OtherEnginesRefuseThemByName) {
   }
   expect_refused({"render", "triangle", "--traversal", "scanline"}, "add --engine scalar");
   EXPECT_EQ(run({"render", "triangle", "--traversal", "tiled", "--fill-rule", "top_left"}).status, 0);
+}
+
+TEST_F(StudyRules, ClippingShowsInTheResultsOfScalarAndGoldenAndNoOtherEngineHasIt) {
+  const Arguments base{"render", "walk", "--size", "64x48", "--clipping"};
+  const auto with = [&base](const char* clipping, const char* engine) {
+    Arguments arguments = base;
+    arguments.insert(arguments.end(), {clipping, "--engine", engine});
+    return arguments;
+  };
+  const Json cut = result(with("polygon", "scalar")), whole = result(with("homogeneous", "scalar"));
+  EXPECT_EQ(whole["clipping"], "homogeneous");
+  EXPECT_EQ(whole["double_draws"], 0u);
+  EXPECT_GT(cut["primitives"]["clipped"], 0u);
+  EXPECT_EQ(whole["primitives"]["clipped"], 0u);
+  EXPECT_EQ(whole["fragments"]["covered"], 64u * 48u);
+  const Json golden = result(with("homogeneous", "golden"));
+  EXPECT_EQ(golden["clipping"], "homogeneous");
+  EXPECT_EQ(golden["color_hash"], result(with("polygon", "golden"))["color_hash"]);
+  expect_refused(with("homogeneous", "functional"), "--clipping homogeneous");
+  expect_refused(with("homogeneous", "golden32"), "--engine golden");
+  expect_refused(with("sutherland", "scalar"), "polygon,homogeneous");
+  Arguments both = with("homogeneous", "scalar");
+  both.insert(both.end(), {"--traversal", "brute"});
+  expect_refused(both, "leave out --traversal");
 }
 
 TEST_F(StudyRules, UnknownNamesAreRefusedWithTheLegalOnes) {

@@ -68,7 +68,7 @@ const Damage kDamages[] = {
     {"/extensionsRequired", "{}", "not a list"},
     {"/scene", "1", "index 1 of 1 scenes"},
     {"/scenes/0/nodes", "[0, 9]", "scenes[0].nodes[1]: index 9 of 2 nodes"},
-    {"/scenes/0/nodes", "[]", "no triangles in its scene"},
+    {"/scenes/0/nodes", "[]", "nothing in its scene that could be drawn"},
     {"/nodes/0/mesh", "-1", "nodes[0].mesh: not a whole number"},
     {"/nodes/0/mesh", "0.5", "not a whole number"},
     {"/nodes/0/mesh", "\"0\"", "not a number"},

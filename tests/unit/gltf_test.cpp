@@ -136,6 +136,24 @@ TEST(Gltf, StripsAndFansKeepTheWindingOfTheirTriangles) {
   EXPECT_EQ(signed_areas(rim, 6), (std::vector<double>{0.5, 0.5}));
 }
 
+TEST(Gltf, PointsAndLinesOfEveryModeAreDrawn) {
+  const std::vector<double> rim{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  const auto drawn = [&rim](int mode) {
+    GltfBuilder builder;
+    builder.mesh(builder.accessor(kF32, 3, rim))["mode"] = mode;
+    const Mesh mesh = mesh_of(builder);
+    EXPECT_TRUE(mesh.triangles.empty());
+    EXPECT_EQ(mesh.vertices.size(), 4u);
+    const Scene scene = mesh_scene(mesh, {}, 160, 120);
+    const auto& draw = std::get<Draw>(scene.commands.at(1));
+    return std::pair{draw.topology, render_functional(scene, preset("embedded")).counters.drawn};
+  };
+  EXPECT_EQ(drawn(0), (std::pair{Topology::points, std::uint64_t{4}}));
+  EXPECT_EQ(drawn(1), (std::pair{Topology::lines, std::uint64_t{2}}));
+  EXPECT_EQ(drawn(2), (std::pair{Topology::line_loop, std::uint64_t{4}}));
+  EXPECT_EQ(drawn(3), (std::pair{Topology::line_strip, std::uint64_t{3}}));
+}
+
 TEST(Gltf, ColoursAreLinearAndBecomeDisplayCodes) {
   EXPECT_EQ(display_code(0), 0);
   EXPECT_EQ(display_code(1), 255);

@@ -318,9 +318,9 @@ TEST(FillRules, OppositeWindingsAgreeByEveryRule) {
 TEST(FillRules, DoubleDrawsAreTheSamplesOnTheEdgesThatAMeshShares) {
   const Config config = preset("embedded");
   const Scene square = shared_edge(at(2, 2), at(20, 20), at(20, 2), at(2, 20), false);
-  EXPECT_EQ(count_double_draws(square, config, FillRule::inclusive), 18u);
-  EXPECT_EQ(count_double_draws(square, config, FillRule::offset_point), 0u);
-  EXPECT_EQ(count_double_draws(square, config, FillRule::top_left), 0u);
+  EXPECT_EQ(count_double_draws(square, config, {Traversal::tiled, FillRule::inclusive}), 18u);
+  EXPECT_EQ(count_double_draws(square, config, {Traversal::tiled, FillRule::offset_point}), 0u);
+  EXPECT_EQ(count_double_draws(square, config, {Traversal::tiled, FillRule::top_left}), 0u);
   SceneBuilder fan(24, 24);  // round a pixel centre: the hub is drawn by all six
   for (int i = 0; i < 6; ++i) {
     const auto rim = [](int k) {
@@ -328,7 +328,7 @@ TEST(FillRules, DoubleDrawsAreTheSamplesOnTheEdgesThatAMeshShares) {
     };
     fan.triangle(at(12.5, 12.5), rim(i), rim((i + 1) % 6));
   }
-  EXPECT_EQ(count_double_draws(fan.scene, config, FillRule::inclusive), 5u);
+  EXPECT_EQ(count_double_draws(fan.scene, config, {Traversal::tiled, FillRule::inclusive}), 5u);
 }
 
 TEST(FillRules, DoubleDrawsAreCountedMeshByMesh) {
@@ -341,9 +341,9 @@ TEST(FillRules, DoubleDrawsAreCountedMeshByMesh) {
   two.objects.push_back("other");
   std::get<Draw>(two.commands[2]).object = 1;
   cleared.commands.insert(cleared.commands.begin() + 2, cleared.commands[0]);
-  EXPECT_EQ(count_double_draws(one, config, FillRule::inclusive), 18u);
-  EXPECT_EQ(count_double_draws(two, config, FillRule::inclusive), 0u);
-  EXPECT_EQ(count_double_draws(cleared, config, FillRule::inclusive), 0u);
+  EXPECT_EQ(count_double_draws(one, config, {Traversal::tiled, FillRule::inclusive}), 18u);
+  EXPECT_EQ(count_double_draws(two, config, {Traversal::tiled, FillRule::inclusive}), 0u);
+  EXPECT_EQ(count_double_draws(cleared, config, {Traversal::tiled, FillRule::inclusive}), 0u);
 }
 
 TEST(FillRules, InclusiveDrawsTiesOfAMeshTwiceAndTopLeftOnce) {
@@ -353,7 +353,7 @@ TEST(FillRules, InclusiveDrawsTiesOfAMeshTwiceAndTopLeftOnce) {
   EXPECT_EQ(std::count(once.count.begin(), once.count.end(), 1u), static_cast<std::ptrdiff_t>(once.count.size()));
   const Rendering twice = render_by(mesh, config, Traversal::scanline, FillRule::inclusive);
   EXPECT_EQ(std::count(twice.count.begin(), twice.count.end(), 0u), 0);
-  EXPECT_EQ(count_double_draws(mesh, config, FillRule::inclusive), draws(twice) - draws(once));
+  EXPECT_EQ(count_double_draws(mesh, config, {Traversal::tiled, FillRule::inclusive}), draws(twice) - draws(once));
   EXPECT_GT(draws(twice) - draws(once), 100u);
 }
 
