@@ -197,7 +197,7 @@ std::array<Point, 3> Generator::shape() {
   const std::int64_t reach = hiz_chunk_ && chance(0.5) ? screen / 4 + below(screen) : sized(band);
   const Point center{below(scene_.width * unit_), below(scene_.height * unit_)};
   if (is_pile_ && hiz_chunk_ && chance(0.6))  // all of it; the second one reads bounds while the first is drawn
-    return {Point{0, 0}, Point{2 * scene_.width * unit_, 0}, Point{0, 2 * scene_.height * unit_}};
+    return {Point{0, 0}, Point{2 * unit_ * scene_.width, 0}, Point{0, 2 * unit_ * scene_.height}};
   switch (below(16)) {
     case 0: return tile_half();
     case 1: {  // shares an edge with the triangle before
