@@ -262,21 +262,22 @@ void CaptureReader::grow_vertices() {
 
 /// One line of indices. A strip, a fan or a loop stands on one line; lists that follow each other join.
 void CaptureReader::read_draw(const CaptureDraw& draw) {
-  const auto [word, topology, primitive, least, is_list] = draw;
+  const bool is_list = draw.is_list;
+  const std::size_t least = draw.least;
+  const std::string primitive(draw.primitive);
   const std::size_t first = scene_.indices.size();
   std::size_t run = 0;  // indices since the last restart
   bool has_restart = false;
   const auto end_run = [&] {
     if (is_list ? run % least == 0 && run > 0 : run >= least) return;
-    text_.fail(std::string(word) + (has_restart ? " with a run of " : " with ") + std::to_string(run) +
+    text_.fail(std::string(draw.word) + (has_restart ? " with a run of " : " with ") + std::to_string(run) +
                (run == 1 ? " index" : " indices") + "; write " +
-               (is_list ? std::to_string(least) + " for each " + std::string(primitive)
+               (is_list ? std::to_string(least) + " for each " + primitive
                         : "at least " + std::to_string(least) + ", all on one line"));
   };
   do {
     if (text_.take("restart")) {
-      if (is_list)
-        text_.fail("restart in a list; leave it out, " + std::string(primitive) + "s of a list share nothing");
+      if (is_list) text_.fail("restart in a list; leave it out, " + primitive + "s of a list share nothing");
       has_restart = true;
       end_run();
       run = 0;
@@ -291,7 +292,7 @@ void CaptureReader::read_draw(const CaptureDraw& draw) {
   const std::uint32_t state = state_number();
   if (is_list && !scene_.commands.empty()) {
     auto* last = std::get_if<Draw>(&scene_.commands.back());
-    if (last != nullptr && last->topology == topology && last->state == state && last->object == object_) {
+    if (last != nullptr && last->topology == draw.topology && last->state == state && last->object == object_) {
       last->count += count;
       return;
     }
@@ -299,7 +300,7 @@ void CaptureReader::read_draw(const CaptureDraw& draw) {
   const auto line = std::min<std::size_t>(text_.line(), std::numeric_limits<std::uint32_t>::max());
   scene_.commands.emplace_back(Draw{.state = state,
                                     .object = object_,
-                                    .topology = topology,
+                                    .topology = draw.topology,
                                     .first = first,
                                     .count = count,
                                     .line = static_cast<std::uint32_t>(line)});

@@ -18,12 +18,14 @@ void require(bool holds) {
 }
 
 void check_mesh(const halfplane::Mesh& mesh) {
-  std::size_t covered = 0;
+  std::size_t triangles = 0, indices = 0;  // that parts have named so far
   for (const auto& part : mesh.parts) {
-    require(part.first == covered && part.object < mesh.objects.size());
-    covered += part.count;
+    std::size_t& named = part.topology == halfplane::Topology::triangles ? triangles : indices;
+    require(part.first == named && part.object < mesh.objects.size());
+    named += part.count;
   }
-  require(covered == mesh.triangles.size() && covered > 0);
+  require(triangles == mesh.triangles.size() && indices == mesh.indices.size() && triangles + indices > 0);
+  for (const std::uint32_t index : mesh.indices) require(index < mesh.vertices.size());
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) require(index < mesh.vertices.size());
   }
