@@ -81,10 +81,10 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
   return polygon;
 }
 
+PixelBounds bounds_of(const Rect& rect) { return {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}; }
+
 bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& context) {
-  const Rect& rect = context.rect;
-  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
-  return pixel_bounds(v, limit, std::max(context.config.subpixel_bits, 1)).is_empty();
+  return pixel_bounds(v, bounds_of(context.rect), std::max(context.config.subpixel_bits, 1)).is_empty();
 }
 
 std::array<std::uint8_t, 4> flat_color(const DrawContext& context, std::uint32_t provoking) {
@@ -185,8 +185,6 @@ void require_finite_distances(const Vertex& v, const DrawContext& context, std::
                        " has a clip coordinate beyond 1e300; use smaller ones, x y z w may be scaled together");
 }
 
-PixelBounds bounds_of(const Rect& rect) { return {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}; }
-
 /// The host side of lines and points, one input primitive at a time.
 class OutlineBuilder {
  public:
@@ -199,9 +197,10 @@ class OutlineBuilder {
   bool is_cut = false;                               ///< a line so far was
 
   void add_line(std::uint32_t a, std::uint32_t b) {
-    const VertexCache::Entry from = cache_.get(context_, a), to = cache_.get(context_, b);
+    const VertexCache::Entry &from = cache_.get(context_, a), &to = cache_.get(context_, b);
+    const bool crosses = (from.outside_guard_band | to.outside_guard_band) != 0;
     DrawnLine line{number_, context_.command, from.snapped, to.snapped, drops_last()};
-    if ((from.outside_guard_band | to.outside_guard_band) != 0) {
+    if (crosses) {
       const std::array<Vertex, 2> v{context_.scene.vertices[a], context_.scene.vertices[b]};
       const auto clipped = clip(context_.guard_band, v[0], v[1]);
       if (!clipped) return;
@@ -215,7 +214,7 @@ class OutlineBuilder {
                             context_.config, widths_);
     if (!setup) return;
     setup->primitive_id = number_;
-    is_cut |= (from.outside_guard_band | to.outside_guard_band) != 0;
+    is_cut |= crosses;
     out_.lines.push_back({line, *setup});
   }
 

@@ -134,16 +134,10 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
       entries_done += draw->count;
     } else if (draw != nullptr) {
       const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
-      if (drawn_as(context.state, draw->topology) != PrimitiveType::triangle) {
-        started = Clock::now();
-        draw_outlines(context, widths, cache, primitive, options, rendering);
-        entries_done += draw->count;
-        rendering.raster_s += seconds_since(started);
-        started = Clock::now();
-        continue;
-      }
+      const bool is_outline = drawn_as(context.state, draw->topology) != PrimitiveType::triangle;
       started = Clock::now();
-      if (other_path(context, primitive, rendering)) {
+      if (is_outline) draw_outlines(context, widths, cache, primitive, options, rendering);
+      if (is_outline || other_path(context, primitive, rendering)) {
         entries_done += draw->count;
         rendering.raster_s += seconds_since(started);
         continue;

@@ -49,14 +49,9 @@ class Mesa {
 };
 
 GLenum gl_func(DepthFunc func) {
-  return GL_NEVER + static_cast<GLenum>(func == DepthFunc::never      ? 0
-                                        : func == DepthFunc::less     ? 1
-                                        : func == DepthFunc::equal    ? 2
-                                        : func == DepthFunc::lequal   ? 3
-                                        : func == DepthFunc::greater  ? 4
-                                        : func == DepthFunc::notequal ? 5
-                                        : func == DepthFunc::gequal   ? 6
-                                                                      : 7);
+  constexpr std::array<GLenum, 8> kFunctions{GL_NEVER,   GL_LESS,   GL_LEQUAL,   GL_EQUAL,
+                                             GL_GREATER, GL_GEQUAL, GL_NOTEQUAL, GL_ALWAYS};
+  return kFunctions[static_cast<std::size_t>(func)];
 }
 
 void apply(const State& state, const Scene& scene) {
