@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "../host_stream.hpp"
 #include "../pipeline.hpp"
 #include "../stages/primitive_join.hpp"
 
@@ -203,27 +202,18 @@ Rendering render_hardware(const Scene& scene, const Config& config, const Render
   PacketSink nobody;
   HostStream host(scene, config);
   HardwareModel hardware(config, nobody);
-  const auto dropped = [&hardware] {
-    const CounterPacket& c = hardware.counters();
-    return c.zero_area + c.backface + c.empty;
-  };
-  std::uint64_t drawn = 0;
-  std::int64_t last_drawn = -1;  // the pieces of an input triangle come one after the other
+  DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
-    const std::uint32_t dropped_before = dropped();
+    const std::uint32_t dropped_before = drawn.dropped(hardware.counters());
     hardware.run(primitive->packet, primitive->line);
-    const bool is_triangle = primitive->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle);
-    if (is_triangle && dropped() == dropped_before && last_drawn != primitive->primitive) {
-      ++drawn;
-      last_drawn = primitive->primitive;
-    }
+    drawn.add(*primitive, drawn.dropped(hardware.counters()) == dropped_before);
     if (options.progress && ++sent % 4096 == 0) options.progress(host.progress());
   }
   Rendering rendering;
   rendering.frame = to_framebuffer(hardware.memory(), scene.width, scene.height, config);
   rendering.counters = host.counters();
-  count_hardware(hardware.counters(), drawn, rendering.counters);
+  count_hardware(hardware.counters(), drawn.count(), rendering.counters);
   rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return rendering;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "../host_stream.hpp"
 #include "../stages/hiz.hpp"
 #include "../stages/line_raster.hpp"
 #include "../stages/tile_cache.hpp"
@@ -104,6 +105,24 @@ class HardwareModel final : private MemoryPort {
 /// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
 /// least one piece passed cull.
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters);
+
+/// Counts the input triangles of which at least one piece passes cull. Their pieces come one after the other.
+class DrawnCount {
+ public:
+  /// Primitives that cull has dropped so far.
+  [[nodiscard]] static std::uint32_t dropped(const CounterPacket& c) { return c.zero_area + c.backface + c.empty; }
+  void add(const HostPrimitive& primitive, bool is_kept) {
+    if (primitive.packet.kind != static_cast<std::uint8_t>(PrimitiveKind::triangle) || !is_kept) return;
+    if (last_ == primitive.primitive) return;
+    ++count_;
+    last_ = primitive.primitive;
+  }
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+
+ private:
+  std::uint64_t count_ = 0;
+  std::int64_t last_ = -1;  ///< input triangle that was counted last
+};
 
 /// Renders `scene` by the hardware model, flush included. Fills frame and counters, not count, ids, visible and
 /// triangles; of options it takes progress. Throws InputError as check_hardware_scene().

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "cull.hpp"
 #include "hiz.hpp"
 #include "triangle_setup.hpp"
 
@@ -87,6 +88,13 @@ using EdgeValues = std::array<EdgeValue, 3>;
                                           const Widths& widths);
 [[nodiscard]] TilePacket make_tile_packet(const TriangleSetup& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           const Widths& widths);
+
+/// The part of a primitive's box that lies in tile (tile_x, tile_y), in pixels of the tile.
+[[nodiscard]] inline PixelBounds tile_box(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
+  const int x0 = tile_x << widths.tile_shift, y0 = tile_y << widths.tile_shift, last = (1 << widths.tile_shift) - 1;
+  return {std::max(setup.left - x0, 0), std::max(setup.top - y0, 0), std::min(setup.right - x0, last),
+          std::min(setup.bottom - y0, last)};
+}
 
 /// What coarse_raster writes into the context RAM when it takes a primitive.
 [[nodiscard]] ContextPacket make_context(const SetupPacket& setup, const Widths& widths);

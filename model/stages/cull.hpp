@@ -40,6 +40,10 @@ enum class CullResult { keep, backface, zero_area };
 struct PixelBounds {
   int left = 0, top = 0, right = -1, bottom = -1;
   [[nodiscard]] constexpr bool is_empty() const { return left > right || top > bottom; }
+  /// Pixels of it. Precondition: not empty.
+  [[nodiscard]] constexpr std::uint64_t samples() const {
+    return static_cast<std::uint64_t>(right - left + 1) * static_cast<std::uint64_t>(bottom - top + 1);
+  }
 };
 
 /// The pixels whose centres lie in the triangle's bounding box and in `limit`.

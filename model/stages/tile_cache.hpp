@@ -1,16 +1,13 @@
 // Tile cache: the on-chip depth and colour of a few tiles, written back to memory, and the flags of fast-cleared tiles.
 //
 // In: accesses to tiles, writes, fast clears, flushes, in program order. Out: memory requests in program order: on a
-// miss the old tile's dirty planes, then the new tile's reads. Direct mapped: a line holds both planes of one tile. A
-// tile whose plane is flagged as cleared is filled on the chip; the flag falls when that plane goes to memory.
+// miss the old tile's dirty planes, then the new tile's reads. A tile whose plane is flagged as cleared is filled on the
+// chip; the flag falls when that plane goes to memory. What moves is for tile_directory.hpp to say; here is the data.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
-#include <vector>
 
-#include "../packets.hpp"
+#include "tile_directory.hpp"
 
 namespace halfplane {
 
@@ -23,9 +20,6 @@ struct MemoryPort {
  protected:
   ~MemoryPort() = default;
 };
-
-/// What a tile has of each pixel.
-enum class TilePlane : std::uint8_t { depth, color };
 
 class TileCache {
  public:
@@ -47,35 +41,16 @@ class TileCache {
   void flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters);
 
  private:
-  static constexpr std::array kPlanes{TilePlane::depth, TilePlane::color};
-  struct Line {
-    bool is_valid = false;
-    std::uint16_t tile_x = 0, tile_y = 0;
-    std::array<bool, 2> is_dirty{};
-  };
-  /// A plane of one tile: where a request goes.
-  struct Address {
-    TilePlane plane;
-    std::uint16_t tile_x, tile_y;
-  };
+  struct DataMover;
 
-  [[nodiscard]] std::size_t line_of(int tile_x, int tile_y) const;
   [[nodiscard]] std::size_t first_lane(std::size_t line, int stamp) const;
   [[nodiscard]] std::span<std::uint32_t> lanes(TilePlane plane, std::size_t line, int stamp);
-  [[nodiscard]] std::uint8_t& is_cleared(const Address& address);
-  [[nodiscard]] static MemoryRequest request(const Address& address, bool is_write);
-  void evict(std::size_t line, MemoryPort& memory, CounterPacket& counters);
-  void fill(std::size_t line, const Address& address, MemoryPort& memory, CounterPacket& counters);
-  void write_clear_value(const Address& address, MemoryPort& memory, CounterPacket& counters);
 
-  int stamps_, samples_;  ///< of a tile, of a stamp
-  int line_x_bits_, line_y_bits_;
-  std::size_t tiles_x_;
+  int stamps_, samples_;                    ///< of a tile, of a stamp
   std::array<std::uint32_t, 2> code_mask_;  ///< bits of a code of each plane
   std::array<std::uint32_t, 2> clear_value_{};
-  std::vector<Line> lines_;
-  std::array<std::vector<std::uint32_t>, 2> lanes_;      ///< line by line, stamp by stamp
-  std::array<std::vector<std::uint8_t>, 2> is_cleared_;  ///< by tile: memory holds garbage, the value is clear_value_
+  TileDirectory directory_;
+  std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
 };
 
 }  // namespace halfplane

@@ -146,7 +146,7 @@ SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths) {
   return packet;
 }
 
-SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
+TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
   TriangleSetup setup;
   setup.primitive = primitive.primitive_id;
   setup.left = primitive.left;
@@ -160,7 +160,11 @@ SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, 
   } else {
     finish_flat_setup(setup, v[0], widths);
   }
-  SetupPacket packet = to_setup_packet(setup, widths);
+  return setup;
+}
+
+SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
+  SetupPacket packet = to_setup_packet(setup_primitive(primitive, config, widths), widths);
   static_cast<PrimitiveState&>(packet) = primitive;
   packet.kind = primitive.kind;
   return packet;

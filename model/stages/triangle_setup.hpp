@@ -70,6 +70,9 @@ struct Reciprocal {
 /// A setup whose box lies inside the target, as it goes to coarse_raster. Kind and state are left at 0.
 [[nodiscard]] SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths);
 
+/// The setup of any kind of primitive.
+[[nodiscard]] TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& config, const Widths& widths);
+
 /// The stage: any kind of primitive.
 [[nodiscard]] SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths);
 

@@ -12,6 +12,7 @@
 
 #include "model/engines/hardware.hpp"
 #include "model/host_stream.hpp"
+#include "model/timing/stream.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/memory_model.hpp"
 #include "sim/cosim/mismatch.hpp"
@@ -30,13 +31,6 @@ struct LockstepOptions {
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
   /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
   std::function<bool(double fraction)> progress;
-};
-
-/// What one stream did, in cycles.
-struct StreamUse {
-  std::uint64_t busy = 0;     ///< moved a packet
-  std::uint64_t stalled = 0;  ///< had one that was not taken
-  std::uint64_t starved = 0;  ///< had none
 };
 
 struct LockstepResult {

@@ -1,0 +1,250 @@
+// The time of everything behind the stamps: primitive_join, line_raster, depth_test, framebuffer, memory. Both ways in
+// which the RTL does what comes before end here (pipelined_timing.hpp, serial_timing.hpp).
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "../../stages/tile_directory.hpp"
+#include "../../timing/memory.hpp"
+#include "../../timing/station.hpp"
+#include "../../timing/stream.hpp"
+#include "streams.hpp"
+
+namespace halfplane {
+
+/// The samples that a fragment reads and writes, for the hazard of the next one.
+struct FragmentPlace {
+  int tile_x = 0, tile_y = 0, stamp = 0;
+  std::uint64_t mask = 0;  ///< covered samples; 0: looks nothing up
+  bool depth_write = false;
+};
+
+/// Where a run begins and ends, and what it spent besides moving items, in cycles.
+struct TimingTotals {
+  Cycle last = 0;                   ///< the last one in which an item crossed a boundary
+  Cycle first_primitive = 0;        ///< the one in which the first triangle, point or line was taken
+  Cycle last_write = 0;             ///< into the on-chip tiles
+  std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and took no access
+  std::uint64_t hazard_cycles = 0;  ///< a fragment waited for the write of the one before
+  bool has_primitive = false;       ///< first_primitive has been seen
+};
+
+class BackTiming {
+ public:
+  /// `memory` and `sink`, which may be null, must outlive this.
+  BackTiming(const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
+      : stalls_(stalls),
+        memory_(memory),
+        sink_(sink),
+        stamps_(static_cast<Cycle>(widths.stamps_per_row) * static_cast<Cycle>(widths.stamps_per_row)),
+        is_simple_(sink == nullptr && stalls.threshold == 0 && memory.fixed_latency() != 0),
+        line_raster_(1, 1, 0),
+        line_(stalls, 1U << stall_line),
+        line_pixel_(stalls, 1U << stall_line_pixel),
+        fragment_(stalls, 1U << stall_fragment),
+        request_(stalls, 1U << stall_request | 1U << stall_memory),
+        response_(stalls, 1U << stall_response) {}
+
+  [[nodiscard]] const TimingTotals& totals() const { return totals_; }
+  /// Of the boundaries that can wait.
+  [[nodiscard]] const Stream& stream(Boundary boundary) const {
+    switch (boundary) {
+      case Boundary::line: return line_;
+      case Boundary::line_pixel: return line_pixel_;
+      case Boundary::request: return request_;
+      case Boundary::response: return response_;
+      default: return fragment_;
+    }
+  }
+
+  /// A triangle, point or line has been taken by cull.
+  void count_primitive(Cycle cycle) {
+    if (totals_.has_primitive) return;
+    totals_.has_primitive = true;
+    totals_.first_primitive = cycle;
+    for (const auto& [from, to] : moved_before_)
+      if (to > cycle) moving_ += to - std::max(from, cycle);
+    moved_before_.clear();
+  }
+
+  /// The setup of the line whose place is offered from `offered` on goes into line_raster.
+  void take_line(Cycle offered) {
+    const Cycle taken = line_.transfer(std::max(offered, next_line_), line_raster_.room());
+    next_line_ = taken + 1;
+    first_pixel_ = line_raster_.ready(taken);
+    note(Boundary::line, taken);
+  }
+
+  /// A stamp without a covered sample, on offer to depth_test from `offered` on. Returns when it moves.
+  Cycle pass(Cycle offered) {
+    const Cycle moved = fragment_.transfer(offered, 0);
+    note(Boundary::fragment, moved);
+    last_fragment_ = moved;
+    last_place_ = {};
+    return moved;
+  }
+
+  /// A stamp with covered samples. look_up(mover) makes its tile resident and returns whether it was.
+  template <class LookUp>
+  Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up) {
+    return access(offered, place, std::forward<LookUp>(look_up), 0);
+  }
+
+  /// The pixels of the line whose place is on offer from `offered` on: step() makes the next one and returns whether
+  /// there is one behind it; `place` is then where it lies. Returns when the last one moves.
+  template <class Step, class LookUp>
+  Cycle take_pixels(Cycle offered, const FragmentPlace& place, Step&& step, LookUp&& look_up) {
+    Cycle pixel = first_pixel_, moved = 0;
+    for (bool more = true; more; pixel = moved + 1, offered = std::max(offered, pixel)) {
+      more = step();
+      moved = access(std::max(offered, pixel), place, look_up, line_pixel_.streams());
+      line_pixel_.moved(pixel, moved);
+      note(Boundary::line_pixel, moved);
+    }
+    line_raster_.leave(moved);
+    return moved;
+  }
+
+  /// A fast clear or a flush on its way through the framebuffer. walk(mover) visits lines and tiles.
+  template <class Walk>
+  Cycle pass_token(Cycle offered, Walk&& walk) {
+    const Cycle begins = stalls_.next_free(fragment_.streams(), offered);
+    Mover mover{*this, begins + 1};
+    walk(mover);
+    // The last tile of the walk stays until the token may move.
+    const Cycle moved = fragment_.transfer(offered, mover.cycle - 1);
+    count_moves(begins, moved + 1);
+    note(Boundary::fragment, moved);
+    last_fragment_ = moved;
+    last_place_ = {};
+    return moved;
+  }
+
+ protected:
+  ~BackTiming() = default;
+
+  void note(Boundary boundary, Cycle cycle) {
+    totals_.last = std::max(totals_.last, cycle);
+    if (sink_ != nullptr) sink_->transfer(boundary, cycle);
+  }
+
+  /// The visit of the last fragment has ended.
+  void retire() {
+    last_retire_ = last_fragment_ + 2;
+    note(Boundary::retire, last_retire_);
+  }
+
+  const Stalls stalls_;
+  Cycle last_fragment_ = 0;  ///< when the last one moved
+  Cycle last_retire_ = 0;
+
+ private:
+  /// The framebuffer's machine while it moves tiles: `cycle` is the next one to be spent.
+  struct Mover {
+    BackTiming& timing;
+    Cycle cycle;
+
+    void look_at_line() { ++cycle; }
+    void write_back(std::size_t, const TileAddress& address) {
+      ++cycle;  // the look that found it dirty
+      timing.move_plane(cycle, address, true);
+    }
+    void fill(std::size_t, int x, int y, const std::array<bool, 2>& is_cleared) {
+      ++cycle;  // the look that found nothing dirty
+      timing.fill(cycle, x, y, is_cleared);
+    }
+    void mark_tile() { ++cycle; }
+    void look_at_tile() { cycle += 2; }
+    void write_clear_value(const TileAddress& address) {
+      cycle += 2;
+      timing.move_plane(cycle, address, true);
+    }
+  };
+
+  template <class LookUp>
+  Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up, unsigned others) {
+    Cycle ready = offered;
+    if (last_place_.depth_write && last_place_.stamp == place.stamp && last_place_.tile_x == place.tile_x &&
+        last_place_.tile_y == place.tile_y && (last_place_.mask & place.mask) != 0 && offered < last_fragment_ + 2) {
+      ready = last_fragment_ + 2;
+      totals_.hazard_cycles += ready - offered;
+    }
+    const Cycle begins = stalls_.next_free(fragment_.streams() | others, ready);
+    Mover mover{*this, begins + 1};
+    if (!look_up(mover)) {
+      ready = mover.cycle;
+      count_moves(begins, ready);
+    }
+    const Cycle moved = fragment_.transfer(offered, ready, others);
+    note(Boundary::fragment, moved);
+    note(Boundary::write, moved + 1);
+    totals_.last_write = moved + 1;
+    totals_.tile_cycles = moving_;
+    last_fragment_ = moved;
+    last_place_ = place;
+    return moved;
+  }
+
+  /// Requests for all stamps of a plane, the first one in `cycle` at the earliest, and the answers if they are reads.
+  /// `cycle` becomes the one behind the last request.
+  void move_plane(Cycle& cycle, const TileAddress& address, bool is_write) {
+    if (is_simple_) {
+      const Cycle last = cycle + stamps_ - 1;
+      request_.pass(stamps_);
+      cycle = last + 1;
+      if (!is_write) {
+        last_response_ = last + memory_.fixed_latency();  // the answers before were to earlier requests
+        response_.pass(stamps_);
+        totals_.last = std::max(totals_.last, last_response_);
+      }
+      totals_.last = std::max(totals_.last, last);
+      return;
+    }
+    MemoryAccess access{is_write, address.plane == TilePlane::color, address.tile_x, address.tile_y, 0};
+    for (; access.stamp < static_cast<int>(stamps_); ++access.stamp) {
+      const Cycle asked = request_.transfer(cycle, memory_.room());
+      note(Boundary::request, asked);
+      const Cycle answer = memory_.accept(access, asked);
+      if (!is_write) {
+        last_response_ = response_.transfer(std::max(answer, last_response_ + 1), 0);
+        note(Boundary::response, last_response_);
+      }
+      cycle = asked + 1;
+    }
+  }
+
+  /// Both planes of a tile, from memory or from the clear value. A plane that is cleared rides along with one that is read.
+  void fill(Cycle& cycle, int x, int y, const std::array<bool, 2>& is_cleared) {
+    if (is_cleared[0] && is_cleared[1]) {
+      cycle += stamps_;
+      return;
+    }
+    for (const TilePlane plane : kTilePlanes)
+      if (!is_cleared[static_cast<std::size_t>(plane)])
+        move_plane(cycle, {plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, false);
+    cycle = last_response_ + 1;
+  }
+
+  void count_moves(Cycle from, Cycle to) {
+    if (!totals_.has_primitive)
+      moved_before_.emplace_back(from, to);
+    else
+      moving_ += to - from;
+    if (from == totals_.last_write) ++totals_.tile_cycles;  // the next access waits while the last write goes in
+  }
+
+  MemoryTiming& memory_;
+  TransferSink* sink_;
+  Cycle stamps_;    ///< of a tile
+  bool is_simple_;  ///< nobody looks at single requests, and none of them ever waits
+  Station line_raster_;
+  Stream line_, line_pixel_, fragment_, request_, response_;
+  Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;
+  FragmentPlace last_place_;
+  TimingTotals totals_;
+  std::uint64_t moving_ = 0;  ///< cycles since the first primitive in which tiles moved
+  std::vector<std::pair<Cycle, Cycle>> moved_before_;  ///< tile moves before the first primitive
+};
+
+}  // namespace halfplane

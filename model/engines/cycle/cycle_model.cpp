@@ -1,0 +1,362 @@
+#include "cycle_model.hpp"
+
+#include <chrono>
+
+#include "../../stages/cull.hpp"
+#include "../../stages/hiz.hpp"
+#include "../../stages/line_raster.hpp"
+#include "../hardware.hpp"
+#include "../tile_kernel.hpp"
+#include "pipelined_timing.hpp"
+#include "serial_timing.hpp"
+
+namespace halfplane {
+namespace {
+
+/// Whether the area is negative with the vertices as cull_serial sorts them: it swaps two and turns all three on the way.
+bool is_negative_when_sorted(const std::array<SnappedVertex, 3>& v, std::int64_t area) {
+  const bool swaps_first = canonically_before(v[1], v[0]);
+  const bool swaps_again = canonically_before(swaps_first ? v[1] : v[0], v[2]);
+  return (area < 0) != (swaps_first != swaps_again);
+}
+
+PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
+  PrimitiveWork work;
+  const auto kind = static_cast<PrimitiveKind>(packet.kind);
+  work.is_triangle = kind == PrimitiveKind::triangle;
+  work.is_line = kind == PrimitiveKind::line;
+  work.is_counted = is_counted(packet.kind);
+  work.is_dropped = is_dropped;
+  if (!work.is_triangle) return work;
+  const auto v = vertices_of(packet);
+  const std::int64_t area = signed_area(v[0], v[1], v[2]);
+  const auto size = static_cast<std::uint64_t>(area < 0 ? -area : area);
+  work.is_negative = is_negative_when_sorted(v, area);
+  work.turns = std::min_element(v.begin(), v.end(), canonically_before) == v.begin() + 2 ? 2 : 1;
+  work.log2_area = size == 0 ? 0 : static_cast<int>(std::bit_width(size - 1));
+  return work;
+}
+
+/// T: tile size; Lane: as in TileKernel.
+template <class Timing, int T, class Lane>
+class CycleModelOf final : public CycleModel {
+ public:
+  CycleModelOf(const Config& config, MemoryTiming& memory, const CycleOptions& options)
+      : config_(config),
+        widths_(derive_widths(config)),
+        options_(options),
+        timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink),
+        hiz_(config_, widths_),
+        directory_(config_, widths_) {}
+
+  void begin(int width, int height, Cycle cycle) override {
+    rendering_ = {};
+    rendering_.frame = Framebuffer(width, height, T);
+    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (options_.want_count) rendering_.count.resize(pixels);
+    if (options_.want_ids) rendering_.ids.assign(pixels, -1);
+    timing_.begin(cycle);
+  }
+
+  void run(const HostPrimitive& host) override {
+    const auto triangle = cull(host.packet, widths_, counters_);
+    timing_.take(work_of(host.packet, !triangle));
+    if (!triangle) return;
+    SetupPacket packet;  // what HiZ looks at
+    packet.kind = triangle->kind;
+    static_cast<PixelBox&>(packet) = *triangle;
+    static_cast<PrimitiveState&>(packet) = *triangle;
+    switch (static_cast<PrimitiveKind>(triangle->kind)) {
+      case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
+      case PrimitiveKind::flush: flush(packet); return;
+      case PrimitiveKind::line:
+        hiz_.pass_line(packet);
+        draw_line(packet, *host.line, host.primitive);
+        return;
+      case PrimitiveKind::triangle:
+      case PrimitiveKind::rectangle:
+      case PrimitiveKind::point: break;
+    }
+    const TriangleSetup setup = setup_primitive(*triangle, config_, widths_);
+    packet.depth_min = setup.depth_min;
+    walk(setup, packet, host.primitive);
+  }
+
+  [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
+  [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
+  [[nodiscard]] const Stream& stream(Boundary boundary) const override { return timing_.stream(boundary); }
+  [[nodiscard]] Rendering& rendering() override { return rendering_; }
+
+ private:
+  using Kernel = TileKernel<T, Lane>;
+  using Mask = typename Kernel::Mask;
+
+  void fast_clear(const TrianglePacket& clear) {
+    const int last_x = clear.right >> widths_.tile_shift, last_y = clear.bottom >> widths_.tile_shift;
+    const std::array<bool, 2> planes{clear.depth_write != 0, clear.color_write != 0};
+    if (planes[0]) {
+      hiz_.clear(last_x, last_y, clear.z[0]);
+      if (config_.hiz_bits != 0)
+        timing_.clear_bounds(static_cast<std::uint64_t>(last_x + 1) * static_cast<std::uint64_t>(last_y + 1));
+      std::ranges::fill(rendering_.frame.depth, clear.z[0]);
+    }
+    if (planes[1])
+      std::ranges::fill(rendering_.frame.color, pack_color(config_.color_format, vertices_of(clear)[0].rgba));
+    if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
+    timing_.end(true, [&](Cycle offered) {
+      return timing_.pass_token(offered,
+                                [&](auto& mover) { directory_.fast_clear(last_x, last_y, planes, mover, counters_); });
+    });
+  }
+
+  void flush(const SetupPacket& packet) {
+    timing_.end(true, [&](Cycle offered) {
+      return timing_.pass_token(offered, [&](auto& mover) {
+        directory_.flush(packet.right >> widths_.tile_shift, packet.bottom >> widths_.tile_shift, mover, counters_);
+      });
+    });
+  }
+
+  void draw_line(const PrimitiveState& state, const LineSetup& line, std::uint32_t primitive) {
+    const int size = config_.stamp_size;
+    LineState next = first_state(line);
+    FragmentPlace place;
+    place.depth_write = state.depth_write != 0;
+    bool passed = false;
+    const auto step = [&] {
+      const LinePixel pixel = pixel_of(next, line, widths_);
+      const int x = pixel.x & (T - 1), y = pixel.y & (T - 1);
+      place.tile_x = pixel.x / T;
+      place.tile_y = pixel.y / T;
+      place.stamp = y / size * widths_.stamps_per_row + x / size;
+      place.mask = std::uint64_t{1} << (y % size * size + x % size);
+      passed = shade_pixel(state, pixel, primitive);
+      if (pixel.is_last == 0) next = next_state(next, line, widths_);
+      return pixel.is_last == 0;
+    };
+    const auto look_up = [&](auto& mover) {
+      const bool hits = directory_.access(place.tile_x, place.tile_y, mover, counters_);
+      if (passed) directory_.wrote(place.tile_x, place.tile_y, state.depth_write != 0, state.color_write != 0);
+      return hits;
+    };
+    timing_.end(true, [&](Cycle offered) { return timing_.take_pixels(offered, place, step, look_up); });
+  }
+
+  /// depth_test and rop of a pixel of a line. Returns whether it passed.
+  bool shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive) {
+    Framebuffer& frame = rendering_.frame;
+    const std::size_t at = frame.at(pixel.x, pixel.y);
+    ++counters_.covered;
+    const std::size_t plain = plain_index(pixel.x, pixel.y);
+    if (!rendering_.count.empty()) ++rendering_.count[plain];
+    if (!depth_passes(static_cast<DepthFunc>(state.depth_test), pixel.depth, frame.depth[at])) return false;
+    ++counters_.depth_passed;
+    if (state.depth_write == 0 && state.color_write == 0) return true;
+    ++counters_.written;
+    if (state.depth_write != 0) frame.depth[at] = pixel.depth;
+    if (state.color_write != 0) {
+      std::array<std::uint8_t, 4> color;
+      for (std::size_t c = 0; c < 4; ++c) color[c] = static_cast<std::uint8_t>(pixel.color >> 8 * c);
+      frame.color[at] = pack_color(config_.color_format, color);
+    }
+    if (!rendering_.ids.empty()) rendering_.ids[plain] = static_cast<std::int32_t>(primitive);
+    return true;
+  }
+
+  [[nodiscard]] std::size_t plain_index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering_.frame.width) + static_cast<std::size_t>(x);
+  }
+
+  /// coarse_raster, and for each visit the rest of the pipeline.
+  void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
+    const Kernel kernel(static_cast<DepthFunc>(packet.depth_test), packet.depth_write != 0, packet.color_write != 0,
+                        config_, widths_);
+    const TriangleLanes<T, Lane> lanes(setup, config_, widths_);
+    CounterPacket uncounted;
+    CounterPacket& count = packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) ? counters_ : uncounted;
+    const bool asks_hiz = hiz_.is_eligible(packet, widths_);
+    const int last_x = setup.right / T, last_y = setup.bottom / T;
+    bool has_ended = false;
+    for (int tile_y = setup.top / T; tile_y <= last_y; ++tile_y)
+      for (int tile_x = setup.left / T; tile_x <= last_x; ++tile_x) {
+        ++count.tiles_visited;
+        const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths_);
+        const TileClass tile_class = classify(setup, edges, T);
+        if (tile_class == TileClass::outside) {
+          ++count.tiles_outside;
+          timing_.skip_outside();
+          continue;
+        }
+        if (asks_hiz) {
+          timing_.read_bound(tile_x, tile_y);
+          if (hiz_.rejects(packet, tile_x, tile_y)) {
+            ++count.tiles_hiz;
+            timing_.skip_behind();
+            continue;
+          }
+        }
+        const bool is_inside = tile_class == TileClass::inside;
+        const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
+        if (is_inside)
+          ++count.trivially_accepted;
+        else
+          count.samples_tested += static_cast<std::uint32_t>(box.samples());
+        has_ended = tile_x == last_x && tile_y == last_y;
+        visit(kernel, setup, lanes, edges, is_inside, packet, box, tile_x, tile_y, has_ended, primitive);
+      }
+    if (!has_ended) timing_.end(false, [&](Cycle offered) { return timing_.pass(offered); });
+  }
+
+  void visit(const Kernel& kernel, const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
+             const EdgeValues& edges, bool is_inside, const SetupPacket& packet, const PixelBounds& box, int tile_x,
+             int tile_y, bool ends_primitive, std::uint32_t primitive) {
+    const int size = config_.stamp_size;
+    TileMask covered_rows{};
+    TileVisitWork work{tile_x, tile_y, ends_primitive, box.top / size, box.bottom / size, box.left / size,
+                       box.right / size, {}};
+    std::uint32_t covered = 0, passed = 0;
+    kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, rendering_.frame,
+                [&](int j, const Mask& covered_lanes, const Mask& passed_lanes) {
+                  const std::uint32_t row = kernel.to_bits(covered_lanes), row_passed = kernel.to_bits(passed_lanes);
+                  covered_rows[static_cast<std::size_t>(j)] = row;
+                  covered += static_cast<std::uint32_t>(std::popcount(row));
+                  passed += static_cast<std::uint32_t>(std::popcount(row_passed));
+                  work.columns[static_cast<std::size_t>(j / size)] |= row;  // pixels so far
+                  if (options_.want_count || options_.want_ids)
+                    note_row(tile_x * T, tile_y * T + j, row, row_passed, packet, primitive);
+                });
+    for (int row = work.first_row; row <= work.last_row; ++row) {
+      std::uint32_t& pixels = work.columns[static_cast<std::size_t>(row)];
+      std::uint32_t columns = 0;
+      for (std::uint32_t left = pixels; left != 0;) {
+        const int column = std::countr_zero(left) / size;
+        columns |= 1U << column;
+        left &= ~(((1U << size) - 1) << column * size);
+      }
+      pixels = columns;
+    }
+    if (is_counted(packet.kind)) {
+      counters_.covered += covered;
+      counters_.depth_passed += passed;
+      if (packet.depth_write != 0 || packet.color_write != 0) counters_.written += passed;
+    }
+    bool is_resident = false;
+    timing_.visit(work, [&](Cycle offered, int row, int column) {
+      if (column < 0) return timing_.pass(offered);
+      FragmentPlace place{tile_x, tile_y, row * widths_.stamps_per_row + column, 0, packet.depth_write != 0};
+      for (int j = 0; j < size; ++j)
+        place.mask |= std::uint64_t{covered_rows[static_cast<std::size_t>(row * size + j)] >> column * size &
+                                    ((1U << size) - 1)}
+                      << j * size;
+      return timing_.access(offered, place, [&](auto& mover) {
+        return is_resident || ((is_resident = true), directory_.access(tile_x, tile_y, mover, counters_));
+      });
+    });
+    if (passed != 0) directory_.wrote(tile_x, tile_y, packet.depth_write != 0, packet.color_write != 0);
+    retire(packet, tile_x, tile_y, passed);
+  }
+
+  /// The news of a visit for HiZ.
+  void retire(const SetupPacket& packet, int tile_x, int tile_y, std::uint32_t passed) {
+    if (config_.hiz_bits == 0 || packet.depth_write == 0) return;
+    RetirePacket retired;
+    retired.tile_x = static_cast<std::uint16_t>(tile_x);
+    retired.tile_y = static_cast<std::uint16_t>(tile_y);
+    if (passed == T * T) {
+      // The codes of a covered tile are a plane, rounded and clamped: the largest is at a corner.
+      std::uint32_t largest = 0;
+      for (const int y : {0, T - 1})
+        for (const int x : {0, T - 1})
+          largest = std::max(largest, rendering_.frame.depth[rendering_.frame.at(tile_x * T + x, tile_y * T + y)]);
+      retired.update = static_cast<std::uint8_t>(HizUpdate::set);
+      retired.hiz_code = largest >> (config_.depth_bits - hiz_code_bits(config_));
+    } else if (passed != 0 && packet.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
+      retired.update = static_cast<std::uint8_t>(HizUpdate::clear);
+      retired.hiz_code = static_cast<std::uint32_t>(widths_.hiz_code.range.hi);
+    }
+    hiz_.update(retired);
+  }
+
+  /// Counts and owners of a row that begins at pixel (x, y).
+  void note_row(int x, int y, std::uint32_t covered, std::uint32_t passed, const SetupPacket& packet,
+                std::uint32_t primitive) {
+    const std::size_t first = plain_index(x, y);
+    const auto for_each = [first](std::uint32_t bits, auto&& visit) {
+      for (; bits != 0; bits &= bits - 1) visit(first + static_cast<std::size_t>(std::countr_zero(bits)));
+    };
+    if (!is_counted(packet.kind)) {  // a clear inside the scissor: nobody owns its pixels
+      if (!rendering_.ids.empty()) for_each(passed, [&](std::size_t pixel) { rendering_.ids[pixel] = -1; });
+      return;
+    }
+    if (!rendering_.count.empty()) for_each(covered, [&](std::size_t pixel) { ++rendering_.count[pixel]; });
+    if (!rendering_.ids.empty() && (packet.depth_write != 0 || packet.color_write != 0))
+      for_each(passed, [&](std::size_t pixel) { rendering_.ids[pixel] = static_cast<std::int32_t>(primitive); });
+  }
+
+  Config config_;
+  Widths widths_;
+  CycleOptions options_;
+  Timing timing_;
+  CounterPacket counters_;
+  Hiz hiz_;
+  TileDirectory directory_;
+  Rendering rendering_;
+};
+
+template <class Timing, int T>
+std::unique_ptr<CycleModel> make(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
+  if (derive_widths(config).local_depth.bits <= 32)
+    return std::make_unique<CycleModelOf<Timing, T, std::uint32_t>>(config, memory, options);
+  return std::make_unique<CycleModelOf<Timing, T, std::uint64_t>>(config, memory, options);
+}
+
+template <class Timing>
+std::unique_ptr<CycleModel> make(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
+  switch (config.tile_size) {
+    case 4: return make<Timing, 4>(config, memory, options);
+    case 8: return make<Timing, 8>(config, memory, options);
+    case 16: return make<Timing, 16>(config, memory, options);
+    default: return make<Timing, 32>(config, memory, options);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
+  validate(config);
+  return config.setup_kind == SetupKind::pipelined ? make<PipelinedTiming>(config, memory, options)
+                                                   : make<SerialTiming>(config, memory, options);
+}
+
+CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory, const RenderOptions& render,
+                            const CycleOptions& options) {
+  const auto started = std::chrono::steady_clock::now();
+  CycleOptions wanted = options;
+  wanted.want_count = render.want_count;
+  wanted.want_ids = render.want_ids;
+  HostStream host(scene, config);
+  const auto model = make_cycle_model(config, memory, wanted);
+  model->begin(scene.width, scene.height, 0);
+  DrawnCount drawn;
+  std::uint32_t sent = 0;
+  while (const auto primitive = host.next()) {
+    const std::uint32_t dropped_before = drawn.dropped(model->counters());
+    model->run(*primitive);
+    drawn.add(*primitive, drawn.dropped(model->counters()) == dropped_before);
+    if (render.progress && ++sent % 4096 == 0) render.progress(host.progress());
+  }
+  CycleRendering result{std::move(model->rendering()), {}};
+  result.rendering.counters = host.counters();
+  count_hardware(model->counters(), drawn.count(), result.rendering.counters);
+  result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const TimingTotals& totals = model->totals();
+  result.run.cycles = totals.last + 1;
+  result.run.raster_cycles = totals.has_primitive ? totals.last_write - totals.first_primitive + 1 : 0;
+  result.run.tile_cycles = totals.tile_cycles;
+  result.run.hazard_cycles = totals.hazard_cycles;
+  for (std::size_t i = 0; i < kBoundaries; ++i)
+    result.run.use[i] = model->stream(static_cast<Boundary>(i)).use(result.run.cycles);
+  return result;
+}
+
+}  // namespace halfplane

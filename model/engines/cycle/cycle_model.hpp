@@ -1,0 +1,61 @@
+// The cycle model: the bits of the stages and the cycle in which every item crosses every boundary between them. Exact
+// against rtl_ref, and without a clock: one primitive at a time goes all the way through, because whatever an item waits
+// for is in an item before it.
+#pragma once
+
+#include <memory>
+
+#include "../../host_stream.hpp"
+#include "../../timing/memory.hpp"
+#include "../../timing/stream.hpp"
+#include "back_timing.hpp"
+#include "work.hpp"
+
+namespace halfplane {
+
+struct CycleOptions {
+  Stalls stalls;                  ///< injected back-pressure
+  TimingParameters parameters;    ///< sizes of buffers; the default is the RTL
+  TransferSink* sink = nullptr;   ///< sees every crossing; slows the model down. Must outlive the model
+  bool want_count = false, want_ids = false;  ///< fill Rendering::count, ids
+};
+
+/// The whole chip after reset, with a memory behind it.
+class CycleModel {
+ public:
+  virtual ~CycleModel() = default;
+  /// A target of another size, cleared by the first primitive; the host offers its next primitive from `cycle` on.
+  virtual void begin(int width, int height, Cycle cycle) = 0;
+  /// One primitive, to its last write.
+  virtual void run(const HostPrimitive& primitive) = 0;
+  [[nodiscard]] virtual const CounterPacket& counters() const = 0;
+  [[nodiscard]] virtual const TimingTotals& totals() const = 0;
+  [[nodiscard]] virtual const Stream& stream(Boundary boundary) const = 0;
+  /// Frame, count and ids since begin().
+  [[nodiscard]] virtual Rendering& rendering() = 0;
+};
+
+/// `memory` must outlive the model.
+[[nodiscard]] std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming& memory,
+                                                           const CycleOptions& options = {});
+
+/// What a frame cost.
+struct CycleRun {
+  Cycle cycles = 0;               ///< to the last item that crossed any boundary, memory included
+  std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
+  std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
+  std::uint64_t hazard_cycles = 0;  ///< a fragment waited for the write of the one before
+  std::array<StreamUse, kBoundaries> use{};  ///< of the boundaries that can wait
+};
+
+struct CycleRendering {
+  Rendering rendering;
+  CycleRun run;
+};
+
+/// Renders `scene` from reset to the end of its flush. Throws InputError as check_hardware_scene(). Of `render` it takes
+/// progress, want_count and want_ids.
+[[nodiscard]] CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory,
+                                          const RenderOptions& render = {}, const CycleOptions& options = {});
+
+}  // namespace halfplane

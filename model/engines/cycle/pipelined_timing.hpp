@@ -1,0 +1,161 @@
+// The time of the pipelined RTL: cull, triangle_setup, coarse_raster, fine_raster, interpolate (setup.kind pipelined).
+// Each register, unit and buffer of the .sv is a Station here; what is written behind a transfer is the stage's own work.
+#pragma once
+
+#include <bit>
+
+#include "back_timing.hpp"
+#include "work.hpp"
+
+namespace halfplane {
+
+class PipelinedTiming : public BackTiming {
+ public:
+  PipelinedTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
+                  const TimingParameters& parameters, TransferSink* sink)
+      : BackTiming(widths, stalls, memory, sink),
+        divide_(1, SetupCycles(widths, parameters.divide_bits).divide, 0),
+        gradients_(1, SetupCycles(widths, parameters.divide_bits).gradients, 0),
+        values_(1, SetupCycles(widths, parameters.divide_bits).values, 0),
+        slots_(config.context_slots, 0, 2),
+        visits_(parameters.visits, 0, 1),
+        skid_(parameters.stamp_queue, 1, 1),
+        interpolate_(kInterpolateSteps, kInterpolateSteps, 0),
+        primitive_(stalls, 1U << stall_primitive),
+        triangle_(stalls, 1U << stall_triangle),
+        setup_(stalls, 1U << stall_setup),
+        tile_(stalls, 1U << stall_tile),
+        stamp_(stalls, 1U << stall_stamp),
+        visited_(static_cast<std::size_t>(parameters.visits)) {}
+
+  /// The host offers its next primitive from `cycle` on.
+  void begin(Cycle cycle) { offer_ = std::max(offer_, cycle); }
+
+  /// The next primitive, through cull and triangle_setup to coarse_raster; or, if it is dropped, only into cull.
+  void take(const PrimitiveWork& work) {
+    const Cycle taken = primitive_.transfer(offer_, cull_.room());
+    note(Boundary::primitive, taken);
+    if (work.is_counted) count_primitive(taken);
+    if (work.is_line) take_line(offer_);
+    offer_ = taken + 1;
+    // Turned until the first vertex leads, once at least; then three edges, one behind the other, of three cycles each.
+    const Cycle culled = taken + 1 + static_cast<Cycle>(work.turns) + (work.is_triangle ? kCullEdges : 0);
+    if (work.is_dropped) {
+      cull_.leave(culled);
+      return;
+    }
+    const Cycle divides = triangle_.transfer(culled, divide_.room());
+    cull_.leave(divides);
+    note(Boundary::triangle, divides);
+    const Cycle interpolates = std::max(divide_.ready(divides), gradients_.room());
+    divide_.leave(interpolates);
+    const Cycle evaluates = std::max(gradients_.ready(interpolates), values_.room());
+    gradients_.leave(evaluates);
+    const Cycle walks = setup_.transfer(values_.ready(evaluates), std::max(coarse_.room(), slots_.room()));
+    values_.leave(walks);
+    note(Boundary::setup, walks);
+    walk_ = walks + 2;
+  }
+
+  /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
+  void clear_bounds(std::uint64_t tiles) { walk_ = std::max(walk_ - 1, last_retire_ + 1) + 1 + tiles; }
+
+  /// The next tile of the walk is outside, and passed over.
+  void skip_outside() { ++walk_; }
+
+  /// The bound of the next tile is read, when no earlier visit of it is under way.
+  void read_bound(int tile_x, int tile_y) {
+    for (const VisitedTile& visit : visited_)
+      if (visit.tile_x == tile_x && visit.tile_y == tile_y) walk_ = std::max(walk_, visit.retired + 1);
+    ++walk_;
+  }
+  /// It lies in front, and the tile is passed over.
+  void skip_behind() { ++walk_; }
+
+  /// The end of a primitive whose last tile was passed over, or of a token: an empty stamp without a visit. shade(offered)
+  /// is what depth_test does with it.
+  template <class Shade>
+  void end([[maybe_unused]] bool is_token, Shade&& shade) {
+    const Cycle taken = tile_.transfer(walk_, rows_.room());
+    note(Boundary::tile, taken);
+    coarse_.leave(taken);
+    const Cycle row = std::max(taken + 1, stamps_.room());
+    rows_.leave(row);
+    stamps_.leave(send(row + 1, true, shade));
+  }
+
+  /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.
+  template <class Shade>
+  void visit(const TileVisitWork& work, Shade&& shade) {
+    const Cycle taken = tile_.transfer(std::max(walk_, visits_.room()), rows_.room());
+    note(Boundary::tile, taken);
+    walk_ = taken + 1;
+    if (work.ends_primitive) coarse_.leave(taken);
+    Cycle row_at = taken + 1;
+    for (int row = work.first_row;; ++row, ++row_at) {
+      const bool is_last = row == work.last_row;
+      std::uint32_t columns = work.columns[static_cast<std::size_t>(row)];
+      if (columns == 0 && !is_last) continue;
+      row_at = std::max(row_at, stamps_.room());
+      Cycle offered = row_at + 1;
+      do {
+        const int column = columns == 0 ? -1 : std::countr_zero(columns);
+        columns &= columns - 1;
+        const bool ends = work.ends_primitive && is_last && columns == 0;
+        offered = send(offered, ends, [&](Cycle at) { return shade(at, row, column); }) + 1;
+      } while (columns != 0);
+      stamps_.leave(offered - 1);
+      if (is_last) break;
+    }
+    rows_.leave(row_at);
+    retire();
+    visits_.leave(last_retire_);
+    visited_[next_visited_] = {work.tile_x, work.tile_y, last_retire_};
+    next_visited_ = (next_visited_ + 1) % visited_.size();
+  }
+
+  [[nodiscard]] const Stream& stream(Boundary boundary) const {
+    switch (boundary) {
+      case Boundary::primitive: return primitive_;
+      case Boundary::triangle: return triangle_;
+      case Boundary::setup: return setup_;
+      case Boundary::tile: return tile_;
+      case Boundary::stamp: return stamp_;
+      default: return BackTiming::stream(boundary);
+    }
+  }
+
+ private:
+  static constexpr Cycle kCullEdges = 5;       ///< three edge functions of three cycles each, one behind the other
+  static constexpr int kInterpolateSteps = 5;  ///< each holds one stamp
+  struct VisitedTile {
+    int tile_x = -1, tile_y = -1;
+    Cycle retired = 0;
+  };
+
+  /// A stamp on offer by fine_raster from `offered` on, through the skid buffer and interpolate. Returns when it enters the
+  /// buffer.
+  template <class Shade>
+  Cycle send(Cycle offered, bool ends_primitive, Shade&& shade) {
+    const Cycle enters = std::max(offered, skid_.room());
+    const Cycle taken = stamp_.transfer(std::max(skid_.ready(enters), last_stamp_ + 1), interpolate_.room());
+    skid_.leave(taken);
+    last_stamp_ = taken;
+    note(Boundary::stamp, taken);
+    if (ends_primitive) slots_.leave(std::max(taken + 1, context_.room()));  // leaves the first step
+    const Cycle leaves = shade(std::max(interpolate_.ready(taken), last_fragment_ + 1));
+    interpolate_.leave(leaves);
+    context_.leave(leaves);
+    return enters;
+  }
+
+  Station cull_{1, 0, 0}, divide_, gradients_, values_, coarse_{1, 0, 0}, slots_, visits_;
+  Station rows_{1, 1, 0}, stamps_{1, 1, 0}, skid_, interpolate_;
+  Station context_{kInterpolateSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
+  Stream primitive_, triangle_, setup_, tile_, stamp_;
+  Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0;
+  std::vector<VisitedTile> visited_;  ///< ring: the last ones
+  std::size_t next_visited_ = 0;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,160 @@
+// The time of the RTL for the smallest parts (setup.kind serial): *_serial.sv. A stage looks at its packet until it is
+// through with it, so a packet often moves together with the last one that came of it: those transfers wait for the
+// stalls of several streams at once.
+#pragma once
+
+#include <bit>
+
+#include "back_timing.hpp"
+#include "work.hpp"
+
+namespace halfplane {
+
+class SerialTiming : public BackTiming {
+ public:
+  SerialTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
+               const TimingParameters& parameters, TransferSink* sink)
+      : BackTiming(widths, stalls, memory, sink),
+        cycles_(widths),
+        slots_(config.context_slots, 0, 2),
+        visits_(kVisits, 0, 1),
+        skid_(parameters.stamp_queue, 1, 1),
+        primitive_(stalls, kPrimitive),
+        triangle_(stalls, kTriangle),
+        setup_(stalls, 1U << stall_setup),
+        tile_(stalls, kTile),
+        stamp_(stalls, kStamp) {}
+
+  void begin(Cycle cycle) { offer_ = std::max(offer_, cycle); }
+
+  void take(const PrimitiveWork& work) {
+    const Cycle offered = offer_;
+    if (work.is_line) take_line(offered);
+    const Cycle box = stalls_.next_free(kPrimitive, std::max(offered, cull_.room())) + 1 + kSort + kBox;
+    const auto product = static_cast<Cycle>(cycles_.product);
+    const Cycle judged = box + product;
+    Cycle culled = box;
+    if (work.is_triangle && !work.is_dropped) culled = judged + 1 + (work.is_negative ? 2 + product : 0) + 3 * product;
+    if (work.is_dropped) {
+      const Cycle dropped = primitive_.transfer(offered, work.is_triangle ? judged : culled);
+      take_primitive(work, dropped);
+      return;
+    }
+    // triangle_setup works while the triangle is on offer, and takes it when its own result has gone.
+    const Cycle begins = stalls_.next_free(kPrimitive | kTriangle, std::max(culled, triangle_setup_.room()));
+    const Cycle walks = setup_.transfer(begins + 1 + cycles_.setup(work.log2_area), std::max(coarse_.room(), slots_.room()));
+    const Cycle taken = primitive_.transfer(offered, walks + 1, kTriangle);
+    triangle_.moved(culled, taken);
+    take_primitive(work, taken);
+    note(Boundary::triangle, taken);
+    note(Boundary::setup, walks);
+    triangle_setup_.leave(taken);
+    walk_ = walks + 1 + kTurn;
+    primitive_starts_ = true;
+  }
+
+  void clear_bounds(std::uint64_t tiles) { walk_ = std::max(walk_, last_retire_ + 1) + tiles - 1; }
+
+  void skip_outside() { walk_ += 1 + kTurn; }
+  void read_bound(int, int) { walk_ = std::max(walk_, last_retire_ + 1) + 1; has_bound_ = true; }
+  void skip_behind() { walk_ += 1 + kTurn; has_bound_ = false; }
+
+  template <class Shade>
+  void end(bool is_token, Shade&& shade) {
+    // What passed over the last tile went on to turn to the next one; a token's end comes in the cycle after.
+    const Cycle offered = is_token ? walk_ + 1 : walk_ - kTurn;
+    const Cycle taken = send(offered, kTile, fine_.room(), shade);
+    tile_.moved(offered, taken);
+    note(Boundary::tile, taken);
+    fine_.leave(taken);
+    coarse_.leave(taken);
+  }
+
+  template <class Shade>
+  void visit(const TileVisitWork& work, Shade&& shade) {
+    const Cycle offered = (has_bound_ ? walk_ : std::max(walk_, visits_.room())) + 1;
+    has_bound_ = false;
+    // From the tile's first stamp to the first one of the box, then one position a cycle.
+    Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
+               static_cast<Cycle>(work.first_column + work.first_row);
+    for (int row = work.first_row; row < work.last_row; ++row)
+      for (int column = work.first_column; column <= work.last_column; ++column, ++at)
+        if (is_covered(work, row, column))
+          at = send(at, 0, 0, [&](Cycle t) { return shade(t, row, column); });
+    int held = -1;  // column of the last covered stamp of the last row so far
+    for (int column = work.first_column; column <= work.last_column; ++column, ++at) {
+      if (!is_covered(work, work.last_row, column)) continue;
+      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, work.last_row, held); });
+      if (held >= 0 && column == work.last_column) ++at;  // it stays there for the last one
+      held = column;
+    }
+    --at;
+    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, work.last_row, held); });
+    tile_.moved(offered, taken);
+    note(Boundary::tile, taken);
+    fine_.leave(taken);
+    walk_ = taken + 1 + kTurn;
+    if (work.ends_primitive) coarse_.leave(taken);
+    retire();
+    visits_.leave(last_retire_);
+  }
+
+  [[nodiscard]] const Stream& stream(Boundary boundary) const {
+    switch (boundary) {
+      case Boundary::primitive: return primitive_;
+      case Boundary::triangle: return triangle_;
+      case Boundary::setup: return setup_;
+      case Boundary::tile: return tile_;
+      case Boundary::stamp: return stamp_;
+      default: return BackTiming::stream(boundary);
+    }
+  }
+
+ private:
+  static constexpr unsigned kPrimitive = 1U << stall_primitive, kTriangle = 1U << stall_triangle,
+                            kTile = 1U << stall_tile, kStamp = 1U << stall_stamp;
+  static constexpr Cycle kSort = 6, kBox = 4;  ///< of cull
+  static constexpr Cycle kTurn = 4;            ///< of coarse_raster: the edges go round once
+  static constexpr int kVisits = 7;            ///< tile visits under way at most
+  static constexpr int kInterpolateSteps = 2;
+
+  static bool is_covered(const TileVisitWork& work, int row, int column) {
+    return (work.columns[static_cast<std::size_t>(row)] >> column & 1) != 0;
+  }
+
+  void take_primitive(const PrimitiveWork& work, Cycle taken) {
+    cull_.leave(taken);
+    note(Boundary::primitive, taken);
+    if (work.is_counted) count_primitive(taken);
+    offer_ = taken + 1;
+  }
+
+  /// A stamp on offer from `offered` on, through interpolate and the buffer behind it; it moves when `others` are free too
+  /// and not before `room`. Returns when it moves.
+  template <class Shade>
+  Cycle send(Cycle offered, unsigned others, Cycle room, Shade&& shade) {
+    Cycle ready = std::max(room, interpolate_.room());
+    if (primitive_starts_) {  // the context is read when everything before has left
+      const Cycle read = stalls_.next_free(kStamp | others, std::max({offered, room, last_made_ + 1}));
+      slots_.leave(read);
+      ready = std::max(ready, read + 1);
+    }
+    primitive_starts_ = false;
+    const Cycle taken = stamp_.transfer(offered, ready, others);
+    note(Boundary::stamp, taken);
+    const Cycle made = std::max({interpolate_.ready(taken), last_made_ + 1, skid_.room()});
+    interpolate_.leave(made);
+    last_made_ = made;
+    skid_.leave(shade(std::max(skid_.ready(made), last_fragment_ + 1)));
+    return taken;
+  }
+
+  SerialCycles cycles_;
+  Station cull_{1, 0, 1}, triangle_setup_{1, 0, 1}, coarse_{1, 0, 1}, fine_{1, 0, 1}, slots_, visits_;
+  Station interpolate_{kInterpolateSteps, kInterpolateSteps, 0}, skid_;
+  Stream primitive_, triangle_, setup_, tile_, stamp_;
+  Cycle offer_ = 0, walk_ = 0, last_made_ = 0;
+  bool primitive_starts_ = false, has_bound_ = false;
+};
+
+}  // namespace halfplane

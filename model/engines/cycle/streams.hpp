@@ -1,0 +1,54 @@
+// The boundaries between the stages at which the cycle model and the RTL are compared.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "../../timing/stalls.hpp"
+
+namespace halfplane {
+
+/// The streams that can be stalled. All but the last are the bits of raster_top's stall_i, the last is the memory's own.
+enum StallStream : int {
+  stall_primitive,
+  stall_triangle,
+  stall_setup,
+  stall_tile,
+  stall_stamp,
+  stall_fragment,
+  stall_request,
+  stall_response,
+  stall_line,
+  stall_line_pixel,
+  stall_memory,  ///< the memory takes no request
+};
+inline constexpr int kStallStreams = stall_memory + 1;
+
+/// Where an item crosses from one stage to the next. In the order of the pipeline.
+enum class Boundary : std::uint8_t {
+  primitive,   ///< host -> cull
+  line,        ///< host -> line_raster
+  triangle,    ///< cull -> triangle_setup
+  setup,       ///< triangle_setup -> coarse_raster, and the context RAM
+  tile,        ///< coarse_raster -> fine_raster
+  stamp,       ///< fine_raster -> interpolate
+  line_pixel,  ///< line_raster -> primitive_join
+  fragment,    ///< interpolate, primitive_join -> depth_test
+  write,       ///< depth_test, rop -> framebuffer
+  retire,      ///< depth_test -> coarse_raster
+  request,     ///< framebuffer -> memory
+  response     ///< memory -> framebuffer
+};
+inline constexpr std::size_t kBoundaries = 12;
+inline constexpr std::array<std::string_view, kBoundaries> kBoundaryNames{
+    "primitive", "line",       "triangle", "setup", "tile",   "stamp",
+    "line_pixel", "fragment", "write",    "retire", "request", "response"};
+
+/// Sees every item as it crosses a boundary: those of one boundary in order, different ones as the work happens.
+struct TransferSink {
+  virtual ~TransferSink() = default;
+  virtual void transfer(Boundary boundary, Cycle cycle) = 0;
+};
+
+}  // namespace halfplane

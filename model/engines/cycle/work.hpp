@@ -1,0 +1,77 @@
+// What the cycle model needs to know of the work, besides its bits: how long it takes in each stage, and why.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "../../timing/stalls.hpp"
+#include "../../widths.hpp"
+
+namespace halfplane {
+
+/// Sizes of the hardware's buffers, as rtl_ref has them. Other values answer what another size would change.
+struct TimingParameters {
+  int stamp_queue = 2;  ///< stamps between fine_raster and interpolate, at least 1
+  int visits = 8;       ///< tile visits under way at most
+  int divide_bits = 3;  ///< quotient bits a cycle of the pipelined triangle_setup
+  bool operator==(const TimingParameters&) const = default;
+};
+
+/// A primitive on its way through cull and triangle_setup.
+struct PrimitiveWork {
+  bool is_triangle = false, is_line = false, is_counted = false;
+  bool is_dropped = false;   ///< by cull
+  bool is_negative = false;  ///< the signed area, with the vertices as cull_serial has sorted them
+  int turns = 1;             ///< cycles in which cull turns the vertices: 2 where the last one leads, otherwise 1
+  int log2_area = 0;         ///< ceil(log2 of twice the area); 0 for other kinds
+};
+
+/// A visit of one tile in fine_raster.
+struct TileVisitWork {
+  int tile_x = 0, tile_y = 0;
+  bool ends_primitive = false;
+  int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< of stamps, in the box
+  std::array<std::uint32_t, 32> columns{};  ///< of each row of stamps: a bit for each that has a covered sample
+};
+
+/// Cycles of the three parts of the pipelined triangle_setup: from a triangle in to its hand-over.
+struct SetupCycles {
+  int divide, gradients, values;
+  SetupCycles(const Widths& widths, int divide_bits) {
+    const int planes = 1 + widths.color_channels;
+    const int quotient = (widths.reciprocal.bits + divide_bits - 1) / divide_bits;
+    divide = 1 + std::max(quotient, planes + 3);
+    gradients = planes + 3;
+    values = planes + 2;
+  }
+};
+
+/// Cycles of the serial stages: bit-serial products, so they follow from widths.
+struct SerialCycles {
+  int product;  ///< of one cross product in cull
+  explicit SerialCycles(const Widths& widths)
+      : product(std::max(widths.area.bits, widths.grid_bits + widths.edge_value.bits - 1) + 2), widths_(widths) {}
+
+  /// From the triangle's coming to its setup's being on offer.
+  [[nodiscard]] Cycle setup(int log2_area) const {
+    const int delta = widths_.delta.bits, fraction = widths_.plane_fraction, kept = widths_.reciprocal.bits;
+    const int lead = std::max(fraction + 3 - kept, 0);
+    const int dropped = lead - fraction - 2 + log2_area + kept;  // bits of a product below the gradient's
+    int chain = 0, gradient = 0;                                 // cycles of one pass over all planes
+    for (int plane = 0; plane <= widths_.color_channels; ++plane) {
+      const int bits = plane == 0 ? widths_.depth_plane.bits : widths_.color_plane.bits;
+      chain += bits;
+      gradient += lead < 2 ? dropped + bits : std::max(dropped + bits, bits + lead + 1);
+    }
+    // SUBTRACT; for y and x FIRST, TURN_A, SECOND, GRADIENT; between them TURN_B; TURN_C, VALUE_X, TURN_D, VALUE_Y
+    return static_cast<Cycle>(8 * delta + 2 * (2 * chain + 2 * delta + gradient) + 2 * delta + 5 * delta + 4 * delta +
+                              2 * chain);
+  }
+
+ private:
+  const Widths& widths_;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,203 @@
+// One tile of one triangle, a row of lanes at a time: the bits of fine_raster, interpolate, depth_test and rop, fused.
+// The functional and the cycle engine share it; the tests hold it against the stages.
+#pragma once
+
+#include <bit>
+#include <cstring>
+
+#include "../stages/depth_test.hpp"
+#include "../stages/interpolate.hpp"
+#include "../stages/rop.hpp"
+#include "render.hpp"
+
+namespace halfplane {
+
+/// N lanes of a T. The compiler maps them to whatever vector registers it may use.
+template <class T, int N>
+struct LanesOf {
+  typedef T type __attribute__((vector_size(sizeof(T) * N)));
+};
+template <class T, int N>
+using Lanes = typename LanesOf<T, N>::type;
+
+template <class Vector, class Element>
+void load(Vector& vector, const Element* from) {
+  std::memcpy(&vector, from, sizeof vector);
+}
+template <class Vector, class Element>
+void store(Element* to, const Vector& vector) {
+  std::memcpy(to, &vector, sizeof vector);
+}
+
+/// What the rows of a triangle's tiles have in common. Lane: 32 bits where depth codes and guard bits fit, else 64.
+template <int T, class Lane>
+struct TriangleLanes {
+  LocalFormat<Lane> depth_format;
+  LocalFormat<std::uint32_t> color_format;
+  std::array<Lanes<std::int32_t, T>, 3> edge_ramp;  ///< column * step_x
+  Lanes<Lane, T> depth_ramp;                        ///< (column - T/2) * step_x
+  std::array<Lanes<std::uint32_t, T>, 4> color_ramp;
+  LocalPlane<Lane> depth;
+  std::array<LocalPlane<std::uint32_t>, 4> color;
+
+  TriangleLanes(const TriangleSetup& setup, const Config& config, const Widths& widths)
+      : depth_format(config.depth_bits, config.local_guard_bits), color_format(8, config.local_guard_bits) {
+    Lanes<std::int32_t, T> column;
+    Lanes<Lane, T> depth_column;
+    for (int i = 0; i < T; ++i) {
+      column[i] = i;
+      depth_column[i] = static_cast<Lane>(i - T / 2);
+    }
+    for (std::size_t e = 0; e < 3; ++e) edge_ramp[e] = column * -setup.edge[e].dy;
+    depth = local_plane(0, setup.depth, depth_format, widths);
+    depth_ramp = depth_column * depth.step_x;
+    for (std::size_t c = 0; c < 4; ++c) {
+      color[c] = local_plane(0, setup.color[c], color_format, widths);
+      color_ramp[c] = (Lanes<std::uint32_t, T>)(column - T / 2) * color[c].step_x;
+    }
+  }
+};
+
+/// A depth function as the three outcomes of one comparison: all bits set where the outcome passes.
+struct DepthOutcomes {
+  std::uint32_t less, equal, greater;
+  explicit DepthOutcomes(DepthFunc func)
+      : less(depth_passes(func, 0, 1) ? ~0U : 0U),
+        equal(depth_passes(func, 0, 0) ? ~0U : 0U),
+        greater(depth_passes(func, 1, 0) ? ~0U : 0U) {}
+};
+
+/// T: the tile size. The tiles of triangles that share the depth test and the write masks.
+template <int T, class Lane>
+class TileKernel {
+ public:
+  using Mask = Lanes<std::uint32_t, T>;  ///< one lane per column: all bits set or none
+
+  TileKernel(DepthFunc depth_test, bool depth_write, bool color_write, const Config& config, const Widths& widths)
+      : widths_(widths),
+        channels_(static_cast<std::size_t>(widths.color_channels)),
+        format_(config.color_format),
+        outcomes_(depth_test),
+        depth_write_(depth_write),
+        color_write_(color_write) {}
+
+  /// Draws the part of tile (tile_x, tile_y) that lies in the triangle's box. `edges`: the edge values at the tile's
+  /// first pixel; `is_accepted`: no need to look at them. Calls on_row(j, covered, passed) for each row with a covered
+  /// sample. `shades_failed`: colours are computed even where the depth test has failed.
+  template <class OnRow>
+  void draw(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, const EdgeValues& edges, bool is_accepted,
+            int tile_x, int tile_y, bool shades_failed, Framebuffer& frame, OnRow&& on_row) const {
+    const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
+    Mask in_box;
+    for (int i = 0; i < T; ++i) in_box[i] = i >= box.left && i <= box.right ? ~0U : 0U;
+    const auto anchor = plane_at_tile(setup, setup.depth, tile_x, tile_y, widths_, 64);
+    Tile tile{tile_x, tile_y, local_plane(anchor, setup.depth, lanes.depth_format, widths_).anchor};
+    const std::array<std::int32_t, 3> edge0{saturate_tile_edge(edges[0], widths_),
+                                            saturate_tile_edge(edges[1], widths_),
+                                            saturate_tile_edge(edges[2], widths_)};
+    for (int j = box.top; j <= box.bottom; ++j) {
+      Mask covered = in_box;
+      if (!is_accepted) cover_row(setup, lanes, edge0, j, covered);
+      if (is_any(covered)) on_row(j, covered, shade_row(setup, lanes, tile, j, covered, shades_failed, frame));
+    }
+  }
+
+  static std::uint32_t to_bits(const Mask& mask) {
+    std::uint32_t bits = 0;
+    for (int i = 0; i < T; ++i) bits |= mask[i] & (1U << i);
+    return bits;
+  }
+
+ private:
+  /// One tile of one triangle while its rows are drawn.
+  struct Tile {
+    int x, y;                              ///< tiles
+    Lane depth;                            ///< accumulator at the anchor
+    std::array<std::uint32_t, 4> color{};  ///< likewise; valid when has_color
+    bool has_color = false;
+  };
+
+  static bool is_any(const Mask& mask) {
+    std::array<std::uint64_t, sizeof(Mask) / 8> words;
+    std::memcpy(words.data(), &mask, sizeof mask);
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : words) any |= word;
+    return any != 0;
+  }
+
+  /// Keeps the columns of row j where no edge value is negative: there the sign bit of the three together is 0.
+  static void cover_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
+                        const std::array<std::int32_t, 3>& edge0, int j, Mask& covered) {
+    const std::int32_t e0 = edge0[0] + j * setup.edge[0].dx, e1 = edge0[1] + j * setup.edge[1].dx,
+                       e2 = edge0[2] + j * setup.edge[2].dx;
+    const auto signs = (lanes.edge_ramp[0] + e0) | (lanes.edge_ramp[1] + e1) | (lanes.edge_ramp[2] + e2);
+    covered &= ~(Mask)(signs >> 31);
+  }
+
+  /// The codes of a row of accumulators, clamped to the vertices' range: decode() lane by lane.
+  template <class Accumulator>
+  static Mask decode_row(const Lanes<Accumulator, T>& value, const LocalFormat<Accumulator>& format, std::uint32_t low,
+                         std::uint32_t high) {
+    using Signed = std::make_signed_t<Accumulator>;
+    using Row = Lanes<Signed, T>;
+    const Row bias = Row{} + static_cast<Signed>(Signed{1} << (format.bits - 1));
+    const Row lowest = Row{} + static_cast<Signed>(low), highest = Row{} + static_cast<Signed>(high);
+    Row code = (Row)((value & format.modulus_mask) >> format.guard_bits) - bias;
+    code = code < lowest ? lowest : code;
+    code = code > highest ? highest : code;
+    if constexpr (sizeof(Accumulator) == sizeof(std::uint32_t))
+      return (Mask)code;
+    else
+      return __builtin_convertvector(code, Mask);
+  }
+
+  /// interpolate, depth_test and rop for row j of a tile. Returns what passed.
+  Mask shade_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j,
+                 const Mask& covered, bool shades_failed, Framebuffer& frame) const {
+    const std::size_t first = frame.at(tile.x * T, tile.y * T + j);
+    std::uint32_t* stored_depth = frame.depth.data() + first;
+    const Lane row = static_cast<Lane>(tile.depth + static_cast<Lane>(j - T / 2) * lanes.depth.step_y);
+    const Lanes<Lane, T> value = lanes.depth_ramp + row;
+    const Mask depth = decode_row<Lane>(value, lanes.depth_format, setup.depth_min, setup.depth_max);
+    Mask stored;
+    load(stored, stored_depth);
+    const Mask passed =
+        covered & (((Mask)(depth < stored) & outcomes_.less) | ((Mask)(depth == stored) & outcomes_.equal) |
+                   ((Mask)(depth > stored) & outcomes_.greater));
+    if (!shades_failed && !is_any(passed)) return passed;
+    if (depth_write_) store(stored_depth, (depth & passed) | (stored & ~passed));
+    if (color_write_) color_row(setup, lanes, tile, j, passed, frame.color.data() + first);
+    return passed;
+  }
+
+  void color_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j, const Mask& passed,
+                 std::uint32_t* stored_color) const {
+    const bool has_alpha = format_ == ColorFormat::rgba8888;
+    if (!tile.has_color) {
+      tile.has_color = true;
+      for (std::size_t c = 0; c < channels_; ++c) {
+        const auto anchor = plane_at_tile(setup, setup.color[c], tile.x, tile.y, widths_, 64);
+        tile.color[c] = local_plane(anchor, setup.color[c], lanes.color_format, widths_).anchor;
+      }
+    }
+    std::array<Mask, 4> channel;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const std::uint32_t row = tile.color[c] + static_cast<std::uint32_t>(j - T / 2) * lanes.color[c].step_y;
+      const Mask value = lanes.color_ramp[c] + row;
+      channel[c] = decode_row<std::uint32_t>(value, lanes.color_format, setup.color_min[c], setup.color_max[c]);
+    }
+    const Mask packed = has_alpha ? pack_rgba8888(channel[0], channel[1], channel[2], channel[3])
+                                  : pack_rgb565(channel[0], channel[1], channel[2]);
+    Mask stored;
+    load(stored, stored_color);
+    store(stored_color, (packed & passed) | (stored & ~passed));
+  }
+
+  const Widths& widths_;
+  std::size_t channels_;
+  ColorFormat format_;
+  DepthOutcomes outcomes_;
+  bool depth_write_, color_write_;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,45 @@
+// Injected back-pressure: a function of seed, stream and cycle, so that whoever knows the seed knows every stall. The
+// co-simulation stalls the RTL by it, the cycle model waits by it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace halfplane {
+
+using Cycle = std::uint64_t;  ///< number of a clock cycle since reset
+
+/// A probability in [0, 1) as the threshold that is_stalled() takes, in 2^-32.
+[[nodiscard]] inline std::uint64_t stall_threshold(double probability) {
+  return static_cast<std::uint64_t>(std::ldexp(probability, 32));
+}
+
+/// Whether `stream` moves nothing in `cycle`. The cycle is one step of SplitMix64's counter and the stream one of another
+/// odd constant, both through its finaliser (Steele, Lea, Flood 2014); the top 32 bits are compared with the threshold.
+[[nodiscard]] constexpr bool is_stalled(std::uint64_t seed, int stream, Cycle cycle, std::uint64_t threshold) {
+  if (threshold == 0) return false;
+  std::uint64_t z =
+      seed + cycle * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(stream + 1) * 0xd1342543de82ef95ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return ((z ^ (z >> 31)) >> 32) < threshold;
+}
+
+/// The stalls of one run.
+struct Stalls {
+  std::uint64_t seed = 1;
+  std::uint64_t threshold = 0;  ///< 0: none
+
+  /// The first cycle from `cycle` on in which none of `streams` (a bit each) is stalled.
+  [[nodiscard]] constexpr Cycle next_free(unsigned streams, Cycle cycle) const {
+    if (threshold == 0) return cycle;
+    for (;; ++cycle) {
+      bool is_free = true;
+      for (int s = 0; streams >> s != 0; ++s)
+        is_free = is_free && ((streams >> s & 1) == 0 || !is_stalled(seed, s, cycle, threshold));
+      if (is_free) return cycle;
+    }
+  }
+};
+
+}  // namespace halfplane

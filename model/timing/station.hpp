@@ -1,0 +1,43 @@
+// Station: a place in a pipeline that holds a few items in order. A register, a unit that works on one item at a time, a
+// row of registers that wait for each other, a skid buffer, a pool of slots: one rule for all of them.
+//
+//   item n may enter when item n - capacity has left: in the same cycle (turnaround 0, ready passes through) or so many
+//   cycles later (turnaround 1: ready is a register)
+//   it may leave `latency` cycles after it entered
+//
+// So time is a max-plus recurrence over the items; nothing ticks.
+#pragma once
+
+#include <vector>
+
+#include "stalls.hpp"
+
+namespace halfplane {
+
+class Station {
+ public:
+  /// Cycles but for `capacity`, which is items and at least 1.
+  Station(int capacity, int latency, int turnaround)
+      : latency_(static_cast<Cycle>(latency)),
+        turnaround_(static_cast<Cycle>(turnaround)),
+        free_at_(static_cast<std::size_t>(capacity)) {}
+
+  /// The first cycle in which the next item can enter, as far as the items before it are concerned.
+  [[nodiscard]] Cycle room() const { return free_at_[next_]; }
+  /// The first cycle in which an item that entered in `entered` can leave.
+  [[nodiscard]] Cycle ready(Cycle entered) const { return entered + latency_; }
+  /// The next item leaves. Once for every item, in order, before room() is asked for the item `capacity` behind it.
+  void leave(Cycle cycle) {
+    free_at_[next_] = cycle + turnaround_;
+    if (++next_ == free_at_.size()) next_ = 0;
+  }
+  /// The cycle from which on everything that ever entered has left, turnaround included.
+  [[nodiscard]] Cycle empty() const { return free_at_[next_ == 0 ? free_at_.size() - 1 : next_ - 1]; }
+
+ private:
+  Cycle latency_, turnaround_;
+  std::vector<Cycle> free_at_;  ///< ring: when the place of item n - capacity is free
+  std::size_t next_ = 0;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,49 @@
+// Stream: a valid/ready hand-over between two stages. An item moves in the first cycle in which it is offered, the other
+// side is ready, and nothing stalls the stream.
+#pragma once
+
+#include <algorithm>
+
+#include "stalls.hpp"
+
+namespace halfplane {
+
+/// What one stream did, in cycles.
+struct StreamUse {
+  std::uint64_t busy = 0;     ///< moved an item
+  std::uint64_t stalled = 0;  ///< had one that was not taken
+  std::uint64_t starved = 0;  ///< had none
+};
+
+class Stream {
+ public:
+  /// `streams`: the stalls that hold it back, a bit each.
+  Stream(const Stalls& stalls, unsigned streams) : stalls_(stalls), streams_(streams) {}
+
+  /// Moves the next item, which is on offer from `offered` on, to somebody who can take it from `room` on. Returns when.
+  Cycle transfer(Cycle offered, Cycle room) { return transfer(offered, room, 0); }
+  /// The same when `others`, a bit each, must be free as well.
+  Cycle transfer(Cycle offered, Cycle room, unsigned others) {
+    const Cycle moved = stalls_.next_free(streams_ | others, std::max(offered, room));
+    ++items_;
+    waited_ += moved - offered;
+    return moved;
+  }
+  /// Accounts for an item that was on offer from `offered` on and moved with that of another stream.
+  void moved(Cycle offered, Cycle cycle) {
+    ++items_;
+    waited_ += cycle - offered;
+  }
+  /// Accounts for `items` that moved without waiting.
+  void pass(std::uint64_t items) { items_ += items; }
+
+  [[nodiscard]] unsigned streams() const { return streams_; }
+  [[nodiscard]] StreamUse use(Cycle cycles) const { return {items_, waited_, cycles - items_ - waited_}; }
+
+ private:
+  Stalls stalls_;
+  unsigned streams_;
+  std::uint64_t items_ = 0, waited_ = 0;
+};
+
+}  // namespace halfplane
