@@ -1,8 +1,10 @@
 // Memory timing: when the memory behind the chip takes a request, and when it answers a read. No data. The harness puts
-// the same object behind the RTL's memory port, so both see one memory.
+// the same object behind the RTL's memory port, so both see one memory. docs/memory.md gives the sources of the figures.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,16 +31,29 @@ class MemoryTiming {
   [[nodiscard]] virtual Cycle fixed_latency() const { return 0; }
 };
 
-/// An ideal port. `latency`: cycles, at least 1.
-class FixedMemory final : public MemoryTiming {
- public:
-  explicit FixedMemory(int latency) : latency_(static_cast<Cycle>(latency)) {}
-  [[nodiscard]] Cycle room() const override { return 0; }
-  Cycle accept(const MemoryAccess&, Cycle cycle) override { return cycle + latency_; }
-  [[nodiscard]] Cycle fixed_latency() const override { return latency_; }
-
- private:
-  Cycle latency_;
+enum class MemoryKind : std::uint8_t {
+  fixed,  ///< ideal: a request a cycle, an answer after `latency` cycles
+  sram,   ///< block RAM with an output register: fixed, 2 cycles
+  sdram,  ///< 16-bit SDR SDRAM, 167 MHz
+  psram,  ///< quad SPI PSRAM, 84 MHz
+  ddr3    ///< 16-bit DDR3-800
 };
+inline constexpr std::array<std::string_view, 5> kMemoryKinds{"fixed", "sram", "sdram", "psram", "ddr3"};
+
+struct MemorySettings {
+  MemoryKind kind = MemoryKind::fixed;
+  int latency = 8;  ///< of `fixed`: cycles, at least 1
+  int mhz = 50;     ///< of the chip: how many of its cycles a nanosecond of the memory is
+  bool operator==(const MemorySettings&) const = default;
+};
+
+/// The kind of that name. Throws InputError when there is none.
+[[nodiscard]] MemoryKind memory_kind(std::string_view name);
+
+/// After its power-up. Tile-major, depth before colour, each row of a memory filled before the next bank's.
+[[nodiscard]] std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config);
+
+/// Bytes of one request's data.
+[[nodiscard]] int stamp_bytes(const Config& config, bool is_color);
 
 }  // namespace halfplane

@@ -38,7 +38,7 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
   result["rtl"] = factory.name;
   result["stalls"] = options.stalls;
-  result["memory_latency"] = options.memory_latency;
+  result["memory"] = memory_json(options.memory);
   result["mutant"] = options.mutant;
   Json stages = Json::object(), arrows = Json::object();
   for (std::size_t i = 0; i < kArrows; ++i) {
@@ -56,11 +56,20 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["scenes"] = session.scenes;
   result["mismatches"] = r.mismatch ? 1 : 0;  // the run stops at the first
   result["first_mismatch"] = nullptr;
-  result["cycles"] = {{"model", nullptr},
+  Json crossings = Json::object();
+  for (std::size_t i = 0; i < kBoundaries; ++i) crossings[std::string(kBoundaryNames[i])] = r.cycles_compared[i];
+  result["crossings"] = crossings;
+  const bool is_late = r.mismatch && r.mismatch->kind == Mismatch::Kind::cycle;
+  const auto error = [&r] {
+    const FieldPair& cycle = r.mismatch->fields.front();
+    return cycle.model > cycle.rtl ? cycle.model - cycle.rtl : cycle.rtl - cycle.model;
+  };
+  result["cycles"] = {{"model", r.mismatch ? Json(nullptr) : Json(r.model_cycles)},
                       {"rtl", r.cycles},
                       {"raster", r.raster_cycles},
                       {"tiles", r.tile_cycles},
-                      {"max_primitive_error", nullptr}};
+                      // The run stops at the first difference; with other bits cycles mean nothing.
+                      {"max_primitive_error", is_late ? Json(error()) : r.mismatch ? Json(nullptr) : Json(0)}};
   result["rtl_cycles_per_s"] = session.seconds > 0 ? static_cast<double>(r.clocks) / session.seconds : 0.0;
   return result;
 }
@@ -130,8 +139,9 @@ int run(const CosimOptions& options) {
     out << "first seen  " << mismatch_line(*session.result.mismatch) << "\n\n";
     print_finding(out, *saved);
   } else {
-    out << (is_empty ? "FAILED: nothing was compared\n"
-                     : "equal       every bit of every packet, of memory and counters\n");
+    out << (is_empty ? std::string("FAILED: nothing was compared\n")
+                     : "equal       every bit of every packet, of memory and counters; the cycle of each of " +
+                           with_commas(session.result.total_cycles_compared()) + " crossings\n");
   }
   if (!options.junit_path.empty()) {
     const std::string xml = junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds);

@@ -62,9 +62,7 @@ void add_stalls_option(CLI::App& app, CosimOptions& options) {
 
 void add_cosim_options(CLI::App& app, CosimOptions& options) {
   add_stalls_option(app, options);
-  app.add_option("--memory-latency", options.memory_latency, "cycles from a read request to its answer")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+  add_memory_options(app, options.memory);
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
@@ -94,7 +92,8 @@ LockstepOptions lockstep_options(const CosimOptions& options) {
   LockstepOptions lockstep;
   lockstep.seed = options.seed;
   lockstep.stall_probability = options.stalls;
-  lockstep.memory_latency = options.memory_latency;
+  lockstep.memory = options.memory;
+  lockstep.compares_cycles = true;
   lockstep.mutant = static_cast<std::uint16_t>(options.mutant);
   return lockstep;
 }
@@ -113,7 +112,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
   if (scene == options.scene && options.cull_objects != "box") command += " --cull-objects " + options.cull_objects;
   command += " --seed " + std::to_string(lockstep.seed);
   if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);
-  if (lockstep.memory_latency != 8) command += " --memory-latency " + std::to_string(lockstep.memory_latency);
+  command += memory_arguments(lockstep.memory);
   if (lockstep.mutant != 0) command += " --mutant " + std::to_string(lockstep.mutant);
   return command;
 }
@@ -166,7 +165,7 @@ Json mismatch_json(const Mismatch& m, const std::string& repeat) {
   for (const FieldPair& field : m.fields)
     if (field.differs())
       fields.push_back({{"name", field.name}, {"model", field.model_text()}, {"rtl", field.rtl_text()}});
-  constexpr std::array kKinds{"differs", "extra", "missing", "memory", "counters", "protocol"};
+  constexpr std::array kKinds{"differs", "extra", "missing", "memory", "counters", "protocol", "cycle"};
   return {{"stage", m.stage},
           {"arrow", m.arrow},
           {"kind", kKinds[static_cast<std::size_t>(m.kind)]},

@@ -4,7 +4,7 @@
 #include <iosfwd>
 #include <string>
 
-#include "sim/cli/options.hpp"
+#include "sim/cli/memory_options.hpp"
 #include "sim/cosim/session.hpp"
 
 namespace halfplane {
@@ -13,7 +13,7 @@ struct CosimOptions : CommonOptions {
   std::uint64_t random = 0;  ///< triangles; 0: a scene
   double stalls = 0;
   int mutant = 0;
-  int memory_latency = 8;
+  MemorySettings memory;
   std::string junit_path, trace_path, save_path;
 };
 

@@ -90,6 +90,7 @@ std::string where(const Mismatch& m) {
   const std::string what = m.kind == Mismatch::Kind::extra      ? "one too many"
                            : m.kind == Mismatch::Kind::missing  ? "never comes"
                            : m.kind == Mismatch::Kind::protocol ? "broken"
+                           : m.kind == Mismatch::Kind::cycle    ? "other cycle"
                            : fields.empty()                     ? ""
                                                                 : fields.front() + more;
   return m.arrow + " " + what;

@@ -10,6 +10,25 @@ namespace {
 constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
 constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
 constexpr std::uint64_t kReportCycles = 1 << 16;
+constexpr std::uint64_t kSlowestAnswer = 4096;  // of the modelled memories, far more than any takes
+
+/// Context and edges go beside setup and tile.
+std::optional<Boundary> boundary_of(Arrow arrow) {
+  switch (arrow) {
+    case Arrow::triangle: return Boundary::triangle;
+    case Arrow::setup: return Boundary::setup;
+    case Arrow::tile: return Boundary::tile;
+    case Arrow::stamp: return Boundary::stamp;
+    case Arrow::line_pixel: return Boundary::line_pixel;
+    case Arrow::fragment: return Boundary::fragment;
+    case Arrow::write: return Boundary::write;
+    case Arrow::retire: return Boundary::retire;
+    case Arrow::context:
+    case Arrow::edges:
+    case Arrow::request: break;
+  }
+  return std::nullopt;
+}
 
 std::array<std::size_t, kArrows> packet_bytes(const Widths& widths) {
   std::array<std::size_t, kArrows> bytes{};
@@ -47,16 +66,24 @@ std::uint64_t LockstepResult::total() const {
   return sum;
 }
 
+std::uint64_t LockstepResult::total_cycles_compared() const {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t n : cycles_compared) sum += n;
+  return sum;
+}
+
 void LockstepResult::add(const LockstepResult& later) {
   for (std::size_t i = 0; i < kArrows; ++i) compared[i] += later.compared[i];
   memory_compared += later.memory_compared;
   counters_compared += later.counters_compared;
+  for (std::size_t i = 0; i < kBoundaries; ++i) cycles_compared[i] += later.cycles_compared[i];
   if (!mismatch) mismatch = later.mismatch;
   is_stopped |= later.is_stopped;
   triangles += later.triangles;
   lines += later.lines;
   points += later.points;
   cycles += later.cycles;
+  model_cycles += later.model_cycles;
   clocks += later.clocks;
   raster_cycles += later.raster_cycles;
   tile_cycles += later.tile_cycles;
@@ -89,10 +116,18 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       bytes_(packet_bytes(widths_)),
       expected_(widths_),
       model_(config_, expected_),
-      memory_(config_, widths_, options_.memory_latency),
+      memory_(config_, widths_, options_.memory),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
       lines_(words_of(packet_bits<LineSetup>(widths_))),
       held_(words_of(packet_bits<MemoryRequest>(widths_))) {
+  if (options_.compares && options_.compares_cycles && !options_.drains_clears) {
+    CycleOptions cycles;
+    cycles.stalls = {options_.seed, threshold_};
+    cycles.parameters = options_.parameters;
+    cycles.sink = &expected_cycles_;
+    model_memory_ = make_memory(options_.model_memory.value_or(options_.memory), config_);
+    cycle_model_ = make_cycle_model(config_, *model_memory_, cycles);
+  }
   dut_.reset(options_.seed, options_.mutant);
 }
 
@@ -108,6 +143,7 @@ LockstepResult Lockstep::run(const Scene& scene) {
   last_moved_ = cycle_;
   last_drawn_ = ~0ULL;
   const std::uint64_t start = cycle_;
+  if (cycle_model_) cycle_model_->begin(scene.width, scene.height, cycle_);
   // Clearing and flushing visit the flags of every tile, a few cycles each, and move no packet meanwhile.
   const auto tiles = static_cast<std::uint64_t>((scene.width >> widths_.tile_shift) + 1) *
                      static_cast<std::uint64_t>((scene.height >> widths_.tile_shift) + 1);
@@ -116,7 +152,7 @@ LockstepResult Lockstep::run(const Scene& scene) {
     step(host);
     const std::uint64_t still = cycle_ - last_moved_;
     if (has_finished() && still > kSettleCycles) break;
-    if (all_sent_ && was_idle_ && still > 16 * kSettleCycles + static_cast<std::uint64_t>(options_.memory_latency))
+    if (all_sent_ && was_idle_ && still > 16 * kSettleCycles + kSlowestAnswer + static_cast<std::uint64_t>(options_.memory.latency))
       break;
     if (still > limit) break;
     if (cycle_ % kReportCycles == 0 && options_.progress && !options_.progress(host.progress())) {
@@ -138,6 +174,7 @@ LockstepResult Lockstep::run(const Scene& scene) {
   }
   host_counters_ = host.counters();
   result_.cycles = last_moved_ + 1 - start;
+  if (cycle_model_) result_.model_cycles = cycle_model_->totals().last + 1 - start;
   result_.clocks = cycle_ - start;
   return result_;
 }
@@ -174,6 +211,7 @@ void Lockstep::offer_primitive(HostStream& host) {
   if (options_.compares) {
     expected_.set_sequence(static_cast<std::uint32_t>(sent_.size()));
     model_.run(next->packet, next->line);
+    if (cycle_model_) cycle_model_->run(*next);
   } else if (next->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
     CounterPacket ignored;  // pieces of one input triangle follow each other
     if (cull(next->packet, widths_, ignored) && std::exchange(last_drawn_, next->primitive) != next->primitive)
@@ -191,7 +229,7 @@ void Lockstep::step(HostStream& host) {
     has_response_ = due != nullptr;
   }
   const std::uint32_t stalls = stall_bits(options_.seed, cycle_, threshold_);
-  const bool request_ready = !is_stalled(options_.seed, stall_memory, cycle_, threshold_);
+  const bool request_ready = memory_.is_ready(cycle_) && !is_stalled(options_.seed, stall_memory, cycle_, threshold_);
   const DutOutputs& out = dut_.evaluate(stalls, request_ready);
 
   bool moved = out.fired != 0;
@@ -199,13 +237,17 @@ void Lockstep::step(HostStream& host) {
     for (std::uint32_t left = out.fired; left != 0 && !result_.mismatch; left &= left - 1) {
       const auto arrow = static_cast<std::size_t>(std::countr_zero(left));
       compare(static_cast<Arrow>(arrow), out.packet[arrow]);
+      if (const auto boundary = boundary_of(static_cast<Arrow>(arrow))) compare_cycle(*boundary);
     }
   if (out.request_valid || has_held_) {
     const bool taken = out.request_valid && request_ready;
     if (threshold_ != 0) watch_request(out, stalls, taken);
     if (taken && !result_.mismatch) {
       const void* request = out.packet[static_cast<std::size_t>(Arrow::request)];
-      if (options_.compares) compare(Arrow::request, request);
+      if (options_.compares) {
+        compare(Arrow::request, request);
+        compare_cycle(Boundary::request);
+      }
       std::memcpy(held_.data(), request, bytes_[static_cast<std::size_t>(Arrow::request)]);
       memory_.accept(held_.data(), cycle_);
       moved = true;
@@ -215,6 +257,7 @@ void Lockstep::step(HostStream& host) {
     memory_.pop();
     has_response_ = false;
     moved = true;
+    compare_cycle(Boundary::response);
   }
   const bool taken = has_primitive_ && out.primitive_ready;
   if (taken) {
@@ -223,8 +266,10 @@ void Lockstep::step(HostStream& host) {
     drains_ =
         options_.drains_clears && sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear);
     count_taken();
+    compare_cycle(Boundary::primitive);
   }
   if (has_line_ && out.line_ready) {
+    compare_cycle(Boundary::line);
     lines_.pop();
     has_line_ = false;
     moved = true;
@@ -271,6 +316,27 @@ void Lockstep::compare(Arrow arrow, const void* rtl) {
   result_.mismatch = packet_mismatch(Mismatch::Kind::differs, arrow, queue.front(), words.data(), queue.front_tag());
   if (queue.size() > 1 && std::memcmp(queue.front(1), rtl, bytes_[index]) == 0)
     result_.mismatch->hint = "the RTL's packet is the model's next one: this one was lost";
+}
+
+/// An item crosses `boundary` in this cycle.
+void Lockstep::compare_cycle(Boundary boundary) {
+  if (!cycle_model_ || result_.mismatch) return;
+  const auto index = static_cast<std::size_t>(boundary);
+  auto& queue = expected_cycles_[boundary];
+  ++result_.cycles_compared[index];
+  if (!queue.empty() && queue.front() == cycle_) {
+    queue.pop_front();
+    return;
+  }
+  Mismatch m;
+  m.kind = Mismatch::Kind::cycle;
+  m.arrow = kBoundaryNames[index];
+  m.stage = kBoundarySenders[index];
+  m.cycle = cycle_;
+  m.number = result_.cycles_compared[index] - 1;
+  m.fields = {{"cycle", 64, false, queue.empty() ? 0 : queue.front(), cycle_}};
+  if (queue.empty()) m.hint = "the cycle model knows of no such packet";
+  result_.mismatch = std::move(m);
 }
 
 /// Under back-pressure a request must wait unchanged. A cycle that stalls the stream itself shows no offer.

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/host_stream.hpp"
 #include "model/timing/stream.hpp"
@@ -23,10 +26,14 @@ namespace halfplane {
 struct LockstepOptions {
   std::uint64_t seed = 1;        ///< of stalls and start values
   double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
-  int memory_latency = 8;        ///< cycles
+  MemorySettings memory;         ///< behind the RTL
   std::uint16_t mutant = 0;
   bool drains_clears = false;  ///< nothing goes in behind a fast clear until it is done: for cycles of primitives alone
   bool compares = true;        ///< false: the design alone, for its image and counters
+  /// With `compares`, and without `drains_clears`: the cycle of every crossing of every boundary against the cycle model.
+  bool compares_cycles = false;
+  TimingParameters parameters;                 ///< of the cycle model; the default is the RTL
+  std::optional<MemorySettings> model_memory;  ///< likewise: `memory` unless given
   std::string trace;           ///< FST file, empty: none; holds the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
   /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
@@ -37,17 +44,20 @@ struct LockstepResult {
   std::array<std::uint64_t, kArrows> compared{};  ///< packets, by arrow
   std::uint64_t memory_compared = 0;              ///< stamps of either plane in the final memory
   std::uint64_t counters_compared = 0;
+  std::array<std::uint64_t, kBoundaries> cycles_compared{};  ///< crossings, by boundary
   std::optional<Mismatch> mismatch;
   bool is_stopped = false;                             ///< by options.progress: neither equal nor different
   std::uint64_t triangles = 0, lines = 0, points = 0;  ///< taken by the RTL
   std::uint64_t cycles = 0;                            ///< to the last packet anywhere, memory included
   std::uint64_t raster_cycles = 0;  ///< from the first of them taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
+  std::uint64_t model_cycles = 0;   ///< what the cycle model says of `cycles`; 0 when it was not asked
   std::uint64_t clocks = 0;         ///< simulated, those that waited for a packet too many included
   std::uint64_t drawn = 0;          ///< input triangles of which a piece passed cull; only when nothing is compared
   std::array<StreamUse, kStreams> use{};  ///< only when nothing is compared
 
   [[nodiscard]] std::uint64_t total() const;
+  [[nodiscard]] std::uint64_t total_cycles_compared() const;
   [[nodiscard]] std::uint64_t primitives() const { return triangles + lines + points; }
   /// Adds a later run of the same Lockstep.
   void add(const LockstepResult& later);
@@ -83,6 +93,16 @@ class ExpectedPackets final : public PacketSink {
   std::uint32_t sequence_ = 0;  ///< of the primitive at work: comes back as the tag of its packets
 };
 
+/// Takes the cycles of the cycle model into one queue per boundary.
+class ExpectedCycles final : public TransferSink {
+ public:
+  void transfer(Boundary boundary, Cycle cycle) override { queue_[static_cast<std::size_t>(boundary)].push_back(cycle); }
+  [[nodiscard]] std::deque<Cycle>& operator[](Boundary boundary) { return queue_[static_cast<std::size_t>(boundary)]; }
+
+ private:
+  std::array<std::deque<Cycle>, kBoundaries> queue_;
+};
+
 /// A design and its model, side by side since reset.
 class Lockstep {
  public:
@@ -105,6 +125,7 @@ class Lockstep {
   void offer_primitive(HostStream& host);
   void step(HostStream& host);
   void compare(Arrow arrow, const void* rtl);
+  void compare_cycle(Boundary boundary);
   void count_taken();
   void watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken);
   void count_use(const DutOutputs& out);
@@ -127,6 +148,9 @@ class Lockstep {
   ExpectedPackets expected_;
   HardwareModel model_;
   MemoryModel memory_;
+  ExpectedCycles expected_cycles_;
+  std::unique_ptr<MemoryTiming> model_memory_;  // and the model in front of it: only when cycles are compared
+  std::unique_ptr<CycleModel> cycle_model_;
   Counters host_counters_;
 
   LockstepResult result_;                 // of the run at work

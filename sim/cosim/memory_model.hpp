@@ -1,23 +1,31 @@
-// The memory behind the RTL's memory port: one request a cycle, answers in order after a fixed latency.
+// The memory behind the RTL's memory port: the data, and the time of a MemoryTiming.
 #pragma once
 
 #include <cstdint>
 
 #include "model/engines/hardware.hpp"
+#include "model/timing/memory.hpp"
 #include "sim/cosim/packet_words.hpp"
 
 namespace halfplane {
 
 class MemoryModel {
  public:
-  /// `latency`: cycles from the acceptance of a read to the first in which its answer is offered, at least 1.
-  MemoryModel(const Config& config, const Widths& widths, int latency)
-      : widths_(widths), latency_(latency), tiles_(config), answers_(words_of(packet_bits<MemoryResponse>(widths))) {}
+  MemoryModel(const Config& config, const Widths& widths, const MemorySettings& settings)
+      : widths_(widths),
+        tiles_(config),
+        timing_(make_memory(settings, config)),
+        answers_(words_of(packet_bits<MemoryResponse>(widths))) {}
+
+  /// Whether a request can be taken in this cycle.
+  [[nodiscard]] bool is_ready(std::uint64_t cycle) const { return timing_->room() <= cycle; }
 
   void accept(const std::uint32_t* words, std::uint64_t cycle) {
     const auto request = unpack_words<MemoryRequest>(words, widths_);
     const bool is_inside =  // a faulty design may ask for what is not there: nothing is kept of it
         request.tile_x < tiles_.tiles_x() && request.tile_y < tiles_.tiles_y() && request.stamp < tiles_.stamps();
+    const Cycle due = timing_->accept(
+        {request.is_write != 0, request.is_color != 0, request.tile_x, request.tile_y, request.stamp}, cycle);
     if (request.is_write != 0) {
       if (!is_inside) return;
       tiles_.write(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, request.data);
@@ -25,14 +33,14 @@ class MemoryModel {
     }
     MemoryResponse response;
     if (is_inside) tiles_.read(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, response.data);
-    pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(cycle)));
+    pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(due)));
   }
 
   /// The answer that is due in this cycle, or null.
   [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const {
     if (answers_.empty()) return nullptr;
-    const std::uint32_t waited = static_cast<std::uint32_t>(cycle) - answers_.front_tag();  // modulo 2^32
-    return waited >= static_cast<std::uint32_t>(latency_) ? answers_.front() : nullptr;
+    const std::uint32_t late = static_cast<std::uint32_t>(cycle) - answers_.front_tag();  // modulo 2^32
+    return late < 1U << 31 ? answers_.front() : nullptr;
   }
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty(); }
@@ -40,8 +48,8 @@ class MemoryModel {
 
  private:
   const Widths& widths_;
-  int latency_;
   TileMemory tiles_;
+  std::unique_ptr<MemoryTiming> timing_;
   PacketQueue answers_;
 };
 

@@ -17,7 +17,8 @@ struct Mismatch {
     missing,   ///< a packet that the RTL never sends
     memory,    ///< the final memory image
     counters,  ///< the performance counters
-    protocol   ///< valid, ready or idle broke their rule
+    protocol,  ///< valid, ready or idle broke their rule
+    cycle      ///< a packet comes in another cycle than the cycle model says
   };
   Kind kind = Kind::differs;
   std::string stage, arrow;                ///< the first suspect, and where it was seen

@@ -79,6 +79,7 @@ std::string what(const Mismatch& m) {
     case Mismatch::Kind::missing: return packet + " never comes";
     case Mismatch::Kind::protocol: return m.hint;
     case Mismatch::Kind::memory: return "the final memory image differs";
+    case Mismatch::Kind::cycle: return packet + " comes in another cycle than the cycle model says";
     case Mismatch::Kind::counters:
     case Mismatch::Kind::differs: break;
   }

@@ -45,6 +45,11 @@ inline constexpr std::array<std::string_view, kBoundaries> kBoundaryNames{
     "primitive", "line",       "triangle", "setup", "tile",   "stamp",
     "line_pixel", "fragment", "write",    "retire", "request", "response"};
 
+/// The stage that sends across each of them.
+inline constexpr std::array<std::string_view, kBoundaries> kBoundarySenders{
+    "host",        "host",       "cull", "triangle_setup", "coarse_raster", "fine_raster",
+    "line_raster", "interpolate", "depth_test", "depth_test", "framebuffer",  "memory"};
+
 /// Sees every item as it crosses a boundary: those of one boundary in order, different ones as the work happens.
 struct TransferSink {
   virtual ~TransferSink() = default;
