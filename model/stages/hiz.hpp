@@ -21,8 +21,12 @@ namespace halfplane {
 /// The bounds of all tiles. Before the first clear they are all ones: nothing is left out.
 class Hiz {
  public:
-  explicit Hiz(const Config& config, const Widths& widths)
-      : bits_(config.hiz_bits),
+  static constexpr int kUntestedTiles = 2;  ///< of the RTL
+
+  /// A primitive of at most `untested_tiles` in x and in y is never tested.
+  explicit Hiz(const Config& config, const Widths& widths, int untested_tiles = kUntestedTiles)
+      : untested_tiles_(untested_tiles),
+        bits_(config.hiz_bits),
         low_bits_(config.depth_bits - hiz_code_bits(config)),
         tiles_x_(static_cast<std::size_t>(widths.tiles_x)),
         code_(tiles_x_ * static_cast<std::size_t>(widths.tiles_y),
@@ -36,7 +40,7 @@ class Hiz {
     };
     const auto func = static_cast<DepthFunc>(setup.depth_test);
     return bits_ > 0 && holds_ && setup.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) &&
-           (tiles(setup.left, setup.right) > 2 || tiles(setup.top, setup.bottom) > 2) &&
+           (tiles(setup.left, setup.right) > untested_tiles_ || tiles(setup.top, setup.bottom) > untested_tiles_) &&
            (func == DepthFunc::less || func == DepthFunc::lequal || func == DepthFunc::equal);
   }
 
@@ -74,6 +78,7 @@ class Hiz {
     return static_cast<std::size_t>(y) * tiles_x_ + static_cast<std::size_t>(x);
   }
   bool holds_ = true;    ///< no line can have raised a depth since the last fast clear
+  int untested_tiles_;
   int bits_, low_bits_;  ///< bits stored, and dropped, of a depth code
   std::size_t tiles_x_;
   std::vector<std::uint32_t> code_;

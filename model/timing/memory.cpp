@@ -132,7 +132,7 @@ class Dram final : public ClockedMemory {
     bus_free_ = done;
     last_was_write_ = is_write;
     if (is_write) write_ended_ = done;
-    bank.may_precharge = std::max(bank.may_precharge, is_write ? done + t_.write_recovery : column + t_.burst_clocks * t_.clock);
+    bank.may_precharge = std::max(bank.may_precharge, is_write ? done + t_.write_recovery : column + clocks * t_.clock);
     return done;
   }
 
@@ -160,7 +160,7 @@ class Psram final : public ClockedMemory {
   Psram(const Config& config, int mhz) : ClockedMemory(config, mhz, kClock) {}
 
  private:
-  static constexpr Picoseconds kClock = 11'905, kDeselected = 50'000;             // tCPH
+  static constexpr Picoseconds kClock = 11'905, kDeselected = 18'000;             // tCPH
   static constexpr std::uint64_t kCommand = 2, kAddress = 6, kReadWait = 6;       // clocks
   Picoseconds serve(bool is_write, std::uint64_t, std::uint64_t bytes, Picoseconds arrives) override {
     const Picoseconds begins = round_up(std::max(arrives, free_));
@@ -176,7 +176,7 @@ class Psram final : public ClockedMemory {
 MemoryKind memory_kind(std::string_view name) {
   for (std::size_t i = 0; i < kMemoryKinds.size(); ++i)
     if (kMemoryKinds[i] == name) return static_cast<MemoryKind>(i);
-  throw InputError("no memory '" + std::string(name) + "'; give fixed, sram, sdram, psram or ddr3");
+  throw InputError("--memory: no memory '" + std::string(name) + "'; give fixed, sram, sdram, psram or ddr3");
 }
 
 int stamp_bytes(const Config& config, bool is_color) {

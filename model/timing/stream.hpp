@@ -20,30 +20,33 @@ class Stream {
   /// `streams`: the stalls that hold it back, a bit each.
   Stream(const Stalls& stalls, unsigned streams) : stalls_(stalls), streams_(streams) {}
 
-  /// Moves the next item, which is on offer from `offered` on, to somebody who can take it from `room` on. Returns when.
-  Cycle transfer(Cycle offered, Cycle room) { return transfer(offered, room, 0); }
-  /// The same when `others`, a bit each, must be free as well.
-  Cycle transfer(Cycle offered, Cycle room, unsigned others) {
+  /// Moves the next item, which is on offer from `offered` on, to somebody who can take it from `room` on; the stalls of
+  /// `others`, a bit each, hold it back as well. Returns when.
+  Cycle transfer(Cycle offered, Cycle room, unsigned others = 0) {
     const Cycle moved = stalls_.next_free(streams_ | others, std::max(offered, room));
-    ++items_;
-    waited_ += moved - offered;
+    count(offered, room, moved);
     return moved;
   }
-  /// Accounts for an item that was on offer from `offered` on and moved with that of another stream.
-  void moved(Cycle offered, Cycle cycle) {
+  /// Accounts for an item that moved together with that of another stream.
+  void count(Cycle offered, Cycle room, Cycle moved) {
     ++items_;
-    waited_ += cycle - offered;
+    waited_ += moved - offered;
+    idle_ += moved - std::max(room, next_);
+    next_ = moved + 1;
   }
   /// Accounts for `items` that moved without waiting.
   void pass(std::uint64_t items) { items_ += items; }
 
   [[nodiscard]] unsigned streams() const { return streams_; }
   [[nodiscard]] StreamUse use(Cycle cycles) const { return {items_, waited_, cycles - items_ - waited_}; }
+  /// Cycles in which the receiver could have taken an item and none came, to the last one.
+  [[nodiscard]] std::uint64_t idle() const { return idle_; }
 
  private:
   Stalls stalls_;
   unsigned streams_;
-  std::uint64_t items_ = 0, waited_ = 0;
+  std::uint64_t items_ = 0, waited_ = 0, idle_ = 0;
+  Cycle next_ = 0;  ///< behind the last item
 };
 
 }  // namespace halfplane

@@ -1,8 +1,11 @@
-// The RTL against the model, packet by packet: random scenes in every configuration that was Verilated, with and without
-// stalls, and every seeded fault caught by the same run.
+// The RTL against the model, packet by packet and cycle by cycle: random scenes in every configuration that was
+// Verilated, with and without stalls, and every seeded fault caught by the same run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
 
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/session.hpp"
@@ -12,9 +15,16 @@
 namespace halfplane {
 namespace {
 
-Session run(const DutFactory& factory, const LockstepOptions& options, const SceneSource& scenes) {
+/// Compares cycles as well.
+Session run(const DutFactory& factory, LockstepOptions options, const SceneSource& scenes) {
   const auto dut = make_dut(factory);
-  return run_session(*dut, factory.config, options, scenes);
+  options.compares_cycles = true;
+  Session session = run_session(*dut, factory.config, options, scenes);
+  std::printf("%s: %llu cycles, %llu crossings, %s\n", factory.name.c_str(),
+              static_cast<unsigned long long>(session.result.cycles),
+              static_cast<unsigned long long>(session.result.total_cycles_compared()),
+              session.result.mismatch ? "a difference" : "0 cycles of difference");
+  return session;
 }
 
 std::string describe(const Session& session) {
@@ -50,8 +60,25 @@ TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
           run(factory, options, random_scenes(factory.config, options.seed, triangles_for(factory)));
       EXPECT_EQ(describe(session), "");
       EXPECT_GT(session.result.total(), 10000u);
+      EXPECT_GT(session.result.total_cycles_compared(), 10000u);
+      EXPECT_EQ(session.result.model_cycles, session.result.cycles);
     }
   }
+}
+
+TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
+  for (const DutFactory& factory : verilated_duts())
+    for (const MemoryKind kind : {MemoryKind::fixed, MemoryKind::sram, MemoryKind::sdram, MemoryKind::psram,
+                                  MemoryKind::ddr3}) {
+      LockstepOptions options;
+      options.memory.kind = kind;
+      options.memory.latency = 40;
+      options.stall_probability = 0.1;
+      SCOPED_TRACE(factory.name + ", " + std::string(kMemoryKinds[static_cast<std::size_t>(kind)]));
+      const Session session = run(factory, options, random_scenes(factory.config, 8, 250));
+      EXPECT_EQ(describe(session), "");
+      EXPECT_GT(session.result.cycles_compared[static_cast<std::size_t>(Boundary::response)], 1000u);
+    }
 }
 
 TEST(Cosim, TheTeapotIsEqualInEveryPacket) {
@@ -62,7 +89,21 @@ TEST(Cosim, TheTeapotIsEqualInEveryPacket) {
   EXPECT_GT(session.result.total(), 10000u);
 }
 
-TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacket) {
+/// The committed cycles of a scene: lines of "configuration; scene; cycles; raster cycles; tile cycles".
+std::map<std::string, std::string> cycle_baseline() {
+  std::map<std::string, std::string> lines;
+  std::ifstream file(HALFPLANE_TEST_DATA "/rtl_cycles.txt");
+  for (std::string line; std::getline(file, line);) {
+    const auto scene_ends = line.find(';', line.find(';') + 1);
+    if (line.starts_with('#') || scene_ends == std::string::npos) continue;
+    lines[line.substr(0, scene_ends)] = line;
+  }
+  return lines;
+}
+
+// Faster fails as well: whoever changes cycles says so, with the line that this prints.
+TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacketAndTakesTheCyclesOfTheBaseline) {
+  const auto baseline = cycle_baseline();
   for (const DutFactory& factory : verilated_duts()) {
     // A scene that fits the smallest target, and light enough for the serial setup.
     const int width = std::min(96, factory.config.target_width), height = std::min(64, factory.config.target_height);
@@ -79,6 +120,12 @@ TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacket) {
       const Session session = run(factory, {}, single_scene(std::move(scene)));
       EXPECT_EQ(describe(session), "");
       EXPECT_GT(session.result.total(), 10u);
+      const std::string key = factory.name + "; " + name + " " + std::to_string(width) + "x" + std::to_string(height);
+      const LockstepResult& r = session.result;
+      const std::string line = key + "; " + std::to_string(r.cycles) + "; " + std::to_string(r.raster_cycles) + "; " +
+                               std::to_string(r.tile_cycles);
+      const auto expected = baseline.find(key);
+      EXPECT_EQ(line, expected == baseline.end() ? "no line in tests/data/rtl_cycles.txt" : expected->second);
     }
   }
 }
@@ -98,6 +145,40 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
         run_session(*dut, factory.config, options, random_scenes(factory.config, options.seed, 6000));
     EXPECT_TRUE(session.result.mismatch.has_value())
         << "mutant " << mutant.id << " of " << mutant.file << " is not caught: " << mutant.what;
+  }
+}
+
+/// Runs embedded's RTL against a cycle model that is wrong in one thing.
+Session run_wrong(const Config& config, const TimingParameters& parameters, int latency) {
+  LockstepOptions options;
+  options.seed = 4;
+  options.stall_probability = 0.1;
+  options.parameters = parameters;
+  options.model_memory = MemorySettings{};
+  options.model_memory->latency += latency;
+  return run(find_dut(config), options, random_scenes(config, 4, 1500));
+}
+
+// Must fail: a queue one deeper, a latency one longer, a rule another.
+TEST(Cosim, ACycleModelThatIsWrongInOneThingIsCaught) {
+  for (const char* name : {"embedded", "small"}) {
+    const Config config = preset(name);
+    EXPECT_EQ(describe(run_wrong(config, {}, 0)), "");
+    for (const int latency : {1, -1}) {
+      const Session session = run_wrong(config, {}, latency);
+      ASSERT_TRUE(session.result.mismatch.has_value()) << name << ", memory latency";
+      EXPECT_EQ(session.result.mismatch->kind, Mismatch::Kind::cycle);
+    }
+    for (const TimingSetting& setting : timing_settings()) {
+      if (setting.is_pipelined_only && config.setup_kind == SetupKind::serial) continue;
+      TimingParameters parameters;
+      int& value = parameters.*setting.member;
+      value += value == setting.max || setting.key == "divide.bits" ? -1 : 1;  // a divider of 4 bits waits for the planes
+      if (setting.key == "visits" && config.setup_kind == SetupKind::serial) value = 2;  // it never has many under way
+      const Session session = run_wrong(config, parameters, 0);
+      ASSERT_TRUE(session.result.mismatch.has_value()) << name << ", " << setting.key;
+      EXPECT_EQ(session.result.mismatch->kind, Mismatch::Kind::cycle);
+    }
   }
 }
 

@@ -27,6 +27,12 @@ struct TimingTotals {
   Cycle last_write = 0;             ///< into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and took no access
   std::uint64_t hazard_cycles = 0;  ///< a fragment waited for the write of the one before
+  std::uint64_t move_cycles = 0;    ///< of the whole run: the framebuffer took no access
+  std::uint64_t memory_cycles = 0;  ///< of these: a request or an answer was waited for
+  std::uint64_t bound_cycles = 0;   ///< coarse_raster waited for a visit to retire before it read a bound
+  std::uint64_t visit_cycles = 0;   ///< likewise because too many visits were under way
+  std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
+  std::array<std::array<std::uint64_t, 2>, 3> planes{};  ///< moved, by MoveCause and plane
   bool has_primitive = false;       ///< first_primitive has been seen
 };
 
@@ -99,7 +105,7 @@ class BackTiming {
     for (bool more = true; more; pixel = moved + 1, offered = std::max(offered, pixel)) {
       more = step();
       moved = access(std::max(offered, pixel), place, look_up, line_pixel_.streams());
-      line_pixel_.moved(pixel, moved);
+      line_pixel_.count(pixel, offered, moved);
       note(Boundary::line_pixel, moved);
     }
     line_raster_.leave(moved);
@@ -139,6 +145,8 @@ class BackTiming {
   Cycle last_fragment_ = 0;  ///< when the last one moved
   Cycle last_retire_ = 0;
 
+  TimingTotals totals_;
+
  private:
   /// The framebuffer's machine while it moves tiles: `cycle` is the next one to be spent.
   struct Mover {
@@ -148,7 +156,7 @@ class BackTiming {
     void look_at_line() { ++cycle; }
     void write_back(std::size_t, const TileAddress& address) {
       ++cycle;  // the look that found it dirty
-      timing.move_plane(cycle, address, true);
+      timing.move_plane(cycle, address, MoveCause::evict);
     }
     void fill(std::size_t, int x, int y, const std::array<bool, 2>& is_cleared) {
       ++cycle;  // the look that found nothing dirty
@@ -158,7 +166,7 @@ class BackTiming {
     void look_at_tile() { cycle += 2; }
     void write_clear_value(const TileAddress& address) {
       cycle += 2;
-      timing.move_plane(cycle, address, true);
+      timing.move_plane(cycle, address, MoveCause::clear);
     }
   };
 
@@ -188,7 +196,9 @@ class BackTiming {
 
   /// Requests for all stamps of a plane, the first one in `cycle` at the earliest, and the answers if they are reads.
   /// `cycle` becomes the one behind the last request.
-  void move_plane(Cycle& cycle, const TileAddress& address, bool is_write) {
+  void move_plane(Cycle& cycle, const TileAddress& address, MoveCause cause) {
+    const bool is_write = cause != MoveCause::fill;
+    ++totals_.planes[static_cast<std::size_t>(cause)][static_cast<std::size_t>(address.plane)];
     if (is_simple_) {
       const Cycle last = cycle + stamps_ - 1;
       request_.pass(stamps_);
@@ -196,15 +206,17 @@ class BackTiming {
       if (!is_write) {
         last_response_ = last + memory_.fixed_latency();  // the answers before were to earlier requests
         response_.pass(stamps_);
-        totals_.last = std::max(totals_.last, last_response_);
       }
-      totals_.last = std::max(totals_.last, last);
+      totals_.last = std::max(totals_.last, is_write ? last : last_response_);
       return;
     }
     MemoryAccess access{is_write, address.plane == TilePlane::color, address.tile_x, address.tile_y, 0};
+    Cycle first = 0;
     for (; access.stamp < static_cast<int>(stamps_); ++access.stamp) {
       const Cycle asked = request_.transfer(cycle, memory_.room());
+      if (access.stamp == 0) first = asked;
       note(Boundary::request, asked);
+      totals_.memory_cycles += asked - cycle;
       const Cycle answer = memory_.accept(access, asked);
       if (!is_write) {
         last_response_ = response_.transfer(std::max(answer, last_response_ + 1), 0);
@@ -212,6 +224,8 @@ class BackTiming {
       }
       cycle = asked + 1;
     }
+    if (sink_ != nullptr)
+      sink_->move(cause, access.is_color, access.tile_x, access.tile_y, first, is_write ? cycle : last_response_ + 1);
   }
 
   /// Both planes of a tile, from memory or from the clear value. A plane that is cleared rides along with one that is read.
@@ -222,11 +236,14 @@ class BackTiming {
     }
     for (const TilePlane plane : kTilePlanes)
       if (!is_cleared[static_cast<std::size_t>(plane)])
-        move_plane(cycle, {plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, false);
+        move_plane(cycle, {plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, MoveCause::fill);
+    totals_.memory_cycles += last_response_ + 1 - cycle;
     cycle = last_response_ + 1;
   }
 
   void count_moves(Cycle from, Cycle to) {
+    totals_.move_cycles += to - from;
+    if (sink_ != nullptr) sink_->wait(from, to);
     if (!totals_.has_primitive)
       moved_before_.emplace_back(from, to);
     else
@@ -242,7 +259,6 @@ class BackTiming {
   Stream line_, line_pixel_, fragment_, request_, response_;
   Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;
   FragmentPlace last_place_;
-  TimingTotals totals_;
   std::uint64_t moving_ = 0;  ///< cycles since the first primitive in which tiles moved
   std::vector<std::pair<Cycle, Cycle>> moved_before_;  ///< tile moves before the first primitive
 };

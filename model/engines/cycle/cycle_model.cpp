@@ -5,6 +5,7 @@
 #include "../../stages/cull.hpp"
 #include "../../stages/hiz.hpp"
 #include "../../stages/line_raster.hpp"
+#include "../../stages/viewport.hpp"
 #include "../hardware.hpp"
 #include "../tile_kernel.hpp"
 #include "pipelined_timing.hpp"
@@ -46,12 +47,14 @@ class CycleModelOf final : public CycleModel {
         widths_(derive_widths(config)),
         options_(options),
         timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink),
-        hiz_(config_, widths_),
+        hiz_(config_, widths_, options.parameters.untested_tiles),
         directory_(config_, widths_) {}
 
   void begin(int width, int height, Cycle cycle) override {
     rendering_ = {};
     rendering_.frame = Framebuffer(width, height, T);
+    std::ranges::fill(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // of the padding
+    std::ranges::fill(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
@@ -59,8 +62,11 @@ class CycleModelOf final : public CycleModel {
   }
 
   void run(const HostPrimitive& host) override {
-    const auto triangle = cull(host.packet, widths_, counters_);
-    timing_.take(work_of(host.packet, !triangle));
+    PrimitivePacket primitive = host.packet;
+    if (primitive.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear) && options_.parameters.fast_clear == 0)
+      primitive.kind = static_cast<std::uint8_t>(PrimitiveKind::rectangle);
+    const auto triangle = cull(primitive, widths_, counters_);
+    timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
     SetupPacket packet;  // what HiZ looks at
     packet.kind = triangle->kind;
@@ -98,15 +104,21 @@ class CycleModelOf final : public CycleModel {
       hiz_.clear(last_x, last_y, clear.z[0]);
       if (config_.hiz_bits != 0)
         timing_.clear_bounds(static_cast<std::uint64_t>(last_x + 1) * static_cast<std::uint64_t>(last_y + 1));
-      std::ranges::fill(rendering_.frame.depth, clear.z[0]);
+      fill_target(rendering_.frame.depth, clear.z[0]);
     }
-    if (planes[1])
-      std::ranges::fill(rendering_.frame.color, pack_color(config_.color_format, vertices_of(clear)[0].rgba));
+    if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, vertices_of(clear)[0].rgba));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end(true, [&](Cycle offered) {
       return timing_.pass_token(offered,
                                 [&](auto& mover) { directory_.fast_clear(last_x, last_y, planes, mover, counters_); });
     });
+  }
+
+  /// Leaves the padding alone.
+  void fill_target(std::vector<std::uint32_t>& image, std::uint32_t code) const {
+    const Framebuffer& frame = rendering_.frame;
+    for (int y = 0; y < frame.height; ++y)
+      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), frame.width, code);
   }
 
   void flush(const SetupPacket& packet) {
@@ -182,7 +194,7 @@ class CycleModelOf final : public CycleModel {
         ++count.tiles_visited;
         const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths_);
         const TileClass tile_class = classify(setup, edges, T);
-        if (tile_class == TileClass::outside) {
+        if (tile_class == TileClass::outside && options_.parameters.rejects != 0) {
           ++count.tiles_outside;
           timing_.skip_outside();
           continue;
@@ -349,13 +361,19 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
   result.rendering.counters = host.counters();
   count_hardware(model->counters(), drawn.count(), result.rendering.counters);
   result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  const TimingTotals& totals = model->totals();
-  result.run.cycles = totals.last + 1;
-  result.run.raster_cycles = totals.has_primitive ? totals.last_write - totals.first_primitive + 1 : 0;
-  result.run.tile_cycles = totals.tile_cycles;
-  result.run.hazard_cycles = totals.hazard_cycles;
-  for (std::size_t i = 0; i < kBoundaries; ++i)
-    result.run.use[i] = model->stream(static_cast<Boundary>(i)).use(result.run.cycles);
+  CycleRun& run = result.run;
+  run.totals = model->totals();
+  run.cycles = run.totals.last + 1;
+  run.raster_cycles = run.totals.last_write == 0 || !run.totals.has_primitive
+                          ? 0
+                          : run.totals.last_write - run.totals.first_primitive + 1;
+  run.tile_cycles = run.totals.tile_cycles;
+  for (std::size_t i = 0; i < kBoundaries; ++i) {
+    const auto boundary = static_cast<Boundary>(i);
+    if (boundary == Boundary::write || boundary == Boundary::retire) continue;
+    run.use[i] = model->stream(boundary).use(run.cycles);
+    run.idle[i] = model->stream(boundary).idle();
+  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "../../timing/memory.hpp"
 #include "../../timing/stream.hpp"
 #include "back_timing.hpp"
+#include "parameters.hpp"
 #include "work.hpp"
 
 namespace halfplane {
@@ -41,11 +42,12 @@ class CycleModel {
 
 /// What a frame cost.
 struct CycleRun {
-  Cycle cycles = 0;               ///< to the last item that crossed any boundary, memory included
+  Cycle cycles = 0;                 ///< to the last item that crossed any boundary, memory included
   std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
-  std::uint64_t hazard_cycles = 0;  ///< a fragment waited for the write of the one before
-  std::array<StreamUse, kBoundaries> use{};  ///< of the boundaries that can wait
+  TimingTotals totals;
+  std::array<StreamUse, kBoundaries> use{};       ///< of the boundaries that can wait: all but write and retire
+  std::array<std::uint64_t, kBoundaries> idle{};  ///< likewise: the receiver had room and nothing came
 };
 
 struct CycleRendering {

@@ -4,7 +4,9 @@
 
 #include <bit>
 
+#include "../../timing/queue.hpp"
 #include "back_timing.hpp"
+#include "parameters.hpp"
 #include "work.hpp"
 
 namespace halfplane {
@@ -21,6 +23,10 @@ class PipelinedTiming : public BackTiming {
         visits_(parameters.visits, 0, 1),
         skid_(parameters.stamp_queue, 1, 1),
         interpolate_(kInterpolateSteps, kInterpolateSteps, 0),
+        triangle_queue_(parameters.triangle_queue),
+        setup_queue_(parameters.setup_queue),
+        tile_queue_(parameters.tile_queue),
+        fragment_queue_(parameters.fragment_queue),
         primitive_(stalls, 1U << stall_primitive),
         triangle_(stalls, 1U << stall_triangle),
         setup_(stalls, 1U << stall_setup),
@@ -44,17 +50,19 @@ class PipelinedTiming : public BackTiming {
       cull_.leave(culled);
       return;
     }
-    const Cycle divides = triangle_.transfer(culled, divide_.room());
-    cull_.leave(divides);
-    note(Boundary::triangle, divides);
-    const Cycle interpolates = std::max(divide_.ready(divides), gradients_.room());
-    divide_.leave(interpolates);
-    const Cycle evaluates = std::max(gradients_.ready(interpolates), values_.room());
-    gradients_.leave(evaluates);
-    const Cycle walks = setup_.transfer(values_.ready(evaluates), std::max(coarse_.room(), slots_.room()));
-    values_.leave(walks);
-    note(Boundary::setup, walks);
-    walk_ = walks + 2;
+    const Passage triangle = triangle_queue_.pass(triangle_, culled, divide_.room());
+    cull_.leave(triangle.left);
+    note(Boundary::triangle, triangle.taken);
+    const Cycle gradients = std::max(divide_.ready(triangle.taken), gradients_.room());
+    divide_.leave(gradients);
+    const Cycle values = std::max(gradients_.ready(gradients), values_.room());
+    gradients_.leave(values);
+    const Cycle ready = values_.ready(values);
+    const Passage setup = setup_queue_.pass(setup_, ready, std::max(coarse_.room(), slots_.room()));
+    values_.leave(setup.left);
+    note(Boundary::setup, setup.taken);
+    if (slots_.room() > std::max(ready, coarse_.room())) totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
+    walk_ = setup.taken + 2;
   }
 
   /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
@@ -65,9 +73,11 @@ class PipelinedTiming : public BackTiming {
 
   /// The bound of the next tile is read, when no earlier visit of it is under way.
   void read_bound(int tile_x, int tile_y) {
+    Cycle read = walk_;
     for (const VisitedTile& visit : visited_)
-      if (visit.tile_x == tile_x && visit.tile_y == tile_y) walk_ = std::max(walk_, visit.retired + 1);
-    ++walk_;
+      if (visit.tile_x == tile_x && visit.tile_y == tile_y) read = std::max(read, visit.retired + 1);
+    totals_.bound_cycles += read - walk_;
+    walk_ = read + 1;
   }
   /// It lies in front, and the tile is passed over.
   void skip_behind() { ++walk_; }
@@ -76,9 +86,9 @@ class PipelinedTiming : public BackTiming {
   /// is what depth_test does with it.
   template <class Shade>
   void end([[maybe_unused]] bool is_token, Shade&& shade) {
-    const Cycle taken = tile_.transfer(walk_, rows_.room());
+    const auto [left, taken] = tile_queue_.pass(tile_, walk_, rows_.room());
     note(Boundary::tile, taken);
-    coarse_.leave(taken);
+    coarse_.leave(left);
     const Cycle row = std::max(taken + 1, stamps_.room());
     rows_.leave(row);
     stamps_.leave(send(row + 1, true, shade));
@@ -87,24 +97,26 @@ class PipelinedTiming : public BackTiming {
   /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.
   template <class Shade>
   void visit(const TileVisitWork& work, Shade&& shade) {
-    const Cycle taken = tile_.transfer(std::max(walk_, visits_.room()), rows_.room());
+    const Cycle offered = std::max(walk_, visits_.room());
+    totals_.visit_cycles += offered - walk_;
+    const auto [left, taken] = tile_queue_.pass(tile_, offered, rows_.room());
     note(Boundary::tile, taken);
-    walk_ = taken + 1;
-    if (work.ends_primitive) coarse_.leave(taken);
+    walk_ = left + 1;
+    if (work.ends_primitive) coarse_.leave(left);
     Cycle row_at = taken + 1;
     for (int row = work.first_row;; ++row, ++row_at) {
       const bool is_last = row == work.last_row;
       std::uint32_t columns = work.columns[static_cast<std::size_t>(row)];
       if (columns == 0 && !is_last) continue;
       row_at = std::max(row_at, stamps_.room());
-      Cycle offered = row_at + 1;
+      Cycle at = row_at + 1;
       do {
         const int column = columns == 0 ? -1 : std::countr_zero(columns);
         columns &= columns - 1;
         const bool ends = work.ends_primitive && is_last && columns == 0;
-        offered = send(offered, ends, [&](Cycle at) { return shade(at, row, column); }) + 1;
+        at = send(at, ends, [&](Cycle shaded) { return shade(shaded, row, column); }) + 1;
       } while (columns != 0);
-      stamps_.leave(offered - 1);
+      stamps_.leave(at - 1);
       if (is_last) break;
     }
     rows_.leave(row_at);
@@ -143,7 +155,8 @@ class PipelinedTiming : public BackTiming {
     last_stamp_ = taken;
     note(Boundary::stamp, taken);
     if (ends_primitive) slots_.leave(std::max(taken + 1, context_.room()));  // leaves the first step
-    const Cycle leaves = shade(std::max(interpolate_.ready(taken), last_fragment_ + 1));
+    const Cycle leaves = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
+    last_left_ = leaves;
     interpolate_.leave(leaves);
     context_.leave(leaves);
     return enters;
@@ -152,8 +165,9 @@ class PipelinedTiming : public BackTiming {
   Station cull_{1, 0, 0}, divide_, gradients_, values_, coarse_{1, 0, 0}, slots_, visits_;
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, skid_, interpolate_;
   Station context_{kInterpolateSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
+  Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Stream primitive_, triangle_, setup_, tile_, stamp_;
-  Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0;
+  Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0, last_left_ = 0;
   std::vector<VisitedTile> visited_;  ///< ring: the last ones
   std::size_t next_visited_ = 0;
 };

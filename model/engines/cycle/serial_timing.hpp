@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "back_timing.hpp"
+#include "parameters.hpp"
 #include "work.hpp"
 
 namespace halfplane {
@@ -17,7 +18,7 @@ class SerialTiming : public BackTiming {
       : BackTiming(widths, stalls, memory, sink),
         cycles_(widths),
         slots_(config.context_slots, 0, 2),
-        visits_(kVisits, 0, 1),
+        visits_(parameters.visits - 1, 0, 1),
         skid_(parameters.stamp_queue, 1, 1),
         primitive_(stalls, kPrimitive),
         triangle_(stalls, kTriangle),
@@ -44,7 +45,7 @@ class SerialTiming : public BackTiming {
     const Cycle begins = stalls_.next_free(kPrimitive | kTriangle, std::max(culled, triangle_setup_.room()));
     const Cycle walks = setup_.transfer(begins + 1 + cycles_.setup(work.log2_area), std::max(coarse_.room(), slots_.room()));
     const Cycle taken = primitive_.transfer(offered, walks + 1, kTriangle);
-    triangle_.moved(culled, taken);
+    triangle_.count(culled, walks + 1, taken);
     take_primitive(work, taken);
     note(Boundary::triangle, taken);
     note(Boundary::setup, walks);
@@ -56,7 +57,12 @@ class SerialTiming : public BackTiming {
   void clear_bounds(std::uint64_t tiles) { walk_ = std::max(walk_, last_retire_ + 1) + tiles - 1; }
 
   void skip_outside() { walk_ += 1 + kTurn; }
-  void read_bound(int, int) { walk_ = std::max(walk_, last_retire_ + 1) + 1; has_bound_ = true; }
+  void read_bound(int, int) {
+    const Cycle read = std::max(walk_, last_retire_ + 1);
+    totals_.bound_cycles += read - walk_;
+    walk_ = read + 1;
+    has_bound_ = true;
+  }
   void skip_behind() { walk_ += 1 + kTurn; has_bound_ = false; }
 
   template <class Shade>
@@ -64,7 +70,7 @@ class SerialTiming : public BackTiming {
     // What passed over the last tile went on to turn to the next one; a token's end comes in the cycle after.
     const Cycle offered = is_token ? walk_ + 1 : walk_ - kTurn;
     const Cycle taken = send(offered, kTile, fine_.room(), shade);
-    tile_.moved(offered, taken);
+    tile_.count(offered, fine_.room(), taken);
     note(Boundary::tile, taken);
     fine_.leave(taken);
     coarse_.leave(taken);
@@ -90,7 +96,7 @@ class SerialTiming : public BackTiming {
     }
     --at;
     const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, work.last_row, held); });
-    tile_.moved(offered, taken);
+    tile_.count(offered, fine_.room(), taken);
     note(Boundary::tile, taken);
     fine_.leave(taken);
     walk_ = taken + 1 + kTurn;
@@ -115,7 +121,6 @@ class SerialTiming : public BackTiming {
                             kTile = 1U << stall_tile, kStamp = 1U << stall_stamp;
   static constexpr Cycle kSort = 6, kBox = 4;  ///< of cull
   static constexpr Cycle kTurn = 4;            ///< of coarse_raster: the edges go round once
-  static constexpr int kVisits = 7;            ///< tile visits under way at most
   static constexpr int kInterpolateSteps = 2;
 
   static bool is_covered(const TileVisitWork& work, int row, int column) {

@@ -50,10 +50,22 @@ inline constexpr std::array<std::string_view, kBoundaries> kBoundarySenders{
     "host",        "host",       "cull", "triangle_setup", "coarse_raster", "fine_raster",
     "line_raster", "interpolate", "depth_test", "depth_test", "framebuffer",  "memory"};
 
+/// Why a plane of a tile moves between chip and memory.
+enum class MoveCause : std::uint8_t {
+  fill,   ///< a tile is needed
+  evict,  ///< its line is needed, or the flush wants it
+  clear   ///< the flush writes the clear value of a tile that was never brought in again
+};
+inline constexpr std::array<std::string_view, 3> kMoveCauses{"fill", "evict", "clear"};
+
 /// Sees every item as it crosses a boundary: those of one boundary in order, different ones as the work happens.
 struct TransferSink {
   virtual ~TransferSink() = default;
   virtual void transfer(Boundary boundary, Cycle cycle) = 0;
+  /// A plane moved: from the first request to the cycle behind the last request or answer.
+  virtual void move(MoveCause, bool /*is_color*/, int /*tile_x*/, int /*tile_y*/, Cycle /*from*/, Cycle /*to*/) {}
+  /// depth_test waited while the framebuffer brought in a tile, marked or looked at tiles: [from, to).
+  virtual void wait(Cycle /*from*/, Cycle /*to*/) {}
 };
 
 }  // namespace halfplane

@@ -11,14 +11,6 @@
 
 namespace halfplane {
 
-/// Sizes of the hardware's buffers, as rtl_ref has them. Other values answer what another size would change.
-struct TimingParameters {
-  int stamp_queue = 2;  ///< stamps between fine_raster and interpolate, at least 1
-  int visits = 8;       ///< tile visits under way at most
-  int divide_bits = 3;  ///< quotient bits a cycle of the pipelined triangle_setup
-  bool operator==(const TimingParameters&) const = default;
-};
-
 /// A primitive on its way through cull and triangle_setup.
 struct PrimitiveWork {
   bool is_triangle = false, is_line = false, is_counted = false;

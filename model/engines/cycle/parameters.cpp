@@ -1,0 +1,31 @@
+#include "parameters.hpp"
+
+#include <array>
+
+namespace halfplane {
+
+std::span<const TimingSetting> timing_settings() {
+  using P = TimingParameters;
+  static constexpr std::array kSettings{
+      TimingSetting{"queue.triangle", "triangles that wait in front of triangle_setup", 0, 1024, &P::triangle_queue, true},
+      TimingSetting{"queue.setup", "setups that wait in front of coarse_raster", 0, 1024, &P::setup_queue, true},
+      TimingSetting{"queue.tile", "tiles that wait in front of fine_raster", 0, 1024, &P::tile_queue, true},
+      TimingSetting{"queue.stamp", "stamps in the buffer behind fine_raster", 1, 1024, &P::stamp_queue, false},
+      TimingSetting{"queue.fragment", "fragments that wait in front of depth_test", 0, 1024, &P::fragment_queue, true},
+      TimingSetting{"visits", "tile visits under way at most", 2, 1024, &P::visits, false},
+      TimingSetting{"divide.bits", "quotient bits that triangle_setup makes in a cycle", 1, 64, &P::divide_bits, true},
+      TimingSetting{"hiz.untested", "a triangle of at most so many tiles in x and y reads no HiZ bound", 0, 64,
+                    &P::untested_tiles, false},
+      TimingSetting{"walk.reject", "1: tiles outside an edge are passed over", 0, 1, &P::rejects, false},
+      TimingSetting{"clear.fast", "1: a clear of the whole target marks tiles, 0: it is drawn", 0, 1, &P::fast_clear,
+                    false}};
+  return kSettings;
+}
+
+const TimingSetting* find_timing_setting(std::string_view key) {
+  for (const TimingSetting& setting : timing_settings())
+    if (setting.key == key) return &setting;
+  return nullptr;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,147 @@
+// The cycle engine without RTL: the functional engine's bits, the same cycles whoever looks on, and rules of monotony.
+#include <gtest/gtest.h>
+
+#include "model/engines/cycle/cycle_model.hpp"
+#include "model/engines/functional.hpp"
+#include "sim/scene/builtin.hpp"
+
+namespace halfplane {
+namespace {
+
+CycleRendering render(const Scene& scene, const Config& config, const CycleOptions& options = {},
+                      const MemorySettings& memory = {}, const RenderOptions& wanted = {}) {
+  const auto timing = make_memory(memory, config);
+  return render_cycle(scene, config, *timing, wanted, options);
+}
+
+Scene scene_for(std::string_view name, const Config& config) {
+  return make_builtin(name, std::min(160, config.target_width), std::min(120, config.target_height), {}, 1);
+}
+
+bool takes(const Scene& scene, const Config& config) {
+  try {
+    check_hardware_scene(scene, config);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+struct Nobody final : TransferSink {
+  std::uint64_t transfers = 0;
+  void transfer(Boundary, Cycle) override { ++transfers; }
+};
+
+TEST(CycleModel, ItsBitsAreThoseOfTheFunctionalEngine) {
+  int scenes = 0;
+  for (const std::string_view name : preset_names())
+    for (const int tile : {4, 8, 16, 32})
+      for (const Builtin& builtin : builtin_scenes()) {
+        Config config = preset(name);
+        config.tile_size = std::max(tile, config.stamp_size);
+        if (config.target_width < config.tile_size) continue;
+        const Scene scene = scene_for(builtin.name, config);
+        if (!takes(scene, config)) continue;
+        SCOPED_TRACE(std::string(name) + ", " + std::string(builtin.name) + ", tiles of " + std::to_string(tile));
+        RenderOptions wanted;
+        wanted.want_count = wanted.want_ids = true;
+        const Rendering expected = render_functional(scene, config, wanted);
+        const Rendering cycle = render(scene, config, {}, {}, wanted).rendering;
+        EXPECT_EQ(cycle.frame.depth, expected.frame.depth);
+        EXPECT_EQ(cycle.frame.color, expected.frame.color);
+        EXPECT_EQ(cycle.ids, expected.ids);
+        EXPECT_EQ(cycle.counters.depth_passed, expected.counters.depth_passed);
+        EXPECT_EQ(cycle.counters.written, expected.counters.written);
+        EXPECT_EQ(cycle.counters.drawn, expected.counters.drawn);
+        ++scenes;
+      }
+  EXPECT_GT(scenes, 100);
+}
+
+TEST(CycleModel, WithoutHizItCountsEveryCoveredSample) {
+  Config config = preset("embedded");
+  config.hiz_bits = 0;
+  const Scene scene = scene_for("city", config);
+  RenderOptions wanted;
+  wanted.want_count = true;
+  EXPECT_EQ(render(scene, config, {}, {}, wanted).rendering.count, render_functional(scene, config, wanted).count);
+}
+
+// Without anybody who looks on, whole bursts are one step.
+TEST(CycleModel, TheCyclesAreTheSameWhetherOrNotSomebodyLooksOn) {
+  for (const std::string_view name : preset_names())
+    for (const Builtin& builtin : builtin_scenes()) {
+      const Config config = preset(name);
+      const Scene scene = scene_for(builtin.name, config);
+      if (!takes(scene, config)) continue;
+      SCOPED_TRACE(std::string(name) + ", " + std::string(builtin.name));
+      Nobody sink;
+      CycleOptions watched;
+      watched.sink = &sink;
+      const CycleRun a = render(scene, config).run, b = render(scene, config, watched).run;
+      EXPECT_EQ(a.cycles, b.cycles);
+      EXPECT_EQ(a.raster_cycles, b.raster_cycles);
+      EXPECT_EQ(a.tile_cycles, b.tile_cycles);
+      EXPECT_EQ(a.totals.memory_cycles, b.totals.memory_cycles);
+      EXPECT_GT(sink.transfers, 100u);
+    }
+}
+
+// A max-plus recurrence: more room can delay nothing.
+TEST(CycleModel, ADeeperQueueIsNeverSlower) {
+  const Config config = preset("embedded");
+  for (const char* name : {"city", "teapot:6", "wires"}) {
+    const Scene scene = scene_for(name, config);
+    for (const char* key : {"queue.triangle", "queue.setup", "queue.tile", "queue.stamp", "queue.fragment", "visits"}) {
+      const TimingSetting& setting = *find_timing_setting(key);
+      Cycle before = ~0ULL;
+      for (const int items : {2, 3, 4, 8, 16, 64}) {
+        CycleOptions options;
+        options.parameters.*setting.member = items;
+        const Cycle cycles = render(scene, config, options).run.cycles;
+        EXPECT_LE(cycles, before) << name << ", " << key << " " << items;
+        before = cycles;
+      }
+    }
+  }
+}
+
+TEST(CycleModel, AFasterMemoryIsNeverSlower) {
+  const Config config = preset("embedded");
+  const Scene scene = scene_for("city", config);
+  Cycle before = 0;
+  for (const int latency : {1, 2, 5, 8, 30, 200}) {
+    const Cycle cycles = render(scene, config, {}, {MemoryKind::fixed, latency, 50}).run.cycles;
+    EXPECT_GT(cycles, before);
+    before = cycles;
+  }
+}
+
+TEST(CycleModel, StallsCostCyclesAndNoBits) {
+  const Config config = preset("embedded");
+  const Scene scene = scene_for("teapot:6", config);
+  CycleOptions options;
+  options.stalls = {3, stall_threshold(0.3)};
+  const CycleRendering plain = render(scene, config), stalled = render(scene, config, options);
+  EXPECT_GT(stalled.run.cycles, plain.run.cycles);
+  EXPECT_EQ(stalled.rendering.frame.color, plain.rendering.frame.color);
+  EXPECT_EQ(stalled.rendering.counters.skipped.tiles_hiz, plain.rendering.counters.skipped.tiles_hiz);
+}
+
+TEST(CycleModel, RulesThatAreSwitchedOffChangeCyclesAndNoBits) {
+  const Config config = preset("embedded");
+  const Scene scene = scene_for("city", config);
+  const CycleRendering plain = render(scene, config);
+  for (const auto& [member, value] : {std::pair{&TimingParameters::rejects, 0}, {&TimingParameters::fast_clear, 0},
+                                      {&TimingParameters::untested_tiles, 64}}) {
+    CycleOptions options;
+    options.parameters.*member = value;
+    const CycleRendering other = render(scene, config, options);
+    EXPECT_NE(other.run.cycles, plain.run.cycles);
+    EXPECT_EQ(other.rendering.frame.color, plain.rendering.frame.color);
+    EXPECT_EQ(other.rendering.frame.depth, plain.rendering.frame.depth);
+  }
+}
+
+}  // namespace
+}  // namespace halfplane

@@ -1,0 +1,95 @@
+// The memories by themselves: bursts, rows, refresh, order.
+#include <gtest/gtest.h>
+
+#include "model/timing/memory.hpp"
+
+namespace halfplane {
+namespace {
+
+std::unique_ptr<MemoryTiming> memory(MemoryKind kind, int mhz = 100) {
+  return make_memory({kind, 8, mhz}, preset("embedded"));
+}
+
+TEST(Memory, TheFixedOneAnswersAfterItsLatencyAndTakesARequestEveryCycle) {
+  const auto fixed = memory(MemoryKind::fixed);
+  for (Cycle c = 0; c < 50; ++c) {
+    EXPECT_LE(fixed->room(), c);
+    EXPECT_EQ(fixed->accept({}, c), c + 8);
+  }
+}
+
+TEST(Memory, BlockRamTakesTwoCycles) { EXPECT_EQ(memory(MemoryKind::sram)->accept({}, 5), 7u); }
+
+/// Reads `count` stamps of a tile row as fast as they are taken; returns the cycle of the last answer.
+Cycle read_run(MemoryTiming& memory, int count, int tile_y_step, Cycle from) {
+  Cycle at = from, answer = 0;
+  for (int i = 0; i < count; ++i, ++at) {
+    at = std::max(at, memory.room());
+    const Cycle next = memory.accept({false, false, tile_y_step == 0 ? i / 16 : 0, i * tile_y_step, i % 16}, at);
+    EXPECT_GE(next, answer);
+    answer = next;
+  }
+  return answer;
+}
+
+// SDR at 6 ns: a row miss costs at least tRP + tRCD, which hits do not pay.
+TEST(Memory, SdramReadsOneRowFasterThanManyRows) {
+  const auto one_row = memory(MemoryKind::sdram), many_rows = memory(MemoryKind::sdram);
+  const Cycle hits = read_run(*one_row, 64, 0, 0), misses = read_run(*many_rows, 64, 3, 0);
+  EXPECT_LT(hits, 64u * 4u);
+  EXPECT_GT(misses, hits * 3 / 2);
+}
+
+// The first read of an idle SDRAM: activate, tRCD = 3 clocks, CL = 3, 4 words of 6 ns: 60 ns, after the request's register.
+TEST(Memory, TheFirstSdramReadTakesTrcdAndCasAndItsBurst) {
+  const auto sdram = memory(MemoryKind::sdram);
+  // Taken in cycle 10: at 110 ns, 114 ns at the memory's edge, done at 174 ns: cycle 18, there in the one after.
+  EXPECT_EQ(sdram->accept({}, 10), 19u);
+}
+
+TEST(Memory, RefreshStopsSdramAboutEvery78Microseconds) {
+  const auto sdram = memory(MemoryKind::sdram);
+  Cycle longest = 0, at = 0;
+  for (int i = 0; i < 2000; ++i) {
+    at = std::max(at, sdram->room());
+    const Cycle answer = sdram->accept({false, false, i / 16 % 8, 0, i % 16}, at);
+    longest = std::max(longest, answer - at);
+    at += 1;
+  }
+  EXPECT_GT(longest, 15u);  // precharge and refresh: 78 ns more
+}
+
+TEST(Memory, PsramPaysForEveryCommand) {
+  const auto psram = memory(MemoryKind::psram);
+  // 2 + 6 + 6 clocks and 16 for 8 bytes at 84 MHz: 357 ns.
+  const Cycle answer = psram->accept({}, 0);
+  EXPECT_GE(answer, 36u);
+  EXPECT_LE(answer, 41u);
+}
+
+TEST(Memory, AFasterChipWaitsMoreCyclesForTheSameMemory) {
+  for (const MemoryKind kind : {MemoryKind::sdram, MemoryKind::psram, MemoryKind::ddr3}) {
+    const auto slow = memory(kind, 25), fast = memory(kind, 200);
+    EXPECT_LT(read_run(*slow, 40, 0, 0), read_run(*fast, 40, 0, 0));
+  }
+}
+
+TEST(Memory, AQueueThatIsFullTakesNothing) {
+  const auto psram = memory(MemoryKind::psram);
+  Cycle at = 0;
+  for (; psram->room() <= at; ++at) psram->accept({}, at);
+  EXPECT_EQ(at, 8u);
+  EXPECT_GT(psram->room(), 8u);
+}
+
+TEST(Memory, AnUnknownNameIsRefusedWithTheKnownOnes) {
+  try {
+    (void)memory_kind("hbm");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--memory: no memory 'hbm'; give fixed, sram, sdram, psram or ddr3");
+  }
+}
+
+}  // namespace
+}  // namespace halfplane
