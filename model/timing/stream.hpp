@@ -24,29 +24,24 @@ class Stream {
   /// `others`, a bit each, hold it back as well. Returns when.
   Cycle transfer(Cycle offered, Cycle room, unsigned others = 0) {
     const Cycle moved = stalls_.next_free(streams_ | others, std::max(offered, room));
-    count(offered, room, moved);
+    count(offered, moved);
     return moved;
   }
   /// Accounts for an item that moved together with that of another stream.
-  void count(Cycle offered, Cycle room, Cycle moved) {
+  void count(Cycle offered, Cycle moved) {
     ++items_;
     waited_ += moved - offered;
-    idle_ += moved - std::max(room, next_);
-    next_ = moved + 1;
   }
   /// Accounts for `items` that moved without waiting.
   void pass(std::uint64_t items) { items_ += items; }
 
   [[nodiscard]] unsigned streams() const { return streams_; }
   [[nodiscard]] StreamUse use(Cycle cycles) const { return {items_, waited_, cycles - items_ - waited_}; }
-  /// Cycles in which the receiver could have taken an item and none came, to the last one.
-  [[nodiscard]] std::uint64_t idle() const { return idle_; }
 
  private:
   Stalls stalls_;
   unsigned streams_;
-  std::uint64_t items_ = 0, waited_ = 0, idle_ = 0;
-  Cycle next_ = 0;  ///< behind the last item
+  std::uint64_t items_ = 0, waited_ = 0;
 };
 
 }  // namespace halfplane

@@ -77,10 +77,6 @@ std::string column(std::string text, std::size_t width) {
   return text + "  ";
 }
 
-std::string right(const std::string& text, std::size_t width) {
-  return std::string(width - std::min(width, text.size()), ' ') + text + "  ";
-}
-
 std::string stage_of(const Mutant& mutant) { return std::filesystem::path(mutant.file).stem().string(); }
 
 /// "setup depth_step_x", "counters tiles_hiz +1", "tile never comes".
@@ -97,12 +93,12 @@ std::string where(const Mismatch& m) {
 }
 
 void print_table(std::ostream& out, const std::vector<Verdict>& verdicts, bool has_pictures) {
-  out << right("id", 3) << column("where", 14) << column("caught in", 30) << right("cycle", 9)
+  out << right_aligned("id", 3) + "  " << column("where", 14) << column("caught in", 30) << right_aligned("cycle", 9) + "  "
       << (has_pictures ? column("pictures changed", 41) : "") << "what is wrong\n";
   for (const Verdict& v : verdicts)
-    out << right(std::to_string(v.mutant.id), 3) << column(stage_of(v.mutant), 14)
+    out << right_aligned(std::to_string(v.mutant.id), 3) + "  " << column(stage_of(v.mutant), 14)
         << column(v.mismatch ? where(*v.mismatch) : "NOT CAUGHT", 30)
-        << right(v.mismatch ? with_commas(v.mismatch->cycle) : "", 9)
+        << right_aligned(v.mismatch ? with_commas(v.mismatch->cycle) : "", 9) + "  "
         << (has_pictures ? column(joined(v.pictures), 41) : "") << v.mutant.what << '\n';
 }
 

@@ -98,6 +98,9 @@ class Progress {
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::uint64_t value);
 
+/// `text` behind as many blanks as it takes to fill `width`.
+[[nodiscard]] std::string right_aligned(const std::string& text, std::size_t width);
+
 /// "%.*f" as a string.
 [[nodiscard]] std::string fixed(double value, int decimals);
 

@@ -9,6 +9,7 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/cycle_options.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/cosim/rtl_engine.hpp"
@@ -23,11 +24,18 @@ namespace {
 struct RenderCommand : CommonOptions {
   std::string engine = "functional";
   StudyOptions study;
+  CycleCommandOptions cycle;
   std::string color_path, depth_path, count_path, ids_path, draws_path;
   int repeat = 0;
 };
 
-constexpr std::array<std::string_view, 5> kEngines{"functional", "scalar", "rtl", "golden", "golden32"};
+constexpr std::array<std::string_view, 6> kEngines{"functional", "scalar", "cycle", "rtl", "golden", "golden32"};
+
+/// What the engines with cycles say besides the picture.
+struct CycleFacts {
+  LockstepResult rtl;
+  std::optional<CycleResult> cycle;
+};
 
 Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision,
                         const RenderOptions& render) {
@@ -46,8 +54,8 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
   return rendering;
 }
 
-/// `rtl_run` is set by the engine of that name.
-Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, LockstepResult& rtl_run) {
+/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted.
+Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts) {
   Progress progress(options, "rendering");
   RenderOptions render;
   render.skip = parse_skip(options.skip);
@@ -59,8 +67,14 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   if (options.engine == "scalar") return render_scalar(scene, config, render);
   if (options.engine == "rtl") {
     RtlRendering rtl = render_rtl(*make_dut(find_dut(config)), scene, config, render);
-    rtl_run = rtl.run;
+    if (facts != nullptr) facts->rtl = rtl.run;
     return std::move(rtl.rendering);
+  }
+  if (options.engine == "cycle" && facts == nullptr)
+    return run_cycles(scene, hardware_of(options.cycle, config), render).rendering;
+  if (options.engine == "cycle") {
+    facts->cycle = run_cycle_engine(options, options.cycle, scene, config, render);
+    return facts->cycle->frame.rendering;
   }
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
   return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() let no other through
@@ -70,14 +84,18 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
 void check_options(const RenderCommand& options, const Config& config) {
   if (std::find(kEngines.begin(), kEngines.end(), options.engine) == kEngines.end())
     throw InputError("--engine: no engine '" + options.engine +
-                     "' in this version; give functional, scalar, rtl, golden or golden32");
+                     "' in this version; give functional, scalar, cycle, rtl, golden or golden32");
   check_study_rules(study_rules(options.study), options.engine);
   if (options.engine == "rtl" && !(options.count_path.empty() && options.ids_path.empty()))
     throw InputError("--engine rtl: hardware keeps neither counts nor ids; leave out --count and --ids");
   if (options.engine == "rtl" && !options.draws_path.empty())
     throw InputError("--engine rtl: hardware keeps no counts; leave out --draws");
-  if (options.engine == "rtl" && options.skip != "all")
-    throw InputError("--engine rtl: hardware skips by its own rules; leave out --skip");
+  if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all")
+    throw InputError("--engine " + options.engine + ": hardware skips by its own rules; leave out --skip");
+  if (options.engine != "cycle" && !options.cycle.is_default())
+    throw InputError("--engine " + options.engine +
+                     ": --memory, --timing, --what-if, --stalls, --explain, --primitives, --trace and --heat are for --engine cycle");
+  if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
@@ -119,8 +137,7 @@ Json stages_json(const LockstepResult& run) {
 Json measure(const RenderCommand& options, const Scene& scene, const Config& config) {
   std::vector<double> times;
   for (int i = 0; i < options.repeat; ++i) {
-    LockstepResult ignored;
-    const Rendering rendering = run_engine(options, scene, config, ignored);
+    const Rendering rendering = run_engine(options, scene, config, nullptr);
     times.push_back(rendering.geometry_s + rendering.raster_s);
   }
   std::sort(times.begin(), times.end());
@@ -140,7 +157,7 @@ void write_files(const RenderCommand& options, const Rendering& rendering, const
 
 /// What people read; the figures are those of `result`.
 void print_result(const RenderCommand& options, const Config& config, const Rendering& rendering,
-                  const LockstepResult& rtl_run, const Json& result) {
+                  const CycleFacts& facts, const Json& result) {
   const Counters& c = rendering.counters;
   std::ostream& out = human(options);
   if (options.color_path.empty() && &out == &std::cout && terminal_style(1) == TerminalStyle::color)
@@ -160,9 +177,10 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
         << with_commas(objects["primitives_skipped"].get<std::uint64_t>()) << " primitives skipped\n";
   if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
   if (options.engine == "rtl")
-    out << "cycles      " << with_commas(rtl_run.cycles) << " in all, " << with_commas(rtl_run.raster_cycles)
-        << " from the first primitive to the last write, " << with_commas(rtl_run.tile_cycles)
+    out << "cycles      " << with_commas(facts.rtl.cycles) << " in all, " << with_commas(facts.rtl.raster_cycles)
+        << " from the first primitive to the last write, " << with_commas(facts.rtl.tile_cycles)
         << " of them moving tiles\n";
+  if (facts.cycle) print_cycles(out, *facts.cycle);
   if (options.repeat > 0)
     out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
         << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
@@ -177,8 +195,8 @@ int run(const RenderCommand& options) {
   double load_s = 0;
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
-  LockstepResult rtl_run;
-  const Rendering rendering = run_engine(options, scene, config, rtl_run);
+  CycleFacts facts;
+  const Rendering rendering = run_engine(options, scene, config, &facts);
   Json result = result_head("render", options, config);
   result["engine"] = options.engine;
   result["width"] = scene.width;
@@ -193,11 +211,12 @@ int run(const RenderCommand& options) {
   result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
   if (options.engine == "rtl") {
-    result["cycles"] = rtl_run.cycles;
-    result["raster_cycles"] = rtl_run.raster_cycles;
-    result["tile_cycles"] = rtl_run.tile_cycles;
-    result["stages"] = stages_json(rtl_run);
+    result["cycles"] = facts.rtl.cycles;
+    result["raster_cycles"] = facts.rtl.raster_cycles;
+    result["tile_cycles"] = facts.rtl.tile_cycles;
+    result["stages"] = stages_json(facts.rtl);
   }
+  if (facts.cycle) add_cycle_json(result, *facts.cycle);
   if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
   result["depth_hash"] = depth_hash(rendering.frame);
@@ -209,7 +228,7 @@ int run(const RenderCommand& options) {
   write_files(options, rendering, config, title);
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
-  print_result(options, config, rendering, rtl_run, result);
+  print_result(options, config, rendering, facts, result);
   return exit_ok;
 }
 
@@ -221,11 +240,12 @@ void add_render_command(CLI::App& app, Action& selected) {
   add_scene_options(*command, *options);
   command
       ->add_option("--engine", options->engine,
-                   "functional (fast), scalar (the stages, one packet at a time), rtl (the Verilated hardware), "
-                   "golden, golden32")
+                   "functional (fast), scalar (the stages, one packet at a time), cycle (with the cycles of the "
+                   "hardware), rtl (the Verilated hardware itself), golden, golden32")
       ->capture_default_str();
   add_study_options(*command, options->study);
   add_clipping_option(*command, options->study);
+  add_cycle_options(*command, options->cycle);
   add_file_option(*command, "-o", options->color_path, "colour picture, .png");
   add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
   add_file_option(*command, "--count", options->count_path, "covered samples per pixel before the depth test, .npy");
@@ -234,7 +254,8 @@ void add_render_command(CLI::App& app, Action& selected) {
                   "sheet: the picture, and how often each sample was drawn, .png");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(CLI::Range(1, 100000));
-  command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json");
+  command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
+      "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 

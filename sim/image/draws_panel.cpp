@@ -38,4 +38,13 @@ Picture draws_sheet(std::string_view title, const Picture& color, std::span<cons
   return compose_sheet(title, panels, 2);
 }
 
+Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> cycles,
+                   std::span<const std::uint32_t> counts) {
+  std::array<Panel, 3> panels{Panel{}, error_panel("cycles of each pixel", color.width, color.height, cycles, "cycles", false),
+                              draws_panel(color.width, color.height, counts)};
+  panels[0].caption = "model";
+  panels[0].picture = color;
+  return compose_sheet(title, panels, 3);
+}
+
 }  // namespace halfplane

@@ -99,12 +99,21 @@ Bytes encode_npy(int width, int height, std::span<const std::int32_t> values) {
   return npy_bytes(width, height, values, "<i4");
 }
 
+Bytes encode_npy(int width, int height, std::span<const float> values) {
+  return npy_bytes(width, height, values, "<f4");
+}
+
 void write_npy(const std::string& path, int width, int height, std::span<const std::uint32_t> values) {
   require_npy(path);
   write_whole_file(path, encode_npy(width, height, values));
 }
 
 void write_npy(const std::string& path, int width, int height, std::span<const std::int32_t> values) {
+  require_npy(path);
+  write_whole_file(path, encode_npy(width, height, values));
+}
+
+void write_npy(const std::string& path, int width, int height, std::span<const float> values) {
   require_npy(path);
   write_whole_file(path, encode_npy(width, height, values));
 }

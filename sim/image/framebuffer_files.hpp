@@ -18,10 +18,12 @@ namespace halfplane {
 /// An array file, format 1.0: <u4 or <i4, C order, shape (height, width), row 0 at the top.
 [[nodiscard]] std::vector<std::uint8_t> encode_npy(int width, int height, std::span<const std::uint32_t> values);
 [[nodiscard]] std::vector<std::uint8_t> encode_npy(int width, int height, std::span<const std::int32_t> values);
+[[nodiscard]] std::vector<std::uint8_t> encode_npy(int width, int height, std::span<const float> values);
 
 /// Writes width * height values to `path`, which must end in .npy. Throws InputError naming path and reason.
 void write_npy(const std::string& path, int width, int height, std::span<const std::uint32_t> values);
 void write_npy(const std::string& path, int width, int height, std::span<const std::int32_t> values);
+void write_npy(const std::string& path, int width, int height, std::span<const float> values);
 
 /// Throws InputError when `path` cannot hold depth codes of that many bits: a .png takes 16, a .npy takes 32. Call it
 /// before the rendering, so that nobody waits for a picture that cannot be saved.

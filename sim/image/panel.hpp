@@ -72,6 +72,10 @@ struct ComparisonSheet {
 /// Colour picture and draws panel side by side.
 [[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);
 
+/// Colour picture, cycles per pixel and draws panel side by side.
+[[nodiscard]] Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> cycles,
+                                 std::span<const std::uint32_t> counts);
+
 [[nodiscard]] Picture comparison_sheet(const ComparisonSheet& sheet);
 
 }  // namespace halfplane

@@ -32,7 +32,6 @@ TEST(Stream, AnItemMovesWhenItIsOfferedAndThereIsRoom) {
   EXPECT_EQ(use.busy, 2u);
   EXPECT_EQ(use.stalled, 4u);
   EXPECT_EQ(use.starved, 14u);
-  EXPECT_EQ(stream.idle(), 4u);  // the receiver waited for the first one only
 }
 
 TEST(Stream, AStallMovesAnItemToTheFirstFreeCycle) {

@@ -32,6 +32,8 @@ struct TimingTotals {
   std::uint64_t bound_cycles = 0;   ///< coarse_raster waited for a visit to retire before it read a bound
   std::uint64_t visit_cycles = 0;   ///< likewise because too many visits were under way
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
+  /// In which each stage was at work: its narrowest part, waits for others left out.
+  std::array<std::uint64_t, kTimedStages> works{};
   std::array<std::array<std::uint64_t, 2>, 3> planes{};  ///< moved, by MoveCause and plane
   bool has_primitive = false;       ///< first_primitive has been seen
 };
@@ -53,6 +55,8 @@ class BackTiming {
         response_(stalls, 1U << stall_response) {}
 
   [[nodiscard]] const TimingTotals& totals() const { return totals_; }
+  /// When the last fragment moved.
+  [[nodiscard]] Cycle last_fragment() const { return last_fragment_; }
   /// Of the boundaries that can wait.
   [[nodiscard]] const Stream& stream(Boundary boundary) const {
     switch (boundary) {
@@ -105,7 +109,8 @@ class BackTiming {
     for (bool more = true; more; pixel = moved + 1, offered = std::max(offered, pixel)) {
       more = step();
       moved = access(std::max(offered, pixel), place, look_up, line_pixel_.streams());
-      line_pixel_.count(pixel, offered, moved);
+      line_pixel_.count(pixel, moved);
+      work(TimedStage::line_raster, 1);
       note(Boundary::line_pixel, moved);
     }
     line_raster_.leave(moved);
@@ -134,6 +139,8 @@ class BackTiming {
     totals_.last = std::max(totals_.last, cycle);
     if (sink_ != nullptr) sink_->transfer(boundary, cycle);
   }
+
+  void work(TimedStage stage, std::uint64_t cycles) { totals_.works[static_cast<std::size_t>(stage)] += cycles; }
 
   /// The visit of the last fragment has ended.
   void retire() {

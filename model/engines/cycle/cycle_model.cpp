@@ -58,6 +58,7 @@ class CycleModelOf final : public CycleModel {
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
+    if (options_.want_cost) cost_.assign(pixels, 0);
     timing_.begin(cycle);
   }
 
@@ -65,6 +66,7 @@ class CycleModelOf final : public CycleModel {
     PrimitivePacket primitive = host.packet;
     if (primitive.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear) && options_.parameters.fast_clear == 0)
       primitive.kind = static_cast<std::uint8_t>(PrimitiveKind::rectangle);
+    if (options_.sink != nullptr) options_.sink->primitive(host);
     const auto triangle = cull(primitive, widths_, counters_);
     timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
@@ -92,6 +94,7 @@ class CycleModelOf final : public CycleModel {
   [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
   [[nodiscard]] const Stream& stream(Boundary boundary) const override { return timing_.stream(boundary); }
   [[nodiscard]] Rendering& rendering() override { return rendering_; }
+  [[nodiscard]] std::vector<float>& cost() override { return cost_; }
 
  private:
   using Kernel = TileKernel<T, Lane>;
@@ -151,7 +154,11 @@ class CycleModelOf final : public CycleModel {
       if (passed) directory_.wrote(place.tile_x, place.tile_y, state.depth_write != 0, state.color_write != 0);
       return hits;
     };
+    const Cycle before = timing_.last_fragment();
     timing_.end(true, [&](Cycle offered) { return timing_.take_pixels(offered, place, step, look_up); });
+    if (!options_.want_cost) return;
+    const float cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(line.remaining + 1);
+    line_raster(line, widths_, [&](const LinePixel& pixel) { cost_[plain_index(pixel.x, pixel.y)] += cycles; });
   }
 
   /// depth_test and rop of a pixel of a line. Returns whether it passed.
@@ -253,6 +260,8 @@ class CycleModelOf final : public CycleModel {
       if (packet.depth_write != 0 || packet.color_write != 0) counters_.written += passed;
     }
     bool is_resident = false;
+    const Cycle before = timing_.last_fragment();
+    if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
     timing_.visit(work, [&](Cycle offered, int row, int column) {
       if (column < 0) return timing_.pass(offered);
       FragmentPlace place{tile_x, tile_y, row * widths_.stamps_per_row + column, 0, packet.depth_write != 0};
@@ -266,6 +275,14 @@ class CycleModelOf final : public CycleModel {
     });
     if (passed != 0) directory_.wrote(tile_x, tile_y, packet.depth_write != 0, packet.color_write != 0);
     retire(packet, tile_x, tile_y, passed);
+    if (!options_.want_cost) return;
+    const auto cycles = static_cast<float>(timing_.last_fragment() - before);
+    for (int j = box.top; j <= box.bottom; ++j)
+      for (int i = box.left; i <= box.right; ++i)
+        if (covered == 0)
+          cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(box.samples());
+        else if ((covered_rows[static_cast<std::size_t>(j)] >> i & 1) != 0)
+          cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(covered);
   }
 
   /// The news of a visit for HiZ.
@@ -313,6 +330,7 @@ class CycleModelOf final : public CycleModel {
   Hiz hiz_;
   TileDirectory directory_;
   Rendering rendering_;
+  std::vector<float> cost_;
 };
 
 template <class Timing, int T>
@@ -357,7 +375,7 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
     drawn.add(*primitive, drawn.dropped(model->counters()) == dropped_before);
     if (render.progress && ++sent % 4096 == 0) render.progress(host.progress());
   }
-  CycleRendering result{std::move(model->rendering()), {}};
+  CycleRendering result{std::move(model->rendering()), {}, std::move(model->cost())};
   result.rendering.counters = host.counters();
   count_hardware(model->counters(), drawn.count(), result.rendering.counters);
   result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -368,11 +386,12 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
                           ? 0
                           : run.totals.last_write - run.totals.first_primitive + 1;
   run.tile_cycles = run.totals.tile_cycles;
+  run.totals.works[static_cast<std::size_t>(TimedStage::framebuffer)] =
+      run.totals.move_cycles - std::min(run.totals.move_cycles, run.totals.memory_cycles);
   for (std::size_t i = 0; i < kBoundaries; ++i) {
     const auto boundary = static_cast<Boundary>(i);
     if (boundary == Boundary::write || boundary == Boundary::retire) continue;
     run.use[i] = model->stream(boundary).use(run.cycles);
-    run.idle[i] = model->stream(boundary).idle();
   }
   return result;
 }

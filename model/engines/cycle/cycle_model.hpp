@@ -19,6 +19,7 @@ struct CycleOptions {
   TimingParameters parameters;    ///< sizes of buffers; the default is the RTL
   TransferSink* sink = nullptr;   ///< sees every crossing; slows the model down. Must outlive the model
   bool want_count = false, want_ids = false;  ///< fill Rendering::count, ids
+  bool want_cost = false;                     ///< fill CycleRendering::cost
 };
 
 /// The whole chip after reset, with a memory behind it.
@@ -34,6 +35,8 @@ class CycleModel {
   [[nodiscard]] virtual const Stream& stream(Boundary boundary) const = 0;
   /// Frame, count and ids since begin().
   [[nodiscard]] virtual Rendering& rendering() = 0;
+  /// Cycles of each pixel since begin(), width * height of them; empty unless wanted.
+  [[nodiscard]] virtual std::vector<float>& cost() = 0;
 };
 
 /// `memory` must outlive the model.
@@ -46,13 +49,15 @@ struct CycleRun {
   std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
   TimingTotals totals;
-  std::array<StreamUse, kBoundaries> use{};       ///< of the boundaries that can wait: all but write and retire
-  std::array<std::uint64_t, kBoundaries> idle{};  ///< likewise: the receiver had room and nothing came
+  std::array<StreamUse, kBoundaries> use{};  ///< of the boundaries that can wait: all but write and retire
 };
 
 struct CycleRendering {
   Rendering rendering;
   CycleRun run;
+  /// Cycles of each pixel: what passed between the last fragment of one tile visit and that of the next is shared by the
+  /// pixels that the visit covered (or, if there are none, by those of its box). Width * height, or empty.
+  std::vector<float> cost;
 };
 
 /// Renders `scene` from reset to the end of its flush. Throws InputError as check_hardware_scene(). Of `render` it takes

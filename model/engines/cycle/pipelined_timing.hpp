@@ -38,21 +38,23 @@ class PipelinedTiming : public BackTiming {
   void begin(Cycle cycle) { offer_ = std::max(offer_, cycle); }
 
   /// The next primitive, through cull and triangle_setup to coarse_raster; or, if it is dropped, only into cull.
-  void take(const PrimitiveWork& work) {
+  void take(const PrimitiveWork& primitive) {
     const Cycle taken = primitive_.transfer(offer_, cull_.room());
     note(Boundary::primitive, taken);
-    if (work.is_counted) count_primitive(taken);
-    if (work.is_line) take_line(offer_);
+    if (primitive.is_counted) count_primitive(taken);
+    if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
     // Turned until the first vertex leads, once at least; then three edges, one behind the other, of three cycles each.
-    const Cycle culled = taken + 1 + static_cast<Cycle>(work.turns) + (work.is_triangle ? kCullEdges : 0);
-    if (work.is_dropped) {
+    const Cycle culled = taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? kCullEdges : 0);
+    work(TimedStage::cull, culled - taken);
+    if (primitive.is_dropped) {
       cull_.leave(culled);
       return;
     }
     const Passage triangle = triangle_queue_.pass(triangle_, culled, divide_.room());
     cull_.leave(triangle.left);
     note(Boundary::triangle, triangle.taken);
+    work(TimedStage::triangle_setup, divide_.ready(triangle.taken) - triangle.taken);
     const Cycle gradients = std::max(divide_.ready(triangle.taken), gradients_.room());
     divide_.leave(gradients);
     const Cycle values = std::max(gradients_.ready(gradients), values_.room());
@@ -63,13 +65,20 @@ class PipelinedTiming : public BackTiming {
     note(Boundary::setup, setup.taken);
     if (slots_.room() > std::max(ready, coarse_.room())) totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
     walk_ = setup.taken + 2;
+    work(TimedStage::coarse_raster, 2);
   }
 
   /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
-  void clear_bounds(std::uint64_t tiles) { walk_ = std::max(walk_ - 1, last_retire_ + 1) + 1 + tiles; }
+  void clear_bounds(std::uint64_t tiles) {
+    walk_ = std::max(walk_ - 1, last_retire_ + 1) + 1 + tiles;
+    work(TimedStage::coarse_raster, tiles);
+  }
 
   /// The next tile of the walk is outside, and passed over.
-  void skip_outside() { ++walk_; }
+  void skip_outside() {
+    ++walk_;
+    work(TimedStage::coarse_raster, 1);
+  }
 
   /// The bound of the next tile is read, when no earlier visit of it is under way.
   void read_bound(int tile_x, int tile_y) {
@@ -78,9 +87,13 @@ class PipelinedTiming : public BackTiming {
       if (visit.tile_x == tile_x && visit.tile_y == tile_y) read = std::max(read, visit.retired + 1);
     totals_.bound_cycles += read - walk_;
     walk_ = read + 1;
+    work(TimedStage::coarse_raster, 1);
   }
   /// It lies in front, and the tile is passed over.
-  void skip_behind() { ++walk_; }
+  void skip_behind() {
+    ++walk_;
+    work(TimedStage::coarse_raster, 1);
+  }
 
   /// The end of a primitive whose last tile was passed over, or of a token: an empty stamp without a visit. shade(offered)
   /// is what depth_test does with it.
@@ -96,24 +109,26 @@ class PipelinedTiming : public BackTiming {
 
   /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.
   template <class Shade>
-  void visit(const TileVisitWork& work, Shade&& shade) {
+  void visit(const TileVisitWork& tile, Shade&& shade) {
     const Cycle offered = std::max(walk_, visits_.room());
     totals_.visit_cycles += offered - walk_;
     const auto [left, taken] = tile_queue_.pass(tile_, offered, rows_.room());
     note(Boundary::tile, taken);
     walk_ = left + 1;
-    if (work.ends_primitive) coarse_.leave(left);
+    if (tile.ends_primitive) coarse_.leave(left);
+    work(TimedStage::coarse_raster, 1);
     Cycle row_at = taken + 1;
-    for (int row = work.first_row;; ++row, ++row_at) {
-      const bool is_last = row == work.last_row;
-      std::uint32_t columns = work.columns[static_cast<std::size_t>(row)];
+    for (int row = tile.first_row;; ++row, ++row_at) {
+      const bool is_last = row == tile.last_row;
+      std::uint32_t columns = tile.columns[static_cast<std::size_t>(row)];
+      work(TimedStage::fine_raster, columns == 0 ? 1 : static_cast<std::uint64_t>(std::popcount(columns)));
       if (columns == 0 && !is_last) continue;
       row_at = std::max(row_at, stamps_.room());
       Cycle at = row_at + 1;
       do {
         const int column = columns == 0 ? -1 : std::countr_zero(columns);
         columns &= columns - 1;
-        const bool ends = work.ends_primitive && is_last && columns == 0;
+        const bool ends = tile.ends_primitive && is_last && columns == 0;
         at = send(at, ends, [&](Cycle shaded) { return shade(shaded, row, column); }) + 1;
       } while (columns != 0);
       stamps_.leave(at - 1);
@@ -122,7 +137,7 @@ class PipelinedTiming : public BackTiming {
     rows_.leave(row_at);
     retire();
     visits_.leave(last_retire_);
-    visited_[next_visited_] = {work.tile_x, work.tile_y, last_retire_};
+    visited_[next_visited_] = {tile.tile_x, tile.tile_y, last_retire_};
     next_visited_ = (next_visited_ + 1) % visited_.size();
   }
 
@@ -154,6 +169,7 @@ class PipelinedTiming : public BackTiming {
     skid_.leave(taken);
     last_stamp_ = taken;
     note(Boundary::stamp, taken);
+    work(TimedStage::interpolate, 1);
     if (ends_primitive) slots_.leave(std::max(taken + 1, context_.room()));  // leaves the first step
     const Cycle leaves = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
     last_left_ = leaves;

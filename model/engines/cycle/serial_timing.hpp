@@ -28,79 +28,99 @@ class SerialTiming : public BackTiming {
 
   void begin(Cycle cycle) { offer_ = std::max(offer_, cycle); }
 
-  void take(const PrimitiveWork& work) {
+  void take(const PrimitiveWork& primitive) {
     const Cycle offered = offer_;
-    if (work.is_line) take_line(offered);
-    const Cycle box = stalls_.next_free(kPrimitive, std::max(offered, cull_.room())) + 1 + kSort + kBox;
+    if (primitive.is_line) take_line(offered);
+    const Cycle sorts = stalls_.next_free(kPrimitive, std::max(offered, cull_.room())) + 1;
+    const Cycle box = sorts + kSort + kBox;
     const auto product = static_cast<Cycle>(cycles_.product);
     const Cycle judged = box + product;
     Cycle culled = box;
-    if (work.is_triangle && !work.is_dropped) culled = judged + 1 + (work.is_negative ? 2 + product : 0) + 3 * product;
-    if (work.is_dropped) {
-      const Cycle dropped = primitive_.transfer(offered, work.is_triangle ? judged : culled);
-      take_primitive(work, dropped);
+    if (primitive.is_triangle && !primitive.is_dropped) culled = judged + 1 + (primitive.is_negative ? 2 + product : 0) + 3 * product;
+    if (primitive.is_dropped && primitive.is_triangle) culled = judged;
+    work(TimedStage::cull, culled - sorts);
+    if (primitive.is_dropped) {
+      const Cycle dropped = primitive_.transfer(offered, culled);
+      take_primitive(primitive, dropped);
       return;
     }
     // triangle_setup works while the triangle is on offer, and takes it when its own result has gone.
     const Cycle begins = stalls_.next_free(kPrimitive | kTriangle, std::max(culled, triangle_setup_.room()));
-    const Cycle walks = setup_.transfer(begins + 1 + cycles_.setup(work.log2_area), std::max(coarse_.room(), slots_.room()));
+    const Cycle ready = begins + 1 + cycles_.setup(primitive.log2_area);
+    const Cycle walks = setup_.transfer(ready, std::max(coarse_.room(), slots_.room()));
+    work(TimedStage::triangle_setup, ready - begins);
     const Cycle taken = primitive_.transfer(offered, walks + 1, kTriangle);
-    triangle_.count(culled, walks + 1, taken);
-    take_primitive(work, taken);
+    triangle_.count(culled, taken);
+    take_primitive(primitive, taken);
     note(Boundary::triangle, taken);
     note(Boundary::setup, walks);
     triangle_setup_.leave(taken);
     walk_ = walks + 1 + kTurn;
+    work(TimedStage::coarse_raster, 1 + kTurn);
     primitive_starts_ = true;
   }
 
-  void clear_bounds(std::uint64_t tiles) { walk_ = std::max(walk_, last_retire_ + 1) + tiles - 1; }
+  void clear_bounds(std::uint64_t tiles) {
+    walk_ = std::max(walk_, last_retire_ + 1) + tiles - 1;
+    work(TimedStage::coarse_raster, tiles);
+  }
 
-  void skip_outside() { walk_ += 1 + kTurn; }
+  void skip_outside() {
+    walk_ += 1 + kTurn;
+    work(TimedStage::coarse_raster, 1 + kTurn);
+  }
   void read_bound(int, int) {
     const Cycle read = std::max(walk_, last_retire_ + 1);
     totals_.bound_cycles += read - walk_;
     walk_ = read + 1;
+    work(TimedStage::coarse_raster, 1);
     has_bound_ = true;
   }
-  void skip_behind() { walk_ += 1 + kTurn; has_bound_ = false; }
+  void skip_behind() {
+    walk_ += 1 + kTurn;
+    work(TimedStage::coarse_raster, 1 + kTurn);
+    has_bound_ = false;
+  }
 
   template <class Shade>
   void end(bool is_token, Shade&& shade) {
     // What passed over the last tile went on to turn to the next one; a token's end comes in the cycle after.
     const Cycle offered = is_token ? walk_ + 1 : walk_ - kTurn;
     const Cycle taken = send(offered, kTile, fine_.room(), shade);
-    tile_.count(offered, fine_.room(), taken);
+    tile_.count(offered, taken);
     note(Boundary::tile, taken);
     fine_.leave(taken);
     coarse_.leave(taken);
   }
 
   template <class Shade>
-  void visit(const TileVisitWork& work, Shade&& shade) {
+  void visit(const TileVisitWork& tile, Shade&& shade) {
     const Cycle offered = (has_bound_ ? walk_ : std::max(walk_, visits_.room())) + 1;
     has_bound_ = false;
     // From the tile's first stamp to the first one of the box, then one position a cycle.
     Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
-               static_cast<Cycle>(work.first_column + work.first_row);
-    for (int row = work.first_row; row < work.last_row; ++row)
-      for (int column = work.first_column; column <= work.last_column; ++column, ++at)
-        if (is_covered(work, row, column))
+               static_cast<Cycle>(tile.first_column + tile.first_row);
+    for (int row = tile.first_row; row < tile.last_row; ++row)
+      for (int column = tile.first_column; column <= tile.last_column; ++column, ++at)
+        if (is_covered(tile, row, column))
           at = send(at, 0, 0, [&](Cycle t) { return shade(t, row, column); });
     int held = -1;  // column of the last covered stamp of the last row so far
-    for (int column = work.first_column; column <= work.last_column; ++column, ++at) {
-      if (!is_covered(work, work.last_row, column)) continue;
-      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, work.last_row, held); });
-      if (held >= 0 && column == work.last_column) ++at;  // it stays there for the last one
+    for (int column = tile.first_column; column <= tile.last_column; ++column, ++at) {
+      if (!is_covered(tile, tile.last_row, column)) continue;
+      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, tile.last_row, held); });
+      if (held >= 0 && column == tile.last_column) ++at;  // it stays there for the last one
       held = column;
     }
     --at;
-    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, work.last_row, held); });
-    tile_.count(offered, fine_.room(), taken);
+    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, tile.last_row, held); });
+    tile_.count(offered, taken);
     note(Boundary::tile, taken);
     fine_.leave(taken);
     walk_ = taken + 1 + kTurn;
-    if (work.ends_primitive) coarse_.leave(taken);
+    work(TimedStage::coarse_raster, 1 + kTurn);
+    const int positions = (tile.last_row - tile.first_row + 1) * (tile.last_column - tile.first_column + 1);
+    work(TimedStage::fine_raster, static_cast<std::uint64_t>(1 + tile.first_column + tile.first_row + positions));
+    if (tile.ends_primitive) coarse_.leave(taken);
     retire();
     visits_.leave(last_retire_);
   }
@@ -123,8 +143,8 @@ class SerialTiming : public BackTiming {
   static constexpr Cycle kTurn = 4;            ///< of coarse_raster: the edges go round once
   static constexpr int kInterpolateSteps = 2;
 
-  static bool is_covered(const TileVisitWork& work, int row, int column) {
-    return (work.columns[static_cast<std::size_t>(row)] >> column & 1) != 0;
+  static bool is_covered(const TileVisitWork& tile, int row, int column) {
+    return (tile.columns[static_cast<std::size_t>(row)] >> column & 1) != 0;
   }
 
   void take_primitive(const PrimitiveWork& work, Cycle taken) {
@@ -147,6 +167,7 @@ class SerialTiming : public BackTiming {
     primitive_starts_ = false;
     const Cycle taken = stamp_.transfer(offered, ready, others);
     note(Boundary::stamp, taken);
+    work(TimedStage::interpolate, 1);
     const Cycle made = std::max({interpolate_.ready(taken), last_made_ + 1, skid_.room()});
     interpolate_.leave(made);
     last_made_ = made;

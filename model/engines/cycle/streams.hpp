@@ -50,6 +50,18 @@ inline constexpr std::array<std::string_view, kBoundaries> kBoundarySenders{
     "host",        "host",       "cull", "triangle_setup", "coarse_raster", "fine_raster",
     "line_raster", "interpolate", "depth_test", "depth_test", "framebuffer",  "memory"};
 
+/// The stages that share the work. primitive_join, depth_test and rop add no cycles of their own.
+enum class TimedStage : std::uint8_t {
+  cull,
+  triangle_setup,
+  coarse_raster,
+  fine_raster,
+  line_raster,
+  interpolate,
+  framebuffer
+};
+inline constexpr std::size_t kTimedStages = 7;
+
 /// Why a plane of a tile moves between chip and memory.
 enum class MoveCause : std::uint8_t {
   fill,   ///< a tile is needed
@@ -58,10 +70,16 @@ enum class MoveCause : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 3> kMoveCauses{"fill", "evict", "clear"};
 
+struct HostPrimitive;
+
 /// Sees every item as it crosses a boundary: those of one boundary in order, different ones as the work happens.
 struct TransferSink {
   virtual ~TransferSink() = default;
   virtual void transfer(Boundary boundary, Cycle cycle) = 0;
+  /// What crosses from now on belongs to this primitive.
+  virtual void primitive(const HostPrimitive&) {}
+  /// The next tile, and what crosses from now on behind it, belongs to this visit.
+  virtual void visit(int /*tile_x*/, int /*tile_y*/) {}
   /// A plane moved: from the first request to the cycle behind the last request or answer.
   virtual void move(MoveCause, bool /*is_color*/, int /*tile_x*/, int /*tile_y*/, Cycle /*from*/, Cycle /*to*/) {}
   /// depth_test waited while the framebuffer brought in a tile, marked or looked at tiles: [from, to).

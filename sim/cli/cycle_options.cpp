@@ -1,0 +1,325 @@
+#include "sim/cli/cycle_options.hpp"
+
+#include <cmath>
+#include <limits>
+#include <ostream>
+
+#include "sim/image/framebuffer_files.hpp"
+#include "sim/image/panel.hpp"
+#include "sim/image/png.hpp"
+#include "sim/image/whole_file.hpp"
+#include "sim/trace/primitive_spans.hpp"
+#include "sim/trace/timeline.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr double kQuickSeconds = 0.15;  // a frame that is explained without being asked
+
+/// "key=rest". Throws InputError naming the option.
+std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw InputError(option + ": '" + text + "' is not KEY=VALUE");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::vector<std::string> list_of(const std::string& text) {
+  std::vector<std::string> values;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    values.push_back(text.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return values;
+}
+
+void change_for(const std::string& option, Hardware& hardware, const std::string& key, const std::string& value) {
+  try {
+    change(hardware, key, value);
+    check(hardware);
+  } catch (const InputError& error) {
+    throw InputError(option + ": " + error.what());
+  }
+}
+
+/// Every value of every --what-if, in order.
+std::vector<std::pair<std::string, std::string>> variations(const CycleCommandOptions& options) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string& text : options.what_if) {
+    const auto [key, values] = split("--what-if", text);
+    for (const std::string& value : list_of(values)) all.emplace_back(key, value);
+  }
+  return all;
+}
+
+/// Hands on to two; either may be missing.
+class Tee final : public TransferSink {
+ public:
+  Tee(TransferSink* first, TransferSink* second) : sinks_{first, second} {}
+  void transfer(Boundary boundary, Cycle cycle) override {
+    each([&](TransferSink& s) { s.transfer(boundary, cycle); });
+  }
+  void primitive(const HostPrimitive& p) override {
+    each([&](TransferSink& s) { s.primitive(p); });
+  }
+  void visit(int x, int y) override {
+    each([&](TransferSink& s) { s.visit(x, y); });
+  }
+  void move(MoveCause cause, bool is_color, int x, int y, Cycle from, Cycle to) override {
+    each([&](TransferSink& s) { s.move(cause, is_color, x, y, from, to); });
+  }
+  void wait(Cycle from, Cycle to) override {
+    each([&](TransferSink& s) { s.wait(from, to); });
+  }
+
+ private:
+  template <class Visit>
+  void each(Visit&& visit) {
+    for (TransferSink* sink : sinks_)
+      if (sink != nullptr) visit(*sink);
+  }
+  std::array<TransferSink*, 2> sinks_;
+};
+
+void write_text(const std::string& path, const std::string& text) {
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  return fixed(whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
+}
+
+std::string left_aligned(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+double per_second(std::uint64_t items, const CycleRun& run, const Hardware& hardware) {
+  return static_cast<double>(items) * hardware.memory.mhz * 1e6 / static_cast<double>(std::max<Cycle>(run.cycles, 1));
+}
+
+double milliseconds(std::uint64_t cycles, const Hardware& hardware) {
+  return static_cast<double>(cycles) / (1e3 * hardware.memory.mhz);
+}
+
+std::string kilobytes(std::uint64_t bytes) { return with_commas((bytes + 512) / 1024) + " KB"; }
+
+/// Where most of the cycles go, in words.
+std::string bottleneck(const CycleResult& cycle) {
+  const CycleRun& run = cycle.frame.run;
+  const auto stages = stage_times(run);
+  const StageTime* slowest = &stages.front();
+  for (const StageTime& stage : stages)
+    if (stage.works > slowest->works) slowest = &stage;
+  std::string text;
+  if (run.totals.memory_cycles > slowest->works)
+    text = "the memory: for " + percent(run.totals.memory_cycles, run.cycles) + " of all cycles the framebuffer waits for it";
+  else if (slowest->name == "framebuffer")
+    text = "framebuffer: for " + percent(run.totals.move_cycles, run.cycles) + " of all cycles it moves or looks at tiles and takes no access";
+  else
+    text = std::string(slowest->name) + ": it works in " + percent(slowest->works, run.cycles) + " of all cycles";
+  if (!cycle.is_explained) return text + "; --explain tries what would relieve it";
+  if (cycle.reliefs.empty()) return text + "; nothing that was tried relieves it";
+  text += ". Tried: ";
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, cycle.reliefs.size()); ++i) {
+    const Trial& trial = cycle.reliefs[i];
+    text += (i == 0 ? "" : ", ") + trial.key + "=" + trial.value + " saves " +
+            percent(run.cycles - trial.cycles, run.cycles);
+  }
+  return text;
+}
+
+}  // namespace
+
+bool CycleCommandOptions::is_default() const {
+  return memory == MemorySettings{} && timing.empty() && what_if.empty() && stalls == 0 && !explain &&
+         primitives_path.empty() && trace_path.empty() && heat_path.empty();
+}
+
+void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
+  const std::string group = "For --engine cycle";
+  CLI::Option_group& cycle = *app.add_option_group(group);
+  add_memory_options(cycle, options.memory);
+  cycle.add_option("--timing", options.timing, "KEY=VALUE: a size or rule that the RTL has one value of (config --list)")
+      ->type_name("KEY=VALUE");
+  cycle.add_option("--what-if", options.what_if, "KEY=V1,V2,...: a table of the cycles with each of these values")
+      ->type_name("KEY=LIST");
+  cycle.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
+      ->check(CLI::Range(0.0, 0.95));
+  cycle.add_flag("--explain", options.explain, "try what would relieve the bottleneck, and what skipping saves");
+  add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv");
+  add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json");
+  add_file_option(cycle, "--heat", options.heat_path, "sheet: cycles and draws of each pixel, .png; cycles alone: .npy");
+}
+
+void check_cycle_options(const CycleCommandOptions& options, const Config& config) {
+  const Hardware hardware = hardware_of(options, config);
+  for (const auto& [key, value] : variations(options)) {
+    Hardware changed = hardware;
+    change_for("--what-if", changed, key, value);
+  }
+  check_output(options.primitives_path, ".csv");
+  check_output(options.trace_path, ".json");
+  check_output(options.heat_path, options.heat_path.ends_with(".npy") ? ".npy" : ".png");
+}
+
+Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
+  Hardware hardware{config, {}, options.memory};
+  for (const std::string& text : options.timing) {
+    const auto [key, value] = split("--timing", text);
+    if (find_timing_setting(key) == nullptr)
+      throw InputError("--timing: no setting '" + key + "'; 'halfplane config --list' has them, --set takes the others");
+    change_for("--timing", hardware, key, value);
+  }
+  return hardware;
+}
+
+CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOptions& options, const Scene& scene,
+                             const Config& config, RenderOptions render) {
+  CycleResult result{hardware_of(options, config), {}, {}, {}, false, {}};
+  const Hardware& hardware = result.hardware;
+  PrimitiveSpans spans;
+  Timeline timeline(common.scene + ", " + label(config));
+  Tee tee(options.primitives_path.empty() ? nullptr : &spans, options.trace_path.empty() ? nullptr : &timeline);
+  CycleOptions cycle;
+  cycle.stalls = {common.seed, stall_threshold(options.stalls)};
+  if (!options.primitives_path.empty() || !options.trace_path.empty()) cycle.sink = &tee;
+  cycle.want_cost = !options.heat_path.empty();
+  render.want_count |= cycle.want_cost;
+  result.frame = run_cycles(scene, hardware, render, cycle);
+  const CycleRun& run = result.frame.run;
+
+  if (!options.primitives_path.empty()) write_text(options.primitives_path, spans.finish());
+  if (!options.trace_path.empty()) write_text(options.trace_path, timeline.finish());
+  const Framebuffer& frame = result.frame.rendering.frame;
+  if (options.heat_path.ends_with(".npy")) {
+    write_npy(options.heat_path, frame.width, frame.height, result.frame.cost);
+  } else if (!options.heat_path.empty()) {
+    write_png(options.heat_path,
+              heat_sheet(common.scene + ", " + label(config) + ", " + memory_text(hardware.memory),
+                         color_picture(frame, config.color_format), result.frame.cost, result.frame.rendering.count));
+  }
+
+  result.is_explained = options.explain || (result.frame.rendering.raster_s < kQuickSeconds && options.stalls == 0);
+  if (result.is_explained) {
+    Progress progress(common, "trying what would relieve it");
+    result.reliefs = try_reliefs(scene, hardware, run.cycles, [&](double fraction) { progress(fraction); });
+    result.savings = measure_savings(scene, hardware, run.cycles);
+  }
+  const auto all = variations(options);
+  Progress progress(common, "varying");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    progress(static_cast<double>(i) / static_cast<double>(all.size()));
+    Hardware changed = hardware;
+    change(changed, all[i].first, all[i].second);
+    CycleOptions stalls;
+    stalls.stalls = cycle.stalls;
+    const CycleRendering other = run_cycles(scene, changed, {}, stalls);
+    const bool same = color_hash(other.rendering.frame, changed.config.color_format) ==
+                          color_hash(frame, config.color_format) &&
+                      depth_hash(other.rendering.frame) == depth_hash(frame);
+    result.rows.push_back({all[i].first, all[i].second, other.run, traffic(other.run, changed.config).total(), same});
+  }
+  return result;
+}
+
+void add_cycle_json(Json& result, const CycleResult& cycle) {
+  const CycleRun& run = cycle.frame.run;
+  const Hardware& hardware = cycle.hardware;
+  result["cycles"] = run.cycles;
+  result["raster_cycles"] = run.raster_cycles;
+  result["tile_cycles"] = run.tile_cycles;
+  result["memory"] = memory_json(hardware.memory);
+  Json timing = Json::object();
+  for (const TimingSetting& setting : timing_settings())
+    timing[std::string(setting.key)] = hardware.parameters.*setting.member;
+  result["timing"] = timing;
+  const Counters& c = cycle.frame.rendering.counters;
+  result["per_second"] = {{"frames", per_second(1, run, hardware)},
+                          {"pixels", per_second(c.covered, run, hardware)},
+                          {"primitives", per_second(c.primitives_in, run, hardware)}};
+  Json stages = Json::object();
+  for (const StageTime& stage : stage_times(run)) {
+    Json waits = Json::object();
+    for (const StageTime::Wait& wait : stage.waits) waits[std::string(wait.reason)] = wait.cycles;
+    stages[std::string(stage.name)] = {{"busy", stage.use.busy},          {"stalled", stage.use.stalled},
+                                       {"starved", stage.use.starved},    {"items", stage.use.busy},
+                                       {"works", stage.works},            {"no_item", stage.no_item},
+                                       {"waits", waits}};
+  }
+  result["stages"] = stages;
+  const Traffic bytes = traffic(run, hardware.config);
+  for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
+    result["traffic_bytes"][std::string(kMoveCauses[cause])] = {{"depth", bytes.bytes[cause][0]},
+                                                               {"color", bytes.bytes[cause][1]}};
+  result["bottleneck"] = bottleneck(cycle);
+  if (cycle.is_explained) {
+    Json reliefs = Json::array(), saved = Json::object();
+    for (const Trial& trial : cycle.reliefs)
+      reliefs.push_back({{"key", trial.key}, {"value", trial.value}, {"cycles", trial.cycles}});
+    for (const Saving& saving : cycle.savings) saved[std::string(saving.name)] = saving.cycles;
+    result["reliefs"] = reliefs;
+    result["saved_cycles"] = saved;
+  }
+  Json rows = Json::array();
+  for (const CycleResult::Row& row : cycle.rows)
+    rows.push_back({{"key", row.key},
+                    {"value", row.value},
+                    {"cycles", row.run.cycles},
+                    {"raster_cycles", row.run.raster_cycles},
+                    {"tile_cycles", row.run.tile_cycles},
+                    {"bytes", row.bytes},
+                    {"same_picture", row.same_picture}});
+  result["what_if"] = rows;
+}
+
+void print_cycles(std::ostream& out, const CycleResult& cycle) {
+  const CycleRun& run = cycle.frame.run;
+  const Hardware& hardware = cycle.hardware;
+  const Counters& c = cycle.frame.rendering.counters;
+  out << "cycles      " << with_commas(run.cycles) << " in all, " << with_commas(run.raster_cycles)
+      << " from the first primitive to the last write, " << with_commas(run.tile_cycles) << " of them moving tiles\n"
+      << left_aligned("at " + std::to_string(hardware.memory.mhz) + " MHz", 12)
+      << fixed(milliseconds(run.cycles, hardware), 2) << " ms a frame, " << fixed(per_second(1, run, hardware), 1)
+      << " frames, " << fixed(per_second(c.covered, run, hardware) / 1e6, 2) << " M pixels, "
+      << fixed(per_second(c.primitives_in, run, hardware) / 1e6, 3) << " M primitives a second\n";
+  const Traffic bytes = traffic(run, hardware.config);
+  out << "memory      " << memory_text(hardware.memory) << "; " << kilobytes(bytes.total()) << " a frame:";
+  for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
+    out << (cause == 0 ? " " : ", ") << kMoveCauses[cause] << " " << kilobytes(bytes.bytes[cause][0]) << " depth, "
+        << kilobytes(bytes.bytes[cause][1]) << " colour";
+  out << "\n\nstage                 items         works   no item       waits for\n";
+  for (const StageTime& stage : stage_times(run)) {
+    out << left_aligned(std::string(stage.name), 16) << right_aligned(with_commas(stage.use.busy), 11) << right_aligned(percent(stage.works, run.cycles), 14)
+        << right_aligned(percent(stage.no_item, run.cycles), 10) << "       ";
+    for (std::size_t i = 0; i < stage.waits.size(); ++i)
+      out << (i == 0 ? "" : ", ") << stage.waits[i].reason << " " << percent(stage.waits[i].cycles, run.cycles);
+    out << (stage.waits.empty() ? "-" : "") << '\n';
+  }
+  const auto saved = [&](std::string_view name) {
+    for (const Saving& saving : cycle.savings)
+      if (saving.name == name)
+        return (saving.cycles < 0 ? ", costs " : ", saves ") +
+               with_commas(static_cast<std::uint64_t>(std::abs(saving.cycles))) + " cycles";
+    return std::string();
+  };
+  const auto& s = c.skipped;
+  out << "\nskipped     tiles behind HiZ " << with_commas(s.tiles_hiz) << saved("tiles_hiz") << "; tiles outside "
+      << with_commas(s.tiles_outside) << saved("tiles_outside") << "; fast clear" << saved("fast_clear") << "\n"
+      << "            back faces " << with_commas(s.backface) << ", zero area " << with_commas(s.zero_area) << ", empty "
+      << with_commas(s.empty) << ": nothing behind cull\n"
+      << "bottleneck  " << bottleneck(cycle) << '\n';
+  if (cycle.rows.empty()) return;
+  out << "\nwhat if                            cycles    change     moving tiles      memory\n";
+  const auto line = [&](const std::string& what, const CycleRun& other, std::uint64_t moved, bool same) {
+    const double change = 100.0 * (static_cast<double>(other.cycles) / static_cast<double>(run.cycles) - 1);
+    out << left_aligned(what, 28) << right_aligned(with_commas(other.cycles), 13) << right_aligned((change > 0 ? "+" : "") + fixed(change, 1) + " %", 10)
+        << right_aligned(with_commas(other.tile_cycles), 17) << right_aligned(kilobytes(moved), 12)
+        << (same ? "" : "   another picture") << '\n';
+  };
+  line("as it is", run, bytes.total(), true);
+  for (const CycleResult::Row& row : cycle.rows) line(row.key + "=" + row.value, row.run, row.bytes, row.same_picture);
+}
+
+}  // namespace halfplane

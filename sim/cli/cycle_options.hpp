@@ -1,0 +1,58 @@
+// What `render --engine cycle` takes and says besides what every engine does.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "sim/cli/memory_options.hpp"
+#include "sim/report/hardware.hpp"
+
+namespace halfplane {
+
+struct CycleCommandOptions {
+  MemorySettings memory;
+  std::vector<std::string> timing;   ///< key=value
+  std::vector<std::string> what_if;  ///< key=value,value...
+  double stalls = 0;
+  bool explain = false;
+  std::string primitives_path, trace_path, heat_path;
+
+  /// Whether anything was asked for that only this engine has.
+  [[nodiscard]] bool is_default() const;
+};
+
+void add_cycle_options(CLI::App& app, CycleCommandOptions& options);
+
+/// Throws InputError for what can be refused before a scene is read.
+void check_cycle_options(const CycleCommandOptions& options, const Config& config);
+
+[[nodiscard]] Hardware hardware_of(const CycleCommandOptions& options, const Config& config);
+
+/// A run of the engine, and what was found out about it.
+struct CycleResult {
+  Hardware hardware;
+  CycleRendering frame;
+  std::vector<Trial> reliefs;   ///< only when explained
+  std::vector<Saving> savings;  ///< likewise
+  bool is_explained = false;
+  struct Row {
+    std::string key, value;
+    CycleRun run;
+    std::uint64_t bytes = 0;
+    bool same_picture = true;
+  };
+  std::vector<Row> rows;  ///< of --what-if
+};
+
+/// Renders, writes the files that the options name, explains (when asked, or when it takes no time) and varies.
+[[nodiscard]] CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOptions& options,
+                                           const Scene& scene, const Config& config, RenderOptions render);
+
+/// Adds cycles, stages, memory, skipped savings, what_if to a result.
+void add_cycle_json(Json& result, const CycleResult& cycle);
+
+/// The same for people.
+void print_cycles(std::ostream& out, const CycleResult& cycle);
+
+}  // namespace halfplane

@@ -1,0 +1,73 @@
+// A piece of hardware as the cycle model takes it, and its settings by name: what `render --engine cycle` runs and
+// --what-if varies.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/engines/cycle/cycle_model.hpp"
+
+namespace halfplane {
+
+struct Hardware {
+  Config config;
+  TimingParameters parameters;
+  MemorySettings memory;
+};
+
+/// Changes one setting: a key of the configuration, of the timing parameters, or memory, memory.latency, mhz. Throws
+/// InputError for an unknown key or a value outside its range.
+void change(Hardware& hardware, std::string_view key, std::string_view value);
+
+/// The value of one setting.
+[[nodiscard]] std::string value_of(const Hardware& hardware, std::string_view key);
+
+/// validate(), and refuses parameters that this kind of hardware does not have. Throws InputError.
+void check(const Hardware& hardware);
+
+/// Renders with a memory of its own.
+[[nodiscard]] CycleRendering run_cycles(const Scene& scene, const Hardware& hardware, const RenderOptions& render = {},
+                                        CycleOptions options = {});
+
+/// One stage over a run, in cycles.
+struct StageTime {
+  std::string_view name;
+  StreamUse use;             ///< of its output, as `render --engine rtl` has it
+  std::uint64_t works = 0;   ///< its narrowest part was at work
+  std::uint64_t no_item = 0; ///< it neither worked nor waited to go on
+  struct Wait {
+    std::string_view reason;
+    std::uint64_t cycles;
+  };
+  std::vector<Wait> waits;  ///< to go on, by what it waited for; none with 0 cycles
+};
+
+/// In the order of the pipeline.
+[[nodiscard]] std::vector<StageTime> stage_times(const CycleRun& run);
+
+/// Bytes between chip and memory, by cause and plane.
+struct Traffic {
+  std::array<std::array<std::uint64_t, 2>, 3> bytes{};  ///< [MoveCause][depth, colour]
+  [[nodiscard]] std::uint64_t total() const;
+};
+[[nodiscard]] Traffic traffic(const CycleRun& run, const Config& config);
+
+/// A change, and what it did to the cycles of a frame.
+struct Trial {
+  std::string key, value;
+  std::uint64_t cycles = 0;
+};
+
+/// Tries what might relieve the hardware, best first; those that change nothing are left out.
+[[nodiscard]] std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std::uint64_t cycles,
+                                             const std::function<void(double)>& progress);
+
+/// A thing that hardware skips, and the cycles more that a frame takes when it does not. Negative: finding out costs more.
+struct Saving {
+  std::string_view name;  ///< "tiles_hiz", "tiles_outside", "fast_clear"
+  std::int64_t cycles;
+};
+[[nodiscard]] std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, std::uint64_t cycles);
+
+}  // namespace halfplane

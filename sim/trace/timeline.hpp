@@ -1,0 +1,39 @@
+// Timeline of a run as Chrome trace JSON, as Perfetto (ui.perfetto.dev) opens it: stages as tracks, primitives, tiles and
+// tile moves as slices. One cycle is one microsecond.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "model/engines/cycle/cycle_model.hpp"
+
+namespace halfplane {
+
+class Timeline final : public TransferSink {
+ public:
+  /// `title` names the process: scene and configuration.
+  explicit Timeline(const std::string& title);
+  void transfer(Boundary boundary, Cycle cycle) override;
+  void primitive(const HostPrimitive& primitive) override;
+  void visit(int tile_x, int tile_y) override;
+  void move(MoveCause cause, bool is_color, int tile_x, int tile_y, Cycle from, Cycle to) override;
+  void wait(Cycle from, Cycle to) override;
+  /// The whole document. Call it once, after the run.
+  [[nodiscard]] const std::string& finish();
+
+ private:
+  enum Track : int { cull, setup_1, setup_2, setup_3, coarse, fine, lines, depth, framebuffer, memory_depth, memory_color };
+  void slice(int track, const std::string& name, Cycle from, Cycle to);
+  void end_tile(Cycle limit);
+  void end_visit();
+  void end_primitive();
+
+  std::string text_;
+  std::string name_, tile_name_, next_tile_name_;  ///< of the primitive, of the tile in fine_raster, of the next one
+  bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
+  Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0, first_fragment_ = 0,
+        last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
+  std::array<Cycle, 3> setup_ends_{};  ///< triangle_setup works on three at a time: three tracks
+};
+
+}  // namespace halfplane
