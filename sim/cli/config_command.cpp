@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "model/engines/cycle/stage_table.hpp"
 #include "model/raster_pkg.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
@@ -23,6 +24,16 @@ void print_settings(std::ostream& out, const Config& config, bool with_meaning) 
     }
     out << '\n';
   }
+}
+
+/// Those that only the cycle model can vary.
+void print_timing_settings(std::ostream& out) {
+  out << "\nfor --timing and --what-if of the cycle engine; the RTL has the value shown\n";
+  const TimingParameters rtl;
+  for (const TimingSetting& setting : timing_settings())
+    out << std::left << std::setw(24) << setting.key << std::right << std::setw(10) << rtl.*setting.member << "   "
+        << std::left << std::setw(26) << std::to_string(setting.min) + "..." + std::to_string(setting.max)
+        << setting.meaning << std::right << '\n';
 }
 
 std::string bound_text(const Width& width) {
@@ -62,7 +73,7 @@ Json widths_json(const std::vector<const Width*>& widths) {
 }
 
 struct ConfigOptions : CommonOptions {
-  bool list = false, widths = false, sv = false;
+  bool list = false, widths = false, stages = false, sv = false;
 };
 
 int run(const ConfigOptions& options) {
@@ -86,12 +97,29 @@ int run(const ConfigOptions& options) {
       list.push_back(entry);
     }
     result["settings"] = list;
+    Json timing = Json::array();
+    const TimingParameters rtl;
+    for (const TimingSetting& setting : timing_settings())
+      timing.push_back({{"key", setting.key},
+                        {"value", rtl.*setting.member},
+                        {"range", {setting.min, setting.max}},
+                        {"meaning", setting.meaning}});
+    result["timing_settings"] = timing;
   }
   if (options.widths) result["widths"] = widths_json(widths);
+  if (options.stages) {
+    Json stages = Json::array();
+    for (const StageRow& row : stage_table(config))
+      stages.push_back(
+          {{"stage", row.stage}, {"latency", row.latency}, {"interval", row.interval}, {"holds", row.holds}});
+    result["stages"] = stages;
+  }
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
   print_settings(out, config, options.list);
+  if (options.list) print_timing_settings(out);
   if (options.widths) print_widths(out, widths);
+  if (options.stages) out << '\n' << stage_table_markdown(config);
   return exit_ok;
 }
 
@@ -103,6 +131,7 @@ void add_config_command(CLI::App& app, Action& selected) {
   add_output_options(*command, *options);
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");
+  command->add_flag("--stages", options->stages, "latency and interval of every stage, in cycles");
   command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration")->excludes("--json");
   command->footer(
       "\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");

@@ -90,11 +90,6 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
   return fixed(whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
 }
 
-std::string left_aligned(std::string text, std::size_t width) {
-  text.resize(std::max(width, text.size()), ' ');
-  return text;
-}
-
 double per_second(std::uint64_t items, const CycleRun& run, const Hardware& hardware) {
   return static_cast<double>(items) * hardware.memory.mhz * 1e6 / static_cast<double>(std::max<Cycle>(run.cycles, 1));
 }
@@ -197,7 +192,7 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
     write_npy(options.heat_path, frame.width, frame.height, result.frame.cost);
   } else if (!options.heat_path.empty()) {
     write_png(options.heat_path,
-              heat_sheet(common.scene + ", " + label(config) + ", " + memory_text(hardware.memory),
+              heat_sheet(common.scene + ", " + label(config) + ", " + "memory " + memory_text(hardware.memory),
                          color_picture(frame, config.color_format), result.frame.cost, result.frame.rendering.count));
   }
 

@@ -228,6 +228,11 @@ std::string with_commas(std::uint64_t value) {
   return digits;
 }
 
+std::string left_aligned(std::string text, std::size_t width) {
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
 std::string right_aligned(const std::string& text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
 }

@@ -98,7 +98,8 @@ class Progress {
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::uint64_t value);
 
-/// `text` behind as many blanks as it takes to fill `width`.
+/// `text` with as many blanks behind it as it takes to fill `width`, and before it.
+[[nodiscard]] std::string left_aligned(std::string text, std::size_t width);
 [[nodiscard]] std::string right_aligned(const std::string& text, std::size_t width);
 
 /// "%.*f" as a string.

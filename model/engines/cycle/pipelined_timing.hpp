@@ -22,7 +22,7 @@ class PipelinedTiming : public BackTiming {
         slots_(config.context_slots, 0, 2),
         visits_(parameters.visits, 0, 1),
         skid_(parameters.stamp_queue, 1, 1),
-        interpolate_(kInterpolateSteps, kInterpolateSteps, 0),
+        interpolate_(kSteps, kSteps, 0),
         triangle_queue_(parameters.triangle_queue),
         setup_queue_(parameters.setup_queue),
         tile_queue_(parameters.tile_queue),
@@ -45,7 +45,7 @@ class PipelinedTiming : public BackTiming {
     if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
     // Turned until the first vertex leads, once at least; then three edges, one behind the other, of three cycles each.
-    const Cycle culled = taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? kCullEdges : 0);
+    const Cycle culled = taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? PipelinedCycles::cull_edges : 0);
     work(TimedStage::cull, culled - taken);
     if (primitive.is_dropped) {
       cull_.leave(culled);
@@ -64,8 +64,8 @@ class PipelinedTiming : public BackTiming {
     values_.leave(setup.left);
     note(Boundary::setup, setup.taken);
     if (slots_.room() > std::max(ready, coarse_.room())) totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
-    walk_ = setup.taken + 2;
-    work(TimedStage::coarse_raster, 2);
+    walk_ = setup.taken + PipelinedCycles::walk_begins;
+    work(TimedStage::coarse_raster, PipelinedCycles::walk_begins);
   }
 
   /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
@@ -153,8 +153,7 @@ class PipelinedTiming : public BackTiming {
   }
 
  private:
-  static constexpr Cycle kCullEdges = 5;       ///< three edge functions of three cycles each, one behind the other
-  static constexpr int kInterpolateSteps = 5;  ///< each holds one stamp
+  static constexpr int kSteps = PipelinedCycles::interpolate_steps;
   struct VisitedTile {
     int tile_x = -1, tile_y = -1;
     Cycle retired = 0;
@@ -180,7 +179,7 @@ class PipelinedTiming : public BackTiming {
 
   Station cull_{1, 0, 0}, divide_, gradients_, values_, coarse_{1, 0, 0}, slots_, visits_;
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, skid_, interpolate_;
-  Station context_{kInterpolateSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
+  Station context_{kSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Stream primitive_, triangle_, setup_, tile_, stamp_;
   Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0, last_left_ = 0;

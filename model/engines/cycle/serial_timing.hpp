@@ -32,7 +32,7 @@ class SerialTiming : public BackTiming {
     const Cycle offered = offer_;
     if (primitive.is_line) take_line(offered);
     const Cycle sorts = stalls_.next_free(kPrimitive, std::max(offered, cull_.room())) + 1;
-    const Cycle box = sorts + kSort + kBox;
+    const Cycle box = sorts + SerialCycles::sort + SerialCycles::box;
     const auto product = static_cast<Cycle>(cycles_.product);
     const Cycle judged = box + product;
     Cycle culled = box;
@@ -55,8 +55,8 @@ class SerialTiming : public BackTiming {
     note(Boundary::triangle, taken);
     note(Boundary::setup, walks);
     triangle_setup_.leave(taken);
-    walk_ = walks + 1 + kTurn;
-    work(TimedStage::coarse_raster, 1 + kTurn);
+    walk_ = walks + 1 + SerialCycles::turn;
+    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
     primitive_starts_ = true;
   }
 
@@ -66,8 +66,8 @@ class SerialTiming : public BackTiming {
   }
 
   void skip_outside() {
-    walk_ += 1 + kTurn;
-    work(TimedStage::coarse_raster, 1 + kTurn);
+    walk_ += 1 + SerialCycles::turn;
+    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
   }
   void read_bound(int, int) {
     const Cycle read = std::max(walk_, last_retire_ + 1);
@@ -77,15 +77,15 @@ class SerialTiming : public BackTiming {
     has_bound_ = true;
   }
   void skip_behind() {
-    walk_ += 1 + kTurn;
-    work(TimedStage::coarse_raster, 1 + kTurn);
+    walk_ += 1 + SerialCycles::turn;
+    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
     has_bound_ = false;
   }
 
   template <class Shade>
   void end(bool is_token, Shade&& shade) {
     // What passed over the last tile went on to turn to the next one; a token's end comes in the cycle after.
-    const Cycle offered = is_token ? walk_ + 1 : walk_ - kTurn;
+    const Cycle offered = is_token ? walk_ + 1 : walk_ - SerialCycles::turn;
     const Cycle taken = send(offered, kTile, fine_.room(), shade);
     tile_.count(offered, taken);
     note(Boundary::tile, taken);
@@ -116,8 +116,8 @@ class SerialTiming : public BackTiming {
     tile_.count(offered, taken);
     note(Boundary::tile, taken);
     fine_.leave(taken);
-    walk_ = taken + 1 + kTurn;
-    work(TimedStage::coarse_raster, 1 + kTurn);
+    walk_ = taken + 1 + SerialCycles::turn;
+    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
     const int positions = (tile.last_row - tile.first_row + 1) * (tile.last_column - tile.first_column + 1);
     work(TimedStage::fine_raster, static_cast<std::uint64_t>(1 + tile.first_column + tile.first_row + positions));
     if (tile.ends_primitive) coarse_.leave(taken);
@@ -139,9 +139,6 @@ class SerialTiming : public BackTiming {
  private:
   static constexpr unsigned kPrimitive = 1U << stall_primitive, kTriangle = 1U << stall_triangle,
                             kTile = 1U << stall_tile, kStamp = 1U << stall_stamp;
-  static constexpr Cycle kSort = 6, kBox = 4;  ///< of cull
-  static constexpr Cycle kTurn = 4;            ///< of coarse_raster: the edges go round once
-  static constexpr int kInterpolateSteps = 2;
 
   static bool is_covered(const TileVisitWork& tile, int row, int column) {
     return (tile.columns[static_cast<std::size_t>(row)] >> column & 1) != 0;
@@ -177,7 +174,7 @@ class SerialTiming : public BackTiming {
 
   SerialCycles cycles_;
   Station cull_{1, 0, 1}, triangle_setup_{1, 0, 1}, coarse_{1, 0, 1}, fine_{1, 0, 1}, slots_, visits_;
-  Station interpolate_{kInterpolateSteps, kInterpolateSteps, 0}, skid_;
+  Station interpolate_{SerialCycles::interpolate_steps, SerialCycles::interpolate_steps, 0}, skid_;
   Stream primitive_, triangle_, setup_, tile_, stamp_;
   Cycle offer_ = 0, walk_ = 0, last_made_ = 0;
   bool primitive_starts_ = false, has_bound_ = false;

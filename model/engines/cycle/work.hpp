@@ -11,6 +11,13 @@
 
 namespace halfplane {
 
+/// Cycles of the pipelined stages that are the same in every configuration.
+struct PipelinedCycles {
+  static constexpr Cycle cull_edges = 5;       ///< three edge functions of three cycles each, one behind the other
+  static constexpr Cycle walk_begins = 2;      ///< coarse_raster: from a setup to its first tile
+  static constexpr int interpolate_steps = 5;  ///< each holds one stamp
+};
+
 /// A primitive on its way through cull and triangle_setup.
 struct PrimitiveWork {
   bool is_triangle = false, is_line = false, is_counted = false;
@@ -42,7 +49,11 @@ struct SetupCycles {
 
 /// Cycles of the serial stages: bit-serial products, so they follow from widths.
 struct SerialCycles {
-  int product;  ///< of one cross product in cull
+  static constexpr Cycle sort = 6, box = 4;    ///< of cull
+  static constexpr Cycle turn = 4;             ///< of coarse_raster: the edges go round once
+  static constexpr int interpolate_steps = 2;  ///< each holds one stamp
+  int product;                                 ///< of one cross product in cull
+
   explicit SerialCycles(const Widths& widths)
       : product(std::max(widths.area.bits, widths.grid_bits + widths.edge_value.bits - 1) + 2), widths_(widths) {}
 

@@ -1,0 +1,27 @@
+// The latency and the interval of every stage, from the figures that the cycle model computes with: the table of
+// docs/pipeline.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "parameters.hpp"
+#include "work.hpp"
+
+namespace halfplane {
+
+/// In cycles. Texts, because some depend on the item.
+struct StageRow {
+  std::string stage;     ///< stem of its files
+  std::string latency;   ///< from an item in to what comes of it out
+  std::string interval;  ///< one item every so many cycles
+  std::string holds;     ///< items under way at most
+};
+
+/// Of a configuration, in the order of the pipeline; the stages of the host are left out.
+[[nodiscard]] std::vector<StageRow> stage_table(const Config& config);
+
+/// The same as a Markdown table.
+[[nodiscard]] std::string stage_table_markdown(const Config& config);
+
+}  // namespace halfplane
