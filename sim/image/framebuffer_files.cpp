@@ -1,6 +1,7 @@
 #include "framebuffer_files.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <array>
 #include <cctype>
 #include <filesystem>
@@ -74,7 +75,7 @@ Bytes npy_bytes(int width, int height, std::span<const T> values, std::string_vi
   bytes.reserve(bytes.size() + 4 * values.size());
   for (const T value : values)
     for (int shift = 0; shift < 32; shift += 8)
-      bytes.push_back(static_cast<std::uint8_t>((static_cast<std::uint32_t>(value) >> shift) & 0xff));
+      bytes.push_back(static_cast<std::uint8_t>((std::bit_cast<std::uint32_t>(value) >> shift) & 0xff));
   return bytes;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "sim/cosim/dut.hpp"
+#include "sim/cosim/rtl_engine.hpp"
 #include "sim/cosim/session.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/load.hpp"
@@ -146,6 +147,30 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
     EXPECT_TRUE(session.result.mismatch.has_value())
         << "mutant " << mutant.id << " of " << mutant.file << " is not caught: " << mutant.what;
   }
+}
+
+TEST(Cosim, TheStageTableOfTheCycleEngineIsThatOfTheRtl) {
+  constexpr std::array kBoundaryOf{Boundary::triangle, Boundary::setup,      Boundary::tile,
+                                   Boundary::stamp,    Boundary::line_pixel, Boundary::fragment};
+  for (const DutFactory& factory : verilated_duts())
+    for (const char* name : {"city:4", "wireframe:3"}) {
+      const int width = std::min(96, factory.config.target_width), height = std::min(64, factory.config.target_height);
+      const Scene scene = make_builtin(name, width, height, {}, 1);
+      if (factory.config.line_units == 0 && has_lines(scene)) continue;
+      SCOPED_TRACE(factory.name + ", " + name);
+      const RtlRendering rtl = render_rtl(*make_dut(factory), scene, factory.config, {});
+      const auto memory = make_memory({}, factory.config);
+      const CycleRun cycle = render_cycle(scene, factory.config, *memory).run;
+      EXPECT_EQ(cycle.cycles, rtl.run.cycles);
+      EXPECT_EQ(cycle.raster_cycles, rtl.run.raster_cycles);
+      EXPECT_EQ(cycle.tile_cycles, rtl.run.tile_cycles);
+      for (std::size_t i = 0; i < kStreams; ++i) {
+        const StreamUse& use = cycle.use[static_cast<std::size_t>(kBoundaryOf[i])];
+        EXPECT_EQ(use.busy, rtl.run.use[i].busy) << kStreamStages[i];
+        EXPECT_EQ(use.stalled, rtl.run.use[i].stalled) << kStreamStages[i];
+        EXPECT_EQ(use.starved + rtl.run.clocks - rtl.run.cycles, rtl.run.use[i].starved) << kStreamStages[i];
+      }
+    }
 }
 
 /// Runs embedded's RTL against a cycle model that is wrong in one thing.
