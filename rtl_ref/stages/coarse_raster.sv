@@ -256,7 +256,9 @@ module coarse_raster (
   localparam int VISITS = 8;
   localparam int VISIT = $clog2(VISITS);
   logic [VISITS-1:0]           visit_valid_q, visit_conflicts;
+  /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
   logic [VISITS*(TX+TY)-1:0]   visit_tile_q;
+  /* verilator lint_on UNUSEDSIGNAL */
   logic [VISIT-1:0]            newest_q, oldest_q;
   logic                        starts_visit;
   assign starts_visit    = tile_taken && state_q != END;
