@@ -78,8 +78,8 @@ class TileRaster {
   /// Counts and owners of a row of a tile that begins at pixel (x, y), for whoever asked.
   void note_row(const TriangleSetup& setup, std::uint32_t index, int x, int y, std::uint32_t covered,
                 std::uint32_t passed) {
-    const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(out_.frame.width) +
-                       static_cast<std::size_t>(x);
+    const auto first =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(out_.frame.width) + static_cast<std::size_t>(x);
     const auto for_each = [first](std::uint32_t bits, auto&& visit) {
       for (; bits != 0; bits &= bits - 1) visit(first + static_cast<std::size_t>(std::countr_zero(bits)));
     };

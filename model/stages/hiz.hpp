@@ -77,7 +77,7 @@ class Hiz {
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * tiles_x_ + static_cast<std::size_t>(x);
   }
-  bool holds_ = true;    ///< no line can have raised a depth since the last fast clear
+  bool holds_ = true;  ///< no line can have raised a depth since the last fast clear
   int untested_tiles_;
   int bits_, low_bits_;  ///< bits stored, and dropped, of a depth code
   std::size_t tiles_x_;

@@ -40,8 +40,7 @@ struct TileCache::DataMover {
 
   void fill(std::size_t line, int x, int y, const std::array<bool, 2>& is_cleared) {
     for (const TilePlane plane : kTilePlanes) {
-      MemoryRequest packet =
-          request({plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, false);
+      MemoryRequest packet = request({plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, false);
       for (int stamp = 0; stamp < cache.stamps_; ++stamp) {
         const auto to = cache.lanes(plane, line, stamp);
         if (is_cleared[number(plane)]) {

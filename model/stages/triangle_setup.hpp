@@ -71,7 +71,8 @@ struct Reciprocal {
 [[nodiscard]] SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths);
 
 /// The setup of any kind of primitive.
-[[nodiscard]] TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& config, const Widths& widths);
+[[nodiscard]] TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& config,
+                                            const Widths& widths);
 
 /// The stage: any kind of primitive.
 [[nodiscard]] SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths);

@@ -25,12 +25,15 @@ class FixedMemory final : public MemoryTiming {
 class AddressMap {
  public:
   explicit AddressMap(const Config& config) : widths_(derive_widths(config)) {
-    for (const bool is_color : {false, true}) bytes_[is_color] = static_cast<std::uint64_t>(stamp_bytes(config, is_color));
+    for (const bool is_color : {false, true})
+      bytes_[is_color] = static_cast<std::uint64_t>(stamp_bytes(config, is_color));
   }
   [[nodiscard]] std::uint64_t bytes(bool is_color) const { return bytes_[is_color]; }
   [[nodiscard]] std::uint64_t address(const MemoryAccess& a) const {
-    const auto stamps = static_cast<std::uint64_t>(widths_.stamps_per_row) * static_cast<std::uint64_t>(widths_.stamps_per_row);
-    const auto tiles_x = static_cast<std::uint64_t>(widths_.tiles_x), tiles_y = static_cast<std::uint64_t>(widths_.tiles_y);
+    const auto stamps =
+        static_cast<std::uint64_t>(widths_.stamps_per_row) * static_cast<std::uint64_t>(widths_.stamps_per_row);
+    const auto tiles_x = static_cast<std::uint64_t>(widths_.tiles_x),
+               tiles_y = static_cast<std::uint64_t>(widths_.tiles_y);
     const std::uint64_t tile = static_cast<std::uint64_t>(a.tile_y) * tiles_x + static_cast<std::uint64_t>(a.tile_x);
     return (a.is_color ? tiles_x * tiles_y * stamps * bytes_[0] : 0) +
            (tile * stamps + static_cast<std::uint64_t>(a.stamp)) * bytes_[a.is_color];
@@ -74,35 +77,40 @@ class ClockedMemory : public MemoryTiming {
 struct DramTiming {
   Picoseconds clock;
   std::uint64_t banks, row_bytes, bytes_per_clock;
-  std::uint64_t burst_clocks;        ///< the shortest burst
-  std::uint64_t read_clocks;         ///< CAS latency
-  std::uint64_t write_clocks;        ///< CAS write latency
-  Picoseconds row_to_column;         ///< tRCD
-  Picoseconds precharge;             ///< tRP
-  Picoseconds row_active;            ///< tRAS, activate to precharge
-  Picoseconds row_cycle;             ///< tRC, activate to activate of a bank
-  Picoseconds write_recovery;        ///< tWR, last data to precharge
-  Picoseconds write_to_read;         ///< tWTR, last data to a read
+  std::uint64_t burst_clocks;             ///< the shortest burst
+  std::uint64_t read_clocks;              ///< CAS latency
+  std::uint64_t write_clocks;             ///< CAS write latency
+  Picoseconds row_to_column;              ///< tRCD
+  Picoseconds precharge;                  ///< tRP
+  Picoseconds row_active;                 ///< tRAS, activate to precharge
+  Picoseconds row_cycle;                  ///< tRC, activate to activate of a bank
+  Picoseconds write_recovery;             ///< tWR, last data to precharge
+  Picoseconds write_to_read;              ///< tWTR, last data to a read
   Picoseconds refresh, refresh_interval;  ///< tRFC, tREFI
 };
 
 // Micron MT48LC16M16A2-6A, 256 Mbit x16: data sheet "256Mb: x4, x8, x16 SDRAM", table of AC characteristics. CL 3.
-constexpr DramTiming kSdram{6'000, 4, 1024, 2, 1, 3, 0, 18'000, 18'000, 42'000, 60'000, 12'000, 6'000, 60'000, 7'812'500};
+constexpr DramTiming kSdram{6'000,  4,      1024,   2,      1,     3,      0,        18'000,
+                            18'000, 42'000, 60'000, 12'000, 6'000, 60'000, 7'812'500};
 // Micron MT41K128M16-125 at DDR3-800 (CL 6, CWL 5), 2 Gbit x16: data sheet "2Gb: x4, x8, x16 DDR3L SDRAM". BL8.
-constexpr DramTiming kDdr3{2'500, 8, 2048, 4, 4, 6, 5, 13'750, 13'750, 35'000, 48'750, 15'000, 10'000, 160'000, 7'800'000};
+constexpr DramTiming kDdr3{2'500,  8,      2048,   4,      4,      6,       5,        13'750,
+                           13'750, 35'000, 48'750, 15'000, 10'000, 160'000, 7'800'000};
 
 /// In order, rows left open; a request's column command goes out when its row is open and the data bus will be free.
 class Dram final : public ClockedMemory {
  public:
   Dram(const Config& config, int mhz, const DramTiming& timing)
-      : ClockedMemory(config, mhz, timing.clock), t_(timing), banks_(timing.banks), next_refresh_(timing.refresh_interval) {}
+      : ClockedMemory(config, mhz, timing.clock),
+        t_(timing),
+        banks_(timing.banks),
+        next_refresh_(timing.refresh_interval) {}
 
  private:
   static constexpr std::uint64_t kClosed = ~0ULL;
   struct Bank {
     std::uint64_t row = kClosed;
-    Picoseconds activated = 0;       ///< its last activation
-    Picoseconds may_activate = 0;    ///< earliest next one
+    Picoseconds activated = 0;     ///< its last activation
+    Picoseconds may_activate = 0;  ///< earliest next one
     Picoseconds may_precharge = 0;
   };
 
@@ -160,8 +168,8 @@ class Psram final : public ClockedMemory {
   Psram(const Config& config, int mhz) : ClockedMemory(config, mhz, kClock) {}
 
  private:
-  static constexpr Picoseconds kClock = 11'905, kDeselected = 18'000;             // tCPH
-  static constexpr std::uint64_t kCommand = 2, kAddress = 6, kReadWait = 6;       // clocks
+  static constexpr Picoseconds kClock = 11'905, kDeselected = 18'000;        // tCPH
+  static constexpr std::uint64_t kCommand = 2, kAddress = 6, kReadWait = 6;  // clocks
   Picoseconds serve(bool is_write, std::uint64_t, std::uint64_t bytes, Picoseconds arrives) override {
     const Picoseconds begins = round_up(std::max(arrives, free_));
     const Picoseconds done = begins + (kCommand + kAddress + (is_write ? 0 : kReadWait) + 2 * bytes) * clock();

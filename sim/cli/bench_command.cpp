@@ -67,7 +67,8 @@ void print_rows(std::ostream& out, const std::vector<BenchRow>& rows) {
     const auto rtl = std::find_if(rows.begin(), rows.end(), [&](const BenchRow& other) {
       return other.engine == "rtl" && other.scene == row.scene;
     });
-    out << left_aligned(row.scene, 14) << left_aligned(row.engine, 12) << right_aligned(fixed(1e3 * row.median(), 2), 14)
+    out << left_aligned(row.scene, 14) << left_aligned(row.engine, 12)
+        << right_aligned(fixed(1e3 * row.median(), 2), 14)
         << right_aligned(fixed(static_cast<double>(row.counters.primitives_in) / 1e6 / row.median(), 3), 13)
         << right_aligned(fixed(static_cast<double>(row.counters.covered) / 1e6 / row.median(), 2), 12);
     if (row.cycles != 0)

@@ -69,7 +69,9 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
                       {"raster", r.raster_cycles},
                       {"tiles", r.tile_cycles},
                       // The run stops at the first difference; with other bits cycles mean nothing.
-                      {"max_primitive_error", is_late ? Json(error()) : r.mismatch ? Json(nullptr) : Json(0)}};
+                      {"max_primitive_error", is_late      ? Json(error())
+                                              : r.mismatch ? Json(nullptr)
+                                                           : Json(0)}};
   result["rtl_cycles_per_s"] = session.seconds > 0 ? static_cast<double>(r.clocks) / session.seconds : 0.0;
   return result;
 }

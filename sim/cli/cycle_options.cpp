@@ -109,9 +109,11 @@ std::string bottleneck(const CycleResult& cycle) {
     if (stage.works > slowest->works) slowest = &stage;
   std::string text;
   if (run.totals.memory_cycles > slowest->works)
-    text = "the memory: for " + percent(run.totals.memory_cycles, run.cycles) + " of all cycles the framebuffer waits for it";
+    text = "the memory: for " + percent(run.totals.memory_cycles, run.cycles) +
+           " of all cycles the framebuffer waits for it";
   else if (slowest->name == "framebuffer")
-    text = "framebuffer: for " + percent(run.totals.move_cycles, run.cycles) + " of all cycles it moves or looks at tiles and takes no access";
+    text = "framebuffer: for " + percent(run.totals.move_cycles, run.cycles) +
+           " of all cycles it moves or looks at tiles and takes no access";
   else
     text = std::string(slowest->name) + ": it works in " + percent(slowest->works, run.cycles) + " of all cycles";
   if (!cycle.is_explained) return text + "; --explain tries what would relieve it";
@@ -136,7 +138,8 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
   const std::string group = "For --engine cycle";
   CLI::Option_group& cycle = *app.add_option_group(group);
   add_memory_options(cycle, options.memory);
-  cycle.add_option("--timing", options.timing, "KEY=VALUE: a size or rule that the RTL has one value of (config --list)")
+  cycle
+      .add_option("--timing", options.timing, "KEY=VALUE: a size or rule that the RTL has one value of (config --list)")
       ->type_name("KEY=VALUE");
   cycle.add_option("--what-if", options.what_if, "KEY=V1,V2,...: a table of the cycles with each of these values")
       ->type_name("KEY=LIST");
@@ -145,7 +148,8 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
   cycle.add_flag("--explain", options.explain, "try what would relieve the bottleneck, and what skipping saves");
   add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv");
   add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json");
-  add_file_option(cycle, "--heat", options.heat_path, "sheet: cycles and draws of each pixel, .png; cycles alone: .npy");
+  add_file_option(cycle, "--heat", options.heat_path,
+                  "sheet: cycles and draws of each pixel, .png; cycles alone: .npy");
 }
 
 void check_cycle_options(const CycleCommandOptions& options, const Config& config) {
@@ -164,7 +168,8 @@ Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
   for (const std::string& text : options.timing) {
     const auto [key, value] = split("--timing", text);
     if (find_timing_setting(key) == nullptr)
-      throw InputError("--timing: no setting '" + key + "'; 'halfplane config --list' has them, --set takes the others");
+      throw InputError("--timing: no setting '" + key +
+                       "'; 'halfplane config --list' has them, --set takes the others");
     change_for("--timing", hardware, key, value);
   }
   return hardware;
@@ -211,9 +216,9 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
     CycleOptions stalls;
     stalls.stalls = cycle.stalls;
     const CycleRendering other = run_cycles(scene, changed, {}, stalls);
-    const bool same = color_hash(other.rendering.frame, changed.config.color_format) ==
-                          color_hash(frame, config.color_format) &&
-                      depth_hash(other.rendering.frame) == depth_hash(frame);
+    const bool same =
+        color_hash(other.rendering.frame, changed.config.color_format) == color_hash(frame, config.color_format) &&
+        depth_hash(other.rendering.frame) == depth_hash(frame);
     result.rows.push_back({all[i].first, all[i].second, other.run, traffic(other.run, changed.config).total(), same});
   }
   return result;
@@ -238,16 +243,16 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
   for (const StageTime& stage : stage_times(run)) {
     Json waits = Json::object();
     for (const StageTime::Wait& wait : stage.waits) waits[std::string(wait.reason)] = wait.cycles;
-    stages[std::string(stage.name)] = {{"busy", stage.use.busy},          {"stalled", stage.use.stalled},
-                                       {"starved", stage.use.starved},    {"items", stage.use.busy},
-                                       {"works", stage.works},            {"no_item", stage.no_item},
-                                       {"waits", waits}};
+    stages[std::string(stage.name)] = {
+        {"busy", stage.use.busy},  {"stalled", stage.use.stalled}, {"starved", stage.use.starved},
+        {"items", stage.use.busy}, {"works", stage.works},         {"no_item", stage.no_item},
+        {"waits", waits}};
   }
   result["stages"] = stages;
   const Traffic bytes = traffic(run, hardware.config);
   for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
     result["traffic_bytes"][std::string(kMoveCauses[cause])] = {{"depth", bytes.bytes[cause][0]},
-                                                               {"color", bytes.bytes[cause][1]}};
+                                                                {"color", bytes.bytes[cause][1]}};
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
     Json reliefs = Json::array(), saved = Json::object();
@@ -286,8 +291,9 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
         << kilobytes(bytes.bytes[cause][1]) << " colour";
   out << "\n\nstage                 items         works   no item       waits for\n";
   for (const StageTime& stage : stage_times(run)) {
-    out << left_aligned(std::string(stage.name), 16) << right_aligned(with_commas(stage.use.busy), 11) << right_aligned(percent(stage.works, run.cycles), 14)
-        << right_aligned(percent(stage.no_item, run.cycles), 10) << "       ";
+    out << left_aligned(std::string(stage.name), 16) << right_aligned(with_commas(stage.use.busy), 11)
+        << right_aligned(percent(stage.works, run.cycles), 14) << right_aligned(percent(stage.no_item, run.cycles), 10)
+        << "       ";
     for (std::size_t i = 0; i < stage.waits.size(); ++i)
       out << (i == 0 ? "" : ", ") << stage.waits[i].reason << " " << percent(stage.waits[i].cycles, run.cycles);
     out << (stage.waits.empty() ? "-" : "") << '\n';
@@ -302,14 +308,15 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
   const auto& s = c.skipped;
   out << "\nskipped     tiles behind HiZ " << with_commas(s.tiles_hiz) << saved("tiles_hiz") << "; tiles outside "
       << with_commas(s.tiles_outside) << saved("tiles_outside") << "; fast clear" << saved("fast_clear") << "\n"
-      << "            back faces " << with_commas(s.backface) << ", zero area " << with_commas(s.zero_area) << ", empty "
-      << with_commas(s.empty) << ": nothing behind cull\n"
+      << "            back faces " << with_commas(s.backface) << ", zero area " << with_commas(s.zero_area)
+      << ", empty " << with_commas(s.empty) << ": nothing behind cull\n"
       << "bottleneck  " << bottleneck(cycle) << '\n';
   if (cycle.rows.empty()) return;
   out << "\nwhat if                            cycles    change     moving tiles      memory\n";
   const auto line = [&](const std::string& what, const CycleRun& other, std::uint64_t moved, bool same) {
     const double change = 100.0 * (static_cast<double>(other.cycles) / static_cast<double>(run.cycles) - 1);
-    out << left_aligned(what, 28) << right_aligned(with_commas(other.cycles), 13) << right_aligned((change > 0 ? "+" : "") + fixed(change, 1) + " %", 10)
+    out << left_aligned(what, 28) << right_aligned(with_commas(other.cycles), 13)
+        << right_aligned((change > 0 ? "+" : "") + fixed(change, 1) + " %", 10)
         << right_aligned(with_commas(other.tile_cycles), 17) << right_aligned(kilobytes(moved), 12)
         << (same ? "" : "   another picture") << '\n';
   };

@@ -15,7 +15,8 @@ void add_memory_options(CLI::App& app, MemorySettings& settings) {
   app.add_option("--memory-latency", settings.latency, "of the fixed memory: cycles from a read request to its answer")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  app.add_option("--mhz", settings.mhz, "clock of the hardware: turns cycles into seconds, and those of memories into cycles")
+  app.add_option("--mhz", settings.mhz,
+                 "clock of the hardware: turns cycles into seconds, and those of memories into cycles")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
 }

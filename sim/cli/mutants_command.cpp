@@ -93,8 +93,8 @@ std::string where(const Mismatch& m) {
 }
 
 void print_table(std::ostream& out, const std::vector<Verdict>& verdicts, bool has_pictures) {
-  out << right_aligned("id", 3) + "  " << column("where", 14) << column("caught in", 30) << right_aligned("cycle", 9) + "  "
-      << (has_pictures ? column("pictures changed", 41) : "") << "what is wrong\n";
+  out << right_aligned("id", 3) + "  " << column("where", 14) << column("caught in", 30)
+      << right_aligned("cycle", 9) + "  " << (has_pictures ? column("pictures changed", 41) : "") << "what is wrong\n";
   for (const Verdict& v : verdicts)
     out << right_aligned(std::to_string(v.mutant.id), 3) + "  " << column(stage_of(v.mutant), 14)
         << column(v.mismatch ? where(*v.mismatch) : "NOT CAUGHT", 30)

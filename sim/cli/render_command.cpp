@@ -94,7 +94,8 @@ void check_options(const RenderCommand& options, const Config& config) {
     throw InputError("--engine " + options.engine + ": hardware skips by its own rules; leave out --skip");
   if (options.engine != "cycle" && !options.cycle.is_default())
     throw InputError("--engine " + options.engine +
-                     ": --memory, --timing, --what-if, --stalls, --explain, --primitives, --trace and --heat are for --engine cycle");
+                     ": --memory, --timing, --what-if, --stalls, --explain, --primitives, --trace and --heat are for "
+                     "--engine cycle");
   if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
@@ -254,7 +255,8 @@ void add_render_command(CLI::App& app, Action& selected) {
                   "sheet: the picture, and how often each sample was drawn, .png");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(CLI::Range(1, 100000));
-  command->footer("\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
+  command->footer(
+      "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
       "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

@@ -152,7 +152,8 @@ LockstepResult Lockstep::run(const Scene& scene) {
     step(host);
     const std::uint64_t still = cycle_ - last_moved_;
     if (has_finished() && still > kSettleCycles) break;
-    if (all_sent_ && was_idle_ && still > 16 * kSettleCycles + kSlowestAnswer + static_cast<std::uint64_t>(options_.memory.latency))
+    if (all_sent_ && was_idle_ &&
+        still > 16 * kSettleCycles + kSlowestAnswer + static_cast<std::uint64_t>(options_.memory.latency))
       break;
     if (still > limit) break;
     if (cycle_ % kReportCycles == 0 && options_.progress && !options_.progress(host.progress())) {

@@ -34,7 +34,7 @@ struct LockstepOptions {
   bool compares_cycles = false;
   TimingParameters parameters;                 ///< of the cycle model; the default is the RTL
   std::optional<MemorySettings> model_memory;  ///< likewise: `memory` unless given
-  std::string trace;           ///< FST file, empty: none; holds the cycles of the window
+  std::string trace;                           ///< FST file, empty: none; holds the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
   /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
   std::function<bool(double fraction)> progress;
@@ -96,7 +96,9 @@ class ExpectedPackets final : public PacketSink {
 /// Takes the cycles of the cycle model into one queue per boundary.
 class ExpectedCycles final : public TransferSink {
  public:
-  void transfer(Boundary boundary, Cycle cycle) override { queue_[static_cast<std::size_t>(boundary)].push_back(cycle); }
+  void transfer(Boundary boundary, Cycle cycle) override {
+    queue_[static_cast<std::size_t>(boundary)].push_back(cycle);
+  }
   [[nodiscard]] std::deque<Cycle>& operator[](Boundary boundary) { return queue_[static_cast<std::size_t>(boundary)]; }
 
  private:

@@ -1,8 +1,8 @@
 #include "framebuffer_files.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <filesystem>
 #include <string_view>

@@ -72,7 +72,8 @@ std::vector<StageTime> stage_times(const CycleRun& run) {
   const TimingTotals& t = run.totals;
   const auto use = [&run](Boundary boundary) { return run.use[static_cast<std::size_t>(boundary)]; };
   std::vector<StageTime> stages;
-  const auto add = [&](std::string_view name, TimedStage which, Boundary out, const std::vector<StageTime::Wait>& waits) {
+  const auto add = [&](std::string_view name, TimedStage which, Boundary out,
+                       const std::vector<StageTime::Wait>& waits) {
     StageTime stage{name, use(out), t.works[static_cast<std::size_t>(which)], 0, {}};
     if (stage.use.busy == 0 && stage.works == 0) return;  // it is not there, or had nothing to do
     std::uint64_t waited = 0;
@@ -108,7 +109,8 @@ std::uint64_t Traffic::total() const {
 
 Traffic traffic(const CycleRun& run, const Config& config) {
   const Widths widths = derive_widths(config);
-  const auto stamps = static_cast<std::uint64_t>(widths.stamps_per_row) * static_cast<std::uint64_t>(widths.stamps_per_row);
+  const auto stamps =
+      static_cast<std::uint64_t>(widths.stamps_per_row) * static_cast<std::uint64_t>(widths.stamps_per_row);
   Traffic traffic;
   for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
     for (const bool is_color : {false, true})
@@ -135,7 +137,8 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std
     trials.push_back({"setup.kind", "pipelined", 0});
   }
   if (hardware.memory.kind != MemoryKind::fixed || hardware.memory.latency > 1)
-    trials.push_back(hardware.memory.kind == MemoryKind::fixed ? Trial{"memory.latency", "1", 0} : Trial{"memory", "sram", 0});
+    trials.push_back(hardware.memory.kind == MemoryKind::fixed ? Trial{"memory.latency", "1", 0}
+                                                               : Trial{"memory", "sram", 0});
   std::vector<Trial> helped;
   for (std::size_t i = 0; i < trials.size(); ++i) {
     if (progress) progress(static_cast<double>(i) / static_cast<double>(trials.size()));
@@ -154,11 +157,13 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std
 
 std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, std::uint64_t cycles) {
   std::vector<Saving> savings;
-  for (const auto& [key, name] : {std::pair{"hiz.bits", "tiles_hiz"}, {"walk.reject", "tiles_outside"}, {"clear.fast", "fast_clear"}}) {
+  for (const auto& [key, name] :
+       {std::pair{"hiz.bits", "tiles_hiz"}, {"walk.reject", "tiles_outside"}, {"clear.fast", "fast_clear"}}) {
     Hardware changed = hardware;
     if (value_of(changed, key) == "0") continue;
     change(changed, key, "0");
-    savings.push_back({name, static_cast<std::int64_t>(run_cycles(scene, changed).run.cycles) - static_cast<std::int64_t>(cycles)});
+    savings.push_back(
+        {name, static_cast<std::int64_t>(run_cycles(scene, changed).run.cycles) - static_cast<std::int64_t>(cycles)});
   }
   return savings;
 }

@@ -33,9 +33,9 @@ void check(const Hardware& hardware);
 /// One stage over a run, in cycles.
 struct StageTime {
   std::string_view name;
-  StreamUse use;             ///< of its output, as `render --engine rtl` has it
-  std::uint64_t works = 0;   ///< its narrowest part was at work
-  std::uint64_t no_item = 0; ///< it neither worked nor waited to go on
+  StreamUse use;              ///< of its output, as `render --engine rtl` has it
+  std::uint64_t works = 0;    ///< its narrowest part was at work
+  std::uint64_t no_item = 0;  ///< it neither worked nor waited to go on
   struct Wait {
     std::string_view reason;
     std::uint64_t cycles;

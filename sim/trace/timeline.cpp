@@ -8,20 +8,30 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array kTracks{"cull",        "triangle_setup", "triangle_setup, second", "triangle_setup, third",
-                             "coarse_raster", "fine_raster",  "line_raster",            "depth_test",
-                             "framebuffer", "memory, depth",  "memory, colour"};
+constexpr std::array kTracks{"cull",
+                             "triangle_setup",
+                             "triangle_setup, second",
+                             "triangle_setup, third",
+                             "coarse_raster",
+                             "fine_raster",
+                             "line_raster",
+                             "depth_test",
+                             "framebuffer",
+                             "memory, depth",
+                             "memory, colour"};
 
 std::string tile_text(int x, int y) { return "tile (" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
 
 std::string metadata(const char* what, int track, const std::string& name) {
-  const nlohmann::ordered_json event{{"name", what}, {"ph", "M"}, {"pid", 1}, {"tid", track}, {"args", {{"name", name}}}};
+  const nlohmann::ordered_json event{
+      {"name", what}, {"ph", "M"}, {"pid", 1}, {"tid", track}, {"args", {{"name", name}}}};
   return event.dump();
 }
 
 }  // namespace
 
-Timeline::Timeline(const std::string& title) : text_("{\"displayTimeUnit\":\"ms\",\"otherData\":{\"unit\":\"1 us is 1 cycle\"},\"traceEvents\":[\n") {
+Timeline::Timeline(const std::string& title)
+    : text_("{\"displayTimeUnit\":\"ms\",\"otherData\":{\"unit\":\"1 us is 1 cycle\"},\"traceEvents\":[\n") {
   text_ += metadata("process_name", 0, title);
   for (std::size_t i = 0; i < kTracks.size(); ++i) {
     const int track = static_cast<int>(i);

@@ -22,7 +22,19 @@ class Timeline final : public TransferSink {
   [[nodiscard]] const std::string& finish();
 
  private:
-  enum Track : int { cull, setup_1, setup_2, setup_3, coarse, fine, lines, depth, framebuffer, memory_depth, memory_color };
+  enum Track : int {
+    cull,
+    setup_1,
+    setup_2,
+    setup_3,
+    coarse,
+    fine,
+    lines,
+    depth,
+    framebuffer,
+    memory_depth,
+    memory_color
+  };
   void slice(int track, const std::string& name, Cycle from, Cycle to);
   void end_tile(Cycle limit);
   void end_visit();
@@ -31,8 +43,8 @@ class Timeline final : public TransferSink {
   std::string text_;
   std::string name_, tile_name_, next_tile_name_;  ///< of the primitive, of the tile in fine_raster, of the next one
   bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
-  Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0, first_fragment_ = 0,
-        last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
+  Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
+        first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
   std::array<Cycle, 3> setup_ends_{};  ///< triangle_setup works on three at a time: three tracks
 };
 

@@ -59,7 +59,8 @@ TEST_F(CycleCommand, WhatIfIsTheSameAsSettingIt) {
     more.insert(more.begin(), common.begin(), common.end());
     return result(more);
   };
-  const Json rows = with({"--what-if", "stamp.size=1,4", "--what-if", "memory=sdram", "--what-if", "visits=2"})["what_if"];
+  const Json rows =
+      with({"--what-if", "stamp.size=1,4", "--what-if", "memory=sdram", "--what-if", "visits=2"})["what_if"];
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0]["cycles"], with({"--set", "stamp.size=1"})["cycles"]);
   EXPECT_EQ(rows[1]["cycles"], with({"--set", "stamp.size=4"})["cycles"]);
@@ -108,7 +109,8 @@ TEST_F(CycleCommand, TheListingHasALineForEveryPrimitiveInOrder) {
 
 TEST_F(CycleCommand, TheTimelineIsChromeTraceJsonWhoseSlicesDoNotOverlapOnATrack) {
   for (const char* config : {"embedded", "small"}) {
-    (void)result({"render", "teapot:4", "--size", "96x64", "--config", config, "--engine", "cycle", "--trace", "t.json"});
+    (void)result(
+        {"render", "teapot:4", "--size", "96x64", "--config", config, "--engine", "cycle", "--trace", "t.json"});
     const Bytes bytes = read("t.json");
     const Json trace = Json::parse(bytes.begin(), bytes.end());
     std::map<int, std::uint64_t> ends;
@@ -174,7 +176,8 @@ TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
 }
 
 TEST_F(CycleCommand, BenchMeasuresEnginesSideBySide) {
-  const Json json = result({"bench", "triangle", "walk", "--size", "64x48", "--engines", "functional,cycle", "--repeat", "2"});
+  const Json json =
+      result({"bench", "triangle", "walk", "--size", "64x48", "--engines", "functional,cycle", "--repeat", "2"});
   ASSERT_EQ(json["rows"].size(), 4u);
   for (const Json& row : json["rows"]) {
     EXPECT_GT(row["frame_s"], 0.0);

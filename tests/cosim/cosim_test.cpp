@@ -69,8 +69,8 @@ TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
 
 TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
   for (const DutFactory& factory : verilated_duts())
-    for (const MemoryKind kind : {MemoryKind::fixed, MemoryKind::sram, MemoryKind::sdram, MemoryKind::psram,
-                                  MemoryKind::ddr3}) {
+    for (const MemoryKind kind :
+         {MemoryKind::fixed, MemoryKind::sram, MemoryKind::sdram, MemoryKind::psram, MemoryKind::ddr3}) {
       LockstepOptions options;
       options.memory.kind = kind;
       options.memory.latency = 40;
@@ -198,7 +198,8 @@ TEST(Cosim, ACycleModelThatIsWrongInOneThingIsCaught) {
       if (setting.is_pipelined_only && config.setup_kind == SetupKind::serial) continue;
       TimingParameters parameters;
       int& value = parameters.*setting.member;
-      value += value == setting.max || setting.key == "divide.bits" ? -1 : 1;  // a divider of 4 bits waits for the planes
+      value +=
+          value == setting.max || setting.key == "divide.bits" ? -1 : 1;  // a divider of 4 bits waits for the planes
       if (setting.key == "visits" && config.setup_kind == SetupKind::serial) value = 2;  // it never has many under way
       const Session session = run_wrong(config, parameters, 0);
       ASSERT_TRUE(session.result.mismatch.has_value()) << name << ", " << setting.key;

@@ -132,7 +132,8 @@ TEST(CycleModel, RulesThatAreSwitchedOffChangeCyclesAndNoBits) {
   const Config config = preset("embedded");
   const Scene scene = scene_for("city", config);
   const CycleRendering plain = render(scene, config);
-  for (const auto& [member, value] : {std::pair{&TimingParameters::rejects, 0}, {&TimingParameters::fast_clear, 0},
+  for (const auto& [member, value] : {std::pair{&TimingParameters::rejects, 0},
+                                      {&TimingParameters::fast_clear, 0},
                                       {&TimingParameters::untested_tiles, 64}}) {
     CycleOptions options;
     options.parameters.*member = value;

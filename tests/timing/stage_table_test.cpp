@@ -15,7 +15,8 @@ TEST(StageTable, TheOnesInThePipelinePageAreThoseOfTheCode) {
   const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   for (const char* name : {"embedded", "small"}) {
     const std::string table = stage_table_markdown(preset(name));
-    EXPECT_NE(page.find(table), std::string::npos) << "halfplane config --config " << name << " --stages prints\n" << table;
+    EXPECT_NE(page.find(table), std::string::npos) << "halfplane config --config " << name << " --stages prints\n"
+                                                   << table;
   }
 }
 

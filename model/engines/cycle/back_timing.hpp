@@ -35,7 +35,7 @@ struct TimingTotals {
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kTimedStages> works{};
   std::array<std::array<std::uint64_t, 2>, 3> planes{};  ///< moved, by MoveCause and plane
-  bool has_primitive = false;       ///< first_primitive has been seen
+  bool has_primitive = false;                            ///< first_primitive has been seen
 };
 
 class BackTiming {
@@ -266,7 +266,7 @@ class BackTiming {
   Stream line_, line_pixel_, fragment_, request_, response_;
   Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;
   FragmentPlace last_place_;
-  std::uint64_t moving_ = 0;  ///< cycles since the first primitive in which tiles moved
+  std::uint64_t moving_ = 0;                           ///< cycles since the first primitive in which tiles moved
   std::vector<std::pair<Cycle, Cycle>> moved_before_;  ///< tile moves before the first primitive
 };
 

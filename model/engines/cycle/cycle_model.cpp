@@ -231,7 +231,7 @@ class CycleModelOf final : public CycleModel {
              int tile_y, bool ends_primitive, std::uint32_t primitive) {
     const int size = config_.stamp_size;
     TileMask covered_rows{};
-    TileVisitWork work{tile_x, tile_y, ends_primitive, box.top / size, box.bottom / size, box.left / size,
+    TileVisitWork work{tile_x,           tile_y, ends_primitive, box.top / size, box.bottom / size, box.left / size,
                        box.right / size, {}};
     std::uint32_t covered = 0, passed = 0;
     kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, rendering_.frame,
@@ -266,9 +266,9 @@ class CycleModelOf final : public CycleModel {
       if (column < 0) return timing_.pass(offered);
       FragmentPlace place{tile_x, tile_y, row * widths_.stamps_per_row + column, 0, packet.depth_write != 0};
       for (int j = 0; j < size; ++j)
-        place.mask |= std::uint64_t{covered_rows[static_cast<std::size_t>(row * size + j)] >> column * size &
-                                    ((1U << size) - 1)}
-                      << j * size;
+        place.mask |=
+            std::uint64_t{covered_rows[static_cast<std::size_t>(row * size + j)] >> column * size & ((1U << size) - 1)}
+            << j * size;
       return timing_.access(offered, place, [&](auto& mover) {
         return is_resident || ((is_resident = true), directory_.access(tile_x, tile_y, mover, counters_));
       });

@@ -15,9 +15,9 @@
 namespace halfplane {
 
 struct CycleOptions {
-  Stalls stalls;                  ///< injected back-pressure
-  TimingParameters parameters;    ///< sizes of buffers; the default is the RTL
-  TransferSink* sink = nullptr;   ///< sees every crossing; slows the model down. Must outlive the model
+  Stalls stalls;                              ///< injected back-pressure
+  TimingParameters parameters;                ///< sizes of buffers; the default is the RTL
+  TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
   bool want_count = false, want_ids = false;  ///< fill Rendering::count, ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
 };

@@ -7,7 +7,8 @@ namespace halfplane {
 std::span<const TimingSetting> timing_settings() {
   using P = TimingParameters;
   static constexpr std::array kSettings{
-      TimingSetting{"queue.triangle", "triangles that wait in front of triangle_setup", 0, 1024, &P::triangle_queue, true},
+      TimingSetting{"queue.triangle", "triangles that wait in front of triangle_setup", 0, 1024, &P::triangle_queue,
+                    true},
       TimingSetting{"queue.setup", "setups that wait in front of coarse_raster", 0, 1024, &P::setup_queue, true},
       TimingSetting{"queue.tile", "tiles that wait in front of fine_raster", 0, 1024, &P::tile_queue, true},
       TimingSetting{"queue.stamp", "stamps in the buffer behind fine_raster", 1, 1024, &P::stamp_queue, false},

@@ -45,7 +45,8 @@ class PipelinedTiming : public BackTiming {
     if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
     // Turned until the first vertex leads, once at least; then three edges, one behind the other, of three cycles each.
-    const Cycle culled = taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? PipelinedCycles::cull_edges : 0);
+    const Cycle culled =
+        taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? PipelinedCycles::cull_edges : 0);
     work(TimedStage::cull, culled - taken);
     if (primitive.is_dropped) {
       cull_.leave(culled);
@@ -63,7 +64,8 @@ class PipelinedTiming : public BackTiming {
     const Passage setup = setup_queue_.pass(setup_, ready, std::max(coarse_.room(), slots_.room()));
     values_.leave(setup.left);
     note(Boundary::setup, setup.taken);
-    if (slots_.room() > std::max(ready, coarse_.room())) totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
+    if (slots_.room() > std::max(ready, coarse_.room()))
+      totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
     walk_ = setup.taken + PipelinedCycles::walk_begins;
     work(TimedStage::coarse_raster, PipelinedCycles::walk_begins);
   }
@@ -170,7 +172,8 @@ class PipelinedTiming : public BackTiming {
     note(Boundary::stamp, taken);
     work(TimedStage::interpolate, 1);
     if (ends_primitive) slots_.leave(std::max(taken + 1, context_.room()));  // leaves the first step
-    const Cycle leaves = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
+    const Cycle leaves =
+        fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
     last_left_ = leaves;
     interpolate_.leave(leaves);
     context_.leave(leaves);

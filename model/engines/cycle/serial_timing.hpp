@@ -36,7 +36,8 @@ class SerialTiming : public BackTiming {
     const auto product = static_cast<Cycle>(cycles_.product);
     const Cycle judged = box + product;
     Cycle culled = box;
-    if (primitive.is_triangle && !primitive.is_dropped) culled = judged + 1 + (primitive.is_negative ? 2 + product : 0) + 3 * product;
+    if (primitive.is_triangle && !primitive.is_dropped)
+      culled = judged + 1 + (primitive.is_negative ? 2 + product : 0) + 3 * product;
     if (primitive.is_dropped && primitive.is_triangle) culled = judged;
     work(TimedStage::cull, culled - sorts);
     if (primitive.is_dropped) {
@@ -102,8 +103,7 @@ class SerialTiming : public BackTiming {
                static_cast<Cycle>(tile.first_column + tile.first_row);
     for (int row = tile.first_row; row < tile.last_row; ++row)
       for (int column = tile.first_column; column <= tile.last_column; ++column, ++at)
-        if (is_covered(tile, row, column))
-          at = send(at, 0, 0, [&](Cycle t) { return shade(t, row, column); });
+        if (is_covered(tile, row, column)) at = send(at, 0, 0, [&](Cycle t) { return shade(t, row, column); });
     int held = -1;  // column of the last covered stamp of the last row so far
     for (int column = tile.first_column; column <= tile.last_column; ++column, ++at) {
       if (!is_covered(tile, tile.last_row, column)) continue;

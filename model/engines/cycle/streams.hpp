@@ -42,13 +42,13 @@ enum class Boundary : std::uint8_t {
 };
 inline constexpr std::size_t kBoundaries = 12;
 inline constexpr std::array<std::string_view, kBoundaries> kBoundaryNames{
-    "primitive", "line",       "triangle", "setup", "tile",   "stamp",
+    "primitive",  "line",     "triangle", "setup",  "tile",    "stamp",
     "line_pixel", "fragment", "write",    "retire", "request", "response"};
 
 /// The stage that sends across each of them.
 inline constexpr std::array<std::string_view, kBoundaries> kBoundarySenders{
-    "host",        "host",       "cull", "triangle_setup", "coarse_raster", "fine_raster",
-    "line_raster", "interpolate", "depth_test", "depth_test", "framebuffer",  "memory"};
+    "host",        "host",        "cull",       "triangle_setup", "coarse_raster", "fine_raster",
+    "line_raster", "interpolate", "depth_test", "depth_test",     "framebuffer",   "memory"};
 
 /// The stages that share the work. primitive_join, depth_test and rop add no cycles of their own.
 enum class TimedStage : std::uint8_t {
