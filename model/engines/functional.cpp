@@ -47,7 +47,7 @@ class TileRaster {
     counters.skipped.trivially_accepted += is_accepted ? 1 : 0;
 
     if (!is_accepted) counters.samples_tested += tile_box(setup, tile_x, tile_y, widths_).samples();
-    Mask covered_count{}, passed_count{};  // per column, negated: a mask lane is -1
+    Mask covered_count{}, passed_count{};
     TileMask bits{};                       // filled when somebody wants it
     kernel_.draw(setup, lanes, edges, is_accepted, tile_x, tile_y, !options_.skip.fragments_early_z, out_.frame,
                  [&](int j, const Mask& covered, const Mask& passed) {
@@ -58,16 +58,11 @@ class TileRaster {
                    note_row(setup, index, tile_x * T, tile_y * T + j, kernel_.to_bits(covered),
                             kernel_.to_bits(passed));
                  });
-    count(covered_count, passed_count);
+    count(kernel_.count(covered_count), kernel_.count(passed_count));
     if (options_.coverage_tap) options_.coverage_tap(index, tile_x, tile_y, bits);
   }
 
-  void count(const Mask& covered_count, const Mask& passed_count) {
-    std::uint64_t covered = 0, passed = 0;
-    for (int i = 0; i < T; ++i) {
-      covered -= static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(covered_count[i])});
-      passed -= static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(passed_count[i])});
-    }
+  void count(std::uint64_t covered, std::uint64_t passed) {
     Counters& counters = out_.counters;
     counters.covered += covered;
     counters.depth_passed += passed;

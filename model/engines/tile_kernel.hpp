@@ -102,6 +102,13 @@ class TileKernel {
     }
   }
 
+  /// Set lanes of the masks that were added up in `sum`: a mask lane is -1.
+  static std::uint32_t count(const Mask& sum) {
+    std::uint32_t count = 0;
+    for (int i = 0; i < T; ++i) count -= sum[i];
+    return count;
+  }
+
   static std::uint32_t to_bits(const Mask& mask) {
     std::uint32_t bits = 0;
     for (int i = 0; i < T; ++i) bits |= mask[i] & (1U << i);

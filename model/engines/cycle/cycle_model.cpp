@@ -233,17 +233,19 @@ class CycleModelOf final : public CycleModel {
     TileMask covered_rows{};
     TileVisitWork work{tile_x,           tile_y, ends_primitive, box.top / size, box.bottom / size, box.left / size,
                        box.right / size, {}};
-    std::uint32_t covered = 0, passed = 0;
+    Mask covered_count{}, passed_count{};
+    const bool wants_bits = options_.want_count || options_.want_ids;
     kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, rendering_.frame,
                 [&](int j, const Mask& covered_lanes, const Mask& passed_lanes) {
-                  const std::uint32_t row = kernel.to_bits(covered_lanes), row_passed = kernel.to_bits(passed_lanes);
+                  const std::uint32_t row = kernel.to_bits(covered_lanes);
                   covered_rows[static_cast<std::size_t>(j)] = row;
-                  covered += static_cast<std::uint32_t>(std::popcount(row));
-                  passed += static_cast<std::uint32_t>(std::popcount(row_passed));
                   work.columns[static_cast<std::size_t>(j / size)] |= row;  // pixels so far
-                  if (options_.want_count || options_.want_ids)
-                    note_row(tile_x * T, tile_y * T + j, row, row_passed, packet, primitive);
+                  covered_count += covered_lanes;
+                  passed_count += passed_lanes;
+                  if (wants_bits)
+                    note_row(tile_x * T, tile_y * T + j, row, kernel.to_bits(passed_lanes), packet, primitive);
                 });
+    const std::uint32_t covered = kernel.count(covered_count), passed = kernel.count(passed_count);
     for (int row = work.first_row; row <= work.last_row; ++row) {
       std::uint32_t& pixels = work.columns[static_cast<std::size_t>(row)];
       std::uint32_t columns = 0;
