@@ -53,8 +53,8 @@ class CycleModelOf final : public CycleModel {
   void begin(int width, int height, Cycle cycle) override {
     rendering_ = {};
     rendering_.frame = Framebuffer(width, height, T);
-    std::ranges::fill(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // of the padding
-    std::ranges::fill(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
+    fill_padding(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // as in an empty target
+    fill_padding(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
@@ -115,6 +115,14 @@ class CycleModelOf final : public CycleModel {
       return timing_.pass_token(offered,
                                 [&](auto& mover) { directory_.fast_clear(last_x, last_y, planes, mover, counters_); });
     });
+  }
+
+  /// The right ends of the rows and the rows below; the first clear fills the rest.
+  void fill_padding(std::vector<std::uint32_t>& image, std::uint32_t code) const {
+    const Framebuffer& frame = rendering_.frame;
+    const auto row = [&](int y) { return image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)); };
+    for (int y = 0; y < frame.height; ++y) std::fill(row(y) + frame.width, row(y) + frame.stride, code);
+    std::fill(row(frame.height), image.end(), code);
   }
 
   /// Leaves the padding alone.
