@@ -48,7 +48,7 @@ class TileRaster {
 
     if (!is_accepted) counters.samples_tested += tile_box(setup, tile_x, tile_y, widths_).samples();
     Mask covered_count{}, passed_count{};
-    TileMask bits{};                       // filled when somebody wants it
+    TileMask bits{};  // filled when somebody wants it
     kernel_.draw(setup, lanes, edges, is_accepted, tile_x, tile_y, !options_.skip.fragments_early_z, out_.frame,
                  [&](int j, const Mask& covered, const Mask& passed) {
                    covered_count += covered;

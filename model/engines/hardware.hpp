@@ -1,5 +1,5 @@
 // The hardware engine: what the RTL computes, packet by packet, in program order and without time. Every packet goes to
-// a PacketSink on its way; the co-simulation compares the RTL's with them, and a cycle model can put time between them.
+// a PacketSink on its way; the co-simulation compares the RTL's with them. Time is in cycle/cycle_model.hpp.
 #pragma once
 
 #include <optional>

@@ -84,6 +84,20 @@ class Hiz {
   std::vector<std::uint32_t> code_;
 };
 
+/// What a visit that writes depth does to its tile's bound. `is_full`: every sample of the tile was covered and passed,
+/// the largest depth code was `largest`; `has_passed`: one at least.
+inline void set_hiz_update(RetirePacket& packet, const PrimitiveState& state, bool is_full, bool has_passed,
+                           std::uint32_t largest, const Config& config, const Widths& widths) {
+  if (config.hiz_bits == 0 || state.depth_write == 0) return;
+  if (is_full) {
+    packet.update = static_cast<std::uint8_t>(HizUpdate::set);
+    packet.hiz_code = largest >> (config.depth_bits - hiz_code_bits(config));
+  } else if (has_passed && state.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
+    packet.update = static_cast<std::uint8_t>(HizUpdate::clear);  // these tests can raise a depth
+    packet.hiz_code = static_cast<std::uint32_t>(widths.hiz_code.range.hi);
+  }
+}
+
 /// What depth_test gathers over the stamps of one tile visit.
 class TileVisit {
  public:
@@ -100,14 +114,8 @@ class TileVisit {
     packet.primitive_id = last.primitive_id;
     packet.tile_x = last.tile_x;
     packet.tile_y = last.tile_y;
-    if (config.hiz_bits == 0 || last.depth_write == 0) return packet;
-    if (full_stamps_ == widths.stamps_per_row * widths.stamps_per_row) {
-      packet.update = static_cast<std::uint8_t>(HizUpdate::set);
-      packet.hiz_code = largest_ >> (config.depth_bits - hiz_code_bits(config));
-    } else if (has_passed_ && last.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
-      packet.update = static_cast<std::uint8_t>(HizUpdate::clear);  // these tests can raise a depth
-      packet.hiz_code = static_cast<std::uint32_t>(widths.hiz_code.range.hi);
-    }
+    const bool is_full = full_stamps_ == widths.stamps_per_row * widths.stamps_per_row;
+    set_hiz_update(packet, last, is_full, has_passed_, largest_, config, widths);
     return packet;
   }
 

@@ -35,11 +35,12 @@ class AddressMap {
     const auto tiles_x = static_cast<std::uint64_t>(widths_.tiles_x),
                tiles_y = static_cast<std::uint64_t>(widths_.tiles_y);
     const std::uint64_t tile = static_cast<std::uint64_t>(a.tile_y) * tiles_x + static_cast<std::uint64_t>(a.tile_x);
-    return (a.is_color ? tiles_x * tiles_y * stamps * bytes_[0] : 0) +
-           (tile * stamps + static_cast<std::uint64_t>(a.stamp)) * bytes_[a.is_color];
+    const std::uint64_t depth_plane = (tiles_x * tiles_y * stamps * bytes_[0] + kPlane - 1) / kPlane * kPlane;
+    return (a.is_color ? depth_plane : 0) + (tile * stamps + static_cast<std::uint64_t>(a.stamp)) * bytes_[a.is_color];
   }
 
  private:
+  static constexpr std::uint64_t kPlane = 4096;  ///< a plane begins at a multiple of it: no stamp lies in two rows
   Widths widths_;
   std::array<std::uint64_t, 2> bytes_{};
 };
@@ -90,8 +91,7 @@ struct DramTiming {
 };
 
 // Micron MT48LC16M16A2-6A, 256 Mbit x16: data sheet "256Mb: x4, x8, x16 SDRAM", table of AC characteristics. CL 3.
-constexpr DramTiming kSdram{6'000,  4,      1024,   2,      1,     3,      0,        18'000,
-                            18'000, 42'000, 60'000, 12'000, 6'000, 60'000, 7'812'500};
+constexpr DramTiming kSdram{6'000, 4, 1024, 2, 1, 3, 0, 18'000, 18'000, 42'000, 60'000, 12'000, 0, 60'000, 7'812'500};
 // Micron MT41K128M16-125 at DDR3-800 (CL 6, CWL 5), 2 Gbit x16: data sheet "2Gb: x4, x8, x16 DDR3L SDRAM". BL8.
 constexpr DramTiming kDdr3{2'500,  8,      2048,   4,      4,      6,       5,        13'750,
                            13'750, 35'000, 48'750, 15'000, 10'000, 160'000, 7'800'000};
@@ -109,7 +109,6 @@ class Dram final : public ClockedMemory {
   static constexpr std::uint64_t kClosed = ~0ULL;
   struct Bank {
     std::uint64_t row = kClosed;
-    Picoseconds activated = 0;     ///< its last activation
     Picoseconds may_activate = 0;  ///< earliest next one
     Picoseconds may_precharge = 0;
   };
@@ -124,7 +123,6 @@ class Dram final : public ClockedMemory {
       if (bank.row != kClosed) activate = std::max(activate, std::max(column, bank.may_precharge) + t_.precharge);
       activate = round_up(activate);
       bank.row = row;
-      bank.activated = activate;
       bank.may_activate = activate + t_.row_cycle;
       bank.may_precharge = activate + t_.row_active;
       column = activate + t_.row_to_column;
@@ -150,7 +148,7 @@ class Dram final : public ClockedMemory {
     for (const Bank& bank : banks_)
       if (bank.row != kClosed) begins = std::max(begins, bank.may_precharge);
     const Picoseconds ends = round_up(begins + t_.precharge + t_.refresh);
-    for (Bank& bank : banks_) bank = {kClosed, bank.activated, ends, 0};
+    for (Bank& bank : banks_) bank = {kClosed, ends, 0};
     command_free_ = ends;
     next_refresh_ += t_.refresh_interval;
   }
@@ -184,7 +182,7 @@ class Psram final : public ClockedMemory {
 MemoryKind memory_kind(std::string_view name) {
   for (std::size_t i = 0; i < kMemoryKinds.size(); ++i)
     if (kMemoryKinds[i] == name) return static_cast<MemoryKind>(i);
-  throw InputError("--memory: no memory '" + std::string(name) + "'; give fixed, sram, sdram, psram or ddr3");
+  throw InputError("no memory '" + std::string(name) + "'; give fixed, sram, sdram, psram or ddr3");
 }
 
 int stamp_bytes(const Config& config, bool is_color) {

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
-#include <span>
-#include <string>
 #include <string_view>
 
 #include "../widths.hpp"
@@ -43,7 +42,7 @@ inline constexpr std::array<std::string_view, 5> kMemoryKinds{"fixed", "sram", "
 struct MemorySettings {
   MemoryKind kind = MemoryKind::fixed;
   int latency = 8;  ///< of `fixed`: cycles, at least 1
-  int mhz = 50;     ///< of the chip: how many of its cycles a nanosecond of the memory is
+  int mhz = 50;     ///< clock of the chip, MHz
   bool operator==(const MemorySettings&) const = default;
 };
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -27,7 +28,7 @@ struct BenchRow {
   [[nodiscard]] double median() const {
     auto sorted = frame_s;
     std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
+    return std::max(sorted[sorted.size() / 2], 1e-9);  // an empty scene
   }
   [[nodiscard]] double cycles_per_s() const { return static_cast<double>(cycles) / median(); }
 };

@@ -59,7 +59,7 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   Json crossings = Json::object();
   for (std::size_t i = 0; i < kBoundaries; ++i) crossings[std::string(kBoundaryNames[i])] = r.cycles_compared[i];
   result["crossings"] = crossings;
-  const bool is_late = r.mismatch && r.mismatch->kind == Mismatch::Kind::cycle;
+  const bool is_late = r.mismatch && r.mismatch->kind == Mismatch::Kind::cycle && !r.mismatch->fields.empty();
   const auto error = [&r] {
     const FieldPair& cycle = r.mismatch->fields.front();
     return cycle.model > cycle.rtl ? cycle.model - cycle.rtl : cycle.rtl - cycle.model;
@@ -82,7 +82,8 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
   if (r.lines != 0) out << ", " << with_commas(r.lines) << " lines";
   if (r.points != 0) out << ", " << with_commas(r.points) << " points";
   out << (options.random != 0 ? " of " + with_commas(options.random) + " primitives" : "") << " sent to the RTL";
-  out << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2) << '\n';
+  out << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2)
+      << (options.memory == MemorySettings{} ? std::string() : ", memory " + memory_text(options.memory)) << '\n';
   for (const Mutant& mutant : mutants())
     if (mutant.id == options.mutant)
       out << "mutant      " << mutant.id << ", " << mutant.file << ": " << mutant.what << '\n';

@@ -40,11 +40,6 @@ void create_folder_of(const std::string& path) {
   if (!folder.empty()) std::filesystem::create_directories(folder, error);  // writing into it says what is wrong
 }
 
-/// CLI::Range lets NaN pass.
-std::string is_number(const std::string& text) {
-  return std::isalpha(static_cast<unsigned char>(text.back())) != 0 ? "'" + text + "' is no number" : "";
-}
-
 std::string probability_text(double value) {
   std::ostringstream text;
   text << value;

@@ -1,8 +1,10 @@
 #include "sim/cli/cycle_options.hpp"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <ostream>
+#include <utility>
 
 #include "sim/image/framebuffer_files.hpp"
 #include "sim/image/panel.hpp"
@@ -14,7 +16,7 @@
 namespace halfplane {
 namespace {
 
-constexpr double kQuickSeconds = 0.15;  // a frame that is explained without being asked
+constexpr std::uint64_t kFewCycles = 4'000'000;  // of a frame that is explained without being asked
 
 /// "key=rest". Throws InputError naming the option.
 std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
@@ -108,12 +110,12 @@ std::string bottleneck(const CycleResult& cycle) {
   for (const StageTime& stage : stages)
     if (stage.works > slowest->works) slowest = &stage;
   std::string text;
-  if (run.totals.memory_cycles > slowest->works)
-    text = "the memory: for " + percent(run.totals.memory_cycles, run.cycles) +
-           " of all cycles the framebuffer waits for it";
-  else if (slowest->name == "framebuffer")
+  if (run.totals.move_cycles >= slowest->works)  // the framebuffer and the memory behind it, as one
     text = "framebuffer: for " + percent(run.totals.move_cycles, run.cycles) +
-           " of all cycles it moves or looks at tiles and takes no access";
+           " of all cycles it moves, marks or looks at tiles and takes no access" +
+           (run.totals.memory_cycles == 0
+                ? ""
+                : ", and waits for the memory in " + percent(run.totals.memory_cycles, run.cycles));
   else
     text = std::string(slowest->name) + ": it works in " + percent(slowest->works, run.cycles) + " of all cycles";
   if (!cycle.is_explained) return text + "; --explain tries what would relieve it";
@@ -144,7 +146,8 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
   cycle.add_option("--what-if", options.what_if, "KEY=V1,V2,...: a table of the cycles with each of these values")
       ->type_name("KEY=LIST");
   cycle.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
-      ->check(CLI::Range(0.0, 0.95));
+      ->check(CLI::Range(0.0, 0.95))
+      ->check(is_number);
   cycle.add_flag("--explain", options.explain, "try what would relieve the bottleneck, and what skipping saves");
   add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv");
   add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json");
@@ -158,6 +161,9 @@ void check_cycle_options(const CycleCommandOptions& options, const Config& confi
     Hardware changed = hardware;
     change_for("--what-if", changed, key, value);
   }
+  const TimingParameters& p = hardware.parameters;
+  if (!options.trace_path.empty() && p.triangle_queue + p.setup_queue + p.tile_queue + p.fragment_queue != 0)
+    throw InputError("--trace: a timeline shows stages and not the queues between them; leave out --timing queue...");
   check_output(options.primitives_path, ".csv");
   check_output(options.trace_path, ".json");
   check_output(options.heat_path, options.heat_path.ends_with(".npy") ? ".npy" : ".png");
@@ -177,7 +183,7 @@ Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
 
 CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOptions& options, const Scene& scene,
                              const Config& config, RenderOptions render) {
-  CycleResult result{hardware_of(options, config), {}, {}, {}, false, {}};
+  CycleResult result{hardware_of(options, config), options.stalls, {}, {}, {}, false, {}};
   const Hardware& hardware = result.hardware;
   PrimitiveSpans spans;
   Timeline timeline(common.scene + ", " + label(config));
@@ -201,11 +207,12 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
                          color_picture(frame, config.color_format), result.frame.cost, result.frame.rendering.count));
   }
 
-  result.is_explained = options.explain || (result.frame.rendering.raster_s < kQuickSeconds && options.stalls == 0);
+  result.is_explained = options.explain || run.cycles <= kFewCycles;
   if (result.is_explained) {
     Progress progress(common, "trying what would relieve it");
-    result.reliefs = try_reliefs(scene, hardware, run.cycles, [&](double fraction) { progress(fraction); });
-    result.savings = measure_savings(scene, hardware, run.cycles);
+    result.reliefs =
+        try_reliefs(scene, hardware, cycle.stalls, run.cycles, [&](double fraction) { progress(fraction); });
+    result.savings = measure_savings(scene, hardware, cycle.stalls, run.cycles);
   }
   const auto all = variations(options);
   Progress progress(common, "varying");
@@ -219,7 +226,8 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
     const bool same =
         color_hash(other.rendering.frame, changed.config.color_format) == color_hash(frame, config.color_format) &&
         depth_hash(other.rendering.frame) == depth_hash(frame);
-    result.rows.push_back({all[i].first, all[i].second, other.run, traffic(other.run, changed.config).total(), same});
+    result.rows.push_back({all[i].first, all[i].second, other.run, milliseconds(other.run.cycles, changed),
+                           traffic(other.run, changed.config).total(), same});
   }
   return result;
 }
@@ -230,6 +238,7 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
   result["cycles"] = run.cycles;
   result["raster_cycles"] = run.raster_cycles;
   result["tile_cycles"] = run.tile_cycles;
+  result["stalls"] = cycle.stalls;
   result["memory"] = memory_json(hardware.memory);
   Json timing = Json::object();
   for (const TimingSetting& setting : timing_settings())
@@ -267,6 +276,7 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
     rows.push_back({{"key", row.key},
                     {"value", row.value},
                     {"cycles", row.run.cycles},
+                    {"ms", row.ms},
                     {"raster_cycles", row.run.raster_cycles},
                     {"tile_cycles", row.run.tile_cycles},
                     {"bytes", row.bytes},
@@ -279,10 +289,11 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
   const Hardware& hardware = cycle.hardware;
   const Counters& c = cycle.frame.rendering.counters;
   out << "cycles      " << with_commas(run.cycles) << " in all, " << with_commas(run.raster_cycles)
-      << " from the first primitive to the last write, " << with_commas(run.tile_cycles) << " of them moving tiles\n"
+      << " from the first primitive to the last write, " << with_commas(run.tile_cycles) << " of them moving tiles"
+      << (cycle.stalls == 0 ? std::string() : "; stalls " + fixed(cycle.stalls, 2)) << '\n'
       << left_aligned("at " + std::to_string(hardware.memory.mhz) + " MHz", 12)
       << fixed(milliseconds(run.cycles, hardware), 2) << " ms a frame, " << fixed(per_second(1, run, hardware), 1)
-      << " frames, " << fixed(per_second(c.covered, run, hardware) / 1e6, 2) << " M pixels, "
+      << " frames, " << fixed(per_second(c.covered, run, hardware) / 1e6, 2) << " M covered pixels, "
       << fixed(per_second(c.primitives_in, run, hardware) / 1e6, 3) << " M primitives a second\n";
   const Traffic bytes = traffic(run, hardware.config);
   out << "memory      " << memory_text(hardware.memory) << "; " << kilobytes(bytes.total()) << " a frame:";
@@ -312,16 +323,17 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
       << ", empty " << with_commas(s.empty) << ": nothing behind cull\n"
       << "bottleneck  " << bottleneck(cycle) << '\n';
   if (cycle.rows.empty()) return;
-  out << "\nwhat if                            cycles    change     moving tiles      memory\n";
-  const auto line = [&](const std::string& what, const CycleRun& other, std::uint64_t moved, bool same) {
+  out << "\nwhat if                            cycles    change          ms     moving tiles      memory\n";
+  const auto line = [&](const std::string& what, const CycleRun& other, double ms, std::uint64_t moved, bool same) {
     const double change = 100.0 * (static_cast<double>(other.cycles) / static_cast<double>(run.cycles) - 1);
     out << left_aligned(what, 28) << right_aligned(with_commas(other.cycles), 13)
-        << right_aligned((change > 0 ? "+" : "") + fixed(change, 1) + " %", 10)
+        << right_aligned((change > 0 ? "+" : "") + fixed(change, 1) + " %", 10) << right_aligned(fixed(ms, 3), 12)
         << right_aligned(with_commas(other.tile_cycles), 17) << right_aligned(kilobytes(moved), 12)
         << (same ? "" : "   another picture") << '\n';
   };
-  line("as it is", run, bytes.total(), true);
-  for (const CycleResult::Row& row : cycle.rows) line(row.key + "=" + row.value, row.run, row.bytes, row.same_picture);
+  line("as it is", run, milliseconds(run.cycles, hardware), bytes.total(), true);
+  for (const CycleResult::Row& row : cycle.rows)
+    line(row.key + "=" + row.value, row.run, row.ms, row.bytes, row.same_picture);
 }
 
 }  // namespace halfplane

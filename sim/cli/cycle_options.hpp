@@ -18,20 +18,23 @@ struct CycleCommandOptions {
   bool explain = false;
   std::string primitives_path, trace_path, heat_path;
 
-  /// Whether anything was asked for that only this engine has.
+  /// Whether nothing was asked for that only this engine has.
   [[nodiscard]] bool is_default() const;
 };
 
+/// Adds the options that only this engine has.
 void add_cycle_options(CLI::App& app, CycleCommandOptions& options);
 
 /// Throws InputError for what can be refused before a scene is read.
 void check_cycle_options(const CycleCommandOptions& options, const Config& config);
 
+/// What --set, --timing and --memory ask for. Throws InputError.
 [[nodiscard]] Hardware hardware_of(const CycleCommandOptions& options, const Config& config);
 
 /// A run of the engine, and what was found out about it.
 struct CycleResult {
   Hardware hardware;
+  double stalls = 0;
   CycleRendering frame;
   std::vector<Trial> reliefs;   ///< only when explained
   std::vector<Saving> savings;  ///< likewise
@@ -39,13 +42,14 @@ struct CycleResult {
   struct Row {
     std::string key, value;
     CycleRun run;
+    double ms = 0;  ///< at its clock
     std::uint64_t bytes = 0;
     bool same_picture = true;
   };
   std::vector<Row> rows;  ///< of --what-if
 };
 
-/// Renders, writes the files that the options name, explains (when asked, or when it takes no time) and varies.
+/// Renders, writes the files that the options name, explains (when asked, or when the frame has few cycles) and varies.
 [[nodiscard]] CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOptions& options,
                                            const Scene& scene, const Config& config, RenderOptions render);
 

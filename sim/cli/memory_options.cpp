@@ -9,7 +9,14 @@ std::string name_of(MemoryKind kind) { return std::string(kMemoryKinds[static_ca
 
 void add_memory_options(CLI::App& app, MemorySettings& settings) {
   app.add_option_function<std::string>(
-         "--memory", [&settings](const std::string& name) { settings.kind = memory_kind(name); },
+         "--memory",
+         [&settings](const std::string& name) {
+           try {
+             settings.kind = memory_kind(name);
+           } catch (const InputError& error) {
+             throw InputError(std::string("--memory: ") + error.what());
+           }
+         },
          "what is behind the memory port: fixed (ideal), sram, sdram, psram, ddr3")
       ->default_str("fixed");
   app.add_option("--memory-latency", settings.latency, "of the fixed memory: cycles from a read request to its answer")

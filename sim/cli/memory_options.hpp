@@ -8,6 +8,7 @@
 
 namespace halfplane {
 
+/// Adds all three.
 void add_memory_options(CLI::App& app, MemorySettings& settings);
 
 /// The options that ask for it; "" for the default.
@@ -16,7 +17,7 @@ void add_memory_options(CLI::App& app, MemorySettings& settings);
 /// {kind, latency, mhz}; latency is null where the memory has its own.
 [[nodiscard]] Json memory_json(const MemorySettings& settings);
 
-/// "fixed, 8 cycles", "sdram at 50 MHz".
+/// "fixed, 8 cycles", "sdram, the chip at 50 MHz".
 [[nodiscard]] std::string memory_text(const MemorySettings& settings);
 
 }  // namespace halfplane

@@ -228,6 +228,17 @@ std::string with_commas(std::uint64_t value) {
   return digits;
 }
 
+std::string is_number(const std::string& text) {
+  return std::isalpha(static_cast<unsigned char>(text.back())) != 0 ? "'" + text + "' is no number" : "";
+}
+
+void check_distinct(const std::vector<std::string>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    for (std::size_t j = i + 1; j < paths.size(); ++j)
+      if (!paths[i].empty() && paths[i] != "-" && paths[i] == paths[j])
+        throw InputError("'" + paths[i] + "' is named twice, and one would replace the other; give two names");
+}
+
 std::string left_aligned(std::string text, std::size_t width) {
   text.resize(std::max(width, text.size()), ' ');
   return text;

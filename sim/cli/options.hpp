@@ -98,6 +98,12 @@ class Progress {
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::uint64_t value);
 
+/// A check for CLI11: Range lets NaN pass.
+[[nodiscard]] std::string is_number(const std::string& text);
+
+/// Throws InputError when two of the files, read or written, have one name; no name is fine.
+void check_distinct(const std::vector<std::string>& paths);
+
 /// `text` with as many blanks behind it as it takes to fill `width`, and before it.
 [[nodiscard]] std::string left_aligned(std::string text, std::size_t width);
 [[nodiscard]] std::string right_aligned(const std::string& text, std::size_t width);

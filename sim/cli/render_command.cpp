@@ -94,12 +94,16 @@ void check_options(const RenderCommand& options, const Config& config) {
     throw InputError("--engine " + options.engine + ": hardware skips by its own rules; leave out --skip");
   if (options.engine != "cycle" && !options.cycle.is_default())
     throw InputError("--engine " + options.engine +
-                     ": --memory, --timing, --what-if, --stalls, --explain, --primitives, --trace and --heat are for "
+                     ": --memory, --memory-latency, --mhz, --timing, --what-if, --stalls, --explain, --primitives, "
+                     "--trace and --heat are for "
                      "--engine cycle");
   if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
+  check_distinct({options.scene, options.json, options.color_path, options.depth_path, options.count_path,
+                  options.ids_path, options.draws_path, options.cycle.primitives_path, options.cycle.trace_path,
+                  options.cycle.heat_path});
   check_output(options.color_path, ".png");
   check_output(options.depth_path);
   check_output(options.count_path, ".npy");
@@ -129,7 +133,10 @@ Json stages_json(const LockstepResult& run) {
   for (std::size_t i = 0; i < kStreams; ++i) {
     const StreamUse& use = run.use[i];
     stages[std::string(kStreamStages[i])] = {
-        {"busy", use.busy}, {"stalled", use.stalled}, {"starved", use.starved}, {"items", use.busy}};
+        {"busy", use.busy},
+        {"stalled", use.stalled},
+        {"starved", use.starved - (run.clocks - run.cycles)},  // without the clocks behind the last packet
+        {"items", use.busy}};
   }
   return stages;
 }

@@ -1,5 +1,6 @@
 #include "sim/cosim/lockstep.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <utility>
@@ -10,7 +11,6 @@ namespace {
 constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
 constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
 constexpr std::uint64_t kReportCycles = 1 << 16;
-constexpr std::uint64_t kSlowestAnswer = 4096;  // of the modelled memories, far more than any takes
 
 /// Context and edges go beside setup and tile.
 std::optional<Boundary> boundary_of(Arrow arrow) {
@@ -84,6 +84,8 @@ void LockstepResult::add(const LockstepResult& later) {
   points += later.points;
   cycles += later.cycles;
   model_cycles += later.model_cycles;
+  model_raster_cycles += later.model_raster_cycles;
+  model_tile_cycles += later.model_tile_cycles;
   clocks += later.clocks;
   raster_cycles += later.raster_cycles;
   tile_cycles += later.tile_cycles;
@@ -152,8 +154,7 @@ LockstepResult Lockstep::run(const Scene& scene) {
     step(host);
     const std::uint64_t still = cycle_ - last_moved_;
     if (has_finished() && still > kSettleCycles) break;
-    if (all_sent_ && was_idle_ &&
-        still > 16 * kSettleCycles + kSlowestAnswer + static_cast<std::uint64_t>(options_.memory.latency))
+    if (all_sent_ && was_idle_ && still > 16 * kSettleCycles + static_cast<std::uint64_t>(options_.memory.latency))
       break;
     if (still > limit) break;
     if (cycle_ % kReportCycles == 0 && options_.progress && !options_.progress(host.progress())) {
@@ -168,6 +169,7 @@ LockstepResult Lockstep::run(const Scene& scene) {
       fail_protocol("raster_top", all_sent_ ? "idle_o never rises after the flush" : "primitives are no longer taken");
     if (options_.compares && !result_.mismatch) compare_memory();
     if (options_.compares && !result_.mismatch) compare_counters();
+    if (!result_.mismatch) report_missing_cycle();
   }
   for (; result_.mismatch && is_tracing_ && cycle_ <= options_.trace_last; ++cycle_) {  // what the fault leads to
     (void)dut_.evaluate(0, true);
@@ -175,7 +177,11 @@ LockstepResult Lockstep::run(const Scene& scene) {
   }
   host_counters_ = host.counters();
   result_.cycles = last_moved_ + 1 - start;
-  if (cycle_model_) result_.model_cycles = cycle_model_->totals().last + 1 - start;
+  if (cycle_model_) {
+    result_.model_cycles = cycle_model_->totals().last + 1 - start;
+    result_.model_raster_cycles = cycle_model_->totals().raster_cycles();
+    result_.model_tile_cycles = cycle_model_->totals().tile_cycles;
+  }
   result_.clocks = cycle_ - start;
   return result_;
 }
@@ -329,15 +335,35 @@ void Lockstep::compare_cycle(Boundary boundary) {
     queue.pop_front();
     return;
   }
+  if (queue.empty())
+    result_.mismatch = cycle_mismatch(boundary, {}, "the cycle model knows of no such packet");
+  else
+    result_.mismatch = cycle_mismatch(boundary, {{"cycle", 64, false, queue.front(), cycle_}}, "");
+}
+
+/// At the end: a crossing that the cycle model expects and that never came.
+void Lockstep::report_missing_cycle() {
+  if (!cycle_model_) return;
+  for (std::size_t i = 0; i < kBoundaries && !result_.mismatch; ++i) {
+    const auto boundary = static_cast<Boundary>(i);
+    if (!expected_cycles_[boundary].empty())
+      result_.mismatch = cycle_mismatch(
+          boundary, {}, "the cycle model has one more in cycle " + std::to_string(expected_cycles_[boundary].front()));
+  }
+}
+
+/// Without a pair of cycles there is none to compare: `fields` is empty.
+Mismatch Lockstep::cycle_mismatch(Boundary boundary, std::vector<FieldPair> fields, const std::string& hint) const {
+  const auto index = static_cast<std::size_t>(boundary);
   Mismatch m;
   m.kind = Mismatch::Kind::cycle;
   m.arrow = kBoundaryNames[index];
   m.stage = kBoundarySenders[index];
   m.cycle = cycle_;
-  m.number = result_.cycles_compared[index] - 1;
-  m.fields = {{"cycle", 64, false, queue.empty() ? 0 : queue.front(), cycle_}};
-  if (queue.empty()) m.hint = "the cycle model knows of no such packet";
-  result_.mismatch = std::move(m);
+  m.number = result_.cycles_compared[index] - std::min<std::uint64_t>(1, result_.cycles_compared[index]);
+  m.fields = std::move(fields);
+  m.hint = hint;
+  return m;
 }
 
 /// Under back-pressure a request must wait unchanged. A cycle that stalls the stream itself shows no offer.

@@ -52,8 +52,9 @@ struct LockstepResult {
   std::uint64_t raster_cycles = 0;  ///< from the first of them taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
   std::uint64_t model_cycles = 0;   ///< what the cycle model says of `cycles`; 0 when it was not asked
-  std::uint64_t clocks = 0;         ///< simulated, those that waited for a packet too many included
-  std::uint64_t drawn = 0;          ///< input triangles of which a piece passed cull; only when nothing is compared
+  std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of the next two
+  std::uint64_t clocks = 0;  ///< simulated, those that waited for a packet too many included
+  std::uint64_t drawn = 0;   ///< input triangles of which a piece passed cull; only when nothing is compared
   std::array<StreamUse, kStreams> use{};  ///< only when nothing is compared
 
   [[nodiscard]] std::uint64_t total() const;
@@ -128,6 +129,9 @@ class Lockstep {
   void step(HostStream& host);
   void compare(Arrow arrow, const void* rtl);
   void compare_cycle(Boundary boundary);
+  void report_missing_cycle();
+  [[nodiscard]] Mismatch cycle_mismatch(Boundary boundary, std::vector<FieldPair> fields,
+                                        const std::string& hint) const;
   void count_taken();
   void watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken);
   void count_use(const DutOutputs& out);

@@ -21,6 +21,12 @@ const Setting* find_setting(std::string_view key) {
   return nullptr;
 }
 
+std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls) {
+  CycleOptions options;
+  options.stalls = stalls;
+  return run_cycles(scene, hardware, {}, options).run.cycles;
+}
+
 std::uint64_t part(std::uint64_t whole, std::uint64_t taken) { return whole > taken ? whole - taken : 0; }
 
 }  // namespace
@@ -53,11 +59,7 @@ std::string value_of(const Hardware& hardware, std::string_view key) {
 
 void check(const Hardware& hardware) {
   validate(hardware.config);
-  if (hardware.config.setup_kind == SetupKind::pipelined) return;
-  const TimingParameters standard;
-  for (const TimingSetting& setting : timing_settings())
-    if (setting.is_pipelined_only && hardware.parameters.*setting.member != standard.*setting.member)
-      throw InputError(std::string(setting.key) + ": the serial stages have no such thing; use setup.kind=pipelined");
+  validate(hardware.parameters, hardware.config);
 }
 
 CycleRendering run_cycles(const Scene& scene, const Hardware& hardware, const RenderOptions& render,
@@ -81,6 +83,7 @@ std::vector<StageTime> stage_times(const CycleRun& run) {
       waited += wait.cycles;
       if (wait.cycles != 0) stage.waits.push_back(wait);
     }
+    stage.works = std::min(stage.works, part(run.cycles, waited));  // where parts work while others wait
     stage.no_item = part(run.cycles, stage.works + waited);
     stages.push_back(std::move(stage));
   };
@@ -119,7 +122,7 @@ Traffic traffic(const CycleRun& run, const Config& config) {
   return traffic;
 }
 
-std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std::uint64_t cycles,
+std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, const Stalls& stalls, std::uint64_t cycles,
                                const std::function<void(double)>& progress) {
   const bool is_pipelined = hardware.config.setup_kind == SetupKind::pipelined;
   std::vector<Trial> trials;
@@ -145,7 +148,7 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std
     Hardware changed = hardware;
     try {
       change(changed, trials[i].key, trials[i].value);
-      trials[i].cycles = run_cycles(scene, changed).run.cycles;
+      trials[i].cycles = cycles_of(scene, changed, stalls);
     } catch (const InputError&) {
       continue;  // there is no such hardware
     }
@@ -155,7 +158,8 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std
   return helped;
 }
 
-std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, std::uint64_t cycles) {
+std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                                    std::uint64_t cycles) {
   std::vector<Saving> savings;
   for (const auto& [key, name] :
        {std::pair{"hiz.bits", "tiles_hiz"}, {"walk.reject", "tiles_outside"}, {"clear.fast", "fast_clear"}}) {
@@ -163,7 +167,7 @@ std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware
     if (value_of(changed, key) == "0") continue;
     change(changed, key, "0");
     savings.push_back(
-        {name, static_cast<std::int64_t>(run_cycles(scene, changed).run.cycles) - static_cast<std::int64_t>(cycles)});
+        {name, static_cast<std::int64_t>(cycles_of(scene, changed, stalls)) - static_cast<std::int64_t>(cycles)});
   }
   return savings;
 }

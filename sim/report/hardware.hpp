@@ -2,6 +2,9 @@
 // --what-if varies.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +23,7 @@ struct Hardware {
 /// InputError for an unknown key or a value outside its range.
 void change(Hardware& hardware, std::string_view key, std::string_view value);
 
-/// The value of one setting.
+/// The value of one setting that change() takes.
 [[nodiscard]] std::string value_of(const Hardware& hardware, std::string_view key);
 
 /// validate(), and refuses parameters that this kind of hardware does not have. Throws InputError.
@@ -48,7 +51,7 @@ struct StageTime {
 
 /// Bytes between chip and memory, by cause and plane.
 struct Traffic {
-  std::array<std::array<std::uint64_t, 2>, 3> bytes{};  ///< [MoveCause][depth, colour]
+  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> bytes{};  ///< [MoveCause][depth, colour]
   [[nodiscard]] std::uint64_t total() const;
 };
 [[nodiscard]] Traffic traffic(const CycleRun& run, const Config& config);
@@ -60,14 +63,15 @@ struct Trial {
 };
 
 /// Tries what might relieve the hardware, best first; those that change nothing are left out.
-[[nodiscard]] std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, std::uint64_t cycles,
-                                             const std::function<void(double)>& progress);
+[[nodiscard]] std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                                             std::uint64_t cycles, const std::function<void(double)>& progress);
 
 /// A thing that hardware skips, and the cycles more that a frame takes when it does not. Negative: finding out costs more.
 struct Saving {
   std::string_view name;  ///< "tiles_hiz", "tiles_outside", "fast_clear"
   std::int64_t cycles;
 };
-[[nodiscard]] std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, std::uint64_t cycles);
+[[nodiscard]] std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                                                  std::uint64_t cycles);
 
 }  // namespace halfplane

@@ -1,7 +1,9 @@
 #include "sim/trace/timeline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "sim/trace/primitive_spans.hpp"
 
@@ -119,7 +121,7 @@ void Timeline::end_visit() {
 void Timeline::end_primitive() {
   end_visit();
   if (has_setup_) slice(coarse, name_, setup_, std::max(last_tile_, setup_ + 1));
-  if (has_line_) slice(lines, name_, line_, last_pixel_ + 1);
+  if (has_line_) slice(lines, name_, line_ + 1, last_pixel_ + 1);
   has_setup_ = has_line_ = false;
 }
 

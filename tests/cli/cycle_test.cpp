@@ -11,7 +11,7 @@ namespace {
 class CycleCommand : public Cli {};
 
 TEST_F(CycleCommand, ResultHasCyclesStagesTrafficAndTheFunctionalEnginesPicture) {
-  const Json cycle = result({"render", "city:12", "--size", "160x120", "--engine", "cycle"});
+  const Json cycle = result({"render", "city:12", "--size", "160x120", "--engine", "cycle", "--explain"});
   const Json functional = result({"render", "city:12", "--size", "160x120"});
   EXPECT_EQ(cycle["color_hash"], functional["color_hash"]);
   EXPECT_EQ(cycle["depth_hash"], functional["depth_hash"]);
@@ -108,12 +108,10 @@ TEST_F(CycleCommand, TheListingHasALineForEveryPrimitiveInOrder) {
 }
 
 TEST_F(CycleCommand, TheTimelineIsChromeTraceJsonWhoseSlicesDoNotOverlapOnATrack) {
-  for (const char* config : {"embedded", "small"}) {
-    (void)result(
-        {"render", "teapot:4", "--size", "96x64", "--config", config, "--engine", "cycle", "--trace", "t.json"});
+  for (const auto& [config, scene] : {std::pair{"embedded", "teapot:4"}, {"embedded", "star"}, {"small", "teapot:4"}}) {
+    (void)result({"render", scene, "--size", "96x64", "--config", config, "--engine", "cycle", "--trace", "t.json"});
     const Bytes bytes = read("t.json");
     const Json trace = Json::parse(bytes.begin(), bytes.end());
-    std::map<int, std::uint64_t> ends;
     std::map<int, std::vector<std::pair<std::uint64_t, std::uint64_t>>> slices;
     std::size_t tracks = 0;
     for (const Json& event : trace["traceEvents"]) {
@@ -134,7 +132,7 @@ TEST_F(CycleCommand, TheTimelineIsChromeTraceJsonWhoseSlicesDoNotOverlapOnATrack
   }
 }
 
-TEST_F(CycleCommand, TheHeatMapHoldsEveryCycleOnce) {
+TEST_F(CycleCommand, TheHeatMapSharesOutTheCyclesOfTheVisits) {
   const Json json = result({"render", "teapot:5", "--size", "64x48", "--engine", "cycle", "--heat", "heat.npy"});
   const Bytes bytes = read("heat.npy");
   ASSERT_GT(bytes.size(), 64u * 48u * 4u);
@@ -168,6 +166,9 @@ TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   expect_refused(cycle({"--timing", "stamp.size=4"}), "--set takes the others");
   expect_refused(cycle({"--config", "small", "--timing", "queue.tile=4"}), "setup.kind=pipelined");
   expect_refused(cycle({"--mhz", "0"}), "--mhz");
+  expect_refused(cycle({"--stalls", "nan"}), "'nan' is no number");
+  expect_refused(cycle({"--trace", "t.json", "--timing", "queue.tile=4"}), "--trace");
+  expect_refused(cycle({"--heat", "x.png", "-o", "x.png"}), "'x.png' is named twice");
   expect_refused(cycle({"--skip", "none"}), "leave out --skip");
   expect_refused(cycle({"--primitives", "p.txt"}), ".csv");
   expect_refused(cycle({"--trace", "nowhere/t.json"}), "nowhere");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -63,6 +64,8 @@ TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
       EXPECT_GT(session.result.total(), 10000u);
       EXPECT_GT(session.result.total_cycles_compared(), 10000u);
       EXPECT_EQ(session.result.model_cycles, session.result.cycles);
+      EXPECT_EQ(session.result.model_raster_cycles, session.result.raster_cycles);
+      EXPECT_EQ(session.result.model_tile_cycles, session.result.tile_cycles);
     }
   }
 }
@@ -79,6 +82,42 @@ TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
       const Session session = run(factory, options, random_scenes(factory.config, 8, 250));
       EXPECT_EQ(describe(session), "");
       EXPECT_GT(session.result.cycles_compared[static_cast<std::size_t>(Boundary::response)], 1000u);
+    }
+}
+
+/// Clears inside a scissor, then whole ones, and a triangle that is culled: what is written comes before it in program
+/// order and around it in time.
+Scene clears_before_a_culled_triangle(int scissored, int whole) {
+  Scene scene;
+  scene.name = "clears";
+  scene.width = scene.height = 16;
+  State state;
+  state.space = Space::window;
+  state.cull = Cull::both;
+  scene.states.push_back(state);
+  state.scissor = Rect{3, 3, 1, 1};
+  scene.states.push_back(state);
+  for (int i = 0; i < scissored; ++i) scene.commands.push_back(Clear{1, std::array<double, 4>{9, 9, 9, 255}, 0.5});
+  for (int i = 0; i < whole; ++i) scene.commands.push_back(Clear{0, std::array<double, 4>{1, 2, 3, 255}, 1.0});
+  for (const auto& [x, y] : {std::pair{1.0, 1.0}, {9.0, 1.0}, {1.0, 9.0}}) {
+    Vertex v;
+    v.x = x;
+    v.y = y;
+    scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+    scene.vertices.push_back(v);
+  }
+  scene.commands.push_back(Draw{0, 0, Topology::triangles, 0, scene.indices.size(), 0});
+  return scene;
+}
+
+TEST(Cosim, ClearsAroundTheFirstTriangleCountAsInTheRtl) {
+  for (const DutFactory& factory : verilated_duts())
+    for (const auto& [scissored, whole] : {std::pair{2, 0}, {1, 1}, {1, 7}, {3, 2}, {0, 2}}) {
+      SCOPED_TRACE(factory.name + ", " + std::to_string(scissored) + " and " + std::to_string(whole));
+      const Session session = run(factory, {}, single_scene(clears_before_a_culled_triangle(scissored, whole)));
+      EXPECT_EQ(describe(session), "");
+      EXPECT_EQ(session.result.model_raster_cycles, session.result.raster_cycles);
+      EXPECT_EQ(session.result.model_tile_cycles, session.result.tile_cycles);
     }
 }
 

@@ -2,6 +2,9 @@
 // which the RTL does what comes before end here (pipelined_timing.hpp, serial_timing.hpp).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -34,8 +37,13 @@ struct TimingTotals {
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kTimedStages> works{};
-  std::array<std::array<std::uint64_t, 2>, 3> planes{};  ///< moved, by MoveCause and plane
-  bool has_primitive = false;                            ///< first_primitive has been seen
+  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> planes{};  ///< moved, by MoveCause and plane
+  bool has_primitive = false;                                             ///< first_primitive has been seen
+
+  /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
+  [[nodiscard]] std::uint64_t raster_cycles() const {
+    return has_primitive && last_write >= first_primitive ? last_write - first_primitive + 1 : 0;
+  }
 };
 
 class BackTiming {
@@ -46,7 +54,7 @@ class BackTiming {
         memory_(memory),
         sink_(sink),
         stamps_(static_cast<Cycle>(widths.stamps_per_row) * static_cast<Cycle>(widths.stamps_per_row)),
-        is_simple_(sink == nullptr && stalls.threshold == 0 && memory.fixed_latency() != 0),
+        moves_in_bursts_(sink == nullptr && stalls.threshold == 0 && memory.fixed_latency() != 0),
         line_raster_(1, 1, 0),
         line_(stalls, 1U << stall_line),
         line_pixel_(stalls, 1U << stall_line_pixel),
@@ -68,13 +76,27 @@ class BackTiming {
     }
   }
 
+  /// Another scene: primitives, writes and tile moves count from here.
+  void begin_scene() {
+    totals_.has_primitive = false;
+    totals_.last_write = 0;
+    totals_.tile_cycles = moving_ = 0;
+    moved_before_.clear();
+  }
+
   /// A triangle, point or line has been taken by cull.
   void count_primitive(Cycle cycle) {
     if (totals_.has_primitive) return;
     totals_.has_primitive = true;
     totals_.first_primitive = cycle;
-    for (const auto& [from, to] : moved_before_)
-      if (to > cycle) moving_ += to - std::max(from, cycle);
+    // What a clear moves and writes comes earlier in program order, and may come later in time.
+    const auto since = [cycle](Cycle from, Cycle to) {
+      return to > cycle ? to - std::min(std::max(from, cycle), to) : 0;
+    };
+    for (const auto& [from, to] : moved_before_) {
+      moving_ += since(from, to);
+      totals_.tile_cycles += since(std::min(from, totals_.last_write + 1), std::min(to, totals_.last_write + 1));
+    }
     moved_before_.clear();
   }
 
@@ -195,7 +217,7 @@ class BackTiming {
     note(Boundary::fragment, moved);
     note(Boundary::write, moved + 1);
     totals_.last_write = moved + 1;
-    totals_.tile_cycles = moving_;
+    if (totals_.has_primitive) totals_.tile_cycles = moving_;
     last_fragment_ = moved;
     last_place_ = place;
     return moved;
@@ -206,7 +228,7 @@ class BackTiming {
   void move_plane(Cycle& cycle, const TileAddress& address, MoveCause cause) {
     const bool is_write = cause != MoveCause::fill;
     ++totals_.planes[static_cast<std::size_t>(cause)][static_cast<std::size_t>(address.plane)];
-    if (is_simple_) {
+    if (moves_in_bursts_) {
       const Cycle last = cycle + stamps_ - 1;
       request_.pass(stamps_);
       cycle = last + 1;
@@ -255,13 +277,14 @@ class BackTiming {
       moved_before_.emplace_back(from, to);
     else
       moving_ += to - from;
-    if (from == totals_.last_write) ++totals_.tile_cycles;  // the next access waits while the last write goes in
+    // The next access waits while the last write goes in.
+    if (totals_.has_primitive && from == totals_.last_write && from >= totals_.first_primitive) ++totals_.tile_cycles;
   }
 
   MemoryTiming& memory_;
   TransferSink* sink_;
-  Cycle stamps_;    ///< of a tile
-  bool is_simple_;  ///< nobody looks at single requests, and none of them ever waits
+  Cycle stamps_;          ///< of a tile
+  bool moves_in_bursts_;  ///< nobody looks at single requests, and none of them ever waits
   Station line_raster_;
   Stream line_, line_pixel_, fragment_, request_, response_;
   Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;

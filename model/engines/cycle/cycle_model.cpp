@@ -1,5 +1,7 @@
 #include "cycle_model.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <chrono>
 
 #include "../../stages/cull.hpp"
@@ -111,7 +113,7 @@ class CycleModelOf final : public CycleModel {
     }
     if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, vertices_of(clear)[0].rgba));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
-    timing_.end(true, [&](Cycle offered) {
+    timing_.end_token([&](Cycle offered) {
       return timing_.pass_token(offered,
                                 [&](auto& mover) { directory_.fast_clear(last_x, last_y, planes, mover, counters_); });
     });
@@ -133,7 +135,7 @@ class CycleModelOf final : public CycleModel {
   }
 
   void flush(const SetupPacket& packet) {
-    timing_.end(true, [&](Cycle offered) {
+    timing_.end_token([&](Cycle offered) {
       return timing_.pass_token(offered, [&](auto& mover) {
         directory_.flush(packet.right >> widths_.tile_shift, packet.bottom >> widths_.tile_shift, mover, counters_);
       });
@@ -163,7 +165,7 @@ class CycleModelOf final : public CycleModel {
       return hits;
     };
     const Cycle before = timing_.last_fragment();
-    timing_.end(true, [&](Cycle offered) { return timing_.take_pixels(offered, place, step, look_up); });
+    timing_.end_token([&](Cycle offered) { return timing_.take_pixels(offered, place, step, look_up); });
     if (!options_.want_cost) return;
     const float cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(line.remaining + 1);
     line_raster(line, widths_, [&](const LinePixel& pixel) { cost_[plain_index(pixel.x, pixel.y)] += cycles; });
@@ -231,7 +233,7 @@ class CycleModelOf final : public CycleModel {
         has_ended = tile_x == last_x && tile_y == last_y;
         visit(kernel, setup, lanes, edges, is_inside, packet, box, tile_x, tile_y, has_ended, primitive);
       }
-    if (!has_ended) timing_.end(false, [&](Cycle offered) { return timing_.pass(offered); });
+    if (!has_ended) timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
   }
 
   void visit(const Kernel& kernel, const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
@@ -301,18 +303,13 @@ class CycleModelOf final : public CycleModel {
     RetirePacket retired;
     retired.tile_x = static_cast<std::uint16_t>(tile_x);
     retired.tile_y = static_cast<std::uint16_t>(tile_y);
-    if (passed == T * T) {
-      // The codes of a covered tile are a plane, rounded and clamped: the largest is at a corner.
-      std::uint32_t largest = 0;
+    const bool is_full = passed == T * T;
+    std::uint32_t largest = 0;
+    if (is_full)  // the codes of a covered tile are a plane, rounded and clamped: the largest is at a corner
       for (const int y : {0, T - 1})
         for (const int x : {0, T - 1})
           largest = std::max(largest, rendering_.frame.depth[rendering_.frame.at(tile_x * T + x, tile_y * T + y)]);
-      retired.update = static_cast<std::uint8_t>(HizUpdate::set);
-      retired.hiz_code = largest >> (config_.depth_bits - hiz_code_bits(config_));
-    } else if (passed != 0 && packet.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
-      retired.update = static_cast<std::uint8_t>(HizUpdate::clear);
-      retired.hiz_code = static_cast<std::uint32_t>(widths_.hiz_code.range.hi);
-    }
+    set_hiz_update(retired, packet, is_full, passed != 0, largest, config_, widths_);
     hiz_.update(retired);
   }
 
@@ -364,6 +361,7 @@ std::unique_ptr<CycleModel> make(const Config& config, MemoryTiming& memory, con
 
 std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
   validate(config);
+  validate(options.parameters, config);
   return config.setup_kind == SetupKind::pipelined ? make<PipelinedTiming>(config, memory, options)
                                                    : make<SerialTiming>(config, memory, options);
 }
@@ -392,9 +390,7 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
   CycleRun& run = result.run;
   run.totals = model->totals();
   run.cycles = run.totals.last + 1;
-  run.raster_cycles = run.totals.last_write == 0 || !run.totals.has_primitive
-                          ? 0
-                          : run.totals.last_write - run.totals.first_primitive + 1;
+  run.raster_cycles = run.totals.raster_cycles();
   run.tile_cycles = run.totals.tile_cycles;
   run.totals.works[static_cast<std::size_t>(TimedStage::framebuffer)] =
       run.totals.move_cycles - std::min(run.totals.move_cycles, run.totals.memory_cycles);

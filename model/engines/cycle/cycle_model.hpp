@@ -18,7 +18,7 @@ struct CycleOptions {
   Stalls stalls;                              ///< injected back-pressure
   TimingParameters parameters;                ///< sizes of buffers; the default is the RTL
   TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
-  bool want_count = false, want_ids = false;  ///< fill Rendering::count, ids
+  bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
 };
 
@@ -30,7 +30,7 @@ class CycleModel {
   virtual void begin(int width, int height, Cycle cycle) = 0;
   /// One primitive, to its last write.
   virtual void run(const HostPrimitive& primitive) = 0;
-  [[nodiscard]] virtual const CounterPacket& counters() const = 0;
+  [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset
   [[nodiscard]] virtual const TimingTotals& totals() const = 0;
   [[nodiscard]] virtual const Stream& stream(Boundary boundary) const = 0;
   /// Frame, count and ids since begin().
@@ -39,7 +39,7 @@ class CycleModel {
   [[nodiscard]] virtual std::vector<float>& cost() = 0;
 };
 
-/// `memory` must outlive the model.
+/// `memory` must outlive the model. Throws InputError for a configuration or parameters that no hardware has.
 [[nodiscard]] std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming& memory,
                                                            const CycleOptions& options = {});
 

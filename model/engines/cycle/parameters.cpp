@@ -1,6 +1,7 @@
 #include "parameters.hpp"
 
 #include <array>
+#include <string>
 
 namespace halfplane {
 
@@ -21,6 +22,18 @@ std::span<const TimingSetting> timing_settings() {
       TimingSetting{"clear.fast", "1: a clear of the whole target marks tiles, 0: it is drawn", 0, 1, &P::fast_clear,
                     false}};
   return kSettings;
+}
+
+void validate(const TimingParameters& parameters, const Config& config) {
+  const TimingParameters rtl;
+  for (const TimingSetting& setting : timing_settings()) {
+    const int value = parameters.*setting.member;
+    if (value < setting.min || value > setting.max)
+      throw InputError(std::string(setting.key) + ": " + std::to_string(value) + " is not from " +
+                       std::to_string(setting.min) + " to " + std::to_string(setting.max));
+    if (setting.is_pipelined_only && config.setup_kind == SetupKind::serial && value != rtl.*setting.member)
+      throw InputError(std::string(setting.key) + ": the serial stages have no such thing; use setup.kind=pipelined");
+  }
 }
 
 const TimingSetting* find_timing_setting(std::string_view key) {

@@ -4,17 +4,20 @@
 #include <span>
 #include <string_view>
 
+#include "../../stages/hiz.hpp"
+
 namespace halfplane {
 
 /// The defaults are the RTL. Queues: items that wait in front of a stage, in a FIFO of a cycle's latency; 0: none.
 struct TimingParameters {
   int triangle_queue = 0, setup_queue = 0, tile_queue = 0, fragment_queue = 0;
-  int stamp_queue = 2;     ///< the skid buffer: behind fine_raster (pipelined) or interpolate (serial), at least 1
-  int visits = 8;          ///< tile visits under way at most; serial: one less
-  int divide_bits = 3;     ///< quotient bits a cycle of the pipelined triangle_setup
-  int untested_tiles = 2;  ///< a triangle of at most so many tiles in x and in y never reads HiZ bounds
-  int rejects = 1;         ///< 0: tiles outside an edge go to fine_raster like all others
-  int fast_clear = 1;      ///< 0: clears of the whole target are drawn
+  int stamp_queue = 2;  ///< the skid buffer: behind fine_raster (pipelined) or interpolate (serial), at least 1
+  int visits = 8;       ///< tile visits under way at most; serial: one less
+  int divide_bits = 3;  ///< quotient bits a cycle of the pipelined triangle_setup
+  int untested_tiles =
+      Hiz::kUntestedTiles;  ///< a triangle of at most so many tiles in x and in y never reads HiZ bounds
+  int rejects = 1;          ///< 0: tiles outside an edge go to fine_raster like all others
+  int fast_clear = 1;       ///< 0: clears of the whole target are drawn
   bool operator==(const TimingParameters&) const = default;
 };
 
@@ -27,6 +30,9 @@ struct TimingSetting {
 };
 
 [[nodiscard]] std::span<const TimingSetting> timing_settings();
+
+/// Throws InputError for a value outside its range, and for one that this kind of hardware does not have.
+void validate(const TimingParameters& parameters, const Config& config);
 
 /// The setting of that key; null if there is none.
 [[nodiscard]] const TimingSetting* find_timing_setting(std::string_view key);

@@ -35,7 +35,10 @@ class PipelinedTiming : public BackTiming {
         visited_(static_cast<std::size_t>(parameters.visits)) {}
 
   /// The host offers its next primitive from `cycle` on.
-  void begin(Cycle cycle) { offer_ = std::max(offer_, cycle); }
+  void begin(Cycle cycle) {
+    offer_ = std::max(offer_, cycle);
+    begin_scene();
+  }
 
   /// The next primitive, through cull and triangle_setup to coarse_raster; or, if it is dropped, only into cull.
   void take(const PrimitiveWork& primitive) {
@@ -72,7 +75,9 @@ class PipelinedTiming : public BackTiming {
 
   /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
   void clear_bounds(std::uint64_t tiles) {
-    walk_ = std::max(walk_ - 1, last_retire_ + 1) + 1 + tiles;
+    const Cycle clears = std::max(walk_ - 1, last_retire_ + 1);
+    totals_.bound_cycles += clears - (walk_ - 1);
+    walk_ = clears + 1 + tiles;
     work(TimedStage::coarse_raster, tiles);
   }
 
@@ -97,16 +102,22 @@ class PipelinedTiming : public BackTiming {
     work(TimedStage::coarse_raster, 1);
   }
 
-  /// The end of a primitive whose last tile was passed over, or of a token: an empty stamp without a visit. shade(offered)
-  /// is what depth_test does with it.
+  /// The end of a primitive whose last tile was passed over: an empty stamp without a visit. shade(offered) is what
+  /// depth_test does with it.
   template <class Shade>
-  void end([[maybe_unused]] bool is_token, Shade&& shade) {
+  void end_walk(Shade&& shade) {
     const auto [left, taken] = tile_queue_.pass(tile_, walk_, rows_.room());
     note(Boundary::tile, taken);
     coarse_.leave(left);
     const Cycle row = std::max(taken + 1, stamps_.room());
     rows_.leave(row);
     stamps_.leave(send(row + 1, true, shade));
+  }
+
+  /// The end of a token, likewise.
+  template <class Shade>
+  void end_token(Shade&& shade) {
+    end_walk(shade);
   }
 
   /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.

@@ -26,7 +26,12 @@ class SerialTiming : public BackTiming {
         tile_(stalls, kTile),
         stamp_(stalls, kStamp) {}
 
-  void begin(Cycle cycle) { offer_ = std::max(offer_, cycle); }
+  // The interface is that of PipelinedTiming.
+
+  void begin(Cycle cycle) {
+    offer_ = std::max(offer_, cycle);
+    begin_scene();
+  }
 
   void take(const PrimitiveWork& primitive) {
     const Cycle offered = offer_;
@@ -50,6 +55,8 @@ class SerialTiming : public BackTiming {
     const Cycle ready = begins + 1 + cycles_.setup(primitive.log2_area);
     const Cycle walks = setup_.transfer(ready, std::max(coarse_.room(), slots_.room()));
     work(TimedStage::triangle_setup, ready - begins);
+    const Cycle walker = std::max(ready, coarse_.room());
+    if (slots_.room() > walker) totals_.slot_cycles += slots_.room() - walker;
     const Cycle taken = primitive_.transfer(offered, walks + 1, kTriangle);
     triangle_.count(culled, taken);
     take_primitive(primitive, taken);
@@ -62,7 +69,9 @@ class SerialTiming : public BackTiming {
   }
 
   void clear_bounds(std::uint64_t tiles) {
-    walk_ = std::max(walk_, last_retire_ + 1) + tiles - 1;
+    const Cycle clears = std::max(walk_, last_retire_ + 1);
+    totals_.bound_cycles += clears - walk_;
+    walk_ = clears + tiles - 1;
     work(TimedStage::coarse_raster, tiles);
   }
 
@@ -84,19 +93,19 @@ class SerialTiming : public BackTiming {
   }
 
   template <class Shade>
-  void end(bool is_token, Shade&& shade) {
-    // What passed over the last tile went on to turn to the next one; a token's end comes in the cycle after.
-    const Cycle offered = is_token ? walk_ + 1 : walk_ - SerialCycles::turn;
-    const Cycle taken = send(offered, kTile, fine_.room(), shade);
-    tile_.count(offered, taken);
-    note(Boundary::tile, taken);
-    fine_.leave(taken);
-    coarse_.leave(taken);
+  void end_walk(Shade&& shade) {
+    end(walk_ - SerialCycles::turn, shade);  // what passed over the last tile went on to turn to the next one
+  }
+  template <class Shade>
+  void end_token(Shade&& shade) {
+    end(walk_ + 1, shade);
   }
 
   template <class Shade>
   void visit(const TileVisitWork& tile, Shade&& shade) {
-    const Cycle offered = (has_bound_ ? walk_ : std::max(walk_, visits_.room())) + 1;
+    const Cycle starts = has_bound_ ? walk_ : std::max(walk_, visits_.room());
+    totals_.visit_cycles += starts - walk_;
+    const Cycle offered = starts + 1;
     has_bound_ = false;
     // From the tile's first stamp to the first one of the box, then one position a cycle.
     Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
@@ -139,6 +148,15 @@ class SerialTiming : public BackTiming {
  private:
   static constexpr unsigned kPrimitive = 1U << stall_primitive, kTriangle = 1U << stall_triangle,
                             kTile = 1U << stall_tile, kStamp = 1U << stall_stamp;
+
+  template <class Shade>
+  void end(Cycle offered, Shade&& shade) {
+    const Cycle taken = send(offered, kTile, fine_.room(), shade);
+    tile_.count(offered, taken);
+    note(Boundary::tile, taken);
+    fine_.leave(taken);
+    coarse_.leave(taken);
+  }
 
   static bool is_covered(const TileVisitWork& tile, int row, int column) {
     return (tile.columns[static_cast<std::size_t>(row)] >> column & 1) != 0;

@@ -74,7 +74,7 @@ struct SerialCycles {
   }
 
  private:
-  const Widths& widths_;
+  Widths widths_;
 };
 
 }  // namespace halfplane
