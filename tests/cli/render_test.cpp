@@ -219,7 +219,7 @@ TEST_F(RenderCommand, GoldenEnginesDrawWhatTheModelDoesNot) {
 }
 
 TEST_F(RenderCommand, WhatTheModelHasNotYetIsNamed) {
-  for (const char* engine : {"cycle", "nonsense", ""})
+  for (const char* engine : {"tracer", "nonsense", ""})
     expect_refused({"render", "triangle", "--engine", engine}, std::string("no engine '") + engine + "'");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <type_traits>
 
 #include "../../stages/cull.hpp"
 #include "../../stages/hiz.hpp"
@@ -340,21 +341,19 @@ class CycleModelOf final : public CycleModel {
   std::vector<float> cost_;
 };
 
-template <class Timing, int T>
-std::unique_ptr<CycleModel> make(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
-  if (derive_widths(config).local_depth.bits <= 32)
-    return std::make_unique<CycleModelOf<Timing, T, std::uint32_t>>(config, memory, options);
-  return std::make_unique<CycleModelOf<Timing, T, std::uint64_t>>(config, memory, options);
-}
-
+// Lanes of 64 bits do for every configuration; only the usual tile size of pipelined hardware has the faster 32 too.
 template <class Timing>
 std::unique_ptr<CycleModel> make(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
   switch (config.tile_size) {
-    case 4: return make<Timing, 4>(config, memory, options);
-    case 8: return make<Timing, 8>(config, memory, options);
-    case 16: return make<Timing, 16>(config, memory, options);
-    default: return make<Timing, 32>(config, memory, options);
+    case 4: return std::make_unique<CycleModelOf<Timing, 4, std::uint64_t>>(config, memory, options);
+    case 8: break;
+    case 16: return std::make_unique<CycleModelOf<Timing, 16, std::uint64_t>>(config, memory, options);
+    default: return std::make_unique<CycleModelOf<Timing, 32, std::uint64_t>>(config, memory, options);
   }
+  if constexpr (std::is_same_v<Timing, PipelinedTiming>)
+    if (derive_widths(config).local_depth.bits <= 32)
+      return std::make_unique<CycleModelOf<Timing, 8, std::uint32_t>>(config, memory, options);
+  return std::make_unique<CycleModelOf<Timing, 8, std::uint64_t>>(config, memory, options);
 }
 
 }  // namespace

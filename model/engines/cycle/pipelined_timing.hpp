@@ -96,7 +96,8 @@ class PipelinedTiming : public BackTiming {
     walk_ = read + 1;
     work(TimedStage::coarse_raster, 1);
   }
-  /// It lies in front, and the tile is passed over.
+
+  /// The primitive lies behind that bound, and the tile is passed over.
   void skip_behind() {
     ++walk_;
     work(TimedStage::coarse_raster, 1);
