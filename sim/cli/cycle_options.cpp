@@ -186,7 +186,7 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
   CycleResult result{hardware_of(options, config), options.stalls, {}, {}, {}, false, {}};
   const Hardware& hardware = result.hardware;
   PrimitiveSpans spans;
-  Timeline timeline(common.scene + ", " + label(config));
+  Timeline timeline(Json(common.scene + ", " + label(config)).dump(-1, ' ', false, Json::error_handler_t::replace));
   Tee tee(options.primitives_path.empty() ? nullptr : &spans, options.trace_path.empty() ? nullptr : &timeline);
   CycleOptions cycle;
   cycle.stalls = {common.seed, stall_threshold(options.stalls)};

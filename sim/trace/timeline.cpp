@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "sim/trace/primitive_spans.hpp"
@@ -24,23 +23,21 @@ constexpr std::array kTracks{"cull",
 
 std::string tile_text(int x, int y) { return "tile (" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
 
-std::string metadata(const char* what, int track, const std::string& name) {
-  const nlohmann::ordered_json event{
-      {"name", what}, {"ph", "M"}, {"pid", 1}, {"tid", track}, {"args", {{"name", name}}}};
-  return event.dump();
+/// `value`: JSON.
+std::string metadata(const std::string& what, int track, const std::string& key, const std::string& value) {
+  return "{\"name\":\"" + what + "\",\"ph\":\"M\",\"pid\":1,\"tid\":" + std::to_string(track) + ",\"args\":{\"" + key +
+         "\":" + value + "}}";
 }
 
 }  // namespace
 
 Timeline::Timeline(const std::string& title)
     : text_("{\"displayTimeUnit\":\"ms\",\"otherData\":{\"unit\":\"1 us is 1 cycle\"},\"traceEvents\":[\n") {
-  text_ += metadata("process_name", 0, title);
+  text_ += metadata("process_name", 0, "name", title);
   for (std::size_t i = 0; i < kTracks.size(); ++i) {
     const int track = static_cast<int>(i);
-    text_ += ",\n" + metadata("thread_name", track, kTracks[i]);
-    const nlohmann::ordered_json order{
-        {"name", "thread_sort_index"}, {"ph", "M"}, {"pid", 1}, {"tid", track}, {"args", {{"sort_index", track}}}};
-    text_ += ",\n" + order.dump();
+    text_ += ",\n" + metadata("thread_name", track, "name", "\"" + std::string(kTracks[i]) + "\"");
+    text_ += ",\n" + metadata("thread_sort_index", track, "sort_index", std::to_string(i));
   }
 }
 

@@ -12,7 +12,7 @@ namespace halfplane {
 
 class Timeline final : public TransferSink {
  public:
-  /// `title` names the process: scene and configuration.
+  /// `title`, a JSON string with its quotes, names the process: scene and configuration.
   explicit Timeline(const std::string& title);
   void transfer(Boundary boundary, Cycle cycle) override;
   void primitive(const HostPrimitive& primitive) override;
