@@ -19,7 +19,7 @@ struct MutantsCommand : CosimOptions {
 };
 
 /// A built-in scene and what the model shows of it.
-struct Picture {
+struct ModelPicture {
   Scene scene;
   std::string color, depth;      ///< hashes
   std::uint64_t cycles = ~0ULL;  ///< that it may take: four times the RTL's own
@@ -32,13 +32,13 @@ struct Verdict {
   std::vector<std::string> pictures;  ///< scenes of which colour or depth differ, or which never end
 };
 
-std::vector<Picture> model_pictures(const MutantsCommand& options, const Config& config) {
-  std::vector<Picture> pictures;
+std::vector<ModelPicture> model_pictures(const MutantsCommand& options, const Config& config) {
+  std::vector<ModelPicture> pictures;
   CommonOptions request = options;
   for (const Builtin& builtin : builtin_scenes()) {
     request.scene = builtin.name;
     double load_s = 0;
-    Picture picture;
+    ModelPicture picture;
     picture.scene = load_scene(request, config, load_s);
     check_hardware_scene(picture.scene, config);
     const Rendering model = render_functional(picture.scene, config, {});
@@ -49,18 +49,18 @@ std::vector<Picture> model_pictures(const MutantsCommand& options, const Config&
   return pictures;
 }
 
-bool shows(Dut& dut, const Config& config, const Picture& picture, std::uint16_t mutant) {
+bool shows(Dut& dut, const Config& config, const ModelPicture& picture, std::uint16_t mutant) {
   const auto [frame, cycles] = render_faulty(dut, picture.scene, config, mutant, picture.cycles);
   return frame && color_hash(*frame, config.color_format) == picture.color && depth_hash(*frame) == picture.depth;
 }
 
 Verdict judge(const MutantsCommand& options, const Config& config, Dut& dut, const Mutant& mutant,
-              const std::vector<Picture>& pictures) {
+              const std::vector<ModelPicture>& pictures) {
   LockstepOptions lockstep = lockstep_options(options);
   lockstep.mutant = static_cast<std::uint16_t>(mutant.id);
   const Session session = run_session(dut, config, lockstep, random_scenes(config, options.seed, options.random));
   Verdict verdict{mutant, session.result.mismatch, {}};
-  for (const Picture& picture : pictures)
+  for (const ModelPicture& picture : pictures)
     if (!shows(dut, config, picture, lockstep.mutant)) verdict.pictures.push_back(picture.scene.name);
   return verdict;
 }
@@ -114,8 +114,8 @@ Json verdict_json(const Verdict& v, bool has_pictures) {
 
 /// Every picture of the design as it is must be the model's: otherwise no change could be blamed on a mutant. With one it
 /// gets four times the cycles.
-void check_pictures(const Config& config, Dut& dut, std::vector<Picture>& pictures) {
-  for (Picture& picture : pictures) {
+void check_pictures(const Config& config, Dut& dut, std::vector<ModelPicture>& pictures) {
+  for (ModelPicture& picture : pictures) {
     const auto [frame, cycles] = render_faulty(dut, picture.scene, config, 0, ~0ULL);
     picture.cycles = 4 * cycles;
     if (!frame || color_hash(*frame, config.color_format) != picture.color || depth_hash(*frame) != picture.depth)
@@ -130,7 +130,7 @@ int run(const MutantsCommand& options) {
   const DutFactory& factory = find_dut(config);
   if (!factory.has_mutants) throw InputError("the RTL of " + factory.name + " has no mutants; use --config embedded");
   const std::unique_ptr<Dut> dut = make_dut(factory);
-  std::vector<Picture> pictures = options.scenes ? model_pictures(options, config) : std::vector<Picture>();
+  std::vector<ModelPicture> pictures = options.scenes ? model_pictures(options, config) : std::vector<ModelPicture>();
   check_pictures(config, *dut, pictures);
 
   std::vector<Verdict> verdicts;
