@@ -341,17 +341,6 @@ void Lockstep::compare_cycle(Boundary boundary) {
     result_.mismatch = cycle_mismatch(boundary, {{"cycle", 64, false, queue.front(), cycle_}}, "");
 }
 
-/// At the end: a crossing that the cycle model expects and that never came.
-void Lockstep::report_missing_cycle() {
-  if (!cycle_model_) return;
-  for (std::size_t i = 0; i < kBoundaries && !result_.mismatch; ++i) {
-    const auto boundary = static_cast<Boundary>(i);
-    if (!expected_cycles_[boundary].empty())
-      result_.mismatch = cycle_mismatch(
-          boundary, {}, "the cycle model has one more in cycle " + std::to_string(expected_cycles_[boundary].front()));
-  }
-}
-
 /// Without a pair of cycles there is none to compare: `fields` is empty.
 Mismatch Lockstep::cycle_mismatch(Boundary boundary, std::vector<FieldPair> fields, const std::string& hint) const {
   const auto index = static_cast<std::size_t>(boundary);
@@ -416,39 +405,6 @@ Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::
   return m;
 }
 
-/// Says which streams hold a packet that nobody takes, and blames the stage behind the last of them.
-void Lockstep::explain_standstill(Mismatch& mismatch) {
-  constexpr std::array<Arrow, kStreams> kArrowOf{Arrow::triangle, Arrow::setup,      Arrow::tile,
-                                                 Arrow::stamp,    Arrow::line_pixel, Arrow::fragment};
-  constexpr std::array<std::string_view, kStreams> kConsumer{"triangle_setup", "coarse_raster",  "fine_raster",
-                                                             "interpolate",    "primitive_join", "depth_test"};
-  const DutOutputs& out = dut_.evaluate(0, true);
-  std::string waiting;
-  for (std::size_t i = 0; i < kStreams; ++i) {
-    if ((out.stream_valid >> i & ~(out.stream_ready >> i) & 1) == 0) continue;
-    waiting += (waiting.empty() ? "" : ", ") + std::string(info(kArrowOf[i]).name);
-    mismatch.stage = kConsumer[i];
-  }
-  mismatch.hint = "nothing moves after cycle " + std::to_string(last_moved_) + "; " +
-                  (waiting.empty() ? "no stream holds a packet" : "offered and not taken: " + waiting);
-}
-
-/// Of the packets that never came, the one of the earliest primitive: behind it everything else is waiting.
-void Lockstep::report_missing() {
-  std::size_t first = kArrows;
-  for (std::size_t i = 0; i < kArrows; ++i) {
-    const auto arrow = static_cast<Arrow>(i);
-    if (expected_[arrow].empty()) continue;
-    if (first == kArrows || expected_[arrow].front_tag() < expected_[static_cast<Arrow>(first)].front_tag()) first = i;
-  }
-  const auto arrow = static_cast<Arrow>(first);
-  const PacketQueue& queue = expected_[arrow];
-  const std::vector<std::uint32_t> nothing(queue.words());
-  result_.mismatch = packet_mismatch(Mismatch::Kind::missing, arrow, queue.front(), nothing.data(), queue.front_tag());
-  result_.mismatch->cycle = last_moved_;
-  explain_standstill(*result_.mismatch);
-}
-
 void Lockstep::fail_protocol(const std::string& stage, const std::string& hint) {
   Mismatch m;
   m.kind = Mismatch::Kind::protocol;
@@ -463,50 +419,6 @@ CounterPacket Lockstep::counters() {
   const DutOutputs& out = dut_.evaluate(0, false);
   const auto bytes = static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8;
   return unpack_words<CounterPacket>(words_from(out.counters, bytes).data(), widths_);
-}
-
-void Lockstep::compare_counters() {
-  const auto model = packed(model_.counters(), widths_), rtl = packed(counters(), widths_);
-  Mismatch m;
-  m.kind = Mismatch::Kind::counters;
-  m.fields = field_pairs<CounterPacket>(widths_, model.data(), rtl.data());
-  result_.counters_compared += m.fields.size();
-  const auto names = m.differing();
-  if (names.empty()) return;
-  m.arrow = "counters";
-  m.stage = names[0].starts_with("tile_")                                                  ? "framebuffer"
-            : names[0] == "covered" || names[0] == "depth_passed" || names[0] == "written" ? "depth_test"
-            : names[0].starts_with("tiles_") || names[0] == "trivially_accepted" || names[0] == "samples_tested"
-                ? "coarse_raster"
-                : "cull";
-  m.cycle = cycle_;
-  result_.mismatch = std::move(m);
-}
-
-void Lockstep::compare_memory() {
-  const TileMemory &model = model_.memory(), &rtl = memory_.tiles();
-  for (const bool is_color : {false, true})
-    for (int y = 0; y < rtl.tiles_y(); ++y)
-      for (int x = 0; x < rtl.tiles_x(); ++x) {
-        if (!model.is_written(is_color, x, y) && !rtl.is_written(is_color, x, y)) continue;
-        for (int stamp = 0; stamp < rtl.stamps(); ++stamp) {
-          MemoryRequest a, b;
-          model.read(is_color, x, y, stamp, a.data);
-          rtl.read(is_color, x, y, stamp, b.data);
-          ++result_.memory_compared;
-          if (a.data == b.data) continue;
-          for (MemoryRequest* r : {&a, &b}) {
-            r->is_color = is_color ? 1 : 0;
-            r->tile_x = static_cast<std::uint16_t>(x);
-            r->tile_y = static_cast<std::uint16_t>(y);
-            r->stamp = static_cast<std::uint16_t>(stamp);
-          }
-          result_.mismatch = packet_mismatch(Mismatch::Kind::memory, Arrow::request, packed(a, widths_).data(),
-                                             packed(b, widths_).data(), ~0U);
-          result_.mismatch->arrow = "memory";
-          return;
-        }
-      }
 }
 
 }  // namespace halfplane

@@ -51,6 +51,11 @@ class BackTiming {
   /// `memory` and `sink`, which may be null, must outlive this.
   BackTiming(const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
       : stalls_(stalls),
+        primitive_(stalls, 1U << stall_primitive),
+        triangle_(stalls, 1U << stall_triangle),
+        setup_(stalls, 1U << stall_setup),
+        tile_(stalls, 1U << stall_tile),
+        stamp_(stalls, 1U << stall_stamp),
         memory_(memory),
         sink_(sink),
         stamps_(static_cast<Cycle>(widths.stamps_per_row) * static_cast<Cycle>(widths.stamps_per_row)),
@@ -68,7 +73,12 @@ class BackTiming {
   /// Of the boundaries that can wait.
   [[nodiscard]] const Stream& stream(Boundary boundary) const {
     switch (boundary) {
+      case Boundary::primitive: return primitive_;
       case Boundary::line: return line_;
+      case Boundary::triangle: return triangle_;
+      case Boundary::setup: return setup_;
+      case Boundary::tile: return tile_;
+      case Boundary::stamp: return stamp_;
       case Boundary::line_pixel: return line_pixel_;
       case Boundary::request: return request_;
       case Boundary::response: return response_;
@@ -171,7 +181,8 @@ class BackTiming {
   }
 
   const Stalls stalls_;
-  Cycle last_fragment_ = 0;  ///< when the last one moved
+  Stream primitive_, triangle_, setup_, tile_, stamp_;  ///< of the stages in front, whichever they are
+  Cycle last_fragment_ = 0;                             ///< when the last one moved
   Cycle last_retire_ = 0;
 
   TimingTotals totals_;

@@ -27,11 +27,6 @@ class PipelinedTiming : public BackTiming {
         setup_queue_(parameters.setup_queue),
         tile_queue_(parameters.tile_queue),
         fragment_queue_(parameters.fragment_queue),
-        primitive_(stalls, 1U << stall_primitive),
-        triangle_(stalls, 1U << stall_triangle),
-        setup_(stalls, 1U << stall_setup),
-        tile_(stalls, 1U << stall_tile),
-        stamp_(stalls, 1U << stall_stamp),
         visited_(static_cast<std::size_t>(parameters.visits)) {}
 
   /// The host offers its next primitive from `cycle` on.
@@ -155,17 +150,6 @@ class PipelinedTiming : public BackTiming {
     next_visited_ = (next_visited_ + 1) % visited_.size();
   }
 
-  [[nodiscard]] const Stream& stream(Boundary boundary) const {
-    switch (boundary) {
-      case Boundary::primitive: return primitive_;
-      case Boundary::triangle: return triangle_;
-      case Boundary::setup: return setup_;
-      case Boundary::tile: return tile_;
-      case Boundary::stamp: return stamp_;
-      default: return BackTiming::stream(boundary);
-    }
-  }
-
  private:
   static constexpr int kSteps = PipelinedCycles::interpolate_steps;
   struct VisitedTile {
@@ -196,7 +180,6 @@ class PipelinedTiming : public BackTiming {
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, skid_, interpolate_;
   Station context_{kSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
-  Stream primitive_, triangle_, setup_, tile_, stamp_;
   Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0, last_left_ = 0;
   std::vector<VisitedTile> visited_;  ///< ring: the last ones
   std::size_t next_visited_ = 0;

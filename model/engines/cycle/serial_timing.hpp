@@ -19,12 +19,7 @@ class SerialTiming : public BackTiming {
         cycles_(widths),
         slots_(config.context_slots, 0, 2),
         visits_(parameters.visits - 1, 0, 1),
-        skid_(parameters.stamp_queue, 1, 1),
-        primitive_(stalls, kPrimitive),
-        triangle_(stalls, kTriangle),
-        setup_(stalls, 1U << stall_setup),
-        tile_(stalls, kTile),
-        stamp_(stalls, kStamp) {}
+        skid_(parameters.stamp_queue, 1, 1) {}
 
   // The interface is that of PipelinedTiming.
 
@@ -134,17 +129,6 @@ class SerialTiming : public BackTiming {
     visits_.leave(last_retire_);
   }
 
-  [[nodiscard]] const Stream& stream(Boundary boundary) const {
-    switch (boundary) {
-      case Boundary::primitive: return primitive_;
-      case Boundary::triangle: return triangle_;
-      case Boundary::setup: return setup_;
-      case Boundary::tile: return tile_;
-      case Boundary::stamp: return stamp_;
-      default: return BackTiming::stream(boundary);
-    }
-  }
-
  private:
   static constexpr unsigned kPrimitive = 1U << stall_primitive, kTriangle = 1U << stall_triangle,
                             kTile = 1U << stall_tile, kStamp = 1U << stall_stamp;
@@ -193,7 +177,6 @@ class SerialTiming : public BackTiming {
   SerialCycles cycles_;
   Station cull_{1, 0, 1}, triangle_setup_{1, 0, 1}, coarse_{1, 0, 1}, fine_{1, 0, 1}, slots_, visits_;
   Station interpolate_{SerialCycles::interpolate_steps, SerialCycles::interpolate_steps, 0}, skid_;
-  Stream primitive_, triangle_, setup_, tile_, stamp_;
   Cycle offer_ = 0, walk_ = 0, last_made_ = 0;
   bool primitive_starts_ = false, has_bound_ = false;
 };
