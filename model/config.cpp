@@ -39,6 +39,11 @@ const std::array kSettings{
             &Config::setup_kind},
     Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
             &Config::line_units},
+    Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
+            "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
+            &Config::depth_mapping},
+    Setting{"depth.format", "plane|u<b>|bins<b>|f16|f32|uf<e>.<m>",
+            "how a depth is stored; plane: the depth.bits that are interpolated", 0, 0, &Config::depth_format},
 };
 
 constexpr std::array<std::string_view, 4> kPresetNames{"tiny", "small", "embedded", "full"};
@@ -64,6 +69,14 @@ int parse_name(std::string_view key, std::string_view value, std::span<const std
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == value) return static_cast<int>(i);
   throw InputError(std::string(key) + ": no value '" + std::string(value) + "'; give " + joined(names));
+}
+
+DepthFormat depth_format_of(std::string_view key, std::string_view value) {
+  try {
+    return parse_depth_format(value);
+  } catch (const InputError& error) {
+    throw InputError(std::string(key) + ": " + error.what());
+  }
 }
 
 void refuse_unless(bool holds, const std::string& message) {
@@ -128,6 +141,9 @@ std::string get(const Config& config, const Setting& setting) {
   if (const auto* number = std::get_if<int Config::*>(&setting.member)) return std::to_string(config.**number);
   if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
     return std::string(kColorFormatNames[static_cast<std::size_t>(config.**format)]);
+  if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
+    return std::string(depth_mapping_names()[static_cast<std::size_t>(config.**mapping)]);
+  if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member)) return to_string(config.**stored);
   const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
   return std::string(kSetupKindNames[static_cast<std::size_t>(kind)]);
 }
@@ -150,6 +166,10 @@ void set(Config& config, std::string_view key, std::string_view value) {
     }
     if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
       config.** format = static_cast<ColorFormat>(parse_name(key, value, kColorFormatNames));
+    else if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
+      config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
+    else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))
+      config.** stored = depth_format_of(key, value);
     else
       config.*std::get<SetupKind Config::*>(setting.member) =
           static_cast<SetupKind>(parse_name(key, value, kSetupKindNames));

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <variant>
 
+#include "depth_format.hpp"
+
 namespace halfplane {
 
 /// Thrown where input enters (files, options, configurations); what() is one line that names the place and the mend.
@@ -29,9 +31,9 @@ struct Config {
   int guard_band = 2048;            ///< window coordinates lie in [-guard_band, guard_band) pixels; a power of two
   int target_width = 1920;          ///< widest target, pixels
   int target_height = 1080;         ///< highest target, pixels
-  int depth_bits = 16;              ///< B: bits of a stored depth code
-  int local_guard_bits = 6;         ///< fraction bits of a plane stepped inside one tile
-  int reciprocal_extra_bits = 4;    ///< the reciprocal of the area has depth_bits + this many significant bits
+  int depth_bits = 16;  ///< B: bits of the depth that is interpolated, and stored unless depth_format says otherwise
+  int local_guard_bits = 6;       ///< fraction bits of a plane stepped inside one tile
+  int reciprocal_extra_bits = 4;  ///< the reciprocal of the area has depth_bits + this many significant bits
   ColorFormat color_format = ColorFormat::rgb565;
   int tile_size = 8;           ///< pixels along the side of a tile
   int stamp_size = 2;          ///< pixels along the side of the stamp that fine_raster tests in one clock
@@ -41,6 +43,8 @@ struct Config {
   int cache_lines = 16;        ///< tiles that the on-chip depth and colour RAM holds; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
   int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
+  DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
+  DepthFormat depth_format;                               ///< the RTL has `plane` alone
 
   bool operator==(const Config&) const = default;
 };
@@ -55,7 +59,14 @@ struct Setting {
   std::string_view meaning;  ///< one line for `halfplane config --list`
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
-  std::variant<int Config::*, ColorFormat Config::*, SetupKind Config::*> member;
+  std::variant<int Config::*, ColorFormat Config::*, SetupKind Config::*, DepthMapping Config::*, DepthFormat Config::*>
+      member;
+
+  /// Whether the RTL depends on it.
+  [[nodiscard]] bool is_hardware() const {
+    return !std::holds_alternative<DepthMapping Config::*>(member) &&
+           !std::holds_alternative<DepthFormat Config::*>(member);
+  }
 };
 
 /// Every setting, in the order in which `config --list` prints them.

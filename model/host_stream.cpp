@@ -165,6 +165,10 @@ double HostStream::progress() const {
 
 void check_hardware_scene(const Scene& scene, const Config& config) {
   check_scene(scene, config);
+  if (!DepthEncode(config, scene.planes).is_identity())
+    throw InputError(
+        "depth.mapping w and log and every depth.format but plane: this hardware stores the depth that it "
+        "interpolates; use the functional, scalar or golden engine, or depth.format=plane");
   if (config.line_units != 0) return;
   for (const Command& command : scene.commands) {
     const auto* draw = std::get_if<Draw>(&command);

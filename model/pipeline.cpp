@@ -259,7 +259,8 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       viewport(effective_viewport(state, scene_.width, scene_.height)),
       rect(raster_rect(state, scene_.width, scene_.height)),
       guard_band(guard_band_planes(state.clip_z, viewport, config_)),
-      view_volume(view_volume_planes(state.clip_z)) {}
+      view_volume(view_volume_planes(state.clip_z)),
+      depth_encode(config_, scene_.planes) {}
 
 const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {
   Entry& entry = entries_[index];
@@ -402,7 +403,7 @@ void clear(Rendering& rendering, const Scene& scene, const Clear& command, const
     for (int y = rect.y; y < rect.y + rect.height; ++y)
       std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(y) * stride + rect.x, rect.width, value);
   };
-  if (command.depth) fill(frame.depth, frame.stride, snap_depth(*command.depth, config.depth_bits));
+  if (command.depth) fill(frame.depth, frame.stride, DepthEncode(config, scene.planes).of_window(*command.depth));
   if (command.color) {
     std::array<std::uint8_t, 4> code;
     for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color((*command.color)[c]);
@@ -415,7 +416,8 @@ void clear(Rendering& rendering, const Scene& scene, const Clear& command, const
 Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options) {
   Rendering rendering;
   rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
-  std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(), snap_depth(1.0, config.depth_bits));
+  std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(),
+            DepthEncode(config, scene.planes).of_window(1.0));
   std::fill(rendering.frame.color.begin(), rendering.frame.color.end(),
             pack_color(config.color_format, {0, 0, 0, 255}));
   const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);

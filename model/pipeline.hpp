@@ -5,6 +5,7 @@
 #include "stages/clip.hpp"                // homogeneous triangle    -> convex polygon                       host
 #include "stages/coarse_raster.hpp"       // setup                   -> tiles, rejected and accepted
 #include "stages/cull.hpp"                // signed area             -> keep or drop
+#include "stages/depth_encode.hpp"        // interpolated depth      -> stored depth code
 #include "stages/depth_test.hpp"          // fragment, stored depth  -> pass or fail
 #include "stages/fine_raster.hpp"         // tile                    -> covered samples of its stamps
 #include "stages/framebuffer.hpp"         // stored codes            -> the two images
@@ -35,6 +36,7 @@ struct DrawContext {
   Viewport viewport;
   Rect rect;  ///< pixels that the draw may touch
   ClipPlanes guard_band, view_volume;
+  DepthEncode depth_encode;
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
 };

@@ -48,6 +48,7 @@ std::uint64_t config_id(const Config& config) {
     for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   };
   for (const Setting& setting : settings()) {
+    if (!setting.is_hardware()) continue;
     feed(setting.key);
     feed("=");
     feed(get(config, setting));
@@ -66,6 +67,7 @@ std::string raster_pkg(const Config& config) {
       << "package raster_pkg;\n  /* verilator lint_off UNUSEDPARAM */  // a stage alone reads only some of them\n\n"
          "  // The configuration.\n";
   for (const Setting& setting : settings()) {
+    if (!setting.is_hardware()) continue;
     if (std::holds_alternative<ColorFormat Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.color_format),
                      "0 rgb565, 1 rgba8888: " + std::string(setting.meaning));

@@ -110,6 +110,8 @@ using Command = std::variant<Clear, Draw, EndFrame>;
 struct Scene {
   std::string name;
   int width = 640, height = 480;  ///< target, pixels
+  /// Near and far, eye-space units, 0 < near < far: what depth mappings refer to. None: the scene's maker did not say.
+  std::optional<std::array<double, 2>> planes;
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<State> states;

@@ -8,11 +8,12 @@
 
 namespace halfplane {
 
-/// A covered sample through depth_test and rop. `color()` gives its four codes, when they are needed.
+/// A covered sample through depth_encode, depth_test and rop. `color()` gives its four codes, when they are needed.
 template <class Color>
-void shade_sample(const DrawContext& context, const RenderOptions& options, int x, int y, std::uint32_t depth,
+void shade_sample(const DrawContext& context, const RenderOptions& options, int x, int y, std::uint32_t plane_code,
                   Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering) {
   const State& state = context.state;
+  const std::uint32_t depth = context.depth_encode(plane_code);
   const std::size_t pixel = rendering.frame.at(x, y);
   const auto plain =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering.frame.width) + static_cast<std::size_t>(x);

@@ -16,7 +16,8 @@ class TileRaster {
         widths_(widths),
         options_(options),
         out_(rendering),
-        kernel_(context.state.depth_test, context.state.depth_write, context.state.color_write, context.config, widths),
+        kernel_(context.state.depth_test, context.state.depth_write, context.state.color_write, context.config, widths,
+                context.depth_encode.is_identity() ? nullptr : &context.depth_encode),
         writes_(context.state.depth_write || context.state.color_write),
         wants_bits_(options.want_count || options.want_ids || options.coverage_tap) {}
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "../stages/depth_encode.hpp"
 #include "../stages/depth_test.hpp"
 #include "../stages/interpolate.hpp"
 #include "../stages/rop.hpp"
@@ -73,8 +74,11 @@ class TileKernel {
  public:
   using Mask = Lanes<std::uint32_t, T>;  ///< one lane per column: all bits set or none
 
-  TileKernel(DepthFunc depth_test, bool depth_write, bool color_write, const Config& config, const Widths& widths)
+  /// `encode`: not null where stored codes are not plane codes.
+  TileKernel(DepthFunc depth_test, bool depth_write, bool color_write, const Config& config, const Widths& widths,
+             const DepthEncode* encode = nullptr)
       : widths_(widths),
+        encode_(encode),
         channels_(static_cast<std::size_t>(widths.color_channels)),
         format_(config.color_format),
         outcomes_(depth_test),
@@ -165,7 +169,9 @@ class TileKernel {
     std::uint32_t* stored_depth = frame.depth.data() + first;
     const Lane row = static_cast<Lane>(tile.depth + static_cast<Lane>(j - T / 2) * lanes.depth.step_y);
     const Lanes<Lane, T> value = lanes.depth_ramp + row;
-    const Mask depth = decode_row<Lane>(value, lanes.depth_format, setup.depth_min, setup.depth_max);
+    Mask depth = decode_row<Lane>(value, lanes.depth_format, setup.depth_min, setup.depth_max);
+    if (encode_ != nullptr)
+      for (int i = 0; i < T; ++i) depth[i] = covered[i] != 0 ? (*encode_)(depth[i]) : 0;
     Mask stored;
     load(stored, stored_depth);
     const Mask passed =
@@ -201,6 +207,7 @@ class TileKernel {
   }
 
   const Widths& widths_;
+  const DepthEncode* encode_;
   std::size_t channels_;
   ColorFormat format_;
   DepthOutcomes outcomes_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clip.hpp"
+#include "depth_format.hpp"
 #include "depth_test.hpp"
 #include "homogeneous.hpp"
 #include "interpolate.hpp"
@@ -50,7 +51,11 @@ template <class Real>
 class Renderer {
  public:
   Renderer(const Scene& scene, const Config& config, const Options& options)
-      : scene_(scene), config_(config), options_(options), depth_max_(std::ldexp(1.0, config.depth_bits) - 1) {
+      : scene_(scene),
+        config_(config),
+        options_(options),
+        depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
+        depth_buffer_(config, scene.planes) {
     const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
     image_.width = scene.width;
     image_.height = scene.height;
@@ -93,7 +98,7 @@ class Renderer {
       for (int x = 0; x < image_.width; ++x) {
         const std::size_t p = pixel(x, y), at = image_.frame.at(x, y);
         image_.depth[p] = static_cast<double>(z_[p]) * depth_max_;
-        image_.frame.depth[at] = round_to_code(image_.depth[p], depth_max_);
+        image_.frame.depth[at] = depth_buffer_.code(depth_buffer_.stored_depth(static_cast<double>(z_[p])));
         image_.frame.color[at] = pack_color(
             stored_[p] == ColorInterp::affine ? image_.affine[p] : image_.perspective[p], config_.color_format);
       }
@@ -104,7 +109,7 @@ class Renderer {
     for (int y = box.top; y < box.bottom; ++y) {
       for (int x = box.left; x < box.right; ++x) {
         const std::size_t p = pixel(x, y);
-        if (clear.depth) z_[p] = static_cast<Real>(*clear.depth);
+        if (clear.depth) z_[p] = static_cast<Real>(depth_buffer_.window_depth(*clear.depth));
         if (clear.color) write_color(p, *clear.color, *clear.color, ColorInterp::affine);
         image_.ids[p] = -1;
       }
@@ -312,6 +317,7 @@ class Renderer {
   const Config& config_;
   const Options& options_;
   double depth_max_;  // 2^B - 1
+  const DepthBuffer depth_buffer_;
   Image image_;
   std::vector<Real> z_;              // the depth buffer that the test reads, 0...1
   std::vector<ColorInterp> stored_;  // which of the two colours the frame holds

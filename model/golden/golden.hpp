@@ -34,7 +34,7 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::uint32_t> count;  ///< covered samples before the depth test
   std::vector<std::int32_t> ids;     ///< input primitive that owns the stored colour or depth, -1 none
-  std::vector<double> depth;         ///< depth LSB: z * (2^B - 1), not rounded
+  std::vector<double> depth;         ///< window z * (2^B - 1), not rounded: LSB of the interpolated depth
   std::vector<std::array<double, 4>> affine, perspective;  ///< colour, 0...255, not rounded, by either rule
   Framebuffer frame;                                       ///< the same, rounded to the stored formats
   Counters counters;              ///< primitives, covered, samples_tested, depth_passed, written

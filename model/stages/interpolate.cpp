@@ -30,14 +30,20 @@ LocalPlane<std::uint64_t> plane_of(std::int64_t anchor, std::int64_t step_x, std
 
 }  // namespace
 
-Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
+InterpolatedDepth depth_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
   const int depth_bits = widths.depth_code.bits;
-  const int guard_bits = widths.local_depth.bits - depth_bits - 1;
+  const Value depth = value_at(setup, setup.depth, widths.depth_plane,
+                               {depth_bits, widths.local_depth.bits - depth_bits - 1}, widths, x, y, setup.depth_min,
+                               setup.depth_max);
+  return {depth.unrounded, static_cast<std::uint32_t>(depth.code)};
+}
+
+Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
+  const int guard_bits = widths.local_depth.bits - widths.depth_code.bits - 1;
+  const InterpolatedDepth depth = depth_at(setup, widths, x, y);
   Interpolated result;
-  const Value depth = value_at(setup, setup.depth, widths.depth_plane, {depth_bits, guard_bits}, widths, x, y,
-                               setup.depth_min, setup.depth_max);
   result.depth = depth.unrounded;
-  result.depth_code = static_cast<std::uint32_t>(depth.code);
+  result.depth_code = depth.code;
   for (std::size_t c = 0; c < 4; ++c) {
     const Value color = value_at(setup, setup.color[c], widths.color_plane, {8, guard_bits}, widths, x, y,
                                  setup.color_min[c], setup.color_max[c]);

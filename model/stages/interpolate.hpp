@@ -60,7 +60,12 @@ struct Interpolated {
   std::array<std::uint8_t, 4> color_code{};
 };
 
-/// The attributes of a triangle at pixel (x, y): the specification that every engine must match.
+/// The depth of a triangle at pixel (x, y), and all its attributes: the specification that every engine must match.
+struct InterpolatedDepth {
+  std::int64_t unrounded = 0;  ///< 2^-l LSB, before rounding and clamp
+  std::uint32_t code = 0;
+};
+[[nodiscard]] InterpolatedDepth depth_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
 [[nodiscard]] Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
 
 /// The stage: depth and colour of every sample of the stamp, covered or not, from its tile's anchors. `context` is

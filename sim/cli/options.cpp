@@ -11,6 +11,7 @@
 #include "sim/config_file.hpp"
 #include "sim/image/whole_file.hpp"
 #include "sim/scene/convention.hpp"
+#include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/load.hpp"
 
 namespace halfplane {
@@ -162,6 +163,10 @@ Scene load_scene(const CommonOptions& options, const Config& config, double& loa
   const ObjectCounts counts = select_object_culling(scene, cull_objects);
   if (objects != nullptr) *objects = counts;
   scene = in_convention(std::move(scene), convention);
+  if (convention.has_reversed_z && config.depth_mapping != DepthMapping::projection)
+    throw InputError("--convention " + options.convention +
+                     " and depth.mapping both set the order of depth; leave one out");
+  scene = in_depth_mapping(std::move(scene), config.depth_mapping);
   load_s = seconds_since(start);
   return scene;
 }

@@ -100,7 +100,7 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
-  if (!options.depth_path.empty()) check_depth_path(options.depth_path, config.depth_bits);
+  if (!options.depth_path.empty()) check_depth_path(options.depth_path, stored_format(config).bits);
   check_distinct({options.scene, options.json, options.color_path, options.depth_path, options.count_path,
                   options.ids_path, options.draws_path, options.cycle.primitives_path, options.cycle.trace_path,
                   options.cycle.heat_path});
@@ -156,7 +156,7 @@ void write_files(const RenderCommand& options, const Rendering& rendering, const
                  const std::string& title) {
   const Framebuffer& frame = rendering.frame;
   if (!options.color_path.empty()) write_png(options.color_path, color_picture(frame, config.color_format));
-  if (!options.depth_path.empty()) write_depth(options.depth_path, frame, config.depth_bits);
+  if (!options.depth_path.empty()) write_depth(options.depth_path, frame, stored_format(config).bits);
   if (!options.count_path.empty()) write_npy(options.count_path, frame.width, frame.height, rendering.count);
   if (!options.ids_path.empty()) write_npy(options.ids_path, frame.width, frame.height, rendering.ids);
   if (!options.draws_path.empty())

@@ -11,6 +11,7 @@
 #include "../../model/engines/functional.hpp"
 #include "../../model/engines/scalar.hpp"
 #include "../../model/golden/exact.hpp"
+#include "../../model/stages/depth_encode.hpp"
 #include "../../model/stages/interpolate.hpp"
 #include "../../model/stages/rop.hpp"
 #include "../../model/stages/triangle_setup.hpp"
@@ -72,6 +73,7 @@ class AttributeComparison {
         widths_(derive_widths(config)),
         result_(result),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
+        depth_encode_(config, scene.planes),
         eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())) {}
 
   void run() {
@@ -135,12 +137,15 @@ class AttributeComparison {
     Values v;
     v.s = exact::on_grid(pixel.depth.exact);
     v.h = exact::on_grid(pixel.depth.hardware);
-    v.d = std::int64_t{stored} << exact::kGridBits;
-    result_.stage_mismatches += stored != pixel.depth_code ? 1 : 0;
+    v.d = depth_encode_.is_identity() ? std::int64_t{stored} << exact::kGridBits
+                                      : on_grid(static_cast<double>(depth_encode_.plane_value(stored)) * depth_max_);
+    result_.stage_mismatches += stored != depth_encode_(pixel.depth_code) ? 1 : 0;
+    // Of a format that is not the plane's, storage is a step after the datapath.
+    const std::int64_t datapath = depth_encode_.is_identity() ? v.d : v.h;
     if (pixel.is_line) {
-      line_datapath_.add(to_lsb(v.d - v.s));
+      line_datapath_.add(to_lsb(datapath - v.s));
     } else {
-      datapath_.add(to_lsb(v.d - v.s));
+      datapath_.add(to_lsb(datapath - v.s));
       datapath_bias_.add(to_lsb(v.h - v.s));
     }
     if (!same_visible) return;
@@ -150,7 +155,7 @@ class AttributeComparison {
     depth_.add(to_lsb(v.d - v.u));
     result_.depth_error_lsb[pixel.p] = static_cast<float>(to_lsb(v.d - v.u));
     if (const auto& mapping = eye_mappings_[pixel.draw]) {
-      const auto of_d = mapping->eye_depth(stored / depth_max_), of_u = mapping->eye_depth(u / depth_max_);
+      const auto of_d = mapping->eye_depth(to_lsb(v.d) / depth_max_), of_u = mapping->eye_depth(u / depth_max_);
       if (of_d && of_u)
         eye_.add(*of_d - *of_u);
       else
@@ -187,6 +192,7 @@ class AttributeComparison {
   const Widths widths_;
   Comparison& result_;
   double depth_max_;  // 2^B - 1
+  DepthEncode depth_encode_;
   std::vector<std::optional<EyeMapping>> eye_mappings_;
   ErrorSet depth_, color_, eye_;
   MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_;

@@ -44,6 +44,7 @@ constexpr Mutant kMutants[] = {
 
 bool same_hardware(const Config& a, Config b) {
   b.preset = a.preset;
+  b.depth_mapping = a.depth_mapping;  // host side
   return a == b;
 }
 

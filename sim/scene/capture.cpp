@@ -64,6 +64,7 @@ class CaptureReader {
   void read_line(std::string_view word);
   void read_rare_line(std::string_view word);
   void read_target();
+  void read_planes();
   void read_clear();
   void read_state();
   void read_object();
@@ -122,13 +123,13 @@ void CaptureReader::read_rare_line(std::string_view word) {
   } else if (word == "frame") {
     scene_.commands.emplace_back(EndFrame{});
   } else if (word == "planes") {
-    text_.fail("planes is not in this version; remove the line");
+    read_planes();
   } else if (word == "halfplane") {
     text_.fail("a second 'halfplane' line; a file holds one capture: remove the line, or split the file");
   } else {
     text_.fail(quoted_word(word) +
                " begins no line of a capture; write one of target, clear, space, state, v, t, ts, tf, " +
-               "l, ls, ll, p, object, frame, or # before a comment");
+               "l, ls, ll, p, object, planes, frame, or # before a comment");
   }
 }
 
@@ -138,6 +139,16 @@ void CaptureReader::read_target() {
   target_line_ = text_.line();
   scene_.width = text_.integer("the target's width", 1, max_side);
   scene_.height = text_.integer("the target's height", 1, max_side);
+}
+
+void CaptureReader::read_planes() {
+  if (scene_.planes) text_.fail("a second planes line, and a capture has one pair of planes; remove one of them");
+  constexpr double largest = std::numeric_limits<double>::max();
+  const double near = text_.number("the near plane", 0, largest);
+  const double far = text_.take("inf") ? std::numeric_limits<double>::infinity()
+                                       : text_.number("the far plane", 0, largest);
+  if (!(near > 0 && near < far)) text_.fail("planes must be 0 < near < far; far may be inf");
+  scene_.planes = {near, far};
 }
 
 std::array<double, 4> CaptureReader::read_color() {

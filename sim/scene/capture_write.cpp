@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <ostream>
 #include <span>
@@ -64,6 +65,16 @@ class CaptureWriter {
 
   void write() {
     buffer_ += "halfplane 1\ntarget " + std::to_string(scene_.width) + ' ' + std::to_string(scene_.height) + '\n';
+    if (scene_.planes) {
+      buffer_ += "planes ";
+      append_number(buffer_, (*scene_.planes)[0]);
+      buffer_ += ' ';
+      if (std::isinf((*scene_.planes)[1]))
+        buffer_ += "inf";
+      else
+        append_number(buffer_, (*scene_.planes)[1]);
+      buffer_ += '\n';
+    }
     for (const Vertex& vertex : scene_.vertices) write_vertex(vertex);
     for (const Command& command : scene_.commands) {
       if (const auto* clear = std::get_if<Clear>(&command)) write_clear(*clear);
@@ -210,7 +221,7 @@ bool same_command(const Scene& a, const Command& command_a, const Scene& b, cons
 void write_capture(const Scene& scene, std::ostream& out) { CaptureWriter(scene, out).write(); }
 
 bool same_scene(const Scene& a, const Scene& b) {
-  return a.width == b.width && a.height == b.height && a.states == b.states && a.objects == b.objects &&
+  return a.width == b.width && a.height == b.height && a.planes == b.planes && a.states == b.states && a.objects == b.objects &&
          std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),
                     [](const Vertex& v, const Vertex& w) { return same_bits(numbers_of(v), numbers_of(w)); }) &&
          std::equal(a.commands.begin(), a.commands.end(), b.commands.begin(), b.commands.end(),

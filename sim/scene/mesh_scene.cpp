@@ -40,6 +40,7 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
 
   Scene scene = cleared_scene(width, height);
   scene.states[0].cull = cull;
+  if (camera.ortho == 0) scene.planes = {camera.near, camera.far};
   scene.vertices.reserve(mesh.vertices.size());
   for (const MeshVertex& in : mesh.vertices) {
     const Vec4 eye = transform(view, {in.position[0], in.position[1], in.position[2], 1});

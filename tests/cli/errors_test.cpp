@@ -153,7 +153,7 @@ TEST_F(BadInput, BrokenCaptureIsNamedWithItsLine) {
                            "state depth_range 0 2",
                            "l 0 1",
                            "p 0",
-                           "planes 1 10",
+                           "planes 10 1",
                            "clear color 256 0 0 0",
                            "clear depth 1.5",
                            "clear color",

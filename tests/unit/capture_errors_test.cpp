@@ -77,8 +77,12 @@ TEST(CaptureErrors, UnknownLinesAndStatesAreNamed) {
   expect_line_refused("frame 2", "'2' is left over");
 }
 
-TEST(CaptureErrors, WhatALaterVersionWillDrawIsNamed) {
-  expect_line_refused("planes 0.1 100", "planes is not in this version");
+TEST(CaptureErrors, PlanesAreTwoPositiveDistancesInOrderAndGivenOnce) {
+  expect_line_refused("planes 0 100", "planes must be 0 < near < far; far may be inf");
+  expect_line_refused("planes 5 5", "planes must be 0 < near < far");
+  expect_line_refused("planes inf 5", "is not a finite number");
+  expect_line_refused("planes 1", "the line ends where the far plane should follow");
+  expect_refused("halfplane 1\nplanes 1 10\nplanes 1 10\n", 3, "a second planes line");
 }
 
 TEST(CaptureErrors, StatesOfLinesAndPointsAreCheckedAsTheOthers) {

@@ -306,6 +306,8 @@ Scene random_scene(std::mt19937_64& random) {
   Scene scene;
   scene.width = static_cast<int>(1 + random() % 16384);
   scene.height = static_cast<int>(1 + random() % 16384);
+  if (random() % 2 != 0)
+    scene.planes = {random_in(random, 0.001, 1), random() % 4 == 0 ? INFINITY : random_in(random, 2, 99)};
   add_random_vertices(random, scene);
   scene.objects = {"", "one", "a % # b ", " \t\n\x01\x7f", "gr\xc3\xbcn", std::string("nul\0!", 5)};
   for (int i = 0; i < 40; ++i) {
@@ -356,6 +358,7 @@ TEST(CaptureRoundTrip, SameSceneSeesEveryKindOfDifference) {
   EXPECT_FALSE(differs([](Scene& s) { s.name = "only a label"; }));
   EXPECT_TRUE(differs([](Scene& s) { ++s.width; }));
   EXPECT_TRUE(differs([](Scene& s) { ++s.height; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.planes = {0.25, 4.0}; }));
   EXPECT_TRUE(differs([](Scene& s) { s.vertices.pop_back(); }));
   EXPECT_TRUE(differs([](Scene& s) { s.commands.pop_back(); }));
   EXPECT_TRUE(differs([](Scene& s) { s.objects[1] = "two"; }));

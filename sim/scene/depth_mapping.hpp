@@ -1,0 +1,20 @@
+// Depth mappings: a scene whose depth means what `depth.mapping` says, as its maker would get it from another projection
+// matrix, depth test and clear value.
+#pragma once
+
+#include "model/depth_format.hpp"
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+/// The same scene under another mapping. Clip space: z is made anew from the eye depth, which is w, so that window z is
+/// the mapping's d (under w and log the std depth, from which depth_encode makes d); a reversed mapping turns tests, depth
+/// ranges, polygon offsets and clears. Window space: z is d already, and w and log make the std depth of it; tests and
+/// clears stay. `projection` changes nothing. Throws InputError for a scene without the planes that a mapping needs, one
+/// in both spaces, and a depth range other than 0...1 under w and log.
+[[nodiscard]] Scene in_depth_mapping(Scene scene, DepthMapping mapping);
+
+/// The std depth, 0...1, of eye depth z; far may be infinite.
+[[nodiscard]] double std_depth(double z, double near, double far);
+
+}  // namespace halfplane

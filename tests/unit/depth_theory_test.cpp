@@ -1,0 +1,167 @@
+// The theory of depth quantization, against an independent exact reference and against published results.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "model/config.hpp"
+#include "sim/depth/exact_depth.hpp"
+
+namespace halfplane {
+namespace {
+
+DepthMapping mapping_named(std::string_view name) {
+  const auto names = depth_mapping_names();
+  return static_cast<DepthMapping>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+ExactDepth depth(const std::string& mapping, const std::string& format, const std::string& near,
+                 const std::string& far) {
+  return {mapping_named(mapping), parse_depth_format(format), parse_decimal(near, "near"), parse_decimal(far, "far")};
+}
+
+Rational number(const std::string& text) { return parse_decimal(text, "z"); }
+
+/// |a - b| as a part of b; 0 for equal infinities.
+double relative_error(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::abs(b); }
+
+TEST(DepthTheory, AgreesWithTheIndependentReference) {
+  std::ifstream file(HALFPLANE_TEST_DATA "/depth_reference.csv");  // by tools/depth_reference.py
+  std::string line;
+  std::getline(file, line);
+  std::map<std::string, double> worst;
+  int rows = 0;
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    std::array<std::string, 9> cell;
+    for (std::string& text : cell) std::getline(cells, text, ',');
+    const DepthFigures got = depth(cell[0], cell[1], cell[2], cell[3]).at(number(cell[4]));
+    EXPECT_EQ(std::to_string(got.code), cell[5]) << line;
+    const std::array values{got.bin_width, got.max_recon_err, got.first_order};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double error = relative_error(values[i], std::stod(cell[6 + i]));
+      EXPECT_LE(error, 1e-12) << line << " figure " << i << ": " << values[i];
+    }
+    ++rows;
+  }
+  EXPECT_GE(rows, 1300);
+}
+
+TEST(DepthTheory, SixteenBitsAtAFarNearRatioOfAHundredThousandEndNearTheFirstThird) {
+  // n = 0.01, f = 1000: the last code but one is worth z = 395.9, everything behind it shares the last code.
+  const ExactDepth theory = depth("std", "u16", "0.01", "1000");
+  EXPECT_NEAR(theory.reconstructed(65534), 395.9, 0.05);
+  EXPECT_DOUBLE_EQ(theory.reconstructed(65535), 1000);
+}
+
+TEST(DepthTheory, NineTenthsOfTheCodesServeTheFirstTenthOfTheDepth) {
+  const ExactDepth theory = depth("std", "u16", "1", "100");
+  EXPECT_NEAR(theory.code(number("10")) / 65535.0, 0.909, 0.0005);
+}
+
+TEST(DepthTheory, ReversedFloatTellsTenThousandDepthsApart) {
+  // 10001 depths between n = 0.1 and f = 10000, evenly spaced by the logarithm of the distance from near.
+  const auto indistinguishable = [](const ExactDepth& theory) {
+    int same = 0;
+    std::optional<std::uint32_t> last;
+    for (int i = 0; i <= 10000; ++i) {
+      const std::uint32_t code = theory.code(Rational(0.1 * std::pow(1e5, i / 10000.0)));
+      same += last && *last == code ? 1 : 0;
+      last = code;
+    }
+    return same;
+  };
+  EXPECT_EQ(indistinguishable(depth("rev", "f32", "0.0999999", "10001")), 0);
+  EXPECT_EQ(indistinguishable(depth("revinf", "f32", "0.0999999", "10001")), 0);
+  EXPECT_GT(indistinguishable(depth("std", "u24", "0.0999999", "10001")), 0);
+  EXPECT_GT(indistinguishable(depth("std", "f32", "0.0999999", "10001")), 0);
+}
+
+/// The mean reconstruction error over evenly spaced eye depths.
+double mean_error(const ExactDepth& theory) {
+  double sum = 0;
+  constexpr int kSamples = 2000;
+  for (int i = 0; i < kSamples; ++i) {
+    const Rational z = theory.near() + (theory.far() - theory.near()) * (2 * i + 1) / (2 * kSamples);
+    sum += std::abs(theory.reconstructed(theory.code(z)) - z.get_d());
+  }
+  return sum / kSamples;
+}
+
+TEST(DepthTheory, ComplementaryFloatOfSixteenBitsHasAboutTwiceTheErrorOfAWBuffer) {
+  for (const char* far : {"100", "300", "1000"}) {
+    const double ratio = mean_error(depth("rev", "uf4.12", "1", far)) / mean_error(depth("w", "u16", "1", far));
+    EXPECT_GT(ratio, 1.5) << far;
+    EXPECT_LT(ratio, 3.0) << far;
+  }
+}
+
+TEST(DepthTheory, TheTextbooksFirstOrderStepIsRightUntilTheStepIsAPartOfTheDepth) {
+  // Delta z = (2nf / ((f-n) z_w^2)) Delta z_w with z_w the depth in [-1, 1] seen from infinity: z^2 (f-n) / (nf) / B.
+  const ExactDepth theory = depth("std", "u16", "1", "1000");
+  for (const char* z : {"2", "10", "100"}) {
+    const DepthFigures figures = theory.at(number(z));
+    const double zd = number(z).get_d();
+    EXPECT_NEAR(figures.first_order, zd * zd * 999 / 1000 / 65535, 1e-12 * zd);
+    EXPECT_NEAR(figures.bin_width / figures.first_order, 1, 0.01) << z;
+  }
+  EXPECT_NEAR(theory.at(number("900")).bin_width, 12.447, 0.0005);
+  EXPECT_NEAR(theory.at(number("900")).first_order, 12.347, 0.0005);
+  // The bin that ends at far is cut to a half, which no derivative knows.
+  EXPECT_LT(theory.at(number("999.9")).bin_width, 0.6 * theory.at(number("999.9")).first_order);
+}
+
+TEST(DepthTheory, BinsAreTheSetsOfDepthsThatShareACode) {
+  std::mt19937 random(7);
+  for (const std::string mapping : {"std", "rev", "stdinf", "revinf", "w", "log"})
+    for (const std::string format : {"u8", "bins7", "uf3.5", "f16"}) {
+      const ExactDepth theory = depth(mapping, format, "0.5", "300");
+      for (int i = 0; i < 40; ++i) {
+        const Rational z(std::uniform_real_distribution<double>(0.5, 300)(random));
+        const auto bin = theory.bin(theory.code(z));
+        ASSERT_TRUE(bin);
+        EXPECT_LE(bin->nearest, z.get_d() * (1 + 1e-15));
+        EXPECT_GE(bin->farthest, z.get_d() * (1 - 1e-15));
+        EXPECT_NEAR(bin->farthest - bin->nearest, bin->width, 1e-13 * bin->farthest);
+        const double inside = bin->nearest + 0.999 * bin->width;
+        EXPECT_EQ(theory.code(Rational(inside)), theory.code(z)) << mapping << ' ' << format << ' ' << z.get_d();
+      }
+    }
+}
+
+TEST(DepthTheory, FindsWhereBinsOutgrowALength) {
+  for (const std::string mapping : {"std", "rev", "stdinf", "revinf", "w", "log"})
+    for (const std::string format : {"u8", "bins8", "uf3.5", "uf4.4"}) {
+      const ExactDepth theory = depth(mapping, format, "1", "50");
+      for (const double length : {1e-3, 0.03, 0.3, 1.0, 5.0, 100.0}) {
+        std::optional<double> expected;  // by looking at every bin
+        double longest = 0;
+        for (std::uint32_t code = 0; code <= top_code(theory.format()); ++code) {
+          const auto bin = theory.bin(code);
+          if (!bin) continue;
+          longest = std::max(longest, bin->width);
+          if (bin->width > length) expected = expected ? std::min(*expected, bin->nearest) : bin->nearest;
+        }
+        const auto found = theory.first_exceeding(length, theory.near(), theory.far());
+        ASSERT_EQ(found.has_value(), expected.has_value()) << mapping << ' ' << format << ' ' << length;
+        if (found) {
+          EXPECT_DOUBLE_EQ(*found, *expected) << mapping << ' ' << format << ' ' << length;
+        }
+        EXPECT_DOUBLE_EQ(theory.longest_bin(theory.near(), theory.far()), longest) << mapping << ' ' << format;
+      }
+    }
+}
+
+TEST(DepthTheory, ReadsDecimalsExactly) {
+  EXPECT_TRUE(number("0.1") == Rational(1, 10));
+  EXPECT_TRUE(number("-12.50e1") == Rational(-125));
+  EXPECT_TRUE(number("1e-3") == Rational(1, 1000));
+  for (const char* bad : {"", ".", "1e", "1.2.3", "x", "0x10", "1e999", "nan", "inf", "1 "})
+    EXPECT_THROW((void)number(bad), InputError) << bad;
+}
+
+}  // namespace
+}  // namespace halfplane
