@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
   add_cosim_command(app, selected);
   add_reduce_command(app, selected);
   add_mutants_command(app, selected);
+  add_depth_command(app, selected);
   add_bench_command(app, selected);
   add_scenes_command(app, selected);
   add_config_command(app, selected);

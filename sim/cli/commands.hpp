@@ -14,6 +14,7 @@ void add_compare_command(CLI::App& app, Action& selected);
 void add_cosim_command(CLI::App& app, Action& selected);
 void add_reduce_command(CLI::App& app, Action& selected);
 void add_mutants_command(CLI::App& app, Action& selected);
+void add_depth_command(CLI::App& app, Action& selected);
 void add_bench_command(CLI::App& app, Action& selected);
 void add_scenes_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);

@@ -17,20 +17,6 @@
 namespace halfplane {
 namespace {
 
-struct Size {
-  int width = 0, height = 0;
-};
-
-Size parse_size(const std::string& text) {
-  if (text.empty()) return {};
-  Size size;
-  char x = 0, rest = 0;
-  if (std::sscanf(text.c_str(), "%6d%c%6d%c", &size.width, &x, &size.height, &rest) != 3 || (x != 'x' && x != 'X') ||
-      size.width < 1 || size.height < 1)
-    throw InputError("--size: '" + text + "' is not a size; give WIDTHxHEIGHT of at least 1x1, as in 640x480");
-  return size;
-}
-
 // Decimal, as it is printed; CLI11 would take -1, 010 and what is too large for another number.
 std::uint64_t parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
@@ -95,6 +81,16 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--cull-objects", options.cull_objects,
                  "leave out objects outside the view by their bounding: none, sphere, box or both")
       ->capture_default_str();
+}
+
+Size parse_size(const std::string& text) {
+  if (text.empty()) return {};
+  Size size;
+  char x = 0, rest = 0;
+  if (std::sscanf(text.c_str(), "%6d%c%6d%c", &size.width, &x, &size.height, &rest) != 3 || (x != 'x' && x != 'X') ||
+      size.width < 1 || size.height < 1)
+    throw InputError("--size: '" + text + "' is not a size; give WIDTHxHEIGHT of at least 1x1, as in 640x480");
+  return size;
 }
 
 void check_output(const std::string& path, const std::string& extension) {

@@ -53,6 +53,12 @@ void add_scene_options(CLI::App& app, CommonOptions& options);
 /// for any). Called before the work, so that nobody waits for a result that cannot be saved. No path is fine.
 void check_output(const std::string& path, const std::string& extension = "");
 
+/// `--size WxH`, pixels; 0x0 for an empty text. Throws InputError.
+struct Size {
+  int width = 0, height = 0;
+};
+[[nodiscard]] Size parse_size(const std::string& text);
+
 /// Preset or file, then every --set, validated. Throws InputError.
 [[nodiscard]] Config effective_config(const CommonOptions& options);
 

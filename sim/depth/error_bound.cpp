@@ -51,16 +51,24 @@ double DepthBound::error(double z, const DepthBudget& budget) const {
 }
 
 DepthBound::Separation DepthBound::separation(double z, const DepthBudget& budget) const {
+  // A step of storage where it is longest between the two surfaces and what the datapath makes of them: towards far, or
+  // towards near if reversed. A float's steps double on the way.
+  const double d = scale_.d_of_z(z);
+  const Separation plain = separation(z, budget, half_step(d));
+  if (!format_.is_float() || std::isinf(plain.total())) return plain;
+  const double reach = is_reversed_ ? z - (plain.datapath + plain.snap) : z + plain.total();
+  const double longest = half_step(std::clamp(scale_.d_of_z(std::max(reach, scale_.near())), 0.0, 1.0));
+  return separation(z, budget, std::max(half_step(d), longest));
+}
+
+DepthBound::Separation DepthBound::separation(double z, const DepthBudget& budget, double half_step) const {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const double away = is_reversed_ ? -1 : 1;
   const auto moved_t = [&](double from, double distance) {
     const double eye = scale_.z_of_t(scale_.t_of_z(from) + away * distance);
     return eye > 0 ? eye : kNever;
   };
-  // A step of storage, taken where it is longest: at the far side.
-  const double d = scale_.d_of_z(z);
-  const double far_step = is_reversed_ ? half_step(d) : half_step(std::min(1.0, d + 2 * half_step(d)));
-  const double stored = scale_.z_of_d(d + away * 2 * far_step);
+  const double stored = scale_.z_of_d(scale_.d_of_z(z) + away * 2 * half_step);
   if (!(stored > 0) || std::isinf(stored)) return {kNever, 0, 0};
   // Flat surfaces of plane codes are rounded once, by the snap, which is the storage. Otherwise the snap of Z and the
   // interpolation come on top, twice; so does the rounding where codes are rounded again.

@@ -42,6 +42,7 @@ class DepthBound {
 
  private:
   [[nodiscard]] double half_step(double d) const;
+  [[nodiscard]] Separation separation(double z, const DepthBudget& budget, double half_step) const;
 
   DepthScale scale_;
   DepthFormat format_;

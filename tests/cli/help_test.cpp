@@ -18,7 +18,7 @@ std::vector<std::string> examples(const std::string& help) {
 }
 
 TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
-  for (const Arguments& command : {Arguments{}, {"render"}, {"compare"}, {"scenes"}, {"config"}}) {
+  for (const Arguments& command : {Arguments{}, {"render"}, {"compare"}, {"depth"}, {"scenes"}, {"config"}}) {
     Arguments arguments = command;
     arguments.push_back("--help");
     const Outcome help = run(arguments);
@@ -52,7 +52,7 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
-  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "scenes", "config"})
+  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "depth", "scenes", "config"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {
     const std::string help = run({command, "--help"}).out;

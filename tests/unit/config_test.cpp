@@ -127,10 +127,13 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
       config.color_format = ColorFormat::rgba8888;
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       config.setup_kind = SetupKind::serial;
+    else if (!setting.is_hardware())
+      set(config, setting.key, setting.key == "depth.mapping" ? "rev" : "f16");
     else
       set(config, setting.key,
           std::to_string(get(config, setting) == std::to_string(setting.max) ? setting.min : setting.max));
-    EXPECT_NE(config_id(config), config_id(Config())) << setting.key;
+    EXPECT_NE(config, Config()) << setting.key;
+    EXPECT_EQ(config_id(config) != config_id(Config()), setting.is_hardware()) << setting.key;
   }
 }
 

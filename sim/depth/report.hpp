@@ -1,0 +1,16 @@
+// The depth report: one HTML page that needs nothing beside it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace halfplane {
+
+/// report.html with the chart library and `data` (JSON, in the form that the page's script reads) inside. Throws
+/// std::runtime_error when this program was built without the library.
+[[nodiscard]] std::string depth_report(std::string_view data);
+
+/// Throws the same error, before the work.
+void require_chart_library();
+
+}  // namespace halfplane

@@ -1,0 +1,183 @@
+// `depth`: what it says, writes and refuses.
+#include <algorithm>
+#include <map>
+
+#include "program.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class DepthCommandLine : public Cli {};
+
+TEST_F(DepthCommandLine, CsvHasTheContractsRows) {
+  const Outcome outcome = run({"depth", "--near", "1", "--far", "1000", "--mapping", "std,rev,w", "--format",
+                               "u16,u24,uf4.12", "--z", "10,100,900", "--csv", "-"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  const auto lines = lines_of(outcome.out);
+  ASSERT_EQ(lines.size(), 1U + 3 * 3 * 3 * 4);
+  EXPECT_EQ(lines[0], "mapping,format,near,far,z,metric,value");
+  const auto has = [&](const std::string& line) { return std::find(lines.begin(), lines.end(), line) != lines.end(); };
+  EXPECT_TRUE(has("std,u16,1,1000,900,code,65528"));
+  EXPECT_TRUE(has("std,u16,1,1000,900,bin_width,12.446521336596586"));
+  EXPECT_TRUE(has("rev,u16,1,1000,900,code,7"));
+}
+
+TEST_F(DepthCommandLine, JsonHasRowsSeriesAndNoPictures) {
+  const Json theory = result({"depth", "--near", "0.1", "--far", "50", "--mapping", "stdinf", "--format", "f32"});
+  EXPECT_EQ(theory["schema"], "halfplane.depth/1");
+  EXPECT_TRUE(theory["scene"].is_null());
+  EXPECT_EQ(theory["series"][0]["order"], "less");
+  EXPECT_TRUE(theory["series"][0]["measured"].is_null());
+  const Json scene = result({"depth", "--scene", "coplanar", "--size", "80x60", "--bits", "14", "--mapping", "rev"});
+  EXPECT_EQ(scene["series"][0]["name"], "rev u14");
+  EXPECT_EQ(scene["series"][0]["clear_code"], 0);
+  const Json& measured = scene["series"][0]["measured"];
+  EXPECT_GT(measured["pairs"], 500);
+  EXPECT_GT(measured["rate"], 0.0);
+  EXPECT_LE(measured["worst_share_of_bound"], 1.0);
+  EXPECT_EQ(measured["stage_mismatches"], 0);
+  EXPECT_EQ(scene["answers"].size(), 3U);
+  EXPECT_FALSE(scene["trials"].empty());
+}
+
+// What the answers say is repeated by the options that they name.
+TEST_F(DepthCommandLine, EachTrialComesOutTheSameWhenItsOptionsAreTyped) {
+  const Arguments common{"depth", "--scene", "coplanar", "--size", "80x60", "--far", "100", "--mapping", "std"};
+  const auto with = [&](const std::string& more, const char* more_format) {
+    Arguments arguments = common;
+    for (const std::string& word : split_words(more)) arguments.push_back(word);
+    if (more.find("--format") == std::string::npos) arguments.insert(arguments.end(), {"--format", more_format});
+    if (more.find("--near") == std::string::npos) arguments.insert(arguments.end(), {"--near", "0.3"});
+    // An option typed twice is refused: the later mapping replaces the first.
+    if (more.find("--mapping") != std::string::npos) arguments.erase(arguments.begin() + 7, arguments.begin() + 9);
+    return result(arguments);
+  };
+  const Json base = with("", "u14");
+  ASSERT_GE(base["trials"].size(), 5U);
+  for (const Json& trial : base["trials"]) {
+    const Json again = with(trial["options"].get<std::string>(), "u14");
+    EXPECT_EQ(again["series"][0]["measured"]["rate"], trial["measured"]["rate"]) << trial["options"];
+    EXPECT_EQ(again["series"][0]["measured"]["parts"], trial["measured"]["parts"]) << trial["options"];
+  }
+}
+
+TEST_F(DepthCommandLine, SeparationIsPredictedAndTried) {
+  const Json json = result({"depth", "--near", "1", "--far", "1000", "--mapping", "std,w", "--format", "u16,f16", "--z",
+                            "20", "--slope", "1"});
+  std::map<std::string, int> seen;
+  for (const Json& row : json["rows"]) {
+    ++seen[row["metric"]];
+    if (row["metric"] == "fights_at_separation") {
+      EXPECT_EQ(row["value"], 0.0) << row;
+    }
+    if (row["metric"] == "fights_at_half") {
+      EXPECT_GT(row["value"], 0.0) << row;
+    }
+  }
+  for (const char* metric : {"separation", "separation_storage", "separation_datapath", "separation_snap"})
+    EXPECT_EQ(seen[metric], 4) << metric;
+  EXPECT_EQ(seen["fights_at_separation"], 4);
+  EXPECT_EQ(seen["fights_at_half"], 4);
+}
+
+TEST_F(DepthCommandLine, AskedForALengthItSaysWhereAndWhatItTakes) {
+  const Json json = result({"depth", "--near", "1", "--far", "1000", "--mapping", "std", "--bits", "16", "--z", "10",
+                            "--error", "0.1", "--range", "1,500"});
+  std::map<std::string, double> value;
+  for (const Json& row : json["rows"]) value[row["metric"]] = row["value"];
+  EXPECT_NEAR(value["z_exceeds"], 80.98, 0.01);
+  EXPECT_EQ(value["fewest_bits"], 22);
+  EXPECT_GT(value["longest_bin"], 3.7);
+  // A near plane keeps the length beyond 100, and one a little nearer does not.
+  double best = 0;
+  const Json far_half = result({"depth", "--near", "1", "--far", "1000", "--mapping", "std", "--bits", "16", "--error",
+                                "0.1", "--range", "100,500"});
+  for (const Json& row : far_half["rows"])
+    if (row["metric"] == "best_near") best = row["value"];
+  ASSERT_GT(best, 10);
+  for (const auto& [part, keeps] : {std::pair{1.00001, true}, {0.999, false}}) {
+    const Json again = result({"depth", "--near", std::to_string(best * part), "--far", "1000", "--mapping", "std",
+                               "--bits", "16", "--z", "1000", "--error", "0.1", "--range", "100,500"});
+    double longest = 0;
+    for (const Json& row : again["rows"])
+      if (row["metric"] == "longest_bin") longest = row["value"];
+    EXPECT_EQ(longest <= 0.1, keeps) << longest;
+  }
+}
+
+TEST_F(DepthCommandLine, ReportNeedsNothingBesideIt) {
+  const Outcome outcome = run({"depth", "--scene", "coplanar", "--size", "96x72", "--mapping", "std,w", "-o",
+                               "report.html", "--heat", "heat.png", "--fights", "fights.png", "--csv", "rows.csv"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Bytes bytes = read("report.html");
+  const std::string page(bytes.begin(), bytes.end());
+  EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0U);
+  EXPECT_EQ(page.find("/*@"), std::string::npos);
+  for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http"})
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  EXPECT_NE(page.find("Chart.js"), std::string::npos);
+  // The data between its tags is JSON with two pictures for each series.
+  const std::string open = "type=\"application/json\">";
+  const std::size_t start = page.find(open) + open.size();
+  const Json data = Json::parse(page.substr(start, page.find("</script>", start) - start));
+  ASSERT_EQ(data["series"].size(), 2U);
+  for (const Json& series : data["series"])
+    for (const char* picture : {"heat", "fight"})
+      EXPECT_EQ(series["measured"][picture].get<std::string>().rfind("data:image/png;base64,", 0), 0U);
+  EXPECT_EQ(data["sweeps"].size(), 2U);
+  EXPECT_TRUE(exists("heat.png") && exists("fights.png") && exists("rows.csv"));
+  EXPECT_EQ(run({"depth", "--near", "1", "--far", "9", "-o", "theory.html"}).status, 0);
+}
+
+TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
+  const Arguments planes{"depth", "--near", "1", "--far", "1000"};
+  const auto refused = [&](Arguments more, const std::string& part, int status = 2) {
+    Arguments arguments = planes;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_refused(arguments, part, status);
+  };
+  expect_refused({"depth"}, "give --near");
+  expect_refused({"depth", "--near", "5", "--far", "5"}, "give 0 < near < far");
+  expect_refused({"depth", "--near", "0", "--far", "5"}, "give 0 < near < far");
+  expect_refused({"depth", "--near", "x", "--far", "5"}, "'x' is no number");
+  expect_refused({"depth", "--near", "1e-20", "--far", "1e20"}, "far / near");
+  refused({"--mapping", "std,upside"}, "no mapping 'upside'");
+  refused({"--mapping", "std,,w"}, "empty part");
+  refused({"--format", "u99"}, "no depth format 'u99'");
+  refused({"--format", "plane"}, "name the stored format");
+  refused({"--z", "2000"}, "not between near and far");
+  refused({"--z", "ten"}, "'ten' is no number");
+  refused({"--bits", "16", "--format", "u16"}, "one of them");
+  refused({"--range", "5"}, "two depths");
+  refused({"--error", "-1"}, "positive");
+  refused({"--heat", "x.png"}, "give --scene");
+  refused({"-o", "report.txt"}, ".html");
+  refused({"-o", "nowhere/report.html"}, "no such folder");
+  refused({"--csv", "-", "--json"}, "stdout");
+  refused({"--set", "depth.format=u16"}, "by --mapping and --format");
+  refused({"--slope", "steep"}, "is no number");
+  expect_refused({"depth", "--scene", "triangle", "--near", "1", "--far", "9"}, "every w is the same");
+  expect_refused({"depth", "--scene", "teapot", "--camera", "ortho=3"}, "no perspective projection");
+  expect_refused({"render", "teapot", "--set", "depth.mapping=rev", "--convention", "fcg"}, "order of depth");
+  expect_refused({"render", "teapot", "--set", "depth.format=f16", "--engine", "cycle"}, "this hardware");
+}
+
+TEST_F(DepthCommandLine, EveryMappingAndFormatDrawsTheSamePicture) {
+  const Json plain = result({"render", "teapot", "--size", "120x90", "--set", "depth.bits=24"});
+  for (const char* setting :
+       {"depth.mapping=std", "depth.mapping=rev", "depth.mapping=stdinf", "depth.mapping=revinf"}) {
+    const Json cycle = result(
+        {"render", "teapot", "--size", "120x90", "--set", "depth.bits=24", "--set", setting, "--engine", "cycle"});
+    EXPECT_EQ(cycle["color_hash"], plain["color_hash"]) << setting;
+  }
+  for (const char* mapping : {"depth.mapping=rev", "depth.mapping=w", "depth.mapping=log"})
+    for (const char* format : {"depth.format=f32", "depth.format=u24", "depth.format=bins24"})
+      EXPECT_EQ(result({"render", "teapot", "--size", "120x90", "--set", "depth.bits=32", "--set", mapping, "--set",
+                        format})["color_hash"],
+                plain["color_hash"])
+          << mapping << ' ' << format;
+}
+
+}  // namespace
+}  // namespace halfplane::cli
