@@ -19,7 +19,7 @@ const std::array kSettings{
             &Config::guard_band},
     Setting{"target.width", "pixels", "widest target", 1, 16384, &Config::target_width},
     Setting{"target.height", "pixels", "highest target", 1, 16384, &Config::target_height},
-    Setting{"depth.bits", "bits", "bits B of a stored depth code", 8, 32, &Config::depth_bits},
+    Setting{"depth.bits", "bits", "bits B of an interpolated depth, and of its stored code", 8, 32, &Config::depth_bits},
     Setting{"plane.local_guard_bits", "bits", "fraction bits of a plane stepped inside one tile", 4, 12,
             &Config::local_guard_bits},
     Setting{"reciprocal.extra_bits", "bits", "significant bits of 1/area beyond depth.bits", 2, 12,

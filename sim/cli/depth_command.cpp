@@ -28,6 +28,7 @@ struct DepthCommand : CommonOptions {
   std::string slope;  ///< of two surfaces: their minimum separation
   double fov = 45;    ///< degrees, vertical
   int bits = 0;       ///< short for --format u<bits>
+  bool sweeps = false;
   std::string csv_path, report_path, heat_path, fights_path;
 };
 
@@ -55,6 +56,12 @@ std::string depth_number(double value) {
   std::array<char, 32> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
+}
+
+std::string short_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 std::vector<std::string> comma_parts(const std::string& option, const std::string& text) {
@@ -197,6 +204,61 @@ void add_depth_rows(const DepthQuestion& question, const DepthCommand& options, 
     add("", "fewest_bits", *bits);
 }
 
+/// What a scene measured, as rows: of the whole with an empty z, of a decade with the z that it begins at.
+void add_measured_rows(const DepthQuestion& question, const DepthVariant& variant, const DepthMeasurement& m,
+                       std::vector<DepthRow>& rows) {
+  const auto add = [&](const std::string& z, const char* metric, double value) {
+    rows.push_back({mapping_name(variant.mapping), to_string(variant.format), question.near_text, question.far_text, z,
+                    metric, value});
+  };
+  add("", "pairs", static_cast<double>(m.order.pairs));
+  add("", "ties", static_cast<double>(m.order.ties));
+  add("", "inversions", static_cast<double>(m.order.inversions));
+  add("", "fight_rate", m.order.rate());
+  add("", "error_max", m.total.max);
+  add("", "error_rms", m.total.rms);
+  for (const DepthDecade& d : m.decades) {
+    const std::string from = depth_number(d.from);
+    add(from, "error_max", d.error.max);
+    add(from, "error_rms", d.error.rms);
+    add(from, "error_bound", d.bound);
+    add(from, "snap_rms", d.snap.rms);
+    add(from, "interpolation_rms", d.interpolation.rms);
+    add(from, "storage_rms", d.storage.rms);
+  }
+}
+
+/// Which mapping keeps every step of the range below the length with the fewest bits: as integers, and as reversed floats.
+std::vector<std::string> length_answers(const DepthQuestion& question) {
+  const Rational low = question.low.value_or(question.near), high = question.high.value_or(question.far);
+  std::vector<std::pair<int, std::string>> needs;  // bits, who
+  for (std::size_t i = 1; i < depth_mapping_names().size(); ++i) {
+    const auto mapping = static_cast<DepthMapping>(i);
+    if (const auto bits = fewest_bits(mapping, question.near, question.far, low, high, *question.length))
+      needs.emplace_back(*bits, mapping_name(mapping) + " u" + std::to_string(*bits));
+  }
+  for (const DepthMapping mapping : {DepthMapping::rev, DepthMapping::revinf})
+    if (const auto format = smallest_float(mapping, question.near, question.far, low, high, *question.length))
+      needs.emplace_back(format->bits, mapping_name(mapping) + " " + to_string(*format));
+  std::stable_sort(needs.begin(), needs.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const std::string range = "every step between " + short_text(low.get_d()) + " and " + short_text(high.get_d()) +
+                            " at most " + short_text(*question.length) + " long";
+  if (needs.empty()) return {"Nothing up to 32 bits makes " + range + "."};
+  std::string text = "With the fewest bits, " + needs[0].second + " makes " + range;
+  for (std::size_t i = 1; i < needs.size(); ++i) text += (i == 1 ? "; then " : ", ") + needs[i].second;
+  return {text + "."};
+}
+
+void print_sweep(std::ostream& out, const DepthSweep& sweep) {
+  out << "\nfighting by " << sweep.what << '\n';
+  for (const auto& line : sweep.lines) {
+    out << left_aligned(line.name, 10);
+    for (std::size_t i = 0; i < line.x.size(); ++i)
+      out << "  " << line.x[i] << ": " << short_text(100 * line.rate[i]) << " %";
+    out << '\n';
+  }
+}
+
 std::string depth_csv(const std::vector<DepthRow>& rows) {
   std::string text = "mapping,format,near,far,z,metric,value\n";
   for (const DepthRow& row : rows)
@@ -231,7 +293,11 @@ Json measured_json(const DepthMeasurement& m) {
                        {"mean", d.error.mean},
                        {"p999", d.error.p999},
                        {"bound", d.bound},
-                       {"worst_share_of_bound", d.worst_share}});
+                       {"worst_share_of_bound", d.worst_share},
+                       {"parts",
+                        {{"snap", depth_part_json(d.snap)},
+                         {"interpolation", depth_part_json(d.interpolation)},
+                         {"storage", depth_part_json(d.storage)}}}});
   return {{"fragments", m.fragments},
           {"beyond", m.beyond},
           {"eye_min", m.eye_min},
@@ -310,19 +376,13 @@ std::pair<double, double> map_range(const std::vector<DepthMeasurement>& measure
   return {high / 1e4, high};
 }
 
-const std::vector<std::string> kFightLegend{"grey: surfaces that overlap and keep their order",
-                                            "yellow: two surfaces with the same code", "red: two that are swapped"};
-
-std::string short_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
+const std::vector<std::string> kFightLegend{"grey: two surfaces or more, in order", "yellow: two with the same code",
+                                            "red: two that are swapped"};
 
 std::vector<std::string> heat_legend(const std::pair<double, double>& range) {
-  return {"eye-depth error of the visible surface, by its logarithm",
+  return {"error of the visible surface (log)",
           "dark: " + short_text(range.first) + " or less; bright: " + short_text(range.second),
-          "the same scale in each picture"};
+          "in eye depth, one scale for all"};
 }
 
 std::string in_one_line(const std::vector<std::string>& lines) {
@@ -404,7 +464,7 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
                        const std::vector<DepthVariant>& variants) {
   SceneStudy study;
   const int threads = thread_count(options);
-  const bool has_report = !options.report_path.empty();
+  const bool has_report = !options.report_path.empty(), has_sweeps = has_report || options.sweeps;
   Progress progress(options, "measuring");
   const auto part = [&progress](double from, double to) {
     return [&progress, from, to](double fraction) { progress(from + (to - from) * fraction); };
@@ -415,7 +475,7 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
   study.measured = measure_depths(scene, variants, measure, threads);
   study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.4, 0.8));
   study.answers = depth_answers(variants[0], study.measured[0], study.trials);
-  if (has_report) {
+  if (has_sweeps) {
     Scene small = scene;  // clip space has no size of its own
     const bool is_scalable = std::all_of(scene.states.begin(), scene.states.end(),
                                          [](const State& state) { return !state.viewport && !state.scissor; });
@@ -464,8 +524,15 @@ int run_depth(const DepthCommand& options) {
       add_depth_rows(question, options, mapping, format, rows);
       variants.push_back(make_variant(config, mapping, format, question.planes));
     }
+  const std::vector<DepthRow> theory_rows = rows;
   SceneStudy study;
   if (scene) study = study_scene(options, question, *scene, variants);
+  for (std::size_t i = 0; i < study.measured.size(); ++i)
+    add_measured_rows(question, variants[i], study.measured[i], rows);
+  if (question.length) {
+    const auto answers = length_answers(question);
+    study.answers.insert(study.answers.end(), answers.begin(), answers.end());
+  }
 
   std::string title = options.scene.empty() ? "theory" : options.scene;
   if (scene) title += ", " + std::to_string(scene->width) + "x" + std::to_string(scene->height);
@@ -550,13 +617,14 @@ int run_depth(const DepthCommand& options) {
   }
   std::ostream& out = human(options);
   out << title << '\n';
-  print_theory(out, rows);
+  print_theory(out, theory_rows);
   if (scene) {
     out << '\n';
     print_measured(out, variants, study.measured);
-    out << '\n';
-    for (const std::string& answer : study.answers) out << answer << '\n';
+    for (const DepthSweep& sweep : study.sweeps) print_sweep(out, sweep);
   }
+  if (!study.answers.empty()) out << '\n';
+  for (const std::string& answer : study.answers) out << answer << '\n';
   // A bound that does not hold, or a code that the stages do not explain, is a fault of this program.
   const bool is_broken = std::any_of(study.measured.begin(), study.measured.end(), [](const DepthMeasurement& m) {
     return m.worst_share > 1 || m.stage_mismatches != 0;
@@ -608,6 +676,8 @@ void add_depth_command(CLI::App& app, Action& selected) {
   add_output_options(*command, *options);
   add_file_option(*command, "--csv", options->csv_path, "rows of mapping,format,near,far,z,metric,value; - for stdout");
   add_file_option(*command, "-o", options->report_path, "everything as one HTML page, .html");
+  command->add_flag("--sweep", options->sweeps,
+                    "with --scene: also how the fights fall with storage and subpixel bits (always with -o)");
   add_file_option(*command, "--heat", options->heat_path, "errors of the visible surfaces, side by side, .png");
   add_file_option(*command, "--fights", options->fights_path, "where surfaces fight, side by side, .png");
   command->footer(

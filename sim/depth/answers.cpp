@@ -123,7 +123,7 @@ std::vector<std::string> depth_answers(const DepthVariant& base, const DepthMeas
     lost += "none of " + std::to_string(order.pairs) + " overlapping pairs of fragments fights";
   else
     lost += percent(order.rate()) + " of " + std::to_string(order.pairs) + " overlapping pairs of fragments fight (" +
-            std::to_string(order.ties) + " tie, " + std::to_string(order.inversions) + " swap), from depth " +
+            std::to_string(order.ties) + " tie, " + std::to_string(order.inversions) + " are swapped), from depth " +
             number(order.nearest_fight) + " on";
   lost += "; eye depth is off by up to " + number(measured.total.max) + " (rms " + number(measured.total.rms) + ")";
   const std::pair<const char*, double> parts[] = {{"snapping the vertices", measured.snap.rms},
@@ -131,9 +131,9 @@ std::vector<std::string> depth_answers(const DepthVariant& base, const DepthMeas
                                                   {"storage", measured.storage.rms}};
   const auto largest =
       std::max_element(std::begin(parts), std::end(parts), [](auto& a, auto& b) { return a.second < b.second; });
-  lost += ", most of it by " + std::string(largest->first) + " (rms " + number(largest->second) + ")";
+  lost += ", mostly by " + std::string(largest->first) + " (rms " + number(largest->second) + ")";
   if (const DepthDecade* worst = worst_decade(measured))
-    lost += ", most of it between depths " + number(std::max(worst->from, measured.eye_min)) + " and " +
+    lost += " and mostly between depths " + number(std::max(worst->from, measured.eye_min)) + " and " +
             number(std::min(worst->to, measured.eye_max));
   answers.push_back(lost + ".");
   if (trials.empty()) return answers;

@@ -31,6 +31,7 @@ struct Fragment {
 /// Errors of one decade of eye depth while they are gathered.
 struct DecadeSet {
   ErrorSet error;
+  MomentSet snap, interpolation, storage;
   double bound = 0, worst_share = 0;
 };
 
@@ -139,6 +140,9 @@ class Measurer {
     DecadeSet& decade = decades_[static_cast<int>(std::floor(std::log10(u)))];
     const double bound = bound_.error(u, budget);
     decade.error.add(d - u);
+    decade.snap.add(s - u);
+    decade.interpolation.add(h - s);
+    decade.storage.add(d - h);
     decade.bound = std::max(decade.bound, bound);
     decade.worst_share = std::max(decade.worst_share, std::abs(d - u) / bound);
     if (visible != nullptr && !result_.error.empty()) result_.error[*visible] = static_cast<float>(d - u);
@@ -197,8 +201,9 @@ class Measurer {
     result_.interpolation = interpolation_.stats();
     result_.storage = storage_.stats();
     for (const auto& [power, set] : decades_) {
-      const DepthDecade decade{std::pow(10.0, power), std::pow(10.0, power + 1), set.error.stats(), set.bound,
-                               set.worst_share};
+      const DepthDecade decade{
+          std::pow(10.0, power),     std::pow(10.0, power + 1), set.error.stats(), set.snap.stats(),
+          set.interpolation.stats(), set.storage.stats(),       set.bound,         set.worst_share};
       result_.worst_share = std::max(result_.worst_share, set.worst_share);
       result_.decades.push_back(decade);
     }

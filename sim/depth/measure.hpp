@@ -19,9 +19,10 @@ namespace halfplane {
 /// Eye-space errors of the fragments between two powers of ten of eye depth.
 struct DepthDecade {
   double from = 0, to = 0;
-  ErrorStats error;
-  double bound = 0;        ///< the largest error predicted for any of them
-  double worst_share = 0;  ///< the largest part of its own bound that a fragment's error reaches
+  ErrorStats error;                           ///< D - U
+  ErrorMoments snap, interpolation, storage;  ///< its parts
+  double bound = 0;                           ///< the largest error predicted for any of them
+  double worst_share = 0;                     ///< the largest part of its own bound that a fragment's error reaches
 };
 
 /// Pairs of fragments of one pixel, in the order of their exact eye depths and of their codes. Pairs that are nearer than

@@ -54,6 +54,17 @@ std::optional<int> fewest_bits(DepthMapping mapping, const Rational& near, const
   return std::nullopt;
 }
 
+std::optional<DepthFormat> smallest_float(DepthMapping mapping, const Rational& near, const Rational& far,
+                                          const Rational& low, const Rational& high, double length) {
+  for (int bits = 3; bits <= 30; ++bits)
+    for (int exponent = 2; exponent <= 6; ++exponent) {
+      const DepthFormat format{DepthFormat::Kind::small_float, bits, exponent, bits - exponent};
+      if (format.mantissa_bits < 1 || format.mantissa_bits > 24) continue;
+      if (ExactDepth(mapping, format, near, far).longest_bin(low, high) <= length) return format;
+    }
+  return std::nullopt;
+}
+
 std::optional<double> best_near(DepthMapping mapping, const DepthFormat& format, const Rational& far,
                                 const Rational& low, const Rational& high, double length) {
   const auto is_enough = [&](const Rational& near) {

@@ -29,6 +29,10 @@ struct CodeShare {
 [[nodiscard]] std::optional<int> fewest_bits(DepthMapping mapping, const Rational& near, const Rational& far,
                                              const Rational& low, const Rational& high, double length);
 
+/// The small float of the fewest bits that does the same, of those with 2 to 6 bits of exponent.
+[[nodiscard]] std::optional<DepthFormat> smallest_float(DepthMapping mapping, const Rational& near, const Rational& far,
+                                                        const Rational& low, const Rational& high, double length);
+
 /// The least near plane, at most `low`, with which no bin in [low, high] is longer than `length`; none if even a near
 /// plane at `low` has a longer one, 0 if any will do. To one part in 10^6.
 [[nodiscard]] std::optional<double> best_near(DepthMapping mapping, const DepthFormat& format, const Rational& far,

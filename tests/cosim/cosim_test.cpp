@@ -12,6 +12,7 @@
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/cosim/session.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/load.hpp"
 
 namespace halfplane {
@@ -127,6 +128,19 @@ TEST(Cosim, TheTeapotIsEqualInEveryPacket) {
   const Session session = run(factory, {}, single_scene(load_scene({"teapot:8", 320, 240, "", 1}, warnings)));
   EXPECT_EQ(describe(session), "");
   EXPECT_GT(session.result.total(), 10000u);
+}
+
+// A reversed mapping is the host's: the RTL sees other depths, the other comparison and another clear value.
+TEST(Cosim, ReversedDepthIsEqualInEveryPacketOnTheSameRtl) {
+  Config config = preset("embedded");
+  for (const DepthMapping mapping : {DepthMapping::rev, DepthMapping::revinf}) {
+    config.depth_mapping = mapping;
+    std::vector<std::string> warnings;
+    const Scene scene = in_depth_mapping(load_scene({"teapot:5", 160, 120, "", 1}, warnings), mapping);
+    const Session session = run(find_dut(config), {}, single_scene(scene));
+    EXPECT_EQ(describe(session), "");
+    EXPECT_GT(session.result.total(), 5000u);
+  }
 }
 
 /// The committed cycles of a scene: lines of "configuration; scene; cycles; raster cycles; tile cycles".

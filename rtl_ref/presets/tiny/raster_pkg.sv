@@ -7,7 +7,7 @@ package raster_pkg;
   localparam int GUARD_BAND = 32;  // window coordinates lie in [-band, band); a power of two
   localparam int TARGET_WIDTH = 16;  // widest target
   localparam int TARGET_HEIGHT = 16;  // highest target
-  localparam int DEPTH_BITS = 8;  // bits B of a stored depth code
+  localparam int DEPTH_BITS = 8;  // bits B of an interpolated depth, and of its stored code
   localparam int PLANE_LOCAL_GUARD_BITS = 6;  // fraction bits of a plane stepped inside one tile
   localparam int RECIPROCAL_EXTRA_BITS = 4;  // significant bits of 1/area beyond depth.bits
   localparam int COLOR_FORMAT = 0;  // 0 rgb565, 1 rgba8888: layout of a stored colour
