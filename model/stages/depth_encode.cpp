@@ -22,6 +22,8 @@ DepthEncode::DepthEncode(const Config& config, const std::optional<DepthPlanes>&
   if (!planes)
     throw InputError("depth.mapping " + std::string(depth_mapping_names()[static_cast<std::size_t>(mapping_)]) +
                      " needs the near and far plane; give `planes NEAR FAR` in the capture");
+  if (!((*planes)[0] > 0 && (*planes)[0] < (*planes)[1] && std::isfinite((*planes)[1])))
+    throw InputError("depth.mapping w and log need planes of 0 < near < far, both finite");
   ratio_ = static_cast<long double>((*planes)[1]) / static_cast<long double>((*planes)[0]);
   log_ratio_ = std::log(ratio_);
 }
@@ -30,9 +32,9 @@ std::uint32_t DepthEncode::operator()(std::uint32_t plane_code) const {
   if (is_identity_) return plane_code;
   if (is_screen_linear(mapping_)) return depth_code(format_, plane_code, plane_top_);
   // With t the std depth, far - t (far - near) = near far / z.
-  const long double t = static_cast<long double>(plane_code) / static_cast<long double>(plane_top_);
-  const long double far_over_z = ratio_ - t * (ratio_ - 1);
-  if (mapping_ == DepthMapping::w) return depth_code(format_, t / far_over_z);
+  const long double top = plane_top_;
+  const long double far_over_z = (static_cast<long double>(plane_top_ - plane_code) * ratio_ + plane_code) / top;
+  if (mapping_ == DepthMapping::w) return depth_code(format_, plane_code / top / far_over_z);
   return depth_code(format_, std::log(ratio_ / far_over_z) / log_ratio_);
 }
 

@@ -12,17 +12,6 @@
 namespace halfplane {
 namespace {
 
-/// As a POSIX shell takes it.
-std::string quoted(const std::string& word) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_-+=./:,%@").find(static_cast<char>(c)) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 /// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
 std::string default_save_path(const CosimOptions& options) {
   std::string name = options.random != 0 ? "random-" + std::to_string(options.seed)
@@ -100,7 +89,9 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
     command += " --random " + std::to_string(options.random);
   else
     command += " " + quoted(scene);
-  command += " --config " + label(config, " --set ");
+  Config named = config;
+  if (scene != options.scene) named.depth_mapping = DepthMapping::projection;  // a saved capture is mapped already
+  command += " --config " + label(named, " --set ");
   if (scene == options.scene && !options.size.empty()) command += " --size " + quoted(options.size);
   if (scene == options.scene && !options.camera.empty()) command += " --camera " + quoted(options.camera);
   if (scene == options.scene && options.convention != "gl") command += " --convention " + quoted(options.convention);

@@ -114,6 +114,9 @@ void check_distinct(const std::vector<std::string>& paths);
 [[nodiscard]] std::string left_aligned(std::string text, std::size_t width);
 [[nodiscard]] std::string right_aligned(const std::string& text, std::size_t width);
 
+/// A word as a POSIX shell takes it.
+[[nodiscard]] std::string quoted(const std::string& word);
+
 /// "%.*f" as a string.
 [[nodiscard]] std::string fixed(double value, int decimals);
 

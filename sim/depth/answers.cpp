@@ -60,8 +60,15 @@ const DepthDecade* worst_decade(const DepthMeasurement& m) {
   return worst == m.decades.end() ? nullptr : &*worst;
 }
 
+/// Fights count to a tenth of a percent of the pairs, and then the rms error: a few pairs more or less decide nothing.
+bool is_better(const DepthMeasurement& a, const DepthMeasurement& b) {
+  const auto permille = [](const DepthMeasurement& m) { return std::round(1000 * m.order.rate()); };
+  if (permille(a) != permille(b)) return permille(a) < permille(b);
+  return a.total.rms < b.total.rms;
+}
+
 std::string fights(const DepthMeasurement& m) {
-  return percent(m.order.rate()) + " fighting, rms error " + number(m.total.rms);
+  return (m.order.fights() == 0 ? "" : percent(m.order.rate()) + " fighting, ") + "rms error " + number(m.total.rms);
 }
 
 }  // namespace
@@ -107,10 +114,8 @@ std::vector<DepthTrial> try_changes(const Scene& scene, const DepthVariant& base
   options.progress = progress;
   auto results = measure_depths(scene, variants, options, threads);
   for (std::size_t i = 0; i < results.size(); ++i) trials.list[i].result = std::move(results[i]);
-  std::stable_sort(trials.list.begin(), trials.list.end(), [](const DepthTrial& a, const DepthTrial& b) {
-    if (a.result.order.fights() != b.result.order.fights()) return a.result.order.fights() < b.result.order.fights();
-    return a.result.total.rms < b.result.total.rms;
-  });
+  std::stable_sort(trials.list.begin(), trials.list.end(),
+                   [](const DepthTrial& a, const DepthTrial& b) { return is_better(a.result, b.result); });
   return std::move(trials.list);
 }
 
@@ -119,36 +124,38 @@ std::vector<std::string> depth_answers(const DepthVariant& base, const DepthMeas
   std::vector<std::string> answers;
   const DepthOrder& order = measured.order;
   std::string lost = base.name() + " between " + number(base.planes[0]) + " and " + number(base.planes[1]) + ": ";
-  if (order.fights() == 0)
+  if (order.pairs == 0)
+    lost += "no two surfaces overlap in a pixel";
+  else if (order.fights() == 0)
     lost += "none of " + std::to_string(order.pairs) + " overlapping pairs of fragments fights";
   else
     lost += percent(order.rate()) + " of " + std::to_string(order.pairs) + " overlapping pairs of fragments fight (" +
             std::to_string(order.ties) + " tie, " + std::to_string(order.inversions) + " are swapped), from depth " +
             number(order.nearest_fight) + " on";
   lost += "; eye depth is off by up to " + number(measured.total.max) + " (rms " + number(measured.total.rms) + ")";
-  const std::pair<const char*, double> parts[] = {{"snapping the vertices", measured.snap.rms},
+  const std::pair<const char*, double> parts[] = {{"the snap of the vertices' x, y and depth", measured.snap.rms},
                                                   {"interpolation", measured.interpolation.rms},
                                                   {"storage", measured.storage.rms}};
   const auto largest =
       std::max_element(std::begin(parts), std::end(parts), [](auto& a, auto& b) { return a.second < b.second; });
   lost += ", mostly by " + std::string(largest->first) + " (rms " + number(largest->second) + ")";
-  if (const DepthDecade* worst = worst_decade(measured))
+  if (const DepthDecade* worst = worst_decade(measured); worst != nullptr && measured.decades.size() > 1)
     lost += " and mostly between depths " + number(std::max(worst->from, measured.eye_min)) + " and " +
             number(std::min(worst->to, measured.eye_max));
   answers.push_back(lost + ".");
   if (trials.empty()) return answers;
 
   const DepthTrial& best = trials.front();
-  const bool is_better = best.result.order.fights() < order.fights() ||
-                         (best.result.order.fights() == order.fights() && best.result.total.rms < measured.total.rms);
-  if (is_better)
+  const bool helps = is_better(best.result, measured);
+  if (helps)
     answers.push_back("Of what was tried, " + best.what + " (" + best.options + ") helps most: " + fights(best.result) +
                       ", instead of " + fights(measured) + ".");
   else
     answers.push_back("Nothing that was tried is better than this.");
   std::string others;
-  for (std::size_t i = is_better ? 1 : 0; i < trials.size(); ++i)
-    others += (others.empty() ? "The others: " : "; ") + trials[i].what + ": " + fights(trials[i].result);
+  for (std::size_t i = helps ? 1 : 0; i < trials.size(); ++i)
+    others += (others.empty() ? "The others: " : "; ") + trials[i].what + " (" + trials[i].options +
+              "): " + fights(trials[i].result) + (is_better(trials[i].result, measured) ? "" : ", no better");
   if (!others.empty()) answers.push_back(others + ".");
   return answers;
 }

@@ -75,7 +75,7 @@ DepthBound::Separation DepthBound::separation(double z, const DepthBudget& budge
   const bool is_single_rounding = is_identity_ && budget.rounding == 0;
   const double datapath = is_single_rounding ? 0 : 2 * (budget.datapath + (is_identity_ ? 0 : budget.rounding));
   const double through = moved_t(stored, datapath), snapped = moved_t(through, 2 * budget.snap);
-  if (std::isinf(snapped)) return {kNever, 0, 0};
+  if (snapped > scale_.far()) return {kNever, 0, 0};
   return {stored - z, through - stored, snapped - through};
 }
 

@@ -27,7 +27,7 @@ class DepthBound {
 
   /// How far behind z a surface of the same budget must lie for its stored code to be the farther one at every sample:
   /// the exact form of bin (1 + 2k) + 2 snap, which is what it comes to where bins hardly change. Terms in that order;
-  /// infinite where no depth beyond z is told from it.
+  /// infinite where no depth between z and far is told from it.
   struct Separation {
     double storage = 0, datapath = 0, snap = 0;
     [[nodiscard]] double total() const { return storage + datapath + snap; }

@@ -143,7 +143,7 @@ ExactDepth::Boundaries ExactDepth::boundaries(std::uint32_t code) const {
 }
 
 long double ExactDepth::d_estimate(const Rational& z) const {
-  if (mapping_ == DepthMapping::log) return std::log(to_long_double(z / near_)) / log_ratio_;
+  if (mapping_ == DepthMapping::log) return std::log1p(to_long_double(z / near_ - 1)) / log_ratio_;
   return to_long_double(d_of(z));
 }
 

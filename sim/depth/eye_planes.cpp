@@ -34,9 +34,16 @@ EyePlane plane_of(const Viewport& vp, const Vertex& v0, const Vertex& v1, const 
 
 std::vector<EyePlane> eye_planes(const Scene& scene) {
   std::vector<EyePlane> planes;
+  bool has_ended = false;
   for (const Command& command : scene.commands) {
+    const auto* clear = std::get_if<Clear>(&command);
+    if (!planes.empty() && (std::holds_alternative<EndFrame>(command) || (clear != nullptr && clear->depth)))
+      has_ended = true;
     const auto* draw = std::get_if<Draw>(&command);
     if (draw == nullptr) continue;
+    if (has_ended)
+      throw InputError(place_of_draw(scene.name, draw->line) +
+                       ": depth is measured on one frame with one clear of depth before it; leave the rest out");
     const State& state = scene.states[draw->state];
     if (drawn_as(state, draw->topology) != PrimitiveType::triangle) {
       planes.resize(planes.size() + primitive_count(scene, *draw));

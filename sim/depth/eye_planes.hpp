@@ -19,7 +19,8 @@ struct EyePlane {
 };
 
 /// By number of the input primitive over the whole scene, as in Rendering::ids. Throws InputError for a scene whose filled
-/// triangles are not all in clip space, or that moves depth by depth_range or polygon_offset: its eye depth is not known.
+/// triangles are not all in clip space, or that moves depth by depth_range or polygon_offset: its eye depth is not known; and for
+/// one that clears depth between its draws or has several frames.
 [[nodiscard]] std::vector<EyePlane> eye_planes(const Scene& scene);
 
 }  // namespace halfplane

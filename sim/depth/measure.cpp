@@ -65,6 +65,7 @@ class Measurer {
     result_.triangles = rendering_.triangles.size();
     fragments_.reserve(rendering_.counters.covered);
     walk(log);
+    rendering_ = {};
     put_in_order();
     finish();
     return std::move(result_);
@@ -109,6 +110,10 @@ class Measurer {
     const InterpolatedDepth depth = depth_at(setup, widths_, x, y);
     const std::uint32_t code = encode_(depth.code);
     const double u = plane.eye_depth(x, y);
+    if (!(u > 0) || std::isinf(u)) {  // covered by the snapped triangle alone: there the true one is behind the eye
+      ++result_.beyond;
+      return;
+    }
     const std::size_t pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(scene_.width) + static_cast<std::size_t>(x);
     fragments_.push_back({static_cast<std::uint32_t>(pixel), code, u});
@@ -156,6 +161,8 @@ class Measurer {
     std::vector<Fragment> sorted(fragments_.size());
     std::vector<std::uint32_t> next = first;
     for (const Fragment& f : fragments_) sorted[next[f.pixel]++] = f;
+    result_.fragments = fragments_.size();
+    fragments_ = {};  // large scenes: 16 bytes a fragment, twice
     result_.eye_min = std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < pixels_; ++p) {
       const std::span<Fragment> here(sorted.data() + first[p], first[p + 1] - first[p]);
@@ -167,11 +174,11 @@ class Measurer {
       }
       pairs(p, here);
     }
-    if (fragments_.empty()) result_.eye_min = 0;
+    if (sorted.empty()) result_.eye_min = 0;
   }
 
   void pairs(std::size_t pixel, std::span<const Fragment> here) {
-    // A pixel of very many layers is looked at a neighbourhood at a time: farther apart nothing fights.
+    // A pixel of very many layers is looked at a neighbourhood at a time, or time would grow with their square.
     constexpr std::size_t kNeighbours = 64;
     const bool is_turned = is_reversed(variant_.mapping);
     DepthOrder& order = result_.order;
@@ -195,7 +202,6 @@ class Measurer {
   }
 
   void finish() {
-    result_.fragments = fragments_.size();
     result_.total = total_.stats();
     result_.snap = snap_.stats();
     result_.interpolation = interpolation_.stats();
@@ -261,7 +267,8 @@ std::vector<DepthMeasurement> measure_depths(const Scene& scene, std::span<const
     }
   };
   std::vector<std::jthread> workers;
-  for (int i = 1; i < threads; ++i) workers.emplace_back(work);
+  for (std::size_t i = 1; i < std::min(static_cast<std::size_t>(threads), variants.size()); ++i)
+    workers.emplace_back(work);
   work();
   workers.clear();  // joins
   if (failure) std::rethrow_exception(failure);

@@ -39,7 +39,9 @@ struct DepthOrder {
 
 struct DepthMeasurement {
   std::uint64_t fragments = 0, triangles = 0;
-  std::uint64_t beyond = 0;  ///< fragments left out of the errors: their code stands for infinity or nothing
+  /// Samples left out: covered by the snapped triangle where the true one is behind the eye; and, of the errors alone,
+  /// fragments whose code stands for infinity or nothing.
+  std::uint64_t beyond = 0;
   double eye_min = 0, eye_max = 0;
   ErrorStats total;                           ///< D - U, eye-space units
   ErrorMoments snap, interpolation, storage;  ///< S - U, H - S, D - H: they sum to the total

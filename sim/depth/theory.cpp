@@ -35,7 +35,7 @@ std::vector<CodeShare> codes_by_decade(const ExactDepth& theory) {
   for (int power = static_cast<int>(std::floor(std::log10(near))) + 1; from < far; ++power) {
     const double to = std::min(std::pow(10.0, power), far);
     if (to <= from) continue;
-    const std::int64_t code = theory.code(std::min(Rational(to), theory.far()));
+    const std::int64_t code = theory.code(to == far ? theory.far() : Rational(to));
     // The code at the boundary counts where it begins; the last one belongs to the last decade.
     const std::uint64_t codes = static_cast<std::uint64_t>(std::abs(code - last)) + (to == far ? 1 : 0);
     shares.push_back({from, to, codes, static_cast<double>(codes) / static_cast<double>(all)});
@@ -70,7 +70,7 @@ std::optional<double> best_near(DepthMapping mapping, const DepthFormat& format,
   const auto is_enough = [&](const Rational& near) {
     return ExactDepth(mapping, format, near, far).longest_bin(low, high) <= length;
   };
-  if (!is_enough(low)) return std::nullopt;
+  if (format.is_float() || !is_enough(low)) return std::nullopt;
   double enough = low.get_d(), too_near = enough * 1e-12;
   if (is_enough(Rational(too_near))) return 0;
   while (enough / too_near > 1 + 1e-6) {

@@ -34,7 +34,8 @@ struct CodeShare {
                                                         const Rational& low, const Rational& high, double length);
 
 /// The least near plane, at most `low`, with which no bin in [low, high] is longer than `length`; none if even a near
-/// plane at `low` has a longer one, 0 if any will do. To one part in 10^6.
+/// plane at `low` has a longer one, 0 if any down to 10^-12 of `low` will do. To one part in
+/// 10^6. None for floats: their longest bin goes up and down with near.
 [[nodiscard]] std::optional<double> best_near(DepthMapping mapping, const DepthFormat& format, const Rational& far,
                                               const Rational& low, const Rational& high, double length);
 

@@ -38,6 +38,8 @@ Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, dou
   Scene scene = cleared_scene(view.width, view.height);
   scene.name = "two planes";
   scene.planes = {bound.scale().near(), bound.scale().far()};
+  const double step = surface_separation(bound, z, view).storage;
+  if (std::isinf(step)) return scene;
   Random random(seed);
   const double pixel = view.pixel();
   const int count = cells(bound, z, view), side = std::min(view.width, view.height) / count;
@@ -65,7 +67,7 @@ Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, dou
       const double left = view.width / 2.0 + (column - count / 2) * side, top = row * side;
       const auto tangent = [&](double x) { return (left + x - view.width / 2.0) * pixel; };
       // Anywhere within a few steps of storage: each pair at another place between two codes.
-      const double jitter = 1 + random.uniform(0, 8) * surface_separation(bound, z, view).storage / z;
+      const double jitter = 1 + random.uniform(0, 8) * step / z;
       const Surface nearer{z * std::min(jitter, 1.05), view.slope, tangent(cell / 2.0)};
       // Along the screen a plane's 1/z, and so t, climbs evenly: one budget for all of it.
       const DepthBudget budget = bound.budget(bound.screen_slope(nearer.depth, view.slope, pixel), view.slope == 0);

@@ -32,6 +32,7 @@ std::string hardware_cost(const DepthVariant& variant) {
   if (!is_plane && !variant.format.is_float()) text = "rounding of the interpolated depth";
   if (variant.mapping == DepthMapping::w) text = "a division for each fragment";
   if (variant.mapping == DepthMapping::log) text = "a division and a logarithm for each fragment";
+  if (!is_screen_linear(variant.mapping) && variant.format.is_float()) text += ", then a shift";
   if (!is_plane) text += "; depth interpolated with " + std::to_string(variant.config.depth_bits) + " bits";
   return text;
 }

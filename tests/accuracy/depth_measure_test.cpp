@@ -2,12 +2,14 @@
 // order at the predicted separation and lose it at half of it, answers that hold when tried.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "sim/depth/answers.hpp"
 #include "sim/depth/measure.hpp"
 #include "sim/depth/two_planes.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/scene/mesh_scene.hpp"
 
 namespace halfplane {
 namespace {
@@ -61,8 +63,8 @@ TEST(DepthMeasure, PlanesAtThePredictedSeparationNeverFightAndAtHalfOfItTheyDo) 
             const double separation = surface_separation(DepthBound(v), place.z, view).total();
             SCOPED_TRACE(v.name() + ", " + config + ", z " + std::to_string(place.z) + ", slope " +
                          std::to_string(slope) + ", separation " + std::to_string(separation));
-            const DepthOrder whole = tried(v, place.z, view, 1);
             if (separation > 0.1 * place.z) continue;  // little is told apart there: no room behind the surfaces
+            const DepthOrder whole = tried(v, place.z, view, 1);
             ++tries;
             EXPECT_GT(whole.pairs, 2000U);
             EXPECT_EQ(whole.fights(), 0U);
@@ -123,9 +125,41 @@ TEST(DepthMeasure, ThreadsDoNotChangeWhatIsMeasured) {
 }
 
 TEST(DepthMeasure, RefusesScenesWhoseEyeDepthItDoesNotKnow) {
-  Scene scene = make_builtin("teapot", 32, 32, {}, 1);
-  scene.states[0].polygon_offset = {1, 1};
-  EXPECT_THROW((void)measure_depth(scene, variant(DepthMapping::std, "u16", {1, 100})), InputError);
+  const auto refused = [](auto&& change) {
+    Scene scene = make_builtin("teapot", 32, 32, {}, 1);
+    change(scene);
+    EXPECT_THROW((void)measure_depth(scene, variant(DepthMapping::std, "u16", {1, 100})), InputError);
+  };
+  refused([](Scene& s) { s.states[0].polygon_offset = {1, 1}; });
+  refused([](Scene& s) { s.states[0].depth_range = {0.25, 1}; });
+  refused([](Scene& s) { s.states[0].space = Space::window; });
+  // Surfaces of two frames, or of either side of a clear, never meet.
+  refused([](Scene& s) {
+    s.commands.emplace_back(EndFrame{});
+    s.commands.push_back(s.commands[1]);
+  });
+  refused([](Scene& s) {
+    s.commands.push_back(Clear{0, {}, 1.0});
+    s.commands.push_back(s.commands[1]);
+  });
+}
+
+// On a floor that ends just above a row of pixel centres the snapped triangle covers samples where the true one, extended,
+// is behind the eye: they have no eye depth.
+TEST(DepthMeasure, SamplesThatOnlyTheSnapCoversHaveNoEyeDepth) {
+  constexpr double kHeight = 0.01, kFar = 999, kScale = 2.414, kAspect = 320.0 / 240;
+  Scene scene = cleared_scene(320, 240);
+  scene.planes = {1.0, 1000.0};
+  const double climb = (1 - 2 * 100.52 / 240) / kScale + kHeight / kFar;  // so that its far edge lies at y = 100.52
+  for (const auto& [x, z] : {std::pair{-0.5, 1.2}, {0.5, 1.2}, {0.5, kFar}, {-0.5, kFar}})
+    scene.vertices.push_back({x * z * kScale / kAspect, (climb * z - kHeight) * kScale, 0, z});
+  scene.indices = {0, 1, 2, 0, 2, 3};
+  scene.commands.push_back(Draw{0, 0, Topology::triangles, 0, 6, 0});
+  const DepthMeasurement m = measure_depth(scene, variant(DepthMapping::std, "u16", {1, 1000}));
+  EXPECT_GT(m.beyond, 0U);
+  EXPECT_GT(m.eye_min, 0);
+  EXPECT_GT(m.fragments, 300U);
+  EXPECT_LE(m.worst_share, 1);
 }
 
 }  // namespace

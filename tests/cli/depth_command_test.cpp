@@ -149,7 +149,11 @@ TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
   refused({"--z", "2000"}, "not between near and far");
   refused({"--z", "ten"}, "'ten' is no number");
   refused({"--bits", "16", "--format", "u16"}, "one of them");
-  refused({"--range", "5"}, "two depths");
+  refused({"--range", "5", "--error", "1"}, "two depths");
+  refused({"--range", "5,10"}, "give both");
+  refused({"--camera", "fov=30"}, "give --scene");
+  refused({"--z", ""}, "nothing given");
+  refused({"--set", "depth.bits=20"}, "leave depth.bits out");
   refused({"--error", "-1"}, "positive");
   refused({"--heat", "x.png"}, "give --scene");
   refused({"-o", "report.txt"}, ".html");
@@ -157,6 +161,9 @@ TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
   refused({"--csv", "-", "--json"}, "stdout");
   refused({"--set", "depth.format=u16"}, "by --mapping and --format");
   refused({"--slope", "steep"}, "is no number");
+  expect_refused({"depth", "--near", "0." + std::string(345, '0') + "1", "--far", "9"}, "1e-30");
+  write("empty.hpt", "halfplane 1\nplanes 1 9\nv 0 0 0 2\nv 0 0 0 3\nt 0 0 1\n");
+  expect_refused({"depth", "--scene", "empty.hpt"}, "nothing to measure");
   expect_refused({"depth", "--scene", "triangle", "--near", "1", "--far", "9"}, "every w is the same");
   expect_refused({"depth", "--scene", "teapot", "--camera", "ortho=3"}, "no perspective projection");
   expect_refused({"render", "teapot", "--set", "depth.mapping=rev", "--convention", "fcg"}, "order of depth");

@@ -1,6 +1,8 @@
 // The theory of depth quantization, against an independent exact reference and against published results.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -8,7 +10,7 @@
 #include <sstream>
 
 #include "model/config.hpp"
-#include "sim/depth/exact_depth.hpp"
+#include "sim/depth/theory.hpp"
 
 namespace halfplane {
 namespace {
@@ -159,6 +161,50 @@ TEST(DepthTheory, FindsWhereBinsOutgrowALength) {
         EXPECT_DOUBLE_EQ(theory.longest_bin(theory.near(), theory.far()), longest) << mapping << ' ' << format;
       }
     }
+}
+
+TEST(DepthTheory, CodesByDecadeAreAllCodesInUse) {
+  for (const std::string mapping : {"std", "rev", "stdinf", "revinf", "w", "log"})
+    for (const std::string format : {"u16", "f32", "uf4.12"})
+      for (const auto& [near, far] : {std::pair{"1", "1000.1"}, {"0.1", "10000"}, {"0.3", "7"}}) {
+        const ExactDepth theory = depth(mapping, format, near, far);
+        std::uint64_t codes = 0;
+        double share = 0;
+        for (const CodeShare& part : codes_by_decade(theory)) {
+          codes += part.codes;
+          share += part.share;
+        }
+        EXPECT_EQ(codes, codes_in_use(theory)) << mapping << ' ' << format << ' ' << far;
+        EXPECT_NEAR(share, 1, 1e-12);
+      }
+}
+
+// A float's codes are denser there than anything else is.
+TEST(DepthTheory, DepthsAHairBehindNearAreDoneAtOnce) {
+  for (const std::string mapping : {"std", "w", "log"}) {
+    const ExactDepth theory = depth(mapping, "f32", "1", "1000");
+    const std::uint32_t farther = theory.code(number("1.00000000000000000001"));
+    EXPECT_GT(farther, 0U) << mapping;
+    EXPECT_LT(farther, theory.code(number("1.0000000000000000001"))) << mapping;
+  }
+}
+
+TEST(DepthTheory, TheLeastNearPlaneAndTheFewestBitsAreEnoughAndNoMoreThanThat) {
+  const Rational low = 100, high = 500, far = 1000;
+  for (const DepthMapping mapping :
+       {DepthMapping::std, DepthMapping::rev, DepthMapping::stdinf, DepthMapping::revinf}) {
+    const DepthFormat format = parse_depth_format("u16");
+    const auto near = best_near(mapping, format, far, low, high, 0.1);
+    ASSERT_TRUE(near);
+    EXPECT_LE(ExactDepth(mapping, format, Rational(*near * 1.00001), far).longest_bin(low, high), 0.1);
+    EXPECT_GT(ExactDepth(mapping, format, Rational(*near * 0.999), far).longest_bin(low, high), 0.1);
+    const auto bits = fewest_bits(mapping, 1, far, low, high, 0.1);
+    ASSERT_TRUE(bits);
+    EXPECT_LE(ExactDepth(mapping, {DepthFormat::Kind::unorm, *bits, 0, 0}, 1, far).longest_bin(low, high), 0.1);
+    EXPECT_GT(ExactDepth(mapping, {DepthFormat::Kind::unorm, *bits - 1, 0, 0}, 1, far).longest_bin(low, high), 0.1);
+  }
+  EXPECT_FALSE(best_near(DepthMapping::std, parse_depth_format("u8"), far, low, high, 1e-6));
+  EXPECT_FALSE(best_near(DepthMapping::rev, parse_depth_format("uf4.6"), far, low, high, 100));
 }
 
 TEST(DepthTheory, ReadsDecimalsExactly) {

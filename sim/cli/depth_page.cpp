@@ -1,0 +1,224 @@
+// The JSON of `halfplane depth`, its pictures and its page.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/cli/depth_study.hpp"
+#include "sim/depth/maps.hpp"
+#include "sim/depth/report.hpp"
+#include "sim/depth/theory.hpp"
+#include "sim/image/panel.hpp"
+#include "sim/image/png.hpp"
+#include "sim/image/whole_file.hpp"
+
+namespace halfplane {
+namespace {
+
+Json rows_json(const std::vector<DepthRow>& rows) {
+  Json list = Json::array();
+  for (const DepthRow& row : rows)
+    list.push_back({{"mapping", row.mapping},
+                    {"format", row.format},
+                    {"near", row.near},
+                    {"far", row.far},
+                    {"z", row.z},
+                    {"metric", row.metric},
+                    {"value", row.value}});  // null for infinity
+  return list;
+}
+
+Json depth_part_json(const ErrorMoments& m) { return {{"max", m.max}, {"rms", m.rms}}; }
+
+Json measured_json(const DepthMeasurement& m) {
+  Json decades = Json::array();
+  for (const DepthDecade& d : m.decades)
+    decades.push_back({{"from", d.from},
+                       {"to", d.to},
+                       {"fragments", d.error.count},
+                       {"max", d.error.max},
+                       {"rms", d.error.rms},
+                       {"mean", d.error.mean},
+                       {"p999", d.error.p999},
+                       {"bound", d.bound},
+                       {"worst_share_of_bound", d.worst_share},
+                       {"parts",
+                        {{"snap", depth_part_json(d.snap)},
+                         {"interpolation", depth_part_json(d.interpolation)},
+                         {"storage", depth_part_json(d.storage)}}}});
+  return {{"fragments", m.fragments},
+          {"beyond", m.beyond},
+          {"eye_min", m.eye_min},
+          {"eye_max", m.eye_max},
+          {"pairs", m.order.pairs},
+          {"ties", m.order.ties},
+          {"inversions", m.order.inversions},
+          {"rate", m.order.rate()},
+          {"fighting_pixels", m.order.fighting_pixels},
+          {"nearest_fight", m.order.fights() == 0 ? Json(nullptr) : Json(m.order.nearest_fight)},
+          {"worst_share_of_bound", m.worst_share},
+          {"stage_mismatches", m.stage_mismatches},
+          {"parts",
+           {{"snap", depth_part_json(m.snap)},
+            {"interpolation", depth_part_json(m.interpolation)},
+            {"storage", depth_part_json(m.storage)},
+            {"total", depth_part_json(m.total)}}},
+          {"decades", decades}};
+}
+
+/// One series of the report: a mapping and a format, without what is measured.
+Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
+  const ExactDepth theory(variant.mapping, variant.format, question.near, question.far);
+  const DepthCurve curve = depth_curve(theory, 181);
+  Json decades = Json::array(), exceeds = Json::array();
+  for (const CodeShare& share : codes_by_decade(theory))
+    decades.push_back({{"from", share.from}, {"to", share.to}, {"codes", share.codes}, {"share", share.share}});
+  const double far = question.planes[1];
+  std::vector<double> lengths;
+  for (int power = -6; power <= -2; ++power)
+    lengths.push_back(std::pow(10.0, std::floor(std::log10(far) + 0.5) + power));
+  if (question.length) lengths.push_back(*question.length);
+  std::sort(lengths.begin(), lengths.end());
+  for (const double length : lengths) {
+    const auto z = theory.first_exceeding(length, question.near, question.far);
+    exceeds.push_back({{"length", length}, {"z", z ? Json(*z) : Json(nullptr)}});
+  }
+  const DepthEncode encode(variant.config, variant.planes);
+  const bool is_turned = is_reversed(variant.mapping);
+  return {{"name", variant.name()},
+          {"mapping", mapping_name(variant.mapping)},
+          {"format", to_string(variant.format)},
+          {"storage_bits", variant.format.bits},
+          {"plane_bits", variant.config.depth_bits},
+          {"order", is_turned ? "greater" : "less"},
+          {"clear_code", encode.of_window(is_turned ? 0 : 1)},
+          {"hardware", hardware_cost(variant)},
+          {"codes_used", codes_in_use(theory)},
+          {"curve",
+           {{"z", curve.z},
+            {"bin_width", curve.bin_width},
+            {"max_recon_err", curve.max_recon_err},
+            {"first_order", curve.first_order}}},
+          {"decades", decades},
+          {"exceeds", exceeds},
+          {"measured", nullptr}};
+}
+
+std::string data_uri(const Picture& picture) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const std::vector<std::uint8_t> bytes = encode_png(picture);
+  std::string text = "data:image/png;base64,";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+/// The same scale for the errors of every variant: four decades, up to the largest p99.9.
+std::pair<double, double> map_range(const std::vector<DepthMeasurement>& measured) {
+  double high = 0;
+  for (const DepthMeasurement& m : measured) high = std::max(high, m.total.p999);
+  if (!(high > 0)) high = 1;
+  return {high / 1e4, high};
+}
+
+const std::vector<std::string> kFightLegend{"grey: two surfaces or more, in order", "yellow: two with the same code",
+                                            "red: two that are swapped"};
+
+std::vector<std::string> heat_legend(const std::pair<double, double>& range) {
+  return {"error of the visible surface (log)",
+          "dark: " + short_text(range.first) + " or less; bright: " + short_text(range.second),
+          "in eye depth, one scale for all"};
+}
+
+std::string in_one_line(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
+}
+
+/// Pictures of all variants on one sheet, and what their colours mean.
+void write_depth_sheet(const std::string& path, const std::string& title, const std::vector<std::string>& legend,
+                       const std::vector<DepthVariant>& variants, const std::vector<Picture>& pictures,
+                       const std::vector<std::string>& notes) {
+  if (path.empty()) return;
+  std::vector<Panel> panels;
+  for (std::size_t i = 0; i < variants.size(); ++i)
+    panels.push_back({variants[i].name(), notes[i], pictures[i], {}, {}});
+  panels.push_back({"colours", "", {}, {}, legend});
+  write_png(path, compose_sheet(title, panels, std::min(3, static_cast<int>(panels.size()))));
+}
+
+/// A scene's variants as pictures, and what is said below each.
+struct DepthPictures {
+  std::vector<Picture> heats, fights;
+  std::vector<std::string> heat_notes, fight_notes;
+};
+
+DepthPictures depth_pictures(const Scene& scene, const SceneStudy& study, const std::pair<double, double>& range) {
+  constexpr int kMaxWidth = 640;
+  DepthPictures pictures;
+  for (const DepthMeasurement& m : study.measured) {
+    pictures.heats.push_back(error_map(scene.width, scene.height, m.error, range.first, range.second, kMaxWidth));
+    pictures.fights.push_back(fight_map(scene.width, scene.height, m.fights, kMaxWidth));
+    pictures.heat_notes.push_back("max " + short_text(m.total.max) + ", rms " + short_text(m.total.rms));
+    pictures.fight_notes.push_back(std::to_string(m.order.ties) + " ties, " + std::to_string(m.order.inversions) +
+                                   " swaps of " + std::to_string(m.order.pairs) + " pairs");
+  }
+  return pictures;
+}
+
+}  // namespace
+
+Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows,
+                const std::vector<DepthVariant>& variants, const SceneStudy& study) {
+  Json series = Json::array(), trials = Json::array(), sweeps = Json::array();
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    series.push_back(series_json(variants[i], question));
+    if (!study.measured.empty()) series.back()["measured"] = measured_json(study.measured[i]);
+  }
+  for (const DepthTrial& trial : study.trials)
+    trials.push_back({{"what", trial.what},
+                      {"options", trial.options},
+                      {"name", trial.variant.name()},
+                      {"measured", measured_json(trial.result)}});
+  for (const DepthSweep& sweep : study.sweeps) {
+    Json lines = Json::array();
+    for (const auto& line : sweep.lines) lines.push_back({{"name", line.name}, {"x", line.x}, {"rate", line.rate}});
+    sweeps.push_back({{"what", sweep.what}, {"unit", sweep.unit}, {"lines", lines}});
+  }
+  return {{"rows", rows_json(rows)},
+          {"series", series},
+          {"trials", trials},
+          {"sweeps", sweeps},
+          {"answers", study.answers}};
+}
+
+void write_depth_files(const DepthPaths& paths, const std::string& title, const DepthQuestion& question,
+                       const Json& result, const Scene* scene, const std::vector<DepthVariant>& variants,
+                       const SceneStudy& study) {
+  Json page = result;
+  page["version"] = HALFPLANE_VERSION;
+  page["config"] = label(question.config);
+  if (scene != nullptr && !study.measured[0].error.empty()) {
+    const auto range = map_range(study.measured);
+    const DepthPictures pictures = depth_pictures(*scene, study, range);
+    write_depth_sheet(paths.heat, title, heat_legend(range), variants, pictures.heats, pictures.heat_notes);
+    write_depth_sheet(paths.fights, title, kFightLegend, variants, pictures.fights, pictures.fight_notes);
+    const DepthMeasurement& first = study.measured[0];
+    page["scene"] = {{"name", result["scene"]},      {"width", scene->width},        {"height", scene->height},
+                     {"fragments", first.fragments}, {"triangles", first.triangles}, {"eye_min", first.eye_min},
+                     {"eye_max", first.eye_max}};
+    page["heat_legend"] = in_one_line(heat_legend(range));
+    page["fight_legend"] = in_one_line(kFightLegend);
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      page["series"][i]["measured"]["heat"] = data_uri(pictures.heats[i]);
+      page["series"][i]["measured"]["fight"] = data_uri(pictures.fights[i]);
+    }
+  }
+  if (paths.page.empty()) return;
+  const std::string html = depth_report(page.dump());
+  write_whole_file(paths.page, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
+}
+
+}  // namespace halfplane
