@@ -14,6 +14,7 @@
 #include "capture_states.hpp"
 #include "capture_text.hpp"
 #include "model/config.hpp"
+#include "text_cursor.hpp"
 
 namespace halfplane {
 namespace {
@@ -145,8 +146,8 @@ void CaptureReader::read_planes() {
   if (scene_.planes) text_.fail("a second planes line, and a capture has one pair of planes; remove one of them");
   constexpr double largest = std::numeric_limits<double>::max();
   const double near = text_.number("the near plane", 0, largest);
-  const double far = text_.take("inf") ? std::numeric_limits<double>::infinity()
-                                       : text_.number("the far plane", 0, largest);
+  const double far =
+      text_.take("inf") ? std::numeric_limits<double>::infinity() : text_.number("the far plane", 0, largest);
   if (!(near > 0 && near < far)) text_.fail("planes must be 0 < near < far; far may be inf");
   scene_.planes = {near, far};
 }
@@ -202,13 +203,6 @@ std::uint32_t CaptureReader::state_number() {
     state_number_ = place->second;
   }
   return state_number_;
-}
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
 }
 
 void CaptureReader::read_object() {

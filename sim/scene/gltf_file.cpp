@@ -23,12 +23,6 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
 // %20 and its like; a % that starts no code stands for itself.
 std::string percent_decoded(std::string_view text) {
   std::string result;

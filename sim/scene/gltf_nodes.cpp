@@ -6,22 +6,13 @@
 #include <numbers>
 
 #include "model/config.hpp"
+#include "sim/scene/camera.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
 namespace {
 
 constexpr Mat4 kIdentity{Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 0}, Vec4{0, 0, 1, 0}, Vec4{0, 0, 0, 1}};
-
-Mat4 product(const Mat4& a, const Mat4& b) {
-  Mat4 result{};
-  for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      for (std::size_t i = 0; i < 4; ++i) result[row][column] += a[row][i] * b[i][column];
-    }
-  }
-  return result;
-}
 
 // A list of exactly N numbers, each within kLargestCoordinate.
 template <std::size_t N>
