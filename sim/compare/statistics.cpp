@@ -7,7 +7,7 @@
 namespace halfplane {
 namespace {
 
-constexpr double kGrid = 1 << 20;  // steps of a PartSet per LSB
+constexpr double kStepsPerLsb = 1 << 20;  // steps of a PartSet per LSB
 
 }  // namespace
 
@@ -40,7 +40,7 @@ ErrorStats ErrorSet::stats() const {
 }
 
 void PartSet::add(std::int64_t error) {
-  const double lsb = static_cast<double>(error) / kGrid;
+  const double lsb = static_cast<double>(error) / kStepsPerLsb;
   ++count_;
   max_ = std::max(max_, error < 0 ? -error : error);
   sum_ += error;
@@ -49,7 +49,7 @@ void PartSet::add(std::int64_t error) {
 
 PartStats PartSet::stats() const {
   if (count_ == 0) return {};
-  return {static_cast<double>(max_) / kGrid, std::sqrt(squares_ / static_cast<double>(count_)), sum_};
+  return {static_cast<double>(max_) / kStepsPerLsb, std::sqrt(squares_ / static_cast<double>(count_)), sum_};
 }
 
 }  // namespace halfplane

@@ -79,7 +79,7 @@ void read_part(CameraRequest& request, std::string_view key, std::string_view va
   }
 }
 
-constexpr double kMargin = 1.06;  // space around the mesh, as a factor of its size in the view
+constexpr double kFrameMargin = 1.06;  // space around the mesh, as a factor of its size in the view
 
 double half_fov(double degrees) { return degrees * std::numbers::pi / 360; }
 
@@ -119,7 +119,7 @@ double fitting_distance(const Camera& camera, const Mesh& mesh, const Vec3& back
   const Vec3 right = normalized(cross(camera.up, back)), up = cross(back, right);
   double distance = 1e-3 * radius;
   for (const MeshVertex& vertex : mesh.vertices) {
-    const Vec3 offset = scaled(subtract(vertex.position, camera.target), kMargin);
+    const Vec3 offset = scaled(subtract(vertex.position, camera.target), kFrameMargin);
     const double across = std::max(std::abs(dot(offset, right)) / half_width, std::abs(dot(offset, up)) / half_height);
     distance = std::max(distance, dot(offset, back) + across);
   }

@@ -123,13 +123,13 @@ void CaptureWriter::write_vertex(const Vertex& vertex) {
 }
 
 void CaptureWriter::write_state(const State& wanted) {
-  const CaptureState& space = capture_space();
+  const CaptureState& space_line = capture_space();
   const auto write = [&](const CaptureState& setting) {
     buffer_ += setting.name;
     setting.write(wanted, buffer_);
     buffer_ += '\n';
   };
-  if (!space_is_named_ || !space.is_same(state_, wanted)) write(space);
+  if (!space_is_named_ || !space_line.is_same(state_, wanted)) write(space_line);
   space_is_named_ = true;
   for (const CaptureState& setting : capture_states()) {
     if (setting.is_same(state_, wanted)) continue;
@@ -221,7 +221,8 @@ bool same_command(const Scene& a, const Command& command_a, const Scene& b, cons
 void write_capture(const Scene& scene, std::ostream& out) { CaptureWriter(scene, out).write(); }
 
 bool same_scene(const Scene& a, const Scene& b) {
-  return a.width == b.width && a.height == b.height && a.planes == b.planes && a.states == b.states && a.objects == b.objects &&
+  return a.width == b.width && a.height == b.height && a.planes == b.planes && a.states == b.states &&
+         a.objects == b.objects &&
          std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),
                     [](const Vertex& v, const Vertex& w) { return same_bits(numbers_of(v), numbers_of(w)); }) &&
          std::equal(a.commands.begin(), a.commands.end(), b.commands.begin(), b.commands.end(),

@@ -25,7 +25,7 @@ Spaces spaces_of(const Scene& scene) {
 }
 
 /// Clip z of a vertex at eye depth w, for 0...w: window z is then the mapping's d.
-double clip_z(DepthMapping mapping, double w, double near, double far) {
+double mapped_clip_z(DepthMapping mapping, double w, double near, double far) {
   switch (mapping) {
     case DepthMapping::stdinf: return w - near;
     case DepthMapping::revinf: return near;
@@ -73,7 +73,7 @@ Scene in_depth_mapping(Scene scene, DepthMapping mapping) {
     scene = in_convention(std::move(scene), reversed);
   }
   for (State& state : scene.states) state.clip_z = ClipZ::zero_one;
-  for (Vertex& v : scene.vertices) v.z = clip_z(mapping, v.w, near, far);
+  for (Vertex& v : scene.vertices) v.z = mapped_clip_z(mapping, v.w, near, far);
   return scene;
 }
 

@@ -19,7 +19,7 @@ constexpr std::array<std::pair<std::string_view, CullObjects>, 4> kNames{{{"none
                                                                           {"box", CullObjects::box},
                                                                           {"both", CullObjects::both}}};
 
-constexpr double kMargin = 1e-12;  // of the sum of a distance's terms
+constexpr double kRoundingMargin = 1e-12;  // of the sum of a distance's terms
 
 std::uint8_t bits_of(CullObjects tests) {
   switch (tests) {
@@ -34,7 +34,7 @@ std::uint8_t bits_of(CullObjects tests) {
 /// One bit per plane that the vertex lies outside of by more than rounding: the scene may yet be restated in another
 /// convention, whose sums round otherwise.
 unsigned clearly_outside(const ClipPlanes& planes, const Vertex& v) {
-  const double margin = kMargin * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z) + std::abs(v.w));
+  const double margin = kRoundingMargin * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z) + std::abs(v.w));
   unsigned code = 0;
   for (std::size_t i = 0; i < planes.size(); ++i) code |= (distance(planes[i], v) < -margin ? 1U : 0U) << i;
   return code;
@@ -112,7 +112,7 @@ std::uint8_t outside_view(const ObjectBounds& bounds, const Mat4& to_clip) {
                   std::max(std::abs(bounds.low[i]), std::abs(bounds.high[i]));
       }
       const double margin =
-          kMargin * (size[0] + size[1] + size[2] + std::abs(to_clip[3][3]) + std::abs(to_clip[axis][3]));
+          kRoundingMargin * (size[0] + size[1] + size[2] + std::abs(to_clip[3][3]) + std::abs(to_clip[axis][3]));
       if (dot(normal, bounds.center) + plane[3] + bounds.radius * length(normal) < -margin) outside |= kSphereOutside;
       if (dot(normal, corner) + plane[3] < -margin) outside |= kBoxOutside;
     }

@@ -11,7 +11,7 @@
 namespace halfplane {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
 }  // namespace
@@ -69,7 +69,7 @@ std::size_t TextCursor::line_end_length(std::size_t at) const {
 
 void TextCursor::skip_blanks() {
   while (at_ < text_.size()) {
-    if (is_blank(text_[at_])) {
+    if (is_space(text_[at_])) {
       ++at_;
     } else if (const std::size_t joined = text_[at_] == '\\' ? line_end_length(at_ + 1) : 0; joined != 0) {
       at_ += 1 + joined;
@@ -109,7 +109,7 @@ bool TextCursor::more() {
 std::string_view TextCursor::next_word() {
   if (!more()) return {};
   const std::size_t start = at_;
-  while (at_ < text_.size() && !is_blank(text_[at_]) && !is_line_end(text_[at_]) &&
+  while (at_ < text_.size() && !is_space(text_[at_]) && !is_line_end(text_[at_]) &&
          !(text_[at_] == '\\' && line_end_length(at_ + 1) != 0)) {
     ++at_;
   }
@@ -121,7 +121,7 @@ std::string_view TextCursor::rest_of_line() {
   const std::size_t start = at_;
   while (at_ < text_.size() && !is_line_end(text_[at_]) && text_[at_] != '#') ++at_;
   std::string_view rest = text_.substr(start, at_ - start);
-  while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
+  while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
   return rest;
 }
 
