@@ -296,10 +296,6 @@ int run_depth(const DepthCommand& options) {
   return status;
 }
 
-std::string refuse_empty_text(const std::string& text) {
-  return text.empty() ? "nothing given, where a value is due" : "";
-}
-
 }  // namespace
 
 void add_depth_command(CLI::App& app, Action& selected) {
@@ -316,7 +312,7 @@ void add_depth_command(CLI::App& app, Action& selected) {
       ->type_name("LIST");
   command->add_option("--bits", options->bits, "short for --format u<N>")->check(CLI::Range(2, 32))->type_name("N");
   command->add_option("--z", options->z, "eye depths to look at (default: near, powers of ten, far)")
-      ->check(refuse_empty_text)
+      ->check(refuse_empty)
       ->type_name("LIST");
   command
       ->add_option("--error", options->error,
@@ -334,7 +330,7 @@ void add_depth_command(CLI::App& app, Action& selected) {
       ->check(is_number)
       ->capture_default_str();
   command->add_option("--scene", options->scene, "measure it on this scene: built-in name or file");
-  command->add_option("--size", options->size, "target, WxH pixels")->check(refuse_empty_text);
+  command->add_option("--size", options->size, "target, WxH pixels")->check(refuse_empty);
   command->add_option("--camera", options->camera, "as for render");
   add_seed_option(*command, *options, "seed of scenes with something random in them");
   command->add_option("--threads", options->threads, "use at most N threads (default: as many as there are cores)")

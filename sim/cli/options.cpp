@@ -28,8 +28,6 @@ std::uint64_t parse_seed(const std::string& text) {
   return seed;
 }
 
-std::string refuse_empty(const std::string& text) { return text.empty() ? "nothing given, where a value is due" : ""; }
-
 bool is_capture(const std::string& name) { return name.size() > 4 && name.substr(name.size() - 4) == ".hpt"; }
 
 struct SkipName {
@@ -230,6 +228,8 @@ std::string with_commas(std::uint64_t value) {
   for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
   return digits;
 }
+
+std::string refuse_empty(const std::string& text) { return text.empty() ? "nothing given, where a value is due" : ""; }
 
 std::string is_number(const std::string& text) {
   return std::isalpha(static_cast<unsigned char>(text.back())) != 0 ? "'" + text + "' is no number" : "";

@@ -104,6 +104,9 @@ class Progress {
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::uint64_t value);
 
+/// A check for CLI11: an empty word is no value.
+[[nodiscard]] std::string refuse_empty(const std::string& text);
+
 /// A check for CLI11: Range lets NaN pass.
 [[nodiscard]] std::string is_number(const std::string& text);
 

@@ -143,6 +143,7 @@ ExactDepth::Boundaries ExactDepth::boundaries(std::uint32_t code) const {
 }
 
 long double ExactDepth::d_estimate(const Rational& z) const {
+  // log1p: next to near the logarithm itself would lose what d has left there.
   if (mapping_ == DepthMapping::log) return std::log1p(to_long_double(z / near_ - 1)) / log_ratio_;
   return to_long_double(d_of(z));
 }
@@ -154,9 +155,7 @@ int ExactDepth::compare_d(const Rational& z, const Rational& d) const {
   // (z / near)^q = (far / near)^p. Beyond q = 64 far / near would be a 65th power.
   const mpz_class &p = d.get_num(), &q = d.get_den();
   if (q <= 64 && p >= 0) return cmp(power(z / near_, q.get_ui()), power(far_ / near_, p.get_ui()));
-  // log1p next to near: the logarithm itself would lose what d has left there.
-  const long double ratio = to_long_double(z / near_ - 1);
-  const long double own = std::log1p(ratio) / log_ratio_, other = to_long_double(d);
+  const long double own = d_estimate(z), other = to_long_double(d);
   return own < other ? -1 : own > other ? 1 : 0;
 }
 

@@ -11,7 +11,6 @@
 
 #include "model/engines/functional.hpp"
 #include "model/golden/exact.hpp"
-#include "model/stages/depth_test.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/stages/triangle_setup.hpp"
 #include "sim/compare/coverage.hpp"

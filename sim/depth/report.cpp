@@ -4,19 +4,12 @@
 
 namespace halfplane {
 
-extern const std::string_view kReportPage;    // sim/depth/report.html: report.html.cpp.in
-extern const std::string_view kChartLibrary;  // Chart.js; empty when it was not found
-
-namespace {
-
-void replace(std::string& page, std::string_view placeholder, std::string_view text) {
-  page.replace(page.find(placeholder), placeholder.size(), text);
-}
-
-}  // namespace
+// sim/depth/report.html with the chart library inside, before and behind the data: report.html.cpp.in.
+extern const bool kHasChartLibrary;
+extern const std::string_view kReportHead, kReportTail;
 
 void require_chart_library() {
-  if (kChartLibrary.empty())
+  if (!kHasChartLibrary)
     throw std::runtime_error(
         "this program was built without the chart library of reports; install the package libjs-chart.js, then build "
         "again");
@@ -24,17 +17,14 @@ void require_chart_library() {
 
 std::string depth_report(std::string_view data) {
   require_chart_library();
-  std::string escaped;  // a script element ends at the first "</", wherever it stands
-  for (const char c : data) {
+  std::string page(kReportHead);
+  for (const char c : data) {  // a script element ends at the first "</", wherever it stands
     if (c == '<')
-      escaped += "\\u003c";
+      page += "\\u003c";
     else
-      escaped += c;
+      page += c;
   }
-  std::string page(kReportPage);
-  replace(page, "/*@DATA@*/", escaped);  // first: the library may hold anything
-  replace(page, "/*@CHART_LIBRARY@*/", kChartLibrary);
-  return page;
+  return page.append(kReportTail);
 }
 
 }  // namespace halfplane

@@ -10,7 +10,7 @@ std::string DepthVariant::name() const {
 }
 
 DepthVariant make_variant(const Config& config, DepthMapping mapping, const DepthFormat& format,
-                          const DepthPlanes& planes, int plane_bits) {
+                          const DepthPlanes& planes) {
   DepthVariant variant{mapping, format, planes, config};
   const bool is_plane = is_screen_linear(mapping) && format.kind == DepthFormat::Kind::unorm && format.bits >= 8;
   int bits = format.bits + 4;
@@ -19,7 +19,7 @@ DepthVariant make_variant(const Config& config, DepthMapping mapping, const Dept
   if (!is_screen_linear(mapping)) bits += static_cast<int>(std::ceil(std::log2(planes[1] / planes[0])));
   variant.config.depth_mapping = mapping;
   variant.config.depth_format = format;
-  variant.config.depth_bits = plane_bits != 0 ? plane_bits : is_plane ? format.bits : std::clamp(bits, 8, 32);
+  variant.config.depth_bits = is_plane ? format.bits : std::clamp(bits, 8, 32);
   validate(variant.config);
   return variant;
 }

@@ -20,9 +20,9 @@ struct DepthVariant {
 
 /// The mapping and format on top of `config`. Bits of the interpolated depth: those of the format where it can be stored
 /// as it is (u<b> of 8 bits and more under a mapping that is affine on the screen); else enough for the format's finest
-/// step at far, 32 at most. `plane_bits` not 0: that many. Throws InputError as validate() does.
+/// step at far, 32 at most. Throws InputError as validate() does.
 [[nodiscard]] DepthVariant make_variant(const Config& config, DepthMapping mapping, const DepthFormat& format,
-                                        const DepthPlanes& planes, int plane_bits = 0);
+                                        const DepthPlanes& planes);
 
 /// What hardware pays for it, in a few words.
 [[nodiscard]] std::string hardware_cost(const DepthVariant& variant);

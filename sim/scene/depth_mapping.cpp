@@ -38,11 +38,9 @@ double eye_depth(DepthMapping mapping, double d, double near, double far) {
   return mapping == DepthMapping::w ? near + d * (far - near) : near * std::pow(far / near, d);
 }
 
-}  // namespace
+double std_depth(double z, double near, double far) { return far * (z - near) / (z * (far - near)); }
 
-double std_depth(double z, double near, double far) {
-  return std::isinf(far) ? 1 - near / z : far * (z - near) / (z * (far - near));
-}
+}  // namespace
 
 Scene in_depth_mapping(Scene scene, DepthMapping mapping) {
   if (mapping == DepthMapping::projection) return scene;

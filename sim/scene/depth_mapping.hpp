@@ -14,7 +14,4 @@ namespace halfplane {
 /// in both spaces, and a depth range other than 0...1 under w and log.
 [[nodiscard]] Scene in_depth_mapping(Scene scene, DepthMapping mapping);
 
-/// The std depth, 0...1, of eye depth z; far may be infinite.
-[[nodiscard]] double std_depth(double z, double near, double far);
-
 }  // namespace halfplane
