@@ -1,13 +1,16 @@
-# The depth report's page with its chart library inside, Chart.js from the package libjs-chart.js, as a C++ source: what
-# stands before the data and what behind it. A script for `cmake -P`: PAGE, LIBRARY (may be empty), TEMPLATE, OUTPUT.
+# A report's page with all that it needs inside, as a C++ source: what stands before the data and what behind it. A
+# script for `cmake -P`: PAGE; SHARED, what the pages share (.css and .js); LIBRARY, Chart.js from the package
+# libjs-chart.js (may be empty); TEMPLATE, OUTPUT.
 file(READ "${PAGE}" page)
+file(READ "${SHARED}.css" style)
+file(READ "${SHARED}.js" script)
 set(HAS_LIBRARY false)
 set(library "")
 if(LIBRARY)
   set(HAS_LIBRARY true)
   file(READ "${LIBRARY}" library)
 endif()
-foreach(placeholder IN ITEMS "/*@DATA@*/" "/*@CHART_LIBRARY@*/")
+foreach(placeholder IN ITEMS "/*@STYLE@*/" "/*@DATA@*/" "/*@CHART_LIBRARY@*/" "/*@SCRIPT@*/")
   string(FIND "${page}" "${placeholder}" at)
   if(at EQUAL -1)
     message(FATAL_ERROR "${PAGE} has no ${placeholder}")
@@ -20,6 +23,8 @@ math(EXPR behind "${at} + ${length}")
 string(SUBSTRING "${page}" 0 ${at} REPORT_HEAD)
 string(SUBSTRING "${page}" ${behind} -1 REPORT_TAIL)
 foreach(part IN ITEMS REPORT_HEAD REPORT_TAIL)
+  string(REPLACE "/*@STYLE@*/\n" "${style}" ${part} "${${part}}")
+  string(REPLACE "/*@SCRIPT@*/\n" "${script}" ${part} "${${part}}")
   string(REPLACE "/*@CHART_LIBRARY@*/" "${library}" ${part} "${${part}}")
 endforeach()
 configure_file("${TEMPLATE}" "${OUTPUT}" @ONLY)

@@ -263,8 +263,9 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       depth_encode(config_, scene_.planes) {}
 
 const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {
-  Entry& entry = entries_[index];
-  if (entry.state == context.draw.state) return entry;
+  if (is_ring_) next_ = (next_ + 1) % entries_.size();
+  Entry& entry = entries_[is_ring_ ? next_ : index];
+  if (!is_ring_ && entry.state == context.draw.state) return entry;
   const Vertex& v = context.scene.vertices[index];
   if (context.state.space == Space::clip) {
     require_finite_distances(v, context, index);

@@ -50,11 +50,14 @@ class VertexCache {
     unsigned outside_guard_band = 0;
     std::uint32_t state = ~0U;  ///< state that the entry was made with
   };
-  explicit VertexCache(std::size_t vertices) : entries_(vertices) {}
+  /// `vertices` of the scene; 0: remembers the last three alone, for callers to whom sharing is no matter.
+  explicit VertexCache(std::size_t vertices) : entries_(vertices == 0 ? 3 : vertices), is_ring_(vertices == 0) {}
   [[nodiscard]] const Entry& get(const DrawContext& context, std::uint32_t index);
 
  private:
   std::vector<Entry> entries_;
+  bool is_ring_;
+  std::size_t next_ = 0;
 };
 
 /// The host side of one input triangle: clip, viewport, cull. Appends what is left of it to `out`: nothing, the triangle,

@@ -1,145 +1,324 @@
+// halfplane bench: run time against error, engine by engine, configuration by configuration; what skipping saves, and
+// how the cost grows.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <map>
 #include <memory>
+#include <thread>
+#include <tuple>
 
-#include "model/engines/functional.hpp"
-#include "model/engines/scalar.hpp"
+#include "sim/bench/engines.hpp"
+#include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/cli/cycle_options.hpp"
-#include "sim/cosim/rtl_engine.hpp"
+#include "sim/depth/report.hpp"
 
 namespace halfplane {
 namespace {
 
+/// --vary: a key and its values.
+struct Variation {
+  std::string key;
+  std::vector<std::string> values;
+};
+
 struct BenchCommand : CommonOptions {
-  std::vector<std::string> scenes{"teapot", "city"};
-  std::vector<std::string> engines{"functional", "cycle", "rtl"};
+  std::vector<std::string> scenes;
+  std::vector<std::string> engines;  ///< empty: the default, of which what does not fit is left out without a word
+  std::vector<std::string> variations;
+  std::vector<int> thread_counts{1};
   int repeat = 5;
+  bool has_no_errors = false, wants_skips = false, wants_growth = false, wants_all = false;
+  std::size_t growth_max = 1'000'000;
+  std::string page;
+
+  [[nodiscard]] bool wants_rows() const { return wants_all || !(wants_skips || wants_growth); }
 };
 
-/// One engine on one scene.
-struct BenchRow {
-  std::string engine, scene;
-  std::vector<double> frame_s;  ///< host side and raster
-  std::uint64_t cycles = 0;     ///< 0: the engine has none
-  Counters counters;
-
-  [[nodiscard]] double median() const {
-    auto sorted = frame_s;
-    std::sort(sorted.begin(), sorted.end());
-    return std::max(sorted[sorted.size() / 2], 1e-9);  // an empty scene
+std::vector<std::string> words_between_commas(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    words.push_back(text.substr(start, end - start));
+    start = end + 1;
   }
-  [[nodiscard]] double cycles_per_s() const { return static_cast<double>(cycles) / median(); }
+  return words;
+}
+
+std::vector<Variation> parse_variations(const std::vector<std::string>& texts, const Config& config) {
+  std::vector<Variation> variations;
+  for (const std::string& text : texts) {
+    const std::string shown = "--vary: '" + text + "'";
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals + 1 == text.size())
+      throw InputError(shown + " names no values; give KEY=VALUE,VALUE... as in subpixel.bits=0,4,8");
+    Variation variation{text.substr(0, equals), words_between_commas(text.substr(equals + 1))};
+    for (const std::string& value : variation.values) {
+      if (value.empty()) throw InputError(shown + " has an empty value; give KEY=VALUE,VALUE...");
+      if (std::count(variation.values.begin(), variation.values.end(), value) > 1)
+        throw InputError(shown + " names a value twice: " + value);
+      Config trial = config;
+      set(trial, variation.key, value);  // throws for what no configuration has
+    }
+    for (const Variation& other : variations)
+      if (other.key == variation.key)
+        throw InputError("--vary: " + other.key + " is varied twice; give all of its values at once");
+    variations.push_back(std::move(variation));
+  }
+  return variations;
+}
+
+struct VariedConfig {
+  Config config;
+  std::string name;  ///< "depth.bits=24 tile.size=16"; empty for the base configuration
 };
 
-void run_once(BenchRow& row, const Scene& scene, const Config& config, Dut* dut) {
-  Rendering rendering;
-  if (row.engine == "cycle") {
-    CycleRendering cycle = run_cycles(scene, {config, {}, {}});
-    row.cycles = cycle.run.cycles;
-    rendering = std::move(cycle.rendering);
-  } else if (row.engine == "rtl") {
-    RtlRendering rtl = render_rtl(*dut, scene, config, {});
-    row.cycles = rtl.run.cycles;
-    rendering = std::move(rtl.rendering);
-  } else {
-    rendering = row.engine == "scalar" ? render_scalar(scene, config) : render_functional(scene, config);
+/// The base configuration and every combination of the values; those that no hardware can have are left out.
+std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<Variation>& variations) {
+  std::vector<VariedConfig> product{{base, ""}};
+  for (const Variation& variation : variations) {
+    std::vector<VariedConfig> next;
+    for (const VariedConfig& one : product)
+      for (const std::string& value : variation.values) {
+        VariedConfig varied = one;
+        set(varied.config, variation.key, value);
+        varied.name += (one.name.empty() ? "" : " ") + variation.key + "=" + value;
+        next.push_back(std::move(varied));
+      }
+    product = std::move(next);
   }
-  row.frame_s.push_back(rendering.geometry_s + rendering.raster_s);
-  row.counters = rendering.counters;
+  std::vector<VariedConfig> configs{{base, ""}};
+  for (VariedConfig& one : product) {
+    if (one.config == base) continue;
+    try {
+      validate(one.config);
+      configs.push_back(std::move(one));
+    } catch (const InputError& error) {
+      std::cerr << "halfplane: left out: " << one.name << ": " << error.what() << '\n';
+    }
+  }
+  return configs;
 }
 
-Json row_json(const BenchRow& row, const Config& config) {
-  const double seconds = row.median();
-  return {{"engine", row.engine},
-          {"config", label(config)},
-          {"scene", row.scene},
-          {"frame_s", seconds},
-          {"mtri_s", static_cast<double>(row.counters.primitives_in) / 1e6 / seconds},
-          {"mpix_s", static_cast<double>(row.counters.covered) / 1e6 / seconds},
-          {"cycles", row.cycles == 0 ? Json(nullptr) : Json(row.cycles)},
-          {"cycles_per_s", row.cycles == 0 ? Json(nullptr) : Json(row.cycles_per_s())}};
+/// Loads a scene once for all configurations that take it alike.
+class BenchScenes {
+ public:
+  explicit BenchScenes(const BenchCommand& options) : options_(options) {}
+
+  std::shared_ptr<const Scene> get(const std::string& name, const Config& config) {
+    // What load_scene() looks at: the mapping, and the target if no size was given.
+    const auto key = std::tuple(name, config.depth_mapping, config.target_width, config.target_height);
+    auto& scene = scenes_[key];
+    if (!scene) scene = load(name, config, options_.cull_objects).scene;
+    return scene;
+  }
+
+  [[nodiscard]] SkipScene load(const std::string& name, const Config& config, const std::string& cull_objects) const {
+    CommonOptions one = options_;
+    one.scene = name;
+    one.cull_objects = cull_objects;
+    double load_s = 0;
+    ObjectCounts objects;
+    SkipScene loaded;
+    loaded.scene = std::make_shared<const Scene>(load_scene(one, config, load_s, &objects));
+    loaded.primitives_culled = objects.primitives_skipped;
+    return loaded;
+  }
+
+ private:
+  const BenchCommand& options_;
+  std::map<std::tuple<std::string, DepthMapping, int, int>, std::shared_ptr<const Scene>> scenes_;
+};
+
+std::vector<BenchCase> bench_cases(const BenchCommand& options, const std::vector<VariedConfig>& configs) {
+  BenchScenes scenes(options);
+  std::vector<BenchCase> cases;
+  const std::vector<std::string> defaults{"teapot", "city"};
+  for (const std::string& name : options.scenes.empty() ? defaults : options.scenes)
+    for (const VariedConfig& varied : configs) {
+      try {
+        cases.push_back({name, scenes.get(name, varied.config), varied.config, varied.name});
+      } catch (const InputError& error) {
+        if (varied.name.empty()) throw;  // the scene itself is at fault
+        std::cerr << "halfplane: left out: " << name << ", " << varied.name << ": " << error.what() << '\n';
+      }
+    }
+  return cases;
 }
 
-void print_rows(std::ostream& out, const std::vector<BenchRow>& rows) {
-  out << "scene         engine          ms a frame     M prim/s     M pix/s        cycles  M cycles/s   x RTL\n";
-  for (const BenchRow& row : rows) {
-    const auto rtl = std::find_if(rows.begin(), rows.end(), [&](const BenchRow& other) {
-      return other.engine == "rtl" && other.scene == row.scene;
-    });
-    out << left_aligned(row.scene, 14) << left_aligned(row.engine, 12)
-        << right_aligned(fixed(1e3 * row.median(), 2), 14)
-        << right_aligned(fixed(static_cast<double>(row.counters.primitives_in) / 1e6 / row.median(), 3), 13)
-        << right_aligned(fixed(static_cast<double>(row.counters.covered) / 1e6 / row.median(), 2), 12);
-    if (row.cycles != 0)
-      out << right_aligned(with_commas(row.cycles), 14) << right_aligned(fixed(row.cycles_per_s() / 1e6, 2), 12);
+void measure_bench_rows(const BenchCommand& options, const std::vector<VariedConfig>& configs, BenchStudy& study) {
+  study.cases = bench_cases(options, configs);
+  Progress progress(options, "measuring");
+  BenchPlan plan;
+  plan.engines = options.engines;
+  if (plan.engines.empty()) plan.engines = {"functional", "scalar", "golden", "cycle"};
+  plan.threads = options.thread_counts;
+  plan.repeat = options.repeat;
+  plan.wants_errors = !options.has_no_errors;
+  plan.progress = [&progress](double fraction) { progress(fraction); };
+  plan.left_out = [&options](const std::string& engine, const std::string& line) {
+    if (engine == "cycle" && options.engines.empty()) return;
+    std::cerr << "halfplane: left out: " << line << '\n';
+  };
+  study.rows = measure_rows(study.cases, plan);
+}
+
+void measure_bench_skips(const BenchCommand& options, const Config& config, BenchStudy& study) {
+  Progress progress(options, "measuring what skipping saves");
+  const BenchScenes scenes(options);
+  SkipPlan plan;
+  plan.config = config;
+  const Size size = options.size.empty() ? Size{640, 480} : parse_size(options.size);
+  plan.width = std::min(size.width, config.target_width);
+  plan.height = std::min(size.height, config.target_height);
+  plan.threads = options.thread_counts.front();
+  plan.repeat = options.repeat;
+  if (!options.wants_all) plan.scenes = options.scenes;
+  plan.load = [&](const std::string& name, bool culls) { return scenes.load(name, config, culls ? "box" : "none"); };
+  plan.progress = [&progress](double fraction) { progress(fraction); };
+  study.skips = measure_skips(plan);
+}
+
+void measure_bench_growth(const BenchCommand& options, const Config& config, BenchStudy& study) {
+  Progress progress(options, "measuring how cost grows");
+  GrowthPlan plan;
+  plan.config = config;
+  plan.threads = options.thread_counts.front();
+  plan.repeat = options.repeat;
+  plan.most_threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+  plan.most_triangles = options.growth_max;
+  plan.progress = [&progress](double fraction) { progress(fraction); };
+  plan.left_out = [](const std::string& line) { std::cerr << "halfplane: left out: " << line << '\n'; };
+  study.growth = measure_growth(plan);
+}
+
+// Everything that can be refused before a scene is read.
+void check_bench_options(const BenchCommand& options) {
+  for (const std::string& engine : options.engines) {
+    if (std::find(kBenchEngines.begin(), kBenchEngines.end(), engine) == kBenchEngines.end())
+      throw InputError("--engines: no engine '" + engine +
+                       "'; give some of functional, scalar, golden, cycle, rtl, llvmpipe");
+    if (std::count(options.engines.begin(), options.engines.end(), engine) > 1)
+      throw InputError("--engines: " + engine + " is named twice; give every engine once");
+  }
+  for (const int threads : options.thread_counts)
+    if (std::count(options.thread_counts.begin(), options.thread_counts.end(), threads) > 1)
+      throw InputError("--threads: " + std::to_string(threads) + " is named twice; give every number once");
+  if (!options.wants_rows() && !(options.engines.empty() && options.variations.empty()))
+    throw InputError(
+        "--skips and --growth have the functional engine alone; leave out --engines and --vary, or add --all");
+  check_output(options.page, ".html");
+  check_distinct({options.json, options.page});
+  for (const std::string& scene : options.scenes) check_distinct({options.json, options.page, scene});
+  if (!options.page.empty()) require_chart_library();
+}
+
+template <typename T>
+std::string with_commas_between(const std::vector<T>& words) {
+  std::string text;
+  for (const T& word : words) {
+    if (!text.empty()) text += ',';
+    if constexpr (std::is_same_v<T, int>)
+      text += std::to_string(word);
     else
-      out << std::string(26, ' ');
-    if (rtl != rows.end()) out << right_aligned(fixed(rtl->median() / row.median(), 1), 8);
-    out << '\n';
+      text += word;
   }
+  return text;
 }
 
-int run(const BenchCommand& options) {
+/// The command that measures the same again.
+std::string bench_command_line(const BenchCommand& options) {
+  std::string text = "halfplane bench";
+  for (const std::string& scene : options.scenes) text += " " + quoted(scene);
+  if (!options.engines.empty()) text += " --engines " + with_commas_between(options.engines);
+  if (options.config != "embedded") text += " --config " + quoted(options.config);
+  for (const std::string& setting : options.settings) text += " --set " + quoted(setting);
+  for (const std::string& variation : options.variations) text += " --vary " + quoted(variation);
+  if (!options.size.empty()) text += " --size " + options.size;
+  if (options.thread_counts != std::vector<int>{1}) text += " --threads " + with_commas_between(options.thread_counts);
+  text += " --repeat " + std::to_string(options.repeat);
+  if (options.seed != 1) text += " --seed " + std::to_string(options.seed);
+  if (options.has_no_errors) text += " --no-errors";
+  if (options.wants_all) text += " --all";
+  if (!options.wants_all && options.wants_skips) text += " --skips";
+  if (!options.wants_all && options.wants_growth) text += " --growth";
+  if (options.growth_max != BenchCommand{}.growth_max) text += " --growth-max " + std::to_string(options.growth_max);
+  return text + " -o " + quoted(options.page);
+}
+
+int run_bench(const BenchCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
-  std::unique_ptr<Dut> dut;
-  for (const std::string& engine : options.engines) {
-    if (engine != "functional" && engine != "scalar" && engine != "cycle" && engine != "rtl")
-      throw InputError("--engines: no engine '" + engine + "'; give functional, scalar, cycle or rtl");
-    if (engine == "rtl") dut = make_dut(find_dut(config));
-  }
-  std::vector<BenchRow> rows;
-  std::vector<Scene> scenes;
-  for (const std::string& name : options.scenes) {
-    CommonOptions one = options;
-    one.scene = name;
-    double load_s = 0;
-    scenes.push_back(load_scene(one, config, load_s));
-    check_hardware_scene(scenes.back(), config);
-    for (const std::string& engine : options.engines) rows.push_back({engine, name, {}, 0, {}});
-  }
-  {
-    Progress progress(options, "measuring");
-    // In turns, so that what else the machine does falls on all of them alike; the first turn warms up.
-    for (int turn = 0; turn <= options.repeat; ++turn)
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        progress(static_cast<double>(turn) / (options.repeat + 1));
-        if (turn == 1) rows[i].frame_s.clear();
-        run_once(rows[i], scenes[i / options.engines.size()], config, dut.get());
-      }
-  }
+  check_bench_options(options);
+  const auto configs = varied_configs(config, parse_variations(options.variations, config));
+  BenchStudy study;
+  if (options.wants_rows()) measure_bench_rows(options, configs, study);
+  if (options.wants_skips || options.wants_all) measure_bench_skips(options, config, study);
+  if (options.wants_growth || options.wants_all) measure_bench_growth(options, config, study);
+
   Json result = result_head("bench", options, config);
+  result["seed"] = options.seed;
   result["repeat"] = options.repeat;
-  result["rows"] = Json::array();
-  for (const BenchRow& row : rows) result["rows"].push_back(row_json(row, config));
+  result["label"] = label(config);
+  add_bench_json(result, study);
   result["wall_s"] = seconds_since(start);
+  write_bench_page(options.page, result, bench_command_line(options));
   write_json(options, result);
   std::ostream& out = human(options);
-  out << label(config) << ", " << scenes.front().width << "x" << scenes.front().height << ", median of "
-      << options.repeat << ", one thread, engines in turns\n";
-  print_rows(out, rows);
+  out << label(config);
+  if (!study.cases.empty()) out << ", " << study.cases[0].scene->width << "x" << study.cases[0].scene->height;
+  out << ", median of " << options.repeat << (options.repeat == 1 ? " frame" : " frames") << ", in turns\n";
+  print_bench(out, study);
   return exit_ok;
 }
 
 }  // namespace
 
 void add_bench_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("bench", "run time of the engines, side by side");
+  CLI::App* command = app.add_subcommand("bench", "run time against error, engine by engine");
   auto options = std::make_shared<BenchCommand>();
+  command->add_option("SCENES", options->scenes, "names or files (default: teapot city)");
   add_output_options(*command, *options);
-  add_seed_option(*command, *options, "of scenes that depend on one");
-  command->add_option("SCENES", options->scenes, "names or files")->capture_default_str();
-  command->add_option("--size", options->size, "WxH of the pictures")->default_str("fits the target");
-  command->add_option("--engines", options->engines, "functional, scalar, cycle, rtl")
+  command->add_option("--engines", options->engines, "some of functional, scalar, golden, cycle, rtl, llvmpipe")
       ->delimiter(',')
-      ->capture_default_str();
+      ->allow_extra_args(false)
+      ->default_str("functional,scalar,golden,cycle")
+      ->type_name("LIST");
+  command
+      ->add_option("--vary", options->variations,
+                   "KEY=VALUE,VALUE...: every value besides what is set, repeatable; all combinations")
+      ->allow_extra_args(false)
+      ->type_name("KEY=LIST");
+  command
+      ->add_option("--threads", options->thread_counts,
+                   "numbers of threads: a row of each, for functional and llvmpipe; the first for --skips and --growth")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1, 1024))
+      ->default_str("1")
+      ->type_name("LIST");
+  command->add_option("--size", options->size, "target, WxH pixels")
+      ->check(refuse_empty)
+      ->default_str("fits the target");
   command->add_option("--repeat", options->repeat, "turns behind the first, of which the median counts")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->footer("\nExample:\n  halfplane bench teapot city --size 1280x720 --engines functional,cycle,rtl");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+  add_seed_option(*command, *options, "seed of scenes with something random in them");
+  command->add_flag("--no-errors", options->has_no_errors, "only the time: no comparison with the golden");
+  command->add_flag("--skips", options->wants_skips,
+                    "instead: what each kind of skipping saves, on SCENES or on scenes made for it and others");
+  command->add_flag("--growth", options->wants_growth,
+                    "instead: time by triangle size, triangle count, depth complexity, resolution and threads");
+  command->add_option("--growth-max", options->growth_max, "triangles of the largest frame of --growth")
+      ->check(CLI::Range(100, 10'000'000))
+      ->capture_default_str();
+  command->add_flag("--all", options->wants_all, "rows of SCENES, and --skips and --growth on scenes of their own");
+  add_file_option(*command, "-o", options->page, "everything as one HTML page, .html");
+  command->footer(
+      "\nExamples:\n  halfplane bench teapot --vary subpixel.bits=0,4,8 --vary depth.bits=16,24 -o bench.html\n  "
+      "halfplane "
+      "bench city --size 1280x720 --engines functional,cycle --threads 1,2");
+  command->callback([&selected, options] { selected = [options] { return run_bench(*options); }; });
 }
 
 }  // namespace halfplane

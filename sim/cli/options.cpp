@@ -30,16 +30,6 @@ std::uint64_t parse_seed(const std::string& text) {
 
 bool is_capture(const std::string& name) { return name.size() > 4 && name.substr(name.size() - 4) == ".hpt"; }
 
-struct SkipName {
-  const char* name;
-  bool Skip::*member;
-};
-constexpr SkipName kSkipNames[] = {{"frustum", &Skip::frustum},
-                                   {"empty", &Skip::empty},
-                                   {"tiles_outside", &Skip::tiles_outside},
-                                   {"trivially_accepted", &Skip::trivially_accepted},
-                                   {"fragments_early_z", &Skip::fragments_early_z}};
-
 }  // namespace
 
 void add_output_options(CLI::App& app, CommonOptions& options) {
@@ -123,7 +113,7 @@ Config effective_config(const CommonOptions& options) {
 
 Skip parse_skip(const std::string& text) {
   if (text == "all") return {};
-  Skip skip{false, false, false, false, false};
+  Skip skip = skip_none();
   if (text == "none") return skip;
   std::string names;
   for (const auto& entry : kSkipNames) {
@@ -137,7 +127,7 @@ Skip parse_skip(const std::string& text) {
                                      [&name](const SkipName& s) { return name == s.name; });
     if (entry == std::end(kSkipNames))
       throw InputError("--skip: no '" + name + "'; give all, none or some of " + names);
-    skip.*entry->member = true;
+    skip.*(entry->member) = true;
     start = end + 1;
   }
   return skip;

@@ -59,6 +59,7 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   Progress progress(options, "rendering");
   RenderOptions render;
   render.skip = parse_skip(options.skip);
+  render.threads = options.threads;
   render.rules = study_rules(options.study);
   render.want_count = !options.count_path.empty() || !options.draws_path.empty();
   render.want_ids = !options.ids_path.empty();
@@ -124,7 +125,11 @@ Json counters_json(const Counters& c) {
             {"empty", c.skipped.empty},
             {"tiles_outside", c.skipped.tiles_outside},
             {"tiles_hiz", c.skipped.tiles_hiz},
-            {"fragments_early_z", c.skipped.fragments_early_z}}}};
+            {"fragments_early_z", c.skipped.fragments_early_z},
+            {"no_sample", c.skipped.no_sample},
+            {"objects_hiz", c.skipped.objects_hiz},
+            {"attributes", c.skipped.attributes},
+            {"clear", c.skipped.clear}}}};
 }
 
 /// {stage: {busy, stalled, starved, items}}, in cycles of the stage's output.

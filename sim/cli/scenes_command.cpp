@@ -10,7 +10,7 @@ namespace {
 
 Json scenes_json() {
   Json list = Json::array();
-  for (const Builtin& scene : builtin_scenes()) {
+  for (const Builtin& scene : all_builtin_scenes()) {
     Json entry{{"name", scene.name}, {"description", scene.description}};
     if (!scene.size.empty())
       entry["n"] = {
@@ -21,7 +21,7 @@ Json scenes_json() {
 }
 
 void print_scenes(std::ostream& out) {
-  for (const Builtin& scene : builtin_scenes()) {
+  for (const Builtin& scene : all_builtin_scenes()) {
     out << scene.name << std::string(12 - std::min<std::size_t>(11, scene.name.size()), ' ') << scene.description
         << '\n';
     if (!scene.size.empty())

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "model/config.hpp"
+#include "sim/scene/bench_scenes.hpp"
 #include "sim/scene/builtin_meshes.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/random.hpp"
@@ -16,7 +17,8 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array<Builtin, 10> kBuiltins{{
+constexpr std::size_t kPictures = 10;  // the others are work
+constexpr std::array<Builtin, kPictures + 9> kBuiltins{{
     {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
     {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
     {"knot", "a torus knot in all hues", "segments along the tube", 256, 16, 4096, true},
@@ -28,6 +30,15 @@ constexpr std::array<Builtin, 10> kBuiltins{{
     {"wireframe", "the teapot with hidden lines removed: polygon offset and polygon mode line", "segments", 6, 1, 64,
      true},
     {"triangle", "one triangle with red, green and blue corners", "", 0, 0, 0, false},
+    {"layers", "triangles of half the screen, back to front", "triangles", 64, 1, 8192, false},
+    {"layers_front", "the same, front to back", "triangles", 64, 1, 8192, false},
+    {"ball", "a sphere of small triangles, back faces culled", "rings", 160, 2, 1024, true},
+    {"blocks", "boxes that hide each other, front to back, back faces culled", "boxes", 2000, 1, 65536, true},
+    {"scratches", "lines of about 60 pixels", "lines", 50000, 1, 4000000, false},
+    {"dust", "a jittered grid of triangles over the whole screen", "triangles", 1000000, 2, 10000000, false},
+    {"objects", "small objects all round the eye: five in six lie outside the view", "objects", 4096, 1, 32768, true},
+    {"hidden", "a wall, and behind it objects of which nothing is seen", "objects", 1000, 1, 8192, false},
+    {"shell", "an open bowl without and with culled back faces: the second has holes", "rings", 24, 2, 512, true},
 }};
 
 std::string_view base_name(std::string_view name) { return name.substr(0, name.find(':')); }
@@ -206,7 +217,9 @@ CameraRequest coplanar_camera() {
 
 }  // namespace
 
-std::span<const Builtin> builtin_scenes() { return kBuiltins; }
+std::span<const Builtin> all_builtin_scenes() { return kBuiltins; }
+std::span<const Builtin> builtin_scenes() { return all_builtin_scenes().first(kPictures); }
+std::span<const Builtin> work_scenes() { return all_builtin_scenes().subspan(kPictures); }
 
 const Builtin* find_builtin(std::string_view name) {
   for (const Builtin& builtin : kBuiltins) {
@@ -226,7 +239,9 @@ Scene make_builtin(std::string_view name, int width, int height, const CameraReq
     return mesh_scene(mesh, merged(camera, own), width, height, cull);
   };
   const std::string_view base = builtin->name;
-  Scene scene = base == "teapot"      ? view(teapot_mesh(size), {}, Cull::none)
+  const bool is_work = builtin - kBuiltins.data() >= static_cast<std::ptrdiff_t>(kPictures);
+  Scene scene = is_work               ? make_work_scene(base, size, width, height, camera, seed)
+                : base == "teapot"    ? view(teapot_mesh(size), {}, Cull::none)
                 : base == "city"      ? view(city_mesh(size, seed), {}, Cull::back)
                 : base == "knot"      ? view(knot_mesh(size), {}, Cull::back)
                 : base == "coplanar"  ? view(coplanar_mesh(), coplanar_camera(), Cull::none)

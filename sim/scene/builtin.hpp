@@ -18,15 +18,21 @@ struct Builtin {
   bool has_camera;  ///< false: made in clip space, so there is no place for a camera
 };
 
-/// All of them, in the order in which `halfplane scenes` prints them.
+/// The scenes that are pictures: small enough for every engine at any preset, the RTL included.
 [[nodiscard]] std::span<const Builtin> builtin_scenes();
+
+/// The scenes that are work to be timed: up to a million primitives.
+[[nodiscard]] std::span<const Builtin> work_scenes();
+
+/// Both, pictures first: the order in which `halfplane scenes` prints them.
+[[nodiscard]] std::span<const Builtin> all_builtin_scenes();
 
 /// The built-in that `name` ("city" or "city:64") asks for; null if there is none of that name. N is not looked at.
 [[nodiscard]] const Builtin* find_builtin(std::string_view name);
 
-/// Makes "name" or "name:N". The camera's left-out parts are filled by the scene's own. The seed changes `city` and
-/// `slivers`; the others are always the same. Throws InputError for an unknown name, a bad N, or a camera where there
-/// is none.
+/// Makes "name" or "name:N". The camera's left-out parts are filled by the scene's own. The seed changes `city`,
+/// `slivers`, `blocks`, `scratches`, `dust`, `objects` and `hidden`; the others are always the
+/// same. Throws InputError for an unknown name, a bad N, or a camera where there is none.
 [[nodiscard]] Scene make_builtin(std::string_view name, int width, int height, const CameraRequest& camera,
                                  std::uint64_t seed);
 

@@ -37,7 +37,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   const std::string_view word = std::string_view(name).substr(0, name.find(':'));
   std::string_view nearest;
   std::string names;
-  for (const Builtin& builtin : builtin_scenes()) {
+  for (const Builtin& builtin : all_builtin_scenes()) {
     names += (names.empty() ? "" : ", ") + std::string(builtin.name);
     const bool close = word.size() < 32 && distance(word, builtin.name) <= 2;
     if (close && (nearest.empty() || distance(word, builtin.name) < distance(word, nearest))) nearest = builtin.name;

@@ -109,7 +109,9 @@ TEST_F(ScenesCommand, EveryListedSceneRendersByItsName) {
     const std::string smallest = name + ":" + std::to_string(scene["n"]["min"].get<int>());
     EXPECT_EQ(result({"render", smallest, "--size", "64x48"})["scene"], smallest);
   }
-  for (const char* name : {"teapot", "city", "knot", "coplanar", "slivers", "walk"}) EXPECT_TRUE(names.contains(name));
+  for (const char* name : {"teapot", "city", "knot", "coplanar", "slivers", "walk", "layers", "layers_front", "ball",
+                           "blocks", "scratches", "dust", "objects", "hidden", "shell"})
+    EXPECT_TRUE(names.contains(name)) << name;
 }
 
 TEST_F(ConfigCommand, ListShowsEverySettingWithItsRangeAndItsValue) {

@@ -166,8 +166,9 @@ TEST_F(RtlCommands, TilesThatHizSkipsAreCountedWhereAnEngineHasHiz) {
   for (const char* z : {"0.1", "0.2", "0.3"})
     capture += std::string("v 0 0 ") + z + " 1\nv 200 0 " + z + " 1\nv 0 200 " + z + " 1\n";
   write("layers.hpt", capture + "t 0 1 2\nt 3 4 5\nt 6 7 8\n");
-  EXPECT_GT(result({"render", "layers.hpt", "--engine", "rtl"})["skipped"]["tiles_hiz"], 200u);
-  for (const char* engine : {"functional", "scalar", "golden"})
+  for (const char* engine : {"rtl", "functional"})
+    EXPECT_GT(result({"render", "layers.hpt", "--engine", engine})["skipped"]["tiles_hiz"], 100u) << engine;
+  for (const char* engine : {"scalar", "golden"})
     EXPECT_EQ(result({"render", "layers.hpt", "--engine", engine})["skipped"]["tiles_hiz"], 0u) << engine;
 }
 

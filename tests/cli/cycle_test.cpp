@@ -185,7 +185,7 @@ TEST_F(CycleCommand, BenchMeasuresEnginesSideBySide) {
     EXPECT_EQ(row["cycles"].is_null(), row["engine"] == "functional");
   }
   EXPECT_EQ(json["schema"], "halfplane.bench/1");
-  expect_refused({"bench", "triangle", "--engines", "golden"}, "--engines: no engine 'golden'");
+  expect_refused({"bench", "triangle", "--engines", "gpu"}, "--engines: no engine 'gpu'");
 }
 
 TEST_F(CycleCommand, ConfigListsWhatTheCycleEngineCanVaryAndWhatEveryStageTakes) {

@@ -231,7 +231,7 @@ TEST(Builtin, SizesAreCheckedAgainstTheirRange) {
 TEST(Load, UnknownNamesAreListedAndTheNearestSuggested) {
   const std::string message = message_of({.name = "taepot:4"});
   EXPECT_NE(message.find("did you mean teapot?"), std::string::npos) << message;
-  for (const Builtin& builtin : builtin_scenes()) EXPECT_NE(message.find(builtin.name), std::string::npos);
+  for (const Builtin& builtin : all_builtin_scenes()) EXPECT_NE(message.find(builtin.name), std::string::npos);
   EXPECT_EQ(message_of({.name = "model.stl"}).find("did you mean"), std::string::npos);
 }
 

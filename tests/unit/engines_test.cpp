@@ -99,7 +99,7 @@ TEST(Engines, FunctionalEqualsScalarOnBuiltinScenes) {
   }
 }
 
-constexpr Skip kSkipNothing{false, false, false, false, false};
+const Skip kSkipNothing = skip_none();
 
 TEST(Skip, EachSwitchLeavesTheImageAloneAndItsCounterShowsTheWorkSaved) {
   const Scene scene = make_builtin("walk", 320, 240, {}, 1);

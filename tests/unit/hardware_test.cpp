@@ -9,6 +9,7 @@
 #include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
+#include "model/engines/scalar.hpp"
 #include "model/host_stream.hpp"
 #include "model/packet_bits.hpp"
 #include "model/pipeline.hpp"
@@ -120,7 +121,7 @@ TEST(Hardware, ImageAndCountersAreThoseOfTheFunctionalEngineOnRandomScenes) {
     for (std::uint32_t seed = 1; seed <= 25; ++seed) {
       SCOPED_TRACE(label(config) + ", seed " + std::to_string(seed));
       const Scene scene = random_scene(seed, config);
-      const Rendering expected = render_functional(scene, config), hardware = render_hardware(scene, config);
+      const Rendering expected = render_scalar(scene, config), hardware = render_hardware(scene, config);
       ASSERT_EQ(hardware.frame.depth, expected.frame.depth);
       ASSERT_EQ(hardware.frame.color, expected.frame.color);
       const Counters &a = hardware.counters, &b = expected.counters;

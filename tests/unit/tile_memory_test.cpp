@@ -4,6 +4,7 @@
 #include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
+#include "model/engines/scalar.hpp"
 
 namespace halfplane {
 namespace {
@@ -27,8 +28,7 @@ TEST(Hiz, FrontToBackSceneSkipsTilesAndShowsTheSameImage) {
   SceneBuilder builder(96, 96, state);
   for (int layer = 1; layer <= 8; ++layer) fill_target(builder, 0.1 * layer);
   const Config config = preset("embedded");
-  const Rendering expected = render_functional(builder.scene, config),
-                  hardware = render_hardware(builder.scene, config);
+  const Rendering expected = render_scalar(builder.scene, config), hardware = render_hardware(builder.scene, config);
   EXPECT_EQ(hardware.frame.depth, expected.frame.depth);
   EXPECT_EQ(hardware.frame.color, expected.frame.color);
   EXPECT_EQ(hardware.counters.written, 96u * 96u);

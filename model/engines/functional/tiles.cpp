@@ -1,7 +1,7 @@
-#include "functional.hpp"
+#include "tiles.hpp"
 
-#include "commands.hpp"
-#include "tile_kernel.hpp"
+#include "../commands.hpp"
+#include "../tile_kernel.hpp"
 
 namespace halfplane {
 namespace {
@@ -115,8 +115,7 @@ Rendering render(const Scene& scene, const Config& config, const RenderOptions& 
 
 }  // namespace
 
-Rendering render_functional(const Scene& scene, const Config& config, const RenderOptions& options) {
-  validate(config);
+Rendering render_tiles(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.rules != StudyRules{})
     throw InputError("the functional engine has no other traversal, fill rule or clipping; use the scalar engine");
   switch (config.tile_size) {

@@ -1,0 +1,505 @@
+#include "frame_renderer.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+
+namespace halfplane::functional {
+namespace {
+
+constexpr std::size_t kSlicePrimitives = 2048;  // small enough that two threads share a small frame evenly
+constexpr std::size_t kBatchPrimitives = 1 << 18;
+
+using Clock = std::chrono::steady_clock;
+
+/// Calls work(i) for 0 <= i < count on that many threads. Throws what the smallest i threw, whoever ran it.
+template <class Work>
+void for_each_index(int threads, std::size_t count, Work&& work) {
+  if (threads <= 1 || count < 2) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  std::vector<std::exception_ptr> errors(count);
+  tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));  // more than there are it would warn of
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) try {
+              work(i);
+            } catch (...) {
+              errors[i] = std::current_exception();
+            }
+        },
+        tbb::simple_partitioner());
+  });
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+}
+
+void add(Counters& sum, const Counters& c) {
+  sum.primitives_in += c.primitives_in;
+  sum.culled += c.culled;
+  sum.drawn += c.drawn;
+  sum.clipped += c.clipped;
+  sum.covered += c.covered;
+  sum.depth_passed += c.depth_passed;
+  sum.written += c.written;
+  sum.samples_tested += c.samples_tested;
+  sum.tiles_visited += c.tiles_visited;
+  auto& s = sum.skipped;
+  const auto& t = c.skipped;
+  s.frustum += t.frustum;
+  s.backface += t.backface;
+  s.zero_area += t.zero_area;
+  s.empty += t.empty;
+  s.no_sample += t.no_sample;
+  s.objects_hiz += t.objects_hiz;
+  s.tiles_hiz += t.tiles_hiz;
+  s.tiles_outside += t.tiles_outside;
+  s.trivially_accepted += t.trivially_accepted;
+  s.fragments_early_z += t.fragments_early_z;
+  s.attributes += t.attributes;
+  s.clear += t.clear;
+}
+
+std::uint32_t color_code(const std::array<double, 4>& color, ColorFormat format) {
+  std::array<std::uint8_t, 4> code;
+  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(color[c]);
+  return pack_color(format, code);
+}
+
+Record record_of(const std::array<std::uint32_t, 3>& v, std::int64_t z_low, std::int64_t z_high, const PixelBounds& box,
+                 RecordKind kind) {
+  Record record;
+  record.v = v;
+  record.z_low = static_cast<std::int32_t>(z_low);
+  record.z_high = static_cast<std::int32_t>(z_high);
+  record.left = static_cast<std::int16_t>(box.left);
+  record.top = static_cast<std::int16_t>(box.top);
+  record.right = static_cast<std::int16_t>(box.right);
+  record.bottom = static_cast<std::int16_t>(box.bottom);
+  record.kind = kind;
+  return record;
+}
+
+/// Appends; Slice::records may be longer than it is full.
+void add_record(Slice& slice, const Record& record, std::size_t room) {
+  if (slice.records.size() < slice.record_count + 1 + room) slice.records.resize(2 * (slice.record_count + 1 + room));
+  slice.records[slice.record_count++] = record;
+}
+
+/// A triangle that needs the clipper, or whose vertex is refused: the host side's function, message included.
+void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t triangle) {
+  const Scene& scene = frame.prepared.scene();
+  const DrawContext context(scene, frame.config, std::get<Draw>(scene.commands[part.command]), part.command);
+  static thread_local std::vector<Triangle> pieces;
+  pieces.clear();
+  VertexCache cache(0);
+  const auto& index = frame.prepared.index;
+  const std::size_t at = part.first + triangle;
+  geometry(context, cache, {index[0][at], index[1][at], index[2][at]},
+           part.primitive + static_cast<std::uint32_t>(triangle), frame.skip, slice.counters, pieces);
+  const Rect& rect = context.rect;
+  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  for (const Triangle& piece : pieces) {
+    const PixelBounds box = pixel_bounds(piece.v, limit, frame.widths.grid_bits);
+    if (box.is_empty()) continue;
+    const auto first = static_cast<std::uint32_t>(slice.vertices.size());
+    slice.vertices.insert(slice.vertices.end(), piece.v.begin(), piece.v.end());
+    const auto [low, high] = std::minmax({piece.v[0].z, piece.v[1].z, piece.v[2].z});
+    add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), slice.triangles);
+  }
+}
+
+/// The pixels of a line, as a box.
+PixelBounds line_box(const LineSetup& line) {
+  const std::int64_t D = line.step_stay - line.step_move, n = line.remaining;
+  const auto moved = static_cast<int>(n == 0 || D == 0 ? 0 : (line.error + (n - 1) * line.step_stay + D) / D);
+  const int along = static_cast<int>(n);
+  const int dx = line.is_x_major != 0 ? along : moved, dy = line.is_x_major != 0 ? moved : along;
+  const int end_x = line.x + (line.is_x_negative != 0 ? -dx : dx),
+            end_y = line.y + (line.is_y_negative != 0 ? -dy : dy);
+  return {std::min(line.x, end_x), std::min(line.y, end_y), std::max(line.x, end_x), std::max(line.y, end_y)};
+}
+
+}  // namespace
+
+bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
+  if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
+  if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
+  const Widths widths = derive_widths(config);
+  // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
+  return widths.local_depth.bits <= 32 && widths.local_color.bits <= 16 && config.depth_bits <= 30 &&
+         widths.delta.bits <= 24 && widths.color_product.bits <= 64 && widths.line_color.bits <= 31 &&
+         widths.reciprocal.bits <= 31 && DepthEncode(config, scene.planes).is_identity();
+}
+
+FrameRenderer::FrameRenderer(const Config& config) : config_(config), widths_(derive_widths(config)) {}
+
+Rendering& FrameRenderer::render(const PreparedScene& prepared, const RenderOptions& options) {
+  const Scene& scene = prepared.scene();
+  start(prepared, options);
+  auto last_report = Clock::now();
+  for (std::size_t i = 0; i < scene.commands.size(); ++i) {
+    if (const auto* command = std::get_if<Clear>(&scene.commands[i])) clear(*command);
+    if (std::holds_alternative<Draw>(scene.commands[i])) draw(static_cast<std::uint32_t>(i));
+    if (pending_primitives_ >= kBatchPrimitives) flush();
+    if (options.progress && std::chrono::duration<double>(Clock::now() - last_report).count() > 0.1) {
+      last_report = Clock::now();
+      options.progress(static_cast<double>(entries_done_) /
+                       static_cast<double>(std::max<std::size_t>(1, scene.indices.size())));
+    }
+  }
+  flush();
+  finish();
+  return rendering_;
+}
+
+void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& options) {
+  const Scene& scene = prepared.scene();
+  check_scene(scene, config_);
+  prepared_ = &prepared;
+  scene_ = &scene;
+  options_ = &options;
+  skip_ = options.skip;
+  threads_ = options.threads;
+  kernels_ = available_kernels().front();
+  for (const Kernels* kernels : available_kernels())
+    if (options.instruction_set == kernels->name) kernels_ = kernels;
+  Framebuffer& frame = rendering_.frame;
+  const bool is_new = frame.width != scene.width || frame.height != scene.height;
+  if (is_new) frame = Framebuffer(scene.width, scene.height, config_.tile_size);
+  rendering_.counters = {};
+  rendering_.geometry_s = rendering_.raster_s = 0;
+  bins_x_ = (scene.width + kBinSize - 1) / kBinSize;
+  bins_y_ = (scene.height + kBinSize - 1) / kBinSize;
+  const auto tiles = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_) * kBinTiles * kBinTiles;
+  tiles_.z_low.resize(tiles);
+  tiles_.z_high.resize(tiles);
+  tiles_.pending.assign(tiles, 0);
+  if (is_new || !skip_.clear) tiles_.held.assign(tiles, 0);
+  contexts_.clear();
+  slice_count_ = pending_primitives_ = 0;
+  pending_rises_ = has_flushed_ = false;
+  open_ = nullptr;
+  primitive_ = 0;
+  entries_done_ = 0;
+  clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
+}
+
+// --- clears -----------------------------------------------------------------------------------------------------------
+
+void FrameRenderer::clear_whole(const Clear& command) {
+  const auto started = Clock::now();
+  std::uint8_t bits = 0;
+  if (command.depth) {
+    bits |= TileStates::kDepthCleared;
+    clear_depth_ = DepthEncode(config_, scene_->planes).of_window(*command.depth);
+    std::fill(tiles_.z_low.begin(), tiles_.z_low.end(), static_cast<std::int32_t>(clear_depth_));
+    std::fill(tiles_.z_high.begin(), tiles_.z_high.end(), static_cast<std::int32_t>(clear_depth_));
+  }
+  if (command.color) {
+    bits |= TileStates::kColorCleared;
+    clear_color_ = color_code(*command.color, config_.color_format);
+  }
+  for (std::uint8_t& pending : tiles_.pending) pending |= bits;
+  rendering_.raster_s += std::chrono::duration<double>(Clock::now() - started).count();
+  if (!skip_.clear) settle({0, 0, scene_->width, scene_->height});
+}
+
+void FrameRenderer::clear(const Clear& command) {
+  flush();
+  const Rect rect = clear_rect(*scene_, command);
+  if (rect.width <= 0 || rect.height <= 0) return;
+  if (rect == Rect{0, 0, scene_->width, scene_->height}) return clear_whole(command);
+  settle(rect);
+  std::ranges::fill(tiles_.held, std::uint8_t{0});
+  halfplane::clear(rendering_, *scene_, command, config_);
+  if (!command.depth) return;
+  const auto code = static_cast<std::int32_t>(DepthEncode(config_, scene_->planes).of_window(*command.depth));
+  for (std::int32_t& low : tiles_.z_low) low = std::min(low, code);
+  for (std::int32_t& high : tiles_.z_high) high = std::max(high, code);
+}
+
+/// Writes the clears that are still pending in tiles that meet `rect`; not where memory is that clear already.
+void FrameRenderer::settle(const Rect& rect) {
+  Framebuffer& frame = rendering_.frame;
+  const auto forget = [this](std::uint8_t bit, std::uint32_t& held, std::uint32_t value) {
+    if (held == value) return;
+    held = value;
+    for (std::uint8_t& bits : tiles_.held) bits &= static_cast<std::uint8_t>(~bit);
+  };
+  forget(TileStates::kDepthCleared, held_depth_, clear_depth_);
+  forget(TileStates::kColorCleared, held_color_, clear_color_);
+  const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
+  for_each_index(threads_, bins, [&](std::size_t bin) {
+    const int first_x = static_cast<int>(bin) % bins_x_ * kBinSize,
+              first_y = static_cast<int>(bin) / bins_x_ * kBinSize;
+    for (int tile = 0; tile < kBinTiles * kBinTiles; ++tile) {
+      const int x = first_x + tile % kBinTiles * kTileSize, y = first_y + tile / kBinTiles * kTileSize;
+      const std::size_t at = bin * kBinTiles * kBinTiles + static_cast<std::size_t>(tile);
+      std::uint8_t& pending = tiles_.pending[at];
+      if (pending == 0 || x >= frame.width || y >= frame.height) continue;
+      if (x >= rect.x + rect.width || x + kTileSize <= rect.x || y >= rect.y + rect.height || y + kTileSize <= rect.y)
+        continue;
+      const auto fill = [&](std::uint8_t bit, std::uint32_t* image, std::uint32_t value) {
+        if ((pending & bit) == 0 || (tiles_.held[at] & bit) != 0) return;
+        std::uint32_t* row = image + frame.at(x, y);
+        for (int j = 0; j < kTileSize; ++j, row += frame.stride)
+          for (int i = 0; i < kTileSize; ++i) row[i] = value;
+      };
+      fill(TileStates::kDepthCleared, frame.depth.data(), clear_depth_);
+      fill(TileStates::kColorCleared, frame.color.data(), clear_color_);
+      tiles_.held[at] |= pending;
+      pending = 0;
+    }
+  });
+}
+
+/// Writes what is pending; the padding is as in an empty target.
+void FrameRenderer::finish() {
+  const auto started = Clock::now();
+  if (skip_.clear)
+    rendering_.counters.skipped.clear +=
+        static_cast<std::uint64_t>(std::ranges::count_if(tiles_.pending, [](std::uint8_t bits) { return bits != 0; }));
+  Framebuffer& frame = rendering_.frame;
+  settle({0, 0, frame.width, frame.height});
+  const std::uint32_t far = DepthEncode(config_, scene_->planes).of_window(1.0);
+  const std::uint32_t black = color_code({0, 0, 0, 255}, config_.color_format);
+  const auto stride = static_cast<std::size_t>(frame.stride);
+  const std::size_t rows = frame.depth.size() / stride;
+  for (std::size_t y = 0; y < rows; ++y) {
+    const auto from = y < static_cast<std::size_t>(frame.height) ? static_cast<std::size_t>(frame.width) : 0;
+    std::fill_n(frame.depth.begin() + static_cast<std::ptrdiff_t>(y * stride + from), stride - from, far);
+    std::fill_n(frame.color.begin() + static_cast<std::ptrdiff_t>(y * stride + from), stride - from, black);
+  }
+  rendering_.raster_s += std::chrono::duration<double>(Clock::now() - started).count();
+}
+
+// --- draws ------------------------------------------------------------------------------------------------------------
+
+void FrameRenderer::draw(std::uint32_t command) {
+  const Draw& draw = std::get<Draw>(scene_->commands[command]);
+  entries_done_ += draw.count;
+  const bool is_filled = drawn_as(scene_->states[draw.state], draw.topology) == PrimitiveType::triangle;
+  if (draw.outside != 0) {
+    const std::size_t count = is_filled ? prepared_->draws[command].primitives : primitive_count(*scene_, draw);
+    primitive_ += static_cast<std::uint32_t>(count);
+    rendering_.counters.primitives_in += count;
+    rendering_.counters.culled += count;
+    return;
+  }
+  if (is_filled) return draw_triangles(command);
+  open_ = nullptr;
+  draw_outlines(contexts_.emplace_back(*scene_, config_, draw, command));
+}
+
+Slice& FrameRenderer::add_slice(const DrawContext& context) {
+  if (slice_count_ == slices_.size()) slices_.emplace_back();
+  Slice& slice = slices_[slice_count_++];
+  const State& state = context.state;
+  slice.context = &context;
+  slice.state = {state.depth_test, state.depth_write, state.color_write, state.shade == Shade::flat};
+  slice.parts.clear();
+  slice.outlines.clear();
+  slice.triangles = 0;
+  slice.low_index = ~0U;
+  slice.high_index = 0;
+  slice.counters = {};
+  const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal ||
+                     state.depth_test == DepthFunc::equal || state.depth_test == DepthFunc::never;
+  pending_rises_ |= state.depth_write && !falls;
+  return slice;
+}
+
+/// Whether every fragment of the draw would fail against what is drawn so far. Pending triangles may lower depths only.
+bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
+  const State& state = context.state;
+  const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal;
+  if (context.rect.width <= 0 || context.rect.height <= 0) return false;
+  if (!draw.has_box || !falls || pending_rises_ || state.polygon_offset != std::array<double, 2>{0.0, 0.0})
+    return false;
+  const auto corner = [&](const std::array<double, 3>& p) {
+    return to_window({p[0], p[1], p[2], 1, {}, 0, 0}, state, context.viewport);
+  };
+  const WindowPosition a = corner(draw.low), b = corner(draw.high);
+  // A pixel and a code more: the snap, and the rounding of the plane.
+  const Rect& rect = context.rect;
+  const auto tile = [](double pixel, int first, int last) {
+    return static_cast<int>(std::clamp(pixel, static_cast<double>(first), static_cast<double>(last))) >> kTileShift;
+  };
+  const int left = tile(std::min(a.x, b.x) - 1, rect.x, rect.x + rect.width - 1),
+            right = tile(std::max(a.x, b.x) + 1, rect.x, rect.x + rect.width - 1),
+            top = tile(std::min(a.y, b.y) - 1, rect.y, rect.y + rect.height - 1),
+            bottom = tile(std::max(a.y, b.y) + 1, rect.y, rect.y + rect.height - 1);
+  const double codes = static_cast<double>((std::int64_t{1} << config_.depth_bits) - 1);
+  const double nearest = std::floor(std::min(a.z, b.z) * codes) - 1;
+  constexpr int kShift = kBinShift - kTileShift;
+  for (int y = top; y <= bottom; ++y)
+    for (int x = left; x <= right; ++x) {
+      const int bin = (y >> kShift) * bins_x_ + (x >> kShift);
+      const int at = (bin * kBinTiles + (y & (kBinTiles - 1))) * kBinTiles + (x & (kBinTiles - 1));
+      if (nearest <= tiles_.z_high[static_cast<std::size_t>(at)]) return false;
+    }
+  return true;
+}
+
+/// Chunk by chunk into the open slice while that has the same state and room.
+void FrameRenderer::draw_triangles(std::uint32_t command) {
+  const Draw& draw = std::get<Draw>(scene_->commands[command]);
+  const PreparedScene::DrawChunks& chunks = prepared_->draws[command];
+  if (skip_.objects_hiz && chunks.has_box) {
+    // What is in front must be drawn to be known: before the first draw that is worth it, and now and then.
+    constexpr std::size_t kMany = 512, kStale = 1 << 15;
+    if (chunks.primitives >= kMany && pending_primitives_ > 0 && (!has_flushed_ || pending_primitives_ >= kStale))
+      flush();
+    if (is_behind(DrawContext(*scene_, config_, draw, command), chunks)) {
+      primitive_ += static_cast<std::uint32_t>(chunks.primitives);
+      Counters& counters = rendering_.counters;
+      counters.primitives_in += chunks.primitives;
+      counters.culled += chunks.primitives;
+      ++counters.skipped.objects_hiz;
+      return;
+    }
+  }
+  for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
+    const PreparedScene::Chunk& chunk = prepared_->chunks[i];
+    if (pending_primitives_ >= kBatchPrimitives) flush();
+    if (open_ == nullptr || open_state_ != draw.state || open_->triangles + chunk.count > kSlicePrimitives) {
+      open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
+      open_state_ = draw.state;
+    }
+    open_->parts.push_back({chunk.first, chunk.count, command, primitive_});
+    open_->triangles += chunk.count;
+    open_->low_index = std::min(open_->low_index, chunk.low_index);
+    open_->high_index = std::max(open_->high_index, chunk.high_index);
+    primitive_ += static_cast<std::uint32_t>(chunk.count);
+    pending_primitives_ += chunk.count;
+  }
+}
+
+void FrameRenderer::draw_outlines(const DrawContext& context) {
+  Slice* slice = nullptr;
+  for_each_primitive(*scene_, context.draw, context.state.provoking, [&](const AssembledPrimitive& assembled) {
+    if (slice == nullptr || slice->outlines.size() >= kSlicePrimitives) {
+      slice = &add_slice(context);
+      slice->parts.push_back({0, 0, context.command, primitive_});
+    }
+    slice->outlines.push_back(assembled);
+    ++primitive_;
+    ++pending_primitives_;
+  });
+}
+
+// --- slices and bins --------------------------------------------------------------------------------------------------
+
+void FrameRenderer::build(Slice& slice) const {
+  slice.record_count = 0;
+  slice.lines.clear();
+  if (!slice.outlines.empty()) {
+    slice.vertices.clear();
+    build_outlines(slice);
+  } else {
+    const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_};
+    const std::size_t range = std::size_t{slice.high_index} - slice.low_index + 1, corners = 3 * slice.triangles;
+    slice.is_wide = range > corners;
+    const std::size_t vertices = slice.is_wide ? corners : range;
+    slice.vertices.resize(vertices + 16);
+    slice.codes.resize(vertices + 16);
+    if (slice.records.size() < slice.triangles) slice.records.resize(slice.triangles);
+    // Polygon offset is a property of the triangle: no vertex has it.
+    if (slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
+      for (const Slice::Part& part : slice.parts)
+        for (std::size_t i = 0; i < part.count; ++i) draw_slowly(frame, slice, part, i);
+    } else {
+      kernels_->project(frame, slice);
+      kernels_->cull(frame, slice, draw_slowly);
+    }
+  }
+  fill_bins(slice);
+}
+
+void FrameRenderer::build_outlines(Slice& slice) const {
+  const DrawContext& context = *slice.context;
+  VertexCache cache(0);
+  Outline outline;
+  std::uint32_t number = slice.parts.front().primitive;
+  for (const AssembledPrimitive& assembled : slice.outlines) {
+    outline.lines.clear();
+    outline.points.clear();
+    geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
+    for (const LinePrimitive& line : outline.lines) {
+      const auto [low, high] = std::minmax(line.drawn.start.z, line.drawn.end.z);
+      add_record(slice,
+                 record_of({static_cast<std::uint32_t>(slice.lines.size()), 0, 0}, low, high, line_box(line.setup),
+                           RecordKind::line),
+                 0);
+      slice.lines.push_back(line.setup);
+    }
+    for (const PointPrimitive& point : outline.points) {
+      const auto at = static_cast<std::uint32_t>(slice.vertices.size());
+      slice.vertices.push_back(point.drawn.at);
+      const std::uint32_t z = point.drawn.at.z;
+      add_record(slice, record_of({at, at, at}, z, z, point.box, RecordKind::rectangle), 0);
+    }
+  }
+}
+
+/// The records of each bin, in order: a counting sort.
+void FrameRenderer::fill_bins(Slice& slice) const {
+  const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
+  slice.bin_first.assign(bins + 1, 0);
+  const auto for_each_bin = [this](const Record& record, auto&& visit) {
+    const int left = record.left >> kBinShift, right = record.right >> kBinShift;
+    const int top = record.top >> kBinShift, bottom = record.bottom >> kBinShift;
+    for (int y = top; y <= bottom; ++y)
+      for (int x = left; x <= right; ++x) visit(static_cast<std::size_t>(y * bins_x_ + x));
+  };
+  const std::span records(slice.records.data(), slice.record_count);
+  for (const Record& record : records) for_each_bin(record, [&](std::size_t bin) { ++slice.bin_first[bin + 1]; });
+  for (std::size_t bin = 0; bin < bins; ++bin) slice.bin_first[bin + 1] += slice.bin_first[bin];
+  slice.bin_records.resize(slice.bin_first[bins]);
+  static thread_local std::vector<std::uint32_t> next;
+  next.assign(slice.bin_first.begin(), slice.bin_first.end() - 1);
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for_each_bin(records[i], [&](std::size_t bin) { slice.bin_records[next[bin]++] = static_cast<std::uint32_t>(i); });
+}
+
+/// Draws what is pending.
+void FrameRenderer::flush() {
+  open_ = nullptr;
+  if (slice_count_ == 0) return;
+  const auto started = Clock::now();
+  for_each_index(threads_, slice_count_, [this](std::size_t i) { build(slices_[i]); });
+  const auto built = Clock::now();
+  const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
+  bin_counters_.assign(bins, {});
+  const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_};
+  std::vector<const Slice*> slices;
+  for (std::size_t i = 0; i < slice_count_; ++i) slices.push_back(&slices_[i]);
+  for_each_index(threads_, bins, [&](std::size_t bin) {
+    const bool is_idle = std::ranges::all_of(
+        slices, [bin](const Slice* slice) { return slice->bin_first[bin] == slice->bin_first[bin + 1]; });
+    if (is_idle) return;
+    BinJob job{frame,  slices,       static_cast<int>(bin), rendering_.frame,
+               tiles_, clear_depth_, clear_color_,          bin_counters_[bin]};
+    kernels_->raster(job);
+  });
+  for (std::size_t i = 0; i < slice_count_; ++i) add(rendering_.counters, slices_[i].counters);
+  for (const Counters& counters : bin_counters_) add(rendering_.counters, counters);
+  slice_count_ = pending_primitives_ = 0;
+  pending_rises_ = false;
+  has_flushed_ = true;
+  contexts_.clear();
+  rendering_.geometry_s += std::chrono::duration<double>(built - started).count();
+  rendering_.raster_s += std::chrono::duration<double>(Clock::now() - built).count();
+}
+
+}  // namespace halfplane::functional

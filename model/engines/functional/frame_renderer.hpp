@@ -1,0 +1,64 @@
+// The functional engine's fast path: a frame's commands become slices, slices become bin lists, bins become pixels.
+#pragma once
+
+#include <deque>
+
+#include "../render.hpp"
+#include "kernels.hpp"
+
+namespace halfplane::functional {
+
+/// Whether the fast path has all that is asked for.
+[[nodiscard]] bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options);
+
+/// Renders frames; keeps its memory from one to the next.
+class FrameRenderer {
+ public:
+  explicit FrameRenderer(const Config& config);
+
+  /// Precondition: is_supported(). The result lives until the next call.
+  [[nodiscard]] Rendering& render(const PreparedScene& prepared, const RenderOptions& options);
+
+ private:
+  void start(const PreparedScene& prepared, const RenderOptions& options);
+  void clear(const Clear& command);
+  void clear_whole(const Clear& command);
+  void draw(std::uint32_t command);
+  void draw_triangles(std::uint32_t command);
+  [[nodiscard]] bool is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const;
+  void draw_outlines(const DrawContext& context);
+  void flush();
+  void settle(const Rect& rect);
+  void finish();
+
+  Slice& add_slice(const DrawContext& context);
+  void build(Slice& slice) const;
+  void build_outlines(Slice& slice) const;
+  void fill_bins(Slice& slice) const;
+
+  Config config_;
+  Widths widths_;
+  const Kernels* kernels_ = nullptr;
+  const PreparedScene* prepared_ = nullptr;
+  const Scene* scene_ = nullptr;
+  const RenderOptions* options_ = nullptr;
+  Skip skip_;
+  int threads_ = 1;
+  int bins_x_ = 0, bins_y_ = 0;
+  Rendering rendering_;
+  TileStates tiles_;
+  std::uint32_t clear_depth_ = 0, clear_color_ = 0;
+  std::uint32_t held_depth_ = 0, held_color_ = 0;  ///< the clear that TileStates::held speaks of
+  std::deque<DrawContext> contexts_;
+  std::deque<Slice> slices_;
+  std::size_t slice_count_ = 0, pending_primitives_ = 0;
+  bool pending_rises_ = false;  ///< what is pending may make a stored depth larger
+  bool has_flushed_ = false;    ///< since the last clear
+  Slice* open_ = nullptr;       ///< takes further triangles of its state
+  std::uint32_t open_state_ = 0;
+  std::uint32_t primitive_ = 0;
+  std::size_t entries_done_ = 0;
+  std::vector<Counters> bin_counters_;
+};
+
+}  // namespace halfplane::functional

@@ -1,0 +1,26 @@
+// Everything that the kernels include, before a TU switches to another instruction set: what these headers define stays
+// code for every machine.
+#pragma once
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "../../stages/depth_test.hpp"
+#include "../../stages/rop.hpp"
+#include "frame.hpp"
+#include "kernels.hpp"
+
+#define HALFPLANE_INLINE inline __attribute__((always_inline))
+#define HALFPLANE_NOINLINE __attribute__((noinline))
+#define HALFPLANE_LAMBDA __attribute__((always_inline))

@@ -1,0 +1,25 @@
+#include "kernels.hpp"
+
+#include <vector>
+
+namespace halfplane::functional {
+
+std::span<const Kernels* const> available_kernels() {
+  static const std::vector<const Kernels*> found = [] {
+    std::vector<const Kernels*> kernels;
+#if defined(__x86_64__) && !defined(__clang__)
+    __builtin_cpu_init();
+    const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+                          __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
+    if (has_avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+      kernels.push_back(&kAvx512Kernels);
+    if (has_avx2) kernels.push_back(&kAvx2Kernels);
+#endif
+    kernels.push_back(&kPortableKernels);
+    return kernels;
+  }();
+  return found;
+}
+
+}  // namespace halfplane::functional

@@ -1,0 +1,16 @@
+#include "kernel_headers.hpp"
+
+#if defined(__x86_64__) && !defined(__clang__)
+#pragma GCC push_options
+#pragma GCC target("avx2,bmi,bmi2,popcnt")
+#define HALFPLANE_ISA 256
+#define HALFPLANE_ISA_NAME avx2
+#include "kernels.inl"
+#pragma GCC pop_options
+
+namespace halfplane::functional {
+
+const Kernels kAvx2Kernels{"avx2", avx2::project, avx2::cull, avx2::raster};
+
+}  // namespace halfplane::functional
+#endif

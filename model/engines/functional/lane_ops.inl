@@ -1,0 +1,291 @@
+// Vectors of a fixed number of lanes, whatever the machine's registers hold: a pack is as many registers as it takes.
+// Included inside the namespace of an instruction set: see kernels.inl.
+
+/// N lanes of a T.
+template <class T, int N>
+struct Pack {
+  static constexpr int kLanes = HALFPLANE_ISA / 8 / static_cast<int>(sizeof(T));  ///< of a register
+  static constexpr int kParts = N / kLanes;
+  static_assert(N % kLanes == 0);
+  typedef T Register __attribute__((vector_size(HALFPLANE_ISA / 8)));
+
+  Register part[kParts];
+
+  HALFPLANE_INLINE Pack() = default;
+  HALFPLANE_INLINE Pack(T value) {  // NOLINT: a number is the same in all lanes
+    for (Register& p : part) p = Register{} + value;
+  }
+  template <class Lane>
+  HALFPLANE_INLINE static Pack of(Lane&& lane) {
+    Pack pack;
+    for (int i = 0; i < N; ++i) pack.part[i / kLanes][i % kLanes] = lane(i);
+    return pack;
+  }
+  template <class Element>
+  HALFPLANE_INLINE static Pack load(const Element* from) {
+    Pack pack;
+    std::memcpy(&pack, from, sizeof pack);
+    return pack;
+  }
+  template <class Element>
+  HALFPLANE_INLINE void store(Element* to) const {
+    std::memcpy(static_cast<void*>(to), this, sizeof *this);
+  }
+};
+
+#define HALFPLANE_PACK_OPERATOR(op)                                                         \
+  template <class T, int N>                                                                 \
+  HALFPLANE_INLINE Pack<T, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
+    Pack<T, N> r;                                                                           \
+    for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] op b.part[i];        \
+    return r;                                                                               \
+  }                                                                                         \
+  template <class T, int N>                                                                 \
+  HALFPLANE_INLINE Pack<T, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
+    return a op Pack<T, N>(b);                                                              \
+  }                                                                                         \
+  template <class T, int N>                                                                 \
+  HALFPLANE_INLINE Pack<T, N> operator op(std::type_identity_t<T> a, const Pack<T, N>& b) { \
+    return Pack<T, N>(a) op b;                                                              \
+  }
+HALFPLANE_PACK_OPERATOR(+)
+HALFPLANE_PACK_OPERATOR(-)
+HALFPLANE_PACK_OPERATOR(*)
+HALFPLANE_PACK_OPERATOR(/)
+HALFPLANE_PACK_OPERATOR(&)
+HALFPLANE_PACK_OPERATOR(|)
+HALFPLANE_PACK_OPERATOR(^)
+#undef HALFPLANE_PACK_OPERATOR
+
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> operator~(const Pack<T, N>& a) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = ~a.part[i];
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> operator-(const Pack<T, N>& a) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = -a.part[i];
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> operator<<(const Pack<T, N>& a, int bits) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] << bits;
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> operator>>(const Pack<T, N>& a, int bits) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] >> bits;
+  return r;
+}
+/// Lane by lane.
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> operator<<(const Pack<T, N>& a, const Pack<T, N>& bits) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] << bits.part[i];
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> operator>>(const Pack<T, N>& a, const Pack<T, N>& bits) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] >> bits.part[i];
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N>& operator+=(Pack<T, N>& a, const Pack<T, N>& b) {
+  return a = a + b;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N>& operator|=(Pack<T, N>& a, const Pack<T, N>& b) {
+  return a = a | b;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N>& operator&=(Pack<T, N>& a, const Pack<T, N>& b) {
+  return a = a & b;
+}
+
+/// Shift without a sign.
+template <int N>
+HALFPLANE_INLINE Pack<std::int32_t, N> shift_right_logical(const Pack<std::int32_t, N>& a, int bits) {
+  using P = Pack<std::int32_t, N>;
+  using Unsigned = typename Pack<std::uint32_t, N>::Register;
+  P r;
+  for (int i = 0; i < P::kParts; ++i) r.part[i] = (typename P::Register)((Unsigned)a.part[i] >> bits);
+  return r;
+}
+
+/// The integer as wide as T: lanes of a comparison, all bits or none.
+template <class T>
+using MaskOf =
+    std::conditional_t<sizeof(T) == 8, std::int64_t, std::conditional_t<sizeof(T) == 4, std::int32_t, std::int16_t>>;
+
+#define HALFPLANE_PACK_COMPARISON(op)                                                               \
+  template <class T, int N>                                                                         \
+  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
+    Pack<MaskOf<T>, N> r;                                                                           \
+    for (int i = 0; i < Pack<T, N>::kParts; ++i)                                                    \
+      r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i]);                  \
+    return r;                                                                                       \
+  }                                                                                                 \
+  template <class T, int N>                                                                         \
+  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
+    return a op Pack<T, N>(b);                                                                      \
+  }
+HALFPLANE_PACK_COMPARISON(<)
+HALFPLANE_PACK_COMPARISON(<=)
+HALFPLANE_PACK_COMPARISON(>)
+HALFPLANE_PACK_COMPARISON(>=)
+HALFPLANE_PACK_COMPARISON(==)
+HALFPLANE_PACK_COMPARISON(!=)
+#undef HALFPLANE_PACK_COMPARISON
+
+/// a where the mask is set, b elsewhere.
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N>& a, const Pack<T, N>& b) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] < b.part[i] ? a.part[i] : b.part[i];
+  return r;
+}
+template <class T, int N>
+HALFPLANE_INLINE Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
+  Pack<T, N> r;
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] > b.part[i] ? a.part[i] : b.part[i];
+  return r;
+}
+
+/// Lane by lane to another type, as static_cast has it. As many lanes at a time as fill a register of the wider type.
+template <class To, class From, int N>
+HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
+  constexpr int kStep = HALFPLANE_ISA / 8 / static_cast<int>(std::max(sizeof(To), sizeof(From)));
+  typedef From FromRegister __attribute__((vector_size(kStep * sizeof(From))));
+  typedef To ToRegister __attribute__((vector_size(kStep * sizeof(To))));
+  Pack<To, N> to;
+  for (int i = 0; i < N; i += kStep) {
+    FromRegister in;
+    std::memcpy(&in, reinterpret_cast<const char*>(&from) + static_cast<std::size_t>(i) * sizeof(From), sizeof in);
+    const ToRegister out = __builtin_convertvector(in, ToRegister);
+    std::memcpy(reinterpret_cast<char*>(&to) + static_cast<std::size_t>(i) * sizeof(To), &out, sizeof out);
+  }
+  return to;
+}
+
+using I16 = Pack<std::int32_t, 16>;
+using S32 = Pack<std::int16_t, 32>;  ///< two in each lane of an I16
+using L16 = Pack<std::int64_t, 16>;
+using D16 = Pack<double, 16>;
+
+HALFPLANE_INLINE S32 as_pairs(const I16& value) {
+  S32 r;
+  std::memcpy(&r, &value, sizeof r);
+  return r;
+}
+HALFPLANE_INLINE I16 as_lanes(const S32& value) {
+  I16 r;
+  std::memcpy(&r, &value, sizeof r);
+  return r;
+}
+HALFPLANE_INLINE S32 shift_right_logical(const S32& a, int bits) {
+  typedef std::uint16_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  S32 r;
+  for (int i = 0; i < S32::kParts; ++i) r.part[i] = (S32::Register)((Unsigned)a.part[i] >> bits);
+  return r;
+}
+
+/// One bit for each lane whose sign bit is set.
+HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
+#if HALFPLANE_ISA == 512
+  return _mm512_movepi32_mask((__m512i)mask.part[0]);
+#elif HALFPLANE_ISA == 256
+  return static_cast<std::uint32_t>(_mm256_movemask_ps((__m256)mask.part[0]) | _mm256_movemask_ps((__m256)mask.part[1])
+                                                                                   << 8);
+#elif defined(__x86_64__)
+  std::uint32_t bits = 0;
+  for (int i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(_mm_movemask_ps((__m128)mask.part[i])) << 4 * i;
+  return bits;
+#else
+  std::uint32_t bits = 0;
+  for (int i = 0; i < 16; ++i) bits |= (static_cast<std::uint32_t>(mask.part[i / 4][i % 4]) >> 31) << i;
+  return bits;
+#endif
+}
+
+HALFPLANE_INLINE bool is_any(const I16& mask) { return bits_of(mask) != 0; }
+
+/// 32 bits from base + 4 index, lane by lane.
+HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (I16::Register)_mm512_i32gather_epi32((__m512i)index.part[0], base, 4);
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (I16::Register)_mm256_i32gather_epi32(static_cast<const int*>(base), (__m256i)index.part[i], 4);
+#else
+  for (int i = 0; i < 16; ++i)
+    std::memcpy(reinterpret_cast<char*>(&r) + 4 * i,
+                static_cast<const char*>(base) + std::ptrdiff_t{index.part[i / 4][i % 4]} * 4, 4);
+#endif
+  return r;
+}
+
+/// The smallest lane.
+HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
+#if HALFPLANE_ISA == 512
+  return _mm512_reduce_min_epi32((__m512i)v.part[0]);
+#else
+  I16::Register r = v.part[0];
+  for (int i = 1; i < I16::kParts; ++i) r = r < v.part[i] ? r : v.part[i];
+  std::int32_t result = r[0];
+  for (int i = 1; i < I16::kLanes; ++i) result = std::min(result, r[i]);
+  return result;
+#endif
+}
+HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
+
+/// Four rows of four pixels of an image.
+template <class Element>
+HALFPLANE_INLINE I16 load_block(const Element* from, int stride) {
+  I16 r;
+  for (int j = 0; j < 4; ++j) std::memcpy(reinterpret_cast<char*>(&r) + 16 * j, from + j * stride, 16);
+  return r;
+}
+template <class Element>
+HALFPLANE_INLINE void store_block(Element* to, int stride, const I16& value) {
+#if HALFPLANE_ISA == 512
+  typedef std::int32_t Row __attribute__((vector_size(16), aligned(4), may_alias));
+  const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA { *reinterpret_cast<Row*>(to + j * stride) = row; };
+  const auto& v = value.part[0];
+  put(0, __builtin_shufflevector(v, v, 0, 1, 2, 3));
+  put(1, __builtin_shufflevector(v, v, 4, 5, 6, 7));
+  put(2, __builtin_shufflevector(v, v, 8, 9, 10, 11));
+  put(3, __builtin_shufflevector(v, v, 12, 13, 14, 15));
+#else
+  for (int j = 0; j < 4; ++j) std::memcpy(to + j * stride, reinterpret_cast<const char*>(&value) + 16 * j, 16);
+#endif
+}
+
+/// One value of 16 bits in both halves of each lane, and pairs of them: a[lane] low, b[lane] high.
+HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
+
+/// a.low b.low + a.high b.high, lane by lane, of 16-bit pairs.
+HALFPLANE_INLINE I16 multiply_add_pairs(const I16& a, const I16& b) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (I16::Register)_mm512_madd_epi16((__m512i)a.part[0], (__m512i)b.part[0]);
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < 2; ++i) r.part[i] = (I16::Register)_mm256_madd_epi16((__m256i)a.part[i], (__m256i)b.part[i]);
+#elif defined(__x86_64__)
+  for (int i = 0; i < 4; ++i) r.part[i] = (I16::Register)_mm_madd_epi16((__m128i)a.part[i], (__m128i)b.part[i]);
+#else
+  r = (a << 16 >> 16) * (b << 16 >> 16) + (a >> 16) * (b >> 16);
+#endif
+  return r;
+}

@@ -1,0 +1,76 @@
+#include "prepared_scene.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "../../pipeline.hpp"
+
+namespace halfplane {
+
+namespace {
+
+/// The box of a clip-space draw's triangles, for whole-object tests: worth it for those alone that have many.
+void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, std::size_t first) {
+  constexpr std::size_t kFew = 64;
+  if (draw.primitives < kFew) return;
+  draw.low.fill(std::numeric_limits<double>::infinity());
+  draw.high.fill(-std::numeric_limits<double>::infinity());
+  for (const auto& corner : prepared.index)
+    for (std::size_t t = first; t < first + draw.primitives; ++t) {
+      const std::size_t v = corner[t];
+      if (!(prepared.w[v] > 0)) return;
+      const std::array<double, 3> at{prepared.x[v] / prepared.w[v], prepared.y[v] / prepared.w[v],
+                                     prepared.z[v] / prepared.w[v]};
+      for (std::size_t i = 0; i < 3; ++i) {
+        draw.low[i] = std::min(draw.low[i], at[i]);
+        draw.high[i] = std::max(draw.high[i], at[i]);
+      }
+    }
+  draw.has_box = true;
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()), scene_(&scene) {
+  constexpr std::size_t kSpare = 16;
+  const std::size_t vertices = scene.vertices.size();
+  for (auto* attribute : {&x, &y, &z, &w}) attribute->resize(vertices + kSpare);
+  rgba.resize(vertices + kSpare);
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const Vertex& v = scene.vertices[i];
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+    w[i] = v.w;
+    for (std::size_t c = 0; c < 4; ++c) rgba[i] |= std::uint32_t{snap_color(v.rgba[c])} << 8 * c;
+  }
+  for (std::size_t i = 0; i < scene.commands.size(); ++i) {
+    const auto* draw = std::get_if<Draw>(&scene.commands[i]);
+    if (draw == nullptr) continue;
+    const State& state = scene.states[draw->state];
+    if (drawn_as(state, draw->topology) != PrimitiveType::triangle) continue;
+    DrawChunks& of_draw = draws[i];
+    of_draw.first = chunks.size();
+    const std::size_t first = index[0].size();
+    for_each_triangle(scene, *draw, state.provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      index[0].push_back(a);
+      index[1].push_back(b);
+      index[2].push_back(c);
+    });
+    of_draw.primitives = index[0].size() - first;
+    for (std::size_t at = first; at < index[0].size(); at += kChunk) {
+      Chunk chunk{at, std::min(kChunk, index[0].size() - at), ~0U, 0};
+      for (const auto& corner : index)
+        for (std::size_t t = at; t < at + chunk.count; ++t) {
+          chunk.low_index = std::min(chunk.low_index, corner[t]);
+          chunk.high_index = std::max(chunk.high_index, corner[t]);
+        }
+      chunks.push_back(chunk);
+    }
+    of_draw.count = chunks.size() - of_draw.first;
+    if (state.space == Space::clip) find_box(of_draw, *this, first);
+  }
+  for (auto& corner : index) corner.resize(corner.size() + kSpare);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,46 @@
+// A scene as the functional engine takes it: attributes in arrays of their own, primitives assembled. What a GPU's
+// buffers are to an application's: made once, drawn as often as one likes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "../../scene.hpp"
+#include "../../stages/primitive_assembly.hpp"
+
+namespace halfplane {
+
+/// Holds on to the scene, which must not change. Its colours are snapped; nothing else is computed.
+class PreparedScene {
+ public:
+  explicit PreparedScene(const Scene& scene);
+  [[nodiscard]] const Scene& scene() const { return *scene_; }
+
+  /// Triangles of a draw that lie one behind the other, at most kChunk of them.
+  struct Chunk {
+    std::size_t first = 0, count = 0;             ///< triangles
+    std::uint32_t low_index = 0, high_index = 0;  ///< range of their vertices
+  };
+  static constexpr std::size_t kChunk = 2048;
+
+  // Vertices, and a few more of nothing so that the last ones may be read as many at a time.
+  std::vector<double> x, y, z, w;
+  std::vector<std::uint32_t> rgba;  ///< snapped, R lowest
+  // Triangles of the draws that are filled, the provoking vertex first; likewise a few more.
+  std::array<std::vector<std::uint32_t>, 3> index;
+  struct DrawChunks {
+    std::size_t first = 0, count = 0;  ///< into `chunks`
+    std::size_t primitives = 0;
+    /// The draw after the division by w: what an application's bounding box would say. None where w is not positive.
+    bool has_box = false;
+    std::array<double, 3> low{}, high{};
+  };
+  std::vector<Chunk> chunks;
+  std::vector<DrawChunks> draws;  ///< by command; empty for what is no filled draw
+
+ private:
+  const Scene* scene_;
+};
+
+}  // namespace halfplane

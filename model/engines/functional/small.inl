@@ -1,0 +1,120 @@
+// Small triangles: blocks of 4 x 4 pixels from the first pixel of the box, wherever it lies.
+// Included inside class Bin: see raster.inl.
+
+/// A block of a triangle of the batch with at least one covered pixel.
+struct Block {
+  std::uint8_t lane;         ///< of the batch
+  std::uint8_t column, row;  ///< of the bin's blocks
+  std::uint32_t covered;     ///< bits
+};
+
+template <DepthFunc Test>
+void draw_batch(const Slice& slice) {
+  if (small_.count == 0) return;
+  small_.set_up(slice, job_.frame, depth_format_, color_format_, first_x_, first_y_);
+  bool is_changed = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) is_changed |= touch_tiles(i);
+  if (state_.depth_write)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i)
+      for (const int tile : small_tiles(i)) forget_range<Test>(tile);
+  const std::size_t blocks = find_blocks();
+  std::uint64_t covered = 0, passed = 0, tiles = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i)
+    tiles += static_cast<unsigned>((1 + (small_.right[i] >> kTileShift) - (small_.left[i] >> kTileShift)) *
+                                   (1 + (small_.bottom[i] >> kTileShift) - (small_.top[i] >> kTileShift)));
+  job_.counters.tiles_visited += tiles;
+  for (std::size_t b = 0; b < blocks; ++b) draw_block<Test>(blocks_[b], covered, passed);
+  count(covered, passed);
+  small_.count = 0;
+  if (is_changed || Test != DepthFunc::less) find_highest();  // with less, a bound that is too high will do
+}
+
+/// The tiles that a small triangle's box touches: four at most, some of them the same.
+HALFPLANE_INLINE std::array<int, 4> small_tiles(std::size_t i) const {
+  const int left = small_.left[i], top = small_.top[i], right = small_.right[i], bottom = small_.bottom[i];
+  return {tile_of(left, top), tile_of(right, top), tile_of(left, bottom), tile_of(right, bottom)};
+}
+
+/// They must be in memory. Every now and then finds a tile's range anew; says so.
+HALFPLANE_INLINE bool touch_tiles(std::size_t i) {
+  const std::array<int, 4> tiles = small_tiles(i);
+  for (const int tile : tiles) {
+    need_depth(tile);
+    if (state_.color_write) need_color(tile);
+  }
+  if (!state_.depth_write) return false;
+  std::uint8_t& touches = touches_[static_cast<std::size_t>(tiles[0])];
+  if (++touches != kTouches) return false;
+  touches = 0;
+  find_range(tiles[0]);
+  return true;
+}
+
+/// The blocks of the batch in which a sample is covered, triangle by triangle. Two by two of them are looked at without
+/// asking whether the box touches them: a branch that nobody can foresee costs more.
+HALFPLANE_INLINE std::size_t find_blocks() {
+  std::size_t blocks = 0, tested = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) {
+    const int left = small_.left[i] >> 2, top = small_.top[i] >> 2;
+    const int right = small_.right[i] >> 2, bottom = small_.bottom[i] >> 2;
+    std::array<I16, 3> edge;
+    std::array<std::int32_t, 3> across, down;  // to the next block
+    for (std::size_t e = 0; e < 3; ++e) {
+      const std::int32_t step = small_.edge_step[e][i];
+      edge[e] = multiply_add_pairs(I16(step), position_.block_yx) + small_.edge[e][i];
+      down[e] = static_cast<std::int16_t>(step) * kBlockSize;
+      across[e] = (step >> 16) * kBlockSize;
+    }
+    const std::uint32_t is_drawn = ~small_.dropped >> i & 1;
+    const auto add = [&](int dx, int dy) HALFPLANE_LAMBDA {
+      I16 signs(0);
+      for (std::size_t e = 0; e < 3; ++e) signs |= edge[e] + (dx * across[e] + dy * down[e]);
+      const std::uint32_t covered = ~bits_of(signs) & 0xffff;
+      const bool is_there = left + dx <= right && top + dy <= bottom;
+      blocks_[blocks] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(left + dx),
+                         static_cast<std::uint8_t>(top + dy), covered};
+      blocks += (covered != 0 ? 1U : 0U) & (is_there ? 1U : 0U) & is_drawn;
+    };
+    add(0, 0);
+    add(1, 0);
+    add(0, 1);
+    add(1, 1);
+    tested += static_cast<unsigned>((right - left + 1) * (bottom - top + 1));
+    if (right - left < 2 && bottom - top < 2) continue;
+    for (int dy = 0; dy <= bottom - top; ++dy)
+      for (int dx = dy < 2 ? 2 : 0; dx <= right - left; ++dx) add(dx, dy);
+  }
+  job_.counters.samples_tested += kBlockPixels * tested;
+  return blocks;
+}
+
+/// Depth, test and colour of a block.
+template <DepthFunc Test>
+HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixels, std::uint64_t& passed_pixels) {
+  const std::size_t i = block.lane;
+  const int tile_x = block.column >> 1, tile_y = block.row >> 1;
+  // Of the tiles that the box may touch, and of the blocks of a tile.
+  const auto of_box =
+      static_cast<std::size_t>(tile_x - (small_.left[i] >> kTileShift) + 2 * (tile_y - (small_.top[i] >> kTileShift)));
+  const auto of_tile = static_cast<std::size_t>((block.column & 1) + 2 * (block.row & 1));
+  const auto at = static_cast<std::size_t>(first_of(tile_y * kBinTiles + tile_x)) + kBlockPixels * of_tile;
+  const I16 value = position_.column[of_tile & 1] * small_.z_step_x[i] +
+                    position_.row[of_tile >> 1] * small_.z_step_y[i] + small_.z_anchor[of_box][i];
+  const I16 depth = decode(value, depth_format_, small_.z_low[i], small_.z_high[i]);
+  std::int32_t* depths = memory_.depth.data() + at;
+  const I16 stored = I16::load(depths);
+  const I16 passed = from_bits(block.covered) & passes<Test>(depth, stored);
+  const std::uint32_t passed_bits = bits_of(passed);
+  covered_pixels += static_cast<unsigned>(std::popcount(block.covered));
+  passed_pixels += static_cast<unsigned>(std::popcount(passed_bits));
+  if (passed_bits == 0 && skip_.fragments_early_z) return;
+  if (state_.depth_write) select(passed, depth, stored).store(depths);
+  if (!state_.color_write) return;
+  const ColorSteps steps{{small_.c_step_x[0][i], small_.c_step_x[1][i]},
+                         {small_.c_step_y[0][i], small_.c_step_y[1][i]},
+                         {small_.c_low[0][i], small_.c_low[1][i]},
+                         {small_.c_high[0][i], small_.c_high[1][i]}};
+  const I16 color = colors(steps, {small_.c_anchor[0][of_box][i], small_.c_anchor[1][of_box][i]}, of_tile);
+  std::uint32_t* pixels = memory_.color.data() + at;
+  select(passed, color, I16::load(pixels)).store(pixels);
+}

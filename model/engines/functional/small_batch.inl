@@ -1,0 +1,189 @@
+// Sixteen small triangles at a time through triangle_setup: the same integers, a triangle a lane.
+// Included inside the namespace of an instruction set: see raster.inl.
+
+/// Triangles of a slice that wait, and after set_up() their constants: fields of lanes, one for each.
+struct SmallBatch {
+  using Lane = std::array<std::int32_t, 16>;
+  template <std::size_t N>
+  using LaneArray = std::array<Lane, N>;
+
+  int count = 0;
+  alignas(64) LaneArray<3> v;                 ///< into Slice::vertices
+  alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
+  alignas(64) Lane z_low, z_high;
+  std::uint32_t dropped = 0;  ///< lanes that draw nothing
+
+  alignas(64) LaneArray<3> edge;       ///< at the first pixel of the box's first block
+  alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
+  alignas(64) LaneArray<4> z_anchor;   ///< of the tiles that the box may touch: first, right, below, both
+  alignas(64) Lane z_step_x, z_step_y;
+  alignas(64) std::array<LaneArray<4>, 2> c_anchor;  ///< by channel pair
+  alignas(64) LaneArray<2> c_step_x, c_step_y, c_low, c_high;
+
+  /// True when that was the last for which there is room.
+  HALFPLANE_INLINE bool add(const Record& record, int left_, int top_, int right_, int bottom_) {
+    const auto i = static_cast<std::size_t>(count);
+    for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
+    left[i] = left_;
+    top[i] = top_;
+    right[i] = right_;
+    bottom[i] = bottom_;
+    z_low[i] = record.z_low;
+    z_high[i] = record.z_high;
+    dropped = (count == 0 ? 0 : dropped) | (record.is_dropped ? 1U : 0U) << count;
+    return ++count == 16;
+  }
+
+  void set_up(const Slice& slice, const FrameContext& frame, const LaneFormat& depth_format,
+              const LaneFormat& color_format, int first_x, int first_y);
+};
+
+/// The reciprocals of sixteen areas below 2^24, and their shifts.
+HALFPLANE_INLINE void reciprocal_lanes(const I16& area, int significant_bits, L16& value, L16& shift) {
+  const D16 divisor = convert<double>(max(area, I16(1)));
+  L16 bits;
+  std::memcpy(&bits, &divisor, sizeof bits);
+  shift = (bits >> 52) - (1023 - significant_bits);
+  const L16 power_bits = (shift + 1024) << 52;  // of 2^(shift + 1)
+  D16 power;
+  std::memcpy(&power, &power_bits, sizeof power);
+  L16 quotient = convert<std::int64_t>(convert<std::int32_t>(power / divisor));
+  const L16 remainder = (L16(1) << (shift + 1)) - quotient * convert<std::int64_t>(area);
+  quotient = quotient + (remainder < 0) - (remainder >= convert<std::int64_t>(area));
+  value = (quotient + 1) >> 1;
+}
+
+/// Gradients of sixteen planes: numerators times reciprocals, rounded.
+struct GradientLanes {
+  L16 reciprocal, left, right;  ///< shifts: one of them 0, but right is at least 1
+  I16 is_left;
+
+  HALFPLANE_INLINE L16 operator()(const L16& numerator) const {
+    const L16 shifted = (numerator * reciprocal) << left;
+    return select(convert<std::int64_t>(is_left), shifted, ((shifted >> (right - 1)) + 1) >> 1);
+  }
+};
+
+HALFPLANE_INLINE L16 round_shift_lanes(const L16& value, int bits) {
+  return bits <= 0 ? value << -bits : ((value >> (bits - 1)) + 1) >> 1;
+}
+
+HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContext& frame,
+                                           const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
+                                           int first_y) {
+  const Config& config = frame.config;
+  const Widths& widths = frame.widths;
+  const int s = widths.grid_bits, F = widths.plane_fraction, half = 1 << (s - 1);
+  for (int i = count; i < 16; ++i)  // what is not there is like the first
+    for (std::size_t k = 0; k < 3; ++k) v[k][static_cast<std::size_t>(i)] = v[k][0];
+  struct VertexOf {
+    I16 x, y, z, rgba;
+  };
+  const auto fetch = [&](std::size_t k) HALFPLANE_LAMBDA {
+    const I16 at = I16::load(v[k].data()) << 2;  // 16 bytes each
+    const SnappedVertex* base = slice.vertices.data();
+    return VertexOf{gather(&base->x, at), gather(&base->y, at), gather(&base->z, at), gather(base->rgba.data(), at)};
+  };
+  const VertexOf a = fetch(0);
+  VertexOf b = fetch(1), c = fetch(2);
+  const auto choose = [](const I16& mask, const VertexOf& p, const VertexOf& q) HALFPLANE_LAMBDA {
+    return VertexOf{select(mask, p.x, q.x), select(mask, p.y, q.y), select(mask, p.z, q.z),
+                    select(mask, p.rgba, q.rgba)};
+  };
+  I16 area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  const I16 is_turned = area < 0;
+  const VertexOf turned_b = choose(is_turned, c, b);
+  c = choose(is_turned, b, c);
+  b = turned_b;
+  area = (area ^ is_turned) - is_turned;
+  dropped |= bits_of(area == 0);
+  const auto is_before = [](const VertexOf& p, const VertexOf& q)
+                             HALFPLANE_LAMBDA { return (p.y < q.y) | ((p.y == q.y) & (p.x < q.x)); };
+  VertexOf origin = choose(is_before(b, a), b, a);
+  origin = choose(is_before(c, origin), c, origin);
+
+  const I16 box_x = I16::load(left.data()), box_y = I16::load(top.data());
+  const I16 px = (((box_x & ~(kBlockSize - 1)) + first_x) << s) + half,
+            py = (((box_y & ~(kBlockSize - 1)) + first_y) << s) + half;
+  const std::array<const VertexOf*, 4> corner{&a, &b, &c, &a};
+  for (std::size_t e = 0; e < 3; ++e) {
+    const VertexOf &from = *corner[e], &to = *corner[e + 1];
+    const I16 dx = to.x - from.x, dy = to.y - from.y;
+    const I16 is_in = (dy < 0) | ((dy == 0) & (dx > 0));  // top or left
+    const I16 value = (dx * (py - from.y) - dy * (px - from.x) + ~is_in) >> s;
+    value.store(edge[e].data());
+    pairs(dx, -dy).store(edge_step[e].data());
+  }
+
+  GradientLanes gradient;
+  L16 shift;
+  reciprocal_lanes(area, config.depth_bits + config.reciprocal_extra_bits, gradient.reciprocal, shift);
+  const I16 k = convert<std::int32_t>(shift) - F;
+  gradient.is_left = k <= 0;
+  gradient.left = convert<std::int64_t>(max(-k, I16(0)));
+  gradient.right = convert<std::int64_t>(max(k, I16(1)));
+  const I16 ax = b.x - a.x, ay = b.y - a.y, bx = c.x - a.x, by = c.y - a.y;
+  const auto anchor_of = [&](const I16& box, int first) HALFPLANE_LAMBDA {  // of the box's first tile
+    return (((box & ~(kTileSize - 1)) + (first + kTileSize / 2)) << s) + half;
+  };
+  const L16 to_x = convert<std::int64_t>(anchor_of(box_x, first_x) - origin.x),
+            to_y = convert<std::int64_t>(anchor_of(box_y, first_y) - origin.y);
+  const int to_tile = kTileShift + s;
+  const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
+                           std::array<I16, 4>& out) HALFPLANE_LAMBDA {
+    const L16 value = (convert<std::int64_t>(at_origin) << F) + step_x * to_x + step_y * to_y +
+                      static_cast<std::int64_t>(format.anchor_bias);
+    const L16 right_of = value + (step_x << to_tile), below = step_y << to_tile;
+    const auto lane = [&](const L16& v64)
+                          HALFPLANE_LAMBDA { return convert<std::int32_t>(v64 >> format.drop) << format.up; };
+    out = {lane(value), lane(right_of), lane(value + below), lane(right_of + below)};
+  };
+  const auto local = [](const L16& step, const LaneFormat& format) HALFPLANE_LAMBDA {
+    return convert<std::int32_t>(round_shift_lanes(step, format.step_drop)) << format.up;
+  };
+  {
+    const L16 az = convert<std::int64_t>(b.z - a.z), bz = convert<std::int64_t>(c.z - a.z);
+    const L16 step_x = gradient(az * convert<std::int64_t>(by) - bz * convert<std::int64_t>(ay)),
+              step_y = gradient(convert<std::int64_t>(ax) * bz - convert<std::int64_t>(bx) * az);
+    std::array<I16, 4> at;
+    anchors(origin.z, step_x, step_y, depth_format, at);
+    for (std::size_t i = 0; i < 4; ++i) at[i].store(z_anchor[i].data());
+    local(step_x, depth_format).store(z_step_x.data());
+    local(step_y, depth_format).store(z_step_y.data());
+  }
+  if (!slice.state.color_write) return;
+  const bool is_flat = slice.state.is_flat;
+  for (std::size_t p = 0; p < 2; ++p) {
+    struct Half {
+      std::array<I16, 4> at;
+      I16 step_x, step_y, low, high;
+    };
+    std::array<Half, 2> halves;
+    for (std::size_t h = 0; h < 2; ++h) {
+      Half& to = halves[h];
+      const int down = static_cast<int>(8 * (p + 2 * h));  // red and blue, green and alpha
+      const auto code = [down](const I16& rgba) HALFPLANE_LAMBDA { return shift_right_logical(rgba, down) & 255; };
+      const I16 ca = code(a.rgba), cb = is_flat ? ca : code(b.rgba), cc = is_flat ? ca : code(c.rgba);
+      to.low = min(min(ca, cb), cc);
+      to.high = max(max(ca, cb), cc);
+      if (bits_of(to.low == to.high) == 0xffff) {  // the same everywhere: the clamp alone makes it
+        to.at.fill(I16(0));
+        to.step_x = to.step_y = I16(0);
+        continue;
+      }
+      const I16 c0 = is_flat ? ca : code(origin.rgba);
+      const I16 ac = cb - ca, bc = cc - ca;
+      const L16 gx = gradient(convert<std::int64_t>(ac * by - bc * ay)),
+                gy = gradient(convert<std::int64_t>(ax * bc - bx * ac));
+      anchors(c0, gx, gy, color_format, to.at);
+      to.step_x = local(gx, color_format);
+      to.step_y = local(gy, color_format);
+    }
+    const Half &low = halves[0], &high = halves[1];
+    for (std::size_t i = 0; i < 4; ++i) pairs(low.at[i], high.at[i]).store(c_anchor[p][i].data());
+    pairs(low.step_x, high.step_x).store(c_step_x[p].data());
+    pairs(low.step_y, high.step_y).store(c_step_y[p].data());
+    pairs(low.low, high.low).store(c_low[p].data());
+    pairs(low.high, high.high).store(c_high[p].data());
+  }
+}

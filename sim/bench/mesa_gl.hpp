@@ -1,0 +1,92 @@
+// As much of OpenGL 4.5 and OSMesa as MesaFrame uses, found in libOSMesa when it runs: no header and no library is
+// needed to build. Values and signatures as in the Khronos registry's gl.xml and Mesa's include/GL/osmesa.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace halfplane::gl {
+
+using Enum = unsigned int;
+using Name = unsigned int;
+
+inline constexpr Enum kDepthBuffer = 0x100, kColorBuffer = 0x4000;             // masks of Clear
+inline constexpr Enum kPoints = 0, kLines = 1, kLineLoop = 2, kLineStrip = 3;  // modes of DrawElements
+inline constexpr Enum kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;    // likewise
+inline constexpr Enum kNever = 0x200;                                          // less ... always follow
+inline constexpr Enum kFront = 0x404, kBack = 0x405, kFrontAndBack = 0x408;    // CullFace
+inline constexpr Enum kCw = 0x900, kCcw = 0x901;                               // FrontFace
+inline constexpr Enum kPoint = 0x1b00, kLine = 0x1b01, kFill = 0x1b02;         // PolygonMode
+inline constexpr Enum kCullFace = 0xb44, kDepthTest = 0xb71, kDither = 0xbd0;  // Enable
+inline constexpr Enum kScissorTest = 0xc11, kPrimitiveRestart = 0x8f9d;        // likewise
+inline constexpr Enum kOffsetPoint = 0x2a01, kOffsetLine = 0x2a02, kOffsetFill = 0x8037;
+inline constexpr Enum kFirstVertex = 0x8e4d, kLastVertex = 0x8e4e;                        // ProvokingVertex
+inline constexpr Enum kLowerLeft = 0x8ca1, kMinusOneToOne = 0x935e, kZeroToOne = 0x935f;  // ClipControl
+inline constexpr Enum kUnsignedByte = 0x1401, kUnsignedInt = 0x1405, kFloat = 0x1406, kRgba = 0x1908;
+inline constexpr Enum kRgba8 = 0x8058, kDepth16 = 0x81a5, kDepth24 = 0x81a6;
+inline constexpr Enum kRenderer = 0x1f01;
+inline constexpr Enum kArrayBuffer = 0x8892, kElementBuffer = 0x8893, kStaticDraw = 0x88e4;
+inline constexpr Enum kFragmentShader = 0x8b30, kVertexShader = 0x8b31, kCompiled = 0x8b81, kLinked = 0x8b82;
+inline constexpr Enum kFramebuffer = 0x8d40, kRenderbuffer = 0x8d41, kComplete = 0x8cd5;
+inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00;
+
+// OSMesaCreateContextAttribs; each is followed by its value, the list ends with 0.
+inline constexpr int kOsFormat = 0x22, kOsDepthBits = 0x30, kOsProfile = 0x33, kOsCoreProfile = 0x34, kOsMajor = 0x36,
+                     kOsMinor = 0x37;
+
+/// The functions, as in OpenGL without the prefix, in the case of the house.
+struct Functions {
+  const unsigned char* (*get_string)(Enum);
+  Enum (*get_error)();
+  void (*enable)(Enum);
+  void (*disable)(Enum);
+  void (*viewport_indexedf)(unsigned, float, float, float, float);
+  void (*depth_range)(double, double);
+  void (*depth_func)(Enum);
+  void (*depth_mask)(unsigned char);
+  void (*color_mask)(unsigned char, unsigned char, unsigned char, unsigned char);
+  void (*cull_face)(Enum);
+  void (*front_face)(Enum);
+  void (*scissor)(int, int, int, int);
+  void (*polygon_mode)(Enum, Enum);
+  void (*polygon_offset)(float, float);
+  void (*point_size)(float);
+  void (*provoking_vertex)(Enum);
+  void (*clip_control)(Enum, Enum);
+  void (*clear_color)(float, float, float, float);
+  void (*clear_depth)(double);
+  void (*clear)(Enum);
+  void (*finish)();
+  void (*read_pixels)(int, int, int, int, Enum, Enum, void*);
+  void (*gen_buffers)(int, Name*);
+  void (*bind_buffer)(Enum, Name);
+  void (*buffer_data)(Enum, std::ptrdiff_t, const void*, Enum);
+  void (*gen_vertex_arrays)(int, Name*);
+  void (*bind_vertex_array)(Name);
+  void (*vertex_attrib_pointer)(Name, int, Enum, unsigned char, int, std::uintptr_t);  // an offset: a buffer is bound
+  void (*enable_vertex_attrib_array)(Name);
+  Name (*create_shader)(Enum);
+  void (*shader_source)(Name, int, const char* const*, const int*);
+  void (*compile_shader)(Name);
+  void (*get_shaderiv)(Name, Enum, int*);
+  Name (*create_program)();
+  void (*attach_shader)(Name, Name);
+  void (*link_program)(Name);
+  void (*get_programiv)(Name, Enum, int*);
+  void (*use_program)(Name);
+  void (*primitive_restart_index)(Name);
+  void (*draw_elements)(Enum, int, Enum, std::uintptr_t);  // likewise
+  void (*gen_renderbuffers)(int, Name*);
+  void (*bind_renderbuffer)(Enum, Name);
+  void (*renderbuffer_storage)(Enum, Enum, int, int);
+  void (*gen_framebuffers)(int, Name*);
+  void (*bind_framebuffer)(Enum, Name);
+  void (*framebuffer_renderbuffer)(Enum, Enum, Enum, Name);
+  Enum (*check_framebuffer_status)(Enum);
+};
+
+/// Loads libOSMesa, makes a context current for the rest of the process and finds the functions. Throws
+/// std::runtime_error that names the package when the library is missing, or what it lacks.
+[[nodiscard]] Functions start_osmesa();
+
+}  // namespace halfplane::gl

@@ -1,0 +1,55 @@
+// Mesa's software rasterizer on the same scene: what people would pick instead. Optional, loaded when asked for.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+/// llvmpipe in a process of its own, because its count of threads holds for the life of the library: several peers with
+/// different counts can live at once. Colour is RGBA8; depth is 16 bits for `depth_bits` up to 16, otherwise 24. The
+/// same geometry, states and fill rule, but neither our bits nor our subpixels: llvmpipe has 8 bits of those and
+/// interpolates in binary32, colours where a triangle is clipped are affine on the screen instead of along the edge,
+/// and a point whose centre is outside the view is left out. It sees a scene, not a Config: a depth mapping (w, log) is
+/// the caller's to refuse.
+class MesaPeer {
+ public:
+  /// `threads` is how many cores may work at a time. Throws std::runtime_error that names the package libosmesa6 when
+  /// libOSMesa cannot be loaded.
+  MesaPeer(int width, int height, int depth_bits, int threads);
+  ~MesaPeer();
+  MesaPeer(const MesaPeer&) = delete;
+  MesaPeer& operator=(const MesaPeer&) = delete;
+
+  /// Starts afresh with this scene: vertices and indices once, into buffers of OpenGL. Draws that follow each other in
+  /// the indices and share their state become one, so that it is not the driver's calls that are timed; those marked
+  /// outside are left out. The scene has the size of the peer. Throws InputError for a state that OpenGL does not
+  /// have, by its name.
+  void upload(const Scene& scene);
+
+  /// Seconds of one frame: clears, draws, and until the last pixel is written. The first one compiles shaders. Throws
+  /// std::runtime_error without a scene, or when the process of llvmpipe has ended.
+  [[nodiscard]] double render();
+
+  /// The last frame, RGBA8 with R in the low byte, rows from the top.
+  [[nodiscard]] std::vector<std::uint32_t> color();
+
+  /// What it calls itself: "llvmpipe", its compiler and the width of its vectors.
+  [[nodiscard]] std::string name() const { return name_; }
+
+ private:
+  void start(const Scene* scene);
+  void stop();
+  [[nodiscard]] std::vector<char> ask(char request);
+  [[nodiscard]] std::vector<char> answer();
+
+  int width_, height_, depth_bits_, threads_;
+  int socket_ = -1, process_ = -1;
+  bool has_scene_ = false;
+  std::string name_;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,41 @@
+// How a run time is measured here: frames of everybody in turns, medians.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace halfplane {
+
+/// What one frame took.
+struct FrameCost {
+  double seconds = 0;        ///< by the wall clock
+  std::uint64_t cycles = 0;  ///< of the hardware; 0: the engine has none
+};
+
+/// Renders one frame, clear included.
+using Frame = std::function<FrameCost()>;
+
+/// The frames that were measured.
+struct FrameTimes {
+  std::vector<double> seconds;  ///< in order of time; empty when it was refused
+  std::uint64_t cycles = 0;     ///< of the last one
+  std::exception_ptr refusal;   ///< the InputError or missing tool that its first frame ended with
+
+  /// Seconds; of an even number the mean of the middle two. At least a nanosecond, so that rates are finite.
+  [[nodiscard]] double median() const;
+  [[nodiscard]] double min() const;
+};
+
+/// A frame that takes longer than this to warm up, seconds, is not rendered again: that frame is its only measurement.
+inline constexpr double kSlowFrame = 2;
+
+/// Renders every frame `repeat` times, in turns, so that what else the machine does falls on all of them alike; the
+/// turn before warms up. Whoever throws a std::runtime_error there is left out. `progress` gets 0...1; may be empty.
+[[nodiscard]] std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repeat,
+                                                       const std::function<void(double)>& progress = {});
+
+}  // namespace halfplane

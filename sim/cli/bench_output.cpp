@@ -1,0 +1,211 @@
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "sim/bench/report.hpp"
+#include "sim/cli/bench_study.hpp"
+#include "sim/image/whole_file.hpp"
+
+namespace halfplane {
+namespace {
+
+Json null_or(bool is_known, const Json& value) { return is_known ? value : Json(nullptr); }
+
+template <typename T>
+Json null_or(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json bench_row_json(const BenchRow& row, const BenchCase& at) {
+  const bool has_cycles = row.times.cycles != 0;
+  Json json{{"engine", row.engine},
+            {"config", label(at.config)},
+            {"label", at.variation},
+            {"scene", at.scene_name},
+            {"width", at.scene->width},
+            {"height", at.scene->height},
+            {"threads", row.threads},
+            {"frames", row.times.seconds.size()},
+            {"frame_s", row.times.median()},
+            {"frame_s_min", row.times.min()},
+            {"mtri_s", row.mtri_s()},
+            {"mpix_s", row.mpix_s()},
+            {"cycles", null_or(has_cycles, row.times.cycles)},
+            {"cycles_per_s", null_or(has_cycles, row.cycles_per_s())},
+            {"primitives", row.facts.counters.primitives_in},
+            {"fragments", row.facts.counters.covered},
+            {"coverage", row.facts.coverage}};
+  const BenchErrors errors = row.facts.errors.value_or(BenchErrors{});
+  const bool has = row.facts.errors.has_value();
+  json["depth_lsb_max"] = null_or(has, errors.depth_lsb_max);
+  json["depth_lsb_rms"] = null_or(has, errors.depth_lsb_rms);
+  json["color_lsb_max"] = null_or(has, errors.color_lsb_max);
+  json["color_lsb_rms"] = null_or(has, errors.color_lsb_rms);
+  json["depth_eye_max"] = null_or(errors.depth_eye_max);
+  json["depth_eye_rms"] = null_or(errors.depth_eye_rms);
+  json["coverage_mismatches"] = null_or(has, errors.coverage_mismatches);
+  json["coverage_missing"] = null_or(has, errors.coverage_missing);
+  json["coverage_extra"] = null_or(has, errors.coverage_extra);
+  return json;
+}
+
+Json skip_row_json(const SkipRow& row) {
+  return {{"skip", row.skip},
+          {"scene", row.scene},
+          {"made_for", row.is_made_for},
+          {"with_s", row.with.median()},
+          {"without_s", row.without.median()},
+          {"saved", row.saved()},
+          {"counter", row.counter}};
+}
+
+Json growth_row_json(const GrowthRow& row) {
+  return {{"series", row.series},
+          {"x", row.x},
+          {"primitives", row.primitives},
+          {"fragments", row.fragments},
+          {"frames", row.times.seconds.size()},
+          {"frame_s", row.times.median()},
+          {"mtri_s", row.mtri_s()},
+          {"mpix_s", row.mpix_s()}};
+}
+
+/// What the processor calls itself, where the system says so.
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
+  return "";
+}
+
+/// A table whose columns are as wide as what stands in them; the first `left` columns begin at the left.
+void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
+  std::vector<std::size_t> widths(lines.front().size());
+  std::vector<bool> is_used(widths.size());
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+      widths[k] = std::max(widths[k], lines[i][k].size());
+      is_used[k] = is_used[k] || (i > 0 && !lines[i][k].empty());
+    }
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t k = 0; k < widths.size(); ++k)
+      if (is_used[k])
+        text += k < left ? left_aligned(line[k], widths[k] + 2) : right_aligned(line[k], widths[k]) + "  ";
+    text.erase(text.find_last_not_of(' ') + 1);
+    out << text << '\n';
+  }
+}
+
+/// How many times as fast as `engine` on the same scene, with as many threads and the same configuration if it has them.
+std::string times_as_fast(const BenchStudy& study, const BenchRow& row, const std::string& engine) {
+  const BenchRow* best = nullptr;
+  int best_rank = -1;
+  for (const BenchRow& other : study.rows) {
+    if (other.engine != engine || study.cases[other.case_index].scene_name != study.cases[row.case_index].scene_name)
+      continue;
+    if (engine == "rtl" && other.case_index != row.case_index) continue;
+    const int rank = (other.threads == row.threads ? 2 : 0) + (other.case_index == row.case_index ? 1 : 0);
+    if (rank > best_rank) best = &other;
+    best_rank = std::max(rank, best_rank);
+  }
+  if (best == nullptr) return "";
+  const double ratio = best->times.median() / row.times.median();
+  return fixed(ratio, ratio < 10 ? 2 : 1);
+}
+
+/// Whether it was too slow to be measured as often as others.
+bool is_single(const BenchStudy& study, const BenchRow& row) {
+  return std::any_of(study.rows.begin(), study.rows.end(),
+                     [&](const BenchRow& other) { return other.times.seconds.size() > row.times.seconds.size(); });
+}
+
+std::vector<std::string> row_cells(const BenchStudy& study, const BenchRow& row) {
+  const BenchCase& at = study.cases[row.case_index];
+  std::vector<std::string> cells{at.scene_name,
+                                 row.engine,
+                                 at.variation,
+                                 std::to_string(row.threads),
+                                 fixed(1e3 * row.times.median(), 2) + (is_single(study, row) ? "*" : " "),
+                                 fixed(row.mtri_s(), 3),
+                                 fixed(row.mpix_s(), 2)};
+  const bool has_cycles = row.times.cycles != 0;
+  cells.push_back(has_cycles ? with_commas(row.times.cycles) : "");
+  cells.push_back(has_cycles ? fixed(row.cycles_per_s() / 1e6, 2) : "");
+  if (row.facts.errors) {
+    const BenchErrors& e = *row.facts.errors;
+    cells.insert(cells.end(), {fixed(e.depth_lsb_rms, 3), fixed(e.depth_lsb_max, 2), fixed(e.color_lsb_max, 2),
+                               with_commas(e.coverage_mismatches), with_commas(e.coverage_missing + e.coverage_extra)});
+  } else {
+    cells.insert(cells.end(), 5, "");
+  }
+  for (const char* engine : {"rtl", "llvmpipe"}) cells.push_back(times_as_fast(study, row, engine));
+  return cells;
+}
+
+void print_bench_rows(std::ostream& out, const BenchStudy& study) {
+  std::vector<std::vector<std::string>> lines{{"scene", "engine", "variation", "threads", "ms a frame ", "M prim/s",
+                                               "M pix/s", "cycles", "M cycles/s", "depth rms", "depth max",
+                                               "colour max", "mismatches", "missing+extra", "x rtl", "x llvmpipe"}};
+  bool is_any_single = false;
+  for (const BenchRow& row : study.rows) {
+    lines.push_back(row_cells(study, row));
+    is_any_single = is_any_single || is_single(study, row);
+  }
+  print_table(out, lines, 3);
+  if (is_any_single) out << "* a single frame\n";
+}
+
+void print_skips(std::ostream& out, const std::vector<SkipRow>& skips) {
+  std::vector<std::vector<std::string>> lines{{"skip", "scene", "ms with", "ms without", "saved", "skipped"}};
+  for (const SkipRow& row : skips)
+    lines.push_back({row.skip, row.scene, fixed(1e3 * row.with.median(), 2), fixed(1e3 * row.without.median(), 2),
+                     fixed(100 * row.saved(), 1) + " %", with_commas(row.counter)});
+  print_table(out, lines, 2);
+}
+
+void print_growth(std::ostream& out, const std::vector<GrowthRow>& growth) {
+  for (const GrowthSeries& series : growth_series()) {
+    std::vector<std::vector<std::string>> lines{{series.x, "ms a frame", "M tri/s", "M pix/s"}};
+    for (const GrowthRow& row : growth)
+      if (row.series == series.name)
+        lines.push_back({with_commas(static_cast<std::uint64_t>(row.x)), fixed(1e3 * row.times.median(), 2),
+                         fixed(row.mtri_s(), 3), fixed(row.mpix_s(), 2)});
+    if (lines.size() == 1) continue;
+    out << series.name << ": " << series.meaning << '\n';
+    print_table(out, lines, 0);
+  }
+}
+
+}  // namespace
+
+void add_bench_json(Json& result, const BenchStudy& study) {
+  result["machine"] = {{"processor", processor_name()}, {"threads", std::thread::hardware_concurrency()}};
+  result["rows"] = Json::array();
+  for (const BenchRow& row : study.rows) result["rows"].push_back(bench_row_json(row, study.cases[row.case_index]));
+  for (const SkipRow& row : study.skips) result["skips"].push_back(skip_row_json(row));
+  for (const GrowthRow& row : study.growth) result["growth"].push_back(growth_row_json(row));
+}
+
+void write_bench_page(const std::string& path, const Json& result, const std::string& command) {
+  if (path.empty()) return;
+  Json page = result;
+  page["version"] = HALFPLANE_VERSION;
+  page["command"] = command;
+  page["growth_series"] = Json::array();
+  for (const GrowthSeries& series : growth_series())
+    page["growth_series"].push_back({{"name", series.name}, {"x", series.x}, {"meaning", series.meaning}});
+  const std::string html = bench_report(page.dump());
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
+}
+
+void print_bench(std::ostream& out, const BenchStudy& study) {
+  if (!study.rows.empty()) print_bench_rows(out, study);
+  if (!study.rows.empty() && !study.skips.empty()) out << '\n';
+  if (!study.skips.empty()) print_skips(out, study.skips);
+  if (!(study.rows.empty() && study.skips.empty()) && !study.growth.empty()) out << '\n';
+  if (!study.growth.empty()) print_growth(out, study.growth);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,18 @@
+// The built-in scenes that are work: what software rasterizers are timed on, and what shows what can be skipped.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "model/scene.hpp"
+#include "sim/scene/camera.hpp"
+
+namespace halfplane {
+
+/// Makes the work scene of that name, without ":N", of `size` layers, rings, boxes, lines or triangles. No two vertices
+/// of a primitive have the same colour; all of it is drawn with depth test less. `camera` as in make_builtin; scenes
+/// without a camera leave it out. Throws InputError for a camera that is none.
+[[nodiscard]] Scene make_work_scene(std::string_view name, int size, int width, int height, const CameraRequest& camera,
+                                    std::uint64_t seed);
+
+}  // namespace halfplane

@@ -1,0 +1,167 @@
+// The functional engine's fast path against the scalar engine: image and program-order counters, whatever the thread
+// count, the instruction set and what may be skipped.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/engines/functional.hpp"
+#include "model/engines/functional/kernels.hpp"
+#include "model/engines/scalar.hpp"
+#include "sim/cosim/random_scene.hpp"
+#include "sim/scene/builtin.hpp"
+#include "sim/scene/depth_mapping.hpp"
+
+namespace halfplane {
+namespace {
+
+void expect_same(const Rendering& fast, const Rendering& scalar) {
+  ASSERT_EQ(fast.frame.depth, scalar.frame.depth);
+  ASSERT_EQ(fast.frame.color, scalar.frame.color);
+  EXPECT_EQ(fast.counters.depth_passed, scalar.counters.depth_passed);
+  EXPECT_EQ(fast.counters.written, scalar.counters.written);
+  EXPECT_EQ(fast.counters.primitives_in, scalar.counters.primitives_in);
+  EXPECT_EQ(fast.counters.primitives_in, fast.counters.culled + fast.counters.drawn);
+}
+
+/// Every kernel that this machine has, one and three threads, everything skipped and nothing.
+void expect_all_same(const Scene& scene, const Config& config) {
+  const Rendering scalar = render_scalar(scene, config);
+  const PreparedScene prepared(scene);
+  FunctionalEngine engine(config);
+  for (const functional::Kernels* kernels : functional::available_kernels())
+    for (const int threads : {1, 3})
+      for (const bool skips : {true, false}) {
+        SCOPED_TRACE(std::string(kernels->name) + ", threads " + std::to_string(threads) +
+                     (skips ? ", skip all" : ", skip none"));
+        RenderOptions options;
+        options.instruction_set = kernels->name;
+        options.threads = threads;
+        if (!skips) options.skip = skip_none();
+        const Rendering& fast = engine.render(prepared, options);
+        expect_same(fast, scalar);
+        if (!skips) {
+          EXPECT_EQ(fast.counters.covered, scalar.counters.covered);
+        }
+      }
+}
+
+Config config_of(const char* name, int depth_bits) {
+  Config config = preset(name);
+  config.depth_bits = depth_bits;
+  return config;
+}
+
+TEST(Functional, EveryKernelIsThisMachines) { EXPECT_STREQ(functional::available_kernels().back()->name, "portable"); }
+
+TEST(Functional, BuiltinScenesAreTheSameOnEveryPath) {
+  for (const Builtin& builtin : builtin_scenes()) {
+    SCOPED_TRACE(builtin.name);
+    expect_all_same(make_builtin(builtin.name, 200, 150, {}, 1), preset("embedded"));
+    expect_all_same(make_builtin(builtin.name, 131, 77, {}, 1), config_of("full", 24));
+  }
+}
+
+TEST(Functional, WorkScenesAreTheSameOnEveryPath) {
+  for (const char* name : {"layers:24", "layers_front:24", "ball:40", "blocks:150", "scratches:800", "dust:30000",
+                           "objects:64", "hidden:20", "shell"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = make_builtin(name, 192, 130, {}, 1);
+    expect_all_same(scene, config_of("embedded", 16));
+    expect_all_same(scene, config_of("embedded", 24));
+  }
+}
+
+TEST(Functional, ReversedDepthIsTheSameOnEveryPath) {
+  Config config = preset("embedded");
+  config.depth_mapping = DepthMapping::rev;
+  for (const char* name : {"city", "ball:30", "blocks:60"}) {
+    SCOPED_TRACE(name);
+    expect_all_same(in_depth_mapping(make_builtin(name, 160, 120, {}, 1), config.depth_mapping), config);
+  }
+}
+
+TEST(Functional, RandomScenesAreTheSameOnEveryPath) {
+  for (const char* name : {"tiny", "embedded", "small", "full"})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      const Config config = preset(name);
+      expect_all_same(random_scene(config, seed, 300), config);
+    }
+}
+
+/// One kind of skipping at a time leaves the image alone, on a scene where it finds something to skip.
+TEST(Functional, EachSwitchLeavesTheImageAloneAndItsCounterShowsTheWorkSaved) {
+  struct Case {
+    const char* name;
+    const char* scene;
+    bool Skip::*member;
+    std::uint64_t (*count)(const Counters&);
+  };
+  const Case cases[] = {
+      {"frustum", "walk", &Skip::frustum, [](const Counters& c) { return c.skipped.frustum; }},
+      {"backface", "ball:40", &Skip::backface, [](const Counters& c) { return c.skipped.backface; }},
+      {"empty", "teapot:40", &Skip::empty, [](const Counters& c) { return c.skipped.empty; }},
+      {"no_sample", "dust:100000", &Skip::no_sample, [](const Counters& c) { return c.skipped.no_sample; }},
+      {"objects_hiz", "hidden:20", &Skip::objects_hiz, [](const Counters& c) { return c.skipped.objects_hiz; }},
+      {"tiles_hiz", "layers_front:20", &Skip::tiles_hiz, [](const Counters& c) { return c.skipped.tiles_hiz; }},
+      {"tiles_outside", "slivers", &Skip::tiles_outside, [](const Counters& c) { return c.skipped.tiles_outside; }},
+      {"trivially_accepted", "layers:20", &Skip::trivially_accepted,
+       [](const Counters& c) { return c.skipped.trivially_accepted; }},
+      {"attributes", "layers:20", &Skip::attributes, [](const Counters& c) { return c.skipped.attributes; }},
+      {"clear", "teapot", &Skip::clear, [](const Counters& c) { return c.skipped.clear; }}};
+  const Config config = preset("embedded");
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.name);
+    const Scene scene = make_builtin(one.scene, 200, 150, {}, 1);
+    const Rendering scalar = render_scalar(scene, config);
+    RenderOptions without;
+    without.skip.*one.member = false;
+    const Rendering all = render_functional(scene, config), off = render_functional(scene, config, without);
+    expect_same(all, scalar);
+    expect_same(off, scalar);
+    EXPECT_GT(one.count(all.counters), 0u);
+    RenderOptions alone;
+    alone.skip = skip_none();
+    alone.skip.*one.member = true;
+    expect_same(render_functional(scene, config, alone), scalar);
+  }
+}
+
+TEST(Functional, AnEngineForgetsTheFrameBefore) {
+  const Config config = preset("embedded");
+  FunctionalEngine engine(config);
+  for (const char* name : {"teapot", "triangle", "city", "star", "teapot", "layers:8"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = make_builtin(name, 160, 120, {}, 1);
+    expect_same(engine.render(scene), render_scalar(scene, config));
+  }
+  const Scene small = make_builtin("teapot", 61, 43, {}, 1);
+  expect_same(engine.render(small), render_scalar(small, config));
+}
+
+TEST(Functional, TheFirstErrorIsReportedWhateverTheThreads) {
+  Scene scene = make_builtin("dust:20000", 160, 120, {}, 1);
+  scene.vertices[scene.indices[scene.indices.size() - 1]].x = 1e301;
+  scene.vertices[scene.indices[scene.indices.size() / 2]].x = 1e302;
+  const Config config = preset("embedded");
+  std::string expected;
+  try {
+    (void)render_scalar(scene, config);
+  } catch (const InputError& error) {
+    expected = error.what();
+  }
+  ASSERT_FALSE(expected.empty());
+  for (const int threads : {1, 4}) {
+    RenderOptions options;
+    options.threads = threads;
+    try {
+      (void)render_functional(scene, config, options);
+      FAIL() << "nothing was refused";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace halfplane

@@ -1,0 +1,108 @@
+// Mesa's picture of a scene is ours but for rounding: what is timed is the same work.
+#include "sim/bench/mesa_peer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "model/config.hpp"
+#include "model/engines/functional.hpp"
+#include "sim/image/framebuffer_files.hpp"
+#include "sim/scene/builtin.hpp"
+#include "sim/scene/capture.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+
+class MesaPeerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      peer = std::make_unique<MesaPeer>(kWidth, kHeight, 16, 1);
+    } catch (const std::runtime_error& error) {
+      ASSERT_NE(std::string(error.what()).find("install"), std::string::npos);
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  // Pixels that differ by more than rounding in any channel.
+  int differing(const Scene& scene) {
+    peer->upload(scene);
+    EXPECT_GT(peer->render(), 0);
+    const std::vector<std::uint32_t> there = peer->color();
+    Config config = preset("full");
+    config.depth_bits = 16;  // the unit of polygon_offset
+    const Picture here = color_picture(render_functional(scene, config).frame, config.color_format);
+    EXPECT_EQ(there.size() * 3, here.rgb.size());
+    int count = 0;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      bool differs = false;
+      for (std::size_t c = 0; c < 3; ++c)
+        differs = differs || std::abs(static_cast<int>(there[i] >> 8 * c & 255U) - here.rgb[3 * i + c]) > 2;
+      count += differs ? 1 : 0;
+    }
+    return count;
+  }
+
+  std::unique_ptr<MesaPeer> peer;
+};
+
+TEST_F(MesaPeerTest, ItDrawsTheBuiltinScenesAsWeDo) {
+  EXPECT_NE(peer->name().find("llvmpipe"), std::string::npos);
+  for (const char* name :
+       {"triangle", "teapot:4", "city:20", "layers:8", "ball:12", "objects:80", "shell:8", "dust:500"})
+    EXPECT_LE(differing(make_builtin(name, kWidth, kHeight, {}, 1)), kWidth * kHeight / 200) << name;
+}
+
+// Each state in turn, in both spaces, over the whole picture or within a scissor.
+TEST_F(MesaPeerTest, StatesMeanTheSame) {
+  const std::string head = "halfplane 1\ntarget 96 64\nclear color 20 20 30 255 depth 1\n";
+  const std::string fan =
+      "v 50 8 0.25 1 255 0 0 255\nv 10 50 0.5 2 0 255 0 255\nv 50 60 0.75 1 0 0 255 255\nv 90 40 0.5 3 255 255 0 255\n";
+  const std::string flat = "v 5 5 0.4 1 200 90 0 255\nv 91 30 0.4 1 10 90 200 255\nv 20 60 0.6 1 255 255 255 255\n";
+  for (const char* state :
+       {"cull back", "cull front", "cull both", "front cw\nstate cull back", "depth_test greater", "depth_test always",
+        "depth_write off", "color_write off", "shade flat", "shade flat\nstate provoking last", "scissor 20 10 40 30",
+        "polygon_mode line", "polygon_mode point\nstate point_size 4", "polygon_offset 0 9000"}) {
+    std::string text = head;
+    text.append("space window\n").append(fan).append(flat).append("t 4 5 6\nstate ").append(state);
+    text += "\ntf 0 1 2 3\nts 3 2 1 0\nt 4 6 5\nl 0 3\np 2\n";
+    EXPECT_LE(differing(read_capture(text, "states.hpt")), 12) << state;
+  }
+  const std::string clip = "v -0.9 -0.8 -0.5 1 255 0 0 255\nv 0.9 -0.8 0.45 1 0 255 0 255\nv 0 0.9 0.5 1 0 0 255 255\n";
+  for (const char* state : {"viewport 10.5 4 60 50.25", "depth_range 0.5 0.25", "clip_z zero_one", "cull back",
+                            "front cw\nstate cull back"}) {
+    std::string text = head;
+    text.append("state ").append(state).append("\n").append(clip).append("t 0 1 2\n");
+    EXPECT_LE(differing(read_capture(text, "clip.hpt")), 12) << state;
+  }
+}
+
+TEST_F(MesaPeerTest, WhatItDoesNotHaveIsRefusedByName) {
+  try {
+    peer->upload(make_builtin("star", kWidth, kHeight, {}, 1));
+    FAIL() << "drawn";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("line_rule midpoint"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW((void)peer->render(), std::runtime_error);  // there is no scene now
+}
+
+TEST_F(MesaPeerTest, PeersOfDifferentThreadCountsLiveSideBySide) {
+  const Scene scene = make_builtin("layers:8", kWidth, kHeight, {}, 1);
+  MesaPeer other(kWidth, kHeight, 24, 2);
+  peer->upload(scene);
+  other.upload(scene);
+  EXPECT_GT(peer->render(), 0);
+  EXPECT_GT(other.render(), 0);
+  EXPECT_EQ(peer->color(), other.color());
+}
+
+}  // namespace
+}  // namespace halfplane
