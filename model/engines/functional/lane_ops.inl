@@ -257,18 +257,24 @@ HALFPLANE_INLINE I16 load_block(const Element* from, int stride) {
   for (int j = 0; j < 4; ++j) std::memcpy(reinterpret_cast<char*>(&r) + 16 * j, from + j * stride, 16);
   return r;
 }
+/// Two blocks, side by side, as four rows of eight pixels.
 template <class Element>
-HALFPLANE_INLINE void store_block(Element* to, int stride, const I16& value) {
+HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, const I16& right) {
 #if HALFPLANE_ISA == 512
-  typedef std::int32_t Row __attribute__((vector_size(16), aligned(4), may_alias));
+  typedef std::int32_t Row __attribute__((vector_size(32), aligned(4), may_alias));
+  const auto &a = left.part[0], &b = right.part[0];
   const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA { *reinterpret_cast<Row*>(to + j * stride) = row; };
-  const auto& v = value.part[0];
-  put(0, __builtin_shufflevector(v, v, 0, 1, 2, 3));
-  put(1, __builtin_shufflevector(v, v, 4, 5, 6, 7));
-  put(2, __builtin_shufflevector(v, v, 8, 9, 10, 11));
-  put(3, __builtin_shufflevector(v, v, 12, 13, 14, 15));
+  const auto upper = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
+  const auto lower = __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
+  put(0, __builtin_shufflevector(upper, upper, 0, 1, 2, 3, 4, 5, 6, 7));
+  put(1, __builtin_shufflevector(upper, upper, 8, 9, 10, 11, 12, 13, 14, 15));
+  put(2, __builtin_shufflevector(lower, lower, 0, 1, 2, 3, 4, 5, 6, 7));
+  put(3, __builtin_shufflevector(lower, lower, 8, 9, 10, 11, 12, 13, 14, 15));
 #else
-  for (int j = 0; j < 4; ++j) std::memcpy(to + j * stride, reinterpret_cast<const char*>(&value) + 16 * j, 16);
+  for (int j = 0; j < 4; ++j) {
+    std::memcpy(to + j * stride, reinterpret_cast<const char*>(&left) + 16 * j, 16);
+    std::memcpy(to + j * stride + 4, reinterpret_cast<const char*>(&right) + 16 * j, 16);
+  }
 #endif
 }
 

@@ -20,6 +20,8 @@ struct LanePositions {
   I16 block_yx;  ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
+  /// Pixel (x, y) of the bin is at column_at[x] + row_at[y] of its memory.
+  std::array<std::uint16_t, kBinSize> column_at, row_at;
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -28,6 +30,11 @@ struct LanePositions {
     block_x = I16::of([](int i) { return i % 4; });
     block_y = I16::of([](int i) { return i / 4; });
     block_yx = pairs(block_y, block_x);
+    for (int i = 0; i < kBinSize; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      column_at[at] = static_cast<std::uint16_t>((i >> 3) * 64 + (i & 4) * 4 + (i & 3));
+      row_at[at] = static_cast<std::uint16_t>((i >> 3) * 64 * kBinTiles + (i & 4) * 8 + (i & 3) * 4);
+    }
     for (int side = 0; side < 2; ++side) {
       const auto at = static_cast<std::size_t>(side);
       column[at] = block_x + (kBlockSize * side - kTileSize / 2);
@@ -123,6 +130,7 @@ class Bin {
       color_owner_[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
     }
     find_highest();
+    fetch_ahead();
   }
 
   void draw() {
@@ -162,19 +170,51 @@ class Bin {
     return memory;
   }
 
+  /// The bin's part of the target is asked for now: it is written at the end, and comes from far away.
+  void fetch_ahead() const {
+    constexpr int kLine = 16;  // pixels
+    const int rows = std::min(kBinSize, job_.target.height - first_y_),
+              columns = std::min(kBinSize, job_.target.width - first_x_);
+    for (int y = 0; y < rows; ++y) {
+      const std::size_t at = job_.target.at(first_x_, first_y_ + y);
+      for (int x = 0; x < columns + kLine - 1; x += kLine) {
+        const std::size_t pixel = at + static_cast<std::size_t>(std::min(x, columns - 1));
+        __builtin_prefetch(job_.target.depth.data() + pixel, 1, 2);
+        __builtin_prefetch(job_.target.color.data() + pixel, 1, 2);
+      }
+    }
+  }
+
   // --- which records ------------------------------------------------------------------------------------------------
 
   template <DepthFunc Test>
   void draw_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
     small_.count = 0;
+    constexpr std::ptrdiff_t kAhead = 8;
     for (; first != last; ++first) {
       const Record& record = slice.records[*first];
-      if (skip_.tiles_hiz && is_behind<Test>(record, bin_low_, bin_high_)) {
-        ++job_.counters.skipped.tiles_hiz;
-        continue;
+      if (last - first > kAhead) {
+        const Record& next = slice.records[first[kAhead]];
+        __builtin_prefetch(&next);
+        if (const Record& near = slice.records[first[kAhead / 2]]; near.kind == RecordKind::line) {
+          const char* setup = reinterpret_cast<const char*>(&slice.lines[near.v[0]]);
+          __builtin_prefetch(setup);
+          __builtin_prefetch(setup + 64);
+          __builtin_prefetch(setup + 128);
+        }
       }
       const int left = std::max(record.left - first_x_, 0), right = std::min(record.right - first_x_, kBinSize - 1);
       const int top = std::max(record.top - first_y_, 0), bottom = std::min(record.bottom - first_y_, kBinSize - 1);
+      const auto leave_out = [&] {
+        const auto tiles = static_cast<unsigned>(((right >> kTileShift) - (left >> kTileShift) + 1) *
+                                                 ((bottom >> kTileShift) - (top >> kTileShift) + 1));
+        job_.counters.tiles_visited += tiles;
+        job_.counters.skipped.tiles_hiz += tiles;
+      };
+      if (skip_.tiles_hiz && is_behind<Test>(record, bin_low_, bin_high_)) {
+        leave_out();
+        continue;
+      }
       if (record.is_small) {
         if (skip_.tiles_hiz) {
           const int a = tile_of(left, top), b = tile_of(right, top), c = tile_of(left, bottom),
@@ -182,7 +222,7 @@ class Bin {
           const std::int32_t low = std::min({tile_low_[a], tile_low_[b], tile_low_[c], tile_low_[d]});
           const std::int32_t high = std::max({tile_high_[a], tile_high_[b], tile_high_[c], tile_high_[d]});
           if (is_behind<Test>(record, low, high)) {
-            ++job_.counters.skipped.tiles_hiz;
+            leave_out();
             continue;
           }
         }
@@ -200,6 +240,10 @@ class Bin {
       triangle.top = top;
       triangle.right = right;
       triangle.bottom = bottom;
+      if (skip_.tiles_hiz && is_behind_tiles<Test>(record, triangle)) {
+        leave_out();
+        continue;
+      }
       if (set_up(slice, record, triangle) && !record.is_dropped) draw_large<Test>(triangle);
     }
     draw_batch<Test>(slice);
@@ -220,6 +264,22 @@ class Bin {
       case DepthFunc::never: return true;
       default: return false;
     }
+  }
+
+  /// The same for all tiles of a box.
+  template <DepthFunc Test>
+  HALFPLANE_INLINE bool is_behind_tiles(const Record& record, const BinTriangle& box) const {
+    const int left = box.left >> kTileShift, right = box.right >> kTileShift, top = box.top >> kTileShift,
+              bottom = box.bottom >> kTileShift;
+    const I16 is_column = (position_.pair_x >= left) & (position_.pair_x <= right);
+    I16 low(0x7fffffff), high(-1);
+    for (int row = top & ~1; row <= bottom; row += 2) {
+      const I16 y = position_.pair_y + row, is_in = is_column & (y >= top) & (y <= bottom);
+      high = max(high, select(is_in, I16::load(tile_high_ + row * kBinTiles), I16(-1)));
+      if (Test != DepthFunc::less)
+        low = min(low, select(is_in, I16::load(tile_low_ + row * kBinTiles), I16(0x7fffffff)));
+    }
+    return is_behind<Test>(record, Test == DepthFunc::less ? 0 : min_lane(low), max_lane(high));
   }
 
   // --- setup --------------------------------------------------------------------------------------------------------
@@ -410,10 +470,6 @@ class Bin {
 
   /// First pixel of a tile in the bin's memory.
   static int first_of(int tile) { return tile * kTileSize * kTileSize; }
-  /// Pixel (x, y) there.
-  static int pixel_of(int x, int y) {
-    return first_of(tile_of(x, y)) + ((y & 4) * 2 + (x & 4)) * (kBlockPixels / kBlockSize) + (y & 3) * 4 + (x & 3);
-  }
 
   /// First pixel of a tile in the target, or none where the bin hangs over it.
   [[nodiscard]] std::ptrdiff_t in_target(int tile) const {
@@ -746,9 +802,11 @@ class Bin {
       if (to < 0) continue;
       std::uint8_t& held = job_.tiles.held[static_cast<std::size_t>(job_.bin * kTiles + tile)];
       const auto put = [&](const auto* from, auto* image) HALFPLANE_LAMBDA {
-        for (int block = 0; block < 4; ++block)
-          store_block(image + to + (block >> 1) * kBlockSize * target.stride + (block & 1) * kBlockSize, target.stride,
-                      I16::load(from + first_of(tile) + kBlockPixels * block));
+        for (int half = 0; half < 2; ++half) {
+          const auto* blocks = from + first_of(tile) + 2 * kBlockPixels * half;
+          store_blocks(image + to + half * kBlockSize * target.stride, target.stride, I16::load(blocks),
+                       I16::load(blocks + kBlockPixels));
+        }
       };
       if (depth_owner_[tile] >= kInMemory) {
         need_depth(tile);
