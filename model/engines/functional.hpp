@@ -20,9 +20,9 @@ class FunctionalEngine {
   /// Renders every command of `scene` in program order. The result lives until the next call. Throws InputError for a
   /// scene that this configuration cannot take: a target that is too large, a window-space vertex outside the guard band,
   /// a state that the engine does not have.
-  [[nodiscard]] Rendering& render(const Scene& scene, const RenderOptions& options = {});
+  [[nodiscard]] const Rendering& render(const Scene& scene, const RenderOptions& options = {});
   /// The same of a scene that was prepared before: for scenes that are drawn more than once.
-  [[nodiscard]] Rendering& render(const PreparedScene& prepared, const RenderOptions& options = {});
+  [[nodiscard]] const Rendering& render(const PreparedScene& prepared, const RenderOptions& options = {});
 
  private:
   struct Memory;

@@ -60,7 +60,7 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT' or "
                  "'name=NAME' for one of a glTF file's own");
   add_seed_option(app, options, "seed of scenes with something random in them");
-  app.add_option("--threads", options.threads, "use at most N threads (this version uses one)")
+  app.add_option("--threads", options.threads, "use at most N threads (functional engine, depth)")
       ->check(CLI::Range(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
       ->capture_default_str();

@@ -89,6 +89,34 @@ TEST(Functional, RandomScenesAreTheSameOnEveryPath) {
     }
 }
 
+TEST(Functional, TheWidestReciprocalsAreTheSameOnEveryPath) {
+  for (const int extra : {3, 5, 6}) {
+    Config config = config_of("full", 24);
+    config.reciprocal_extra_bits = extra;
+    SCOPED_TRACE("reciprocal of " + std::to_string(24 + extra) + " bits");
+    for (const char* name : {"ball:24", "dust:3000", "blocks:30"})
+      expect_all_same(make_builtin(name, 128, 96, {}, 1), config);
+  }
+}
+
+TEST(Functional, ClearsThatNobodyDrewOnAreCountedByTileOfTheTarget) {
+  Scene scene = make_builtin("triangle", 20, 9, {}, 1);  // three by two tiles
+  scene.commands.pop_back();
+  const Config config = preset("embedded");
+  EXPECT_EQ(render_functional(scene, config).counters.skipped.clear, 12u) << "the empty target's and the scene's own";
+  scene.commands.push_back(scene.commands.front());
+  EXPECT_EQ(render_functional(scene, config).counters.skipped.clear, 18u);
+}
+
+TEST(Functional, AnObjectBehindIsRefusedAllTheSame) {
+  Scene scene = make_builtin("hidden:6", 160, 120, {}, 1);
+  const Config config = preset("embedded");
+  EXPECT_GT(render_functional(scene, config).counters.skipped.objects_hiz, 3u);
+  scene.vertices[scene.indices.back()].y = 2e300;
+  EXPECT_THROW((void)render_scalar(scene, config), InputError);
+  EXPECT_THROW((void)render_functional(scene, config), InputError);
+}
+
 /// One kind of skipping at a time leaves the image alone, on a scene where it finds something to skip.
 TEST(Functional, EachSwitchLeavesTheImageAloneAndItsCounterShowsTheWorkSaved) {
   struct Case {

@@ -33,8 +33,8 @@ struct Record {
   std::int32_t z_low = 0, z_high = 0;  ///< range of its depth codes
   std::int16_t left = 0, top = 0, right = 0, bottom = 0;  ///< its box inside the scissor, pixels, inclusive
   RecordKind kind = RecordKind::triangle;
-  bool is_small = false;    ///< a triangle within 8 x 8 pixels, nothing of which the scissor cuts off
-  bool is_dropped = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
+  bool is_small = false;       ///< a triangle within 8 x 8 pixels, nothing of which the scissor cuts off
+  bool draws_nothing = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
 };
 
 /// One slice. What the lanes read and write is in plain arrays, as long as they need.

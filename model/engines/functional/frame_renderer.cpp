@@ -9,6 +9,8 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
+#include <utility>
 
 namespace halfplane::functional {
 namespace {
@@ -138,12 +140,12 @@ bool is_supported(const Scene& scene, const Config& config, const RenderOptions&
   // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
   return widths.local_depth.bits <= 32 && widths.local_color.bits <= 16 && config.depth_bits <= 30 &&
          widths.delta.bits <= 24 && widths.color_product.bits <= 64 && widths.line_color.bits <= 31 &&
-         widths.reciprocal.bits <= 31 && DepthEncode(config, scene.planes).is_identity();
+         widths.reciprocal.bits <= 30 && DepthEncode(config, scene.planes).is_identity();
 }
 
 FrameRenderer::FrameRenderer(const Config& config) : config_(config), widths_(derive_widths(config)) {}
 
-Rendering& FrameRenderer::render(const PreparedScene& prepared, const RenderOptions& options) {
+const Rendering& FrameRenderer::render(const PreparedScene& prepared, const RenderOptions& options) {
   const Scene& scene = prepared.scene();
   start(prepared, options);
   auto last_report = Clock::now();
@@ -161,6 +163,8 @@ Rendering& FrameRenderer::render(const PreparedScene& prepared, const RenderOpti
   finish();
   return rendering_;
 }
+
+Rendering FrameRenderer::take() { return std::exchange(rendering_, {}); }
 
 void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& options) {
   const Scene& scene = prepared.scene();
@@ -185,6 +189,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   tiles_.z_high.resize(tiles);
   tiles_.pending.assign(tiles, 0);
   if (is_new || !skip_.clear) tiles_.held.assign(tiles, 0);
+  if (is_new) find_tiles();
   contexts_.clear();
   slice_count_ = pending_primitives_ = 0;
   pending_rises_ = has_flushed_ = false;
@@ -194,22 +199,40 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
 }
 
+/// Which tiles of the bins lie in the target. Those that do not hold no depth: no range of theirs is in the way.
+void FrameRenderer::find_tiles() {
+  is_in_target_.resize(tiles_.pending.size());
+  for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
+    const auto bin = static_cast<int>(i) / (kBinTiles * kBinTiles),
+               tile = static_cast<int>(i) % (kBinTiles * kBinTiles);
+    const int x = bin % bins_x_ * kBinSize + tile % kBinTiles * kTileSize,
+              y = bin / bins_x_ * kBinSize + tile / kBinTiles * kTileSize;
+    is_in_target_[i] = x < scene_->width && y < scene_->height ? 1 : 0;
+    tiles_.z_low[i] = std::numeric_limits<std::int32_t>::max();
+    tiles_.z_high[i] = -1;
+  }
+}
+
 // --- clears -----------------------------------------------------------------------------------------------------------
 
 void FrameRenderer::clear_whole(const Clear& command) {
   const auto started = Clock::now();
+  has_flushed_ = false;
   std::uint8_t bits = 0;
   if (command.depth) {
     bits |= TileStates::kDepthCleared;
     clear_depth_ = DepthEncode(config_, scene_->planes).of_window(*command.depth);
-    std::fill(tiles_.z_low.begin(), tiles_.z_low.end(), static_cast<std::int32_t>(clear_depth_));
-    std::fill(tiles_.z_high.begin(), tiles_.z_high.end(), static_cast<std::int32_t>(clear_depth_));
   }
   if (command.color) {
     bits |= TileStates::kColorCleared;
     clear_color_ = color_code(*command.color, config_.color_format);
   }
-  for (std::uint8_t& pending : tiles_.pending) pending |= bits;
+  for (std::size_t i = 0; i < tiles_.pending.size(); ++i) {
+    if (!is_in_target_[i]) continue;
+    if (command.depth) tiles_.z_low[i] = tiles_.z_high[i] = static_cast<std::int32_t>(clear_depth_);
+    rendering_.counters.skipped.clear += (tiles_.pending[i] & bits) != 0 ? 1 : 0;  // of the clear before
+    tiles_.pending[i] |= bits;
+  }
   rendering_.raster_s += std::chrono::duration<double>(Clock::now() - started).count();
   if (!skip_.clear) settle({0, 0, scene_->width, scene_->height});
 }
@@ -224,8 +247,12 @@ void FrameRenderer::clear(const Clear& command) {
   halfplane::clear(rendering_, *scene_, command, config_);
   if (!command.depth) return;
   const auto code = static_cast<std::int32_t>(DepthEncode(config_, scene_->planes).of_window(*command.depth));
-  for (std::int32_t& low : tiles_.z_low) low = std::min(low, code);
-  for (std::int32_t& high : tiles_.z_high) high = std::max(high, code);
+  has_flushed_ = false;
+  for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
+    if (!is_in_target_[i]) continue;
+    tiles_.z_low[i] = std::min(tiles_.z_low[i], code);
+    tiles_.z_high[i] = std::max(tiles_.z_high[i], code);
+  }
 }
 
 /// Writes the clears that are still pending in tiles that meet `rect`; not where memory is that clear already.
@@ -330,6 +357,10 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
     return to_window({p[0], p[1], p[2], 1, {}, 0, 0}, state, context.viewport);
   };
   const WindowPosition a = corner(draw.low), b = corner(draw.high);
+  // Nothing that the clipper would touch, nor what would be refused: its corners and errors are not the box's.
+  const double limit = config_.guard_band - 2, near = state.clip_z == ClipZ::zero_one ? 0 : -1, hair = 1e-9;
+  const auto is_inside = [limit](const WindowPosition& p) { return std::abs(p.x) < limit && std::abs(p.y) < limit; };
+  if (!is_inside(a) || !is_inside(b) || !(draw.low[2] > near + hair && draw.high[2] < 1 - hair)) return false;
   // A pixel and a code more: the snap, and the rounding of the plane.
   const Rect& rect = context.rect;
   const auto tile = [](double pixel, int first, int last) {

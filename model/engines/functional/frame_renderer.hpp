@@ -17,10 +17,14 @@ class FrameRenderer {
   explicit FrameRenderer(const Config& config);
 
   /// Precondition: is_supported(). The result lives until the next call.
-  [[nodiscard]] Rendering& render(const PreparedScene& prepared, const RenderOptions& options);
+  [[nodiscard]] const Rendering& render(const PreparedScene& prepared, const RenderOptions& options);
+
+  /// The last result, for keeps: the next frame starts with memory of its own.
+  [[nodiscard]] Rendering take();
 
  private:
   void start(const PreparedScene& prepared, const RenderOptions& options);
+  void find_tiles();
   void clear(const Clear& command);
   void clear_whole(const Clear& command);
   void draw(std::uint32_t command);
@@ -47,6 +51,7 @@ class FrameRenderer {
   int bins_x_ = 0, bins_y_ = 0;
   Rendering rendering_;
   TileStates tiles_;
+  std::vector<std::uint8_t> is_in_target_;  ///< by tile
   std::uint32_t clear_depth_ = 0, clear_color_ = 0;
   std::uint32_t held_depth_ = 0, held_color_ = 0;  ///< the clear that TileStates::held speaks of
   std::deque<DrawContext> contexts_;

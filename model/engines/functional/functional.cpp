@@ -21,20 +21,24 @@ FunctionalEngine::FunctionalEngine(const Config& config) {
 
 FunctionalEngine::~FunctionalEngine() = default;
 
-Rendering& FunctionalEngine::render(const Scene& scene, const RenderOptions& options) {
+const Rendering& FunctionalEngine::render(const Scene& scene, const RenderOptions& options) {
   if (functional::is_supported(scene, memory_->config, options))
     return memory_->fast.render(PreparedScene(scene), options);
   memory_->plain = render_tiles(scene, memory_->config, options);
   return memory_->plain;
 }
 
-Rendering& FunctionalEngine::render(const PreparedScene& prepared, const RenderOptions& options) {
+const Rendering& FunctionalEngine::render(const PreparedScene& prepared, const RenderOptions& options) {
   if (!functional::is_supported(prepared.scene(), memory_->config, options)) return render(prepared.scene(), options);
   return memory_->fast.render(prepared, options);
 }
 
 Rendering render_functional(const Scene& scene, const Config& config, const RenderOptions& options) {
-  return std::move(FunctionalEngine(config).render(scene, options));
+  validate(config);
+  if (!functional::is_supported(scene, config, options)) return render_tiles(scene, config, options);
+  functional::FrameRenderer renderer(config);
+  (void)renderer.render(PreparedScene(scene), options);
+  return renderer.take();
 }
 
 }  // namespace halfplane

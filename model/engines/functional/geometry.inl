@@ -32,6 +32,7 @@ struct Projection {
   double offset_x, offset_y, scale_y;  ///< of window space
   double grid, codes;                  ///< subpixels in a pixel; largest depth code
   int coordinate_shift;
+  double reach;        ///< pixels
   std::int32_t limit;  ///< subpixels
 
   Projection(const DrawContext& context, const Widths& widths) {
@@ -52,6 +53,7 @@ struct Projection {
     grid = static_cast<double>(std::int64_t{1} << config.subpixel_bits);
     codes = static_cast<double>((std::int64_t{1} << config.depth_bits) - 1);
     coordinate_shift = widths.grid_bits - config.subpixel_bits;
+    reach = 2.0 * config.guard_band;
     limit = static_cast<std::int32_t>(config.guard_band << widths.grid_bits);
   }
 };
@@ -90,8 +92,8 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
     if (p.scale_y < 0) y = static_cast<double>(target_height) - y;
     z = v.z;
   }
-  const double reach = 2.0 * p.limit;  // coarse: what is beyond does not fit the conversions
-  const L16 fits = (max(max(x, -x), max(y, -y)) <= reach) & (z >= -1.0) & (z <= 2.0);
+  // Coarse: what is beyond does not fit the conversions.
+  const L16 fits = (max(x, -x) <= p.reach) & (max(y, -y) <= p.reach) & (z >= -1.0) & (z <= 2.0);
   x = select(fits, x, D16(0.0));
   y = select(fits, y, D16(0.0));
   z = select(fits, z, D16(0.0));
@@ -304,7 +306,7 @@ struct CullLanes {
       out->bottom = static_cast<std::int16_t>(lane.bottom[at]);
       out->kind = RecordKind::triangle;
       out->is_small = (small >> i & 1) != 0;
-      out->is_dropped = (dropped >> i & 1) != 0;
+      out->draws_nothing = (dropped >> i & 1) != 0;
       ++out;
     }
     slice.record_count = static_cast<std::size_t>(out - slice.records.data());

@@ -278,7 +278,7 @@ HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, con
 #endif
 }
 
-/// One value of 16 bits in both halves of each lane, and pairs of them: a[lane] low, b[lane] high.
+/// Two values of 16 bits in the halves of each lane.
 HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
 
 /// a.low b.low + a.high b.high, lane by lane, of 16-bit pairs.

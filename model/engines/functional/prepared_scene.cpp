@@ -1,6 +1,7 @@
 #include "prepared_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "../../pipeline.hpp"
@@ -18,6 +19,8 @@ void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, st
   for (const auto& corner : prepared.index)
     for (std::size_t t = first; t < first + draw.primitives; ++t) {
       const std::size_t v = corner[t];
+      for (const double c : {prepared.x[v], prepared.y[v], prepared.z[v], prepared.w[v]})
+        if (!(std::abs(c) <= 1e300)) return;
       if (!(prepared.w[v] > 0)) return;
       const std::array<double, 3> at{prepared.x[v] / prepared.w[v], prepared.y[v] / prepared.w[v],
                                      prepared.z[v] / prepared.w[v]};

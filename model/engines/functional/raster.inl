@@ -1,7 +1,7 @@
 // Setup, coarse raster, fine raster, interpolation, depth test and ROP of one bin, fused. Bits as in the stages; the
 // order of the work is this engine's own:
 //
-//   triangle of at most a tile's extent   sixteen at a time through setup, then the blocks that it covers
+//   triangle of less than a tile's extent  sixteen at a time through setup, then the blocks that it covers
 //   larger                                its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
 //
 // A block is 4 x 4 pixels: sixteen lanes, one cache line. A tile is four of them.
@@ -129,7 +129,7 @@ class Bin {
       depth_owner_[t] = (pending[t] & TileStates::kDepthCleared) != 0 ? kCleared : kInTarget;
       color_owner_[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
     }
-    find_highest();
+    find_bin_range();
     fetch_ahead();
   }
 
@@ -140,7 +140,7 @@ class Bin {
       const std::uint32_t* last = slice.bin_records.data() + slice.bin_first[static_cast<std::size_t>(job_.bin) + 1];
       if (first == last) continue;
       state_ = slice.state;
-      find_highest();
+      find_bin_range();
       falls_ = state_.depth_test == DepthFunc::less || state_.depth_test == DepthFunc::lequal;
       rises_ = state_.depth_test == DepthFunc::greater || state_.depth_test == DepthFunc::gequal;
       // Twice: for the test that nearly every scene has, and for any.
@@ -232,7 +232,7 @@ class Bin {
       draw_batch<Test>(slice);
       if (record.kind == RecordKind::line) {
         draw_line<Test>(slice.lines[record.v[0]], record);
-        if (Test != DepthFunc::less) find_highest();
+        if (Test != DepthFunc::less) find_bin_range();
         continue;
       }
       BinTriangle triangle;
@@ -244,7 +244,7 @@ class Bin {
         leave_out();
         continue;
       }
-      if (set_up(slice, record, triangle) && !record.is_dropped) draw_large<Test>(triangle);
+      if (set_up(slice, record, triangle) && !record.draws_nothing) draw_large<Test>(triangle);
     }
     draw_batch<Test>(slice);
   }
@@ -534,7 +534,7 @@ class Bin {
     return colors(t.color, anchor, block);
   }
 
-  void find_highest() {
+  void find_bin_range() {
     I16 low = I16::load(tile_low_), high = I16::load(tile_high_);
     for (int t = 16; t < kTiles; t += 16) {
       low = min(low, I16::load(tile_low_ + t));
@@ -682,7 +682,7 @@ class Bin {
                         {lane.edge[0][i], lane.edge[1][i], lane.edge[2][i]});
       }
     }
-    find_highest();
+    find_bin_range();
   }
 
   /// Tiles that the triangle takes as a whole.

@@ -26,7 +26,7 @@ void draw_batch(const Slice& slice) {
   for (std::size_t b = 0; b < blocks; ++b) draw_block<Test>(blocks_[b], covered, passed);
   count(covered, passed);
   small_.count = 0;
-  if (is_changed || Test != DepthFunc::less) find_highest();  // with less, a bound that is too high will do
+  if (is_changed || Test != DepthFunc::less) find_bin_range();  // with less, a bound that is too high will do
 }
 
 /// The tiles that a small triangle's box touches: four at most, some of them the same.

@@ -30,7 +30,7 @@ struct SmallBatch {
     bottom[i] = bottom_;
     z_low[i] = record.z_low;
     z_high[i] = record.z_high;
-    dropped = (count == 0 ? 0 : dropped) | (record.is_dropped ? 1U : 0U) << count;
+    dropped = (count == 0 ? 0 : dropped) | (record.draws_nothing ? 1U : 0U) << count;
     return ++count == 16;
   }
 
@@ -38,7 +38,7 @@ struct SmallBatch {
               const LaneFormat& color_format, int first_x, int first_y);
 };
 
-/// The reciprocals of sixteen areas below 2^24, and their shifts.
+/// The reciprocals of sixteen areas below 2^31 and their shifts. significant_bits <= 29: a quotient fits 31 bits.
 HALFPLANE_INLINE void reciprocal_lanes(const I16& area, int significant_bits, L16& value, L16& shift) {
   const D16 divisor = convert<double>(max(area, I16(1)));
   L16 bits;
