@@ -3,9 +3,8 @@
 
 /// A block of a triangle of the batch with at least one covered pixel.
 struct Block {
-  std::uint8_t lane;         ///< of the batch
-  std::uint8_t column, row;  ///< of the bin's blocks
-  std::uint32_t covered;     ///< bits
+  std::uint32_t place;    ///< lane of the batch, column and row among the bin's blocks: a byte each
+  std::uint32_t covered;  ///< bits
 };
 
 template <DepthFunc Test>
@@ -54,35 +53,37 @@ HALFPLANE_INLINE bool touch_tiles(std::size_t i) {
 /// asking whether the box touches them: a branch that nobody can foresee costs more.
 HALFPLANE_INLINE std::size_t find_blocks() {
   std::size_t blocks = 0, tested = 0;
+  const auto add = [&](std::uint32_t place, const I16& signs, std::uint32_t is_there) HALFPLANE_LAMBDA {
+    const std::uint32_t covered = ~bits_of(signs) & 0xffff & (0U - is_there);
+    blocks_[blocks] = {place, covered};
+    blocks += covered != 0 ? 1U : 0U;
+  };
   for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) {
-    const int left = small_.left[i] >> 2, top = small_.top[i] >> 2;
-    const int right = small_.right[i] >> 2, bottom = small_.bottom[i] >> 2;
-    std::array<I16, 3> edge;
-    std::array<std::int32_t, 3> across, down;  // to the next block
+    std::array<I16, 3> edge, right, below;
     for (std::size_t e = 0; e < 3; ++e) {
-      const std::int32_t step = small_.edge_step[e][i];
-      edge[e] = multiply_add_pairs(I16(step), position_.block_yx) + small_.edge[e][i];
-      down[e] = static_cast<std::int16_t>(step) * kBlockSize;
-      across[e] = (step >> 16) * kBlockSize;
+      edge[e] = multiply_add_pairs(I16(small_.edge_step[e][i]), position_.block_yx) + small_.edge[e][i];
+      right[e] = edge[e] + small_.to_right[e][i];
+      below[e] = edge[e] + small_.to_below[e][i];
     }
-    const std::uint32_t is_drawn = ~small_.dropped >> i & 1;
-    const auto add = [&](int dx, int dy) HALFPLANE_LAMBDA {
-      I16 signs(0);
-      for (std::size_t e = 0; e < 3; ++e) signs |= edge[e] + (dx * across[e] + dy * down[e]);
-      const std::uint32_t covered = ~bits_of(signs) & 0xffff;
-      const bool is_there = left + dx <= right && top + dy <= bottom;
-      blocks_[blocks] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(left + dx),
-                         static_cast<std::uint8_t>(top + dy), covered};
-      blocks += (covered != 0 ? 1U : 0U) & (is_there ? 1U : 0U) & is_drawn;
-    };
-    add(0, 0);
-    add(1, 0);
-    add(0, 1);
-    add(1, 1);
-    tested += static_cast<unsigned>((right - left + 1) * (bottom - top + 1));
-    if (right - left < 2 && bottom - top < 2) continue;
-    for (int dy = 0; dy <= bottom - top; ++dy)
-      for (int dx = dy < 2 ? 2 : 0; dx <= right - left; ++dx) add(dx, dy);
+    const auto place = static_cast<std::uint32_t>(small_.place[i]), there = static_cast<std::uint32_t>(small_.there[i]);
+    constexpr std::uint32_t kColumn = 1 << 8, kRow = 1 << 16;
+    add(place, edge[0] | edge[1] | edge[2], there & 1);
+    add(place + kColumn, right[0] | right[1] | right[2], there >> 1 & 1);
+    add(place + kRow, below[0] | below[1] | below[2], there >> 2 & 1);
+    add(place + kColumn + kRow,
+        (below[0] + small_.to_right[0][i]) | (below[1] + small_.to_right[1][i]) | (below[2] + small_.to_right[2][i]),
+        there >> 3 & 1);
+    const int columns = (small_.right[i] >> 2) - (small_.left[i] >> 2),
+              rows = (small_.bottom[i] >> 2) - (small_.top[i] >> 2);
+    tested += static_cast<unsigned>((columns + 1) * (rows + 1));
+    if (columns < 2 && rows < 2) continue;
+    for (int dy = 0; dy <= rows; ++dy)
+      for (int dx = dy < 2 ? 2 : 0; dx <= columns; ++dx) {
+        I16 signs(0);
+        for (std::size_t e = 0; e < 3; ++e)
+          signs |= edge[e] + (dx * small_.to_right[e][i] + dy * small_.to_below[e][i]);
+        add(place + kColumn * static_cast<std::uint32_t>(dx) + kRow * static_cast<std::uint32_t>(dy), signs, there & 1);
+      }
   }
   job_.counters.samples_tested += kBlockPixels * tested;
   return blocks;
@@ -91,12 +92,13 @@ HALFPLANE_INLINE std::size_t find_blocks() {
 /// Depth, test and colour of a block.
 template <DepthFunc Test>
 HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixels, std::uint64_t& passed_pixels) {
-  const std::size_t i = block.lane;
-  const int tile_x = block.column >> 1, tile_y = block.row >> 1;
+  const std::size_t i = block.place & 255;
+  const int column = static_cast<int>(block.place >> 8 & 255), row = static_cast<int>(block.place >> 16);
+  const int tile_x = column >> 1, tile_y = row >> 1;
   // Of the tiles that the box may touch, and of the blocks of a tile.
   const auto of_box =
       static_cast<std::size_t>(tile_x - (small_.left[i] >> kTileShift) + 2 * (tile_y - (small_.top[i] >> kTileShift)));
-  const auto of_tile = static_cast<std::size_t>((block.column & 1) + 2 * (block.row & 1));
+  const auto of_tile = static_cast<std::size_t>((column & 1) + 2 * (row & 1));
   const auto at = static_cast<std::size_t>(first_of(tile_y * kBinTiles + tile_x)) + kBlockPixels * of_tile;
   const I16 value = position_.column[of_tile & 1] * small_.z_step_x[i] +
                     position_.row[of_tile >> 1] * small_.z_step_y[i] + small_.z_anchor[of_box][i];

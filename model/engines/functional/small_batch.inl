@@ -13,7 +13,10 @@ struct SmallBatch {
   alignas(64) Lane z_low, z_high;
   std::uint32_t dropped = 0;  ///< lanes that draw nothing
 
-  alignas(64) LaneArray<3> edge;       ///< at the first pixel of the box's first block
+  alignas(64) LaneArray<3> edge;                ///< at the first pixel of the box's first block
+  alignas(64) LaneArray<3> to_right, to_below;  ///< from a block to its neighbours
+  alignas(64) Lane place;                       ///< the first block: lane, column, row, a byte each
+  alignas(64) Lane there;              ///< bits: the box touches that block, its right neighbour, the lower, both's
   alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
   alignas(64) LaneArray<4> z_anchor;   ///< of the tiles that the box may touch: first, right, below, both
   alignas(64) Lane z_step_x, z_step_y;
@@ -113,7 +116,16 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
     const I16 value = (dx * (py - from.y) - dy * (px - from.x) + ~is_in) >> s;
     value.store(edge[e].data());
     pairs(dx, -dy).store(edge_step[e].data());
+    (dy * -kBlockSize).store(to_right[e].data());
+    (dx * kBlockSize).store(to_below[e].data());
   }
+
+  const I16 column = box_x >> 2, row = box_y >> 2, number = I16::of([](int i) { return i; });
+  (number | column << 8 | row << 16).store(place.data());
+  const I16 is_drawn = I16::of([](int i) { return 1 << i; }) & ~static_cast<std::int32_t>(dropped);
+  const I16 has_right = ((I16::load(right.data()) >> 2) > column) & 2,
+            has_below = ((I16::load(bottom.data()) >> 2) > row) & 4;
+  select(is_drawn != 0, has_right | has_below | ((has_right << 2) & (has_below << 1)) | 1, I16(0)).store(there.data());
 
   GradientLanes gradient;
   L16 shift;
