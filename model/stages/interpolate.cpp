@@ -32,9 +32,9 @@ LocalPlane<std::uint64_t> plane_of(std::int64_t anchor, std::int64_t step_x, std
 
 InterpolatedDepth depth_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
   const int depth_bits = widths.depth_code.bits;
-  const Value depth = value_at(setup, setup.depth, widths.depth_plane,
-                               {depth_bits, widths.local_depth.bits - depth_bits - 1}, widths, x, y, setup.depth_min,
-                               setup.depth_max);
+  const Value depth =
+      value_at(setup, setup.depth, widths.depth_plane, {depth_bits, widths.local_depth.bits - depth_bits - 1}, widths,
+               x, y, setup.depth_min, setup.depth_max);
   return {depth.unrounded, static_cast<std::uint32_t>(depth.code)};
 }
 
