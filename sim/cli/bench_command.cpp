@@ -11,7 +11,7 @@
 #include "sim/bench/engines.hpp"
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/depth/report.hpp"
+#include "sim/report/page.hpp"
 
 namespace halfplane {
 namespace {

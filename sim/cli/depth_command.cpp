@@ -13,8 +13,8 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/depth_study.hpp"
-#include "sim/depth/report.hpp"
 #include "sim/image/whole_file.hpp"
+#include "sim/report/page.hpp"
 
 namespace halfplane {
 namespace {

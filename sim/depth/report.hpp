@@ -10,7 +10,4 @@ namespace halfplane {
 /// std::runtime_error when this program was built without the library.
 [[nodiscard]] std::string depth_report(std::string_view data);
 
-/// Throws the same error, before the work.
-void require_chart_library();
-
 }  // namespace halfplane

@@ -45,7 +45,6 @@ class FrameRenderer {
   const Kernels* kernels_ = nullptr;
   const PreparedScene* prepared_ = nullptr;
   const Scene* scene_ = nullptr;
-  const RenderOptions* options_ = nullptr;
   Skip skip_;
   int threads_ = 1;
   int bins_x_ = 0, bins_y_ = 0;

@@ -506,7 +506,7 @@ class Bin {
     if (owner >= 0) {
       const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
       const ChannelPairs anchor = color_anchor(t, tile % kBinTiles, tile / kBinTiles);
-      for (std::size_t block = 0; block < 4; ++block) color_block(t, anchor, block).store(to + kBlockPixels * block);
+      for (std::size_t block = 0; block < 4; ++block) colors(t.color, anchor, block).store(to + kBlockPixels * block);
       return;
     }
     fetch(to, tile, owner == kCleared, job_.clear_color, job_.target.color);
@@ -525,13 +525,10 @@ class Bin {
     }
   }
 
-  /// Depths and colours of a triangle in block 0...3 of a tile, from the values at the tile's anchor.
+  /// Depths of a triangle in block 0...3 of a tile, from the value at the tile's anchor.
   HALFPLANE_INLINE I16 depth_block(const BinTriangle& t, std::int32_t anchor, std::size_t block) const {
     return decode(position_.column[block & 1] * t.z_step_x + position_.row[block >> 1] * t.z_step_y + anchor,
                   depth_format_, t.z_low, t.z_high);
-  }
-  HALFPLANE_INLINE I16 color_block(const BinTriangle& t, const ChannelPairs& anchor, std::size_t block) const {
-    return colors(t.color, anchor, block);
   }
 
   void find_bin_range() {
@@ -767,7 +764,7 @@ class Bin {
       if (passed_bits == 0 && skip_.fragments_early_z) continue;
       if (state_.depth_write) now.store(depths + at);
       if (!state_.color_write) continue;
-      const I16 color = color_block(t, color_at, static_cast<std::size_t>(block));
+      const I16 color = colors(t.color, color_at, static_cast<std::size_t>(block));
       select(passed, color, I16::load(pixels + at)).store(pixels + at);
     }
     Counters& counters = job_.counters;

@@ -1,0 +1,15 @@
+// HTML pages that need nothing beside them: a page that CMake cut where its data go, and the data.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace halfplane {
+
+/// Throws std::runtime_error when this program was built without the chart library.
+void require_chart_library();
+
+/// `head`, `data` (JSON, in the form that the page's script reads), `tail`. Throws as require_chart_library().
+[[nodiscard]] std::string page_with_data(std::string_view head, std::string_view data, std::string_view tail);
+
+}  // namespace halfplane
