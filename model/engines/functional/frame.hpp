@@ -25,11 +25,12 @@ struct FragmentState {
   bool is_flat = false;  ///< the colour is that of the first vertex
 };
 
-enum class RecordKind : std::uint8_t { triangle, line, rectangle };
+enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
 
 /// A primitive with at least one pixel in its box.
 struct Record {
-  std::array<std::uint32_t, 3> v{};    ///< into Slice::vertices, the provoking one first; line: [0] into Slice::lines
+  std::array<std::uint32_t, 3> v{};    ///< into Slice::vertices, of a triangle the provoking one first, of a whole line
+                                       ///< last, behind its ends; cut line: [0] into Slice::lines
   std::int32_t z_low = 0, z_high = 0;  ///< range of its depth codes
   std::int16_t left = 0, top = 0, right = 0, bottom = 0;  ///< its box inside the scissor, pixels, inclusive
   RecordKind kind = RecordKind::triangle;
@@ -49,7 +50,8 @@ struct Slice {
   FragmentState state;
   std::vector<Part> parts;
   std::size_t triangles = 0;                 ///< of all parts
-  std::vector<AssembledPrimitive> outlines;  ///< or what ends as lines or points; then of one part
+  bool is_lines = false;                     ///< the triangles are lines
+  std::vector<AssembledPrimitive> outlines;  ///< or what the lanes do not take: points, polygon modes; then of one part
 
   /// Range of the triangles' vertices: those are projected, once each. If it is too wide for that, every corner is a
   /// vertex of its own: three in a row for each triangle.
@@ -106,7 +108,8 @@ struct Kernels {
   const char* name;
   void (*project)(const FrameContext&, Slice&);         ///< vertices and codes
   void (*cull)(const FrameContext&, Slice&, SlowPath);  ///< records
-  void (*raster)(BinJob&);                              ///< a bin's records, drawn
+  void (*cull_lines)(const FrameContext&, Slice&, SlowPath);
+  void (*raster)(BinJob&);  ///< a bin's records, drawn
 };
 
 }  // namespace halfplane::functional

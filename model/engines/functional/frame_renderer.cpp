@@ -260,15 +260,16 @@ void FrameRenderer::finish() {
 void FrameRenderer::draw(std::uint32_t command) {
   const Draw& draw = std::get<Draw>(scene_->commands[command]);
   entries_done_ += draw.count;
-  const bool is_filled = drawn_as(scene_->states[draw.state], draw.topology) == PrimitiveType::triangle;
+  const PrimitiveType type = primitive_type(draw.topology);
+  const bool is_prepared = type != PrimitiveType::point && drawn_as(scene_->states[draw.state], draw.topology) == type;
   if (draw.outside != 0) {
-    const std::size_t count = is_filled ? prepared_->draws[command].primitives : primitive_count(*scene_, draw);
+    const std::size_t count = is_prepared ? prepared_->draws[command].primitives : primitive_count(*scene_, draw);
     primitive_ += static_cast<std::uint32_t>(count);
     rendering_.counters.primitives_in += count;
     rendering_.counters.culled += count;
     return;
   }
-  if (is_filled) return draw_triangles(command);
+  if (is_prepared) return draw_prepared(command);
   open_ = nullptr;
   draw_outlines(contexts_.emplace_back(*scene_, config_, draw, command));
 }
@@ -282,6 +283,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   slice.parts.clear();
   slice.outlines.clear();
   slice.triangles = 0;
+  slice.is_lines = false;
   slice.low_index = ~0U;
   slice.high_index = 0;
   slice.counters = {};
@@ -328,9 +330,10 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
 }
 
 /// Chunk by chunk into the open slice while that has the same state and room.
-void FrameRenderer::draw_triangles(std::uint32_t command) {
+void FrameRenderer::draw_prepared(std::uint32_t command) {
   const Draw& draw = std::get<Draw>(scene_->commands[command]);
   const PreparedScene::DrawChunks& chunks = prepared_->draws[command];
+  const bool is_lines = primitive_type(draw.topology) == PrimitiveType::line;
   if (skip_.objects_hiz && chunks.has_box) {
     // What is in front must be drawn to be known: before the first draw that is worth it, and now and then.
     constexpr std::size_t kMany = 512, kStale = 1 << 15;
@@ -348,9 +351,11 @@ void FrameRenderer::draw_triangles(std::uint32_t command) {
   for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
     const PreparedScene::Chunk& chunk = prepared_->chunks[i];
     if (pending_primitives_ >= kBatchPrimitives) flush();
-    if (open_ == nullptr || open_state_ != draw.state || open_->triangles + chunk.count > kSlicePrimitives) {
+    if (open_ == nullptr || open_state_ != draw.state || open_->is_lines != is_lines ||
+        open_->triangles + chunk.count > kSlicePrimitives) {
       open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
       open_state_ = draw.state;
+      open_->is_lines = is_lines;
     }
     open_->parts.push_back({chunk.first, chunk.count, command, primitive_});
     open_->triangles += chunk.count;

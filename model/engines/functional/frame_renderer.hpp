@@ -28,7 +28,7 @@ class FrameRenderer {
   void clear(const Clear& command);
   void clear_whole(const Clear& command);
   void draw(std::uint32_t command);
-  void draw_triangles(std::uint32_t command);
+  void draw_prepared(std::uint32_t command);
   [[nodiscard]] bool is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const;
   void draw_outlines(const DrawContext& context);
   void flush();

@@ -195,6 +195,21 @@ HALFPLANE_INLINE I16 covers_no_sample(const TriangleLanes& t, const I16& is_turn
   return is_small & ~(covered >> 31);
 }
 
+/// The corners of `count` or sixteen primitives from `first` on, as indices into Slice::vertices. `number`: of the
+/// first, in the slice. What lies beyond `count` is not looked at, but must be there.
+HALFPLANE_INLINE std::array<I16, 3> corner_lanes(const FrameContext& frame, const Slice& slice, std::size_t first,
+                                                 std::size_t count, std::size_t number) {
+  const I16 lane = I16::of([](int i) { return i; });
+  std::array<I16, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v[k] = slice.is_wide
+               ? lane * 3 + static_cast<std::int32_t>(3 * number + k)
+               : I16::load(&frame.prepared.index[k][first]) - static_cast<std::int32_t>(slice.low_index);
+    if (count < 16) v[k] = select(lane < static_cast<std::int32_t>(count), v[k], I16(0));
+  }
+  return v;
+}
+
 /// Turns 16 triangles into records; what must go the slow way goes it in its turn.
 struct CullLanes {
   const FrameContext& frame;
@@ -211,14 +226,7 @@ struct CullLanes {
     const Skip& skip = frame.skip;
     Counters& counters = slice.counters;
     TriangleLanes t;
-    for (std::size_t k = 0; k < 3; ++k) {
-      t.v[k] = slice.is_wide ? I16::of([](int i) { return 3 * i; }) + static_cast<std::int32_t>(3 * number + k)
-                             : I16::load(&frame.prepared.index[k][part.first + first]) -
-                                   static_cast<std::int32_t>(slice.low_index);
-      // What lies beyond the part is not looked at, but must be there.
-      if (count < 16)
-        t.v[k] = select(I16::of([](int i) { return i; }) < static_cast<std::int32_t>(count), t.v[k], I16(0));
-    }
+    t.v = corner_lanes(frame, slice, part.first + first, count, number);
     const std::uint32_t lanes = (1U << count) - 1;
     std::uint32_t slow_bits = 0, frustum_bits = 0;
     if (slice.any_code != 0) {

@@ -8,6 +8,8 @@ namespace {
 
 #include "geometry.inl"
 
+#include "line_geometry.inl"
+
 #include "raster.inl"
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace halfplane::functional {
 
-const Kernels kAvx2Kernels{"avx2", avx2::project, avx2::cull, avx2::raster};
+const Kernels kAvx2Kernels{"avx2", avx2::project, avx2::cull, avx2::cull_lines, avx2::raster};
 
 }  // namespace halfplane::functional
 #endif

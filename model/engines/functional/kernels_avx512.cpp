@@ -10,7 +10,7 @@
 
 namespace halfplane::functional {
 
-const Kernels kAvx512Kernels{"avx512", avx512::project, avx512::cull, avx512::raster};
+const Kernels kAvx512Kernels{"avx512", avx512::project, avx512::cull, avx512::cull_lines, avx512::raster};
 
 }  // namespace halfplane::functional
 #endif

@@ -6,6 +6,6 @@
 
 namespace halfplane::functional {
 
-const Kernels kPortableKernels{"portable", portable::project, portable::cull, portable::raster};
+const Kernels kPortableKernels{"portable", portable::project, portable::cull, portable::cull_lines, portable::raster};
 
 }  // namespace halfplane::functional

@@ -200,6 +200,13 @@ HALFPLANE_INLINE S32 shift_right_logical(const S32& a, int bits) {
   return r;
 }
 
+HALFPLANE_INLINE L16 shift_right_logical(const L16& a, int bits) {
+  typedef std::uint64_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  L16 r;
+  for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> bits);
+  return r;
+}
+
 /// One bit for each lane whose sign bit is set.
 HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 #if HALFPLANE_ISA == 512
@@ -214,6 +221,23 @@ HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 #else
   std::uint32_t bits = 0;
   for (int i = 0; i < 16; ++i) bits |= (static_cast<std::uint32_t>(mask.part[i / 4][i % 4]) >> 31) << i;
+  return bits;
+#endif
+}
+
+/// One bit for each lane's value, 0...63, of the lanes whose bit is set in `lanes`.
+HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes) {
+#if HALFPLANE_ISA == 512
+  const __m512i one = _mm512_set1_epi64(1), v = (__m512i)values.part[0];
+  const __m512i low = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes), one,
+                                              _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)));
+  const __m512i high = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes >> 8), one,
+                                               _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(v, 1)));
+  return static_cast<std::uint64_t>(_mm512_reduce_or_epi64(_mm512_or_si512(low, high)));
+#else
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 16; ++i)
+    bits |= static_cast<std::uint64_t>(lanes >> i & 1) << (values.part[i / I16::kLanes][i % I16::kLanes] & 63);
   return bits;
 #endif
 }
@@ -234,6 +258,24 @@ HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
                 static_cast<const char*>(base) + std::ptrdiff_t{index.part[i / 4][i % 4]} * 4, 4);
 #endif
   return r;
+}
+
+/// The lanes whose bit is set to base + 4 index.
+template <class Element>
+HALFPLANE_INLINE void scatter(Element* base, const I16& index, const I16& value, std::uint32_t lanes) {
+  static_assert(sizeof(Element) == 4);
+#if HALFPLANE_ISA == 512
+  _mm512_mask_i32scatter_epi32(base, static_cast<__mmask16>(lanes), (__m512i)index.part[0], (__m512i)value.part[0], 4);
+#else
+  std::array<std::int32_t, 16> at;
+  std::array<Element, 16> what;
+  index.store(at.data());
+  value.store(what.data());
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
+    base[at[i]] = what[i];
+  }
+#endif
 }
 
 /// The smallest lane.

@@ -1,5 +1,14 @@
-// The part of a line in the bin: line_raster from the first of its pixels there, found by quotient and remainder.
+// The part of a line in the bin: the pixels of line_raster, sixteen at a time, from the closed form of its steps.
 // Included inside class Bin: see raster.inl.
+
+template <DepthFunc Test>
+void draw_lines(const Slice& slice) {
+  if (lines_.count == 0) return;
+  lines_.set_up(slice, job_.frame, first_x_, first_y_);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(lines_.count); ++i)
+    if (lines_.pixels[i] > 0) draw_line<Test>(lines_, i);
+  lines_.count = 0;
+}
 
 /// Steps [first, last] of a line, counted from its first pixel, in which one coordinate is inside the bin.
 struct Steps {
@@ -23,123 +32,110 @@ HALFPLANE_INLINE static void clip_steps(Steps& steps, std::int32_t start, bool i
   if (leaves >= 0 && leaves < steps.last) steps.last = std::min(steps.last, step_of(leaves + 1) - 1);
 }
 
+/// A line that was set up alone: one that the scissor or the clipper has cut.
 template <DepthFunc Test>
-HALFPLANE_NOINLINE void draw_line(const LineSetup& line, const Record& record) {
+HALFPLANE_NOINLINE void draw_cut_line(const LineSetup& line) {
   const std::int64_t d = line.step_stay, D = line.step_stay - line.step_move;
   const bool is_x_major = line.is_x_major != 0;
   Steps steps{0, line.remaining};
-  int x = line.x - first_x_, y = line.y - first_y_;
+  const int x = line.x - first_x_, y = line.y - first_y_;
   clip_steps(steps, x, line.is_x_negative != 0, line.error, d, is_x_major ? 0 : D);
   clip_steps(steps, y, line.is_y_negative != 0, line.error, d, is_x_major ? D : 0);
   if (steps.first > steps.last) return;
-  const std::int64_t n = steps.first;
-  const std::int64_t moved = n == 0 || D == 0 ? 0 : (line.error + (n - 1) * d + D) / D;
-  std::int64_t error = line.error + n * d - moved * D;
-  const int major = static_cast<int>(n), minor = static_cast<int>(moved);
-  const int sign_x = line.is_x_negative != 0 ? -1 : 1, sign_y = line.is_y_negative != 0 ? -1 : 1;
-  x += sign_x * (is_x_major ? major : minor);
-  y += sign_y * (is_x_major ? minor : major);
-  // Steps of one pixel: along the major axis always, across it when the error says so.
-  const int along_x = is_x_major ? sign_x : 0, along_y = is_x_major ? 0 : sign_y;
-  const int across_x = is_x_major ? 0 : sign_x, across_y = is_x_major ? sign_y : 0;
-  const LinePixels at_first{x,
-                            y,
-                            along_x,
-                            along_y,
-                            across_x,
-                            across_y,
-                            error,
-                            d,
-                            D,
-                            line.depth + static_cast<std::uint64_t>(n) * line.depth_step,
-                            steps.last - n,
-                            n == 0 && line.is_before_start != 0};
-  const std::uint64_t passed = state_.color_write ? draw_pixels<Test, true>(line, record, at_first, n)
-                                                  : draw_pixels<Test, false>(line, record, at_first, n);
-  count(static_cast<std::uint64_t>(steps.last - n + 1), passed);
+  const std::int64_t n = steps.first, remainder = line.error + (n - 1) * d + D;
+  const auto major = static_cast<int>(n), minor = static_cast<int>(remainder / D);
+  const int right = is_x_major ? major : minor, down = is_x_major ? minor : major;
+  LineBatch& part = cut_line_;
+  part.pixels[0] = static_cast<std::int32_t>(steps.last - n + 1);
+  part.x_sign[0] = -line.is_x_negative;
+  part.y_sign[0] = -line.is_y_negative;
+  part.x[0] = x + (right ^ part.x_sign[0]) - part.x_sign[0];
+  part.y[0] = y + (down ^ part.y_sign[0]) - part.y_sign[0];
+  part.is_x_major[0] = -line.is_x_major;
+  part.shows_start[0] = n == 0 ? -line.is_before_start : 0;
+  part.row[0] = (static_cast<double>(remainder - minor * D) + 0.5) / static_cast<double>(D);
+  part.slope[0] = static_cast<double>(d) / static_cast<double>(D);
+  const int depth_up = 64 - widths_.line_depth.bits, color_up = 32 - widths_.line_color.bits;
+  const auto steps_on = static_cast<std::uint64_t>(n);
+  part.depth[0] = static_cast<std::int64_t>((line.depth + steps_on * line.depth_step) << depth_up);
+  part.depth_step[0] = static_cast<std::int64_t>(line.depth_step << depth_up);
+  for (std::size_t c = 0; c < 4; ++c) {
+    part.color[c][0] =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(line.color[c] + steps_on * line.color_step[c]) << color_up);
+    part.color_step[c][0] = static_cast<std::int32_t>(static_cast<std::uint32_t>(line.color_step[c]) << color_up);
+  }
+  part.depth_start[0] = static_cast<std::int32_t>(line.depth_start);
+  part.color_start[0] = static_cast<std::int32_t>(line.color_start);
+  draw_line<Test>(part, 0);
 }
 
-/// Where a line enters the bin and how it goes on.
-struct LinePixels {
-  int x, y;                                  ///< pixel of the bin
-  int along_x, along_y, across_x, across_y;  ///< steps of one pixel
-  std::int64_t error, d, D;                  ///< as in LineState
-  std::uint64_t depth;
-  std::int64_t left;  ///< pixels behind the first
-  bool shows_start;
-};
+/// Line `i` of a batch.
+template <DepthFunc Test>
+HALFPLANE_INLINE void draw_line(const LineBatch& lines, std::size_t i) {
+  widths_.line_depth.bits <= 32 ? draw_pixels<Test, std::int32_t>(lines, i) : draw_pixels<Test, std::int64_t>(lines, i);
+}
 
-/// Draws them; returns how many have passed. Everything that the loop needs is in variables of its own: the compiler
-/// cannot know that a pixel is not one of the bin's members.
-template <DepthFunc Test, bool HasColor>
-HALFPLANE_INLINE std::uint64_t draw_pixels(const LineSetup& line, const Record& record, const LinePixels& from,
-                                           std::int64_t n) {
-  typedef std::uint32_t U4 __attribute__((vector_size(16)));
-  typedef std::uint8_t Bytes __attribute__((vector_size(4)));
-  const int guard_bits = widths_.line_guard_bits;
-  const std::uint64_t depth_mask = ~0ULL >> (64 - widths_.line_depth.bits), depth_step = line.depth_step;
-  const auto channels_of = [](const std::array<std::uint64_t, 4>& c) HALFPLANE_LAMBDA {
-    return U4{static_cast<std::uint32_t>(c[0]), static_cast<std::uint32_t>(c[1]), static_cast<std::uint32_t>(c[2]),
-              static_cast<std::uint32_t>(c[3])};
-  };
-  const U4 color_step = channels_of(line.color_step);
-  U4 color = channels_of(line.color) + static_cast<std::uint32_t>(n) * color_step;
-  const std::uint32_t color_mask = (1U << widths_.line_color.bits) - 1;
-  const bool is_rgba = config_.color_format == ColorFormat::rgba8888;
-  const std::uint32_t depth_write = state_.depth_write ? ~0U : 0;
-  const DepthFunc test = state_.depth_test;
+/// `Depth`: an integer as wide as the depth register, or wider.
+template <DepthFunc Test, class Depth>
+HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
+  constexpr int kDepthBits = 8 * static_cast<int>(sizeof(Depth));
   std::int32_t* const depths = memory_.depth.data();
   std::uint32_t* const pixels = memory_.color.data();
-  const std::uint16_t *const column_at = position_.column_at.data(), *const row_at = position_.row_at.data();
-  const int along_x = from.along_x, along_y = from.along_y, across_x = from.across_x, across_y = from.across_y;
-  const std::int64_t d = from.d, D = from.D;
-
-  int x = from.x, y = from.y, last_tile = -1;
-  std::int64_t error = from.error;
-  std::uint64_t depth = from.depth, passed_pixels = 0, tiles = 0;
-  bool shows_start = from.shows_start;
-  for (std::int64_t left = from.left; left >= 0; --left) {
-    const int at = column_at[x] + row_at[y], tile = at / (kTileSize * kTileSize);
-    if (tile != last_tile) {
-      need_depth(tile);
-      if (HasColor) need_color(tile);
-      if (depth_write != 0) widen<Test>(tile, record.z_low, record.z_high);
-      last_tile = tile;
-      ++tiles;
+  const int depth_down = kDepthBits - config_.depth_bits;
+  const bool has_depth = state_.depth_write, has_color = state_.color_write;
+  const auto depth_of = [](std::int64_t value) HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
+  const Depth depth_step = depth_of(line.depth_step[i]);
+  const I16 lane = position_.lane;
+  D16 row = position_.lane_d * line.slope[i] + line.row[i];
+  Pack<Depth, 16> depth = convert<Depth>(lane) * depth_step + depth_of(line.depth[i]);
+  std::array<I16, 4> color;
+  if (has_color)
+    for (std::size_t c = 0; c < 4; ++c) color[c] = lane * line.color_step[c][i] + line.color[c][i];
+  I16 major = lane;
+  const I16 is_x_major(line.is_x_major[i]), x_sign(line.x_sign[i]), y_sign(line.y_sign[i]);
+  const I16 first_x(line.x[i] - line.x_sign[i]), first_y(line.y[i] - line.y_sign[i]);
+  std::uint32_t start = static_cast<std::uint32_t>(-line.shows_start[i]);
+  std::uint64_t tiles = 0, passed_pixels = 0;
+  for (std::int32_t left = line.pixels[i]; left > 0; left -= 16) {
+    const std::uint32_t there = left >= 16 ? 0xffffU : (1U << left) - 1;
+    const I16 minor = convert<std::int32_t>(row);
+    const I16 x = (select(is_x_major, major, minor) ^ x_sign) + first_x,
+              y = (select(is_x_major, minor, major) ^ y_sign) + first_y;
+    const I16 at = place_of(x, y);  // of lanes behind the last pixel: somewhere in the bin
+    const std::uint64_t touched = or_of_bits(at >> 6, there);
+    tiles |= touched;
+    if ((touched & ~line_tiles_) != 0) touch_line_tiles<Test>(touched & ~line_tiles_);
+    I16 code = convert<std::int32_t>(shift_right_logical(depth, depth_down));
+    const I16 is_start = from_bits(start);
+    code = select(is_start, I16(line.depth_start[i]), code);
+    const std::uint32_t passed = bits_of(passes<Test>(code, gather(depths, at))) & there;
+    passed_pixels += static_cast<unsigned>(std::popcount(passed));
+    if (has_depth) scatter(depths, at, code, passed);
+    if (has_color) {
+      const auto code_of = [&](std::size_t c) HALFPLANE_LAMBDA { return shift_right_logical(color[c], 24); };
+      const I16 rgba = code_of(0) | code_of(1) << 8 | code_of(2) << 16 | code_of(3) << 24;
+      scatter(pixels, at, packed(select(is_start, I16(line.color_start[i]), rgba)), passed);
+      for (std::size_t c = 0; c < 4; ++c) color[c] += I16(16 * line.color_step[c][i]);
     }
-    auto code = static_cast<std::int32_t>((depth & depth_mask) >> guard_bits);
-    if (shows_start) code = static_cast<std::int32_t>(line.depth_start);
-    // Masks, not branches: what passes is anybody's guess.
-    const std::int32_t stored = depths[at];
-    const bool is_passed = Test == DepthFunc::less ? code < stored
-                                                   : depth_passes(test, static_cast<std::uint32_t>(code),
-                                                                  static_cast<std::uint32_t>(stored));
-    const std::uint32_t passed = 0U - static_cast<std::uint32_t>(is_passed);
-    passed_pixels += passed & 1;
-    depths[at] = stored ^ ((stored ^ code) & static_cast<std::int32_t>(passed & depth_write));
-    if (HasColor) {
-      const U4 channel = (color & color_mask) >> guard_bits;
-      std::uint32_t packed;
-      if (is_rgba) {
-        const auto bytes = __builtin_convertvector(channel, Bytes);
-        std::memcpy(&packed, &bytes, 4);
-      } else {
-        packed = pack_rgb565<std::uint32_t>(channel[0], channel[1], channel[2]);
-      }
-      if (shows_start) {
-        const std::uint32_t c = line.color_start;
-        packed = is_rgba ? c : pack_rgb565<std::uint32_t>(c & 255, c >> 8 & 255, c >> 16 & 255);
-      }
-      pixels[at] ^= (pixels[at] ^ packed) & passed;
-    }
-    shows_start = false;
-    const std::int64_t moves = ~(error >> 63);
-    x += along_x + (across_x & static_cast<int>(moves));
-    y += along_y + (across_y & static_cast<int>(moves));
-    error += d - (D & moves);
-    depth += depth_step;
-    color += color_step;
+    row += D16(16 * line.slope[i]);
+    depth += Pack<Depth, 16>(16 * depth_step);
+    major += I16(16);
+    start = 0;
   }
-  job_.counters.tiles_visited += tiles;
-  return passed_pixels;
+  job_.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
+  count(static_cast<std::uint64_t>(line.pixels[i]), passed_pixels);
+}
+
+/// Tiles that lines have not touched since triangles last did: they must be in memory, and their ranges are known no
+/// more.
+template <DepthFunc Test>
+HALFPLANE_NOINLINE void touch_line_tiles(std::uint64_t tiles) {
+  line_tiles_ |= tiles;
+  for (; tiles != 0; tiles &= tiles - 1) {
+    const int tile = std::countr_zero(tiles);
+    need_depth(tile);
+    if (state_.color_write) need_color(tile);
+    if (state_.depth_write) forget_range<Test>(tile);
+  }
+  if (Test != DepthFunc::less) find_bin_range();
 }

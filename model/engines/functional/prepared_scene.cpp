@@ -51,15 +51,22 @@ PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()),
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);
     if (draw == nullptr) continue;
     const State& state = scene.states[draw->state];
-    if (drawn_as(state, draw->topology) != PrimitiveType::triangle) continue;
+    const PrimitiveType type = primitive_type(draw->topology);
+    if (type == PrimitiveType::point || drawn_as(state, draw->topology) != type) continue;
     DrawChunks& of_draw = draws[i];
     of_draw.first = chunks.size();
     const std::size_t first = index[0].size();
-    for_each_triangle(scene, *draw, state.provoking, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const auto add = [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       index[0].push_back(a);
       index[1].push_back(b);
       index[2].push_back(c);
-    });
+    };
+    if (type == PrimitiveType::triangle)
+      for_each_triangle(scene, *draw, state.provoking, add);
+    else
+      for_each_line(scene, *draw, [&](std::uint32_t start, std::uint32_t end) {
+        add(start, end, state.provoking == Provoking::last ? end : start);
+      });
     of_draw.primitives = index[0].size() - first;
     for (std::size_t at = first; at < index[0].size(); at += kChunk) {
       Chunk chunk{at, std::min(kChunk, index[0].size() - at), ~0U, 0};
@@ -71,7 +78,7 @@ PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()),
       chunks.push_back(chunk);
     }
     of_draw.count = chunks.size() - of_draw.first;
-    if (state.space == Space::clip) find_box(of_draw, *this, first);
+    if (type == PrimitiveType::triangle && state.space == Space::clip) find_box(of_draw, *this, first);
   }
   for (auto& corner : index) corner.resize(corner.size() + kSpare);
 }

@@ -17,9 +17,9 @@ class PreparedScene {
   explicit PreparedScene(const Scene& scene);
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
-  /// Triangles of a draw that lie one behind the other, at most kChunk of them.
+  /// Primitives of a draw that lie one behind the other, at most kChunk of them.
   struct Chunk {
-    std::size_t first = 0, count = 0;             ///< triangles
+    std::size_t first = 0, count = 0;             ///< into `index`
     std::uint32_t low_index = 0, high_index = 0;  ///< range of their vertices
   };
   static constexpr std::size_t kChunk = 2048;
@@ -27,7 +27,8 @@ class PreparedScene {
   // Vertices, and a few more of nothing so that the last ones may be read as many at a time.
   std::vector<double> x, y, z, w;
   std::vector<std::uint32_t> rgba;  ///< snapped, R lowest
-  // Triangles of the draws that are filled, the provoking vertex first; likewise a few more.
+  // Triangles of the draws that are filled, the provoking vertex first; lines of those that are drawn as such: start,
+  // end, the provoking vertex. Likewise a few more.
   std::array<std::vector<std::uint32_t>, 3> index;
   struct DrawChunks {
     std::size_t first = 0, count = 0;  ///< into `chunks`
@@ -37,7 +38,7 @@ class PreparedScene {
     std::array<double, 3> low{}, high{};
   };
   std::vector<Chunk> chunks;
-  std::vector<DrawChunks> draws;  ///< by command; empty for what is no filled draw
+  std::vector<DrawChunks> draws;  ///< by command; empty for what is neither
 
  private:
   const Scene* scene_;

@@ -15,26 +15,22 @@ constexpr int kBlockSize = 4, kBlockPixels = 16;
 /// Lanes as places.
 struct LanePositions {
   I16 pair_x, pair_y;  ///< of two rows of eight
-  I16 lane_bit;        ///< 1 << lane
+  I16 lane, lane_bit;  ///< its number; 1 << lane
+  D16 lane_d;
   I16 block_x, block_y;
   I16 block_yx;  ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
-  /// Pixel (x, y) of the bin is at column_at[x] + row_at[y] of its memory.
-  std::array<std::uint16_t, kBinSize> column_at, row_at;
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
     pair_y = I16::of([](int i) { return i / 8; });
+    lane = I16::of([](int i) { return i; });
+    lane_d = convert<double>(lane);
     lane_bit = I16::of([](int i) { return 1 << i; });
     block_x = I16::of([](int i) { return i % 4; });
     block_y = I16::of([](int i) { return i / 4; });
     block_yx = pairs(block_y, block_x);
-    for (int i = 0; i < kBinSize; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      column_at[at] = static_cast<std::uint16_t>((i >> 3) * 64 + (i & 4) * 4 + (i & 3));
-      row_at[at] = static_cast<std::uint16_t>((i >> 3) * 64 * kBinTiles + (i & 4) * 8 + (i & 3) * 4);
-    }
     for (int side = 0; side < 2; ++side) {
       const auto at = static_cast<std::size_t>(side);
       column[at] = block_x + (kBlockSize * side - kTileSize / 2);
@@ -108,6 +104,8 @@ HALFPLANE_INLINE Reciprocal fast_reciprocal(std::int64_t area, int significant_b
 }
 
 #include "small_batch.inl"
+
+#include "line_batch.inl"
 
 /// A bin while its records are drawn.
 class Bin {
@@ -189,19 +187,15 @@ class Bin {
 
   template <DepthFunc Test>
   void draw_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
-    small_.count = 0;
+    line_tiles_ = 0;
     constexpr std::ptrdiff_t kAhead = 8;
     for (; first != last; ++first) {
       const Record& record = slice.records[*first];
       if (last - first > kAhead) {
         const Record& next = slice.records[first[kAhead]];
         __builtin_prefetch(&next);
-        if (const Record& near = slice.records[first[kAhead / 2]]; near.kind == RecordKind::line) {
-          const char* setup = reinterpret_cast<const char*>(&slice.lines[near.v[0]]);
-          __builtin_prefetch(setup);
-          __builtin_prefetch(setup + 64);
-          __builtin_prefetch(setup + 128);
-        }
+        if (const Record& near = slice.records[first[kAhead / 2]]; near.kind == RecordKind::whole_line)
+          for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
       }
       const int left = std::max(record.left - first_x_, 0), right = std::min(record.right - first_x_, kBinSize - 1);
       const int top = std::max(record.top - first_y_, 0), bottom = std::min(record.bottom - first_y_, kBinSize - 1);
@@ -229,10 +223,14 @@ class Bin {
         if (small_.add(record, left, top, right, bottom)) draw_batch<Test>(slice);
         continue;
       }
+      if (record.kind == RecordKind::whole_line) {
+        if (lines_.add(record)) draw_lines<Test>(slice);
+        continue;
+      }
       draw_batch<Test>(slice);
-      if (record.kind == RecordKind::line) {
-        draw_line<Test>(slice.lines[record.v[0]], record);
-        if (Test != DepthFunc::less) find_bin_range();
+      draw_lines<Test>(slice);
+      if (record.kind == RecordKind::cut_line) {
+        draw_cut_line<Test>(slice.lines[record.v[0]]);
         continue;
       }
       BinTriangle triangle;
@@ -247,6 +245,7 @@ class Bin {
       if (set_up(slice, record, triangle) && !record.draws_nothing) draw_large<Test>(triangle);
     }
     draw_batch<Test>(slice);
+    draw_lines<Test>(slice);
   }
 
   static int tile_of(int x, int y) { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); }
@@ -436,6 +435,11 @@ class Bin {
     return min(max(code, I16(low)), I16(high));
   }
 
+  /// The mask whose lanes are the bits.
+  HALFPLANE_INLINE I16 from_bits(std::uint32_t bits) const {
+    return (I16(static_cast<std::int32_t>(bits)) & position_.lane_bit) != 0;
+  }
+
   template <DepthFunc Test>
   HALFPLANE_INLINE I16 passes(const I16& depth, const I16& stored) const {
     if (Test == DepthFunc::less) return depth < stored;
@@ -461,8 +465,13 @@ class Bin {
       const S32 code = shift_right_logical(value, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
       pair[p] = as_lanes(min(max(code, as_pairs(I16(t.low[p]))), as_pairs(I16(t.high[p]))));
     }
-    if (config_.color_format == ColorFormat::rgba8888) return pair[0] | pair[1] << 8;
-    const I16 r = pair[0] & 0xffff, g = pair[1] & 0xffff, b = shift_right_logical(pair[0], 16);
+    return packed(pair[0] | pair[1] << 8);
+  }
+
+  /// Colours of 8 bits a channel, R lowest, as the target has them.
+  [[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& rgba) const {
+    if (config_.color_format == ColorFormat::rgba8888) return rgba;
+    const I16 r = rgba & 255, g = shift_right_logical(rgba, 8) & 255, b = shift_right_logical(rgba, 16) & 255;
     return (r * 249 + 1014) >> 11 << 11 | (g * 253 + 505) >> 10 << 5 | (b * 249 + 1014) >> 11;
   }
 
@@ -470,6 +479,11 @@ class Bin {
 
   /// First pixel of a tile in the bin's memory.
   static int first_of(int tile) { return tile * kTileSize * kTileSize; }
+
+  /// Where pixel (x, y) of the bin is in its memory.
+  HALFPLANE_INLINE static I16 place_of(const I16& x, const I16& y) {
+    return (((x & 56) << 3) | ((x & 4) << 2) | (x & 3)) + (((y & 56) << 6) | ((y & 4) << 3) | ((y & 3) << 2));
+  }
 
   /// First pixel of a tile in the target, or none where the bin hangs over it.
   [[nodiscard]] std::ptrdiff_t in_target(int tile) const {
@@ -649,6 +663,7 @@ class Bin {
   template <DepthFunc Test>
   void draw_large(const BinTriangle& t) {
     std::int32_t plane = -1;
+    line_tiles_ = 0;
     for (int row = t.top >> kTileShift & ~1; row <= t.bottom >> kTileShift; row += 2) {
       TileLanes lanes = classify_tiles(t, row);
       std::int32_t* low = tile_low_ + row * kBinTiles;
@@ -779,11 +794,6 @@ class Bin {
     }
   }
 
-  /// The mask whose lanes are the bits.
-  HALFPLANE_INLINE I16 from_bits(std::uint32_t bits) const {
-    return (I16(static_cast<std::int32_t>(bits)) & position_.lane_bit) != 0;
-  }
-
   // --- lines --------------------------------------------------------------------------------------------------------
 
 #include "line.inl"
@@ -832,6 +842,8 @@ class Bin {
   std::int32_t bin_low_ = 0, bin_high_ = 0;
   const LanePositions& position_ = lane_positions();
   SmallBatch small_;
+  LineBatch lines_, cut_line_;  ///< cut_line_: one, in lane 0
+  std::uint64_t line_tiles_ = 0;  ///< touched by lines since triangles last were drawn
   std::array<Block, 16 * 9 + 1> blocks_;
   bool falls_ = false, rises_ = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count_ = 0;

@@ -60,6 +60,35 @@ PixelBounds line_box(const LineSetup& line) {
   return {std::min(line.x, end_x), std::min(line.y, end_y), std::max(line.x, end_x), std::max(line.y, end_y)};
 }
 
+/// Appends what the host side has made of a line or point.
+void add_outline(Slice& slice, const Outline& outline, std::size_t room) {
+  for (const LinePrimitive& line : outline.lines) {
+    const auto [low, high] = std::minmax(line.drawn.start.z, line.drawn.end.z);
+    const auto at = static_cast<std::uint32_t>(slice.lines.size());
+    add_record(slice, record_of({at, 0, 0}, low, high, line_box(line.setup), RecordKind::cut_line), room);
+    slice.lines.push_back(line.setup);
+  }
+  for (const PointPrimitive& point : outline.points) {
+    const auto at = static_cast<std::uint32_t>(slice.vertices.size());
+    slice.vertices.push_back(point.drawn.at);
+    const std::uint32_t z = point.drawn.at.z;
+    add_record(slice, record_of({at, at, at}, z, z, point.box, RecordKind::rectangle), room);
+  }
+}
+
+/// A line that the scissor or the clipper cuts, or whose vertex is refused.
+void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t line) {
+  const Scene& scene = frame.prepared.scene();
+  const DrawContext context(scene, frame.config, std::get<Draw>(scene.commands[part.command]), part.command);
+  VertexCache cache(0);
+  Outline outline;
+  const std::size_t at = part.first + line;
+  const std::uint32_t start = frame.prepared.index[0][at], end = frame.prepared.index[1][at];
+  geometry(context, frame.widths, cache, {PrimitiveType::line, {start, end, end}},
+           part.primitive + static_cast<std::uint32_t>(line), slice.counters, outline);
+  add_outline(slice, outline, slice.triangles);
+}
+
 }  // namespace
 
 void FrameRenderer::build(Slice& slice) const {
@@ -77,12 +106,12 @@ void FrameRenderer::build(Slice& slice) const {
     slice.codes.resize(vertices + 16);
     if (slice.records.size() < slice.triangles) slice.records.resize(slice.triangles);
     // Polygon offset is a property of the triangle: no vertex has it.
-    if (slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
+    if (!slice.is_lines && slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
       for (const Slice::Part& part : slice.parts)
         for (std::size_t i = 0; i < part.count; ++i) draw_slowly(frame, slice, part, i);
     } else {
       kernels_->project(frame, slice);
-      kernels_->cull(frame, slice, draw_slowly);
+      slice.is_lines ? kernels_->cull_lines(frame, slice, draw_line_slowly) : kernels_->cull(frame, slice, draw_slowly);
     }
   }
   fill_bins(slice);
@@ -97,20 +126,7 @@ void FrameRenderer::build_outlines(Slice& slice) const {
     outline.lines.clear();
     outline.points.clear();
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
-    for (const LinePrimitive& line : outline.lines) {
-      const auto [low, high] = std::minmax(line.drawn.start.z, line.drawn.end.z);
-      add_record(slice,
-                 record_of({static_cast<std::uint32_t>(slice.lines.size()), 0, 0}, low, high, line_box(line.setup),
-                           RecordKind::line),
-                 0);
-      slice.lines.push_back(line.setup);
-    }
-    for (const PointPrimitive& point : outline.points) {
-      const auto at = static_cast<std::uint32_t>(slice.vertices.size());
-      slice.vertices.push_back(point.drawn.at);
-      const std::uint32_t z = point.drawn.at.z;
-      add_record(slice, record_of({at, at, at}, z, z, point.box, RecordKind::rectangle), 0);
-    }
+    add_outline(slice, outline, 0);
   }
 }
 

@@ -10,6 +10,7 @@ struct Block {
 template <DepthFunc Test>
 void draw_batch(const Slice& slice) {
   if (small_.count == 0) return;
+  line_tiles_ = 0;
   small_.set_up(slice, job_.frame, depth_format_, color_format_, first_x_, first_y_);
   bool is_changed = false;
   for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) is_changed |= touch_tiles(i);

@@ -61,6 +61,13 @@ struct GradientLanes {
   L16 reciprocal, left, right;  ///< shifts: one of them 0, but right is at least 1
   I16 is_left;
 
+  /// `k`: bits that a product drops; negative: gains.
+  HALFPLANE_INLINE GradientLanes(const L16& reciprocal_, const I16& k)
+      : reciprocal(reciprocal_),
+        left(convert<std::int64_t>(max(-k, I16(0)))),
+        right(convert<std::int64_t>(max(k, I16(1)))),
+        is_left(k <= 0) {}
+
   HALFPLANE_INLINE L16 operator()(const L16& numerator) const {
     const L16 shifted = (numerator * reciprocal) << left;
     return select(convert<std::int64_t>(is_left), shifted, ((shifted >> (right - 1)) + 1) >> 1);
@@ -127,13 +134,9 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
             has_below = ((I16::load(bottom.data()) >> 2) > row) & 4;
   select(is_drawn != 0, has_right | has_below | ((has_right << 2) & (has_below << 1)) | 1, I16(0)).store(there.data());
 
-  GradientLanes gradient;
-  L16 shift;
-  reciprocal_lanes(area, config.depth_bits + config.reciprocal_extra_bits, gradient.reciprocal, shift);
-  const I16 k = convert<std::int32_t>(shift) - F;
-  gradient.is_left = k <= 0;
-  gradient.left = convert<std::int64_t>(max(-k, I16(0)));
-  gradient.right = convert<std::int64_t>(max(k, I16(1)));
+  L16 reciprocal, shift;
+  reciprocal_lanes(area, config.depth_bits + config.reciprocal_extra_bits, reciprocal, shift);
+  const GradientLanes gradient(reciprocal, convert<std::int32_t>(shift) - F);
   const I16 ax = b.x - a.x, ay = b.y - a.y, bx = c.x - a.x, by = c.y - a.y;
   const auto anchor_of = [&](const I16& box, int first) HALFPLANE_LAMBDA {  // of the box's first tile
     return (((box & ~(kTileSize - 1)) + (first + kTileSize / 2)) << s) + half;

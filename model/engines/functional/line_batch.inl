@@ -1,0 +1,127 @@
+// Sixteen lines at a time through line_setup, and to the part of each that lies in the bin: a line a lane.
+// Included inside the namespace of an instruction set: see raster.inl.
+
+/// Lines of a slice that wait, and after set_up() where each of them enters the bin and how it goes on.
+///
+/// Codes are held in the upper bits of a lane: their registers then wrap by themselves.
+struct LineBatch {
+  using Lane = std::array<std::int32_t, 16>;
+
+  int count = 0;
+  alignas(64) std::array<Lane, 3> v;  ///< into Slice::vertices: start, end, the provoking one
+  alignas(64) Lane pixels;            ///< in the bin; none when below 1
+  alignas(64) Lane x, y;              ///< of the first of them, from the bin's
+  alignas(64) Lane is_x_major, x_sign, y_sign, shows_start;  ///< -1: so, negative
+  alignas(64) std::array<double, 16> row, slope;  ///< rows moved n pixels on: floor(row + n slope)
+  alignas(64) std::array<std::int64_t, 16> depth, depth_step;
+  alignas(64) std::array<Lane, 4> color, color_step;
+  alignas(64) Lane depth_start, color_start;
+
+  /// True when that was the last for which there is room.
+  HALFPLANE_INLINE bool add(const Record& record) {
+    const auto i = static_cast<std::size_t>(count);
+    for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
+    return ++count == 16;
+  }
+
+  void set_up(const Slice& slice, const FrameContext& frame, int first_x, int first_y);
+};
+
+/// floor(numerator / denominator) of integers below 2^53, the quotient in an int32. Rounding never reaches an integer
+/// from below: the next one is at least 1 / denominator away.
+HALFPLANE_INLINE I16 floor_divide(const D16& numerator, const D16& denominator) {
+  const D16 quotient = numerator / denominator;
+  const I16 truncated = convert<std::int32_t>(quotient);
+  return truncated + convert<std::int32_t>(convert<double>(truncated) > quotient);
+}
+
+HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext& frame, int first_x, int first_y) {
+  const Config& config = frame.config;
+  const Widths& widths = frame.widths;
+  const LineRules rules(slice.context->state, widths);
+  const int s = rules.grid_bits, half = 1 << (s - 1);
+  for (int i = count; i < 16; ++i)  // what is not there is like the first
+    for (std::size_t k = 0; k < 3; ++k) v[k][static_cast<std::size_t>(i)] = v[k][0];
+  const SnappedVertex* base = slice.vertices.data();
+  std::array<I16, 3> at;
+  for (std::size_t k = 0; k < 3; ++k) at[k] = I16::load(v[k].data()) << 2;
+  const OctantLanes line(gather(&base->x, at[0]), gather(&base->y, at[0]), gather(&base->x, at[1]),
+                         gather(&base->y, at[1]), rules);
+
+  // Q, as in stages/line_setup: n columns on, the line is in row floor((Q + n d) / D) from the start's.
+  const I16 offset = (line.first << s) + half - line.a0, base_row = line.b0 >> s;
+  const D16 D = convert<double>(line.D), d = convert<double>(line.d);
+  const L16 numerator = convert<std::int64_t>(line.b0 & ((1 << s) - 1)) * convert<std::int64_t>(line.D) +
+                        convert<std::int64_t>(line.d) * convert<std::int64_t>(offset) +
+                        convert<std::int64_t>(~line.tie_moves(rules));
+  const D16 Q = convert<double>(numerator >> s);
+
+  // Steps whose column and row lie in the bin.
+  const auto bin_range = [](const I16& from, const I16& is_negative, bool is_low) HALFPLANE_LAMBDA {
+    const I16 to = from + (kBinSize - 1);
+    return select(is_negative, is_low ? ~to : ~from, is_low ? from : to);
+  };
+  const I16 bin_major = select(line.is_x_major, I16(first_x), I16(first_y)),
+            bin_minor = select(line.is_x_major, I16(first_y), I16(first_x));
+  I16 low = max(bin_range(bin_major, line.is_major_negative, true) - line.first, I16(0));
+  I16 high = min(bin_range(bin_major, line.is_major_negative, false), line.end - 1) - line.first;
+  const D16 top = convert<double>(bin_range(bin_minor, line.is_minor_negative, true) - base_row),
+            bottom = convert<double>(bin_range(bin_minor, line.is_minor_negative, false) - base_row);
+  const D16 never(1 << 20), some_d = max(d, D16(1.0));
+  const L16 is_level = d == 0.0;
+  const D16 missing = top * D - Q;                    // until the bin's first row
+  const D16 room = (bottom + 1.0) * D - (Q + 1.0);    // to its last
+  const D16 enters = select(is_level, never, min((missing + (d - 1.0)) / some_d, never));
+  const D16 leaves = select(is_level, never, min(room / some_d, never));
+  low = max(low, convert<std::int32_t>(select(missing > 0.0, enters, D16(0.0))));
+  high = min(high, convert<std::int32_t>(select(room < 0.0, D16(-1.0), leaves)));
+  (high - low + 1).store(pixels.data());
+
+  const D16 steps = convert<double>(low), position = Q + d * steps;
+  const I16 moved = floor_divide(position, D);
+  const D16 reciprocal_D = 1.0 / D;
+  // Half a unit off every border between rows: far more than what these products are off.
+  ((position - convert<double>(moved) * D + 0.5) * reciprocal_D).store(row.data());
+  (d * reciprocal_D).store(slope.data());
+  const I16 major = (line.first + low) ^ line.is_major_negative,
+            minor = (base_row + moved) ^ line.is_minor_negative;
+  (select(line.is_x_major, major, minor) - first_x).store(x.data());
+  (select(line.is_x_major, minor, major) - first_y).store(y.data());
+  line.is_x_major.store(is_x_major.data());
+  select(line.is_x_major, line.is_major_negative, line.is_minor_negative).store(x_sign.data());
+  select(line.is_x_major, line.is_minor_negative, line.is_major_negative).store(y_sign.data());
+  ((low == 0) & (offset < 0)).store(shows_start.data());
+
+  // Depth and colour.
+  L16 reciprocal, shift;
+  reciprocal_lanes(line.D, config.depth_bits + config.reciprocal_extra_bits, reciprocal, shift);
+  reciprocal = select(convert<std::int64_t>(line.a1 == line.a0), L16(0), reciprocal);
+  const GradientLanes gradient(reciprocal, convert<std::int32_t>(shift) - (s + widths.line_guard_bits));
+  const L16 to_first = convert<std::int64_t>(offset), to_bin = convert<std::int64_t>(low);
+  const int guard_bits = widths.line_guard_bits;
+  struct Attribute {
+    L16 value, step;
+  };
+  const auto attribute = [&](const I16& from, const I16& to) HALFPLANE_LAMBDA {
+    const L16 step = gradient(convert<std::int64_t>(to - from));
+    const L16 start = (convert<std::int64_t>(from) << guard_bits) + (std::int64_t{1} << (guard_bits - 1)) +
+                      round_shift_lanes(step * to_first, s);
+    return Attribute{start + step * to_bin, step};
+  };
+  const I16 z0 = gather(&base->z, at[0]), z1 = gather(&base->z, at[1]);
+  const Attribute z = attribute(z0, z1);
+  (z.value << (64 - widths.line_depth.bits)).store(depth.data());
+  (z.step << (64 - widths.line_depth.bits)).store(depth_step.data());
+  z0.store(depth_start.data());
+  if (!slice.state.color_write) return;
+  const bool is_flat = slice.state.is_flat;
+  const I16 c0 = gather(base->rgba.data(), is_flat ? at[2] : at[0]), c1 = gather(base->rgba.data(), at[is_flat ? 2 : 1]);
+  c0.store(color_start.data());
+  for (std::size_t c = 0; c < 4; ++c) {
+    const int down = static_cast<int>(8 * c);
+    const auto code = [down](const I16& rgba) HALFPLANE_LAMBDA { return shift_right_logical(rgba, down) & 255; };
+    const Attribute channel = attribute(code(c0), code(c1));
+    (convert<std::int32_t>(channel.value) << (32 - widths.line_color.bits)).store(color[c].data());
+    (convert<std::int32_t>(channel.step) << (32 - widths.line_color.bits)).store(color_step[c].data());
+  }
+}
