@@ -56,7 +56,7 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
   const int tile = config.tile_size, size = config.stamp_size, stamps_per_row = tile / size;
   std::array<std::uint32_t, 64> data;
-  const auto copy_stamp = [&](std::vector<std::uint32_t>& image, int x, int y) {
+  const auto copy_stamp = [&](Framebuffer::Image& image, int x, int y) {
     for (int s = 0; s < size * size; ++s)
       if (x + s % size < width && y + s / size < height)
         image[frame.at(x + s % size, y + s / size)] = data[static_cast<std::size_t>(s)];

@@ -6,15 +6,31 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <vector>
 
 namespace halfplane {
 
+/// Allocates from the start of a cache line on.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) {}  // NOLINT: as allocators are
+  [[nodiscard]] T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }
+  bool operator==(const CacheLineAllocator&) const = default;
+};
+
 struct Framebuffer {
+  using Image = std::vector<std::uint32_t, CacheLineAllocator<std::uint32_t>>;
+
   int width = 0, height = 0;  ///< pixels
   int stride = 0;             ///< pixels from one row to the next; rows below `height` are padding as well
-  std::vector<std::uint32_t> depth;
-  std::vector<std::uint32_t> color;
+  Image depth, color;
 
   Framebuffer() = default;
   Framebuffer(int width_, int height_, int tile_size)
@@ -23,6 +39,9 @@ struct Framebuffer {
     depth.resize(static_cast<std::size_t>(stride) * rows);
     color.resize(depth.size());
   }
+
+  /// Whether every sixteen pixels of a row, from its first on, are a cache line.
+  [[nodiscard]] bool has_whole_lines() const { return stride % 16 == 0; }
 
   /// Index of pixel (x, y) in `depth` and `color`.
   [[nodiscard]] std::size_t at(int x, int y) const {

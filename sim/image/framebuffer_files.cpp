@@ -37,7 +37,7 @@ std::string hex16(std::uint64_t value) {
   return text;
 }
 
-std::string hash_of(const Framebuffer& frame, const std::vector<std::uint32_t>& image, int bytes_per_pixel) {
+std::string hash_of(const Framebuffer& frame, const Framebuffer::Image& image, int bytes_per_pixel) {
   Fnv1a hash;
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) hash.add_little_endian(image[frame.at(x, y)], bytes_per_pixel);

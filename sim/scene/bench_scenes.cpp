@@ -309,9 +309,11 @@ Scene make_work_scene(std::string_view name, int size, int width, int height, co
   if (name == "dust") return dust_scene(width, height, size, seed);
   if (name == "objects") return view(objects_mesh(size, seed), objects_camera(aspect), Cull::back);
   if (name == "hidden") return view(hidden_mesh(size, seed, aspect), hidden_camera(), Cull::back);
-  if (name == "blocks") {
+  if (name == "blocks" || name == "blocks_depth") {
     const CameraRequest own = straight_on({2, 13, 38}, {0, 0, 6}, 50);
-    return view(blocks_mesh(size, seed, camera.eye.value_or(*own.eye)), own, Cull::back);
+    Scene scene = view(blocks_mesh(size, seed, camera.eye.value_or(*own.eye)), own, Cull::back);
+    for (State& state : scene.states) state.color_write = name == "blocks";
+    return scene;
   }
   if (name == "ball") {
     CameraRequest own;

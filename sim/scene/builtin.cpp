@@ -18,7 +18,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::size_t kPictures = 10;  // the others are work
-constexpr std::array<Builtin, kPictures + 9> kBuiltins{{
+constexpr std::array<Builtin, kPictures + 10> kBuiltins{{
     {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
     {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
     {"knot", "a torus knot in all hues", "segments along the tube", 256, 16, 4096, true},
@@ -34,6 +34,7 @@ constexpr std::array<Builtin, kPictures + 9> kBuiltins{{
     {"layers_front", "the same, front to back", "triangles", 64, 1, 8192, false},
     {"ball", "a sphere of small triangles, back faces culled", "rings", 160, 2, 1024, true},
     {"blocks", "boxes that hide each other, front to back, back faces culled", "boxes", 2000, 1, 65536, true},
+    {"blocks_depth", "the same without colour: depth only", "boxes", 2000, 1, 65536, true},
     {"scratches", "lines of about 60 pixels", "lines", 50000, 1, 4000000, false},
     {"dust", "a jittered grid of triangles over the whole screen", "triangles", 1000000, 2, 10000000, false},
     {"objects", "small objects all round the eye: five in six lie outside the view", "objects", 4096, 1, 32768, true},

@@ -121,7 +121,7 @@ class CycleModelOf final : public CycleModel {
   }
 
   /// The right ends of the rows and the rows below; the first clear fills the rest.
-  void fill_padding(std::vector<std::uint32_t>& image, std::uint32_t code) const {
+  void fill_padding(Framebuffer::Image& image, std::uint32_t code) const {
     const Framebuffer& frame = rendering_.frame;
     const auto row = [&](int y) { return image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)); };
     for (int y = 0; y < frame.height; ++y) std::fill(row(y) + frame.width, row(y) + frame.stride, code);
@@ -129,7 +129,7 @@ class CycleModelOf final : public CycleModel {
   }
 
   /// Leaves the padding alone.
-  void fill_target(std::vector<std::uint32_t>& image, std::uint32_t code) const {
+  void fill_target(Framebuffer::Image& image, std::uint32_t code) const {
     const Framebuffer& frame = rendering_.frame;
     for (int y = 0; y < frame.height; ++y)
       std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), frame.width, code);

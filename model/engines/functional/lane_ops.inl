@@ -320,6 +320,50 @@ HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, con
 #endif
 }
 
+/// Four blocks, side by side, as four rows of sixteen pixels: a cache line each where `to` begins one (`are_lines`), and
+/// then past the caches, which need not read first what is written whole. Behind the last: finish_lines().
+template <class Element>
+HALFPLANE_INLINE void store_lines(Element* to, int stride, bool are_lines, const I16& a, const I16& b, const I16& c,
+                                  const I16& d) {
+#if defined(__x86_64__)
+  if (are_lines) {
+#if HALFPLANE_ISA == 512
+    typedef long long Row __attribute__((vector_size(64)));
+    const auto &p = (Row)a.part[0], &q = (Row)b.part[0], &r = (Row)c.part[0], &s = (Row)d.part[0];
+    const Row pq_upper = __builtin_shufflevector(p, q, 0, 1, 8, 9, 2, 3, 10, 11),
+              rs_upper = __builtin_shufflevector(r, s, 0, 1, 8, 9, 2, 3, 10, 11),
+              pq_lower = __builtin_shufflevector(p, q, 4, 5, 12, 13, 6, 7, 14, 15),
+              rs_lower = __builtin_shufflevector(r, s, 4, 5, 12, 13, 6, 7, 14, 15);
+    const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA {
+      _mm512_stream_si512(reinterpret_cast<__m512i*>(to + j * stride), (__m512i)row);
+    };
+    put(0, __builtin_shufflevector(pq_upper, rs_upper, 0, 1, 2, 3, 8, 9, 10, 11));
+    put(1, __builtin_shufflevector(pq_upper, rs_upper, 4, 5, 6, 7, 12, 13, 14, 15));
+    put(2, __builtin_shufflevector(pq_lower, rs_lower, 0, 1, 2, 3, 8, 9, 10, 11));
+    put(3, __builtin_shufflevector(pq_lower, rs_lower, 4, 5, 6, 7, 12, 13, 14, 15));
+#else
+    for (int j = 0; j < 4; ++j) {
+      int x = 0;
+      for (const I16* block : {&a, &b, &c, &d}) {
+        __m128i row;
+        std::memcpy(&row, reinterpret_cast<const char*>(block) + 16 * j, sizeof row);
+        _mm_stream_si128(reinterpret_cast<__m128i*>(to + j * stride + x), row);
+        x += 4;
+      }
+    }
+#endif
+    return;
+  }
+#endif
+  store_blocks(to, stride, a, b);
+  store_blocks(to + 8, stride, c, d);
+}
+HALFPLANE_INLINE void finish_lines() {
+#if defined(__x86_64__)
+  _mm_sfence();
+#endif
+}
+
 /// Two values of 16 bits in the halves of each lane.
 HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
 

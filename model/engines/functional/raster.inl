@@ -119,6 +119,7 @@ class Bin {
         color_format_(8, widths_.local_color, 16, widths_),
         first_x_(job.bin % job.frame.bins_x * kBinSize),
         first_y_(job.bin / job.frame.bins_x * kBinSize),
+        are_lines_(job.target.has_whole_lines()),
         tile_low_(job.tiles.z_low.data() + std::ptrdiff_t{job.bin} * kTiles),
         tile_high_(job.tiles.z_high.data() + std::ptrdiff_t{job.bin} * kTiles),
         memory_(memory()) {
@@ -128,7 +129,7 @@ class Bin {
       color_owner_[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
     }
     find_bin_range();
-    fetch_ahead();
+    if (!are_lines_) fetch_ahead();
   }
 
   void draw() {
@@ -503,32 +504,32 @@ class Bin {
   HALFPLANE_NOINLINE void fetch_depth(int tile) {
     std::int32_t* to = memory_.depth.data() + first_of(tile);
     const std::int32_t owner = depth_owner_[tile];
-    depth_owner_[tile] = kInMemory;
     if (owner >= 0) {
-      const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
-      const std::int32_t anchor = depth_anchor(t, tile % kBinTiles, tile / kBinTiles);
-      for (std::size_t block = 0; block < 4; ++block) depth_block(t, anchor, block).store(to + kBlockPixels * block);
+      const TileBlocks blocks = depths_of(tile);
+      for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
+      depth_owner_[tile] = kInMemory;
       return;
     }
     fetch(to, tile, owner == kCleared, job_.clear_depth, job_.target.depth);
+    depth_owner_[tile] = kInMemory;
   }
 
   HALFPLANE_NOINLINE void fetch_color(int tile) {
     std::uint32_t* to = memory_.color.data() + first_of(tile);
     const std::int32_t owner = color_owner_[tile];
-    color_owner_[tile] = kInMemory;
     if (owner >= 0) {
-      const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
-      const ChannelPairs anchor = color_anchor(t, tile % kBinTiles, tile / kBinTiles);
-      for (std::size_t block = 0; block < 4; ++block) colors(t.color, anchor, block).store(to + kBlockPixels * block);
+      const TileBlocks blocks = colors_of(tile);
+      for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
+      color_owner_[tile] = kInMemory;
       return;
     }
     fetch(to, tile, owner == kCleared, job_.clear_color, job_.target.color);
+    color_owner_[tile] = kInMemory;
   }
 
   template <class Element>
   void fetch(Element* to, int tile, bool is_cleared, std::uint32_t clear,
-             const std::vector<std::uint32_t>& image) const {
+             const Framebuffer::Image& image) const {
     const std::ptrdiff_t from = in_target(tile);
     for (int block = 0; block < 4; ++block) {
       const std::ptrdiff_t at =
@@ -800,34 +801,75 @@ class Bin {
 
   // --- end ----------------------------------------------------------------------------------------------------------
 
-  /// Everything that is new goes to the target.
+  /// Everything that is new goes to the target, two tiles at a time: a cache line of each row.
   void finish() {
-    std::uint8_t* pending = job_.tiles.pending.data() + std::ptrdiff_t{job_.bin} * kTiles;
-    Framebuffer& target = job_.target;
-    for (int tile = 0; tile < kTiles; ++tile) {
+    for (int tile = 0; tile < kTiles; tile += 2) {
       const std::ptrdiff_t to = in_target(tile);
       if (to < 0) continue;
-      std::uint8_t& held = job_.tiles.held[static_cast<std::size_t>(job_.bin * kTiles + tile)];
-      const auto put = [&](const auto* from, auto* image) HALFPLANE_LAMBDA {
-        for (int half = 0; half < 2; ++half) {
-          const auto* blocks = from + first_of(tile) + 2 * kBlockPixels * half;
-          store_blocks(image + to + half * kBlockSize * target.stride, target.stride, I16::load(blocks),
-                       I16::load(blocks + kBlockPixels));
-        }
-      };
-      if (depth_owner_[tile] >= kInMemory) {
-        need_depth(tile);
-        put(memory_.depth.data(), target.depth.data());
-        pending[tile] &= static_cast<std::uint8_t>(~TileStates::kDepthCleared);
-        held &= static_cast<std::uint8_t>(~TileStates::kDepthCleared);
-      }
-      if (color_owner_[tile] >= kInMemory) {
-        need_color(tile);
-        put(memory_.color.data(), target.color.data());
-        pending[tile] &= static_cast<std::uint8_t>(~TileStates::kColorCleared);
-        held &= static_cast<std::uint8_t>(~TileStates::kColorCleared);
-      }
+      const bool has_right = in_target(tile + 1) >= 0;
+      finish_pair(tile, to, has_right, depth_owner_.data(), job_.target.depth.data(), TileStates::kDepthCleared,
+                  [this](int t) HALFPLANE_LAMBDA { return depths_of(t); });
+      finish_pair(tile, to, has_right, color_owner_.data(), job_.target.color.data(), TileStates::kColorCleared,
+                  [this](int t) HALFPLANE_LAMBDA { return colors_of(t); });
     }
+    finish_lines();
+  }
+
+  using TileBlocks = std::array<I16, 4>;
+
+  /// `blocks_of(tile)`: its values. `cleared`: what is no longer pending where they were written.
+  template <class BlocksOf>
+  HALFPLANE_INLINE void finish_pair(int tile, std::ptrdiff_t to, bool has_right, const std::int32_t* owner,
+                                    std::uint32_t* image, std::uint8_t cleared, BlocksOf&& blocks_of) {
+    const bool is_left_new = owner[tile] >= kInMemory, is_right_new = has_right && owner[tile + 1] >= kInMemory;
+    if (!is_left_new && !is_right_new) return;
+    const int stride = job_.target.stride;
+    const std::size_t first_tile = static_cast<std::size_t>(job_.bin * kTiles + tile);
+    const auto written = [&](std::size_t at) HALFPLANE_LAMBDA {
+      job_.tiles.pending[at] &= static_cast<std::uint8_t>(~cleared);
+      job_.tiles.held[at] &= static_cast<std::uint8_t>(~cleared);
+    };
+    if (is_left_new) written(first_tile);
+    if (is_right_new) written(first_tile + 1);
+    if (is_left_new && is_right_new) {
+      const TileBlocks left = blocks_of(tile), right = blocks_of(tile + 1);
+      for (std::size_t half = 0; half < 2; ++half)
+        store_lines(image + to + static_cast<int>(half) * kBlockSize * stride, stride, are_lines_, left[2 * half],
+                    left[2 * half + 1], right[2 * half], right[2 * half + 1]);
+      return;
+    }
+    const TileBlocks blocks = blocks_of(is_left_new ? tile : tile + 1);
+    for (std::size_t half = 0; half < 2; ++half)
+      store_blocks(image + to + (is_left_new ? 0 : kTileSize) + static_cast<int>(half) * kBlockSize * stride, stride,
+                   blocks[2 * half], blocks[2 * half + 1]);
+  }
+
+  /// A tile's depths, which are in memory or those of a triangle.
+  HALFPLANE_INLINE TileBlocks depths_of(int tile) const {
+    TileBlocks blocks;
+    const std::int32_t owner = depth_owner_[tile];
+    if (owner >= 0) {
+      const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
+      const std::int32_t anchor = depth_anchor(t, tile % kBinTiles, tile / kBinTiles);
+      for (std::size_t i = 0; i < 4; ++i) blocks[i] = depth_block(t, anchor, i);
+    } else {
+      const std::int32_t* from = memory_.depth.data() + first_of(tile);
+      for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);
+    }
+    return blocks;
+  }
+  HALFPLANE_INLINE TileBlocks colors_of(int tile) const {
+    TileBlocks blocks;
+    const std::int32_t owner = color_owner_[tile];
+    if (owner >= 0) {
+      const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
+      const ChannelPairs anchor = color_anchor(t, tile % kBinTiles, tile / kBinTiles);
+      for (std::size_t i = 0; i < 4; ++i) blocks[i] = colors(t.color, anchor, i);
+    } else {
+      const std::uint32_t* from = memory_.color.data() + first_of(tile);
+      for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);
+    }
+    return blocks;
   }
 
   BinJob& job_;
@@ -836,6 +878,7 @@ class Bin {
   const Skip& skip_;
   LaneFormat depth_format_, color_format_;
   int first_x_, first_y_;  ///< pixels
+  bool are_lines_;         ///< sixteen pixels of a row of the target are a cache line
   std::int32_t *tile_low_, *tile_high_;
   Memory& memory_;
   FragmentState state_;
