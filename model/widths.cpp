@@ -55,8 +55,9 @@ Widths derive_widths(const Config& config) {
   w.grid_bits = config.subpixel_bits > 1 ? config.subpixel_bits : 1;
   const int s = w.grid_bits;
   const int128 band = config.guard_band;
-  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor.
-  w.guard_bits = ceil_log2(static_cast<uint128>(4 * band)) + 4;
+  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor. And more
+  // than a tile keeps: narrowing to local guard bits is a shift right, with a bit to round by, in the smallest band too.
+  w.guard_bits = std::max(ceil_log2(static_cast<uint128>(4 * band)) + 4, config.local_guard_bits + 1);
   w.plane_fraction = w.guard_bits + s;
   w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
   w.stamps_per_row = config.tile_size / config.stamp_size;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "model/raster_pkg.hpp"
+#include "model/stages/triangle_setup.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane {
@@ -111,6 +112,29 @@ TEST(Widths, IntervalsNeedExactlyTheBitsOfTheirEnds) {
       EXPECT_TRUE(width->bits == 1 || width->range.hi >= half) << width->name;
     }
   }
+}
+
+// A small guard band asks for few guard bits: fewer than a tile keeps, if nothing else had a say.
+TEST(Widths, TilesNarrowPlanesByAtLeastOneBitInEveryLegalConfiguration) {
+  int checked = 0;
+  for (const int band : {16, 32, 64, 2048})
+    for (int subpixel_bits = 0; subpixel_bits <= 4; ++subpixel_bits)
+      for (int local = 4; local <= 12; ++local) {
+        Config config = preset("tiny");
+        config.guard_band = band;
+        config.subpixel_bits = subpixel_bits;
+        config.local_guard_bits = local;
+        if (!refusal(config).empty()) continue;
+        ++checked;
+        const Widths w = derive_widths(config);
+        EXPECT_GE(w.guard_bits - local, 1) << label(config);  // per pixel: what RTL and model round by
+        // Half of the last bit dropped, half of the last place kept, and the code's own offset.
+        const int drop = w.plane_fraction - local;
+        const std::uint64_t half = std::uint64_t{1} << (drop - 1), place = std::uint64_t{1} << (w.plane_fraction - 1),
+                            offset = std::uint64_t{1} << (7 + w.plane_fraction);
+        EXPECT_EQ(plane_bias(8, w), half + place + offset) << label(config);
+      }
+  EXPECT_GT(checked, 100);
 }
 
 TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
