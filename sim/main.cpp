@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
   add_depth_command(app, selected);
   add_bench_command(app, selected);
   add_scenes_command(app, selected);
+  add_widths_command(app, selected);
   add_config_command(app, selected);
   check_command(app, argc, argv);
   try {

@@ -112,7 +112,7 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
 
 std::uint64_t plane_bias(int bits, const Widths& widths) {
   const int guard_bits = widths.local_depth.bits - widths.depth_code.bits - 1;  // l, at least 1
-  const int drop = widths.plane_fraction - guard_bits;  // F - l, at least 2
+  const int drop = widths.plane_fraction - guard_bits;                          // F - l, at least 2
   const std::uint64_t to_window = std::uint64_t{1} << (bits - 1 + guard_bits),
                       half = std::uint64_t{1} << (guard_bits - 1);
   return (std::uint64_t{1} << (drop - 1)) + ((to_window + half) << drop);

@@ -18,7 +18,8 @@ std::vector<std::string> examples(const std::string& help) {
 }
 
 TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
-  for (const Arguments& command : {Arguments{}, {"render"}, {"compare"}, {"depth"}, {"scenes"}, {"config"}}) {
+  for (const Arguments& command :
+       {Arguments{}, {"render"}, {"compare"}, {"depth"}, {"scenes"}, {"widths"}, {"config"}}) {
     Arguments arguments = command;
     arguments.push_back("--help");
     const Outcome help = run(arguments);
@@ -52,7 +53,7 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
-  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "depth", "scenes", "config"})
+  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "depth", "scenes", "widths", "config"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {
     const std::string help = run({command, "--help"}).out;

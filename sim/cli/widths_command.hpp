@@ -1,0 +1,20 @@
+// What the two halves of `halfplane widths` share: the table of widths, and the smallest configuration.
+#pragma once
+
+#include "sim/cli/options.hpp"
+
+namespace halfplane {
+
+/// The command line of `widths`, as typed.
+struct WidthsCommand : CommonOptions {
+  std::uint64_t samples = 20000;
+  std::string captures;  ///< folder
+  bool smallest = false;
+  std::vector<std::string> scenes;
+  std::string depth_error, coverage_error, color_error;
+};
+
+/// `widths --smallest`. Returns the exit status.
+int run_smallest(const WidthsCommand& options);
+
+}  // namespace halfplane

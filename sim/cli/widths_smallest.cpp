@@ -1,0 +1,208 @@
+// `widths --smallest`: the search's answer as text and JSON.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+
+#include "model/widths.hpp"
+#include "sim/cli/widths_command.hpp"
+#include "sim/widths/smallest.hpp"
+
+namespace halfplane {
+namespace {
+
+/// A positive number, all of `text`.
+std::optional<double> positive(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_whole = error == std::errc() && end == text.data() + text.size();
+  return is_whole && std::isfinite(value) && value > 0 ? std::optional(value) : std::nullopt;
+}
+
+std::optional<double> positive_lsb(std::string_view text) {
+  if (!text.ends_with("lsb")) return std::nullopt;
+  return positive(text.substr(0, text.size() - 3));
+}
+
+double one_lsb(const Config& config) { return 1 / (std::ldexp(1.0, config.depth_bits) - 1); }
+
+ErrorBounds parse_bounds(const WidthsCommand& options, const Config& start) {
+  ErrorBounds bounds;
+  if (!options.depth_error.empty()) {
+    const auto lsb = positive_lsb(options.depth_error), part = positive(options.depth_error);
+    bounds.depth = lsb ? *lsb * one_lsb(start) : part;
+    if (!bounds.depth || *bounds.depth >= 1)
+      throw InputError("--depth-error: '" + options.depth_error +
+                       "' is no bound; give LSB, as in 0.75lsb, or a part of the depth range below 1, as in 1e-4");
+  }
+  if (!options.color_error.empty()) {
+    bounds.color = positive_lsb(options.color_error);
+    if (!bounds.color)
+      throw InputError("--color-error: '" + options.color_error + "' is no bound; give LSB, as in 0.75lsb");
+  }
+  if (!options.coverage_error.empty()) {
+    std::uint64_t pixels = 0;
+    const std::string& text = options.coverage_error;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), pixels);
+    if (error != std::errc() || end != text.data() + text.size())
+      throw InputError("--coverage-error: '" + text + "' is no number of pixels; give a whole one, as in 100");
+    bounds.coverage = pixels;
+  }
+  if (!bounds.depth && !bounds.color && !bounds.coverage)
+    throw InputError("--smallest: no bound; give --depth-error, --color-error or --coverage-error");
+  return bounds;
+}
+
+Json errors_json(const SceneErrors& errors, const Config& config) {
+  return {{"depth", errors.depth},
+          {"depth_lsb", errors.depth / one_lsb(config)},
+          {"coverage", errors.coverage},
+          {"color_lsb", errors.color}};
+}
+
+Json bits_json(const HardwareBits& bits) {
+  return {{"total", bits.total()},
+          {"packets", bits.packets},
+          {"context", bits.context},
+          {"products", bits.products},
+          {"tiles", bits.tiles}};
+}
+
+Json trial_json(const TriedConfig& trial, const std::vector<std::string>& names) {
+  Json scenes = Json::array();
+  for (std::size_t i = 0; i < trial.scenes.size(); ++i) {
+    Json scene{{"scene", names[i]}};
+    scene.update(errors_json(trial.scenes[i], trial.config));
+    scenes.push_back(scene);
+  }
+  return {{"config", label(trial.config)},
+          {"bits", bits_json(hardware_bits(trial.config))},
+          {"scenes", scenes},
+          {"proven",
+           {{"depth_lsb", depth_error_bound(trial.config)}, {"line_depth_lsb", line_depth_error_bound(trial.config)}}},
+          {"broken", trial.broken.empty() ? Json(nullptr) : Json(trial.broken)}};
+}
+
+/// The options that make `config` of the start's.
+std::string set_options(const Config& config, const Config& start) {
+  std::string text;
+  for (const Setting& setting : settings())
+    if (const std::string value = get(config, setting); value != get(start, setting))
+      text += " --set " + std::string(setting.key) + "=" + value;
+  return text;
+}
+
+std::string start_options(const WidthsCommand& options) {
+  std::string text = "--config " + quoted(options.config);
+  for (const std::string& setting : options.settings) text += " --set " + quoted(setting);
+  return text;
+}
+
+void print_bits(std::ostream& out, const char* name, const HardwareBits& bits) {
+  const auto cell = [](long n) { return right_aligned(with_commas(static_cast<std::uint64_t>(n)), 10); };
+  out << left_aligned(name, 10) << cell(bits.total()) << cell(bits.packets) << cell(bits.context) << cell(bits.products)
+      << cell(bits.tiles) << '\n';
+}
+
+std::string part_text(double part) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", part);
+  return text;
+}
+
+void print_found(std::ostream& out, const Smallest& smallest, const Config& start, const ErrorBounds& bounds,
+                 const WidthsCommand& options) {
+  const TriedConfig& found = *smallest.found;
+  out << start_options(options) << set_options(found.config, start) << "\n\n";
+  out << "bits           total   packets   context  products     tiles\n";
+  print_bits(out, "start", hardware_bits(start));
+  print_bits(out, "smallest", hardware_bits(found.config));
+  out << "packets: a register for each packet between stages; context: the context RAM; products: the multipliers'\n"
+         "outputs, two of each; tiles: the on-chip depth and colour\n\n";
+  const SceneErrors worst = found.worst();
+  const double lsb = one_lsb(found.config);
+  char line[160];
+  out << "error             measured        bound\n";
+  std::snprintf(line, sizeof line,
+                "depth           %10.4g %12s   of the depth range; %.3f LSB of %d bits, proven %.3f (lines %.3f)\n",
+                worst.depth, bounds.depth ? part_text(*bounds.depth).c_str() : "-", worst.depth / lsb,
+                found.config.depth_bits, depth_error_bound(found.config), line_depth_error_bound(found.config));
+  out << line;
+  std::snprintf(line, sizeof line, "coverage        %10llu %12s   pixels missing or extra, the worst scene\n",
+                static_cast<unsigned long long>(worst.coverage),
+                bounds.coverage ? std::to_string(*bounds.coverage).c_str() : "-");
+  out << line;
+  std::snprintf(line, sizeof line, "colour          %10.3f %12s   LSB\n", worst.color,
+                bounds.color ? fixed(*bounds.color, 3).c_str() : "-");
+  out << line << "\nOne bit less of              what breaks\n";
+  for (const OneLess& less : smallest.one_less)
+    out << left_aligned(std::string(less.key) + " = " + std::to_string(less.value), 29)
+        << (less.is_fixed         ? "not searched: no given bound speaks of it"
+            : less.broken.empty() ? "nothing on these scenes"
+                                  : less.broken)
+        << '\n';
+}
+
+}  // namespace
+
+int run_smallest(const WidthsCommand& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Config start = effective_config(options);
+  const ErrorBounds bounds = parse_bounds(options, start);
+  if (options.scenes.empty()) throw InputError("--smallest: no scene; give --scene, as in --scene teapot,city");
+  if (start.depth_format != DepthFormat{} || start.depth_mapping != DepthMapping::projection)
+    throw InputError("--smallest: it measures the planes; leave depth.format and depth.mapping as they are");
+  std::vector<Scene> scenes;
+  for (const std::string& name : options.scenes) {
+    CommonOptions scene_options = options;
+    scene_options.scene = name;
+    if (options.size.empty() && !name.ends_with(".hpt"))  // the search draws each scene some twenty times
+      scene_options.size =
+          std::to_string(std::min(320, start.target_width)) + "x" + std::to_string(std::min(240, start.target_height));
+    double load_s = 0;
+    scenes.push_back(load_scene(scene_options, start, load_s));
+  }
+  Smallest smallest;
+  {
+    Progress progress(options, "measuring");
+    smallest = find_smallest(scenes, start, bounds, [&progress](double fraction) { progress(fraction); });
+  }
+  Json result = result_head("widths", options, start);
+  result["seed"] = options.seed;
+  result["scenes"] = options.scenes;
+  result["measured"] = true;  // on these scenes; not proven
+  result["bounds"] = {{"depth", bounds.depth ? Json(*bounds.depth) : Json(nullptr)},
+                      {"coverage", bounds.coverage ? Json(*bounds.coverage) : Json(nullptr)},
+                      {"color_lsb", bounds.color ? Json(*bounds.color) : Json(nullptr)}};
+  result["trials"] = smallest.trials;
+  result["start_bits"] = bits_json(hardware_bits(start));
+  result["widest"] = trial_json(smallest.widest, options.scenes);
+  result["smallest"] = smallest.found ? trial_json(*smallest.found, options.scenes) : Json(nullptr);
+  if (smallest.found) result["smallest"]["set"] = start_options(options) + set_options(smallest.found->config, start);
+  Json one_less = Json::array();
+  for (const OneLess& less : smallest.one_less)
+    one_less.push_back({{"key", less.key},
+                        {"value", less.value},
+                        {"searched", !less.is_fixed},
+                        {"broken", less.broken.empty() ? Json(nullptr) : Json(less.broken)}});
+  result["one_less"] = one_less;
+  result["wall_s"] = seconds_since(begin);
+  write_json(options, result);
+
+  std::ostream& out = human(options);
+  std::string names;
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    names += (i == 0 ? "" : ", ") + options.scenes[i] + " at " + std::to_string(scenes[i].width) + "x" +
+             std::to_string(scenes[i].height);
+  out << "the smallest configuration for " << names << ", measured and not proven: another scene may need more\n"
+      << smallest.trials << " configurations measured, from " << label(start) << "; seed " << options.seed << '\n';
+  if (!smallest.found) {
+    out << "none keeps the bounds; the widest (" << label(smallest.widest.config) << ") breaks "
+        << smallest.widest.broken << '\n';
+    return exit_mismatch;
+  }
+  print_found(out, smallest, start, bounds, options);
+  return exit_ok;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,70 @@
+// The smallest configuration that keeps given errors on given scenes. Measured, not proven: another scene may need more.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+/// What must hold on every scene. What is not given is not looked at, and nothing is saved at its cost.
+struct ErrorBounds {
+  std::optional<double> depth;  ///< against the exact plane through the snapped vertices; part of the depth range
+  std::optional<std::uint64_t> coverage;  ///< pixels missing or extra against the scene as it is, before the snap
+  std::optional<double> color;            ///< against the exact plane, LSB of the stored colour
+};
+
+/// What a configuration does on one scene, or the worst of several. Units as above.
+struct SceneErrors {
+  double depth = 0, color = 0;
+  std::uint64_t coverage = 0;
+};
+
+/// What a configuration costs, in bits that widths decide.
+struct HardwareBits {
+  long packets = 0;   ///< one register for every packet between stages
+  long context = 0;   ///< the context RAM: context.slots times what a primitive keeps there
+  long products = 0;  ///< outputs of the multipliers of cull and triangle_setup, two of each kind
+  long tiles = 0;     ///< depth and colour of cache.lines tiles
+  [[nodiscard]] long total() const { return packets + context + products + tiles; }
+};
+[[nodiscard]] HardwareBits hardware_bits(const Config& config);
+
+/// A configuration and what was measured of it.
+struct TriedConfig {
+  Config config;
+  std::vector<SceneErrors> scenes;  ///< as far as they were measured: none after the first that breaks a bound
+  std::string broken;               ///< why it does not do, one line; empty: every bound holds on every scene
+  [[nodiscard]] bool holds() const { return broken.empty(); }
+  [[nodiscard]] SceneErrors worst() const;
+};
+
+/// One setting of the smallest configuration and what becomes of it with one step less.
+struct OneLess {
+  std::string_view key;
+  int value = 0;          ///< in the smallest configuration
+  bool is_fixed = false;  ///< no given bound speaks of it, so it was not searched
+  std::string broken;     ///< what breaks with one bit less, or half the guard band; why it cannot be less
+};
+
+struct Smallest {
+  std::optional<TriedConfig> found;  ///< none: not even the widest configuration keeps the bounds
+  TriedConfig widest;
+  std::vector<OneLess> one_less;
+  int trials = 0;  ///< configurations measured
+};
+
+/// Searches depth.bits, plane.local_guard_bits, reciprocal.extra_bits, guard.band (up to the start's), and subpixel.bits
+/// if coverage is bounded; the rest of `start` stays. Whatever bound says nothing about a setting leaves it as it is.
+/// Takes errors to fall as settings rise: a configuration below one that failed in every setting is not tried.
+/// Throws InputError when a scene cannot be drawn with `start` at all.
+[[nodiscard]] Smallest find_smallest(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
+                                     const std::function<void(double fraction)>& progress = {});
+
+}  // namespace halfplane
