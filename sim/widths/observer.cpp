@@ -211,9 +211,8 @@ void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int t
       for (const int x : {0, last})
         see(widths_.sample_edge,
             int128{tile.edge_value[i]} + int128{x} * stages.edges.step_x[i] + int128{y} * stages.edges.step_y[i]);
-  StampPacket first, newest;  // that cover something
+  StampPacket first, newest;  // that cover something: among them the extremes of every field
   fine_raster(tile, stages.edges, config_, widths_, [&](const StampPacket& stamp) {
-    see_packet(stamp);
     if (stamp.mask == 0) return;
     if (first.mask == 0) first = stamp;
     newest = stamp;
@@ -225,6 +224,7 @@ void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int t
 
 /// interpolate.
 void WidthObserver::observe_stamp(const TriangleStages& stages, const StampPacket& stamp) {
+  see_packet(stamp);
   const FragmentPacket fragment = interpolate(stamp, stages.context, config_, widths_);
   see_packet(fragment);
   const int first = std::countr_zero(stamp.mask), last = 63 - std::countl_zero(stamp.mask);
