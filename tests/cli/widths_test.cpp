@@ -61,7 +61,7 @@ TEST_F(WidthsCommandLine, EachCaptureIsASceneThatTheProgramDraws) {
 }
 
 TEST_F(WidthsCommandLine, SmallestConfigurationIsReproducedByTheOptionsThatItNames) {
-  const Arguments common{"widths", "--smallest", "--scene", "teapot,wires", "--size", "48x32"};
+  const Arguments common{"widths", "--smallest", "--scene", "teapot:2,wires:6", "--size", "48x32"};
   Arguments arguments = common;
   arguments.insert(arguments.end(), {"--depth-error", "2lsb", "--coverage-error", "40"});
   const Json json = result(arguments);
@@ -90,7 +90,7 @@ TEST_F(WidthsCommandLine, SmallestConfigurationIsReproducedByTheOptionsThatItNam
 
 TEST_F(WidthsCommandLine, BoundThatNothingKeepsIsSaidWithStatusOne) {
   const Outcome outcome =
-      run({"widths", "--smallest", "--scene", "triangle", "--size", "16x16", "--depth-error", "1e-15"});
+      run({"widths", "--smallest", "--scene", "teapot:2", "--size", "16x16", "--depth-error", "1e-15"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.out.find("none keeps the bounds"), std::string::npos) << outcome.out;
 }
