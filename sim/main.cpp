@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   add_mutants_command(app, selected);
   add_depth_command(app, selected);
   add_bench_command(app, selected);
+  add_stress_command(app, selected);
   add_scenes_command(app, selected);
   add_widths_command(app, selected);
   add_config_command(app, selected);

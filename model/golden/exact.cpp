@@ -1,7 +1,8 @@
 #include "exact.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 
 namespace halfplane::exact {
 namespace {
@@ -36,31 +37,10 @@ std::array<int128, 3> weights(const Triangle& t, Point sample, int128 area) {
   return weight;
 }
 
-Rational plane_at(const Triangle& t, const std::array<int128, 3>& codes, int x, int y, int grid_bits) {
-  const int128 area = doubled_area(t);
-  const auto weight = weights(t, centre(x, y, grid_bits), area);
-  return {weight[0] * codes[0] + weight[1] * codes[1] + weight[2] * codes[2], area > 0 ? area : -area};
-}
-
 }  // namespace
 
 bool covers(const Triangle& t, int x, int y, int grid_bits, FillRule rule) {
-  const int128 area = doubled_area(t);
-  if (area == 0) return false;
-  const auto weight = weights(t, centre(x, y, grid_bits), area);
-  const std::int64_t pixel = std::int64_t{1} << grid_bits;
-  const auto offset = weights(t, {-pixel, -pixel}, area);  // of the point (-1, -1)
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (weight[i] > 0) continue;
-    if (weight[i] < 0) return false;
-    // On the edge opposite vertex i, which a triangle of negative area runs through the other way round.
-    const Point from = point(t.v[(i + (area > 0 ? 1 : 2)) % 3]), to = point(t.v[(i + (area > 0 ? 2 : 1)) % 3]);
-    const bool is_left = to.y < from.y, is_top = to.y == from.y && to.x > from.x;
-    const bool owns = rule == FillRule::inclusive || (rule == FillRule::top_left && (is_left || is_top)) ||
-                      (rule == FillRule::offset_point && offset[i] > 0);
-    if (!owns) return false;
-  }
-  return true;
+  return TriangleOracle(t, grid_bits, rule).covers(x, y);
 }
 
 bool is_on_border(const Triangle& t, int x, int y, int grid_bits) {
@@ -75,12 +55,58 @@ bool is_on_border(const Triangle& t, int x, int y, int grid_bits) {
 }
 
 Rational depth_at(const Triangle& t, int x, int y, int grid_bits) {
-  return plane_at(t, {t.v[0].z, t.v[1].z, t.v[2].z}, x, y, grid_bits);
+  return TriangleOracle(t, grid_bits).depth_at(x, y);
 }
 
 Rational color_at(const Triangle& t, int x, int y, int grid_bits, int channel) {
+  return TriangleOracle(t, grid_bits).color_at(x, y, channel);
+}
+
+TriangleOracle::TriangleOracle(const Triangle& triangle, int grid_bits, FillRule rule)
+    : triangle_(triangle), grid_bits_(grid_bits), area_(doubled_area(triangle)) {
+  const bool is_turned = area_ < 0;  // then every edge is run through the other way round
+  if (is_turned) area_ = -area_;
+  const std::int64_t pixel = std::int64_t{1} << grid_bits;
+  std::int64_t largest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point from = point(triangle.v[(i + (is_turned ? 2 : 1)) % 3]);
+    const Point to = point(triangle.v[(i + (is_turned ? 1 : 2)) % 3]);
+    largest = std::max({largest, std::abs(from.x), std::abs(from.y)});
+    const bool is_left = to.y < from.y, is_top = to.y == from.y && to.x > from.x;
+    const bool owns = rule == FillRule::inclusive || (rule == FillRule::top_left && (is_left || is_top)) ||
+                      (rule == FillRule::offset_point && doubled_area(from, to, {-pixel, -pixel}) > 0);
+    edge_[i] = {from.x, from.y, to.x - from.x, to.y - from.y, owns};
+  }
+  constexpr std::int64_t kNarrow = std::int64_t{1} << 29;  // differences < 2^30, products < 2^60
+  narrow_limit_ = largest < kNarrow ? kNarrow : 0;
+}
+
+bool TriangleOracle::covers(int x, int y) const {
+  if (area_ == 0) return false;
+  const Point p = centre(x, y, grid_bits_);
+  if (std::abs(p.x) < narrow_limit_ && std::abs(p.y) < narrow_limit_) {
+    for (const Edge& e : edge_)
+      if (e.dx * (p.y - e.y) - e.dy * (p.x - e.x) < (e.owns ? 0 : 1)) return false;
+    return true;
+  }
+  for (const Edge& e : edge_)
+    if (int128{e.dx} * (p.y - e.y) - int128{e.dy} * (p.x - e.x) < (e.owns ? 0 : 1)) return false;
+  return true;
+}
+
+Rational TriangleOracle::plane_at(std::int64_t c0, std::int64_t c1, std::int64_t c2, int x, int y) const {
+  const Point p = centre(x, y, grid_bits_);
+  const auto weight = [&p](const Edge& e) { return int128{e.dx} * (p.y - e.y) - int128{e.dy} * (p.x - e.x); };
+  return {weight(edge_[0]) * c0 + weight(edge_[1]) * c1 + weight(edge_[2]) * c2, area_};
+}
+
+Rational TriangleOracle::depth_at(int x, int y) const {
+  return plane_at(triangle_.v[0].z, triangle_.v[1].z, triangle_.v[2].z, x, y);
+}
+
+Rational TriangleOracle::color_at(int x, int y, int channel) const {
   const auto c = static_cast<std::size_t>(channel);
-  return plane_at(t, {t.v[0].rgba[c], t.v[1].rgba[c], t.v[2].rgba[c]}, x, y, grid_bits);
+  return plane_at(triangle_.v[0].rgba[c], triangle_.v[1].rgba[c], triangle_.v[2].rgba[c], x, y);
 }
 
 std::int64_t on_grid(const Rational& value, int scale_numerator, int scale_denominator) {

@@ -5,6 +5,7 @@
 // < 2^65, plane numerators < 2^65 * 2^32 * 3 < 2^99, on the grid of 2^-20 LSB < 2^120: all fit int128.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "../fixed.hpp"
@@ -34,6 +35,29 @@ struct Rational {
 
 /// The same through the 8-bit colour codes of one channel, in LSB of 8 bits.
 [[nodiscard]] Rational color_at(const Triangle& triangle, int x, int y, int grid_bits, int channel);
+
+/// The same answers for many samples of one triangle: what they share is computed once, and products that fit are taken
+/// in 64 bits. Still each sample by itself, without stepping.
+class TriangleOracle {
+ public:
+  TriangleOracle(const Triangle& triangle, int grid_bits, FillRule rule = FillRule::top_left);
+  [[nodiscard]] bool covers(int x, int y) const;
+  [[nodiscard]] Rational depth_at(int x, int y) const;
+  [[nodiscard]] Rational color_at(int x, int y, int channel) const;
+
+ private:
+  struct Edge {
+    std::int64_t x, y, dx, dy;  ///< start and direction, turned so that the inside is positive
+    bool owns;                  ///< the samples exactly on it
+  };
+  [[nodiscard]] Rational plane_at(std::int64_t c0, std::int64_t c1, std::int64_t c2, int x, int y) const;
+
+  Triangle triangle_;
+  int grid_bits_;
+  int128 area_;                  ///< doubled, not negative
+  std::array<Edge, 3> edge_{};   ///< edge i lies opposite vertex i
+  std::int64_t narrow_limit_{};  ///< below it in both coordinates a sample's edge values fit 64 bits; 0: never
+};
 
 /// floor(value * scale_numerator / scale_denominator * 2^kGridBits + 1/2), scale_numerator < 2^7.
 [[nodiscard]] std::int64_t on_grid(const Rational& value, int scale_numerator = 1, int scale_denominator = 1);

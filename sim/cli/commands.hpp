@@ -17,6 +17,7 @@ void add_mutants_command(CLI::App& app, Action& selected);
 void add_depth_command(CLI::App& app, Action& selected);
 void add_bench_command(CLI::App& app, Action& selected);
 void add_scenes_command(CLI::App& app, Action& selected);
+void add_stress_command(CLI::App& app, Action& selected);
 void add_widths_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
 

@@ -37,6 +37,7 @@ class OracleCheck {
   void triangle(const Triangle& t, std::uint32_t index, const PixelBox& region,
                 std::vector<CoverageLog::Visit>::const_iterator& visit) {
     const PixelBox box = intersect(region, box_of(t, grid_bits_));
+    const exact::TriangleOracle oracle(t, grid_bits_, rule_);
     const auto end = log_.visits().end();
     const auto skip_to = [&](int tile_x, int tile_y) {
       // Whatever lies before the tile was drawn outside the box, or a second time.
@@ -51,7 +52,7 @@ class OracleCheck {
         for (int tx = box.left / tile_size_; tx <= (box.right - 1) / tile_size_; ++tx) {
           skip_to(tx, ty);
           const bool visited = visit != end && visit->triangle == index && visit->tile_x == tx && visit->tile_y == ty;
-          tile(t, index, tx, ty, box, visited ? &*visit : nullptr);
+          tile(t, oracle, index, tx, ty, box, visited ? &*visit : nullptr);
           if (visited) ++visit;
         }
       }
@@ -67,14 +68,14 @@ class OracleCheck {
     result_.mismatches += count;
   }
 
-  void tile(const Triangle& t, std::uint32_t index, int tx, int ty, const PixelBox& box,
-            const CoverageLog::Visit* visit) {
+  void tile(const Triangle& t, const exact::TriangleOracle& oracle, std::uint32_t index, int tx, int ty,
+            const PixelBox& box, const CoverageLog::Visit* visit) {
     const int x0 = tx * tile_size_, y0 = ty * tile_size_;
     std::uint64_t drawn_inside = 0;
     for (int y = std::max(box.top, y0); y < std::min(box.bottom, y0 + tile_size_); ++y) {
       for (int x = std::max(box.left, x0); x < std::min(box.right, x0 + tile_size_); ++x) {
         const bool drawn = visit != nullptr && log_.test(*visit, x - x0, y - y0);
-        const bool expected = exact::covers(t, x, y, grid_bits_, rule_);
+        const bool expected = oracle.covers(x, y);
         drawn_inside += drawn ? 1 : 0;
         ++result_.samples;
         if (drawn != expected) report(t, index, x, y, expected, 1);

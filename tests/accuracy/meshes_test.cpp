@@ -7,8 +7,8 @@
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
-#include "model/fixed.hpp"
 #include "sim/compare/compare.hpp"
+#include "sim/stress/delaunay.hpp"
 
 namespace halfplane {
 namespace {
@@ -18,46 +18,12 @@ using test::clip_at;
 using test::Random;
 using test::SceneBuilder;
 
-struct Point {
-  std::int64_t x, y;  // grid units
-  auto operator<=>(const Point&) const = default;
-};
-
-std::int64_t area(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
-
-/// Positive when p lies strictly inside the circle through a, b, c of positive area. Exact for |coordinates| < 2^30.
-int128 in_circle(Point a, Point b, Point c, Point p) {
-  const auto lift = [&](Point q) { return int128{q.x - p.x} * (q.x - p.x) + int128{q.y - p.y} * (q.y - p.y); };
-  return lift(a) * area(p, b, c) + lift(b) * area(a, p, c) + lift(c) * area(a, b, p);
-}
-
-using Corner = std::array<Point, 3>;
-
-/// Delaunay triangulation of a rectangle by Bowyer and Watson's insertion. Points must lie strictly inside.
-std::vector<Corner> delaunay(Point low, Point high, const std::set<Point>& points) {
-  std::vector<Corner> mesh{{low, {high.x, low.y}, {low.x, high.y}}, {Point{high.x, low.y}, high, {low.x, high.y}}};
-  for (const Point& p : points) {
-    std::set<std::pair<Point, Point>> border;  // directed edges of the cavity whose other side is outside it
-    std::vector<Corner> kept;
-    for (const Corner& t : mesh) {
-      if (in_circle(t[0], t[1], t[2], p) <= 0) {
-        kept.push_back(t);
-        continue;
-      }
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Point a = t[i], b = t[(i + 1) % 3];
-        if (border.erase({b, a}) == 0) border.insert({a, b});
-      }
-    }
-    for (const auto& [a, b] : border)
-      if (area(a, b, p) != 0) kept.push_back({a, b, p});
-    mesh = std::move(kept);
-  }
-  return mesh;
-}
+using stress::Corner;
+using stress::delaunay;
+using stress::Point;
 
 /// Draws a mesh in shuffled order with mixed windings; coordinates in units of 2^-bits pixel.
-Scene mesh_scene(std::vector<Corner> mesh, int size, int bits, Random& random) {
+Scene mesh_scene(stress::Mesh mesh, int size, int bits, Random& random) {
   for (std::size_t i = mesh.size(); i > 1; --i)
     std::swap(mesh[i - 1], mesh[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
   SceneBuilder builder(size, size);
@@ -80,9 +46,9 @@ void expect_exactly_once(const Comparison& c) {
   EXPECT_EQ(c.coverage.missing + c.coverage.extra, 0u);
 }
 
-std::int64_t total_area(const std::vector<Corner>& mesh) {
+std::int64_t total_area(const stress::Mesh& mesh) {
   std::int64_t sum = 0;
-  for (const Corner& t : mesh) sum += area(t[0], t[1], t[2]);
+  for (const Corner& t : mesh) sum += stress::doubled_area(t[0], t[1], t[2]);
   return sum;
 }
 
@@ -238,7 +204,7 @@ Scene shuffled_mesh(int cells, int pitch, int bits, std::uint32_t seed) {
       const std::int64_t dx = random.index(2 * reach + 1) - reach;
       grid.push_back({at_grid(i) + dx, at_grid(j) + random.index(2 * reach + 1) - reach});
     }
-  std::vector<Corner> mesh;
+  stress::Mesh mesh;
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i) {
       const auto corner = [&](int dx, int dy) {

@@ -19,7 +19,7 @@ std::vector<std::string> examples(const std::string& help) {
 
 TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
   for (const Arguments& command :
-       {Arguments{}, {"render"}, {"compare"}, {"depth"}, {"scenes"}, {"widths"}, {"config"}}) {
+       {Arguments{}, {"render"}, {"compare"}, {"depth"}, {"scenes"}, {"stress"}, {"widths"}, {"config"}}) {
     Arguments arguments = command;
     arguments.push_back("--help");
     const Outcome help = run(arguments);
@@ -53,7 +53,8 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
-  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "depth", "scenes", "widths", "config"})
+  for (const char* command :
+       {"render", "compare", "cosim", "reduce", "mutants", "depth", "stress", "scenes", "widths", "config"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {
     const std::string help = run({command, "--help"}).out;

@@ -1,0 +1,18 @@
+// The configurations that every case runs in.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/config.hpp"
+
+namespace halfplane::stress {
+
+/// The presets; then each setting through its range by itself: S 0...8, depth 8...32, guard band, local guard bits, bits of
+/// the reciprocal, stamp, tile, colour format; then legal combinations of all of them, the same on every machine.
+[[nodiscard]] const std::vector<Config>& grid();
+
+/// The configuration of a number: the grid's, and beyond it random legal ones without end.
+[[nodiscard]] Config config_of(std::uint64_t number);
+
+}  // namespace halfplane::stress

@@ -1,0 +1,87 @@
+// `halfplane stress`: what it prints, writes and refuses; and the whole quick set.
+#include <algorithm>
+
+#include "program.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class CliStress : public Cli {};
+
+TEST_F(CliStress, ResultHasEveryKeyOfTheContractAndTheWorstAsCapturesThatReadBack) {
+  const Json json = result({"stress", "--case", "fans,adversarial_depth", "--config", "tiny", "--seconds", "1",
+                            "--seed", "5", "--captures", "worst", "--junit", "stress.xml"});
+  EXPECT_EQ(json["schema"], "halfplane.stress/1");
+  EXPECT_EQ(json["seed"], 5);
+  EXPECT_EQ(json["failures"], 0);
+  EXPECT_EQ(json["config"]["preset"], "tiny");
+  EXPECT_TRUE(json["wall_s"].is_number());
+  ASSERT_EQ(json["cases"].size(), 2U);
+  for (const Json& row : json["cases"]) {
+    for (const char* key : {"name", "configs", "triangles", "checks", "failures", "worst"})
+      EXPECT_TRUE(row.contains(key)) << key;
+    EXPECT_EQ(row["configs"], 1);
+    EXPECT_GT(row["checks"], 1000);
+    const Json& depth = row["worst"]["depth"];
+    EXPECT_LE(depth["value"], depth["bound"]);
+    const std::string capture = depth["capture"];
+    ASSERT_TRUE(exists(capture));
+    // What the search reports is what another command sees.
+    const Json compared = result({"compare", capture, "--config", "tiny"});
+    EXPECT_EQ(compared["coverage"]["oracle_mismatches"], 0);
+    EXPECT_NEAR(depth["measured"].get<double>(), depth["value"].get<double>(), 0.01 * depth["value"].get<double>());
+  }
+  const Bytes xml = read("stress.xml");
+  EXPECT_NE(std::string(xml.begin(), xml.end()).find("failures=\"0\""), std::string::npos);
+}
+
+TEST_F(CliStress, TheCommandThatRepeatsAUnitFindsTheSameWorst) {
+  const Json json = result({"stress", "--case", "adversarial_depth", "--config", "tiny", "--seconds", "0.5"});
+  const Json& worst = json["cases"][0]["worst"]["depth"];
+  Arguments words = split_words(worst["repeat"].get<std::string>());
+  words.erase(words.begin());
+  EXPECT_EQ(result(words)["cases"][0]["worst"]["depth"]["value"], worst["value"]);
+}
+
+TEST_F(CliStress, TableSaysWhatWasComparedWithWhichSeed) {
+  const Outcome outcome = run({"stress", "--case", "zero_area", "--config", "tiny", "--seconds", "0.2", "--seed", "9"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (const char* part : {"zero_area", "checks", "seed 9", "every bound holds"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << '\n' << outcome.out;
+  EXPECT_TRUE(listing().empty());
+}
+
+TEST_F(CliStress, ListNamesEveryCaseWithItsProperty) {
+  const auto lines = lines_of(run({"stress", "--list"}).out);
+  EXPECT_GT(lines.size(), 30U);
+  for (const std::string& line : lines) EXPECT_GT(line.size(), 35U) << line;
+}
+
+TEST_F(CliStress, WrongUsageIsRefusedInOneLine) {
+  expect_refused({"stress", "--case", "fan"}, "no case 'fan'");
+  expect_refused({"stress", "--quick", "--seconds", "3"}, "one of them");
+  expect_refused({"stress", "--seconds", "0"}, "--seconds");
+  expect_refused({"stress", "--seconds", "nan"}, "--seconds");
+  expect_refused({"stress", "--unit", "-1"}, "--unit");
+  expect_refused({"stress", "--config", "tiny", "--set", "depth.bits=99"}, "depth.bits");
+  expect_refused({"stress", "--junit", "nowhere/x.xml"}, "no such folder");
+}
+
+/// The quick set, as a suite of its own that counts as slow.
+class StressQuickSet : public Cli {};
+
+TEST_F(StressQuickSet, HoldsEveryBoundOverTheWholeGrid) {
+  const Json json = result({"stress", "--threads", "2"});
+  EXPECT_EQ(json["failures"], 0) << json.dump(1);
+  EXPECT_GE(json["samples"], 10'000'000);
+  EXPECT_GE(json["cases"].size(), 40U);
+  for (const char* name : {"tiny", "embedded", "full"}) {
+    EXPECT_LE(json["preset_depth"][name], 0.75) << name;
+    EXPECT_GT(json["preset_depth"][name], 0.5) << name;
+  }
+  for (const Json& row : json["cases"]) EXPECT_GT(row["checks"], 0) << row["name"];
+}
+
+}  // namespace
+}  // namespace halfplane::cli
