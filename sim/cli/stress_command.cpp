@@ -185,6 +185,10 @@ int run(const StressCommand& options) {
   }
   if (options.quick && options.seconds > 0) throw InputError("--quick and --seconds together; give one of them");
   check_output(options.junit_path);
+  if (std::error_code error; !options.captures.empty()) {
+    std::filesystem::create_directories(options.captures, error);
+    if (error) throw InputError("--captures: cannot make the folder '" + options.captures + "'; choose another");
+  }
   check_distinct({options.json, options.junit_path});
   const Config config = effective_config(options);
   Progress progress(options, "stress");

@@ -65,6 +65,7 @@ TEST_F(CliStress, WrongUsageIsRefusedInOneLine) {
   expect_refused({"stress", "--seconds", "nan"}, "--seconds");
   expect_refused({"stress", "--unit", "-1"}, "--unit");
   expect_refused({"stress", "--config", "tiny", "--set", "depth.bits=99"}, "depth.bits");
+  expect_refused({"stress", "--captures", "/dev/null/x"}, "cannot make the folder");
   expect_refused({"stress", "--junit", "nowhere/x.xml"}, "no such folder");
 }
 
