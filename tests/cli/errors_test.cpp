@@ -19,10 +19,10 @@ class BadInput : public Cli {
 
 TEST_F(BadInput, CommandThatDoesNotExistIsNamedWithThoseThatDo) {
   expect_refused({}, "render teapot");
-  expect_refused({""}, "render, compare, cosim, reduce, mutants, depth, bench, scenes, widths, config");
+  expect_refused({""}, "render, compare, cosim, reduce, mutants, depth, bench, stress, scenes, widths, config");
   expect_refused({"rendr", "teapot"}, "no command 'rendr'");
   expect_refused({"sweep", "teapot"}, "no command 'sweep' in this version");
-  expect_refused({"teapot.obj"}, "render, compare, cosim, reduce, mutants, depth, bench, scenes, widths, config");
+  expect_refused({"teapot.obj"}, "render, compare, cosim, reduce, mutants, depth, bench, stress, scenes, widths, config");
   expect_refused({"--nonsense"}, "halfplane --help");
 }
 
