@@ -33,7 +33,7 @@ double color_error(const Interpolated& value, const exact::TriangleOracle& oracl
 /// One of the nine (for colours: eighteen) integers of a triangle, moved by `step`; false when it would leave its range.
 bool move(Triangle& t, int coordinate, std::int64_t step, const Unit& unit) {
   SnappedVertex& v = t.v[static_cast<std::size_t>(coordinate % 3)];
-  const auto within = [step](std::int64_t value, std::int64_t low, std::int64_t high) {
+  const auto within = [&step](std::int64_t value, std::int64_t low, std::int64_t high) {
     return value + step >= low && value + step <= high;
   };
   const int kind = coordinate / 3, even = unit.config.subpixel_bits == 0 ? 2 : 1;  // at S = 0 coordinates are doubled
