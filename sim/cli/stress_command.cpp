@@ -107,6 +107,7 @@ Json case_json(const StressCommand& options, const stress::CaseResult& result) {
            {"samples", t.samples},        {"checks", t.checks},         {"failures", t.failures}};
   row["worst"] = Json::object();
   for (const WorstEntry& entry : t.worst) row["worst"][entry.first] = worst_json(options, result, entry);
+  if (!t.bias.empty()) row["bias"] = {{"configs", t.bias.size()}, {"judged", t.bias_judged}};
   row["first_failure"] = nullptr;
   if (t.first) {
     const std::string folder = options.captures.empty() ? "out/stress" : options.captures;

@@ -13,8 +13,8 @@
 namespace halfplane::stress {
 namespace {
 
-constexpr double kBiasBound = 0.05;          // LSB
-constexpr double kBiasStandardError = 0.01;  // LSB: a mean that is known less well is not judged
+constexpr double kBiasBound = 0.05;           // LSB
+constexpr double kBiasStandardError = 0.003;  // LSB: a mean that is known less well is not judged
 
 std::vector<const Case*> chosen(const std::vector<std::string>& names) {
   std::vector<const Case*> list;
@@ -105,6 +105,7 @@ class Driver {
     Tally& tally = result.tally;
     for (const auto& [name, sums] : tally.bias) {
       if (sums.standard_error() > kBiasStandardError) continue;
+      ++tally.bias_judged;
       const Place place{0, tally.bias_config.at(name), {}};
       tally.keep_worst("bias", {std::abs(sums.mean()), kBiasBound, "LSB", place, std::nullopt});
       if (std::abs(sums.mean()) < kBiasBound) continue;

@@ -77,7 +77,8 @@ struct Tally {
   std::map<std::string, double, std::less<>> preset_depth;  ///< the worst "depth" in each preset as it is, LSB
   std::map<std::string, BiasSums, std::less<>> bias;        ///< by the label of the configuration
   std::map<std::string, Config, std::less<>> bias_config;
-  std::optional<Failure> first;  ///< the failure of the lowest unit
+  std::uint64_t bias_judged = 0;  ///< configurations whose mean is known well enough to be judged
+  std::optional<Failure> first;   ///< the failure of the lowest unit
 
   void keep_worst(const std::string& property, Worst candidate);
   void keep_first(Failure failure);
