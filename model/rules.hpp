@@ -1,5 +1,5 @@
-// Conventions that can be chosen for study: never the default, and only the scalar engine has them. docs/rules.md shows
-// what each does.
+// Conventions that can be chosen for study: never the default, and only the scalar engine has them. docs/rules.md and
+// docs/numerics.md show what each does.
 #pragma once
 
 #include <array>
@@ -29,10 +29,25 @@ enum class Clipping {
   homogeneous  ///< not cut: edge functions in 2D homogeneous coordinates, after Olano and Greer
 };
 
+/// How triangle_setup makes the gradients of its planes. The others are faults.
+enum class Gradients {
+  one_reciprocal,   ///< both times one reciprocal, rounded to nearest: the pipeline's own
+  two_reciprocals,  ///< x times one that was rounded down, y times one that was rounded up
+  truncated         ///< per pixel, what lies below the fraction bits of a tile dropped
+};
+
+/// What a plane does where it leaves the range of its register. The other is a fault.
+enum class Accumulator {
+  wrap,     ///< goes on modulo 2^N: the pipeline's own
+  saturate  ///< stays at the end of the range, gradients likewise
+};
+
 /// By enumerator, as typed on the command line and printed in results.
 inline constexpr std::array<std::string_view, 3> kFillRuleNames{"top_left", "offset_point", "inclusive"};
 inline constexpr std::array<std::string_view, 4> kTraversalNames{"tiled", "bbox", "scanline", "brute"};
 inline constexpr std::array<std::string_view, 2> kClippingNames{"polygon", "homogeneous"};
+inline constexpr std::array<std::string_view, 3> kGradientsNames{"one_reciprocal", "two_reciprocals", "truncated"};
+inline constexpr std::array<std::string_view, 2> kAccumulatorNames{"wrap", "saturate"};
 
 [[nodiscard]] constexpr std::string_view name_of(FillRule rule) {
   return kFillRuleNames[static_cast<std::size_t>(rule)];
@@ -43,12 +58,20 @@ inline constexpr std::array<std::string_view, 2> kClippingNames{"polygon", "homo
 [[nodiscard]] constexpr std::string_view name_of(Clipping clipping) {
   return kClippingNames[static_cast<std::size_t>(clipping)];
 }
+[[nodiscard]] constexpr std::string_view name_of(Gradients gradients) {
+  return kGradientsNames[static_cast<std::size_t>(gradients)];
+}
+[[nodiscard]] constexpr std::string_view name_of(Accumulator accumulator) {
+  return kAccumulatorNames[static_cast<std::size_t>(accumulator)];
+}
 
 /// What is studied.
 struct StudyRules {
   Traversal traversal = Traversal::tiled;
   FillRule fill_rule = FillRule::top_left;
   Clipping clipping = Clipping::polygon;  ///< the golden has both
+  Gradients gradients = Gradients::one_reciprocal;
+  Accumulator accumulator = Accumulator::wrap;
   bool operator==(const StudyRules&) const = default;
 };
 

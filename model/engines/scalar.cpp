@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "../stages/homogeneous_setup.hpp"
+#include "../stages/plane_rules.hpp"
 #include "../stages/traversal.hpp"
 #include "commands.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 /// One covered sample of a triangle through interpolate, depth_test and rop.
 void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Widths& widths,
                   const RenderOptions& options, std::uint32_t index, int x, int y, Rendering& rendering) {
-  const Interpolated value = interpolate_at(setup, widths, x, y);
+  const Interpolated value = interpolate_by_rules(setup, options.rules, widths, x, y);
   shade_sample(
       context, options, x, y, value.depth_code, [&value] { return value.color_code; }, setup.primitive,
       static_cast<std::int32_t>(index), rendering);
@@ -94,13 +95,14 @@ class TapTiles {
   std::vector<TileMask> masks_;
 };
 
-/// A triangle by another traversal or fill rule than the pipeline's.
+/// A triangle by other rules than the pipeline's.
 void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, const Triangle& triangle,
                      TriangleSetup& setup, std::uint32_t index, Rendering& rendering) {
   const StudyRules& rules = engine.options.rules;
   const int grid_bits = engine.widths.grid_bits;
   const auto v = canonical(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
   set_fill_rule(setup, v, rules.fill_rule, engine.widths);
+  set_planes(setup, v, rules, engine.config, engine.widths);
   const bool taps = static_cast<bool>(engine.options.coverage_tap) && !setup.is_empty();
   std::optional<TapTiles> tiles;
   if (taps && rules.traversal != Traversal::tiled) tiles.emplace(setup, engine.widths.tile_shift);
@@ -152,7 +154,9 @@ void check_options(const RenderOptions& options) {
   const StudyRules& rules = options.rules;
   if (rules.clipping == Clipping::polygon) return;
   if (rules != StudyRules{.clipping = rules.clipping})
-    throw InputError("--clipping homogeneous finds samples in its own way: leave out --traversal and --fill-rule");
+    throw InputError(
+        "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients and "
+        "--accumulator");
   if (options.keeps_triangles())
     throw InputError("--clipping homogeneous has no snapped triangles to keep: use --clipping polygon");
 }

@@ -6,7 +6,7 @@
 namespace halfplane {
 
 /// As render_functional, with the same image, counts and ids, bit for bit. Has every traversal (the same image from
-/// each) and fill rule of RenderOptions::rules. Clipping::homogeneous draws clip-space triangles by homogeneous_setup
+/// each), fill rule and fault of RenderOptions::rules. Clipping::homogeneous draws clip-space triangles by homogeneous_setup
 /// instead: no primitive is cut, no triangle is kept; window-space ones, lines and points are drawn as ever.
 [[nodiscard]] Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options = {});
 

@@ -1,5 +1,6 @@
 #include "sim/compare/compare.hpp"
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -18,6 +19,7 @@ struct CompareCommand : CommonOptions {
   std::string golden = "binary64";
   StudyOptions study;
   std::string sheet_path, model_path, golden_path;
+  std::vector<std::string> panels;
 };
 
 Json stats_json(const ErrorStats& s) { return {{"max", s.max}, {"mean", s.mean}, {"rms", s.rms}, {"p999", s.p999}}; }
@@ -121,6 +123,8 @@ int run(const CompareCommand& options) {
   const StudyRules rules = study_rules(options.study);
   for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
     check_output(*path, ".png");
+  if (!options.panels.empty() && options.sheet_path.empty())
+    throw InputError("--panels chooses from the sheet that -o writes: add -o FILE.png");
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
   Comparison c;
@@ -144,8 +148,14 @@ int run(const CompareCommand& options) {
   if (is_study) title += ", " + study_text(study);
   if (!options.model_path.empty()) write_png(options.model_path, color_picture(c.rendering.frame, config.color_format));
   if (!options.golden_path.empty()) write_png(options.golden_path, color_picture(c.golden.frame, config.color_format));
-  if (!options.sheet_path.empty())
-    write_png(options.sheet_path, comparison_sheet(make_sheet(c, scene, config, title, lines)));
+  if (!options.sheet_path.empty()) {
+    ComparisonSheet sheet = make_sheet(c, scene, config, title, lines);
+    sheet.panels = options.panels;
+    if (!options.panels.empty())  // room for less
+      sheet.title = std::filesystem::path(options.scene).filename().string() + ", " + label(config) +
+                    (is_study ? ", " + study_text(study) : "");
+    write_png(options.sheet_path, comparison_sheet(sheet));
+  }
 
   Json result = result_head("compare", options, config);
   result["golden"] = options.golden;
@@ -182,6 +192,9 @@ void add_compare_command(CLI::App& app, Action& selected) {
   add_study_options(*command, options->study);
   add_file_option(*command, "-o", options->sheet_path,
                   "one sheet: model, golden, coverage, depth and colour difference, .png");
+  command->add_option("--panels", options->panels, "which panels of the sheet, and their order: model,depth")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(kPanelNames.begin(), kPanelNames.end())));
   add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");
   add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");

@@ -234,10 +234,11 @@ int run(const RenderCommand& options) {
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
   result["depth_hash"] = depth_hash(rendering.frame);
   const StudyRules rules = study_rules(options.study);
-  const std::string title = rules.clipping == Clipping::homogeneous ? "clipping homogeneous, engine " + options.engine
-                            : rules != StudyRules{}
-                                ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
-                                : "engine " + options.engine;
+  const std::string title =
+      rules.clipping == Clipping::homogeneous ? "clipping homogeneous, engine " + options.engine
+      : rules.gradients != Gradients::one_reciprocal || rules.accumulator != Accumulator::wrap ? study_text(result)
+      : rules != StudyRules{} ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
+                              : "engine " + options.engine;
   write_files(options, rendering, config, title);
   result["wall_s"] = seconds_since(start);
   write_json(options, result);

@@ -28,6 +28,14 @@ void add_study_options(CLI::App& app, StudyOptions& options) {
   app.add_option("--fill-rule", options.fill_rule, "study, scalar engine: who owns samples exactly on an edge")
       ->check(CLI::IsMember(as_strings(kFillRuleNames)))
       ->capture_default_str();
+  app.add_option("--gradients", options.gradients,
+                 "study, scalar engine: how triangle setup makes them; two are faults")
+      ->check(CLI::IsMember(as_strings(kGradientsNames)))
+      ->capture_default_str();
+  app.add_option("--accumulator", options.accumulator,
+                 "study, scalar engine: what a plane does beyond the range of its register; saturate is a fault")
+      ->check(CLI::IsMember(as_strings(kAccumulatorNames)))
+      ->capture_default_str();
 }
 
 void add_clipping_option(CLI::App& app, StudyOptions& options) {
@@ -41,13 +49,17 @@ void add_clipping_option(CLI::App& app, StudyOptions& options) {
 StudyRules study_rules(const StudyOptions& options) {
   return {enumerator<Traversal>(kTraversalNames, options.traversal),
           enumerator<FillRule>(kFillRuleNames, options.fill_rule),
-          enumerator<Clipping>(kClippingNames, options.clipping)};
+          enumerator<Clipping>(kClippingNames, options.clipping),
+          enumerator<Gradients>(kGradientsNames, options.gradients),
+          enumerator<Accumulator>(kAccumulatorNames, options.accumulator)};
 }
 
 void check_study_rules(const StudyRules& rules, const std::string& engine) {
   if (rules.clipping != Clipping::polygon) {
     if (rules != StudyRules{.clipping = rules.clipping})
-      throw InputError("--clipping homogeneous finds samples in its own way: leave out --traversal and --fill-rule");
+      throw InputError(
+          "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients and "
+          "--accumulator");
     if (engine != "scalar" && engine != "golden")
       throw InputError("--clipping " + std::string(name_of(rules.clipping)) + ": the engine " + engine +
                        " does not have it; add --engine scalar or --engine golden");
@@ -59,22 +71,43 @@ void check_study_rules(const StudyRules& rules, const std::string& engine) {
     throw InputError("--traversal " + std::string(name_of(rules.traversal)) + rest);
   if (rules.fill_rule != FillRule::top_left)
     throw InputError("--fill-rule " + std::string(name_of(rules.fill_rule)) + rest);
+  if (rules.gradients != Gradients::one_reciprocal)
+    throw InputError("--gradients " + std::string(name_of(rules.gradients)) + rest);
+  if (rules.accumulator != Accumulator::wrap)
+    throw InputError("--accumulator " + std::string(name_of(rules.accumulator)) + rest);
 }
 
 void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config) {
   result["traversal"] = name_of(rules.traversal);
   result["fill_rule"] = name_of(rules.fill_rule);
   result["clipping"] = name_of(rules.clipping);
+  result["gradients"] = name_of(rules.gradients);
+  result["accumulator"] = name_of(rules.accumulator);
   result["double_draws"] = count_double_draws(scene, config, rules);
 }
 
 std::string study_text(const Json& result) {
-  const auto text = [&result](const char* key) { return result[key].get<std::string>(); };
-  std::string line = text("clipping") == name_of(Clipping::homogeneous)
-                         ? "clipping " + text("clipping")
-                         : "traversal " + text("traversal") + ", fill rule " + text("fill_rule");
-  if (result.contains("double_draws"))
-    line += ", " + with_commas(result["double_draws"].get<std::uint64_t>()) + " double draws";
+  struct Rule {
+    const char *key, *label;
+    std::string_view usual;
+  };
+  constexpr Rule kSamples[] = {{"traversal", "traversal", name_of(Traversal::tiled)},
+                               {"fill_rule", "fill rule", name_of(FillRule::top_left)},
+                               {"clipping", "clipping", name_of(Clipping::polygon)}};
+  constexpr Rule kPlanes[] = {{"gradients", "gradients", name_of(Gradients::one_reciprocal)},
+                              {"accumulator", "accumulator", name_of(Accumulator::wrap)}};
+  std::vector<std::string> parts;
+  const auto add_unusual = [&](const auto& rules) {
+    for (const Rule& rule : rules)
+      if (result.contains(rule.key) && result[rule.key] != rule.usual)
+        parts.push_back(std::string(rule.label) + " " + result[rule.key].get<std::string>());
+  };
+  add_unusual(kSamples);
+  if (!parts.empty() && result.contains("double_draws"))
+    parts.push_back(with_commas(result["double_draws"].get<std::uint64_t>()) + " double draws");
+  add_unusual(kPlanes);
+  std::string line;
+  for (const std::string& part : parts) line += (line.empty() ? "" : ", ") + part;
   return line;
 }
 

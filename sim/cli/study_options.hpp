@@ -1,5 +1,4 @@
-// --traversal, --fill-rule and --clipping: the study rules of docs/rules.md, for the commands that can run the scalar
-// engine.
+// The study rules of docs/rules.md and docs/numerics.md, for the commands that can run the scalar engine.
 #pragma once
 
 #include <string>
@@ -14,9 +13,11 @@ struct StudyOptions {
   std::string traversal{name_of(Traversal::tiled)};
   std::string fill_rule{name_of(FillRule::top_left)};
   std::string clipping{name_of(Clipping::polygon)};
+  std::string gradients{name_of(Gradients::one_reciprocal)};
+  std::string accumulator{name_of(Accumulator::wrap)};
 };
 
-/// Adds --traversal and --fill-rule.
+/// Adds --traversal, --fill-rule, --gradients and --accumulator.
 void add_study_options(CLI::App& app, StudyOptions& options);
 
 /// Adds --clipping: for commands that need no snapped triangles.
@@ -27,11 +28,11 @@ void add_clipping_option(CLI::App& app, StudyOptions& options);
 /// Throws InputError, naming the option, when an engine is asked for what it does not have.
 void check_study_rules(const StudyRules& rules, const std::string& engine);
 
-/// Adds {traversal, fill_rule, clipping, double_draws} to a result.
+/// Adds {traversal, fill_rule, clipping, gradients, accumulator, double_draws} to a result.
 void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config);
 
-/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, from what add_study_json() added,
-/// or from "clipping" alone.
+/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, without what is as usual, from what
+/// add_study_json() added, or from "clipping" alone.
 [[nodiscard]] std::string study_text(const Json& result);
 
 }  // namespace halfplane

@@ -12,9 +12,10 @@
 #include "../../model/engines/scalar.hpp"
 #include "../../model/golden/exact.hpp"
 #include "../../model/stages/depth_encode.hpp"
-#include "../../model/stages/interpolate.hpp"
+#include "../../model/stages/plane_rules.hpp"
 #include "../../model/stages/rop.hpp"
 #include "../../model/stages/triangle_setup.hpp"
+#include "../../model/stages/viewport.hpp"
 #include "eye_depth.hpp"
 #include "line_coverage.hpp"
 #include "line_pixels.hpp"
@@ -67,9 +68,10 @@ struct PixelGroups {
 /// Walks over the pixels that the model owns and gathers every attribute error.
 class AttributeComparison {
  public:
-  AttributeComparison(const Scene& scene, const Config& config, Comparison& result)
+  AttributeComparison(const Scene& scene, const Config& config, const StudyRules& rules, Comparison& result)
       : scene_(scene),
         config_(config),
+        rules_(rules),
         widths_(derive_widths(config)),
         result_(result),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
@@ -82,7 +84,7 @@ class AttributeComparison {
       if (groups.first[i] == groups.first[i + 1]) continue;
       ++result_.visible_triangles;
       const Triangle& triangle = result_.rendering.triangles[i];
-      const TriangleSetup setup = setup_triangle(triangle, config_, widths_);
+      const TriangleSetup setup = setup_of(triangle);
       for (std::size_t k = groups.first[i]; k < groups.first[i + 1]; ++k)
         pixel(triangle_pixel(triangle, setup, groups.pixels[k]));
     }
@@ -103,11 +105,24 @@ class AttributeComparison {
   }
 
  private:
+  [[nodiscard]] const State& state_of(const Triangle& triangle) const {
+    return scene_.states[std::get<Draw>(scene_.commands[triangle.draw]).state];
+  }
+
+  /// As the engine has it: a saturated plane depends on where its box begins.
+  [[nodiscard]] TriangleSetup setup_of(const Triangle& triangle) const {
+    TriangleSetup setup =
+        setup_triangle(triangle, config_, widths_, raster_rect(state_of(triangle), scene_.width, scene_.height));
+    const auto area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
+    set_planes(setup, canonical(triangle.v, area), rules_, config_, widths_);
+    return setup;
+  }
+
   [[nodiscard]] OwnedPixel triangle_pixel(const Triangle& triangle, const TriangleSetup& setup, std::size_t p) const {
     const auto width = static_cast<std::size_t>(result_.golden.width);
     const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
-    const State& state = scene_.states[std::get<Draw>(scene_.commands[triangle.draw]).state];
-    const Interpolated stages = interpolate_at(setup, widths_, x, y);
+    const State& state = state_of(triangle);
+    const Interpolated stages = interpolate_by_rules(setup, rules_, widths_, x, y);
     OwnedPixel pixel{p, triangle.primitive, triangle.draw, false, {}, {}, stages.depth_code, stages.color_code};
     if (state.depth_write)
       pixel.depth = {exact::depth_at(triangle, x, y, widths_.grid_bits),
@@ -189,6 +204,7 @@ class AttributeComparison {
 
   const Scene& scene_;
   const Config& config_;
+  const StudyRules& rules_;
   const Widths widths_;
   Comparison& result_;
   double depth_max_;  // 2^B - 1
@@ -253,7 +269,7 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   }
   result.depth_error_lsb.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   result.color_error_lsb = result.depth_error_lsb;
-  AttributeComparison(scene, config, result).run();
+  AttributeComparison(scene, config, options.rules, result).run();
   return result;
 }
 

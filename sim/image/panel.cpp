@@ -153,6 +153,14 @@ Picture comparison_sheet(const ComparisonSheet& sheet) {
     text.lines = sheet.summary;
     panels.push_back(std::move(text));
   }
+  if (!sheet.panels.empty()) {
+    std::vector<Panel> chosen;
+    for (const std::string& name : sheet.panels) {
+      const auto at = std::find(kPanelNames.begin(), kPanelNames.end(), name) - kPanelNames.begin();
+      if (static_cast<std::size_t>(at) < panels.size()) chosen.push_back(panels[static_cast<std::size_t>(at)]);
+    }
+    return compose_sheet(sheet.title, chosen, std::min(3, static_cast<int>(chosen.size())));
+  }
   const int columns = width > 2 * height ? 2 : 3;
   return compose_sheet(sheet.title, panels, columns);
 }

@@ -4,6 +4,7 @@
 // reduced by one, and then a pixel of a difference panel shows the worst of its block, so that none is lost.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -66,8 +67,13 @@ struct ComparisonSheet {
   std::vector<CoverageClass> coverage;
   std::vector<float> depth_error;    ///< signed, LSB; NaN where not compared
   std::vector<float> color_error;    ///< largest absolute error of the channels, LSB; NaN where not compared
-  std::vector<std::string> summary;  ///< the sixth cell: figures and bounds, one per line
+  std::vector<std::string> summary;  ///< the sixth cell: figures and bounds, one per line; left out when empty
+  std::vector<std::string> panels;   ///< of kPanelNames, those to show, in this order; empty: all
 };
+
+/// The panels of a comparison sheet.
+inline constexpr std::array<std::string_view, 6> kPanelNames{"model", "golden", "coverage",
+                                                             "depth", "color",  "summary"};
 
 /// Colour picture and draws panel side by side.
 [[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);

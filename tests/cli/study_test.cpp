@@ -102,9 +102,42 @@ TEST_F(StudyRules, ClippingShowsInTheResultsOfScalarAndGoldenAndNoOtherEngineHas
   expect_refused(both, "leave out --traversal");
 }
 
+TEST_F(StudyRules, FaultsShowInTheResultAndCompareSaysThatTheBoundIsBroken) {
+  write("slope.hpt", "halfplane 1\ntarget 400 200\nspace window\nv 0 0 .1\nv 400 0 .15\nv 0 200 .13\nt 0 1 2\n");
+  const Json usual = result({"compare", "slope.hpt"});
+  EXPECT_EQ(usual["gradients"], "one_reciprocal");
+  EXPECT_EQ(usual["accumulator"], "wrap");
+  const Outcome broken =
+      run({"compare", "slope.hpt", "--gradients", "truncated", "--panels", "model,depth", "-o", "error.png", "--json"});
+  EXPECT_EQ(broken.status, 1);
+  const Json truncated = Json::parse(broken.out);
+  EXPECT_EQ(truncated["engine"], "scalar");
+  EXPECT_EQ(truncated["gradients"], "truncated");
+  EXPECT_GT(truncated["datapath"]["depth_lsb"]["max"], 1.0);
+  EXPECT_EQ(truncated["coverage"]["oracle_mismatches"], 0u);
+  EXPECT_EQ(truncated["broken_bounds"].size(), 1u);
+  EXPECT_NE(broken.err.find("embedded, seed 1, gradients truncated"), std::string::npos) << broken.err;
+  EXPECT_GT(read("error.png").size(), 1000u);
+  const Json both = result(
+      {"render", "slope.hpt", "--engine", "scalar", "--gradients", "two_reciprocals", "--accumulator", "saturate"});
+  EXPECT_EQ(both["gradients"], "two_reciprocals");
+  EXPECT_EQ(both["accumulator"], "saturate");
+}
+
+TEST_F(StudyRules, OtherEnginesAndHomogeneousTrianglesRefuseFaults) {
+  for (const char* engine : {"functional", "cycle", "golden"}) {
+    expect_refused({"render", "triangle", "--engine", engine, "--gradients", "truncated"}, "--gradients truncated");
+    expect_refused({"render", "triangle", "--engine", engine, "--accumulator", "saturate"}, engine);
+  }
+  expect_refused({"render", "walk", "--engine", "scalar", "--clipping", "homogeneous", "--accumulator", "saturate"},
+                 "--accumulator");
+}
+
 TEST_F(StudyRules, UnknownNamesAreRefusedWithTheLegalOnes) {
   expect_refused({"render", "triangle", "--engine", "scalar", "--traversal", "spiral"}, "tiled,bbox,scanline,brute");
   expect_refused({"compare", "triangle", "--fill-rule", "bottom_right"}, "top_left,offset_point,inclusive");
+  expect_refused({"compare", "triangle", "--gradients", "rounded"}, "one_reciprocal,two_reciprocals,truncated");
+  expect_refused({"compare", "triangle", "--accumulator", "clamp"}, "wrap,saturate");
 }
 
 }  // namespace

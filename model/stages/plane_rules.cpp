@@ -1,0 +1,118 @@
+#include "plane_rules.hpp"
+
+#include <algorithm>
+
+namespace halfplane {
+namespace {
+
+/// What the planes of one triangle share.
+struct PlaneFrame {
+  std::int64_t ax, ay, bx, by;  // v1 - v0 and v2 - v0, subpixels
+  std::int64_t dx, dy;          // from v0 to the anchor of the first tile, subpixels
+  std::uint64_t x_reciprocal = 0, y_reciprocal = 0;
+  int shift = 0;  // k
+  int fraction;   // F
+  int kept;       // fraction bits of a gradient per subpixel that are kept: F, or l + s
+  StudyRules rules;
+};
+
+/// `value` in a register of `bits` bits.
+std::int64_t held(int128 value, int bits, Accumulator accumulator) {
+  if (accumulator == Accumulator::wrap) return wrap_signed(static_cast<std::int64_t>(value), bits);
+  const int128 half = int128{1} << (bits - 1);
+  return static_cast<std::int64_t>(std::clamp(value, -half, half - 1));
+}
+
+/// Per subpixel, F fraction bits.
+int128 gradient(std::int64_t numerator, std::uint64_t reciprocal, const PlaneFrame& f) {
+  const int128 product = static_cast<int128>(numerator) * static_cast<int128>(reciprocal);
+  const int drop = f.shift - f.kept;
+  if (f.rules.gradients != Gradients::truncated) return round_shift(product, drop);
+  return (drop > 0 ? product >> drop : product << -drop) << (f.fraction - f.kept);
+}
+
+Plane plane_by_rules(std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f, int bits) {
+  const std::int64_t ac = c1 - c0, bc = c2 - c0;
+  const Accumulator accumulator = f.rules.accumulator;
+  Plane plane;
+  plane.step_x = held(gradient(ac * f.by - bc * f.ay, f.x_reciprocal, f), bits, accumulator);
+  plane.step_y = held(gradient(f.ax * bc - f.bx * ac, f.y_reciprocal, f), bits, accumulator);
+  plane.value =
+      held((int128{c0} << f.fraction) + int128{plane.step_x} * f.dx + int128{plane.step_y} * f.dy, bits, accumulator);
+  return plane;
+}
+
+struct Value {
+  std::int64_t unrounded, code;
+};
+
+/// A saturated plane at pixel (x, y), clamped to [low, high].
+Value saturated_at(const TriangleSetup& setup, const Plane& plane, int plane_bits, int local_bits, int guard_bits,
+                   const Widths& widths, int x, int y, std::int64_t low, std::int64_t high) {
+  const int shift = widths.tile_shift, to_subpixels = shift + widths.grid_bits;
+  const int tile_x = x >> shift, tile_y = y >> shift;
+  const auto tiles = [to_subpixels](int last, int first) { return int128{last - first} << to_subpixels; };
+  const std::int64_t column =
+      held(plane.value + plane.step_y * tiles(tile_y, setup.top >> shift), plane_bits, Accumulator::saturate);
+  const std::int64_t anchor =
+      held(column + plane.step_x * tiles(tile_x, setup.left >> shift), plane_bits, Accumulator::saturate);
+  const int drop = widths.plane_fraction - guard_bits, half_tile = 1 << (shift - 1);
+  const std::int64_t i = x - (tile_x << shift) - half_tile, j = y - (tile_y << shift) - half_tile;
+  const std::int64_t value =
+      held(int128{round_shift(anchor, drop)} + i * round_shift(plane.step_x, drop - widths.grid_bits) +
+               j * round_shift(plane.step_y, drop - widths.grid_bits),
+           local_bits, Accumulator::saturate);
+  return {value, std::clamp(round_shift(value, guard_bits), low, high)};
+}
+
+}  // namespace
+
+void set_planes(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const StudyRules& rules,
+                const Config& config, const Widths& widths) {
+  const int s = widths.grid_bits, tile = widths.tile_shift;
+  const auto anchor = [&](int first) {  // centre of pixel T/2 of the tile that holds pixel `first`, subpixels
+    return (std::int64_t{(first >> tile << tile) + config.tile_size / 2} << s) + (std::int64_t{1} << (s - 1));
+  };
+  PlaneFrame frame{.ax = std::int64_t{v[1].x} - v[0].x,
+                   .ay = std::int64_t{v[1].y} - v[0].y,
+                   .bx = std::int64_t{v[2].x} - v[0].x,
+                   .by = std::int64_t{v[2].y} - v[0].y,
+                   .dx = anchor(setup.left) - v[0].x,
+                   .dy = anchor(setup.top) - v[0].y,
+                   .fraction = widths.plane_fraction,
+                   .kept = rules.gradients == Gradients::truncated
+                               ? std::min(config.local_guard_bits + s, widths.plane_fraction)
+                               : widths.plane_fraction,
+                   .rules = rules};
+  const Reciprocal nearest = reciprocal(setup.area, config.depth_bits + config.reciprocal_extra_bits);
+  frame.shift = nearest.shift;
+  frame.x_reciprocal = frame.y_reciprocal = nearest.value;
+  if (rules.gradients == Gradients::two_reciprocals) {
+    const uint128 one = uint128{1} << nearest.shift, area = static_cast<uint128>(setup.area);
+    frame.x_reciprocal = static_cast<std::uint64_t>(one / area);
+    frame.y_reciprocal = static_cast<std::uint64_t>((one + area - 1) / area);
+  }
+  setup.depth = plane_by_rules(v[0].z, v[1].z, v[2].z, frame, widths.depth_plane.bits);
+  for (std::size_t c = 0; c < 4; ++c)
+    setup.color[c] = plane_by_rules(v[0].rgba[c], v[1].rgba[c], v[2].rgba[c], frame, widths.color_plane.bits);
+}
+
+Interpolated interpolate_by_rules(const TriangleSetup& setup, const StudyRules& rules, const Widths& widths, int x,
+                                  int y) {
+  if (rules.accumulator == Accumulator::wrap) return interpolate_at(setup, widths, x, y);
+  const int guard_bits = widths.local_color.bits - 8 - 1;  // l
+  Interpolated result;
+  const Value depth = saturated_at(setup, setup.depth, widths.depth_plane.bits, widths.local_depth.bits, guard_bits,
+                                   widths, x, y, setup.depth_min, setup.depth_max);
+  result.depth = depth.unrounded;
+  result.depth_code = static_cast<std::uint32_t>(depth.code);
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Value color = saturated_at(setup, setup.color[c], widths.color_plane.bits, widths.local_color.bits,
+                                     guard_bits, widths, x, y, setup.color_min[c], setup.color_max[c]);
+    result.color[c] = color.unrounded;
+    result.color_code[c] = static_cast<std::uint8_t>(color.code);
+  }
+  return result;
+}
+
+}  // namespace halfplane
