@@ -113,6 +113,7 @@ class AttributeComparison {
   [[nodiscard]] TriangleSetup setup_of(const Triangle& triangle) const {
     TriangleSetup setup =
         setup_triangle(triangle, config_, widths_, raster_rect(state_of(triangle), scene_.width, scene_.height));
+    if (rules_ == StudyRules{}) return setup;
     const auto area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
     set_planes(setup, canonical(triangle.v, area), rules_, config_, widths_);
     return setup;

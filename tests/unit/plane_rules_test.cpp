@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(Page, PageFaults,
                                          PageFault{"funnel", kSaturate, 10000, 500}),
                          [](const auto& test) { return std::string(test.param.scene); });
 
-TEST(PageFaults, TooFewSubpixelBitsChangeCoverageAndNothingElseDoes) {
+TEST(PageFaultsOfTheSnap, SamplesThatDifferGrowAsSubpixelBitsFallAndAllLieNearAnEdge) {
   const Scene scene = read_capture_file(HALFPLANE_SOURCE_DIR "/docs/numerics/wheel.hpt");
   Config config = preset("embedded");
   std::uint64_t before = 0;
