@@ -1,0 +1,146 @@
+// What a stage does at the end of its range: refusals, empty results and cases that scenes seldom have.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "model/stages/cull.hpp"
+#include "model/stages/fill_rule.hpp"
+#include "model/stages/homogeneous_setup.hpp"
+#include "model/stages/viewport.hpp"
+
+namespace halfplane {
+namespace {
+
+const std::array<double, 4> kWhite{255, 255, 255, 255};
+
+std::string refusal(const WindowPosition& p, const Config& config) {
+  try {
+    (void)snap_vertex(p, kWhite, config, {"scene.hpt", 7, 3});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Viewport, AVertexThatSnapsToNoCodeIsRefusedOnEverySideAndTheOneBesideItIsTaken) {
+  const Config config = preset("tiny");  // 2 subpixel bits, +-32 pixels
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const WindowPosition& p : {WindowPosition{32, 0, 0},
+                                  {0, 32, 0},
+                                  {-32.25, 0, 0},
+                                  {0, -32.25, 0},
+                                  {0, 0, 1.01},
+                                  {0, 0, -0.01},
+                                  {1e9, 0, 0},
+                                  {0, -1e9, 0},
+                                  {0, 0, 3},
+                                  {0, 0, -3},
+                                  {nan, 0, 0},
+                                  {0, nan, 0},
+                                  {0, 0, nan}}) {
+    const std::string text = refusal(p, config);
+    EXPECT_EQ(text.rfind("scene.hpt: draw from line 7: vertex 3 at window (", 0), 0u) << text;
+    EXPECT_NE(text.find("must snap into [-32, 32) pixels and z into [0, 1]"), std::string::npos) << text;
+  }
+  const SnappedVertex low = snap_vertex({-32, -32, 0}, kWhite, config, {});
+  EXPECT_EQ((std::array{low.x, low.y}), (std::array{-128, -128}));
+  const SnappedVertex high = snap_vertex({31.75, 31.75, 1}, kWhite, config, {});
+  EXPECT_EQ((std::array{high.x, high.y}), (std::array{127, 127}));
+  EXPECT_EQ(high.z, 255u);
+}
+
+TEST(Viewport, ADrawOfNoFilesLineIsNamedWithoutOne) {
+  EXPECT_EQ(place_of_draw("teapot", 0), "teapot");
+  EXPECT_EQ(place_of_draw("a.hpt", 12), "a.hpt: draw from line 12");
+}
+
+TEST(Viewport, ColoursBeyondTheRangeAreTheEndsCodes) {
+  EXPECT_EQ(snap_color(-3), 0);
+  EXPECT_EQ(snap_color(300), 255);
+  EXPECT_EQ(snap_color(127.5), 128);
+}
+
+TEST(Viewport, BottomLeftOriginTurnsVertexScissorAndViewportTheSameWay) {
+  State state;
+  state.origin = Origin::bottom_left;
+  state.pixel_center = PixelCenter::integer;
+  Vertex v;
+  v.x = 2;
+  v.y = 3;
+  const WindowPosition p = window_position(v, state, 10);
+  EXPECT_EQ((std::array{p.x, p.y}), (std::array{2.5, 6.5})) << "the centre of pixel (2, 3) from below";
+  state.scissor = Rect{2, 3, 1, 1};
+  const Rect rect = raster_rect(state, 20, 10);
+  EXPECT_EQ((std::array{rect.x, rect.y, rect.width, rect.height}), (std::array{2, 6, 1, 1}));
+  state.viewport = Viewport{0, 0, 4, 4};
+  const Viewport viewport = effective_viewport(state, 20, 10);
+  EXPECT_EQ((std::array{viewport.x, viewport.y}), (std::array{0.5, 5.5}));
+}
+
+TEST(Viewport, ClipZDecidesWhatDepthMeans) {
+  State state;
+  const Viewport viewport{0, 0, 8, 8};
+  Vertex v;
+  v.w = 2;
+  v.z = 1;
+  state.clip_z = ClipZ::zero_one;
+  EXPECT_EQ(to_window(v, state, viewport).z, 0.5);
+  state.clip_z = ClipZ::minus_one_one;
+  EXPECT_EQ(to_window(v, state, viewport).z, 0.75);
+}
+
+TEST(FillRules, EachRuleOwnsTheEdgesThatItsDefinitionNames) {
+  const auto at = [](std::int32_t x, std::int32_t y) { return SnappedVertex{x, y, 0, {}}; };
+  const SnappedVertex a = at(0, 0), right = at(64, 0), below = at(0, 64);
+  // A top edge and a left one, each way round.
+  EXPECT_EQ(edge_bias(a, right, FillRule::top_left, 4), 0);
+  EXPECT_EQ(edge_bias(right, a, FillRule::top_left, 4), 1);
+  EXPECT_EQ(edge_bias(a, right, FillRule::offset_point, 4) + edge_bias(right, a, FillRule::offset_point, 4), 1);
+  EXPECT_EQ(edge_bias(a, below, FillRule::offset_point, 4) + edge_bias(below, a, FillRule::offset_point, 4), 1);
+  EXPECT_EQ(edge_bias(at(-16, 0), at(-16, 64), FillRule::offset_point, 4), 1) << "through the point: nobody's";
+  EXPECT_EQ(edge_bias(at(-16, 64), at(-16, 0), FillRule::offset_point, 4), 1);
+  EXPECT_EQ(edge_bias(right, a, FillRule::inclusive, 4), 0);
+}
+
+TEST(Cull, EachReasonToDropIsCountedOnce) {
+  const Config config = preset("tiny");
+  const Widths widths = derive_widths(config);
+  const auto counters_of = [&](PrimitiveKind kind, std::array<std::int32_t, 6> xy, int left, Cull mode) {
+    PrimitivePacket in;
+    in.kind = static_cast<std::uint8_t>(kind);
+    in.cull = static_cast<std::uint8_t>(mode);
+    for (std::size_t i = 0; i < 3; ++i) in.x[i] = xy[2 * i], in.y[i] = xy[2 * i + 1];
+    in.left = static_cast<std::uint16_t>(left);
+    in.right = in.bottom = 15;
+    CounterPacket counters;
+    const bool is_kept = cull(in, widths, counters).has_value();
+    return std::array<std::uint64_t, 5>{is_kept, counters.primitives_in, counters.zero_area, counters.backface,
+                                        counters.empty};
+  };
+  using Counts = std::array<std::uint64_t, 5>;  // kept, in, zero area, back face, empty
+  EXPECT_EQ(counters_of(PrimitiveKind::triangle, {0, 0, 40, 0, 0, 40}, 0, Cull::none), (Counts{1, 1, 0, 0, 0}));
+  EXPECT_EQ(counters_of(PrimitiveKind::triangle, {0, 0, 40, 40, 20, 20}, 0, Cull::none), (Counts{0, 1, 1, 0, 0}));
+  EXPECT_EQ(counters_of(PrimitiveKind::triangle, {0, 0, 40, 0, 0, 40}, 0, Cull::both), (Counts{0, 1, 0, 1, 0}));
+  EXPECT_EQ(counters_of(PrimitiveKind::triangle, {0, 0, 1, 0, 0, 1}, 0, Cull::none), (Counts{0, 1, 0, 0, 1}));
+  EXPECT_EQ(counters_of(PrimitiveKind::point, {}, 16, Cull::none), (Counts{0, 1, 0, 0, 1}));
+  EXPECT_EQ(counters_of(PrimitiveKind::rectangle, {}, 16, Cull::none), (Counts{0, 0, 0, 0, 0})) << "a clear";
+}
+
+TEST(Homogeneous, ATriangleBetweenPixelCentresBesideTheScissorIsEmpty) {
+  const Config config = preset("tiny");
+  const Widths widths = derive_widths(config);
+  State state;
+  const HomogeneousFrame frame{config, widths, state, {0, 0, 16, 16}, {0, 0, 4, 4}};
+  std::array<Vertex, 3> v;
+  v[0].x = 0.5, v[1].x = 0.75, v[2].y = 0.5;
+  v[2].x = 0.5;
+  const auto rejection = [&] { return setup_homogeneous(v, frame).rejection; };
+  EXPECT_EQ(rejection(), Rejection::empty) << "inside the view, right of pixels 0 to 3";
+  v[2].y = 0;
+  EXPECT_EQ(rejection(), Rejection::zero_area);
+  for (Vertex& vertex : v) vertex.x = vertex.y = vertex.z = vertex.w = 0;
+  EXPECT_NE(rejection(), Rejection::none) << "no place at all";
+}
+
+}  // namespace
+}  // namespace halfplane
