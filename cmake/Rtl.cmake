@@ -48,13 +48,19 @@ function(halfplane_verilate target)
   if(RTL_TRACE)
     set(trace TRACE_FST)
   endif()
+  set(optimised -O2)
+  if(HALFPLANE_RTL_COVERAGE)
+    # Packets of up to 1,024 bits count as well. Code that counts is large: what -O2 gains, its compilation loses.
+    list(APPEND arguments --coverage-line --coverage-toggle --coverage-max-width 1024)
+    set(optimised -O1)
+  endif()
 
   if(NOT TARGET ${target})
     add_library(${target} STATIC)
   endif()
   # SLOW is what runs once, GLOBAL the runtime: optimising them costs build time and gains nothing.
   verilate(${target} PREFIX ${RTL_PREFIX} TOP_MODULE ${RTL_TOP} SOURCES ${sources} ${trace} VERILATOR_ARGS ${arguments}
-    OPT_SLOW -O0 OPT_FAST -O2 OPT_GLOBAL -O1)
+    OPT_SLOW -O0 OPT_FAST ${optimised} OPT_GLOBAL -O1)
   # Verilator's headers warn under our flags: their users see them as system headers.
   get_target_property(folders ${target} INTERFACE_INCLUDE_DIRECTORIES)
   set_target_properties(${target} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${folders}")

@@ -6,7 +6,9 @@
 #include "sim/cosim/dut.hpp"
 
 #ifdef HALFPLANE_HAS_RTL
+#ifndef HALFPLANE_RTL_COVERAGE
 #include <verilated_fst_c.h>
+#endif
 
 #include "dut_classes.inc"  // written by rtl_ref/CMakeLists.txt
 #include "sim/cosim/verilated_dut.hpp"
@@ -26,9 +28,18 @@ Config labelled(const std::string& label) {
   return config;
 }
 
+#ifdef HALFPLANE_RTL_COVERAGE  // built without waveforms
+template <class V>
+using Design = VerilatedDut<V>;
+#else
+template <class V>
+using Design = VerilatedDut<V, VerilatedFstC>;
+#endif
+
 template <class V>
 DutFactory verilated(const char* label, bool has_mutants) {
-  return {label, labelled(label), has_mutants, true, [] { return std::make_unique<VerilatedDut<V, VerilatedFstC>>(); }};
+  constexpr bool kHasTrace = !std::is_same_v<Design<V>, VerilatedDut<V>>;
+  return {label, labelled(label), has_mutants, kHasTrace, [] { return std::make_unique<Design<V>>(); }};
 }
 
 std::vector<DutFactory> make_duts() {

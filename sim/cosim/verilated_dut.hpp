@@ -2,8 +2,13 @@
 #pragma once
 
 #include <verilated.h>
+#ifdef HALFPLANE_RTL_COVERAGE
+#include <verilated_cov.h>
+#endif
 
+#include <cstdlib>
 #include <cstring>
+#include <string>
 #include <type_traits>
 
 #include "sim/cosim/dut.hpp"
@@ -18,6 +23,7 @@ class VerilatedDut final : public Dut {
   ~VerilatedDut() override {
     VerilatedDut::close_trace();
     if (top_) top_->final();
+    write_coverage();
   }
   VerilatedDut(const VerilatedDut&) = delete;
   VerilatedDut& operator=(const VerilatedDut&) = delete;
@@ -85,10 +91,15 @@ class VerilatedDut final : public Dut {
 
   void build(std::uint64_t seed, std::uint16_t mutant) {
     close_trace();
+    write_coverage();
     top_.reset();
     trace_.reset();
     context_ = std::make_unique<VerilatedContext>();
+#ifdef HALFPLANE_RTL_COVERAGE
+    context_->randReset(0);  // otherwise the reset itself would toggle half of the bits
+#else
     context_->randReset(2);  // random start values: a register that needs a reset and has none shows
+#endif
     context_->randSeed(static_cast<int>(seed % 0x7fffffff + 1));
     if constexpr (!std::is_void_v<Trace>) context_->traceEverOn(true);
     top_ = std::make_unique<V>(context_.get());
@@ -123,6 +134,17 @@ class VerilatedDut final : public Dut {
     top_->clk_i = 0;
     top_->eval();  // nothing but Verilator's note of the level
     dump();
+  }
+
+  /// In a build of the preset `coverage`: what this instance has seen goes into the file that the variable
+  /// HALFPLANE_RTL_COVERAGE names, if it is set, with a number behind it.
+  void write_coverage() const {
+#ifdef HALFPLANE_RTL_COVERAGE
+    const char* path = std::getenv("HALFPLANE_RTL_COVERAGE");
+    if (!top_ || path == nullptr) return;
+    static int number = 0;
+    context_->coveragep()->write((path + ("." + std::to_string(number++))).c_str());
+#endif
   }
 
   template <class Port>
