@@ -1,6 +1,7 @@
 // The Verilated designs of this build: rtl_ref/CMakeLists.txt makes the classes.
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 
 #include "model/raster_pkg.hpp"
 #include "sim/cosim/dut.hpp"
