@@ -1,0 +1,30 @@
+
+  // What the stage says of an edge holds wherever in the tile the edge value may be: outside, then it is negative there;
+  // inside, then not; and the narrow value that goes to fine_raster has the sign of the wide one. `moved` is the way from
+  // the tile's first pixel to a sample: anything between the two corners that best_q and worst_q stand for
+  // (coarse_raster_step: that they do; coarse_raster_corners: that all samples lie between). Whatever the registers hold.
+  localparam int WIDE = V + 2;  // exact
+  localparam logic signed [WIDE-1:0] MOST = 2 * (raster_pkg::TILE_SIZE - 1) * (2 ** (D - 1) - 1);
+  logic walks;
+  assign walks = has_walk && (state_q == WALK || state_q == BOUND);
+  genvar k;
+  generate
+    for (k = 0; k < 3; k++) begin : gen_proof
+      (* anyseq *) logic signed [WIDE-1:0] moved;
+      logic signed [WIDE-1:0] sample, narrow, best, worst;
+      assign best   = WIDE'(gen_edge[k].best_q);
+      assign worst  = WIDE'(gen_edge[k].worst_q);
+      assign sample = WIDE'(gen_edge[k].value_q) + moved;
+      assign narrow = WIDE'($signed(edge_value[k*TE+:TE])) + moved;
+      always_comb assume (-MOST <= worst && worst <= moved && moved <= best && best <= MOST);
+      always_comb begin
+        if (edge_is_outside[k]) assert (sample < 0);
+        if (edge_is_inside[k]) assert (sample >= 0);
+        assert ((narrow < 0) == (sample < 0));
+      end
+    end
+  endgenerate
+  always_comb if (walks) begin
+    if (is_skipped && state_q == WALK) assert (edge_is_outside != '0);
+    if (tile_valid_o && tile_o.is_inside) assert (edge_is_inside == '1);
+  end

@@ -1,0 +1,59 @@
+
+  // Each setup ends with exactly one packet that ends the primitive; what is offered stays; no slot and no visit is given
+  // twice; nothing is stuck that its neighbours do not hold.
+  logic under_way_q, ends;
+  assign ends = tile_valid_o && tile_ready_i && tile_o.ends_primitive;
+  var raster_pkg::setup_packet_t g_q;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) under_way_q <= 1'b0;
+    else if (takes) under_way_q <= 1'b1;
+    else if (ends) under_way_q <= 1'b0;
+    if (takes) g_q <= setup_i;
+  end
+  // From outside: a box, a slot is freed when one is used, a visit retires when one is under way.
+  always_comb begin
+    if (setup_valid_i) assume (setup_i.left <= setup_i.right && setup_i.top <= setup_i.bottom);
+    if (setup_valid_i) assume (setup_i.kind != FAST_CLEAR || (setup_i.left == '0 && setup_i.top == '0));
+    if (slot_free_i) assume (used_q > (SLOT + 1)'(state_q != IDLE));
+    if (retire_valid_i) assume (visit_valid_q[oldest_q]);
+  end
+  logic [VISIT:0] visits_q;
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) visits_q <= '0;
+    else visits_q <= visits_q + (VISIT + 1)'(starts_visit) - (VISIT + 1)'(retire_valid_i);
+  end
+  logic is_before_end;  // the walk has not passed the last tile
+  assign is_before_end = tile_y_q < s_q.bottom[PY-1:TS] || (tile_y_q == s_q.bottom[PY-1:TS] && tile_x_q <= s_q.right[PX-1:TS]);
+  always_comb if (runs_q) begin
+    assert (under_way_q == (state_q != IDLE));
+    if (takes) assert (!under_way_q || ends);
+    if (tile_valid_o) assert (under_way_q && tile_o.primitive_id == g_q.primitive_id && tile_o.kind == g_q.kind);
+    if (under_way_q) assert (s_q == g_q && s_q.left <= s_q.right && s_q.top <= s_q.bottom);
+    assert (used_q <= (SLOT + 1)'(SLOTS) && used_q >= (SLOT + 1)'(under_way_q));
+    assert (visits_q <= (VISIT + 1)'(VISITS));
+    if (starts_visit) assert (!visit_is_full);
+    assert (state_q <= CLEAR);
+    if (state_q == CLEAR) assert (s_q.kind == FAST_CLEAR);
+    if (under_way_q) assert (s_q.kind != FAST_CLEAR || (s_q.left == '0 && s_q.top == '0));
+    if (state_q == WALK || state_q == BOUND) assert (has_walk);
+    if (under_way_q) assert (is_before_end && tile_x_q >= s_q.left[PX-1:TS] && tile_x_q <= s_q.right[PX-1:TS]);
+    if (state_q == END) assert (is_last_tile);
+    // With a ready consumer and every visit retired each state moves on.
+    if (tile_ready_i && visits_are_done && (state_q == WALK || state_q == BOUND))
+      assert (steps || (state_q == WALK && is_eligible));
+    if (tile_ready_i && state_q == END) assert (finishes);
+    cover (ends && state_q == END);
+    cover (ends && state_q == WALK && takes);
+  end
+  genvar k;
+  generate
+    for (k = 0; k < VISITS; k++) begin : gen_proof  // the ring: valid from the oldest on, as many as are under way
+      always_comb if (runs_q) assert (visit_valid_q[VISIT'(oldest_q + VISIT'(k))] == ((VISIT + 1)'(k) < visits_q));
+    end
+  endgenerate
+  logic [VISIT-1:0] behind_newest;
+  assign behind_newest = oldest_q + visits_q[VISIT-1:0];
+  always_comb if (runs_q) assert (newest_q == behind_newest);
+  always_ff @(posedge clk_i) if (runs_q && $past(runs_q) && $past(tile_valid_o && !tile_ready_i)) begin
+    assert (tile_valid_o && tile_o == $past(tile_o) && edges_o == $past(edges_o));
+  end

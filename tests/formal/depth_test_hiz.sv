@@ -1,0 +1,61 @@
+
+  // The bound that a visit leaves behind, when it covered its tile and all of it passed: not below the depths of its
+  // four corners. The depths of a visit are a plane, rounded and clamped, so that the largest is at one of them. From
+  // fine_raster: the stamps of a visit come in ascending order, each once. After its end all is as before: one visit is
+  // as good as any.
+  localparam int LAST = STAMPS - 1;
+  localparam int PER_ROW = raster_pkg::STAMPS_PER_ROW;
+  (* anyconst *) logic [CODE-1:0] c00, c01, c10, c11;  // of the visit that is looked at: row, column
+  logic [STAMP_BITS:0] next_q;  // the stamps below this one have come or never will
+  logic is_visit_stamp;
+  assign is_visit_stamp = fragment_i.mask != '0 && !fragment_i.kind[1];
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) next_q <= '0;
+    else if (takes_fragment && fragment_i.ends_visit) next_q <= '0;
+    else if (takes_fragment && is_visit_stamp) next_q <= (STAMP_BITS + 1)'(fragment_i.stamp) + 1'b1;
+  end
+  always_comb if (is_visit_stamp) begin
+    assume ((STAMP_BITS + 1)'(fragment_i.stamp) >= next_q);
+    if (fragment_i.stamp == '0) assume (fragment_i.depth[0+:CODE] == c00);
+    if (32'(fragment_i.stamp) == PER_ROW - 1) assume (fragment_i.depth[(STAMP-1)*CODE+:CODE] == c01);
+    if (32'(fragment_i.stamp) == LAST - (PER_ROW - 1)) assume (fragment_i.depth[(SAMPLES-STAMP)*CODE+:CODE] == c10);
+    if (32'(fragment_i.stamp) == LAST) assume (fragment_i.depth[(SAMPLES-1)*CODE+:CODE] == c11);
+  end
+  // A pixel of a line has no visit to end; a packet without samples neither changes nor sends anything else.
+  always_comb if (fragment_i.kind[1]) assume (!fragment_i.ends_visit);
+
+  // What D1 holds: the stamps up to and with the one in fragment_q.
+  logic [STAMP_BITS:0] before_q;  // next_q when that stamp was taken
+  always_ff @(posedge clk_i) before_q <= next_q;
+  logic [HIZ-1:0] h00, h01, h10, h11;
+  assign {h00, h01, h10, h11} = {c00[CODE-1-:HIZ], c01[CODE-1-:HIZ], c10[CODE-1-:HIZ], c11[CODE-1-:HIZ]};
+  logic holds_stamp;
+  assign holds_stamp = is_stamp && !fragment_q.kind[1];
+  always_comb if (runs_q && holds_stamp) begin  // what was assumed of it when it came
+    assert ((STAMP_BITS + 1)'(fragment_q.stamp) >= before_q);
+    if (fragment_q.stamp == '0) assert (fragment_q.depth[0+:CODE] == c00);
+    if (32'(fragment_q.stamp) == PER_ROW - 1) assert (fragment_q.depth[(STAMP-1)*CODE+:CODE] == c01);
+    if (32'(fragment_q.stamp) == LAST - (PER_ROW - 1)) assert (fragment_q.depth[(SAMPLES-STAMP)*CODE+:CODE] == c10);
+    if (32'(fragment_q.stamp) == LAST) assert (fragment_q.depth[(SAMPLES-1)*CODE+:CODE] == c11);
+  end
+  always_comb if (runs_q && valid_q)
+    assert (next_q == (fragment_q.ends_visit ? '0 : holds_stamp ? (STAMP_BITS + 1)'(fragment_q.stamp) + 1'b1 : before_q));
+  logic [STAMP_BITS:0] done;
+  assign done = valid_q ? before_q : next_q;  // as full_stamps_q and max_q stand
+  always_comb if (runs_q) begin
+    assert (next_q <= (STAMP_BITS + 1)'(STAMPS));
+    assert ((STAMP_BITS + 1)'(gen_hiz.full_stamps_q) <= done);
+    // Of those corners that have come.
+    if ((STAMP_BITS + 1)'(gen_hiz.full_stamps_q) == done && done <= (STAMP_BITS + 1)'(LAST)) begin
+      if (32'(done) > 0) assert (gen_hiz.max_q >= h00);
+      if (32'(done) > PER_ROW - 1) assert (gen_hiz.max_q >= h01);
+      if (32'(done) > LAST - (PER_ROW - 1)) assert (gen_hiz.max_q >= h10);
+    end
+    if (valid_q && fragment_q.ends_visit && gen_hiz.update == RETIRE_SET)
+      assert (gen_hiz.max >= h00 && gen_hiz.max >= h01 && gen_hiz.max >= h10 && gen_hiz.max >= h11);
+    // A visit that can raise a depth without setting the bound clears it.
+    if (valid_q && fragment_q.ends_visit && fragment_q.depth_write && func[2] && (passed != '0 || gen_hiz.any_passed_q))
+      assert (gen_hiz.update == RETIRE_SET || gen_hiz.update == RETIRE_CLEAR);
+    if (gen_hiz.update_q == RETIRE_CLEAR) assert (gen_hiz.code_q == '1);
+    assert (done <= (STAMP_BITS + 1)'(STAMPS));
+  end

@@ -1,0 +1,46 @@
+
+  // Each step of each plane, from what is in the step before it: to the stamp's first column, to its first row, to each
+  // sample; x and y from pixel (T/2, T/2), modulo 2^W, as sums of their bits. A stamp's context and values move from step
+  // to step together (interpolate_stream), so that the three add up to anchor + x step_x + y step_y. Then the codes: in the
+  // range of the vertices. Whatever the registers hold.
+  localparam int MIDDLE = raster_pkg::TILE_SIZE / 2;
+  genvar k, n;
+  generate
+    for (k = 0; k < PLANES; k++) begin : gen_proof
+      localparam int N = k == 0 ? LD : LC;
+      localparam int B = k == 0 ? Z : K;
+      localparam int AT = k == 0 ? 0 : k - 1;
+      function automatic [N-1:0] sum(input [N-1:0] value, input [PIXEL-1:0] offset, input [N-1:0] step);
+        sum = value;
+        for (int b = PIXEL - 1; b >= 0; b--)
+          sum = b == PIXEL - 1 ? sum - (offset[b] ? step << b : '0) : sum + (offset[b] ? step << b : '0);
+      endfunction
+      logic [N-1:0] anchor, step_x_0, step_y_1, step_x_2, step_y_2;
+      logic [PIXEL-1:0] from_middle_x, from_middle_y;
+      assign anchor        = k == 0 ? N'(context_stamp_q.depth_anchor) : context_stamp_q.color_anchor[AT*LC+:N];
+      assign step_x_0      = k == 0 ? N'(context_i.depth_step_x) : context_i.color_step_x[AT*LC+:N];
+      assign step_y_1      = k == 0 ? N'(x_context_q.depth_step_y) : x_context_q.color_step_y[AT*LC+:N];
+      assign step_x_2      = k == 0 ? N'(y_context_q.depth_step_x) : y_context_q.color_step_x[AT*LC+:N];
+      assign step_y_2      = k == 0 ? N'(y_context_q.depth_step_y) : y_context_q.color_step_y[AT*LC+:N];
+      assign from_middle_x = (PIXEL'(context_stamp_q.stamp) << STAMP_SHIFT) ^ PIXEL'(MIDDLE);
+      assign from_middle_y = (PIXEL'(x_stamp_q.stamp >> PER_ROW_BITS) << STAMP_SHIFT) ^ PIXEL'(MIDDLE);
+      always_comb begin
+        assert ($unsigned(gen_plane[k].x_value) == sum(anchor, from_middle_x, step_x_0));
+        assert ($unsigned(gen_plane[k].y_value) == sum(gen_plane[k].x_value_q, from_middle_y, step_y_1));
+      end
+      for (n = 0; n < SAMPLES; n++) begin : gen_proof_sample
+        logic [N-1:0] at_sample;
+        logic [B-1:0] low, high, code;
+        assign at_sample = gen_plane[k].y_value_q + (((n / STAMP) & 2) ? step_y_2 << 1 : '0) +
+                           (((n / STAMP) & 1) ? step_y_2 : '0) + (((n % STAMP) & 2) ? step_x_2 << 1 : '0) +
+                           (((n % STAMP) & 1) ? step_x_2 : '0);
+        assign low  = k == 0 ? B'(samples_context_q.depth_min) : samples_context_q.color_min[AT*K+:B];
+        assign high = k == 0 ? B'(samples_context_q.depth_max) : samples_context_q.color_max[AT*K+:B];
+        assign code = gen_plane[k].gen_sample[n].clamped;
+        always_comb begin
+          assert ($unsigned(gen_plane[k].gen_sample[n].value) == at_sample);
+          if (low <= high) assert (low <= code && code <= high);
+        end
+      end
+    end
+  endgenerate

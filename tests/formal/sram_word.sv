@@ -1,0 +1,19 @@
+
+  // A word, any: a read gives what was written last in an earlier cycle, and the answer stays until the next read.
+  (* anyconst *) logic [ADDRESS-1:0] any_address;
+  logic             was_written_q = 1'b0, was_read_q = 1'b0;
+  logic [WIDTH-1:0] word_q, answer_q;
+  always_ff @(posedge clk_i) begin
+    if (write_i && write_address_i == any_address) begin
+      word_q        <= data_i;
+      was_written_q <= 1'b1;
+    end
+    if (read_i) begin
+      was_read_q <= read_address_i == any_address && was_written_q;
+      answer_q   <= word_q;
+    end
+  end
+  always_comb begin
+    if (was_written_q) assert (memory_q[any_address] == word_q);
+    if (was_read_q) assert (data_o == answer_q);
+  end

@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+"""./dev prove: the proofs about the RTL, each with a broken twin that must fail. docs/proofs.md says what they mean.
+
+A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. Yosys
+makes SMT-LIB of it; yosys-smtbmc and z3 then show that no assertion fails in the first cycles (the base) and that none can
+fail when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in the RTL.
+What cannot be shown so is enumerated: Proofs.* of halfplane_tests (--program).
+
+Runs in the repository's root; build/prove keeps every design and log. Exit status: 0 all proven and every twin caught,
+1 not so, 2 wrong usage, 3 a tool is missing.
+"""
+import argparse
+import concurrent.futures
+import dataclasses
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from prove_list import PROOFS
+
+RTL = pathlib.Path('rtl_ref')
+FORMAL = pathlib.Path('tests/formal')
+PACKAGES = {'embedded': RTL / 'raster_pkg.sv', **{p: RTL / f'presets/{p}/raster_pkg.sv' for p in ('tiny', 'small', 'full')}}
+ENUMERATIONS = 'Proofs.*'
+
+
+class Broken(Exception):
+    """What stops a proof before the solver has its say."""
+
+
+@dataclasses.dataclass
+class Outcome:
+    """What one proof came to, with one preset."""
+    proof: object
+    preset: str
+    proven: bool
+    caught: list  # by twin: how it was found, or None
+    seconds: float
+    twin_seconds: float
+    remark: str = ''
+
+    @property
+    def good(self):
+        return self.proven and None not in self.caught
+
+
+def once(text, old, new, where):
+    """`text` with its only `old` replaced."""
+    if text.count(old) != 1:
+        raise Broken(f'{where}: this must occur exactly once, not {text.count(old)} times: {old}')
+    return text.replace(old, new)
+
+
+def seeded_faults():
+    """The faults of mutants.cmake by number: (file, good text, bad text)."""
+    text = (RTL / 'cosim/mutants.cmake').read_text(encoding='utf-8')
+    found = re.findall(r'^mutant\((\d+) (\S+) "[^"]*"\s*\[=\[(.*?)\]=\]\s*\[=\[(.*?)\]=\]\)', text, flags=re.M | re.S)
+    return {int(number): (file, good, bad) for number, file, good, bad in found}
+
+
+def package_constant(package, name):
+    match = re.search(rf'localparam int {name} = (\d+);', package)
+    if match is None:
+        raise Broken(f'no constant {name} in the package')
+    return int(match[1])
+
+
+def properties(proof):
+    return ''.join((FORMAL / f'{name}.sv').read_text(encoding='utf-8') for name in proof.properties)
+
+
+def hierarchy(proof):
+    """The module, and every module that it or its properties instantiate."""
+    files = {path.stem: path for path in [*RTL.glob('lib/*.sv'), *RTL.glob('stages/*.sv')]}
+    found, text = [RTL / proof.module], (RTL / proof.module).read_text(encoding='utf-8') + properties(proof)
+    while text:
+        used = [files[n] for n in re.findall(r'^\s+(\w+) (?:#\(|u_\w+ \()', text, flags=re.M) if n in files]
+        new = [path for path in dict.fromkeys(used) if path not in found]
+        found += new
+        text = ''.join(path.read_text(encoding='utf-8') for path in new)
+    return found
+
+
+def sources(proof, preset, folder, twin):
+    """Writes package, library and stages into `folder`, the properties inside the module that they are about."""
+    package = PACKAGES[preset].read_text(encoding='utf-8')
+    for name, value in proof.package:
+        package = re.sub(rf'(localparam int {name} =) \d+;', rf'\1 {value};', package)
+    (folder / 'raster_pkg.sv').write_text(package, encoding='utf-8')
+    files = [folder / 'raster_pkg.sv']
+    change = None
+    if isinstance(twin, int):
+        change = seeded_faults()[twin]
+    elif twin is not None:
+        change = (proof.module, *twin)
+    for path in hierarchy(proof):
+        name = str(path.relative_to(RTL))
+        text = path.read_text(encoding='utf-8')
+        if change and change[0] == name:
+            text = once(text, change[1], f'({change[2]})' if isinstance(twin, int) else change[2], name)
+        if name == proof.module:
+            end = text.rindex('endmodule')
+            text = text[:end] + properties(proof) + text[end:]
+        copy = folder / path.name
+        copy.write_text(text, encoding='utf-8')
+        files.append(copy)
+    parameters = {k: v if isinstance(v, int) else package_constant(package, v) for k, v in proof.parameters}
+    return files, ''.join(f' -chparam {k} {v}' for k, v in parameters.items())
+
+
+RUNNING = set()  # sessions, so that no solver outlives this program
+
+
+def stop(*_):
+    for process in list(RUNNING):
+        os.killpg(process, signal.SIGKILL)
+    os._exit(1)
+
+
+def run(command, log, seconds):
+    """Runs a command with its children, output to `log`; None when the time is up."""
+    with open(log, 'w', encoding='utf-8') as out:
+        process = subprocess.Popen(command, stdout=out, stderr=subprocess.STDOUT, start_new_session=True)
+        RUNNING.add(process.pid)
+        try:
+            return process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            return None
+        finally:
+            RUNNING.discard(process.pid)
+
+
+def design(proof, preset, folder, twin):
+    """The SMT-LIB file of a proof or of its twin."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files, parameters = sources(proof, preset, folder, twin)
+    top, smt2, log = pathlib.Path(proof.module).stem, folder / 'design.smt2', folder / 'yosys.log'
+    # A multiplier's result may be anything: what is shown then holds for the product, too.
+    cut = 'cutpoint t:$mul; ' if proof.cuts_multipliers else ''
+    script = (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {top}{parameters}; proc; {cut}'
+              'flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; write_smt2 -wires ' + str(smt2))
+    status = run(['yosys', '-p', script], log, 300)
+    text = log.read_text(encoding='utf-8')
+    if status != 0:
+        raise Broken(f'yosys failed, see {log}')
+    # A misspelt name would be a free variable, and the properties would be about nothing.
+    if 'implicitly declared' in text:
+        raise Broken(f'a name is not declared, see {log}')
+    if 'yosys-smt2-assert' not in smt2.read_text(encoding='utf-8'):
+        raise Broken('nothing is asserted')
+    return smt2
+
+
+def solve(smt2, name, arguments, seconds):
+    """PASSED, FAILED or 'time-out' of one call of the solver."""
+    log = smt2.with_name(f'{name}.log')
+    if run(['yosys-smtbmc', '-s', 'z3', '--unroll', *arguments, str(smt2)], log, seconds) is None:
+        return 'time-out'
+    found = re.findall(r'Status: (\w+)', log.read_text(encoding='utf-8'))
+    return found[-1] if found else f'no answer, see {log}'
+
+
+def prove(proof, preset, limit):
+    """The proof, then its twins."""
+    began = time.monotonic()
+    base = pathlib.Path('build/prove') / f'{proof.name}-{preset}'
+    shutil.rmtree(base, ignore_errors=True)
+    outcome = Outcome(proof, preset, False, [], 0, 0)
+    try:
+        smt2 = design(proof, preset, base, None)
+        depth, twin_depth = ('1', '1') if proof.is_combinational else (str(proof.depth), str(proof.twin_depth))
+        steps = [('base', ['-t', depth]), ('step', ['-i', '-t', str(proof.k)])][:1 if proof.is_combinational else 2]
+        if proof.cover_depth:
+            steps.append(('cover', ['-c', '-t', str(proof.cover_depth)]))
+        for name, arguments in steps:
+            result = solve(smt2, name, arguments, limit)
+            if result != 'PASSED':
+                outcome.remark = f'{name}: {result}, see {base}/{name}.log'
+                break
+        outcome.proven = not outcome.remark
+        outcome.seconds = time.monotonic() - began
+        for number, twin in enumerate(proof.twins):
+            broken = design(proof, preset, base / f'twin{number}', twin)
+            found = None
+            if not proof.is_combinational and solve(broken, 'step', ['-i', '-t', str(proof.k)], limit) == 'FAILED':
+                found = 'step'
+            if solve(broken, 'base', ['-t', twin_depth], limit) == 'FAILED':
+                found = 'trace'
+            outcome.caught.append(found)
+        outcome.twin_seconds = time.monotonic() - began - outcome.seconds
+    except Broken as error:
+        outcome.proven = False
+        outcome.remark = str(error)
+    return outcome
+
+
+def line(outcome):
+    proof = outcome.proof
+    method = f'induction k={proof.k}, base {proof.depth}'
+    if proof.is_combinational:
+        method = 'every input'
+    twins = f'{sum(c is not None for c in outcome.caught)} of {len(proof.twins)} twins caught'
+    verdict = 'proven' if outcome.proven else 'NOT PROVEN'
+    return (f'{verdict:10} ({proof.letter}) {proof.name:24} {outcome.preset:9} {method:38} {outcome.seconds:6.1f} s   '
+            f'{twins}, {outcome.twin_seconds:.1f} s' + (f'   {outcome.remark}' if outcome.remark else ''))
+
+
+def enumerate_cases(program, whole):
+    """The exhaustive proofs in C++: their own lines, and whether all held."""
+    began = time.monotonic()
+    result = subprocess.run([program, f'--gtest_filter={ENUMERATIONS}', '--gtest_brief=1'], capture_output=True, text=True,
+                            check=False, env={**os.environ, **({'HALFPLANE_EXHAUSTIVE': 'whole'} if whole else {})})
+    for text in result.stdout.splitlines():
+        if text.startswith('proof: '):
+            print('enumerated ' + text[len('proof: '):])
+    if result.returncode != 0:
+        print(result.stdout + result.stderr)
+    print(f'enumerations: {"all hold" if result.returncode == 0 else "FAILED"}, {time.monotonic() - began:.1f} s', flush=True)
+    return result.returncode == 0 and 'proof: ' in result.stdout
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--quick', action='store_true', help='the proofs that take a few seconds')
+    parser.add_argument('--only', metavar='NAME', help='proofs whose name contains this')
+    parser.add_argument('--preset', choices=sorted(PACKAGES), help='with the widths of this preset alone')
+    parser.add_argument('--list', action='store_true', help='what there is to prove')
+    parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='solvers at a time')
+    parser.add_argument('--limit', type=float, default=600, metavar='SECONDS', help='time-out of each call of the solver')
+    parser.add_argument('--program', metavar='FILE', help='halfplane_tests, whose enumerations run as well')
+    options = parser.parse_args()
+
+    chosen = [(proof, preset) for proof in PROOFS for preset in proof.presets
+              if (not options.only or options.only in proof.name) and options.preset in (None, preset)
+              and (not options.quick or preset in proof.quick)]
+    if options.list:
+        for proof in PROOFS:
+            print(f'({proof.letter}) {proof.name:24} {proof.module:28} {", ".join(proof.presets):18} {proof.claim}')
+        return 0
+    if not chosen:
+        print('prove: nothing of that name and preset', file=sys.stderr)
+        return 2
+    missing = [tool for tool in ('yosys', 'z3') if shutil.which(tool) is None]
+    if missing:
+        print(f'prove: not installed: {" ".join(missing)} (apt-get install {" ".join(missing)})', file=sys.stderr)
+        return 3
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    began, good = time.monotonic(), True
+    with concurrent.futures.ThreadPoolExecutor(max(1, options.jobs)) as pool:
+        for outcome in pool.map(lambda pair: prove(*pair, options.limit), chosen):
+            print(line(outcome), flush=True)
+            good = good and outcome.good
+    if options.program and not options.only:
+        good = enumerate_cases(options.program, not options.quick) and good
+    print(f'{len(chosen)} proofs, {time.monotonic() - began:.0f} s: ' + ('all hold, every twin was caught' if good else 'FAILED'))
+    return 0 if good else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,91 @@
+"""What tools/prove.py proves: which property of which module, with which widths, and which faults must break it."""
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Proof:
+    """One file of properties about one module."""
+    name: str         # also the file in tests/formal, unless `file` is another
+    letter: str       # a stepping, b shared edge, c reject and accept, d HiZ, e ranges, f ready/valid
+    module: str       # in rtl_ref
+    claim: str
+    twins: tuple      # faults that must break it: numbers of mutants.cmake, or (text, text instead) in the module
+    presets: tuple = ('tiny', 'embedded')
+    quick: tuple = ('tiny',)  # presets of --quick
+    k: int = 1        # induction over so many cycles
+    depth: int = 3    # cycles from reset without induction
+    twin_depth: int = 6     # a twin has to fail in so many, or in the step
+    parameters: tuple = ()  # of the module: (name, number or constant of the package)
+    package: tuple = ()     # constants of the package that this proof sets otherwise
+    cover_depth: int = 0    # cycles in which every cover statement is reached: what is assumed can happen
+    cuts_multipliers: bool = False
+    is_combinational: bool = False
+    has_reset: bool = True
+    file: str = ''
+
+    @property
+    def properties(self):
+        file = self.file or self.name
+        return ['reset', file] if self.has_reset and not self.is_combinational else [file]
+
+
+HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
+HIZ_TWINS = (15, 16, 17, ('s_q.depth_min[Z-1-:HIZ] > bound', 's_q.depth_min[Z-1-:HIZ] >= bound'))
+
+PROOFS = [
+    Proof('edge_offset_step', 'a', 'lib/edge_offset.sv', 'value + x step_x + y step_y', is_combinational=True,
+          parameters=(('WIDTH', 'SAMPLE_EDGE_BITS'), ('OFFSET', 'TILE_PIXEL_BITS')),
+          twins=(("(moved & WIDTH'((1 << b) - 1))", "(moved & WIDTH'((1 << b) - 2))"),)),
+    Proof('edge_offset_signed', 'a', 'lib/edge_offset.sv', 'the same, x and y in two\'s complement', is_combinational=True,
+          file='edge_offset_step', twins=(("(SIGNED != 0 && b == OFFSET - 1)", "(SIGNED != 0 && b == 0)"),),
+          parameters=(('WIDTH', 'LOCAL_DEPTH_BITS'), ('OFFSET', 'TILE_PIXEL_BITS'), ('SIGNED', 1))),
+    Proof('plane_offset_step', 'a', 'lib/plane_offset.sv', 'value + offset step, offset in two\'s complement',
+          is_combinational=True, parameters=(('WIDTH', 'LOCAL_DEPTH_BITS'), ('OFFSET', 'TILE_PIXEL_BITS')),
+          twins=(("{value_i, 1'b1} + {digit, is_negative}", "{value_i, 1'b0} + {digit, is_negative}"),)),
+    Proof('fine_raster_rows', 'a, e', 'stages/fine_raster.sv', 'edge values of each row of stamps; no sum overflows',
+          twins=(('value_q + (step_y <<< STAMP_SHIFT)', 'value_q + step_x'),
+                 ('localparam int W = raster_pkg::SAMPLE_EDGE_BITS;', 'localparam int W = raster_pkg::SAMPLE_EDGE_BITS - 1;'))),
+    Proof('fine_raster_samples', 'a, e', 'stages/fine_raster.sv', 'every sample is covered as the closed form says; no sum overflows',
+          is_combinational=True, twins=(23, 24, ('.x_i     (PIXEL\'(i))', '.x_i     (PIXEL\'(i ^ 1))'))),
+    Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
+          twins=(18, ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
+    Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
+          is_combinational=True, twins=(27, 29)),
+    Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',
+          twins=(40, 41, 42), cover_depth=6),
+    Proof('line_raster_planes', 'a', 'stages/line_raster.sv', 'depth and colour of pixel n are first + n step', twins=(44, 45)),
+    Proof('cull_fill_rule', 'b', 'stages/cull.sv', 'top-left rule by its definition; one of an edge\'s two sides covers a sample',
+          twins=(1, 5), cuts_multipliers=True),
+    Proof('coarse_raster_reject', 'c, e', 'stages/coarse_raster.sv', 'outside, inside and the saturated value, wherever in the tile',
+          is_combinational=True,
+          twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
+    Proof('coarse_raster_corners', 'c, e', 'stages/coarse_raster.sv', 'every sample lies between the corners that are looked at',
+          is_combinational=True, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
+    Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by the bound of all earlier visits, and '
+          'what could pass is not rejected', presets=('embedded',), quick=('embedded',), twins=HIZ_TWINS, cover_depth=8),
+    Proof('coarse_raster_hiz_6_bits', 'd', 'stages/coarse_raster.sv', 'the same with hiz.bits=6', file='coarse_raster_hiz',
+          presets=('embedded',), quick=(), twins=HIZ_TWINS, package=HIZ_6),
+    Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', twins=(34, ('assign max = corner > max_q ? corner : max_q;', 'assign max = corner;'))),
+    Proof('sram_word', 'd', 'lib/sram.sv', 'a read gives what was written last', has_reset=False,
+          parameters=(('WIDTH', 'HIZ_CODE_BITS'), ('DEPTH', 8)),
+          twins=(('if (read_i) data_q <= memory_q[read_address_i];', 'data_q <= memory_q[read_address_i];'),)),
+    Proof('cull_ranges', 'e', 'stages/cull.sv', 'no sum on the way to the edge functions overflows', cuts_multipliers=True,
+          twins=(('localparam int B = C + 1;', 'localparam int B = C;'), 3)),
+    Proof('skid_buffer_stream', 'f', 'lib/skid_buffer.sv', 'a queue of two', k=2, cover_depth=5,
+          parameters=(('WIDTH', 'STAMP_PACKET_BITS'),),
+          twins=(('assign ready_o = !tail_valid_q;', 'assign ready_o = 1\'b1;'), ('tail_valid_q ? tail_q : data_i', 'data_i'))),
+    Proof('line_raster_stream', 'f', 'stages/line_raster.sv', 'remaining + 1 pixels a line, in order, stable', k=2, cover_depth=7,
+          twins=(43, 46)),
+    Proof('primitive_join_stream', 'f', 'stages/primitive_join.sv', 'each pixel is one fragment, each other fragment as it was',
+          twins=(48, 50, ('{{TS{1\'b0}}, y} >> SS', '{{TS{1\'b0}}, x} >> SS')), is_combinational=True),
+    Proof('fine_raster_stream', 'f', 'stages/fine_raster.sv', 'each covered stamp of a tile once, in order, and one end', k=2,
+          twins=(25, 26), cover_depth=6),
+    Proof('interpolate_stream', 'f', 'stages/interpolate.sv', 'each stamp leaves once, in its turn, with its context', k=2,
+          twins=(28, ('if (x_ready) x_valid_q', 'if (y_ready) x_valid_q')), cover_depth=9),
+    Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
+          twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
+    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; slots and visits are not given twice', k=2,
+          twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
+    Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, within 7 cycles', cover_depth=10, k=4,
+          cuts_multipliers=True, twins=(('step_q == OFFER && (triangle_ready_i || is_dropped)', 'step_q == OFFER'),)),
+]
