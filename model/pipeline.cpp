@@ -382,12 +382,14 @@ void check_scene(const Scene& scene, const Config& config) {
                        std::to_string(static_cast<int>(widest)) +
                        " pixels wide; use a smaller point, a smaller target or raise guard.band");
     const Viewport& v = context.viewport;
-    const double limit = config.guard_band - 1;
-    const bool fits = v.x >= -limit && v.y >= -limit && v.x + v.width <= limit + 1 && v.y + v.height <= limit + 1;
+    // A sample that the clipper cuts away, or whose right or lower edge it puts on it, would be lost.
+    const double limit = guard_band_limit(config), last = limit + 0.5;
+    const bool fits = v.x >= -limit && v.y >= -limit && v.x + v.width < last && v.y + v.height < last;
     if (context.state.space == Space::clip && !fits)
       throw InputError(place_of_draw(context.scene.name, context.draw.line) +
-                       ": state viewport: it must lie inside the guard band of +-" + std::to_string(config.guard_band) +
-                       " pixels; use a smaller viewport or raise guard.band");
+                       ": state viewport: in clip space it must lie inside the guard band of +-" +
+                       std::to_string(config.guard_band) + " pixels, with subpixel.bits below 2 a pixel inside; " +
+                       "use a smaller viewport or raise guard.band");
   }
 }
 

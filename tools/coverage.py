@@ -13,6 +13,7 @@ are left out of the count where they are missed and PATTERN, a regular expressio
 """
 import argparse
 import fnmatch
+import itertools
 import json
 import pathlib
 import re
@@ -91,15 +92,33 @@ def gcov(data):
             if (ROOT / file['file']).resolve().is_relative_to(ROOT / 'model/stages')]
 
 
+def branch_counts(branches):
+    """Without the two ways out of a call, of which one is an exception: gcov names that one, right after the other."""
+    return [branch['count'] for branch, after in zip(branches, branches[1:] + [{'throw': False}])
+            if not branch['throw'] and not after['throw']]
+
+
+def merged(copies):
+    """Counts of a line's branches over all `copies`, (where its function starts, counts). Of a lambda in a template gcov
+    gives the branches of all instances in one row: then they are as many as the shortest row has."""
+    by_start = defaultdict(list)
+    for start, counts in copies:
+        by_start[start].append(counts)
+    lengths = {len(counts) for _, counts in copies}
+    if len(lengths) > 1:
+        by_start = {None: [counts[i:i + min(lengths)] for _, counts in copies for i in range(0, len(counts), min(lengths))]}
+    return [sum(row) for rows in by_start.values() for row in itertools.zip_longest(*rows, fillvalue=0)]
+
+
 def model_points(objects, command, table):
     """Of a test program's run; the counts of an earlier one go first. A function template's instances, and the copies of
-    an inline function in several objects, are one: a branch is reached when one of them has reached it. Branches into
-    exceptions thrown by what a line calls, and functions that the compiler has made up, do not count."""
+    an inline function in several objects, are one: a branch is reached when one of them has reached it. Calls that may
+    throw or return, and functions that the compiler has made up, do not count."""
     for old in pathlib.Path(objects).rglob('*.gcda'):
         old.unlink()
     if subprocess.run(command, check=False).returncode:
         sys.exit(f'{command[0]} failed: nothing was measured')
-    lines, branches, sources = Counter(), Counter(), {}
+    lines, branches, sources = Counter(), defaultdict(list), {}
     for data in sorted(pathlib.Path(objects).rglob('*.gcda')):
         for file in gcov(data):
             path = (ROOT / file['file']).resolve()
@@ -111,17 +130,17 @@ def model_points(objects, command, table):
                 start, number = starts.get(line.get('function_name'), (line['line_number'], 0)), line['line_number']
                 if re.match(r'\s*(class|struct) |.*= default;', source[start[0] - 1]):
                     continue
-                lines[name, number] += line['count']
                 if re.fullmatch(r'[\s{}();]*', source[number - 1]):
-                    continue  # destructors
-                kept = [branch['count'] for branch in line['branches'] if not branch['throw']]
-                for index, count in enumerate(kept):
-                    branches[name, number, start, len(kept), index] += count
+                    continue  # destructors, some of them on the way of an exception
+                lines[name, number] += line['count']
+                if kept := branch_counts(line['branches']):
+                    branches[name, number].append((start, kept))
     for (name, number), count in sorted(lines.items()):
         table.add(name, 'line', count > 0, number, sources[name][number - 1])
-    for (name, number, *_), count in sorted(branches.items()):
+    for (name, number), copies in sorted(branches.items()):
         if lines[name, number] > 0:  # else the line is what is missed
-            table.add(name, 'branch', count > 0, number, sources[name][number - 1])
+            for count in merged(copies):
+                table.add(name, 'branch', count > 0, number, sources[name][number - 1])
 
 
 def rtl_points(data, table):

@@ -67,13 +67,12 @@ template <class Real>
   return out;
 }
 
-/// Near, far and the four sides of the guard band, one pixel inside its range. The sides take no pixel away, they keep
+/// Near, far and the four sides of the guard band, window coordinates from -limit to limit. The sides take no pixel away, they keep
 /// x / w finite; but a cut vertex gets its colour here, so affine colour depends on where and in which order they cut.
 /// Near and far together imply w >= 0.
 template <class Real>
-[[nodiscard]] std::array<Plane<Real>, 6> clip_planes(ClipZ clip_z, const Viewport& viewport, double guard_band) {
+[[nodiscard]] std::array<Plane<Real>, 6> clip_planes(ClipZ clip_z, const Viewport& viewport, double limit) {
   // Window x = centre + half * x / w, so -limit <= window x is half * x + (centre + limit) * w >= 0.
-  const double limit = guard_band - 1;
   const auto half_x = static_cast<Real>(viewport.width / 2), half_y = static_cast<Real>(viewport.height / 2);
   const double centre_x = viewport.x + viewport.width / 2, centre_y = viewport.y + viewport.height / 2;
   const auto low_x = static_cast<Real>(limit + centre_x), high_x = static_cast<Real>(limit - centre_x);

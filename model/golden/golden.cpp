@@ -132,8 +132,9 @@ class Renderer {
     const State& state = scene_.states[draw.state];
     if (state.space == Space::clip) refuse_huge(draw);
     const Viewport vp = viewport_of(scene_, state);
-    DrawState d{state, vp, clip_planes<Real>(state.clip_z, vp, config_.guard_band), draw_region(scene_, state),
-                command};
+    DrawState d{state, vp,
+                clip_planes<Real>(state.clip_z, vp, config_.guard_band - std::ldexp(1.0, -config_.subpixel_bits)),
+                draw_region(scene_, state), command};
     std::size_t done = 0;
     for_each_primitive(scene_, draw, state.provoking, [&](const Primitive& p) {
       d.primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);

@@ -1,5 +1,7 @@
 #include "clip.hpp"
 
+#include <cmath>
+
 namespace halfplane {
 namespace {
 
@@ -41,9 +43,11 @@ ClipPlanes view_volume_planes(ClipZ clip_z) {
   return {near, {0, 0, -1, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {0, -1, 0, 1}, {0, 1, 0, 1}};
 }
 
+double guard_band_limit(const Config& config) { return config.guard_band - std::ldexp(1.0, -config.subpixel_bits); }
+
 ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config) {
   // Window x = vx + (x/w + 1) vw/2 and y = vy + (1 - y/w) vh/2, both kept in [-limit, limit].
-  const double limit = config.guard_band - 1;
+  const double limit = guard_band_limit(config);
   const double half_width = viewport.width / 2, half_height = viewport.height / 2;
   const double center_x = viewport.x + half_width, center_y = viewport.y + half_height;
   ClipPlanes planes = view_volume_planes(clip_z);

@@ -1,7 +1,7 @@
 // Clip: a triangle in homogeneous clip coordinates in, a convex polygon out; a line in, the part of it inside out.
 //
 // Host side, binary64, contraction off. Planes: near and far of the view volume, then the four sides of the guard band
-// (one pixel inside the range of a snapped coordinate). An edge is cut only where it leaves the guard band, so most
+// (at the largest coordinate that the snap has). An edge is cut only where it leaves the guard band, so most
 // triangles that cross the border of the screen keep their edges and the scissor does the rest.
 //
 // Exactly-once: the cut of an edge depends on its two ends alone. The parameter is always computed from the inside end,
@@ -33,6 +33,9 @@ struct ClipPolygon {
 [[nodiscard]] inline double distance(const ClipPlane& p, const Vertex& v) {
   return p.a * v.x + p.b * v.y + p.c * v.z + p.d * v.w;
 }
+
+/// Where the guard band's sides cut, pixels on either side of 0: the largest snapped coordinate.
+[[nodiscard]] double guard_band_limit(const Config& config);
 
 /// The planes that cut: near, far, and the guard band as seen through `viewport`.
 [[nodiscard]] ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config);

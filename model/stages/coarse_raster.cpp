@@ -46,11 +46,6 @@ TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, st
   return packet;
 }
 
-TilePacket make_tile_packet(const TriangleSetup& setup, int tile_x, int tile_y, std::uint8_t slot,
-                            const Widths& widths) {
-  return make_tile_packet(to_setup_packet(setup, widths), tile_x, tile_y, slot, widths);
-}
-
 ContextPacket make_context(const SetupPacket& setup, const Widths& widths) {
   const auto local_step = [&widths](std::int64_t step, const Width& plane, const Width& local) {  // per pixel, rounded
     return wrap_signed(round_shift(step, plane.bits - local.bits - widths.grid_bits), local.bits);

@@ -46,8 +46,9 @@ using EdgeValues = std::array<EdgeValue, 3>;
 
 /// The narrow edge value of a tile packet.
 [[nodiscard]] inline std::int32_t saturate_tile_edge(EdgeValue value, const Widths& widths) {
-  return static_cast<std::int32_t>(std::clamp(value, static_cast<EdgeValue>(widths.tile_edge.range.lo),
-                                              static_cast<EdgeValue>(widths.tile_edge.range.hi)));
+  const auto low = static_cast<EdgeValue>(widths.tile_edge.range.lo),
+             high = static_cast<EdgeValue>(widths.tile_edge.range.hi);
+  return static_cast<std::int32_t>(std::clamp(value, low, high));
 }
 
 /// Edge values at the first pixel of tile (tile_x, tile_y).
@@ -85,8 +86,6 @@ using EdgeValues = std::array<EdgeValue, 3>;
 
 /// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive.
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
-                                          const Widths& widths);
-[[nodiscard]] TilePacket make_tile_packet(const TriangleSetup& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           const Widths& widths);
 
 /// The part of a primitive's box that lies in tile (tile_x, tile_y), in pixels of the tile.

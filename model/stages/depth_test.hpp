@@ -26,7 +26,7 @@ template <DepthFunc Func, class Code>
 /// The same, chosen at run time.
 [[nodiscard]] constexpr bool depth_passes(DepthFunc func, std::uint32_t fragment, std::uint32_t stored) {
   switch (func) {
-    case DepthFunc::never: return depth_passes<DepthFunc::never>(fragment, stored);
+    case DepthFunc::never: break;
     case DepthFunc::less: return depth_passes<DepthFunc::less>(fragment, stored);
     case DepthFunc::lequal: return depth_passes<DepthFunc::lequal>(fragment, stored);
     case DepthFunc::equal: return depth_passes<DepthFunc::equal>(fragment, stored);

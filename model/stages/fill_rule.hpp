@@ -20,9 +20,9 @@ namespace halfplane {
   switch (rule) {
     case FillRule::top_left: return is_top_left(from, to) ? 0 : 1;
     case FillRule::offset_point: return dx * (offset - from.y) - dy * (offset - from.x) > 0 ? 0 : 1;
-    case FillRule::inclusive: return 0;
+    case FillRule::inclusive: break;
   }
-  return 1;
+  return 0;
 }
 
 /// Gives the edges of `setup`, made from the vertices `v` in canonical order, another fill rule.

@@ -79,7 +79,8 @@ LinearFunction to_bound(const Line& line, const HomogeneousWidths& widths) {
   const double slope = std::max(std::abs(line.a), std::abs(line.b));
   const double at_first = line.c + (line.a + line.b) / 2;  // at the centre of pixel (0, 0)
   const auto limit = static_cast<double>(widths.offset.range.hi);
-  if (slope == 0) return {0, 0, at_first < 0 ? -static_cast<std::int64_t>(limit) : static_cast<std::int64_t>(limit)};
+  if (slope == 0)
+    return {0, 0, static_cast<std::int64_t>(std::copysign(limit, at_first))};  // through two points at infinity
   const int shift = widths.fraction - 1 - std::ilogb(slope);
   return {round_symmetric(std::ldexp(line.a, shift)), round_symmetric(std::ldexp(line.b, shift)),
           round_symmetric(std::clamp(std::ldexp(at_first, shift), -limit, limit))};
@@ -104,7 +105,7 @@ Line blend(const Lines& e, const Corners& v, Value&& value) {
 std::int64_t residue(double value, int fraction, int bits) {
   const double modulus = std::ldexp(1.0, bits);
   const double rest = std::remainder(std::floor(std::ldexp(value, fraction) + 0.5), modulus);
-  return static_cast<std::int64_t>(rest >= modulus / 2 ? rest - modulus : rest);
+  return wrap_signed(static_cast<std::int64_t>(rest), bits);  // rest may be +modulus / 2
 }
 
 /// The plane of triangle_setup: value at the anchor of the first tile, steps per subpixel.
@@ -237,8 +238,9 @@ HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& vertices, const 
 Interpolated interpolate_at(const HomogeneousSetup& setup, const Widths& widths, int x, int y) {
   const TriangleSetup& triangle = setup.triangle;
   Interpolated result = interpolate_at(triangle, widths, x, y);
-  result.depth_code = static_cast<std::uint32_t>(std::clamp(result.depth_code + setup.depth_offset, std::int64_t{0},
-                                                            static_cast<std::int64_t>(widths.depth_code.range.hi)));
+  const std::int64_t moved = result.depth_code + setup.depth_offset,
+                     largest = static_cast<std::int64_t>(widths.depth_code.range.hi);
+  result.depth_code = static_cast<std::uint32_t>(std::clamp<std::int64_t>(moved, 0, largest));
   if (!setup.is_perspective) return result;
   const int i = x - triangle.left, j = y - triangle.top;
   const std::int64_t weight = std::max<std::int64_t>(1, setup.weight.at(i, j));  // positive but for its rounding

@@ -22,7 +22,7 @@ struct LocalPlane {
 template <class Lane>
 struct LocalFormat {
   int bits = 0;        ///< of a code
-  int guard_bits = 0;  ///< l
+  int guard_bits = 0;  ///< l >= 1
   Lane modulus_mask = 0;
 
   LocalFormat(int bits_, int guard_bits_)
@@ -37,7 +37,7 @@ template <class Lane>
 [[nodiscard]] inline LocalPlane<Lane> local_plane(PlaneValue anchor, const Plane& plane,
                                                   const LocalFormat<Lane>& format, const Widths& widths) {
   const int drop = widths.plane_fraction - format.guard_bits;  // F - l
-  const Lane half = format.guard_bits > 0 ? Lane{1} << (format.guard_bits - 1) : Lane{0};
+  const Lane half = Lane{1} << (format.guard_bits - 1);
   return {static_cast<Lane>(static_cast<Lane>(round_shift(anchor, drop)) + format.offset() + half),
           static_cast<Lane>(round_shift(plane.step_x, drop - widths.grid_bits)),
           static_cast<Lane>(round_shift(plane.step_y, drop - widths.grid_bits))};

@@ -35,7 +35,9 @@ double center_offset(const State& state) { return state.pixel_center == PixelCen
 }  // namespace
 
 std::string place_of_draw(std::string_view file, std::uint32_t line) {
-  return std::string(file) + (line != 0 ? ": draw from line " + std::to_string(line) : "");
+  std::string place(file);
+  if (line != 0) place += ": draw from line " + std::to_string(line);
+  return place;
 }
 
 WindowPosition window_position(const Vertex& v, const State& state, int target_height) {

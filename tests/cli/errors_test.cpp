@@ -22,7 +22,8 @@ TEST_F(BadInput, CommandThatDoesNotExistIsNamedWithThoseThatDo) {
   expect_refused({""}, "render, compare, cosim, reduce, mutants, depth, bench, stress, scenes, widths, config");
   expect_refused({"rendr", "teapot"}, "no command 'rendr'");
   expect_refused({"sweep", "teapot"}, "no command 'sweep' in this version");
-  expect_refused({"teapot.obj"}, "render, compare, cosim, reduce, mutants, depth, bench, stress, scenes, widths, config");
+  expect_refused({"teapot.obj"},
+                 "render, compare, cosim, reduce, mutants, depth, bench, stress, scenes, widths, config");
   expect_refused({"--nonsense"}, "halfplane --help");
 }
 
@@ -201,6 +202,13 @@ TEST_F(BadInput, WhatTheConfigurationCannotHoldIsRefused) {
   expect_file_refused("viewport.hpt",
                       "halfplane 1\ntarget 64 48\nstate viewport 0 0 5000 48\nv 0 0 0\nv 1 0 0\nv 0 1 0\nt 0 1 2\n",
                       "state viewport");
+  // The clipper cuts at the largest coordinate. Below two subpixel bits the samples of a last column lie beyond it.
+  const auto as_wide_as_the_band = [&](const char* subpixels) {
+    return Arguments{"render", "triangle",         "--size", "128x48",         "--set", "target.width=128",
+                     "--set",  "target.height=48", "--set",  "guard.band=128", "--set", subpixels};
+  };
+  EXPECT_EQ(run(as_wide_as_the_band("subpixel.bits=2")).status, 0);
+  expect_refused(as_wide_as_the_band("subpixel.bits=1"), "below 2 a pixel inside");
 }
 
 TEST_F(BadInput, CaptureTakesNeitherAnotherSizeNorACamera) {

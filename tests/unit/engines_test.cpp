@@ -222,6 +222,23 @@ TEST(Engines, BothRefuseAnInvalidConfiguration) {
   EXPECT_THROW((void)render_scalar(scene, config), InputError);
 }
 
+TEST(Engines, ATargetAsWideAsTheGuardBandLosesNoColumnToTheClipper) {
+  for (const int subpixel_bits : {2, 4, 8}) {
+    Config config = preset("embedded");
+    config.guard_band = config.target_width = config.target_height = 64;
+    config.subpixel_bits = subpixel_bits;
+    SceneBuilder builder(64, 64, State{});
+    using test::clip_at;
+    builder.triangle(clip_at(-50, 50, 0, 1), clip_at(50, 50, 0, 1), clip_at(-50, -50, 0, 1));  // cut by every side
+    builder.triangle(clip_at(50, 50, 0, 1), clip_at(50, -50, 0, 1), clip_at(-50, -50, 0, 1));
+    for (const Rendering& r :
+         {render_scalar(builder.scene, config, everything()), render_functional(builder.scene, config, everything())}) {
+      EXPECT_EQ(r.counters.covered, 64u * 64u) << subpixel_bits;
+      EXPECT_EQ(r.count, std::vector<std::uint32_t>(64 * 64, 1)) << subpixel_bits;
+    }
+  }
+}
+
 TEST(Engines, SceneWithoutAClearStartsFarAndBlack) {
   SceneBuilder builder(9, 5);
   builder.scene.commands.clear();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "../triangle_families.hpp"
 #include "model/engines/scalar.hpp"
@@ -183,6 +184,23 @@ TEST(PlaneRules, TruncatedGradientsFallShortByAtMostALastPlacePerPixelAndNeverEx
   EXPECT_LT(lowest, -6) << "of " << place * (350 + 210);
 }
 
+TEST(PlaneRules, NothingIsTruncatedWhereAProductHasFewerFractionBitsThanAreKept) {
+  Config config = preset("embedded");
+  config.depth_bits = 8;
+  config.subpixel_bits = 8;
+  config.local_guard_bits = 12;
+  ASSERT_NO_THROW(validate(config));
+  const Widths widths = derive_widths(config);
+  Triangle t;  // its area is 1, and its reciprocal exact
+  t.v[0] = {130, 130, 3, {}};
+  t.v[1] = {131, 130, 90, {}};
+  t.v[2] = {130, 131, 7, {}};
+  const TriangleSetup usual = setup_by(t, kUsual, config, widths), truncated = setup_by(t, kTruncated, config, widths);
+  EXPECT_EQ(truncated.depth.step_x, usual.depth.step_x);
+  EXPECT_EQ(truncated.depth.step_y, usual.depth.step_y);
+  EXPECT_EQ(usual.depth.step_x, std::int64_t{87} << widths.plane_fraction);
+}
+
 /// A scene of the page by some rules; it is never the coverage or the storage that is at fault.
 Comparison compare_page(const std::string& scene, const StudyRules& rules) {
   CompareOptions options;
@@ -200,6 +218,9 @@ struct PageFault {
   double depth_lsb;             // the fault errs by more
   std::uint64_t other_visible;  // and shows the wrong surface in more samples
 };
+
+/// CTest names a case after its parameter; without this, after its bytes.
+void PrintTo(const PageFault& fault, std::ostream* out) { *out << fault.scene; }
 
 class PageFaults : public testing::TestWithParam<PageFault> {};
 

@@ -3,9 +3,13 @@
 
 #include <limits>
 
+#include "../scene_builder.hpp"
+#include "model/stages/clip.hpp"
 #include "model/stages/cull.hpp"
 #include "model/stages/fill_rule.hpp"
+#include "model/stages/hiz.hpp"
 #include "model/stages/homogeneous_setup.hpp"
+#include "model/stages/line_raster.hpp"
 #include "model/stages/viewport.hpp"
 
 namespace halfplane {
@@ -105,12 +109,13 @@ TEST(FillRules, EachRuleOwnsTheEdgesThatItsDefinitionNames) {
 TEST(Cull, EachReasonToDropIsCountedOnce) {
   const Config config = preset("tiny");
   const Widths widths = derive_widths(config);
-  const auto counters_of = [&](PrimitiveKind kind, std::array<std::int32_t, 6> xy, int left, Cull mode) {
+  const auto counters_of = [&](PrimitiveKind kind, std::array<std::int32_t, 6> xy, int left, Cull mode, int top = 0) {
     PrimitivePacket in;
     in.kind = static_cast<std::uint8_t>(kind);
     in.cull = static_cast<std::uint8_t>(mode);
     for (std::size_t i = 0; i < 3; ++i) in.x[i] = xy[2 * i], in.y[i] = xy[2 * i + 1];
     in.left = static_cast<std::uint16_t>(left);
+    in.top = static_cast<std::uint16_t>(top);
     in.right = in.bottom = 15;
     CounterPacket counters;
     const bool is_kept = cull(in, widths, counters).has_value();
@@ -123,6 +128,8 @@ TEST(Cull, EachReasonToDropIsCountedOnce) {
   EXPECT_EQ(counters_of(PrimitiveKind::triangle, {0, 0, 40, 0, 0, 40}, 0, Cull::both), (Counts{0, 1, 0, 1, 0}));
   EXPECT_EQ(counters_of(PrimitiveKind::triangle, {0, 0, 1, 0, 0, 1}, 0, Cull::none), (Counts{0, 1, 0, 0, 1}));
   EXPECT_EQ(counters_of(PrimitiveKind::point, {}, 16, Cull::none), (Counts{0, 1, 0, 0, 1}));
+  EXPECT_EQ(counters_of(PrimitiveKind::point, {}, 0, Cull::none), (Counts{1, 1, 0, 0, 0}));
+  EXPECT_EQ(counters_of(PrimitiveKind::point, {}, 0, Cull::none, 16), (Counts{0, 1, 0, 0, 1}));
   EXPECT_EQ(counters_of(PrimitiveKind::rectangle, {}, 16, Cull::none), (Counts{0, 0, 0, 0, 0})) << "a clear";
 }
 
@@ -140,6 +147,90 @@ TEST(Homogeneous, ATriangleBetweenPixelCentresBesideTheScissorIsEmpty) {
   EXPECT_EQ(rejection(), Rejection::zero_area);
   for (Vertex& vertex : v) vertex.x = vertex.y = vertex.z = vertex.w = 0;
   EXPECT_NE(rejection(), Rejection::none) << "no place at all";
+}
+
+TEST(Homogeneous, ATriangleWithTwoVerticesAtInfinityIsAQuarterOfTheView) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  const State state;
+  const HomogeneousFrame frame{config, widths, state, {0, 0, 32, 32}, {0, 0, 32, 32}};
+  std::array<Vertex, 3> v;  // from the middle to the right and up
+  v[0].w = 1, v[1].x = 1, v[2].y = 1;
+  v[1].w = v[2].w = 0;
+  const HomogeneousSetup setup = setup_homogeneous(v, frame);
+  ASSERT_EQ(setup.rejection, Rejection::none);
+  std::uint64_t covered = 0;
+  traverse_homogeneous(setup, [&](int x, int y) {
+    EXPECT_TRUE(x >= 16 && y < 16) << x << " " << y;
+    ++covered;
+  });
+  EXPECT_EQ(covered, 256u);
+}
+
+TEST(Homogeneous, FlatTrianglesHaveTheirProvokingVertexColorAndOffsetMovesDepthByCodes) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  test::SceneBuilder builder(32, 32, State{});
+  const std::array<double, 4> red{255, 0, 0, 255}, blue{0, 0, 255, 255};
+  builder.triangle(test::clip_at(-0.5, -0.5, 0, 1, red), test::clip_at(0.5, -0.5, 0, 1, blue),
+                   test::clip_at(0, 0.5, 0, 1, blue));
+  const auto& draw = std::get<Draw>(builder.scene.commands.back());
+  for (const bool is_flat : {false, true}) {
+    State state;
+    state.shade = is_flat ? Shade::flat : Shade::smooth;
+    state.polygon_offset = {0, is_flat ? 5.0 : 0.0};
+    const HomogeneousFrame frame{config, widths, state, {0, 0, 32, 32}, {0, 0, 32, 32}};
+    for_each_homogeneous(builder.scene, draw, frame, [&](const HomogeneousSetup& setup) {
+      const Interpolated middle = interpolate_at(setup, widths, 16, 18);
+      EXPECT_EQ(middle.color_code[2] == 0, is_flat);
+      EXPECT_EQ(middle.depth_code, is_flat ? 0x8005u : 0x8000u);
+    });
+  }
+}
+
+TEST(Clip, ATriangleOrALineWithAVertexAtTheEyeItselfIsNothing) {
+  const ClipPlanes planes = view_volume_planes(ClipZ::minus_one_one);
+  const Vertex eye = test::clip_at(0, 0, 0, 0), a = test::clip_at(0.5, 0, 0, 1), b = test::clip_at(0, 0.5, 0, 1);
+  EXPECT_EQ(clip(planes, a, b, test::clip_at(0, 0, 0, 1)).size, 3);
+  EXPECT_EQ(clip(planes, eye, a, b).size, 0);
+  EXPECT_EQ(clip(planes, a, b, eye).size, 0);
+  EXPECT_TRUE(clip(planes, a, b).has_value());
+  EXPECT_FALSE(clip(planes, eye, a).has_value());
+  EXPECT_FALSE(clip(planes, a, eye).has_value());
+}
+
+TEST(Hiz, ALineThatMayRaiseDepthsTakesTheBoundsAwayUntilAClear) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  Hiz hiz(config, widths, 0);
+  hiz.clear(widths.tiles_x - 1, widths.tiles_y - 1, 0);
+  SetupPacket triangle;
+  triangle.depth_test = static_cast<std::uint8_t>(DepthFunc::less);
+  const auto line = [](DepthFunc test, bool writes) {
+    SetupPacket packet;
+    packet.kind = static_cast<std::uint8_t>(PrimitiveKind::line);
+    packet.depth_test = static_cast<std::uint8_t>(test);
+    packet.depth_write = writes ? 1 : 0;
+    return packet;
+  };
+  EXPECT_TRUE(hiz.is_eligible(triangle, widths));
+  hiz.pass_line(line(DepthFunc::always, false));
+  hiz.pass_line(line(DepthFunc::lequal, true));
+  EXPECT_TRUE(hiz.is_eligible(triangle, widths)) << "neither raises a depth";
+  hiz.pass_line(line(DepthFunc::greater, true));
+  EXPECT_FALSE(hiz.is_eligible(triangle, widths));
+  hiz.clear(0, 0, 0xffff);
+  EXPECT_TRUE(hiz.is_eligible(triangle, widths));
+}
+
+TEST(LineRaster, EveryFieldOfAPixelHasTheWidthOfWhatItHolds) {
+  const Widths widths = derive_widths(preset("tiny"));
+  std::vector<std::pair<std::string, int>> fields;
+  for_each_field<LinePixel>(
+      widths, [&](const auto& field, const Width& width, std::size_t) { fields.emplace_back(field.name, width.bits); });
+  const std::vector<std::pair<std::string, int>> expected{
+      {"primitive_id", widths.primitive_id.bits}, {"x", 4}, {"y", 4}, {"is_last", 1}, {"depth", 8}, {"color", 24}};
+  EXPECT_EQ(fields, expected);
 }
 
 }  // namespace
