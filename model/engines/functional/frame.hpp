@@ -34,7 +34,8 @@ struct Record {
   std::int32_t z_low = 0, z_high = 0;  ///< range of its depth codes
   std::int16_t left = 0, top = 0, right = 0, bottom = 0;  ///< its box inside the scissor, pixels, inclusive
   RecordKind kind = RecordKind::triangle;
-  bool is_small = false;       ///< a triangle within 8 x 8 pixels, nothing of which the scissor cuts off
+  bool is_whole = false;       ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
+  bool is_small = false;       ///< whole, and within 8 x 8 pixels
   bool draws_nothing = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
 };
 

@@ -107,8 +107,10 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
   sz.store(columns[2].data());
   v.rgba.store(columns[3].data());
   for (std::size_t i = 0; i < 16; ++i) {
-    const std::array<std::int32_t, 4> row{columns[0][i], columns[1][i], columns[2][i], columns[3][i]};
-    std::memcpy(static_cast<void*>(out + i), row.data(), 16);
+    out[i].x = columns[0][i];
+    out[i].y = columns[1][i];
+    out[i].z = static_cast<std::uint32_t>(columns[2][i]);
+    std::memcpy(out[i].rgba.data(), &columns[3][i], 4);
   }
   return codes | (~is_legal & static_cast<int>(Slice::kSlow));
 }
@@ -278,10 +280,9 @@ struct CullLanes {
                                   ~bits_of((t.left > t.right) | (t.top > t.bottom));
     const std::uint32_t kept = (drawn & ~sampleless) | dropped;
     const I16 z_low = min(min(t.z[0], t.z[1]), t.z[2]), z_high = max(max(t.z[0], t.z[1]), t.z[2]);
-    // Its edges alone say what it covers, if the scissor takes nothing away.
-    const I16 is_whole =
-        (t.left > limit.left) & (t.top > limit.top) & (t.right < limit.right) & (t.bottom < limit.bottom);
-    const std::uint32_t small = bits_of(is_whole & (extent(t.x) < 8 << grid_bits) & (extent(t.y) < 8 << grid_bits) &
+    const std::uint32_t whole = bits_of((t.left > limit.left) & (t.top > limit.top) & (t.right < limit.right) &
+                                        (t.bottom < limit.bottom));
+    const std::uint32_t small = whole & bits_of((extent(t.x) < 8 << grid_bits) & (extent(t.y) < 8 << grid_bits) &
                                         (z_high - z_low < steepest_small));
     // Lanes to memory once: a lane read from a register costs more than one from the cache.
     struct {
@@ -313,6 +314,7 @@ struct CullLanes {
       out->right = static_cast<std::int16_t>(lane.right[at]);
       out->bottom = static_cast<std::int16_t>(lane.bottom[at]);
       out->kind = RecordKind::triangle;
+      out->is_whole = (whole >> i & 1) != 0;
       out->is_small = (small >> i & 1) != 0;
       out->draws_nothing = (dropped >> i & 1) != 0;
       ++out;

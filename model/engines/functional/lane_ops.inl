@@ -1,5 +1,9 @@
 // Vectors of a fixed number of lanes, whatever the machine's registers hold: a pack is as many registers as it takes.
 // Included inside the namespace of an instruction set: see kernels.inl.
+//
+// Packs go to memory and back register by register. GCC 12 copies what is larger than 16 bytes, std::memcpy and structs
+// in memory alike, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of
+// them: half of the time of a block.
 
 /// N lanes of a T.
 template <class T, int N>
@@ -8,6 +12,7 @@ struct Pack {
   static constexpr int kParts = N / kLanes;
   static_assert(N % kLanes == 0);
   typedef T Register __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  typedef T InMemory __attribute__((vector_size(HALFPLANE_ISA / 8), aligned(1), may_alias));
 
   Register part[kParts];
 
@@ -24,12 +29,12 @@ struct Pack {
   template <class Element>
   HALFPLANE_INLINE static Pack load(const Element* from) {
     Pack pack;
-    std::memcpy(&pack, from, sizeof pack);
+    for (int i = 0; i < kParts; ++i) pack.part[i] = reinterpret_cast<const InMemory*>(from)[i];
     return pack;
   }
   template <class Element>
   HALFPLANE_INLINE void store(Element* to) const {
-    std::memcpy(static_cast<void*>(to), this, sizeof *this);
+    for (int i = 0; i < kParts; ++i) reinterpret_cast<InMemory*>(to)[i] = part[i];
   }
 };
 
@@ -162,19 +167,45 @@ HALFPLANE_INLINE Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
   return r;
 }
 
-/// Lane by lane to another type, as static_cast has it. As many lanes at a time as fill a register of the wider type.
+/// Lanes 0, 1, ... of two vectors behind each other, from lane `First` on.
+template <class Result, int First, class Vector, std::size_t... I>
+HALFPLANE_INLINE Result lanes_from(const Vector& low, const Vector& high, std::index_sequence<I...>) {
+  return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
+}
+
+/// Lane by lane to another type, as static_cast has it; where one type is twice as wide, half a register at a time.
 template <class To, class From, int N>
 HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
-  constexpr int kStep = HALFPLANE_ISA / 8 / static_cast<int>(std::max(sizeof(To), sizeof(From)));
-  typedef From FromRegister __attribute__((vector_size(kStep * sizeof(From))));
-  typedef To ToRegister __attribute__((vector_size(kStep * sizeof(To))));
+  constexpr int kLanes = std::min(Pack<To, N>::kLanes, Pack<From, N>::kLanes);
+  static_assert(std::max(Pack<To, N>::kLanes, Pack<From, N>::kLanes) <= 2 * kLanes);
+  typedef From FromLanes __attribute__((vector_size(kLanes * sizeof(From))));
+  typedef To ToLanes __attribute__((vector_size(kLanes * sizeof(To))));
   Pack<To, N> to;
-  for (int i = 0; i < N; i += kStep) {
-    FromRegister in;
-    std::memcpy(&in, reinterpret_cast<const char*>(&from) + static_cast<std::size_t>(i) * sizeof(From), sizeof in);
-    const ToRegister out = __builtin_convertvector(in, ToRegister);
-    std::memcpy(reinterpret_cast<char*>(&to) + static_cast<std::size_t>(i) * sizeof(To), &out, sizeof out);
+  if constexpr (sizeof(To) == sizeof(From)) {
+    for (int i = 0; i < Pack<To, N>::kParts; ++i) to.part[i] = __builtin_convertvector(from.part[i], ToLanes);
+  } else if constexpr (sizeof(To) > sizeof(From)) {
+    constexpr auto kHalf = std::make_index_sequence<kLanes>{};
+    for (int i = 0; i < Pack<From, N>::kParts; ++i) {
+      const auto& both = from.part[i];
+      to.part[2 * i] = __builtin_convertvector((lanes_from<FromLanes, 0>(both, both, kHalf)), ToLanes);
+      to.part[2 * i + 1] = __builtin_convertvector((lanes_from<FromLanes, kLanes>(both, both, kHalf)), ToLanes);
+    }
+  } else {
+    constexpr auto kBoth = std::make_index_sequence<2 * kLanes>{};
+    for (int i = 0; i < Pack<To, N>::kParts; ++i)
+      to.part[i] =
+          lanes_from<typename Pack<To, N>::Register, 0>(__builtin_convertvector(from.part[2 * i], ToLanes),
+                                                        __builtin_convertvector(from.part[2 * i + 1], ToLanes), kBoth);
   }
+  return to;
+}
+
+/// The same bits as lanes of another type.
+template <class To, class From>
+HALFPLANE_INLINE To as(const From& from) {
+  static_assert(sizeof(To) == sizeof(From) && To::kParts == From::kParts);
+  To to;
+  for (int i = 0; i < To::kParts; ++i) to.part[i] = (typename To::Register)from.part[i];
   return to;
 }
 
@@ -183,16 +214,6 @@ using S32 = Pack<std::int16_t, 32>;  ///< two in each lane of an I16
 using L16 = Pack<std::int64_t, 16>;
 using D16 = Pack<double, 16>;
 
-HALFPLANE_INLINE S32 as_pairs(const I16& value) {
-  S32 r;
-  std::memcpy(&r, &value, sizeof r);
-  return r;
-}
-HALFPLANE_INLINE I16 as_lanes(const S32& value) {
-  I16 r;
-  std::memcpy(&r, &value, sizeof r);
-  return r;
-}
 HALFPLANE_INLINE S32 shift_right_logical(const S32& a, int bits) {
   typedef std::uint16_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
   S32 r;
@@ -229,8 +250,8 @@ HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes) {
 #if HALFPLANE_ISA == 512
   const __m512i one = _mm512_set1_epi64(1), v = (__m512i)values.part[0];
-  const __m512i low = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes), one,
-                                              _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)));
+  const __m512i low =
+      _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes), one, _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)));
   const __m512i high = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes >> 8), one,
                                                _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(v, 1)));
   return static_cast<std::uint64_t>(_mm512_reduce_or_epi64(_mm512_or_si512(low, high)));
@@ -295,8 +316,25 @@ HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
 /// Four rows of four pixels of an image.
 template <class Element>
 HALFPLANE_INLINE I16 load_block(const Element* from, int stride) {
+  typedef std::int32_t Row __attribute__((vector_size(16), aligned(1), may_alias));
+  typedef std::int32_t Four __attribute__((vector_size(16)));
+  std::array<Four, 4> row;
+  for (std::size_t j = 0; j < 4; ++j) row[j] = *reinterpret_cast<const Row*>(from + static_cast<int>(j) * stride);
   I16 r;
-  for (int j = 0; j < 4; ++j) std::memcpy(reinterpret_cast<char*>(&r) + 16 * j, from + j * stride, 16);
+#if HALFPLANE_ISA == 128
+  for (std::size_t j = 0; j < 4; ++j) r.part[j] = row[j];
+#else
+  typedef std::int32_t Eight __attribute__((vector_size(32)));
+  constexpr auto kEight = std::make_index_sequence<8>{};
+  const Eight upper = lanes_from<Eight, 0>(row[0], row[1], kEight),
+              lower = lanes_from<Eight, 0>(row[2], row[3], kEight);
+#if HALFPLANE_ISA == 512
+  r.part[0] = lanes_from<I16::Register, 0>(upper, lower, std::make_index_sequence<16>{});
+#else
+  r.part[0] = upper;
+  r.part[1] = lower;
+#endif
+#endif
   return r;
 }
 /// Two blocks, side by side, as four rows of eight pixels.

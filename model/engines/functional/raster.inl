@@ -84,6 +84,7 @@ struct BinTriangle {
   std::int64_t z_anchor, z_tile_x, z_tile_y;  ///< plane at the first tile's anchor; steps from tile to tile
   std::int32_t z_step_x, z_step_y;            ///< of a pixel, in a lane
   bool is_gentle;                             ///< no value of a tile that it touches wraps
+  bool is_whole;                              ///< its edges alone say what it covers
   std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< likewise, channel by channel
   ColorSteps color;
 };
@@ -239,6 +240,7 @@ class Bin {
       triangle.top = top;
       triangle.right = right;
       triangle.bottom = bottom;
+      triangle.is_whole = record.is_whole;
       if (skip_.tiles_hiz && is_behind_tiles<Test>(record, triangle)) {
         leave_out();
         continue;
@@ -459,12 +461,12 @@ class Bin {
   /// Packed colours in block 0...3 of a tile.
   HALFPLANE_INLINE I16 colors(const ColorSteps& t, const ChannelPairs& anchor, std::size_t block) const {
     std::array<I16, 2> pair;
-    const S32 column = as_pairs(position_.column_pair[block & 1]), row = as_pairs(position_.row_pair[block >> 1]);
+    const S32 column = as<S32>(position_.column_pair[block & 1]), row = as<S32>(position_.row_pair[block >> 1]);
     for (std::size_t p = 0; p < 2; ++p) {
       const S32 value =
-          column * as_pairs(I16(t.step_x[p])) + row * as_pairs(I16(t.step_y[p])) + as_pairs(I16(anchor[p]));
+          column * as<S32>(I16(t.step_x[p])) + row * as<S32>(I16(t.step_y[p])) + as<S32>(I16(anchor[p]));
       const S32 code = shift_right_logical(value, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
-      pair[p] = as_lanes(min(max(code, as_pairs(I16(t.low[p]))), as_pairs(I16(t.high[p]))));
+      pair[p] = as<I16>(min(max(code, as<S32>(I16(t.low[p]))), as<S32>(I16(t.high[p]))));
     }
     return packed(pair[0] | pair[1] << 8);
   }
@@ -616,9 +618,9 @@ class Bin {
       cut |= lanes.edge[i] + kExtent * (std::min(dx, 0) + std::min(-dy, 0));
     }
     const I16 in_box = ~(((x + kExtent - t.left) | (t.right - x) | (y + kExtent - t.top) | (t.bottom - y)) >> 31);
-    const I16 cut_by_box = (x - t.left) | ((t.right - kExtent) - x) | (y - t.top) | ((t.bottom - kExtent) - y);
+    if (!t.is_whole) cut |= (x - t.left) | ((t.right - kExtent) - x) | (y - t.top) | ((t.bottom - kExtent) - y);
     lanes.live = in_box & ~(outside >> 31);
-    lanes.full = lanes.live & ~((cut | cut_by_box) >> 31);
+    lanes.full = lanes.live & ~(cut >> 31);
     const auto box = static_cast<unsigned>(std::popcount(bits_of(in_box)));
     job_.counters.tiles_visited += box;
     if (skip_.tiles_outside)
@@ -748,11 +750,11 @@ class Bin {
     const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
     const int left = std::max(t.left - tile_x * kTileSize, 0), right = std::min(t.right - tile_x * kTileSize, 7);
     const int top = std::max(t.top - tile_y * kTileSize, 0), bottom = std::min(t.bottom - tile_y * kTileSize, 7);
-    const bool is_whole = left == 0 && top == 0 && right == 7 && bottom == 7;
+    const bool is_whole = t.is_whole || (left == 0 && top == 0 && right == 7 && bottom == 7);
     need_depth(tile);
-    if (state_.color_write) need_color(tile);
     const std::int32_t depth_at = depth_anchor(t, tile_x, tile_y);
-    const ChannelPairs color_at = state_.color_write ? color_anchor(t, tile_x, tile_y) : ChannelPairs{};
+    ChannelPairs color_at{};
+    bool has_color = false;  // asked for when a pixel passes: often none does
     std::int32_t* depths = memory_.depth.data() + first_of(tile);
     std::uint32_t* pixels = memory_.color.data() + first_of(tile);
     std::array<I16, 3> ramp;
@@ -780,6 +782,11 @@ class Bin {
       if (passed_bits == 0 && skip_.fragments_early_z) continue;
       if (state_.depth_write) now.store(depths + at);
       if (!state_.color_write) continue;
+      if (!has_color) {
+        need_color(tile);
+        color_at = color_anchor(t, tile_x, tile_y);
+        has_color = true;
+      }
       const I16 color = colors(t.color, color_at, static_cast<std::size_t>(block));
       select(passed, color, I16::load(pixels + at)).store(pixels + at);
     }

@@ -44,12 +44,10 @@ struct SmallBatch {
 /// The reciprocals of sixteen areas below 2^31 and their shifts. significant_bits <= 29: a quotient fits 31 bits.
 HALFPLANE_INLINE void reciprocal_lanes(const I16& area, int significant_bits, L16& value, L16& shift) {
   const D16 divisor = convert<double>(max(area, I16(1)));
-  L16 bits;
-  std::memcpy(&bits, &divisor, sizeof bits);
+  const auto bits = as<L16>(divisor);
   shift = (bits >> 52) - (1023 - significant_bits);
   const L16 power_bits = (shift + 1024) << 52;  // of 2^(shift + 1)
-  D16 power;
-  std::memcpy(&power, &power_bits, sizeof power);
+  const auto power = as<D16>(power_bits);
   L16 quotient = convert<std::int64_t>(convert<std::int32_t>(power / divisor));
   const L16 remainder = (L16(1) << (shift + 1)) - quotient * convert<std::int64_t>(area);
   quotient = quotient + (remainder < 0) - (remainder >= convert<std::int64_t>(area));
