@@ -18,6 +18,9 @@ inline constexpr int kBinShift = 6, kBinSize = 1 << kBinShift;     ///< pixels a
 inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size that this engine has
 inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles along the side of a bin
 
+/// Extent of triangles that are set up sixteen at a time: pixels; bits in subpixels, of which products take 32.
+inline constexpr int kSmallPixels = 16, kSmallBits = 14;
+
 /// What a draw's state asks of its fragments.
 struct FragmentState {
   DepthFunc depth_test = DepthFunc::less;
@@ -35,7 +38,7 @@ struct Record {
   std::int16_t left = 0, top = 0, right = 0, bottom = 0;  ///< its box inside the scissor, pixels, inclusive
   RecordKind kind = RecordKind::triangle;
   bool is_whole = false;       ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-  bool is_small = false;       ///< whole, and within 8 x 8 pixels
+  bool is_small = false;       ///< whole, within two by two tiles, and within kSmallPixels and kSmallBits
   bool draws_nothing = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
 };
 

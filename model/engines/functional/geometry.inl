@@ -282,7 +282,10 @@ struct CullLanes {
     const I16 z_low = min(min(t.z[0], t.z[1]), t.z[2]), z_high = max(max(t.z[0], t.z[1]), t.z[2]);
     const std::uint32_t whole = bits_of((t.left > limit.left) & (t.top > limit.top) & (t.right < limit.right) &
                                         (t.bottom < limit.bottom));
-    const std::uint32_t small = whole & bits_of((extent(t.x) < 8 << grid_bits) & (extent(t.y) < 8 << grid_bits) &
+    const I16 few_tiles = ((t.right >> kTileShift) - (t.left >> kTileShift) <= 1) &
+                          ((t.bottom >> kTileShift) - (t.top >> kTileShift) <= 1);
+    const int largest = std::min(kSmallPixels << grid_bits, 1 << kSmallBits);
+    const std::uint32_t small = whole & bits_of(few_tiles & (extent(t.x) < largest) & (extent(t.y) < largest) &
                                         (z_high - z_low < steepest_small));
     // Lanes to memory once: a lane read from a register costs more than one from the cache.
     struct {
@@ -334,7 +337,7 @@ static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
                   context.state.cull,
                   context.state.front == FrontFace::cw,
                   0};
-  // Numerator: two products of a difference of depths and one of coordinates, below 10 pixels; times the reciprocal.
+  // Numerator: two products of a difference of depths and one of coordinates, below 16 pixels; times the reciprocal.
   const int bits_left = 63 - 1 - 4 - frame.widths.grid_bits - frame.widths.reciprocal.bits;
   lanes.steepest_small = std::int32_t{1} << std::min(bits_left, 30);
   std::size_t number = 0;

@@ -894,7 +894,7 @@ class Bin {
   SmallBatch small_;
   LineBatch lines_, cut_line_;  ///< cut_line_: one, in lane 0
   std::uint64_t line_tiles_ = 0;  ///< touched by lines since triangles last were drawn
-  std::array<Block, 16 * 9 + 1> blocks_;
+  std::array<Block, 16 * 16 + 1> blocks_;  ///< sixteen of a triangle, and room for one that is not kept
   bool falls_ = false, rises_ = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count_ = 0;
   std::array<std::uint8_t, kTiles> touches_{};
