@@ -220,7 +220,7 @@ struct CullLanes {
   PixelBounds limit;
   Cull mode;
   bool is_front_cw;
-  std::int32_t steepest_small;  ///< codes over a small triangle whose gradients still fit 64 bits
+  std::int32_t steepest_small;  ///< codes over a small triangle
 
   /// The triangles of `part` from `first` on, `count` or sixteen of them. `number`: of the first, in the slice.
   HALFPLANE_INLINE void operator()(const Slice::Part& part, std::size_t first, std::size_t count, std::size_t number) {
@@ -337,9 +337,8 @@ static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
                   context.state.cull,
                   context.state.front == FrontFace::cw,
                   0};
-  // Numerator: two products of a difference of depths and one of coordinates, below 16 pixels; times the reciprocal.
-  const int bits_left = 63 - 1 - 4 - frame.widths.grid_bits - frame.widths.reciprocal.bits;
-  lanes.steepest_small = std::int32_t{1} << std::min(bits_left, 30);
+  // Numerators of a small triangle, two products of a difference of codes and one of coordinates, have 32 bits.
+  lanes.steepest_small = std::int32_t{1} << (30 - std::min(ceil_log2(kSmallPixels) + frame.widths.grid_bits, kSmallBits));
   std::size_t number = 0;
   for (const Slice::Part& part : slice.parts)
     for (std::size_t first = 0; first < part.count; first += 16) {

@@ -173,6 +173,11 @@ HALFPLANE_INLINE Result lanes_from(const Vector& low, const Vector& high, std::i
   return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
 }
 
+template <class Result, class Vector, std::size_t... I>
+HALFPLANE_INLINE Result even_lanes(const Vector& low, const Vector& high, std::index_sequence<I...>) {
+  return __builtin_shufflevector(low, high, (2 * static_cast<int>(I))...);
+}
+
 /// Lane by lane to another type, as static_cast has it; where one type is twice as wide, half a register at a time.
 template <class To, class From, int N>
 HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
@@ -190,6 +195,11 @@ HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
       to.part[2 * i] = __builtin_convertvector((lanes_from<FromLanes, 0>(both, both, kHalf)), ToLanes);
       to.part[2 * i + 1] = __builtin_convertvector((lanes_from<FromLanes, kLanes>(both, both, kHalf)), ToLanes);
     }
+  } else if constexpr (std::is_integral_v<From>) {
+    constexpr auto kBoth = std::make_index_sequence<2 * kLanes>{};
+    using Wide = typename Pack<To, N>::Register;  // the lower halves: even lanes, low first
+    for (int i = 0; i < Pack<To, N>::kParts; ++i)
+      to.part[i] = even_lanes<Wide>((Wide)from.part[2 * i], (Wide)from.part[2 * i + 1], kBoth);
   } else {
     constexpr auto kBoth = std::make_index_sequence<2 * kLanes>{};
     for (int i = 0; i < Pack<To, N>::kParts; ++i)
@@ -226,6 +236,29 @@ HALFPLANE_INLINE L16 shift_right_logical(const L16& a, int bits) {
   L16 r;
   for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> bits);
   return r;
+}
+
+HALFPLANE_INLINE L16 shift_right_logical(const L16& a, const L16& bits) {
+  typedef std::uint64_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  L16 r;
+  for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> (Unsigned)bits.part[i]);
+  return r;
+}
+
+/// Products of numbers of 32 bits in lanes of 64.
+HALFPLANE_INLINE L16 multiply_narrow(const L16& a, const L16& b) {
+#if HALFPLANE_ISA == 128
+  return a * b;
+#else
+  L16 r;
+  for (int i = 0; i < L16::kParts; ++i)
+#if HALFPLANE_ISA == 512
+    r.part[i] = (L16::Register)_mm512_mul_epi32((__m512i)a.part[i], (__m512i)b.part[i]);
+#else
+    r.part[i] = (L16::Register)_mm256_mul_epi32((__m256i)a.part[i], (__m256i)b.part[i]);
+#endif
+  return r;
+#endif
 }
 
 /// One bit for each lane whose sign bit is set.

@@ -99,19 +99,30 @@ HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext
   const GradientLanes gradient(reciprocal, convert<std::int32_t>(shift) - (s + widths.line_guard_bits));
   const L16 to_first = convert<std::int64_t>(offset), to_bin = convert<std::int64_t>(low);
   const int guard_bits = widths.line_guard_bits;
-  struct Attribute {
-    L16 value, step;
+  const std::int64_t half_code = std::int64_t{1} << (guard_bits - 1), half_step = std::int64_t{1} << (s - 1);
+  // Values wrap far above their bits: shifts need no sign. Steps of attributes of up to 32 bits fit 32.
+  const auto start_of = [&](const I16& from, const L16& way) HALFPLANE_LAMBDA {
+    return (convert<std::int64_t>(from) << guard_bits) + half_code + shift_right_logical(way + half_step, s);
   };
-  const auto attribute = [&](const I16& from, const I16& to) HALFPLANE_LAMBDA {
-    const L16 step = gradient(convert<std::int64_t>(to - from));
-    const L16 start = (convert<std::int64_t>(from) << guard_bits) + (std::int64_t{1} << (guard_bits - 1)) +
-                      round_shift_lanes(step * to_first, s);
-    return Attribute{start + step * to_bin, step};
+  struct Narrow {
+    I16 value, step;
+  };
+  const auto narrow_attribute = [&](const I16& from, const I16& to) HALFPLANE_LAMBDA {
+    const L16 step64 = gradient(to - from);
+    const I16 step = convert<std::int32_t>(step64);
+    return Narrow{convert<std::int32_t>(start_of(from, multiply_narrow(step64, to_first))) + step * low, step};
   };
   const I16 z0 = gather(&base->z, at[0]), z1 = gather(&base->z, at[1]);
-  const Attribute z = attribute(z0, z1);
-  (z.value << (64 - widths.line_depth.bits)).store(depth.data());
-  (z.step << (64 - widths.line_depth.bits)).store(depth_step.data());
+  const int unused = 64 - widths.line_depth.bits;
+  if (unused >= 32) {
+    const Narrow z = narrow_attribute(z0, z1);
+    (convert<std::int64_t>(z.value) << unused).store(depth.data());
+    (convert<std::int64_t>(z.step) << unused).store(depth_step.data());
+  } else {
+    const L16 step = gradient(z1 - z0);
+    ((start_of(z0, step * to_first) + step * to_bin) << unused).store(depth.data());
+    (step << unused).store(depth_step.data());
+  }
   z0.store(depth_start.data());
   if (!slice.state.color_write) return;
   const bool is_flat = slice.state.is_flat;
@@ -120,8 +131,8 @@ HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext
   for (std::size_t c = 0; c < 4; ++c) {
     const int down = static_cast<int>(8 * c);
     const auto code = [down](const I16& rgba) HALFPLANE_LAMBDA { return shift_right_logical(rgba, down) & 255; };
-    const Attribute channel = attribute(code(c0), code(c1));
-    (convert<std::int32_t>(channel.value) << (32 - widths.line_color.bits)).store(color[c].data());
-    (convert<std::int32_t>(channel.step) << (32 - widths.line_color.bits)).store(color_step[c].data());
+    const Narrow channel = narrow_attribute(code(c0), code(c1));
+    (channel.value << (32 - widths.line_color.bits)).store(color[c].data());
+    (channel.step << (32 - widths.line_color.bits)).store(color_step[c].data());
   }
 }

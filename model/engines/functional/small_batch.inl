@@ -45,35 +45,39 @@ struct SmallBatch {
 HALFPLANE_INLINE void reciprocal_lanes(const I16& area, int significant_bits, L16& value, L16& shift) {
   const D16 divisor = convert<double>(max(area, I16(1)));
   const auto bits = as<L16>(divisor);
-  shift = (bits >> 52) - (1023 - significant_bits);
+  shift = shift_right_logical(bits, 52) - (1023 - significant_bits);
   const L16 power_bits = (shift + 1024) << 52;  // of 2^(shift + 1)
   const auto power = as<D16>(power_bits);
   L16 quotient = convert<std::int64_t>(convert<std::int32_t>(power / divisor));
-  const L16 remainder = (L16(1) << (shift + 1)) - quotient * convert<std::int64_t>(area);
+  const L16 remainder = (L16(1) << (shift + 1)) - multiply_narrow(quotient, convert<std::int64_t>(area));
   quotient = quotient + (remainder < 0) - (remainder >= convert<std::int64_t>(area));
-  value = (quotient + 1) >> 1;
+  value = shift_right_logical(quotient + 1, 1);
 }
 
 /// Gradients of sixteen planes: numerators times reciprocals, rounded.
 struct GradientLanes {
-  L16 reciprocal, left, right;  ///< shifts: one of them 0, but right is at least 1
-  I16 is_left;
+  static constexpr std::int64_t kRaise = std::int64_t{1} << 62;  ///< makes a product positive: no shift needs a sign
+  L16 reciprocal, left, right;                                   ///< shifts: one of them 0
+  L16 addend, lowered;
 
   /// `k`: bits that a product drops; negative: gains.
   HALFPLANE_INLINE GradientLanes(const L16& reciprocal_, const I16& k)
       : reciprocal(reciprocal_),
         left(convert<std::int64_t>(max(-k, I16(0)))),
-        right(convert<std::int64_t>(max(k, I16(1)))),
-        is_left(k <= 0) {}
+        right(convert<std::int64_t>(max(k, I16(0)))),
+        addend(shift_right_logical(L16(1) << right, 1) + kRaise),
+        lowered(shift_right_logical(L16(kRaise), right)) {}
 
-  HALFPLANE_INLINE L16 operator()(const L16& numerator) const {
-    const L16 shifted = (numerator * reciprocal) << left;
-    return select(convert<std::int64_t>(is_left), shifted, ((shifted >> (right - 1)) + 1) >> 1);
+  HALFPLANE_INLINE L16 operator()(const I16& numerator) const {
+    const L16 product = multiply_narrow(convert<std::int64_t>(numerator), reciprocal) << left;
+    return shift_right_logical(product + addend, right) - lowered;
   }
 };
 
-HALFPLANE_INLINE L16 round_shift_lanes(const L16& value, int bits) {
-  return bits <= 0 ? value << -bits : ((value >> (bits - 1)) + 1) >> 1;
+/// round_shift(), the lower 32 bits. bits <= 32.
+HALFPLANE_INLINE I16 round_shift_lanes(const L16& value, int bits) {
+  if (bits <= 0) return convert<std::int32_t>(value << -bits);
+  return convert<std::int32_t>(shift_right_logical(value + (std::int64_t{1} << (bits - 1)), bits));
 }
 
 HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContext& frame,
@@ -139,25 +143,41 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   const auto anchor_of = [&](const I16& box, int first) HALFPLANE_LAMBDA {  // of the box's first tile
     return (((box & ~(kTileSize - 1)) + (first + kTileSize / 2)) << s) + half;
   };
-  const L16 to_x = convert<std::int64_t>(anchor_of(box_x, first_x) - origin.x),
-            to_y = convert<std::int64_t>(anchor_of(box_y, first_y) - origin.y);
+  const I16 to_x = anchor_of(box_x, first_x) - origin.x, to_y = anchor_of(box_y, first_y) - origin.y;
   const int to_tile = kTileShift + s;
+  // A plane at the anchors of the tiles, the bits from `drop` on. Where the products of the bits below fit 32, that is all
+  // that a lane needs: what is above wraps.
   const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
                            std::array<I16, 4>& out) HALFPLANE_LAMBDA {
-    const L16 value = (convert<std::int64_t>(at_origin) << F) + step_x * to_x + step_y * to_y +
-                      static_cast<std::int64_t>(format.anchor_bias);
+    const int drop = format.drop;
+    if (constexpr int kOffset = 5 + 2; drop + s + kOffset < 32) {  // offsets below 24 pixels; sums of four
+      const std::int32_t below = (std::int32_t{1} << drop) - 1;
+      const I16 x0 = convert<std::int32_t>(step_x) & below, y0 = convert<std::int32_t>(step_y) & below;
+      const I16 x1 = convert<std::int32_t>(shift_right_logical(step_x, drop)),
+                y1 = convert<std::int32_t>(shift_right_logical(step_y, drop));
+      const I16 upper = (at_origin << (F - drop)) + x1 * to_x + y1 * to_y +
+                        static_cast<std::int32_t>(static_cast<std::uint32_t>(format.anchor_bias >> drop));
+      const I16 lower = x0 * to_x + y0 * to_y + (static_cast<std::int32_t>(format.anchor_bias) & below);
+      const auto lane = [&](const I16& high, const I16& low)
+                            HALFPLANE_LAMBDA { return (high + (low >> drop)) << format.up; };
+      const I16 right1 = upper + (x1 << to_tile), right0 = lower + (x0 << to_tile);
+      out = {lane(upper, lower), lane(right1, right0), lane(upper + (y1 << to_tile), lower + (y0 << to_tile)),
+             lane(right1 + (y1 << to_tile), right0 + (y0 << to_tile))};
+      return;
+    }
+    const L16 value = (convert<std::int64_t>(at_origin) << F) + step_x * convert<std::int64_t>(to_x) +
+                      step_y * convert<std::int64_t>(to_y) + static_cast<std::int64_t>(format.anchor_bias);
     const L16 right_of = value + (step_x << to_tile), below = step_y << to_tile;
-    const auto lane = [&](const L16& v64)
-                          HALFPLANE_LAMBDA { return convert<std::int32_t>(v64 >> format.drop) << format.up; };
+    const auto lane = [&](const L16& v64) HALFPLANE_LAMBDA {
+      return convert<std::int32_t>(shift_right_logical(v64, drop)) << format.up;
+    };
     out = {lane(value), lane(right_of), lane(value + below), lane(right_of + below)};
   };
-  const auto local = [](const L16& step, const LaneFormat& format) HALFPLANE_LAMBDA {
-    return convert<std::int32_t>(round_shift_lanes(step, format.step_drop)) << format.up;
-  };
+  const auto local = [](const L16& step, const LaneFormat& format)
+                         HALFPLANE_LAMBDA { return round_shift_lanes(step, format.step_drop) << format.up; };
   {
-    const L16 az = convert<std::int64_t>(b.z - a.z), bz = convert<std::int64_t>(c.z - a.z);
-    const L16 step_x = gradient(az * convert<std::int64_t>(by) - bz * convert<std::int64_t>(ay)),
-              step_y = gradient(convert<std::int64_t>(ax) * bz - convert<std::int64_t>(bx) * az);
+    const I16 az = b.z - a.z, bz = c.z - a.z;
+    const L16 step_x = gradient(az * by - bz * ay), step_y = gradient(ax * bz - bx * az);
     std::array<I16, 4> at;
     anchors(origin.z, step_x, step_y, depth_format, at);
     for (std::size_t i = 0; i < 4; ++i) at[i].store(z_anchor[i].data());
@@ -186,8 +206,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
       }
       const I16 c0 = is_flat ? ca : code(origin.rgba);
       const I16 ac = cb - ca, bc = cc - ca;
-      const L16 gx = gradient(convert<std::int64_t>(ac * by - bc * ay)),
-                gy = gradient(convert<std::int64_t>(ax * bc - bx * ac));
+      const L16 gx = gradient(ac * by - bc * ay), gy = gradient(ax * bc - bx * ac);
       anchors(c0, gx, gy, color_format, to.at);
       to.step_x = local(gx, color_format);
       to.step_y = local(gy, color_format);
