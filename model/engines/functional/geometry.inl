@@ -168,13 +168,18 @@ HALFPLANE_INLINE I16 extent(const std::array<I16, 3>& c) {
   return max(max(c[0], c[1]), c[2]) - min(min(c[0], c[1]), c[2]);
 }
 
-/// Which triangles of at most two by two pixel centres cover none of them; the others are left at 0.
-HALFPLANE_INLINE I16 covers_no_sample(const TriangleLanes& t, const I16& is_turned, int grid_bits) {
+/// What triangles of at most two by two pixel centres cover of them.
+struct SampleLanes {
+  I16 is_known;  ///< for which triangles; the others are left at 0
+  I16 samples;   ///< bits: upper left, upper right, lower left, lower right
+};
+
+HALFPLANE_INLINE SampleLanes covered_samples(const TriangleLanes& t, const I16& is_turned, int grid_bits) {
   const I16 is_wide = t.right > t.left, is_high = t.bottom > t.top;
   // By its own extent, not by what the scissor leaves of it: the products below must fit.
   const I16 is_small = (t.right - t.left <= 1) & (t.bottom - t.top <= 1) & (extent(t.x) < 4 << grid_bits) &
                        (extent(t.y) < 4 << grid_bits);
-  if (!is_any(is_small)) return I16(0);
+  if (!is_any(is_small)) return {I16(0), I16(0)};
   const int half = 1 << (grid_bits - 1);
   const I16 px = (t.left << grid_bits) + half, py = (t.top << grid_bits) + half;
   std::array<I16, 4> outside{I16(0), I16(0), I16(0), I16(0)};  // negative where the sample is outside one edge
@@ -192,9 +197,10 @@ HALFPLANE_INLINE I16 covers_no_sample(const TriangleLanes& t, const I16& is_turn
     outside[2] |= e + down;
     outside[3] |= right + down;
   }
-  const I16 covered =
-      ~outside[0] | (~outside[1] & is_wide) | (~outside[2] & is_high) | (~outside[3] & is_wide & is_high);
-  return is_small & ~(covered >> 31);
+  const auto bit = [](const I16& is_outside, int at) HALFPLANE_LAMBDA { return ~(is_outside >> 31) & (1 << at); };
+  const I16 covered = bit(outside[0], 0) | (bit(outside[1], 1) & is_wide) | (bit(outside[2], 2) & is_high) |
+                      (bit(outside[3], 3) & is_wide & is_high);
+  return {is_small, is_small & covered};
 }
 
 /// The corners of `count` or sixteen primitives from `first` on, as indices into Slice::vertices. `number`: of the
@@ -262,8 +268,9 @@ struct CullLanes {
                                                             : live & ~front_bits;
     const std::uint32_t empty_bits = bits_of((t.left > t.right) | (t.top > t.bottom)) & live & ~culled_bits;
     const std::uint32_t drawn = live & ~culled_bits & ~empty_bits;
-    std::uint32_t sampleless = 0;
-    if (skip.no_sample && drawn != 0) sampleless = bits_of(covers_no_sample(t, is_turned, grid_bits)) & drawn;
+    SampleLanes few{I16(0), I16(0)};
+    if (skip.no_sample && drawn != 0) few = covered_samples(t, is_turned, grid_bits);
+    const std::uint32_t sampleless = bits_of(few.is_known & (few.samples == 0)) & drawn;
     const auto count_of = [](std::uint32_t bits)
                               HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(bits)); };
     const std::uint32_t zero = zero_bits & ~slow_bits & ~frustum_bits;
@@ -290,7 +297,7 @@ struct CullLanes {
     // Lanes to memory once: a lane read from a register costs more than one from the cache.
     struct {
       std::array<std::array<std::int32_t, 16>, 3> v;
-      std::array<std::int32_t, 16> z_low, z_high, left, top, right, bottom;
+      std::array<std::int32_t, 16> z_low, z_high, left, top, right, bottom, samples;
     } lane;
     for (std::size_t k = 0; k < 3; ++k) t.v[k].store(lane.v[k].data());
     z_low.store(lane.z_low.data());
@@ -299,6 +306,7 @@ struct CullLanes {
     t.top.store(lane.top.data());
     t.right.store(lane.right.data());
     t.bottom.store(lane.bottom.data());
+    few.samples.store(lane.samples.data());
     Record* out = slice.records.data() + slice.record_count;
     for (std::uint32_t rest = kept | slow_bits; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -320,6 +328,7 @@ struct CullLanes {
       out->is_whole = (whole >> i & 1) != 0;
       out->is_small = (small >> i & 1) != 0;
       out->draws_nothing = (dropped >> i & 1) != 0;
+      out->samples = static_cast<std::uint8_t>(out->is_small && !out->draws_nothing ? lane.samples[at] : 0);
       ++out;
     }
     slice.record_count = static_cast<std::size_t>(out - slice.records.data());

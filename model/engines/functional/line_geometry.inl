@@ -148,6 +148,7 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
         out.bottom = static_cast<std::int16_t>(lane.bottom[i]);
         out.kind = RecordKind::whole_line;
         out.is_whole = out.is_small = out.draws_nothing = false;
+        out.samples = 0;
       }
     }
 }

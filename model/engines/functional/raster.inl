@@ -222,7 +222,9 @@ class Bin {
             continue;
           }
         }
-        if (small_.add(record, left, top, right, bottom)) draw_batch<Test>(slice);
+        const std::uint32_t samples = samples_in_bin(record);
+        if (record.samples != 0 && samples == 0) continue;
+        if (small_.add(record, left, top, right, bottom, samples)) draw_batch<Test>(slice);
         continue;
       }
       if (record.kind == RecordKind::whole_line) {
@@ -249,6 +251,15 @@ class Bin {
     }
     draw_batch<Test>(slice);
     draw_lines<Test>(slice);
+  }
+
+  /// Record::samples of the part of its box that lies in this bin.
+  [[nodiscard]] HALFPLANE_INLINE std::uint32_t samples_in_bin(const Record& record) const {
+    constexpr std::uint32_t kLeft = 1 | 4, kUpper = 1 | 2;
+    const int left = record.left - first_x_, top = record.top - first_y_;
+    std::uint32_t samples = record.samples;
+    samples = left < 0 ? samples >> 1 & kLeft : left == kBinSize - 1 ? samples & kLeft : samples;
+    return top < 0 ? samples >> 2 & kUpper : top == kBinSize - 1 ? samples & kUpper : samples;
   }
 
   static int tile_of(int x, int y) { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); }
@@ -456,6 +467,13 @@ class Bin {
       case DepthFunc::always: return I16(-1);
       default: return I16(0);
     }
+  }
+
+  /// The same for one fragment.
+  template <DepthFunc Test>
+  HALFPLANE_INLINE bool passes_one(std::int32_t depth, std::int32_t stored) const {
+    return depth_passes(Test == DepthFunc::less ? Test : state_.depth_test, static_cast<std::uint32_t>(depth),
+                        static_cast<std::uint32_t>(stored));
   }
 
   /// Packed colours in block 0...3 of a tile.

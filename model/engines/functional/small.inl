@@ -17,12 +17,19 @@ void draw_batch(const Slice& slice) {
   if (state_.depth_write)
     for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i)
       for (const int tile : small_tiles(i)) forget_range<Test>(tile);
-  const std::size_t blocks = find_blocks();
-  std::uint64_t covered = 0, passed = 0, tiles = 0;
+  std::uint64_t tiles = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i)
     tiles += static_cast<unsigned>((1 + (small_.right[i] >> kTileShift) - (small_.left[i] >> kTileShift)) *
                                    (1 + (small_.bottom[i] >> kTileShift) - (small_.top[i] >> kTileShift)));
   job_.counters.tiles_visited += tiles;
+  if (small_.has_samples) {
+    draw_samples<Test>();
+    small_.count = 0;
+    if (is_changed || Test != DepthFunc::less) find_bin_range();
+    return;
+  }
+  const std::size_t blocks = find_blocks();
+  std::uint64_t covered = 0, passed = 0;
   for (std::size_t b = 0; b < blocks; ++b) draw_block<Test>(blocks_[b], covered, passed);
   count(covered, passed);
   small_.count = 0;
@@ -120,4 +127,52 @@ HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixe
   const I16 color = colors(steps, {small_.c_anchor[0][of_box][i], small_.c_anchor[1][of_box][i]}, of_tile);
   std::uint32_t* pixels = memory_.color.data() + at;
   select(passed, color, I16::load(pixels)).store(pixels);
+}
+
+/// Triangles whose few samples are known: a triangle a lane, then sample by sample in their order.
+template <DepthFunc Test>
+HALFPLANE_INLINE void draw_samples() {
+  constexpr std::size_t kSamples = 4;
+  alignas(64) std::array<SmallBatch::Lane, kSamples> depth, color, place;
+  const I16 left = I16::load(small_.left.data()), top = I16::load(small_.top.data());
+  const auto from_anchor = [](const I16& at) HALFPLANE_LAMBDA { return (at & (kTileSize - 1)) - kTileSize / 2; };
+  const std::array<I16, 2> x{left, left + 1}, y{top, top + 1};
+  const std::array<I16, 2> column{from_anchor(x[0]), from_anchor(x[1])}, row{from_anchor(y[0]), from_anchor(y[1])};
+  const auto load = [](const SmallBatch::Lane& lane) HALFPLANE_LAMBDA { return I16::load(lane.data()); };
+  for (std::size_t s = 0; s < kSamples; ++s) {
+    const std::size_t i = s & 1, j = s >> 1;
+    place_of(x[i], y[j]).store(place[s].data());
+    const I16 value = column[i] * load(small_.z_step_x) + row[j] * load(small_.z_step_y) + load(small_.z_anchor[s]);
+    const I16 code = shift_right_logical(value, depth_format_.down) - depth_format_.bias;
+    min(max(code, load(small_.z_low)), load(small_.z_high)).store(depth[s].data());
+    if (!state_.color_write) continue;
+    const S32 columns = as<S32>(pairs(column[i], column[i])), rows = as<S32>(pairs(row[j], row[j]));
+    const auto channels = [&](std::size_t p) HALFPLANE_LAMBDA {
+      const auto load_pairs = [&](const SmallBatch::LaneArray<2>& of)
+                                  HALFPLANE_LAMBDA { return as<S32>(load(of[p])); };
+      const S32 local = columns * load_pairs(small_.c_step_x) + rows * load_pairs(small_.c_step_y) +
+                        as<S32>(load(small_.c_anchor[p][s]));
+      const S32 channel = shift_right_logical(local, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
+      return as<I16>(min(max(channel, load_pairs(small_.c_low)), load_pairs(small_.c_high)));
+    };
+    packed(channels(0) | channels(1) << 8).store(color[s].data());
+  }
+  // All four, covered or not: which they are, nobody can foresee.
+  std::uint64_t covered_pixels = 0, passed_pixels = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) {
+    const auto samples = static_cast<std::uint32_t>(small_.samples[i]);
+    covered_pixels += static_cast<unsigned>(std::popcount(samples));
+    for (std::size_t s = 0; s < kSamples; ++s) {
+      const auto at = static_cast<std::size_t>(place[s][i]);
+      std::int32_t& stored = memory_.depth[at];
+      const std::uint32_t passed = samples >> s & (passes_one<Test>(depth[s][i], stored) ? 1U : 0U);
+      const std::int32_t mask = -static_cast<std::int32_t>(passed);
+      passed_pixels += passed;
+      if (state_.depth_write) stored ^= (stored ^ depth[s][i]) & mask;
+      if (state_.color_write)
+        memory_.color[at] ^= (memory_.color[at] ^ static_cast<std::uint32_t>(color[s][i])) & static_cast<std::uint32_t>(mask);
+    }
+  }
+  job_.counters.samples_tested += kSamples * static_cast<unsigned>(small_.count);
+  count(covered_pixels, passed_pixels);
 }

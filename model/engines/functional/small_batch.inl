@@ -11,6 +11,8 @@ struct SmallBatch {
   alignas(64) LaneArray<3> v;                 ///< into Slice::vertices
   alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
   alignas(64) Lane z_low, z_high;
+  alignas(64) Lane samples;   ///< Record::samples
+  bool has_samples = false;   ///< all of them are known
   std::uint32_t dropped = 0;  ///< lanes that draw nothing
 
   alignas(64) LaneArray<3> edge;                ///< at the first pixel of the box's first block
@@ -18,13 +20,15 @@ struct SmallBatch {
   alignas(64) Lane place;                       ///< the first block: lane, column, row, a byte each
   alignas(64) Lane there;              ///< bits: the box touches that block, its right neighbour, the lower, both's
   alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
-  alignas(64) LaneArray<4> z_anchor;   ///< of the tiles that the box may touch: first, right, below, both
+  /// Of the tiles that the box may touch: first, right, below, both; with has_samples, of those of its four samples.
+  alignas(64) LaneArray<4> z_anchor;
   alignas(64) Lane z_step_x, z_step_y;
   alignas(64) std::array<LaneArray<4>, 2> c_anchor;  ///< by channel pair
   alignas(64) LaneArray<2> c_step_x, c_step_y, c_low, c_high;
 
   /// True when that was the last for which there is room.
-  HALFPLANE_INLINE bool add(const Record& record, int left_, int top_, int right_, int bottom_) {
+  HALFPLANE_INLINE bool add(const Record& record, int left_, int top_, int right_, int bottom_,
+                            std::uint32_t samples_) {
     const auto i = static_cast<std::size_t>(count);
     for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
     left[i] = left_;
@@ -33,6 +37,8 @@ struct SmallBatch {
     bottom[i] = bottom_;
     z_low[i] = record.z_low;
     z_high[i] = record.z_high;
+    samples[i] = static_cast<std::int32_t>(samples_);
+    has_samples = (count == 0 || has_samples) && samples_ != 0;
     dropped = (count == 0 ? 0 : dropped) | (record.draws_nothing ? 1U : 0U) << count;
     return ++count == 16;
   }
@@ -118,7 +124,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   const I16 px = (((box_x & ~(kBlockSize - 1)) + first_x) << s) + half,
             py = (((box_y & ~(kBlockSize - 1)) + first_y) << s) + half;
   const std::array<const VertexOf*, 4> corner{&a, &b, &c, &a};
-  for (std::size_t e = 0; e < 3; ++e) {
+  for (std::size_t e = 0; e < 3 && !has_samples; ++e) {
     const VertexOf &from = *corner[e], &to = *corner[e + 1];
     const I16 dx = to.x - from.x, dy = to.y - from.y;
     const I16 is_in = (dy < 0) | ((dy == 0) & (dx > 0));  // top or left
@@ -145,6 +151,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   };
   const I16 to_x = anchor_of(box_x, first_x) - origin.x, to_y = anchor_of(box_y, first_y) - origin.y;
   const int to_tile = kTileShift + s;
+  const I16 to_right_tile = has_samples ? (box_x & 7) == 7 : I16(-1), to_lower_tile = has_samples ? (box_y & 7) == 7 : I16(-1);
   // A plane at the anchors of the tiles, the bits from `drop` on. Where the products of the bits below fit 32, that is all
   // that a lane needs: what is above wraps.
   const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
@@ -160,14 +167,16 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
       const I16 lower = x0 * to_x + y0 * to_y + (static_cast<std::int32_t>(format.anchor_bias) & below);
       const auto lane = [&](const I16& high, const I16& low)
                             HALFPLANE_LAMBDA { return (high + (low >> drop)) << format.up; };
-      const I16 right1 = upper + (x1 << to_tile), right0 = lower + (x0 << to_tile);
-      out = {lane(upper, lower), lane(right1, right0), lane(upper + (y1 << to_tile), lower + (y0 << to_tile)),
-             lane(right1 + (y1 << to_tile), right0 + (y0 << to_tile))};
+      const I16 right1 = upper + ((x1 << to_tile) & to_right_tile), right0 = lower + ((x0 << to_tile) & to_right_tile);
+      const I16 down1 = (y1 << to_tile) & to_lower_tile, down0 = (y0 << to_tile) & to_lower_tile;
+      out = {lane(upper, lower), lane(right1, right0), lane(upper + down1, lower + down0),
+             lane(right1 + down1, right0 + down0)};
       return;
     }
     const L16 value = (convert<std::int64_t>(at_origin) << F) + step_x * convert<std::int64_t>(to_x) +
                       step_y * convert<std::int64_t>(to_y) + static_cast<std::int64_t>(format.anchor_bias);
-    const L16 right_of = value + (step_x << to_tile), below = step_y << to_tile;
+    const L16 right_of = value + ((step_x << to_tile) & convert<std::int64_t>(to_right_tile)),
+              below = (step_y << to_tile) & convert<std::int64_t>(to_lower_tile);
     const auto lane = [&](const L16& v64) HALFPLANE_LAMBDA {
       return convert<std::int32_t>(shift_right_logical(v64, drop)) << format.up;
     };
