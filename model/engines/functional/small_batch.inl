@@ -94,38 +94,32 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   const int s = widths.grid_bits, F = widths.plane_fraction, half = 1 << (s - 1);
   for (int i = count; i < 16; ++i)  // what is not there is like the first
     for (std::size_t k = 0; k < 3; ++k) v[k][static_cast<std::size_t>(i)] = v[k][0];
-  struct VertexOf {
-    I16 x, y, z, rgba;
-  };
-  const auto fetch = [&](std::size_t k) HALFPLANE_LAMBDA {
-    const I16 at = I16::load(v[k].data()) << 2;  // 16 bytes each
-    const SnappedVertex* base = slice.vertices.data();
-    return VertexOf{gather(&base->x, at), gather(&base->y, at), gather(&base->z, at), gather(base->rgba.data(), at)};
-  };
-  const VertexOf a = fetch(0);
-  VertexOf b = fetch(1), c = fetch(2);
-  const auto choose = [](const I16& mask, const VertexOf& p, const VertexOf& q) HALFPLANE_LAMBDA {
-    return VertexOf{select(mask, p.x, q.x), select(mask, p.y, q.y), select(mask, p.z, q.z),
+  const auto fetch = [&](std::size_t k)
+                         HALFPLANE_LAMBDA { return load_vertices(slice.vertices.data(), v[k].data()); };
+  const SnappedLanes a = fetch(0);
+  SnappedLanes b = fetch(1), c = fetch(2);
+  const auto choose = [](const I16& mask, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
+    return SnappedLanes{select(mask, p.x, q.x), select(mask, p.y, q.y), select(mask, p.z, q.z),
                     select(mask, p.rgba, q.rgba)};
   };
   I16 area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   const I16 is_turned = area < 0;
-  const VertexOf turned_b = choose(is_turned, c, b);
+  const SnappedLanes turned_b = choose(is_turned, c, b);
   c = choose(is_turned, b, c);
   b = turned_b;
   area = (area ^ is_turned) - is_turned;
   dropped |= bits_of(area == 0);
-  const auto is_before = [](const VertexOf& p, const VertexOf& q)
+  const auto is_before = [](const SnappedLanes& p, const SnappedLanes& q)
                              HALFPLANE_LAMBDA { return (p.y < q.y) | ((p.y == q.y) & (p.x < q.x)); };
-  VertexOf origin = choose(is_before(b, a), b, a);
+  SnappedLanes origin = choose(is_before(b, a), b, a);
   origin = choose(is_before(c, origin), c, origin);
 
   const I16 box_x = I16::load(left.data()), box_y = I16::load(top.data());
   const I16 px = (((box_x & ~(kBlockSize - 1)) + first_x) << s) + half,
             py = (((box_y & ~(kBlockSize - 1)) + first_y) << s) + half;
-  const std::array<const VertexOf*, 4> corner{&a, &b, &c, &a};
+  const std::array<const SnappedLanes*, 4> corner{&a, &b, &c, &a};
   for (std::size_t e = 0; e < 3 && !has_samples; ++e) {
-    const VertexOf &from = *corner[e], &to = *corner[e + 1];
+    const SnappedLanes &from = *corner[e], &to = *corner[e + 1];
     const I16 dx = to.x - from.x, dy = to.y - from.y;
     const I16 is_in = (dy < 0) | ((dy == 0) & (dx > 0));  // top or left
     const I16 value = (dx * (py - from.y) - dy * (px - from.x) + ~is_in) >> s;
