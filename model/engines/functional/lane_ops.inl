@@ -288,6 +288,12 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes
   const __m512i high = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes >> 8), one,
                                                _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(v, 1)));
   return static_cast<std::uint64_t>(_mm512_reduce_or_epi64(_mm512_or_si512(low, high)));
+#elif HALFPLANE_ISA == 256
+  const L16 is_in = (L16::of([](int i) HALFPLANE_LAMBDA { return std::int64_t{1} << i; }) &
+                     static_cast<std::int64_t>(lanes)) != 0;
+  const L16 bits = (L16(1) << convert<std::int64_t>(values)) & is_in;
+  const L16::Register all = (bits.part[0] | bits.part[1]) | (bits.part[2] | bits.part[3]);
+  return static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
 #else
   std::uint64_t bits = 0;
   for (int i = 0; i < 16; ++i)
@@ -314,20 +320,22 @@ HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
   return r;
 }
 
-/// The lanes whose bit is set to base + 4 index.
+/// Of the first `count` lanes those of the mask to base + 4 index. No two of them have one index.
 template <class Element>
-HALFPLANE_INLINE void scatter(Element* base, const I16& index, const I16& value, std::uint32_t lanes) {
+HALFPLANE_INLINE void scatter(Element* base, const I16& index, const I16& value, const I16& mask, int count) {
   static_assert(sizeof(Element) == 4);
 #if HALFPLANE_ISA == 512
-  _mm512_mask_i32scatter_epi32(base, static_cast<__mmask16>(lanes), (__m512i)index.part[0], (__m512i)value.part[0], 4);
+  const auto lanes = static_cast<__mmask16>(bits_of(mask) & ((1U << count) - 1));
+  _mm512_mask_i32scatter_epi32(base, lanes, (__m512i)index.part[0], (__m512i)value.part[0], 4);
 #else
-  std::array<std::int32_t, 16> at;
-  std::array<Element, 16> what;
+  // What is not to be stored is stored as it was: which lanes those are, nobody can foresee.
+  std::array<std::int32_t, 16> at, what, is_in;
   index.store(at.data());
   value.store(what.data());
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
-    base[at[i]] = what[i];
+  mask.store(is_in.data());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const Element old = base[at[i]];
+    base[at[i]] = old ^ ((old ^ static_cast<Element>(what[i])) & static_cast<Element>(is_in[i]));
   }
 #endif
 }

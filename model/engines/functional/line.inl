@@ -108,13 +108,14 @@ HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
     I16 code = convert<std::int32_t>(shift_right_logical(depth, depth_down));
     const I16 is_start = from_bits(start);
     code = select(is_start, I16(line.depth_start[i]), code);
-    const std::uint32_t passed = bits_of(passes<Test>(code, gather(depths, at))) & there;
-    passed_pixels += static_cast<unsigned>(std::popcount(passed));
-    if (has_depth) scatter(depths, at, code, passed);
+    const I16 passed = passes<Test>(code, gather(depths, at));
+    const int count = std::min(left, 16);
+    passed_pixels += static_cast<unsigned>(std::popcount(bits_of(passed) & there));
+    if (has_depth) scatter(depths, at, code, passed, count);
     if (has_color) {
       const auto code_of = [&](std::size_t c) HALFPLANE_LAMBDA { return shift_right_logical(color[c], 24); };
       const I16 rgba = code_of(0) | code_of(1) << 8 | code_of(2) << 16 | code_of(3) << 24;
-      scatter(pixels, at, packed(select(is_start, I16(line.color_start[i]), rgba)), passed);
+      scatter(pixels, at, packed(select(is_start, I16(line.color_start[i]), rgba)), passed, count);
       for (std::size_t c = 0; c < 4; ++c) color[c] += I16(16 * line.color_step[c][i]);
     }
     row += D16(16 * line.slope[i]);
