@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """./dev prove: the proofs about the RTL, each with a broken twin that must fail. docs/proofs.md says what they mean.
 
-A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. Yosys
-makes SMT-LIB of it; yosys-smtbmc and z3 then show that no assertion fails in the first cycles (the base) and that none can
-fail when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in the RTL.
-What cannot be shown so is enumerated: Proofs.* of halfplane_tests (--program).
+A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. A
+solver, the MiniSat of Yosys or z3 by way of yosys-smtbmc, then shows that no assertion fails in the first cycles (the base)
+and that none can fail when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in
+the RTL. What cannot be shown so is enumerated: Proofs.* of halfplane_tests (--program).
 
 Runs in the repository's root; build/prove keeps every design and log. Exit status: 0 all proven and every twin caught,
 1 not so, 2 wrong usage, 3 a tool is missing.
@@ -137,34 +137,76 @@ def run(command, log, seconds):
             RUNNING.discard(process.pid)
 
 
-def design(proof, preset, folder, twin):
-    """The SMT-LIB file of a proof or of its twin."""
+def front_end(proof, preset, folder, twin):
+    """Yosys commands that give the flat design of a proof or of its twin."""
     folder.mkdir(parents=True, exist_ok=True)
     files, parameters = sources(proof, preset, folder, twin)
-    top, smt2, log = pathlib.Path(proof.module).stem, folder / 'design.smt2', folder / 'yosys.log'
     # A multiplier's result may be anything: what is shown then holds for the product, too.
     cut = 'cutpoint t:$mul; ' if proof.cuts_multipliers else ''
-    script = (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {top}{parameters}; proc; {cut}'
-              'flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; write_smt2 -wires ' + str(smt2))
-    status = run(['yosys', '-p', script], log, 300)
+    return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {pathlib.Path(proof.module).stem}{parameters}; '
+            f'proc; {cut}flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
+
+
+def yosys(script, log, seconds):
+    """Runs Yosys. False: the time was up."""
+    status = run(['yosys', '-p', script], log, seconds)
     text = log.read_text(encoding='utf-8')
-    if status != 0:
-        raise Broken(f'yosys failed, see {log}')
     # A misspelt name would be a free variable, and the properties would be about nothing.
     if 'implicitly declared' in text:
         raise Broken(f'a name is not declared, see {log}')
-    if 'yosys-smt2-assert' not in smt2.read_text(encoding='utf-8'):
-        raise Broken('nothing is asserted')
-    return smt2
+    if status is None:
+        return False
+    if status != 0:
+        raise Broken(f'yosys failed, see {log}')
+    if not re.search(r'^ +\$assert +\d', text, flags=re.M):
+        raise Broken(f'nothing is asserted, see {log}')
+    return True
 
 
-def solve(smt2, name, arguments, seconds):
-    """PASSED, FAILED or 'time-out' of one call of the solver."""
-    log = smt2.with_name(f'{name}.log')
-    if run(['yosys-smtbmc', '-s', 'z3', '--unroll', *arguments, str(smt2)], log, seconds) is None:
-        return 'time-out'
-    found = re.findall(r'Status: (\w+)', log.read_text(encoding='utf-8'))
-    return found[-1] if found else f'no answer, see {log}'
+def solve_by_z3(front, folder, calls, limit):
+    """By call (`base`, `step`, `cover`; each with its cycles): PASSED, FAILED or what went wrong."""
+    smt2, results = folder / 'design.smt2', {}
+    if not yosys(f'{front}write_smt2 -wires {smt2}', folder / 'yosys.log', 300):
+        raise Broken('yosys: time-out')
+    for name, cycles in calls.items():
+        log = folder / f'{name}.log'
+        option = {'base': [], 'step': ['-i'], 'cover': ['-c']}[name]
+        if run(['yosys-smtbmc', '-s', 'z3', '--unroll', *option, '-t', str(cycles), str(smt2)], log, limit) is None:
+            results[name] = 'time-out'
+        else:
+            found = re.findall(r'Status: (\w+)', log.read_text(encoding='utf-8'))
+            results[name] = found[-1] if found else f'no answer, see {log}'
+    return results
+
+
+def solve_by_minisat(front, folder, calls, limit):
+    """The same by Yosys itself, whose solver gets single bits."""
+    script = front + 'chformal -cover -remove; memory_map; opt -fast; '
+    for name, cycles in calls.items():
+        script += (f'tee -o {folder / name}.log sat -prove-asserts -set-assumes -tempinduct-{"base" if name == "base" else "induct"}only '
+                   f'-maxsteps {cycles} -timeout {limit:.0f}; ')
+    yosys(script, folder / 'yosys.log', limit * len(calls) + 60)
+    results = {}
+    for name in calls:
+        log = folder / f'{name}.log'
+        text = log.read_text(encoding='utf-8') if log.exists() else ''
+        if re.search(r'proved base case for \d+ steps: SUCCESS!|Induction step proven: SUCCESS!', text):
+            results[name] = 'PASSED'
+        elif 'model found for base case: FAIL!' in text or '-> proof failed.' in text:
+            results[name] = 'FAILED'
+        else:
+            results[name] = 'time-out'
+    return results
+
+
+def solve(proof, preset, folder, twin, calls, limit):
+    front = front_end(proof, preset, folder, twin)
+    if proof.solver == 'z3':
+        return solve_by_z3(front, folder, calls, limit)
+    results = solve_by_minisat(front, folder, {name: cycles for name, cycles in calls.items() if name != 'cover'}, limit)
+    if 'cover' in calls:
+        results |= solve_by_z3(front, folder, {'cover': calls['cover']}, limit)
+    return results
 
 
 def prove(proof, preset, limit):
@@ -174,26 +216,18 @@ def prove(proof, preset, limit):
     shutil.rmtree(base, ignore_errors=True)
     outcome = Outcome(proof, preset, False, [], 0, 0)
     try:
-        smt2 = design(proof, preset, base, None)
-        depth, twin_depth = ('1', '1') if proof.is_combinational else (str(proof.depth), str(proof.twin_depth))
-        steps = [('base', ['-t', depth]), ('step', ['-i', '-t', str(proof.k)])][:1 if proof.is_combinational else 2]
+        calls = {'base': 1} if proof.is_combinational else {'base': proof.depth, 'step': proof.k}
         if proof.cover_depth:
-            steps.append(('cover', ['-c', '-t', str(proof.cover_depth)]))
-        for name, arguments in steps:
-            result = solve(smt2, name, arguments, limit)
-            if result != 'PASSED':
-                outcome.remark = f'{name}: {result}, see {base}/{name}.log'
-                break
-        outcome.proven = not outcome.remark
+            calls['cover'] = proof.cover_depth
+        failed = {name: result for name, result in solve(proof, preset, base, None, calls, limit).items() if result != 'PASSED'}
+        outcome.remark = ', '.join(f'{name}: {result}' for name, result in failed.items()) + f', see {base}' if failed else ''
+        outcome.proven = not failed
         outcome.seconds = time.monotonic() - began
         for number, twin in enumerate(proof.twins):
-            broken = design(proof, preset, base / f'twin{number}', twin)
-            found = None
-            if not proof.is_combinational and solve(broken, 'step', ['-i', '-t', str(proof.k)], limit) == 'FAILED':
-                found = 'step'
-            if solve(broken, 'base', ['-t', twin_depth], limit) == 'FAILED':
-                found = 'trace'
-            outcome.caught.append(found)
+            calls = {'base': 1} if proof.is_combinational else {'base': proof.twin_depth, 'step': proof.k}
+            results = solve(proof, preset, base / f'twin{number}', twin, calls, limit)
+            found = [name for name, result in results.items() if result == 'FAILED']
+            outcome.caught.append('trace' if 'base' in found else found[0] if found else None)
         outcome.twin_seconds = time.monotonic() - began - outcome.seconds
     except Broken as error:
         outcome.proven = False
@@ -208,7 +242,7 @@ def line(outcome):
         method = 'every input'
     twins = f'{sum(c is not None for c in outcome.caught)} of {len(proof.twins)} twins caught'
     verdict = 'proven' if outcome.proven else 'NOT PROVEN'
-    return (f'{verdict:10} ({proof.letter}) {proof.name:24} {outcome.preset:9} {method:38} {outcome.seconds:6.1f} s   '
+    return (f'{verdict:10} {f"({proof.letter})":6} {proof.name:24} {outcome.preset:9} {method:38} {outcome.seconds:6.1f} s   '
             f'{twins}, {outcome.twin_seconds:.1f} s' + (f'   {outcome.remark}' if outcome.remark else ''))
 
 

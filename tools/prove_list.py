@@ -17,6 +17,7 @@ class Proof:
     twin_depth: int = 6     # a twin has to fail in so many, or in the step
     parameters: tuple = ()  # of the module: (name, number or constant of the package)
     package: tuple = ()     # constants of the package that this proof sets otherwise
+    solver: str = 'minisat'  # or z3, where a memory is too large to be single bits
     cover_depth: int = 0    # cycles in which every cover statement is reached: what is assumed can happen
     cuts_multipliers: bool = False
     is_combinational: bool = False
