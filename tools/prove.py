@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """./dev prove: the proofs about the RTL, each with a broken twin that must fail. docs/proofs.md says what they mean.
 
-A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. A
-solver, the MiniSat of Yosys or z3 by way of yosys-smtbmc, then shows that no assertion fails in the first cycles (the base)
+A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. The
+MiniSat inside Yosys (or z3, --z3) then shows that no assertion fails in the first cycles (the base)
 and that none can fail when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in
 the RTL. What cannot be shown so is enumerated: Proofs.* of halfplane_tests (--program).
 
@@ -71,7 +71,9 @@ def package_constant(package, name):
 
 
 def properties(proof):
-    return ''.join((FORMAL / f'{name}.sv').read_text(encoding='utf-8') for name in proof.properties)
+    """The text of the properties; a cover is an assertion of the contrary, which must fail."""
+    text = ''.join((FORMAL / f'{name}.sv').read_text(encoding='utf-8') for name in proof.properties)
+    return re.sub(r'\bcover (\(.*\));', lambda match: f'cover_{match.start()}: assert (!{match[1]});', text)
 
 
 def hierarchy(proof):
@@ -110,6 +112,7 @@ def sources(proof, preset, folder, twin):
         copy.write_text(text, encoding='utf-8')
         files.append(copy)
     parameters = {k: v if isinstance(v, int) else package_constant(package, v) for k, v in proof.parameters}
+    (folder / 'all.txt').write_text(properties(proof), encoding='utf-8')
     return files, ''.join(f' -chparam {k} {v}' for k, v in parameters.items())
 
 
@@ -141,8 +144,8 @@ def front_end(proof, preset, folder, twin):
     """Yosys commands that give the flat design of a proof or of its twin."""
     folder.mkdir(parents=True, exist_ok=True)
     files, parameters = sources(proof, preset, folder, twin)
-    # A multiplier's result may be anything: what is shown then holds for the product, too.
-    cut = 'cutpoint t:$mul; ' if proof.cuts_multipliers else ''
+    # What is cut out may give any result: what is shown then holds for the right one, too.
+    cut = ''.join(f'cutpoint t:{cells}; ' for cells in proof.cuts)
     return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {pathlib.Path(proof.module).stem}{parameters}; '
             f'proc; {cut}flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
 
@@ -164,13 +167,13 @@ def yosys(script, log, seconds):
 
 
 def solve_by_z3(front, folder, calls, limit):
-    """By call (`base`, `step`, `cover`; each with its cycles): PASSED, FAILED or what went wrong."""
+    """By call (`base`, `step`; each with its cycles): PASSED, FAILED or what went wrong."""
     smt2, results = folder / 'design.smt2', {}
-    if not yosys(f'{front}write_smt2 -wires {smt2}', folder / 'yosys.log', 300):
+    if not yosys(f'{front}chformal -assert -remove n:*cover_*; write_smt2 -wires {smt2}', folder / 'yosys.log', 300):
         raise Broken('yosys: time-out')
     for name, cycles in calls.items():
         log = folder / f'{name}.log'
-        option = {'base': [], 'step': ['-i'], 'cover': ['-c']}[name]
+        option = ['-i'] if name == 'step' else []
         if run(['yosys-smtbmc', '-s', 'z3', '--unroll', *option, '-t', str(cycles), str(smt2)], log, limit) is None:
             results[name] = 'time-out'
         else:
@@ -180,36 +183,37 @@ def solve_by_z3(front, folder, calls, limit):
 
 
 def solve_by_minisat(front, folder, calls, limit):
-    """The same by Yosys itself, whose solver gets single bits."""
-    script = front + 'chformal -cover -remove; memory_map; opt -fast; '
+    """The same by Yosys itself, whose solver gets single bits; or `cover`, PASSED when every cover is reached."""
+    script = front + 'memory_map; opt -fast; '
+    covers = []
     for name, cycles in calls.items():
-        script += (f'tee -o {folder / name}.log sat -prove-asserts -set-assumes -tempinduct-{"base" if name == "base" else "induct"}only '
-                   f'-maxsteps {cycles} -timeout {limit:.0f}; ')
-    yosys(script, folder / 'yosys.log', limit * len(calls) + 60)
-    results = {}
-    for name in calls:
+        if name == 'cover':
+            covers = sorted(set(re.findall(r'\b(cover_\d+): assert', (folder / 'all.txt').read_text(encoding='utf-8'))))
+            script += 'design -save all; '
+            script += ''.join(f'design -load all; chformal -assert -remove t:$assert n:*{cover} %d; '
+                              f'tee -o {folder / cover}.log sat -prove-asserts -set-assumes -seq {cycles} -timeout {limit:.0f}; '
+                              for cover in covers)
+        else:
+            script += ('chformal -assert -remove n:*cover_*; '
+                       f'tee -o {folder / name}.log sat -prove-asserts -set-assumes -tempinduct-{"base" if name == "base" else "induct"}only '
+                       f'-maxsteps {cycles} -timeout {limit:.0f}; ')
+    yosys(script, folder / 'yosys.log', limit * (len(calls) + len(covers)) + 60)
+
+    def verdict(name):
         log = folder / f'{name}.log'
         text = log.read_text(encoding='utf-8') if log.exists() else ''
-        if re.search(r'proved base case for \d+ steps: SUCCESS!|Induction step proven: SUCCESS!', text):
-            results[name] = 'PASSED'
-        elif 'model found for base case: FAIL!' in text or '-> proof failed.' in text:
-            results[name] = 'FAILED'
-        else:
-            results[name] = 'time-out'
-    return results
+        if re.search(r'SUCCESS!', text):
+            return 'PASSED'
+        return 'FAILED' if 'FAIL!' in text or '-> proof failed.' in text else 'time-out'
 
-
-def solve(proof, preset, folder, twin, calls, limit):
-    front = front_end(proof, preset, folder, twin)
-    if proof.solver == 'z3':
-        return solve_by_z3(front, folder, calls, limit)
-    results = solve_by_minisat(front, folder, {name: cycles for name, cycles in calls.items() if name != 'cover'}, limit)
+    results = {name: verdict(name) for name in calls if name != 'cover'}
     if 'cover' in calls:
-        results |= solve_by_z3(front, folder, {'cover': calls['cover']}, limit)
+        unreached = [cover for cover in covers if verdict(cover) != 'FAILED']
+        results['cover'] = 'PASSED' if covers and not unreached else f'not reached: {", ".join(unreached)}'
     return results
 
 
-def prove(proof, preset, limit):
+def prove(proof, preset, limit, solver):
     """The proof, then its twins."""
     began = time.monotonic()
     base = pathlib.Path('build/prove') / f'{proof.name}-{preset}'
@@ -217,17 +221,23 @@ def prove(proof, preset, limit):
     outcome = Outcome(proof, preset, False, [], 0, 0)
     try:
         calls = {'base': 1} if proof.is_combinational else {'base': proof.depth, 'step': proof.k}
-        if proof.cover_depth:
-            calls['cover'] = proof.cover_depth
-        failed = {name: result for name, result in solve(proof, preset, base, None, calls, limit).items() if result != 'PASSED'}
+        results = solver(front_end(proof, preset, base, None), base, calls, limit)
+        if proof.cover_depth and 'FAILED' not in results.values():
+            results |= solve_by_minisat(front_end(proof, preset, base / 'cover', None), base / 'cover', {'cover': proof.cover_depth}, limit)
+        failed = {name: result for name, result in results.items() if result != 'PASSED'}
         outcome.remark = ', '.join(f'{name}: {result}' for name, result in failed.items()) + f', see {base}' if failed else ''
         outcome.proven = not failed
         outcome.seconds = time.monotonic() - began
         for number, twin in enumerate(proof.twins):
-            calls = {'base': 1} if proof.is_combinational else {'base': proof.twin_depth, 'step': proof.k}
-            results = solve(proof, preset, base / f'twin{number}', twin, calls, limit)
-            found = [name for name, result in results.items() if result == 'FAILED']
-            outcome.caught.append('trace' if 'base' in found else found[0] if found else None)
+            calls = {'base': 1} if proof.is_combinational else {'step': proof.k, 'base': proof.twin_depth}
+            if proof.twin_traces:
+                del calls['step']
+            outcome.caught.append(None)
+            for name, cycles in calls.items():
+                folder = base / f'twin{number}'
+                if solver(front_end(proof, preset, folder, twin), folder, {name: cycles}, limit)[name] == 'FAILED':
+                    outcome.caught[-1] = name
+                    break
         outcome.twin_seconds = time.monotonic() - began - outcome.seconds
     except Broken as error:
         outcome.proven = False
@@ -242,7 +252,7 @@ def line(outcome):
         method = 'every input'
     twins = f'{sum(c is not None for c in outcome.caught)} of {len(proof.twins)} twins caught'
     verdict = 'proven' if outcome.proven else 'NOT PROVEN'
-    return (f'{verdict:10} {f"({proof.letter})":6} {proof.name:24} {outcome.preset:9} {method:38} {outcome.seconds:6.1f} s   '
+    return (f'{verdict:10} {f"({proof.letter})":6} {proof.name:27} {outcome.preset:9} {method:38} {outcome.seconds:6.1f} s   '
             f'{twins}, {outcome.twin_seconds:.1f} s' + (f'   {outcome.remark}' if outcome.remark else ''))
 
 
@@ -268,6 +278,7 @@ def main():
     parser.add_argument('--list', action='store_true', help='what there is to prove')
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='solvers at a time')
     parser.add_argument('--limit', type=float, default=600, metavar='SECONDS', help='time-out of each call of the solver')
+    parser.add_argument('--z3', action='store_true', help='z3 instead of the MiniSat of Yosys: a second opinion, far slower')
     parser.add_argument('--program', metavar='FILE', help='halfplane_tests, whose enumerations run as well')
     options = parser.parse_args()
 
@@ -276,21 +287,22 @@ def main():
               and (not options.quick or preset in proof.quick)]
     if options.list:
         for proof in PROOFS:
-            print(f'({proof.letter}) {proof.name:24} {proof.module:28} {", ".join(proof.presets):18} {proof.claim}')
+            print(f'{f"({proof.letter})":6} {proof.name:27} {proof.module:26} {", ".join(proof.presets):15} {proof.claim}' +
+                  ''.join(f' [{preset}: no answer in 600 s]' for preset in proof.no_answer))
         return 0
     if not chosen:
         print('prove: nothing of that name and preset', file=sys.stderr)
         return 2
-    missing = [tool for tool in ('yosys', 'z3') if shutil.which(tool) is None]
+    missing = [tool for tool in ('yosys', *(['z3'] if options.z3 else [])) if shutil.which(tool) is None]
     if missing:
         print(f'prove: not installed: {" ".join(missing)} (apt-get install {" ".join(missing)})', file=sys.stderr)
         return 3
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
-    began, good = time.monotonic(), True
+    began, good, solver = time.monotonic(), True, solve_by_z3 if options.z3 else solve_by_minisat
     with concurrent.futures.ThreadPoolExecutor(max(1, options.jobs)) as pool:
-        for outcome in pool.map(lambda pair: prove(*pair, options.limit), chosen):
+        for outcome in pool.map(lambda pair: prove(*pair, options.limit, solver), chosen):
             print(line(outcome), flush=True)
             good = good and outcome.good
     if options.program and not options.only:

@@ -11,26 +11,33 @@ class Proof:
     claim: str
     twins: tuple      # faults that must break it: numbers of mutants.cmake, or (text, text instead) in the module
     presets: tuple = ('tiny', 'embedded')
+    no_answer: tuple = ()   # presets left out of `presets`: no answer in 600 s
     quick: tuple = ('tiny',)  # presets of --quick
     k: int = 1        # induction over so many cycles
     depth: int = 3    # cycles from reset without induction
-    twin_depth: int = 6     # a twin has to fail in so many, or in the step
+    twin_depth: int = 6     # a twin has to fail in the step, or in so many
+    twin_traces: bool = False  # never mind the step: it has to fail in a trace from reset
     parameters: tuple = ()  # of the module: (name, number or constant of the package)
     package: tuple = ()     # constants of the package that this proof sets otherwise
-    solver: str = 'minisat'  # or z3, where a memory is too large to be single bits
     cover_depth: int = 0    # cycles in which every cover statement is reached: what is assumed can happen
-    cuts_multipliers: bool = False
+    cuts: tuple = ()        # cells whose results may be anything, by Yosys's patterns of their types
     is_combinational: bool = False
     has_reset: bool = True
     file: str = ''
+    inputs: str = ''        # another file in front of it: what is assumed of the inputs
 
     @property
     def properties(self):
         file = self.file or self.name
-        return ['reset', file] if self.has_reset and not self.is_combinational else [file]
+        reset = ['reset'] if self.has_reset and not self.is_combinational else []
+        return [*reset, *([self.inputs] if self.inputs else []), file]
 
 
+MULTIPLIERS = ('$mul',)
+SRAMS = ('*sram*',)
+OFFSETS = ('*edge_offset*',)
 HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
+STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
 HIZ_TWINS = (15, 16, 17, ('s_q.depth_min[Z-1-:HIZ] > bound', 's_q.depth_min[Z-1-:HIZ] >= bound'))
 
 PROOFS = [
@@ -49,28 +56,28 @@ PROOFS = [
     Proof('fine_raster_samples', 'a, e', 'stages/fine_raster.sv', 'every sample is covered as the closed form says; no sum overflows',
           is_combinational=True, twins=(23, 24, ('.x_i     (PIXEL\'(i))', '.x_i     (PIXEL\'(i ^ 1))'))),
     Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
-          twins=(18, ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
+          cuts=SRAMS, twins=(18, ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
     Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
           is_combinational=True, twins=(27, 29)),
     Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',
           twins=(40, 41, 42), cover_depth=6),
     Proof('line_raster_planes', 'a', 'stages/line_raster.sv', 'depth and colour of pixel n are first + n step', twins=(44, 45)),
     Proof('cull_fill_rule', 'b', 'stages/cull.sv', 'top-left rule by its definition; one of an edge\'s two sides covers a sample',
-          twins=(1, 5), cuts_multipliers=True),
+          twins=(1, 5), cuts=MULTIPLIERS),
     Proof('coarse_raster_reject', 'c, e', 'stages/coarse_raster.sv', 'outside, inside and the saturated value, wherever in the tile',
           is_combinational=True,
-          twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
+          cuts=SRAMS, twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
     Proof('coarse_raster_corners', 'c, e', 'stages/coarse_raster.sv', 'every sample lies between the corners that are looked at',
-          is_combinational=True, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
+          is_combinational=True, cuts=SRAMS, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
     Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by the bound of all earlier visits, and '
-          'what could pass is not rejected', presets=('embedded',), quick=('embedded',), twins=HIZ_TWINS, cover_depth=8),
+          'what could pass is not rejected', presets=('embedded',), quick=('embedded',), cuts=SRAMS, twins=HIZ_TWINS, cover_depth=8),
     Proof('coarse_raster_hiz_6_bits', 'd', 'stages/coarse_raster.sv', 'the same with hiz.bits=6', file='coarse_raster_hiz',
-          presets=('embedded',), quick=(), twins=HIZ_TWINS, package=HIZ_6),
+          presets=('embedded',), quick=(), cuts=SRAMS, twins=HIZ_TWINS, package=HIZ_6),
     Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', twins=(34, ('assign max = corner > max_q ? corner : max_q;', 'assign max = corner;'))),
     Proof('sram_word', 'd', 'lib/sram.sv', 'a read gives what was written last', has_reset=False,
           parameters=(('WIDTH', 'HIZ_CODE_BITS'), ('DEPTH', 8)),
           twins=(('if (read_i) data_q <= memory_q[read_address_i];', 'data_q <= memory_q[read_address_i];'),)),
-    Proof('cull_ranges', 'e', 'stages/cull.sv', 'no sum on the way to the edge functions overflows', cuts_multipliers=True,
+    Proof('cull_ranges', 'e', 'stages/cull.sv', 'no sum on the way to the edge functions overflows', cuts=MULTIPLIERS,
           twins=(('localparam int B = C + 1;', 'localparam int B = C;'), 3)),
     Proof('skid_buffer_stream', 'f', 'lib/skid_buffer.sv', 'a queue of two', k=2, cover_depth=5,
           parameters=(('WIDTH', 'STAMP_PACKET_BITS'),),
@@ -80,13 +87,34 @@ PROOFS = [
     Proof('primitive_join_stream', 'f', 'stages/primitive_join.sv', 'each pixel is one fragment, each other fragment as it was',
           twins=(48, 50, ('{{TS{1\'b0}}, y} >> SS', '{{TS{1\'b0}}, x} >> SS')), is_combinational=True),
     Proof('fine_raster_stream', 'f', 'stages/fine_raster.sv', 'each covered stamp of a tile once, in order, and one end', k=2,
-          twins=(25, 26), cover_depth=6),
+          cuts=OFFSETS, twins=(25, 26), cover_depth=6),
     Proof('interpolate_stream', 'f', 'stages/interpolate.sv', 'each stamp leaves once, in its turn, with its context', k=2,
-          twins=(28, ('if (x_ready) x_valid_q', 'if (y_ready) x_valid_q')), cover_depth=9),
+          cuts=OFFSETS, twins=(28, ('if (x_ready) x_valid_q', 'if (y_ready) x_valid_q')), cover_depth=9),
     Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
           twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
     Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; slots and visits are not given twice', k=2,
-          twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
+          cuts=SRAMS, twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
+    Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time', k=2,
+          cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', cover_depth=34,
+          twins=(('divide_step_q == STEP\'(DIVIDE_LAST) && gradient_ready', 'divide_step_q == STEP\'(DIVIDE_LAST)'),
+                 ('value_step_q == STEP\'(VALUE_LAST);', 'value_step_q >= STEP\'(PLANES);'))),
+    Proof('triangle_setup_chains', 'f', 'stages/triangle_setup.sv', 'with it its own numerators and gradients', k=2,
+          cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts',
+          twins=(('if (numerator_done || takes_numerator)', 'if (numerator_done)'),
+                 ('if (gives_step || takes_step)', 'if (gives_step)'))),
+    Proof('framebuffer_data', 'd, f', 'stages/framebuffer.sv', 'an access reads what was written last, or cleared; after a flush '
+          'memory holds it', cuts=SRAMS, inputs='framebuffer_inputs', twins=(37, 38, 55)),
+    Proof('framebuffer_data_4_stamps', 'd, f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
+          cuts=SRAMS, inputs='framebuffer_inputs', twins=(37, 38), file='framebuffer_data', presets=('tiny',), package=STAMPS_4,
+          cover_depth=40, twin_depth=30, twin_traces=True),
+    Proof('framebuffer_stream', 'f', 'stages/framebuffer.sv', 'requests in order, stable; no deadlock when memory answers',
+          cuts=SRAMS, inputs='framebuffer_inputs', k=2,
+          twins=(('== SERVE || state_q == CHECK || takes_request;', '== SERVE || state_q == CHECK || state_q == EVICT;'),
+                 ('(stamp + 1\'b1) & LAST_STAMP', '(stamp + 2\'d2) & LAST_STAMP'),
+                 ('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'))),
+    Proof('framebuffer_stream_4_stamps', 'f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
+          cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2, cover_depth=30,
+          twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, within 7 cycles', cover_depth=10, k=4,
-          cuts_multipliers=True, twins=(('step_q == OFFER && (triangle_ready_i || is_dropped)', 'step_q == OFFER'),)),
+          cuts=MULTIPLIERS, twins=(('step_q == OFFER && (triangle_ready_i || is_dropped)', 'step_q == OFFER'),)),
 ]

@@ -42,6 +42,7 @@
     if (tile_ready_i && visits_are_done && (state_q == WALK || state_q == BOUND))
       assert (steps || (state_q == WALK && is_eligible));
     if (tile_ready_i && state_q == END) assert (finishes);
+    if (!under_way_q && !setup_ready_o) assert (used_q == (SLOT + 1)'(SLOTS));  // it waits for nothing but a slot
     cover (ends && state_q == END);
     cover (ends && state_q == WALK && takes);
   end
@@ -57,3 +58,19 @@
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q) && $past(tile_valid_o && !tile_ready_i)) begin
     assert (tile_valid_o && tile_o == $past(tile_o) && edges_o == $past(edges_o));
   end
+  always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
+    if ($past(state_q == PREPARE && visits_are_done)) assert (state_q != PREPARE);
+    if ($past(state_q == CLEAR)) assert (state_q == END || {tile_y_q, tile_x_q} > $past({tile_y_q, tile_x_q}));
+  end
+  // The RAM is cut out; what it gave stays until the next read: sram_word.
+  generate
+    if (HIZ > 0) begin : gen_proof_bound
+      logic [HIZ-1:0] before_q;
+      logic           stays_q;
+      always_ff @(posedge clk_i) begin
+        before_q <= gen_hiz.bound;
+        stays_q  <= state_q != WALK;
+      end
+      always_comb if (runs_q && stays_q) assume (gen_hiz.bound == before_q);
+    end
+  endgenerate
