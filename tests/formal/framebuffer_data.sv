@@ -18,7 +18,7 @@
   assign request_is_it = takes_request && tile_is_it && stamp_q == any_stamp;
   always_comb begin
     assume (any_stamp <= LAST_STAMP);
-    if (is_token) assume (any_x <= access_i.tile_x && any_y <= access_i.tile_y);
+    if (token) assume (any_x <= access_i.tile_x && any_y <= access_i.tile_y);
   end
   logic takes_access;
   assign takes_access = access_valid_i && access_ready_o;
@@ -30,7 +30,7 @@
       read_q       <= read_address;
       read_known_q <= rst_ni;
     end
-    looked_q <= rst_ni && takes_access && !is_token && is_it && access_i.stamp == any_stamp;
+    looked_q <= rst_ni && takes_access && !token && is_it && access_i.stamp == any_stamp;
     if (state_q == CHECK || state_q == LOOK) flags_read_q <= tile_is_it;  // those of the tile
   end
   always_comb if (runs_q) begin
@@ -63,7 +63,7 @@
         if (flag_write[p] && tile_is_it) flag_g[p] <= state_q == MARK;
         if (state_q == CHECK || state_q == LOOK) flag_then_q[p] <= flag_g[p];
         if (!rst_ni) known_q[p] <= 1'b0;
-        else if (takes_access && is_token && !access_i.kind[0] && is_masked) known_q[p] <= 1'b1;
+        else if (takes_access && token && !access_i.kind[0] && is_masked) known_q[p] <= 1'b1;
       end
       always_comb if (runs_q && known_q[p]) begin
         if (flags_read_q && flags_stay_q == 1'b0) assume (flag[p] == flag_then_q[p]);
@@ -75,7 +75,7 @@
         if (state_q == MARK && is_masked && (walk_x_q != '0 || walk_y_q != '0)) assert (cleared == value);
         if (known_q[p] && walks_tiles && access_i.kind[0] && has_passed) assert (!flag_g[p]);
         if (state_q == LOOK || state_q == TEST || state_q == CLEAR || (state_q == MARK && !clears_all)) assert (!dirty[p]);
-        if ((state_q == CHECK || state_q == EVICT) && is_token && line_q > any_line) assert (!dirty[p]);
+        if ((state_q == CHECK || state_q == EVICT) && token && line_q > any_line) assert (!dirty[p]);
       end
       for (m = 0; m < SAMPLES; m++) begin : gen_truth
         logic [BITS-1:0] truth_q, word_q, memory_q, read_word_q, answer_q, word, lane, new_word, response;
@@ -93,7 +93,7 @@
           // Without a cache.
           if (writes && write_i.tile_x == any_x && write_i.tile_y == any_y && write_i.stamp == any_stamp)
             truth_q <= p == 0 ? BITS'(write_i.depth[m*CODE+:CODE]) : BITS'(write_i.color[m*COLOR+:COLOR]);
-          else if (takes_access && is_token && !access_i.kind[0] && is_masked) truth_q <= value;
+          else if (takes_access && token && !access_i.kind[0] && is_masked) truth_q <= value;
           // The word of the RAM, and of memory.
           if (writes_word) word_q <= new_word;
           if (request_is_it && request_o.is_write && request_o.is_color == p) memory_q <= lane;
@@ -120,7 +120,7 @@
                         (p == 0 ? fill_plane_q || fill_stamp_q > any_stamp : fills_last && fill_stamp_q > any_stamp);
         always_comb if (runs_q && known_q[p]) begin
           if (p == 0 && looked_q && looked_at_it_q) assert (stored_depth_o[m*CODE+:CODE] == truth_then_q);
-          if (takes_access && is_token && access_i.kind[0]) assert (memory_q == truth_q);
+          if (takes_access && token && access_i.kind[0]) assert (memory_q == truth_q);
           // Where it is.
           if (is_there) assert (word_q == truth_q);
           if ((!is_there || !dirty[p]) && !is_marked) assert (truth_q == (flag_g[p] ? cleared : memory_q));
@@ -139,6 +139,6 @@
     end
   endgenerate
   always_comb if (runs_q) begin
-    cover (takes_access && is_token && access_i.kind[0] && known_q == 2'b11 && gen_plane[0].gen_truth[0].truth_q != clear_depth_q);
+    cover (takes_access && token && access_i.kind[0] && known_q == 2'b11 && gen_plane[0].gen_truth[0].truth_q != clear_depth_q);
     cover (looked_q && gen_plane[0].gen_truth[0].looked_at_it_q && stored_depth_o[0+:CODE] != clear_depth_q);
   end

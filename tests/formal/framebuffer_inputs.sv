@@ -5,6 +5,8 @@
   // (depth_test_stream); a token has no samples (fine_raster_stream: none without a visit; coarse_raster_stream).
   // From memory: an answer is one to a read that was taken in an earlier cycle. Of the RAMs all outputs may be anything but
   // for what sram_word proves: they stay until the next read.
+  logic token;  // fast clear, flush
+  assign token = access_i.kind == 3'd2 || access_i.kind == 3'd3;
   logic access_waits_q, access_taken_q;
   var raster_pkg::fragment_packet_t       access_before_q;
   logic [COLOR-1:0]                       access_color_before_q;
@@ -19,7 +21,7 @@
   end
   always_comb if (runs_q) begin
     if (access_waits_q) assume (access_i == access_before_q && access_color_i == access_color_before_q);
-    if (is_token) assume (access_i.mask == '0);
+    if (token) assume (access_i.mask == '0);
     assume (write_valid_i == access_taken_q);
     if (write_valid_i)
       assume (write_i.tile_x == access_before_q.tile_x && write_i.tile_y == access_before_q.tile_y &&
@@ -62,15 +64,15 @@
     assert (access_waits_q || state_q == SERVE);
     assert (stamp_q <= LAST_STAMP && fill_stamp_q <= LAST_STAMP);
     if (state_q == CHECK || state_q == LOOK || state_q == TEST) assert (stamp_q == LAST_STAMP);
-    if (walks_tiles) assert (is_token && walk_x_q <= access_i.tile_x && walk_y_q <= access_i.tile_y);
+    if (walks_tiles) assert (token && walk_x_q <= access_i.tile_x && walk_y_q <= access_i.tile_y);
     else assert (walk_x_q == '0 && walk_y_q == '0);
     if (state_q == MARK) assert (!access_i.kind[0]);
     else if (walks_tiles) assert (access_i.kind[0]);
-    if (state_q == CHECK || state_q == EVICT || is_fill) assert (is_token || line_q == access_line);
-    if (state_q == CHECK || state_q == EVICT) assert (!(is_token && clears_all));
+    if (state_q == CHECK || state_q == EVICT || is_fill) assert (token || line_q == access_line);
+    if (state_q == CHECK || state_q == EVICT) assert (!(token && clears_all));
     if (state_q == EVICT) assert (plane_q ? line_color_dirty : line_depth_dirty);
     if (state_q == CLEAR) assert (plane_q ? flag_color && !flag_depth : flag_depth);
-    if (is_fill) assert (!is_token && !line_depth_dirty && !line_color_dirty);
+    if (is_fill) assert (!token && !line_depth_dirty && !line_color_dirty);
     // A fill: what was asked for, what came back, what is to come.
     if (state_q == CHECK || state_q == EVICT) assert (!requested_q && fill_stamp_q == '0 && !fill_plane_q);
     if (is_fill) begin

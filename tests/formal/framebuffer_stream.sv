@@ -68,6 +68,6 @@
   end
   always_comb if (runs_q) begin
     if (state_q == SERVE && access_valid_i && !access_ready_o) assert (state_d != SERVE);
-    cover (access_valid_i && access_ready_o && is_token && access_i.kind[0]);
-    cover (access_valid_i && access_ready_o && !is_token && access_waits_q);
+    cover (access_valid_i && access_ready_o && token && access_i.kind[0]);
+    cover (access_valid_i && access_ready_o && !token && access_waits_q);
   end
