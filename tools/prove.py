@@ -2,9 +2,9 @@
 """./dev prove: the proofs about the RTL, each with a broken twin that must fail. docs/proofs.md says what they mean.
 
 A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. The
-MiniSat inside Yosys (or z3, --z3) then shows that no assertion fails in the first cycles (the base)
-and that none can fail when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in
-the RTL. What cannot be shown so is enumerated: Proofs.* of halfplane_tests (--program).
+MiniSat inside Yosys (or z3, --z3) then shows that no assertion fails in the first cycles (the base) and that none can fail
+when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in the RTL. What cannot
+be shown so is enumerated: Proofs.* of halfplane_tests (--program).
 
 Runs in the repository's root; build/prove keeps every design and log. Exit status: 0 all proven and every twin caught,
 1 not so, 2 wrong usage, 3 a tool is missing.
@@ -146,8 +146,9 @@ def front_end(proof, preset, folder, twin):
     files, parameters = sources(proof, preset, folder, twin)
     # What is cut out may give any result: what is shown then holds for the right one, too.
     cut = ''.join(f'cutpoint t:{cells}; ' for cells in proof.cuts)
-    return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {pathlib.Path(proof.module).stem}{parameters}; '
-            f'proc; {cut}flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
+    top = pathlib.Path(proof.module).stem
+    return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {top}{parameters}; proc; {cut}'
+            'flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
 
 
 def yosys(script, log, seconds):
@@ -194,9 +195,9 @@ def solve_by_minisat(front, folder, calls, limit):
                               f'tee -o {folder / cover}.log sat -prove-asserts -set-assumes -seq {cycles} -timeout {limit:.0f}; '
                               for cover in covers)
         else:
-            script += ('chformal -assert -remove n:*cover_*; '
-                       f'tee -o {folder / name}.log sat -prove-asserts -set-assumes -tempinduct-{"base" if name == "base" else "induct"}only '
-                       f'-maxsteps {cycles} -timeout {limit:.0f}; ')
+            part = 'baseonly' if name == 'base' else 'inductonly'
+            script += (f'chformal -assert -remove n:*cover_*; tee -o {folder / name}.log sat -prove-asserts -set-assumes '
+                       f'-tempinduct-{part} -maxsteps {cycles} -timeout {limit:.0f}; ')
     yosys(script, folder / 'yosys.log', limit * (len(calls) + len(covers)) + 60)
 
     def verdict(name):
@@ -223,7 +224,8 @@ def prove(proof, preset, limit, solver):
         calls = {'base': 1} if proof.is_combinational else {'base': proof.depth, 'step': proof.k}
         results = solver(front_end(proof, preset, base, None), base, calls, limit)
         if proof.cover_depth and 'FAILED' not in results.values():
-            results |= solve_by_minisat(front_end(proof, preset, base / 'cover', None), base / 'cover', {'cover': proof.cover_depth}, limit)
+            folder = base / 'cover'
+            results |= solve_by_minisat(front_end(proof, preset, folder, None), folder, {'cover': proof.cover_depth}, limit)
         failed = {name: result for name, result in results.items() if result != 'PASSED'}
         outcome.remark = ', '.join(f'{name}: {result}' for name, result in failed.items()) + f', see {base}' if failed else ''
         outcome.proven = not failed

@@ -12,7 +12,7 @@ class Proof:
     twins: tuple      # faults that must break it: numbers of mutants.cmake, or (text, text instead) in the module
     presets: tuple = ('tiny', 'embedded')
     no_answer: tuple = ()   # presets left out of `presets`: no answer in 600 s
-    quick: tuple = ('tiny',)  # presets of --quick
+    quick: tuple = ()       # presets of --quick: proof and twins in under 5 s
     k: int = 1        # induction over so many cycles
     depth: int = 3    # cycles from reset without induction
     twin_depth: int = 6     # a twin has to fail in the step, or in so many
@@ -33,6 +33,7 @@ class Proof:
         return [*reset, *([self.inputs] if self.inputs else []), file]
 
 
+TINY = ('tiny',)
 MULTIPLIERS = ('$mul',)
 SRAMS = ('*sram*',)
 OFFSETS = ('*edge_offset*',)
@@ -49,53 +50,56 @@ PROOFS = [
           parameters=(('WIDTH', 'LOCAL_DEPTH_BITS'), ('OFFSET', 'TILE_PIXEL_BITS'), ('SIGNED', 1))),
     Proof('plane_offset_step', 'a', 'lib/plane_offset.sv', 'value + offset step, offset in two\'s complement',
           is_combinational=True, parameters=(('WIDTH', 'LOCAL_DEPTH_BITS'), ('OFFSET', 'TILE_PIXEL_BITS')),
-          twins=(("{value_i, 1'b1} + {digit, is_negative}", "{value_i, 1'b0} + {digit, is_negative}"),)),
+          quick=TINY, twins=(("{value_i, 1'b1} + {digit, is_negative}", "{value_i, 1'b0} + {digit, is_negative}"),)),
     Proof('fine_raster_rows', 'a, e', 'stages/fine_raster.sv', 'edge values of each row of stamps; no sum overflows',
           twins=(('value_q + (step_y <<< STAMP_SHIFT)', 'value_q + step_x'),
                  ('localparam int W = raster_pkg::SAMPLE_EDGE_BITS;', 'localparam int W = raster_pkg::SAMPLE_EDGE_BITS - 1;'))),
-    Proof('fine_raster_samples', 'a, e', 'stages/fine_raster.sv', 'every sample is covered as the closed form says; no sum overflows',
-          is_combinational=True, twins=(23, 24, ('.x_i     (PIXEL\'(i))', '.x_i     (PIXEL\'(i ^ 1))'))),
+    Proof('fine_raster_samples', 'a, e', 'stages/fine_raster.sv', 'every sample is covered as the closed form says; no sum '
+          'overflows', is_combinational=True, twins=(23, 24, ('.x_i     (PIXEL\'(i))', '.x_i     (PIXEL\'(i ^ 1))'))),
     Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
           cuts=SRAMS, twins=(18, ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
     Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
           is_combinational=True, twins=(27, 29)),
     Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',
-          twins=(40, 41, 42), cover_depth=6),
-    Proof('line_raster_planes', 'a', 'stages/line_raster.sv', 'depth and colour of pixel n are first + n step', twins=(44, 45)),
+          quick=TINY, twins=(40, 41, 42), cover_depth=6),
+    Proof('line_raster_planes', 'a', 'stages/line_raster.sv', 'depth and colour of pixel n are first + n step', quick=TINY,
+          twins=(44, 45)),
     Proof('cull_fill_rule', 'b', 'stages/cull.sv', 'top-left rule by its definition; one of an edge\'s two sides covers a sample',
-          twins=(1, 5), cuts=MULTIPLIERS),
-    Proof('coarse_raster_reject', 'c, e', 'stages/coarse_raster.sv', 'outside, inside and the saturated value, wherever in the tile',
-          is_combinational=True,
-          cuts=SRAMS, twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
+          quick=TINY, twins=(1, 5), cuts=MULTIPLIERS),
+    Proof('coarse_raster_reject', 'c, e', 'stages/coarse_raster.sv', 'outside, inside and the saturated value, wherever in '
+          'the tile', is_combinational=True,
+          cuts=SRAMS, quick=TINY, twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
     Proof('coarse_raster_corners', 'c, e', 'stages/coarse_raster.sv', 'every sample lies between the corners that are looked at',
-          is_combinational=True, cuts=SRAMS, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
+          is_combinational=True, cuts=SRAMS, quick=TINY, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
     Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by the bound of all earlier visits, and '
-          'what could pass is not rejected', presets=('embedded',), quick=('embedded',), cuts=SRAMS, twins=HIZ_TWINS, cover_depth=8),
+          'what could pass is not rejected', presets=('embedded',), cuts=SRAMS, twins=HIZ_TWINS, cover_depth=8),
     Proof('coarse_raster_hiz_6_bits', 'd', 'stages/coarse_raster.sv', 'the same with hiz.bits=6', file='coarse_raster_hiz',
-          presets=('embedded',), quick=(), cuts=SRAMS, twins=HIZ_TWINS, package=HIZ_6),
-    Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', twins=(34, ('assign max = corner > max_q ? corner : max_q;', 'assign max = corner;'))),
+          presets=('embedded',), cuts=SRAMS, twins=HIZ_TWINS, package=HIZ_6),
+    Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', quick=TINY,
+          twins=(34, ('assign max = corner > max_q ? corner : max_q;', 'assign max = corner;'))),
     Proof('sram_word', 'd', 'lib/sram.sv', 'a read gives what was written last', has_reset=False,
           parameters=(('WIDTH', 'HIZ_CODE_BITS'), ('DEPTH', 8)),
-          twins=(('if (read_i) data_q <= memory_q[read_address_i];', 'data_q <= memory_q[read_address_i];'),)),
+          quick=TINY, twins=(('if (read_i) data_q <= memory_q[read_address_i];', 'data_q <= memory_q[read_address_i];'),)),
     Proof('cull_ranges', 'e', 'stages/cull.sv', 'no sum on the way to the edge functions overflows', cuts=MULTIPLIERS,
-          twins=(('localparam int B = C + 1;', 'localparam int B = C;'), 3)),
+          quick=TINY, twins=(('localparam int B = C + 1;', 'localparam int B = C;'), 3)),
     Proof('skid_buffer_stream', 'f', 'lib/skid_buffer.sv', 'a queue of two', k=2, cover_depth=5,
           parameters=(('WIDTH', 'STAMP_PACKET_BITS'),),
+          quick=TINY,
           twins=(('assign ready_o = !tail_valid_q;', 'assign ready_o = 1\'b1;'), ('tail_valid_q ? tail_q : data_i', 'data_i'))),
     Proof('line_raster_stream', 'f', 'stages/line_raster.sv', 'remaining + 1 pixels a line, in order, stable', k=2, cover_depth=7,
-          twins=(43, 46)),
+          quick=TINY, twins=(43, 46)),
     Proof('primitive_join_stream', 'f', 'stages/primitive_join.sv', 'each pixel is one fragment, each other fragment as it was',
-          twins=(48, 50, ('{{TS{1\'b0}}, y} >> SS', '{{TS{1\'b0}}, x} >> SS')), is_combinational=True),
+          quick=TINY, twins=(48, 50, ('{{TS{1\'b0}}, y} >> SS', '{{TS{1\'b0}}, x} >> SS')), is_combinational=True),
     Proof('fine_raster_stream', 'f', 'stages/fine_raster.sv', 'each covered stamp of a tile once, in order, and one end', k=2,
           cuts=OFFSETS, twins=(25, 26), cover_depth=6),
     Proof('interpolate_stream', 'f', 'stages/interpolate.sv', 'each stamp leaves once, in its turn, with its context', k=2,
           cuts=OFFSETS, twins=(28, ('if (x_ready) x_valid_q', 'if (y_ready) x_valid_q')), cover_depth=9),
     Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
-          twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
-    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; slots and visits are not given twice', k=2,
-          cuts=SRAMS, twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
-    Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time', k=2,
-          cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', cover_depth=34,
+          quick=TINY, twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
+    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; slots and visits are not given '
+          'twice', k=2, cuts=SRAMS, twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
+    Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time',
+          k=2, cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', cover_depth=34,
           twins=(('divide_step_q == STEP\'(DIVIDE_LAST) && gradient_ready', 'divide_step_q == STEP\'(DIVIDE_LAST)'),
                  ('value_step_q == STEP\'(VALUE_LAST);', 'value_step_q >= STEP\'(PLANES);'))),
     Proof('triangle_setup_chains', 'f', 'stages/triangle_setup.sv', 'with it its own numerators and gradients', k=2,
@@ -109,12 +113,13 @@ PROOFS = [
           cover_depth=40, twin_depth=30, twin_traces=True),
     Proof('framebuffer_stream', 'f', 'stages/framebuffer.sv', 'requests in order, stable; no deadlock when memory answers',
           cuts=SRAMS, inputs='framebuffer_inputs', k=2,
+          quick=TINY,
           twins=(('== SERVE || state_q == CHECK || takes_request;', '== SERVE || state_q == CHECK || state_q == EVICT;'),
                  ('(stamp + 1\'b1) & LAST_STAMP', '(stamp + 2\'d2) & LAST_STAMP'),
                  ('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'))),
     Proof('framebuffer_stream_4_stamps', 'f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
-          cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2, cover_depth=30,
-          twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
+          cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2,
+          cover_depth=30, twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, within 7 cycles', cover_depth=10, k=4,
           cuts=MULTIPLIERS, twins=(('step_q == OFFER && (triangle_ready_i || is_dropped)', 'step_q == OFFER'),)),
 ]
