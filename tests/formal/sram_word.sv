@@ -17,3 +17,11 @@
     if (was_written_q) assert (memory_q[any_address] == word_q);
     if (was_read_q) assert (data_o == answer_q);
   end
+  // So it does whatever was read.
+  logic             stays_q = 1'b0;
+  logic [WIDTH-1:0] before_q;
+  always_ff @(posedge clk_i) begin
+    stays_q  <= !read_i;
+    before_q <= data_o;
+  end
+  always_comb if (stays_q) assert (data_o == before_q);
