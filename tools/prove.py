@@ -284,13 +284,14 @@ def main():
     parser.add_argument('--program', metavar='FILE', help='halfplane_tests, whose enumerations run as well')
     options = parser.parse_args()
 
-    chosen = [(proof, preset) for proof in PROOFS for preset in proof.presets
+    chosen = [(proof, preset) for proof in PROOFS
+              for preset in proof.presets + (proof.no_answer if options.only else ())
               if (not options.only or options.only in proof.name) and options.preset in (None, preset)
               and (not options.quick or preset in proof.quick)]
     if options.list:
         for proof in PROOFS:
             print(f'{f"({proof.letter})":6} {proof.name:27} {proof.module:26} {", ".join(proof.presets):15} {proof.claim}' +
-                  ''.join(f' [{preset}: no answer in 600 s]' for preset in proof.no_answer))
+                  ''.join(f' [{preset}: no answer in time]' for preset in proof.no_answer))
         return 0
     if not chosen:
         print('prove: nothing of that name and preset', file=sys.stderr)
