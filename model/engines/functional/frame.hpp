@@ -5,6 +5,7 @@
 //   bin     64 x 64 pixels. Drawn by one thread, slice after slice: in program order, whoever made the slices.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,8 +19,8 @@ inline constexpr int kBinShift = 6, kBinSize = 1 << kBinShift;     ///< pixels a
 inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size that this engine has
 inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles along the side of a bin
 
-/// Extent of triangles that are set up sixteen at a time: pixels; bits in subpixels, of which products take 32.
-inline constexpr int kSmallPixels = 16, kSmallBits = 14;
+/// Extent of triangles that are set up sixteen at a time: 16 pixels, and products of two that 32 bits hold.
+[[nodiscard]] inline int small_extent_bits(const Widths& widths) { return std::min(4 + widths.grid_bits, 14); }
 
 /// What a draw's state asks of its fragments.
 struct FragmentState {
@@ -39,7 +40,7 @@ struct Record {
   RecordKind kind = RecordKind::triangle;
   std::uint8_t samples = 0;    ///< a small triangle within two by two pixels: bits, which of them it covers; else 0
   bool is_whole : 1 = false;   ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-  bool is_small : 1 = false;   ///< whole, within two by two tiles, and within kSmallPixels and kSmallBits
+  bool is_small : 1 = false;   ///< whole, within two by two tiles, and of small_extent_bits()
   bool draws_nothing : 1 = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
 };
 

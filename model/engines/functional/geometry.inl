@@ -342,7 +342,7 @@ struct CullLanes {
                                         (t.bottom < limit.bottom));
     const I16 few_tiles = ((t.right >> kTileShift) - (t.left >> kTileShift) <= 1) &
                           ((t.bottom >> kTileShift) - (t.top >> kTileShift) <= 1);
-    const int largest = std::min(kSmallPixels << grid_bits, 1 << kSmallBits);
+    const int largest = 1 << small_extent_bits(frame.widths);
     const std::uint32_t small = whole & bits_of(few_tiles & (extent(t.x) < largest) & (extent(t.y) < largest) &
                                         (z_high - z_low < steepest_small));
     z_low.store(lane.z_low.data());
@@ -391,8 +391,9 @@ static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
                   context.state.cull,
                   context.state.front == FrontFace::cw,
                   0};
-  // Numerators of a small triangle, two products of a difference of codes and one of coordinates, have 32 bits.
-  lanes.steepest_small = std::int32_t{1} << (30 - std::min(ceil_log2(kSmallPixels) + frame.widths.grid_bits, kSmallBits));
+  // Numerators: two products of a difference of codes and one of coordinates; times the reciprocal below 2^62.
+  const int bits_left = 61 - small_extent_bits(frame.widths) - frame.widths.reciprocal.bits;
+  lanes.steepest_small = std::int32_t{1} << std::clamp(bits_left, 0, 30);
   std::size_t number = 0;
   for (const Slice::Part& part : slice.parts)
     for (std::size_t first = 0; first < part.count; first += 16) {

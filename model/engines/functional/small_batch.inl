@@ -75,8 +75,12 @@ struct GradientLanes {
         lowered(shift_right_logical(L16(kRaise), right)) {}
 
   HALFPLANE_INLINE L16 operator()(const I16& numerator) const {
-    const L16 product = multiply_narrow(convert<std::int64_t>(numerator), reciprocal) << left;
-    return shift_right_logical(product + addend, right) - lowered;
+    return rounded(multiply_narrow(convert<std::int64_t>(numerator), reciprocal));
+  }
+  HALFPLANE_INLINE L16 operator()(const L16& numerator) const { return rounded(numerator * reciprocal); }
+
+  HALFPLANE_INLINE L16 rounded(const L16& product) const {
+    return shift_right_logical((product << left) + addend, right) - lowered;
   }
 };
 
@@ -92,8 +96,11 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   const Config& config = frame.config;
   const Widths& widths = frame.widths;
   const int s = widths.grid_bits, F = widths.plane_fraction, half = 1 << (s - 1);
-  for (int i = count; i < 16; ++i)  // what is not there is like the first
-    for (std::size_t k = 0; k < 3; ++k) v[k][static_cast<std::size_t>(i)] = v[k][0];
+  for (std::size_t i = static_cast<std::size_t>(count); i < 16; ++i) {  // what is not there is like the first
+    for (std::size_t k = 0; k < 3; ++k) v[k][i] = v[k][0];
+    z_low[i] = z_low[0];
+    z_high[i] = z_high[0];
+  }
   const auto fetch = [&](std::size_t k)
                          HALFPLANE_LAMBDA { return load_vertices(slice.vertices.data(), v[k].data()); };
   const SnappedLanes a = fetch(0);
@@ -180,7 +187,20 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
                          HALFPLANE_LAMBDA { return round_shift_lanes(step, format.step_drop) << format.up; };
   {
     const I16 az = b.z - a.z, bz = c.z - a.z;
-    const L16 step_x = gradient(az * by - bz * ay), step_y = gradient(ax * bz - bx * az);
+    L16 step_x, step_y;
+    const std::int32_t steep = std::int32_t{1} << (30 - small_extent_bits(widths));  // from here on 32 bits are too few
+    if (is_any(I16::load(z_high.data()) - I16::load(z_low.data()) >= steep)) {
+      const auto difference = [](const I16& p, const I16& q, const I16& r, const I16& t) HALFPLANE_LAMBDA {  // pq - rt
+        const auto product = [](const I16& m, const I16& n)
+                                 HALFPLANE_LAMBDA { return multiply_narrow(convert<std::int64_t>(m), convert<std::int64_t>(n)); };
+        return product(p, q) - product(r, t);
+      };
+      step_x = gradient(difference(az, by, bz, ay));
+      step_y = gradient(difference(ax, bz, bx, az));
+    } else {
+      step_x = gradient(az * by - bz * ay);
+      step_y = gradient(ax * bz - bx * az);
+    }
     std::array<I16, 4> at;
     anchors(origin.z, step_x, step_y, depth_format, at);
     for (std::size_t i = 0; i < 4; ++i) at[i].store(z_anchor[i].data());
