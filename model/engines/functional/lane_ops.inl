@@ -173,6 +173,7 @@ HALFPLANE_INLINE Result lanes_from(const Vector& low, const Vector& high, std::i
   return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
 }
 
+/// Every second lane of them, from the first on.
 template <class Result, class Vector, std::size_t... I>
 HALFPLANE_INLINE Result even_lanes(const Vector& low, const Vector& high, std::index_sequence<I...>) {
   return __builtin_shufflevector(low, high, (2 * static_cast<int>(I))...);
@@ -195,7 +196,7 @@ HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
       to.part[2 * i] = __builtin_convertvector((lanes_from<FromLanes, 0>(both, both, kHalf)), ToLanes);
       to.part[2 * i + 1] = __builtin_convertvector((lanes_from<FromLanes, kLanes>(both, both, kHalf)), ToLanes);
     }
-  } else if constexpr (std::is_integral_v<From>) {
+  } else if constexpr (std::is_integral_v<From> && std::endian::native == std::endian::little) {
     constexpr auto kBoth = std::make_index_sequence<2 * kLanes>{};
     using Wide = typename Pack<To, N>::Register;  // the lower halves: even lanes, low first
     for (int i = 0; i < Pack<To, N>::kParts; ++i)

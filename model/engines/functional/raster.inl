@@ -1,8 +1,9 @@
 // Setup, coarse raster, fine raster, interpolation, depth test and ROP of one bin, fused. Bits as in the stages; the
 // order of the work is this engine's own:
 //
-//   triangle of less than a tile's extent  sixteen at a time through setup, then the blocks that it covers
-//   larger                                its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
+//   triangle within two by two pixels  sixteen at a time through setup, then their samples
+//   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
+//   larger                             its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
 //
 // A block is 4 x 4 pixels: sixteen lanes, one cache line. A tile is four of them.
 //

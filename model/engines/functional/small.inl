@@ -1,4 +1,4 @@
-// Small triangles: blocks of 4 x 4 pixels from the first pixel of the box, wherever it lies.
+// Small triangles: the blocks of 4 x 4 pixels that they cover; of those within two by two pixels, their samples.
 // Included inside class Bin: see raster.inl.
 
 /// A block of a triangle of the batch with at least one covered pixel.
@@ -22,18 +22,17 @@ void draw_batch(const Slice& slice) {
     tiles += static_cast<unsigned>((1 + (small_.right[i] >> kTileShift) - (small_.left[i] >> kTileShift)) *
                                    (1 + (small_.bottom[i] >> kTileShift) - (small_.top[i] >> kTileShift)));
   job_.counters.tiles_visited += tiles;
-  if (small_.has_samples) {
-    draw_samples<Test>();
-    small_.count = 0;
-    if (is_changed || Test != DepthFunc::less) find_bin_range();
-    return;
-  }
+  small_.has_samples ? draw_samples<Test>() : draw_blocks<Test>();
+  small_.count = 0;
+  if (is_changed || Test != DepthFunc::less) find_bin_range();  // with less, a bound that is too high will do
+}
+
+template <DepthFunc Test>
+HALFPLANE_INLINE void draw_blocks() {
   const std::size_t blocks = find_blocks();
   std::uint64_t covered = 0, passed = 0;
   for (std::size_t b = 0; b < blocks; ++b) draw_block<Test>(blocks_[b], covered, passed);
   count(covered, passed);
-  small_.count = 0;
-  if (is_changed || Test != DepthFunc::less) find_bin_range();  // with less, a bound that is too high will do
 }
 
 /// The tiles that a small triangle's box touches: four at most, some of them the same.
