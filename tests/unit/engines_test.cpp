@@ -234,7 +234,7 @@ TEST(Engines, ATargetAsWideAsTheGuardBandLosesNoColumnToTheClipper) {
     for (const Rendering& r :
          {render_scalar(builder.scene, config, everything()), render_functional(builder.scene, config, everything())}) {
       EXPECT_EQ(r.counters.covered, 64u * 64u) << subpixel_bits;
-      EXPECT_EQ(r.count, std::vector<std::uint32_t>(64 * 64, 1)) << subpixel_bits;
+      EXPECT_EQ(r.count, std::vector<std::uint32_t>(std::size_t{64} * 64, 1)) << subpixel_bits;
     }
   }
 }

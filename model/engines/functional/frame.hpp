@@ -38,9 +38,9 @@ struct Record {
   std::int32_t z_low = 0, z_high = 0;  ///< range of its depth codes
   std::int16_t left = 0, top = 0, right = 0, bottom = 0;  ///< its box inside the scissor, pixels, inclusive
   RecordKind kind = RecordKind::triangle;
-  std::uint8_t samples = 0;    ///< a small triangle within two by two pixels: bits, which of them it covers; else 0
-  bool is_whole : 1 = false;   ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-  bool is_small : 1 = false;   ///< whole, within two by two tiles, and of small_extent_bits()
+  std::uint8_t samples = 0;        ///< a small triangle within two by two pixels: bits, which of them it covers; else 0
+  bool is_whole : 1 = false;       ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
+  bool is_small : 1 = false;       ///< whole, within two by two tiles, and of small_extent_bits()
   bool draws_nothing : 1 = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
 };
 
