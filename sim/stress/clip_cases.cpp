@@ -193,6 +193,7 @@ void closed_meshes(Unit& unit) {
     return clip_at(1.1 * x, 1.3 * y, (20.1 * z - 4.0) / 19.9, z);  // near 0.1, far 20: beyond every corner
   };
   SceneBuilder builder(width, height, state);
+  bool has_fold = false;
   for (int face = 0; face < 6; ++face)
     for (int j = 0; j < cells; ++j)
       for (int i = 0; i < cells; ++i) {
@@ -201,12 +202,16 @@ void closed_meshes(Unit& unit) {
           return face < 2 ? corner(r, s, t) : face < 4 ? corner(s, r, t) : corner(s, t, r);
         };
         const Vertex a = vertex(0, 0), b = vertex(1, 0), c = vertex(1, 1), d = vertex(0, 1);
-        if (random.coin())
-          builder.triangle(a, b, c).triangle(a, c, d);
-        else
-          builder.triangle(b, a, d).triangle(d, b, c);
+        const std::array<std::array<Vertex, 3>, 2> halves = random.coin()
+                                                                ? std::array{std::array{a, b, c}, std::array{a, c, d}}
+                                                                : std::array{std::array{b, a, d}, std::array{d, b, c}};
+        for (const auto& v : halves) {
+          builder.triangle(v[0], v[1], v[2]);
+          has_fold = has_fold || is_folded(unit.config, builder.scene, v);
+        }
       }
   const Rendering rendering = check_scene(unit, builder.scene);
+  if (has_fold) return;  // as in slabs
   expect_count(unit, builder.scene, rendering, [](int, int) { return 1; });
 }
 

@@ -203,9 +203,15 @@ void separation(Unit& unit) {
   if (order.pairs < 1000) return;
   unit.count_checks(order.pairs);
   unit.measure("fights at the minimum", "pairs", static_cast<double>(order.fights()), 0, whole);
-  const Scene half = two_planes(bound, z, view, 0.5, seed);
-  unit.require(measure_depth(half, *variant, options).order.fights() > 0, "fights at half of it", half,
-               "no pair fights at half the predicted separation: the prediction is too large");
+  // A few thousand pairs may miss the places where rounding is at its worst: other planes then.
+  std::uint64_t fights = 0;
+  Scene half;
+  for (int attempt = 0; attempt < 16 && fights == 0; ++attempt) {
+    half = two_planes(bound, z, view, 0.5, attempt == 0 ? seed : random.next());
+    fights = measure_depth(half, *variant, options).order.fights();
+  }
+  unit.require(fights > 0, "fights at half of it", half,
+               "no pair fights at half the predicted separation, in sixteen scenes: the prediction is too large");
 }
 
 void polygon_offset(Unit& unit) {
