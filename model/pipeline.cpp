@@ -377,10 +377,12 @@ void check_scene(const Scene& scene, const Config& config) {
     const double widest = 2 * (config.guard_band - 1 - std::max(scene.width, scene.height));
     if (drawn_as(state, draw->topology) == PrimitiveType::point &&
         !(state.point_size >= 1 && state.point_size <= widest))
-      throw InputError(place_of_draw(context.scene.name, context.draw.line) +
-                       ": state point_size: points of this target " + "and guard.band are 1 to " +
-                       std::to_string(static_cast<int>(widest)) +
-                       " pixels wide; use a smaller point, a smaller target or raise guard.band");
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": state point_size: " +
+                       (widest >= 1
+                            ? "points of this target and guard.band are 1 to " +
+                                  std::to_string(static_cast<int>(widest)) + " pixels wide; use a smaller point, "
+                            : "no point fits beside this target in this guard.band; use ") +
+                       "a smaller target or raise guard.band");
     const Viewport& v = context.viewport;
     // A sample that the clipper cuts away, or whose right or lower edge it puts on it, would be lost.
     const double limit = guard_band_limit(config), last = limit + 0.5;

@@ -62,8 +62,8 @@ class CaptureFromBytes {
   CaptureFromBytes(ByteSource& bytes, const Config& config) : bytes_(bytes), config_(config) {}
 
   std::string text() {
-    width_ = bytes_.between(1, std::min(48, config_.target_width));
-    height_ = bytes_.between(1, std::min(48, config_.target_height));
+    width_ = bytes_.between(1, std::min(100, config_.target_width));
+    height_ = bytes_.between(1, std::min(72, config_.target_height));
     line("halfplane 1");
     line("target " + std::to_string(width_) + " " + std::to_string(height_));
     set_space();

@@ -17,6 +17,7 @@ import itertools
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 from collections import Counter, defaultdict
@@ -24,10 +25,17 @@ from collections import Counter, defaultdict
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
+def read(path):
+    try:
+        return pathlib.Path(path).read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        sys.exit(f'{path}: cannot be read: {error}')
+
+
 class Exceptions:
     def __init__(self, path):
         self.path, self.rules, self.used = path, [], Counter()
-        for number, text in enumerate(pathlib.Path(path).read_text().splitlines(), 1):
+        for number, text in enumerate(read(path).splitlines(), 1):
             if not text.strip() or text.startswith('#'):
                 continue
             fields = [field.strip() for field in text.split(' | ')]
@@ -114,6 +122,8 @@ def model_points(objects, command, table):
     """Of a test program's run; the counts of an earlier one go first. A function template's instances, and the copies of
     an inline function in several objects, are one: a branch is reached when one of them has reached it. Calls that may
     throw or return, and functions that the compiler has made up, do not count."""
+    if shutil.which(command[0]) is None:
+        sys.exit(f'{command[0]}: no such program')
     for old in pathlib.Path(objects).rglob('*.gcda'):
         old.unlink()
     if subprocess.run(command, check=False).returncode:
@@ -147,7 +157,7 @@ def rtl_points(data, table):
     """Of all instances of all configurations together: a point is reached when one of them has reached it."""
     hits = Counter()
     for path in data:
-        for record in re.finditer(r"^C '(.*)' (\d+)$", pathlib.Path(path).read_text(), re.MULTILINE):
+        for record in re.finditer(r"^C '(.*)' (\d+)$", read(path), re.MULTILINE):
             fields = dict(field.split('\2', 1) for field in record[1].split('\1') if field)
             kind = 'toggle' if fields['page'].startswith('v_toggle') else 'line'
             hits[fields['f'], int(fields['l']), int(fields['n']), kind, fields['o']] += int(record[2])
@@ -163,12 +173,14 @@ def rtl_points(data, table):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('of', choices=['model', 'rtl'])
-    parser.add_argument('--objects', help='folder of the objects, .gcno and .gcda')
+    parser.add_argument('--objects', help='folder of the objects, .gcno and .gcda; old .gcda go')
     parser.add_argument('--exceptions', required=True)
     parser.add_argument('--least', type=float, default=95.0, help='percent that each file must reach (rtl)')
     parser.add_argument('-o', '--output', help='where the table goes as well')
     parser.add_argument('inputs', nargs='+', metavar='COMMAND|DATA')
     arguments = parser.parse_args()
+    if arguments.of == 'model' and not arguments.objects:
+        parser.error('model: --objects is missing')
     exceptions = Exceptions(arguments.exceptions)
     kinds = ('line', 'branch') if arguments.of == 'model' else ('line', 'toggle')
     table = Table(kinds, exceptions)

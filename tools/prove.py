@@ -283,6 +283,10 @@ def main():
     parser.add_argument('--z3', action='store_true', help='z3 instead of the MiniSat of Yosys: a second opinion, far slower')
     parser.add_argument('--program', metavar='FILE', help='halfplane_tests, whose enumerations run as well')
     options = parser.parse_args()
+    if options.jobs < 1 or not options.limit >= 1:
+        parser.error('--jobs and --limit begin at 1')
+    if options.program and not os.access(options.program, os.X_OK):
+        parser.error(f'--program: {options.program} is no program')
 
     chosen = [(proof, preset) for proof in PROOFS
               for preset in proof.presets + (proof.no_answer if options.only else ())
@@ -290,6 +294,8 @@ def main():
               and (not options.quick or preset in proof.quick)]
     if options.list:
         for proof in PROOFS:
+            if options.only and options.only not in proof.name:
+                continue
             print(f'{f"({proof.letter})":6} {proof.name:27} {proof.module:26} {", ".join(proof.presets):15} {proof.claim}' +
                   ''.join(f' [{preset}: no answer in time]' for preset in proof.no_answer))
         return 0

@@ -185,6 +185,8 @@ int run(const StressCommand& options) {
     return exit_ok;
   }
   if (options.quick && options.seconds > 0) throw InputError("--quick and --seconds together; give one of them");
+  if (options.unit >= 0 && (options.names.empty() || options.quick || options.seconds > 0))
+    throw InputError("--unit repeats one unit of a --case, without --quick and --seconds");
   check_output(options.junit_path);
   if (std::error_code error; !options.captures.empty()) {
     std::filesystem::create_directories(options.captures, error);
@@ -192,6 +194,8 @@ int run(const StressCommand& options) {
   }
   check_distinct({options.json, options.junit_path});
   const Config config = effective_config(options);
+  if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
+    throw InputError("stress: its cases are of planes; leave depth.format and depth.mapping as they are");
   Progress progress(options, "stress");
   stress::RunOptions run;
   run.seed = options.seed;

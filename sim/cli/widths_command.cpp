@@ -206,9 +206,10 @@ void write_captures(const std::string& folder, const WidthStudy& study, const Co
 int run_table(const WidthsCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
-  std::error_code error;
-  if (!options.captures.empty() && !std::filesystem::is_directory(options.captures, error))
-    throw InputError("--captures: there is no folder '" + options.captures + "'; create it first");
+  if (std::error_code error; !options.captures.empty()) {
+    std::filesystem::create_directories(options.captures, error);
+    if (error) throw InputError("--captures: cannot make the folder '" + options.captures + "'; choose another");
+  }
   WidthStudy study;
   {
     Progress progress(options, "trying widths");

@@ -224,6 +224,16 @@ CoverageClass classify(std::uint32_t golden_count, std::uint32_t model_count, bo
   return golden_count == 0 ? CoverageClass::none : CoverageClass::both;
 }
 
+std::uint64_t different_pixels(const Scene& scene, const Rendering& a, const Rendering& b) {
+  std::uint64_t different = 0;
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x) {
+      const std::size_t at = a.frame.at(x, y), bt = b.frame.at(x, y);
+      different += a.frame.depth[at] != b.frame.depth[bt] || a.frame.color[at] != b.frame.color[bt] ? 1 : 0;
+    }
+  return different;
+}
+
 std::string line(const char* format, double value, double bound) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), format, value, bound);
@@ -255,6 +265,12 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   const Engine engine = options.engine ? options.engine : is_default ? render_functional : render_scalar;
   result.rendering = engine(scene, config, render_options);
   result.golden = golden::render(scene, config, golden_options);
+  // With taps the functional engine draws by the stages: what it draws without them must be the same.
+  if (is_default && !options.engine) {
+    RenderOptions plain;
+    plain.skip = options.skip;
+    result.stage_mismatches += different_pixels(scene, result.rendering, engine(scene, config, plain));
+  }
 
   log.sort();
   result.oracle = check_coverage(scene, config, result.rendering.triangles, log, options.rules.fill_rule);

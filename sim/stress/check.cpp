@@ -63,6 +63,8 @@ Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
   // Only the scalar engine has the study rules.
   Rendering rendering = rule == FillRule::top_left ? unit.engine(scene, unit.config, options)
                                                    : render_scalar(scene, unit.config, options);
+  // With taps the functional engine draws by the stages.
+  if (rule == FillRule::top_left) expect_same_image(unit, scene, rendering, unit.engine(scene, unit.config, {}));
   log.sort();
   const OracleResult oracle = check_coverage(scene, unit.config, rendering.triangles, log, rule);
   unit.count_triangles(rendering.triangles.size());

@@ -193,6 +193,7 @@ void wires(Unit& unit) {
   RenderOptions options = render_options();
   options.pixel_tap = [&log](std::uint32_t primitive, int x, int y) { log.add(primitive, x, y); };
   const Rendering rendering = unit.engine(builder.scene, unit.config, options);
+  expect_same_image(unit, builder.scene, rendering, unit.engine(builder.scene, unit.config, {}));
   log.sort();
   OracleResult oracle;
   check_line_coverage(builder.scene, unit.config, rendering, log, oracle);

@@ -202,6 +202,8 @@ TEST_F(BadInput, WhatTheConfigurationCannotHoldIsRefused) {
   expect_file_refused("viewport.hpt",
                       "halfplane 1\ntarget 64 48\nstate viewport 0 0 5000 48\nv 0 0 0\nv 1 0 0\nv 0 1 0\nt 0 1 2\n",
                       "state viewport");
+  expect_refused({"render", "star:12", "--config", "tiny", "--set", "guard.band=16", "--size", "16x16"},
+                 "no point fits");
   // The clipper cuts at the largest coordinate. Below two subpixel bits the samples of a last column lie beyond it.
   const auto as_wide_as_the_band = [&](const char* subpixels) {
     return Arguments{"render", "triangle",         "--size", "128x48",         "--set", "target.width=128",

@@ -66,6 +66,9 @@ TEST_F(CliStress, WrongUsageIsRefusedInOneLine) {
   expect_refused({"stress", "--unit", "-1"}, "--unit");
   expect_refused({"stress", "--config", "tiny", "--set", "depth.bits=99"}, "depth.bits");
   expect_refused({"stress", "--captures", "/dev/null/x"}, "cannot make the folder");
+  expect_refused({"stress", "--unit", "3"}, "one unit of a --case");
+  expect_refused({"stress", "--case", "fans", "--unit", "3", "--seconds", "1"}, "one unit of a --case");
+  expect_refused({"stress", "--set", "depth.format=f16"}, "leave depth.format and depth.mapping as they are");
   expect_refused({"stress", "--junit", "nowhere/x.xml"}, "no such folder");
 }
 

@@ -2,8 +2,11 @@
 // count, the instruction set and what may be skipped.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <tuple>
 
+#include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/functional/kernels.hpp"
 #include "model/engines/scalar.hpp"
@@ -97,6 +100,53 @@ TEST(Functional, TheWidestReciprocalsAreTheSameOnEveryPath) {
     for (const char* name : {"ball:24", "dust:3000", "blocks:30"})
       expect_all_same(make_builtin(name, 128, 96, {}, 1), config);
   }
+}
+
+/// Where lines are hard: on borders of bins, tiles, pixels and rows, along the axes and the diagonals, shorter than a
+/// pixel, over the whole depth range. `step`: pixels between the coordinates' neighbours.
+Scene hard_lines(std::uint32_t seed, int width, int height, double step) {
+  test::Random random(seed);
+  test::SceneBuilder builder(width, height);
+  const auto near = [&](int size) {
+    constexpr std::array kGrids{64.0, 8.0, 1.0, 0.5};
+    const double grid = kGrids[static_cast<std::size_t>(random.index(4))];
+    return std::floor(random.between(0, size) / grid) * grid + (random.index(5) - 2) * step;
+  };
+  Scene& scene = builder.scene;
+  for (int n = 0; n < 12; ++n) {
+    State state = test::SceneBuilder::window_state();
+    state.depth_test = random.index(2) == 0 ? DepthFunc::always : DepthFunc::less;
+    state.line_rule =
+        std::array{LineRule::diamond, LineRule::midpoint, LineRule::bresenham}[static_cast<std::size_t>(n % 3)];
+    scene.states.push_back(state);
+    scene.commands.push_back(
+        Draw{static_cast<std::uint32_t>(scene.states.size() - 1), 0, Topology::lines, scene.indices.size(), 60, 0});
+    for (int line = 0; line < 30; ++line) {
+      const double x = near(width), y = near(height), by = random.index(2) == 0 ? 1.5 * random.unit() : near(100);
+      const std::array<std::array<double, 2>, 6> ways{
+          {{by, 0}, {0, by}, {by, by}, {by, -by}, {by, near(70)}, {step, 0}}};
+      const auto& way = ways[static_cast<std::size_t>(random.index(6))];
+      const double sign = random.index(2) == 0 ? 1 : -1;
+      for (const Vertex& v :
+           {test::at(x, y, random.unit()), test::at(x + sign * way[0], y + sign * way[1], random.unit())}) {
+        scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+        scene.vertices.push_back(v);
+        for (double& channel : scene.vertices.back().rgba) channel = random.index(256);
+      }
+    }
+  }
+  return scene;
+}
+
+TEST(Functional, LinesOnBordersAndShorterThanAPixelAreTheSameOnEveryPath) {
+  for (const auto& [name, depth_bits, subpixel_bits] :
+       {std::tuple{"embedded", 16, 4}, {"embedded", 18, 0}, {"embedded", 24, 1}, {"small", 16, 2}, {"full", 24, 8}})
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      Config config = config_of(name, depth_bits);
+      config.subpixel_bits = subpixel_bits;
+      SCOPED_TRACE(std::string(name) + ", depth.bits " + std::to_string(depth_bits) + ", seed " + std::to_string(seed));
+      expect_all_same(hard_lines(seed, 200, 150, std::ldexp(1.0, -subpixel_bits)), config);
+    }
 }
 
 TEST(Functional, ClearsThatNobodyDrewOnAreCountedByTileOfTheTarget) {

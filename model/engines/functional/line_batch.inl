@@ -100,7 +100,8 @@ HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext
   const L16 to_first = convert<std::int64_t>(offset), to_bin = convert<std::int64_t>(low);
   const int guard_bits = widths.line_guard_bits;
   const std::int64_t half_code = std::int64_t{1} << (guard_bits - 1), half_step = std::int64_t{1} << (s - 1);
-  // Values wrap far above their bits: shifts need no sign. Steps of attributes of up to 32 bits fit 32.
+  // Values wrap far above their bits: shifts need no sign. Steps do as well, but not where they are still to be shifted
+  // down: a line shorter than a pixel has steps above the whole range.
   const auto start_of = [&](const I16& from, const L16& way) HALFPLANE_LAMBDA {
     return (convert<std::int64_t>(from) << guard_bits) + half_code + shift_right_logical(way + half_step, s);
   };
@@ -110,7 +111,7 @@ HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext
   const auto narrow_attribute = [&](const I16& from, const I16& to) HALFPLANE_LAMBDA {
     const L16 step64 = gradient(to - from);
     const I16 step = convert<std::int32_t>(step64);
-    return Narrow{convert<std::int32_t>(start_of(from, multiply_narrow(step64, to_first))) + step * low, step};
+    return Narrow{convert<std::int32_t>(start_of(from, step64 * to_first)) + step * low, step};
   };
   const I16 z0 = gather(&base->z, at[0]), z1 = gather(&base->z, at[1]);
   const int unused = 64 - widths.line_depth.bits;

@@ -97,10 +97,10 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
         z[k] = gather(&slice.vertices.data()->z, at);
       }
       const OctantLanes line(x[0], y[0], x[1], y[1], rules);
-      // In its octant it covers no row beside those of its ends.
+      // In its octant it covers no row beside those of its ends, and the one before where it starts on a border of rows.
       const auto side = [&](const I16& from, const I16& to, const I16& is_negative, bool is_low)
                             HALFPLANE_LAMBDA { return select(is_negative, is_low ? ~to : ~from, is_low ? from : to); };
-      const I16 last = line.end - 1, top_row = line.b0 >> s, bottom_row = line.b1 >> s;
+      const I16 last = line.end - 1, top_row = (line.b0 >> s) - 1, bottom_row = line.b1 >> s;
       const auto of_major = [&](bool is_low)
                                 HALFPLANE_LAMBDA { return side(line.first, last, line.is_major_negative, is_low); };
       const auto of_minor = [&](bool is_low)
