@@ -244,7 +244,9 @@ class Bin {
       triangle.right = right;
       triangle.bottom = bottom;
       triangle.is_whole = record.is_whole;
-      if (skip_.tiles_hiz && is_behind_tiles<Test>(record, triangle)) {
+      // Nearer than all of the bin: no need to look at its tiles.
+      const bool may_be_behind = Test != DepthFunc::less || record.z_low >= bin_low_;
+      if (skip_.tiles_hiz && may_be_behind && is_behind_tiles<Test>(record, triangle)) {
         leave_out();
         continue;
       }
