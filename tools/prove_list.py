@@ -24,7 +24,7 @@ class Proof:
     is_combinational: bool = False
     has_reset: bool = True
     file: str = ''
-    inputs: str = ''        # another file in front of it: what is assumed of the inputs
+    inputs: str = ''        # another file in front of it: what is assumed of the inputs, or of what is cut
 
     @property
     def properties(self):
@@ -72,9 +72,10 @@ PROOFS = [
     Proof('coarse_raster_corners', 'c, e', 'stages/coarse_raster.sv', 'every sample lies between the corners that are looked at',
           is_combinational=True, cuts=SRAMS, quick=TINY, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
     Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by the bound of all earlier visits, and '
-          'what could pass is not rejected', presets=('embedded',), cuts=SRAMS, twins=HIZ_TWINS, cover_depth=8),
+          'what could pass is not rejected', presets=('embedded',), cuts=SRAMS, inputs='coarse_raster_bound',
+          twins=HIZ_TWINS, cover_depth=8),
     Proof('coarse_raster_hiz_6_bits', 'd', 'stages/coarse_raster.sv', 'the same with hiz.bits=6', file='coarse_raster_hiz',
-          presets=(), no_answer=('embedded',), cuts=SRAMS, twins=HIZ_TWINS, package=HIZ_6),
+          presets=(), no_answer=('embedded',), cuts=SRAMS, inputs='coarse_raster_bound', twins=HIZ_TWINS, package=HIZ_6),
     Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', quick=TINY,
           twins=(34, ('assign max = corner > max_q ? corner : max_q;', 'assign max = corner;'))),
     Proof('sram_word', 'd', 'lib/sram.sv', 'a read gives what was written last', has_reset=False,
@@ -97,7 +98,7 @@ PROOFS = [
     Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
           quick=TINY, twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
     Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; slots and visits are not given '
-          'twice', k=2, cuts=SRAMS, twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
+          'twice', k=2, cuts=SRAMS, inputs='coarse_raster_bound', twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
     Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time',
           k=2, cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', cover_depth=34,
           twins=(('divide_step_q == STEP\'(DIVIDE_LAST) && gradient_ready', 'divide_step_q == STEP\'(DIVIDE_LAST)'),

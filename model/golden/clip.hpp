@@ -67,9 +67,9 @@ template <class Real>
   return out;
 }
 
-/// Near, far and the four sides of the guard band, window coordinates from -limit to limit. The sides take no pixel away, they keep
-/// x / w finite; but a cut vertex gets its colour here, so affine colour depends on where and in which order they cut.
-/// Near and far together imply w >= 0.
+/// Near, far and the four sides of the guard band, window coordinates from -limit to limit. The sides take no pixel away,
+/// they keep x / w finite; but a cut vertex gets its colour here, so affine colour depends on where and in which order
+/// they cut. Near and far together imply w >= 0.
 template <class Real>
 [[nodiscard]] std::array<Plane<Real>, 6> clip_planes(ClipZ clip_z, const Viewport& viewport, double limit) {
   // Window x = centre + half * x / w, so -limit <= window x is half * x + (centre + limit) * w >= 0.

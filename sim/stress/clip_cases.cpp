@@ -94,6 +94,12 @@ bool is_folded(const Config& config, const Scene& scene, const std::array<Vertex
   return exact_area > 0 ? least < 0 : most > 0;
 }
 
+/// Adds a triangle to the scene; whether the snap folds what the clipper leaves of it.
+bool add_triangle(const Unit& unit, SceneBuilder& builder, const Vertex& a, const Vertex& b, const Vertex& c) {
+  builder.triangle(a, b, c);
+  return is_folded(unit.config, builder.scene, {a, b, c});
+}
+
 /// Draws the triangle and holds every corner of what is drawn, and every sample not at an edge, against the exact clip.
 void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
   State state;  // clip space
@@ -203,12 +209,12 @@ void closed_meshes(Unit& unit) {
           return face < 2 ? corner(r, s, t) : face < 4 ? corner(s, r, t) : corner(s, t, r);
         };
         const Vertex a = vertex(0, 0), b = vertex(1, 0), c = vertex(1, 1), d = vertex(0, 1);
-        const std::array<std::array<Vertex, 3>, 2> halves = random.coin()
-                                                                ? std::array{std::array{a, b, c}, std::array{a, c, d}}
-                                                                : std::array{std::array{b, a, d}, std::array{d, b, c}};
-        for (const auto& v : halves) {
-          builder.triangle(v[0], v[1], v[2]);
-          has_fold = has_fold || is_folded(unit.config, builder.scene, v);
+        if (random.coin()) {
+          has_fold |= add_triangle(unit, builder, a, b, c);
+          has_fold |= add_triangle(unit, builder, a, c, d);
+        } else {
+          has_fold |= add_triangle(unit, builder, b, a, d);
+          has_fold |= add_triangle(unit, builder, d, b, c);
         }
       }
   const Rendering rendering = check_scene(unit, builder.scene);
@@ -231,19 +237,15 @@ void slabs(Unit& unit) {
   };
   SceneBuilder builder(width, height, state);
   bool has_fold = false;
-  const auto add = [&](const Vertex& a, const Vertex& b, const Vertex& c) {
-    builder.triangle(a, b, c);
-    has_fold = has_fold || is_folded(unit.config, builder.scene, {a, b, c});
-  };
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i) {
       const Vertex a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
       if (random.coin()) {
-        add(a, b, c);
-        add(c, a, d);
+        has_fold |= add_triangle(unit, builder, a, b, c);
+        has_fold |= add_triangle(unit, builder, c, a, d);
       } else {
-        add(a, b, d);
-        add(d, b, c);
+        has_fold |= add_triangle(unit, builder, a, b, d);
+        has_fold |= add_triangle(unit, builder, d, b, c);
       }
     }
   const Rendering rendering = check_scene(unit, builder.scene);

@@ -447,9 +447,8 @@ class Bin {
     });
   }
 
-  HALFPLANE_INLINE static I16 decode(const I16& value, const LaneFormat& format, std::int32_t low, std::int32_t high) {
-    const I16 code = shift_right_logical(value, format.down) - format.bias;
-    return min(max(code, I16(low)), I16(high));
+  HALFPLANE_INLINE static I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
+    return min(max(shift_right_logical(value, format.down) - format.bias, low), high);
   }
 
   /// The mask whose lanes are the bits.
@@ -481,15 +480,20 @@ class Bin {
 
   /// Packed colours in block 0...3 of a tile.
   HALFPLANE_INLINE I16 colors(const ColorSteps& t, const ChannelPairs& anchor, std::size_t block) const {
-    std::array<I16, 2> pair;
-    const S32 column = as<S32>(position_.column_pair[block & 1]), row = as<S32>(position_.row_pair[block >> 1]);
-    for (std::size_t p = 0; p < 2; ++p) {
-      const S32 value =
-          column * as<S32>(I16(t.step_x[p])) + row * as<S32>(I16(t.step_y[p])) + as<S32>(I16(anchor[p]));
-      const S32 code = shift_right_logical(value, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
-      pair[p] = as<I16>(min(max(code, as<S32>(I16(t.low[p]))), as<S32>(I16(t.high[p]))));
-    }
-    return packed(pair[0] | pair[1] << 8);
+    const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
+      return channel_codes(position_.column_pair[block & 1], position_.row_pair[block >> 1], t.step_x[p], t.step_y[p],
+                           anchor[p], t.low[p], t.high[p]);
+    };
+    return packed(pair(0) | pair(1) << 8);
+  }
+
+  /// Two channels' codes, in the halves of each lane, as everything here: columns and rows from the anchor.
+  [[nodiscard]] HALFPLANE_INLINE I16 channel_codes(const I16& column, const I16& row, const I16& step_x,
+                                                   const I16& step_y, const I16& anchor, const I16& low,
+                                                   const I16& high) const {
+    const S32 value = as<S32>(column) * as<S32>(step_x) + as<S32>(row) * as<S32>(step_y) + as<S32>(anchor);
+    const S32 code = shift_right_logical(value, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
+    return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
   }
 
   /// Colours of 8 bits a channel, R lowest, as the target has them.

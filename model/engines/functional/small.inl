@@ -142,17 +142,12 @@ HALFPLANE_INLINE void draw_samples() {
     const std::size_t i = s & 1, j = s >> 1;
     place_of(x[i], y[j]).store(place[s].data());
     const I16 value = column[i] * load(small_.z_step_x) + row[j] * load(small_.z_step_y) + load(small_.z_anchor[s]);
-    const I16 code = shift_right_logical(value, depth_format_.down) - depth_format_.bias;
-    min(max(code, load(small_.z_low)), load(small_.z_high)).store(depth[s].data());
+    decode(value, depth_format_, load(small_.z_low), load(small_.z_high)).store(depth[s].data());
     if (!state_.color_write) continue;
-    const S32 columns = as<S32>(pairs(column[i], column[i])), rows = as<S32>(pairs(row[j], row[j]));
+    const I16 columns = pairs(column[i], column[i]), rows = pairs(row[j], row[j]);
     const auto channels = [&](std::size_t p) HALFPLANE_LAMBDA {
-      const auto load_pairs = [&](const SmallBatch::LaneArray<2>& of)
-                                  HALFPLANE_LAMBDA { return as<S32>(load(of[p])); };
-      const S32 local = columns * load_pairs(small_.c_step_x) + rows * load_pairs(small_.c_step_y) +
-                        as<S32>(load(small_.c_anchor[p][s]));
-      const S32 channel = shift_right_logical(local, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
-      return as<I16>(min(max(channel, load_pairs(small_.c_low)), load_pairs(small_.c_high)));
+      return channel_codes(columns, rows, load(small_.c_step_x[p]), load(small_.c_step_y[p]), load(small_.c_anchor[p][s]),
+                           load(small_.c_low[p]), load(small_.c_high[p]));
     };
     packed(channels(0) | channels(1) << 8).store(color[s].data());
   }

@@ -152,7 +152,10 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   };
   const I16 to_x = anchor_of(box_x, first_x) - origin.x, to_y = anchor_of(box_y, first_y) - origin.y;
   const int to_tile = kTileShift + s;
-  const I16 to_right_tile = has_samples ? (box_x & 7) == 7 : I16(-1), to_lower_tile = has_samples ? (box_y & 7) == 7 : I16(-1);
+  const auto to_next_tile = [this](const I16& at) HALFPLANE_LAMBDA {  // of the next sample; or of any next tile
+    return has_samples ? (at & (kTileSize - 1)) == kTileSize - 1 : I16(-1);
+  };
+  const I16 to_right_tile = to_next_tile(box_x), to_lower_tile = to_next_tile(box_y);
   // A plane at the anchors of the tiles, the bits from `drop` on. Where the products of the bits below fit 32, that is all
   // that a lane needs: what is above wraps.
   const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
