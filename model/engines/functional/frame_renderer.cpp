@@ -3,7 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,18 +17,22 @@ namespace {
 constexpr std::size_t kSlicePrimitives = 2048;  // small enough that two threads share a small frame evenly
 constexpr std::size_t kBatchPrimitives = 1 << 18;
 
+/// The range of a tile that holds no depth: in nobody's way.
+constexpr struct {
+  std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = -1;
+} kNoDepth;
+
 using Clock = std::chrono::steady_clock;
 
-/// Calls work(i) for 0 <= i < count on that many threads. Throws what the smallest i threw, whoever ran it.
+/// Calls work(i) for 0 <= i < count. Throws what the smallest i threw, whoever ran it.
 template <class Work>
-void for_each_index(int threads, std::size_t count, Work&& work) {
-  if (threads <= 1 || count < 2) {
+void for_each_index(tbb::task_arena* threads, std::size_t count, Work&& work) {
+  if (threads == nullptr || count < 2) {
     for (std::size_t i = 0; i < count; ++i) work(i);
     return;
   }
   std::vector<std::exception_ptr> errors(count);
-  tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));  // more than there are it would warn of
-  arena.execute([&] {
+  threads->execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
@@ -118,7 +121,11 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   prepared_ = &prepared;
   scene_ = &scene;
   skip_ = options.skip;
-  threads_ = options.threads;
+  if (options.threads != threads_) {
+    threads_ = options.threads;
+    const int most = tbb::info::default_concurrency();  // of more it would warn
+    arena_ = threads_ > 1 ? std::make_unique<tbb::task_arena>(std::min(threads_, most)) : nullptr;
+  }
   kernels_ = available_kernels().front();
   for (const Kernels* kernels : available_kernels())
     if (options.instruction_set == kernels->name) kernels_ = kernels;
@@ -152,9 +159,9 @@ void FrameRenderer::find_tiles() {
                tile = static_cast<int>(i) % (kBinTiles * kBinTiles);
     const int x = bin % bins_x_ * kBinSize + tile % kBinTiles * kTileSize,
               y = bin / bins_x_ * kBinSize + tile / kBinTiles * kTileSize;
-    is_in_target_[i] = x < scene_->width && y < scene_->height ? 1 : 0;
-    tiles_.z_low[i] = std::numeric_limits<std::int32_t>::max();
-    tiles_.z_high[i] = -1;
+    is_in_target_[i] = x < scene_->width && y < scene_->height ? 0xff : 0;
+    tiles_.z_low[i] = kNoDepth.low;
+    tiles_.z_high[i] = kNoDepth.high;
   }
 }
 
@@ -172,11 +179,15 @@ void FrameRenderer::clear_whole(const Clear& command) {
     bits |= TileStates::kColorCleared;
     clear_color_ = color_code(*command.color, config_.color_format);
   }
-  for (std::size_t i = 0; i < tiles_.pending.size(); ++i) {
-    if (!is_in_target_[i]) continue;
-    if (command.depth) tiles_.z_low[i] = tiles_.z_high[i] = static_cast<std::int32_t>(clear_depth_);
-    rendering_.counters.skipped.clear += (tiles_.pending[i] & bits) != 0 ? 1 : 0;  // of the clear before
-    tiles_.pending[i] |= bits;
+  const std::size_t tiles = is_in_target_.size();
+  std::uint64_t again = 0;  // of the clear before
+  for (std::size_t i = 0; i < tiles; ++i) again += (tiles_.pending[i] & bits) != 0 ? 1U : 0U;
+  rendering_.counters.skipped.clear += again;
+  for (std::size_t i = 0; i < tiles; ++i) tiles_.pending[i] |= static_cast<std::uint8_t>(is_in_target_[i] & bits);
+  const auto code = static_cast<std::int32_t>(clear_depth_);
+  for (std::size_t i = 0; i < tiles && command.depth; ++i) {
+    tiles_.z_low[i] = is_in_target_[i] != 0 ? code : kNoDepth.low;
+    tiles_.z_high[i] = is_in_target_[i] != 0 ? code : kNoDepth.high;
   }
   rendering_.raster_s += std::chrono::duration<double>(Clock::now() - started).count();
   if (!skip_.clear) settle({0, 0, scene_->width, scene_->height});
@@ -211,7 +222,7 @@ void FrameRenderer::settle(const Rect& rect) {
   forget(TileStates::kDepthCleared, held_depth_, clear_depth_);
   forget(TileStates::kColorCleared, held_color_, clear_color_);
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
-  for_each_index(threads_, bins, [&](std::size_t bin) {
+  for_each_index(arena_.get(), bins, [&](std::size_t bin) {
     const int first_x = static_cast<int>(bin) % bins_x_ * kBinSize,
               first_y = static_cast<int>(bin) / bins_x_ * kBinSize;
     for (int tile = 0; tile < kBinTiles * kBinTiles; ++tile) {
@@ -238,11 +249,11 @@ void FrameRenderer::settle(const Rect& rect) {
 /// Writes what is pending; the padding is as in an empty target.
 void FrameRenderer::finish() {
   const auto started = Clock::now();
-  if (skip_.clear)
-    rendering_.counters.skipped.clear +=
-        static_cast<std::uint64_t>(std::ranges::count_if(tiles_.pending, [](std::uint8_t bits) { return bits != 0; }));
+  std::uint64_t pending = 0;
+  for (const std::uint8_t bits : tiles_.pending) pending += bits != 0 ? 1U : 0U;
+  if (skip_.clear) rendering_.counters.skipped.clear += pending;
   Framebuffer& frame = rendering_.frame;
-  settle({0, 0, frame.width, frame.height});
+  if (pending != 0) settle({0, 0, frame.width, frame.height});
   const std::uint32_t far = DepthEncode(config_, scene_->planes).of_window(1.0);
   const std::uint32_t black = color_code({0, 0, 0, 255}, config_.color_format);
   const auto stride = static_cast<std::size_t>(frame.stride);
@@ -384,14 +395,14 @@ void FrameRenderer::flush() {
   open_ = nullptr;
   if (slice_count_ == 0) return;
   const auto started = Clock::now();
-  for_each_index(threads_, slice_count_, [this](std::size_t i) { build(slices_[i]); });
+  for_each_index(arena_.get(), slice_count_, [this](std::size_t i) { build(slices_[i]); });
   const auto built = Clock::now();
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
   bin_counters_.assign(bins, {});
   const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_};
   std::vector<const Slice*> slices;
   for (std::size_t i = 0; i < slice_count_; ++i) slices.push_back(&slices_[i]);
-  for_each_index(threads_, bins, [&](std::size_t bin) {
+  for_each_index(arena_.get(), bins, [&](std::size_t bin) {
     const bool is_idle = std::ranges::all_of(
         slices, [bin](const Slice* slice) { return slice->bin_first[bin] == slice->bin_first[bin + 1]; });
     if (is_idle) return;

@@ -1,7 +1,10 @@
 // The functional engine's fast path: a frame's commands become slices, slices become bin lists, bins become pixels.
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <deque>
+#include <memory>
 
 #include "../render.hpp"
 #include "kernels.hpp"
@@ -47,10 +50,11 @@ class FrameRenderer {
   const Scene* scene_ = nullptr;
   Skip skip_;
   int threads_ = 1;
+  std::unique_ptr<tbb::task_arena> arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it
   int bins_x_ = 0, bins_y_ = 0;
   Rendering rendering_;
   TileStates tiles_;
-  std::vector<std::uint8_t> is_in_target_;  ///< by tile
+  std::vector<std::uint8_t> is_in_target_;  ///< by tile: all bits or none
   std::uint32_t clear_depth_ = 0, clear_color_ = 0;
   std::uint32_t held_depth_ = 0, held_color_ = 0;  ///< the clear that TileStates::held speaks of
   std::deque<DrawContext> contexts_;

@@ -151,8 +151,31 @@ HALFPLANE_PACK_COMPARISON(!=)
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
+  for (int i = 0; i < Pack<T, N>::kParts; ++i) {
+#if HALFPLANE_ISA == 256  // GCC would ask first where the mask is 0
+    using Register = typename Pack<T, N>::Register;
+    r.part[i] = (Register)_mm256_blendv_epi8((__m256i)b.part[i], (__m256i)a.part[i], (__m256i)mask.part[i]);
+#else
+    r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
+#endif
+  }
   return r;
+}
+/// a where the sign of the mask is set, b elsewhere.
+template <int N>
+HALFPLANE_INLINE Pack<std::int32_t, N> select_by_sign(const Pack<std::int32_t, N>& mask,
+                                                      const Pack<std::int32_t, N>& a,
+                                                      const Pack<std::int32_t, N>& b) {
+#if HALFPLANE_ISA == 256
+  using P = Pack<std::int32_t, N>;
+  P r;
+  for (int i = 0; i < P::kParts; ++i)
+    r.part[i] =
+        (typename P::Register)_mm256_blendv_ps((__m256)b.part[i], (__m256)a.part[i], (__m256)mask.part[i]);
+  return r;
+#else
+  return select(mask < 0, a, b);
+#endif
 }
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
@@ -341,16 +364,34 @@ HALFPLANE_INLINE void scatter(Element* base, const I16& index, const I16& value,
 #endif
 }
 
+/// One number in the lower eight lanes, another in the upper.
+HALFPLANE_INLINE I16 halves(std::int32_t low, std::int32_t high) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (I16::Register)_mm512_inserti64x4(_mm512_set1_epi32(low), _mm256_set1_epi32(high), 1);
+#else
+  for (int i = 0; i < I16::kParts; ++i) r.part[i] = I16::Register{} + (2 * i < I16::kParts ? low : high);
+#endif
+  return r;
+}
+
 /// The smallest lane.
 HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
 #if HALFPLANE_ISA == 512
   return _mm512_reduce_min_epi32((__m512i)v.part[0]);
 #else
-  I16::Register r = v.part[0];
-  for (int i = 1; i < I16::kParts; ++i) r = r < v.part[i] ? r : v.part[i];
-  std::int32_t result = r[0];
-  for (int i = 1; i < I16::kLanes; ++i) result = std::min(result, r[i]);
-  return result;
+  // Half against half, down to one lane.
+  typedef std::int32_t Four __attribute__((vector_size(16)));
+  const auto smaller = [](const Four& a, const Four& b) HALFPLANE_LAMBDA { return a < b ? a : b; };
+#if HALFPLANE_ISA == 256
+  constexpr auto kFour = std::make_index_sequence<4>{};
+  const I16::Register eight = v.part[0] < v.part[1] ? v.part[0] : v.part[1];
+  const Four four = smaller(lanes_from<Four, 0>(eight, eight, kFour), lanes_from<Four, 4>(eight, eight, kFour));
+#else
+  const Four four = smaller(smaller(v.part[0], v.part[1]), smaller(v.part[2], v.part[3]));
+#endif
+  const Four two = smaller(four, __builtin_shufflevector(four, four, 2, 3, 0, 1));
+  return std::min(two[0], two[1]);
 #endif
 }
 HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
@@ -392,6 +433,14 @@ HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, con
   put(1, __builtin_shufflevector(upper, upper, 8, 9, 10, 11, 12, 13, 14, 15));
   put(2, __builtin_shufflevector(lower, lower, 0, 1, 2, 3, 4, 5, 6, 7));
   put(3, __builtin_shufflevector(lower, lower, 8, 9, 10, 11, 12, 13, 14, 15));
+#elif HALFPLANE_ISA == 256
+  typedef std::int32_t Row __attribute__((vector_size(32), aligned(4), may_alias));
+  const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA { *reinterpret_cast<Row*>(to + j * stride) = row; };
+  for (int part = 0; part < 2; ++part) {
+    const auto &a = left.part[part], &b = right.part[part];
+    put(2 * part, __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11));
+    put(2 * part + 1, __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15));
+  }
 #else
   for (int j = 0; j < 4; ++j) {
     std::memcpy(to + j * stride, reinterpret_cast<const char*>(&left) + 16 * j, 16);
@@ -400,44 +449,22 @@ HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, con
 #endif
 }
 
-/// Four blocks, side by side, as four rows of sixteen pixels: a cache line each where `to` begins one (`are_lines`), and
-/// then past the caches, which need not read first what is written whole. Behind the last: finish_lines().
+/// Sixteen pixels past the caches to the beginning of a cache line: what is written whole need not be read first.
+/// Behind the last: finish_lines().
 template <class Element>
-HALFPLANE_INLINE void store_lines(Element* to, int stride, bool are_lines, const I16& a, const I16& b, const I16& c,
-                                  const I16& d) {
-#if defined(__x86_64__)
-  if (are_lines) {
+HALFPLANE_INLINE void stream_line(Element* to, const I16& row) {
 #if HALFPLANE_ISA == 512
-    typedef long long Row __attribute__((vector_size(64)));
-    const auto &p = (Row)a.part[0], &q = (Row)b.part[0], &r = (Row)c.part[0], &s = (Row)d.part[0];
-    const Row pq_upper = __builtin_shufflevector(p, q, 0, 1, 8, 9, 2, 3, 10, 11),
-              rs_upper = __builtin_shufflevector(r, s, 0, 1, 8, 9, 2, 3, 10, 11),
-              pq_lower = __builtin_shufflevector(p, q, 4, 5, 12, 13, 6, 7, 14, 15),
-              rs_lower = __builtin_shufflevector(r, s, 4, 5, 12, 13, 6, 7, 14, 15);
-    const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA {
-      _mm512_stream_si512(reinterpret_cast<__m512i*>(to + j * stride), (__m512i)row);
-    };
-    put(0, __builtin_shufflevector(pq_upper, rs_upper, 0, 1, 2, 3, 8, 9, 10, 11));
-    put(1, __builtin_shufflevector(pq_upper, rs_upper, 4, 5, 6, 7, 12, 13, 14, 15));
-    put(2, __builtin_shufflevector(pq_lower, rs_lower, 0, 1, 2, 3, 8, 9, 10, 11));
-    put(3, __builtin_shufflevector(pq_lower, rs_lower, 4, 5, 6, 7, 12, 13, 14, 15));
+  _mm512_stream_si512(reinterpret_cast<__m512i*>(to), (__m512i)row.part[0]);
+#elif HALFPLANE_ISA == 256
+  _mm256_stream_si256(reinterpret_cast<__m256i*>(to), (__m256i)row.part[0]);
+  _mm256_stream_si256(reinterpret_cast<__m256i*>(to) + 1, (__m256i)row.part[1]);
+#elif defined(__x86_64__)
+  for (int i = 0; i < 4; ++i) _mm_stream_si128(reinterpret_cast<__m128i*>(to) + i, (__m128i)row.part[i]);
 #else
-    for (int j = 0; j < 4; ++j) {
-      int x = 0;
-      for (const I16* block : {&a, &b, &c, &d}) {
-        __m128i row;
-        std::memcpy(&row, reinterpret_cast<const char*>(block) + 16 * j, sizeof row);
-        _mm_stream_si128(reinterpret_cast<__m128i*>(to + j * stride + x), row);
-        x += 4;
-      }
-    }
+  row.store(to);
 #endif
-    return;
-  }
-#endif
-  store_blocks(to, stride, a, b);
-  store_blocks(to + 8, stride, c, d);
 }
+
 HALFPLANE_INLINE void finish_lines() {
 #if defined(__x86_64__)
   _mm_sfence();

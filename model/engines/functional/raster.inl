@@ -11,7 +11,7 @@
 // the triangle. Its depths and colours are computed when somebody needs them: often nobody does.
 // Included inside the namespace of an instruction set: see kernels.inl.
 
-constexpr int kBlockSize = 4, kBlockPixels = 16;
+constexpr int kBlockShift = 2, kBlockSize = 1 << kBlockShift, kBlockPixels = 16;
 
 /// Lanes as places.
 struct LanePositions {
@@ -379,39 +379,57 @@ class Bin {
     std::int64_t ax, ay, bx, by, dx, dy;
   };
 
-  static std::int32_t pair_of(std::int64_t low, std::int64_t high) {
-    return static_cast<std::int32_t>((static_cast<std::uint32_t>(low) & 0xffff) | static_cast<std::uint32_t>(high)
-                                                                                      << 16);
+  /// A number for each channel.
+  typedef std::int64_t Channels __attribute__((vector_size(32)));
+  HALFPLANE_INLINE static Channels load(const std::array<std::int64_t, 4>& from) {
+    typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
+    return *reinterpret_cast<const InMemory*>(from.data());
   }
-  template <class Channel>
-  static ChannelPairs channel_pairs(Channel&& channel) {
-    return {pair_of(channel(0), channel(2)), pair_of(channel(1), channel(3))};
+  HALFPLANE_INLINE static void store(std::array<std::int64_t, 4>& to, const Channels& value) {
+    typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
+    *reinterpret_cast<InMemory*>(to.data()) = value;
+  }
+  /// Of the lower halves: red with blue, green with alpha.
+  HALFPLANE_INLINE static ChannelPairs channel_pairs(const Channels& value) {
+    typedef std::int32_t Codes __attribute__((vector_size(16)));
+    const Codes code = __builtin_convertvector(value, Codes);
+    const Codes pair = (code & 0xffff) | __builtin_shufflevector(code, code, 2, 3, 0, 1) << 16;
+    return {pair[0], pair[1]};
+  }
+  /// round_shift(). The lanes have no signed shift: what is left of the sign bit goes through all bits above it.
+  HALFPLANE_INLINE static Channels round_shift_channels(const Channels& value, int bits) {
+    if (bits <= 0) return value << -bits;
+    typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+    const Channels half = (Channels)((Unsigned)value >> (bits - 1)) & 1;
+    const auto sign = static_cast<std::int64_t>(std::uint64_t{1} << (63 - bits));
+    return (((Channels)((Unsigned)value >> bits)) ^ sign) - sign + half;
   }
 
-  void set_up_colors(const SnappedVertex& a, const SnappedVertex& b, const SnappedVertex& c,
-                     const SnappedVertex& origin, const ColorFrame& f, std::int64_t R, int k, BinTriangle& out) const {
+  /// The four channels at once.
+  HALFPLANE_INLINE void set_up_colors(const SnappedVertex& a, const SnappedVertex& b, const SnappedVertex& c,
+                                      const SnappedVertex& origin, const ColorFrame& f, std::int64_t R, int k,
+                                      BinTriangle& out) const {
     const int s = widths_.grid_bits, F = widths_.plane_fraction;
-    const bool is_flat = state_.is_flat;
-    std::array<std::int64_t, 4> step_x, step_y, low, high;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::int64_t ca = a.rgba[i], cb = is_flat ? a.rgba[i] : b.rgba[i], cc = is_flat ? a.rgba[i] : c.rgba[i];
-      const std::uint64_t c0 = is_flat ? a.rgba[i] : origin.rgba[i];
-      const std::int64_t ac = cb - ca, bc = cc - ca;
-      step_x[i] = round_shift((ac * f.by - bc * f.ay) * R, k);
-      step_y[i] = round_shift((f.ax * bc - f.bx * ac) * R, k);
-      out.c_anchor[i] = static_cast<std::int64_t>((c0 << F) + product(step_x[i], f.dx) + product(step_y[i], f.dy) +
-                                                  color_format_.anchor_bias);
-      out.c_tile_x[i] = step_x[i] << (kTileShift + s);
-      out.c_tile_y[i] = step_y[i] << (kTileShift + s);
-      low[i] = std::min({ca, cb, cc});
-      high[i] = std::max({ca, cb, cc});
-    }
-    const auto local = [this](const std::array<std::int64_t, 4>& step) {
-      return channel_pairs(
-          [&](std::size_t i) { return round_shift(step[i], color_format_.step_drop) << color_format_.up; });
+    const auto codes = [](const SnappedVertex& v) HALFPLANE_LAMBDA {
+      return Channels{v.rgba[0], v.rgba[1], v.rgba[2], v.rgba[3]};
     };
-    out.color = {local(step_x), local(step_y), channel_pairs([&](std::size_t i) { return low[i]; }),
-                 channel_pairs([&](std::size_t i) { return high[i]; })};
+    const Channels ca = codes(a), cb = state_.is_flat ? ca : codes(b), cc = state_.is_flat ? ca : codes(c);
+    const Channels ab = cb - ca, ac = cc - ca;
+    const auto gradient = [R, k](const Channels& numerator)
+                              HALFPLANE_LAMBDA { return round_shift_channels(numerator * R, k); };
+    const Channels step_x = gradient(ab * f.by - ac * f.ay), step_y = gradient(ac * f.ax - ab * f.bx);
+    const Channels at_origin = state_.is_flat ? ca : codes(origin);
+    store(out.c_anchor, (at_origin << F) + step_x * f.dx + step_y * f.dy +
+                            static_cast<std::int64_t>(color_format_.anchor_bias));
+    store(out.c_tile_x, step_x << (kTileShift + s));
+    store(out.c_tile_y, step_y << (kTileShift + s));
+    const auto local = [this](const Channels& step) HALFPLANE_LAMBDA {
+      return channel_pairs(round_shift_channels(step, color_format_.step_drop) << color_format_.up);
+    };
+    const auto smaller = [](const Channels& p, const Channels& q) HALFPLANE_LAMBDA { return p < q ? p : q; };
+    const auto larger = [](const Channels& p, const Channels& q) HALFPLANE_LAMBDA { return p > q ? p : q; };
+    out.color = {local(step_x), local(step_y), channel_pairs(smaller(smaller(ca, cb), cc)),
+                 channel_pairs(larger(larger(ca, cb), cc))};
   }
 
   /// A rectangle of one depth and one colour: no edges.
@@ -426,7 +444,7 @@ class Bin {
     out.c_tile_x = out.c_tile_y = {};
     for (std::size_t i = 0; i < 4; ++i)
       out.c_anchor[i] = static_cast<std::int64_t>((std::uint64_t{v.rgba[i]} << F) + color_format_.anchor_bias);
-    const ChannelPairs codes = channel_pairs([&](std::size_t i) { return std::int64_t{v.rgba[i]}; });
+    const ChannelPairs codes = channel_pairs(Channels{v.rgba[0], v.rgba[1], v.rgba[2], v.rgba[3]});
     out.color = {{}, {}, codes, codes};
   }
 
@@ -439,12 +457,10 @@ class Bin {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(value) >> depth_format_.drop)
                                      << depth_format_.up);
   }
-  ChannelPairs color_anchor(const BinTriangle& t, int tile_x, int tile_y) const {
-    return channel_pairs([&](std::size_t i) {
-      const auto value =
-          static_cast<std::uint64_t>(t.c_anchor[i]) + product(t.c_tile_x[i], tile_x) + product(t.c_tile_y[i], tile_y);
-      return static_cast<std::int64_t>(value) >> color_format_.drop << color_format_.up;
-    });
+  HALFPLANE_INLINE ChannelPairs color_anchor(const BinTriangle& t, int tile_x, int tile_y) const {
+    typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+    const Channels value = load(t.c_anchor) + load(t.c_tile_x) * tile_x + load(t.c_tile_y) * tile_y;
+    return channel_pairs((Channels)((Unsigned)value >> color_format_.drop << color_format_.up));
   }
 
   HALFPLANE_INLINE static I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
@@ -478,27 +494,63 @@ class Bin {
                         static_cast<std::uint32_t>(stored));
   }
 
-  /// Packed colours in block 0...3 of a tile.
-  HALFPLANE_INLINE I16 colors(const ColorSteps& t, const ChannelPairs& anchor, std::size_t block) const {
+  /// A plane over a tile: its first block, and the steps from there to the blocks on the right and below.
+  template <class Lanes>
+  struct BlockRamp {
+    Lanes first, right, below;
+
+    HALFPLANE_INLINE Lanes operator()(std::size_t block) const {
+      const Lanes upper = (block & 1) != 0 ? first + right : first;
+      return (block >> 1) != 0 ? upper + below : upper;
+    }
+  };
+  using ColorRamp = std::array<BlockRamp<S32>, 2>;
+
+  HALFPLANE_INLINE BlockRamp<I16> depth_ramp(const BinTriangle& t, std::int32_t anchor) const {
+    return {position_.column[0] * t.z_step_x + position_.row[0] * t.z_step_y + anchor, I16(kBlockSize * t.z_step_x),
+            I16(kBlockSize * t.z_step_y)};
+  }
+  HALFPLANE_INLINE ColorRamp color_ramp(const ColorSteps& t, const ChannelPairs& anchor) const {
+    ColorRamp ramp;
+    for (std::size_t p = 0; p < 2; ++p) {
+      const auto step_x = as<S32>(I16(t.step_x[p])), step_y = as<S32>(I16(t.step_y[p]));
+      ramp[p] = {as<S32>(position_.column_pair[0]) * step_x + as<S32>(position_.row_pair[0]) * step_y +
+                     as<S32>(I16(anchor[p])),
+                 step_x << kBlockShift, step_y << kBlockShift};
+    }
+    return ramp;
+  }
+
+  /// Depths in block 0...3 of a tile.
+  HALFPLANE_INLINE I16 depths(const BinTriangle& t, const BlockRamp<I16>& ramp, std::size_t block) const {
+    return decode(ramp(block), depth_format_, t.z_low, t.z_high);
+  }
+  /// Packed colours.
+  HALFPLANE_INLINE static I16 colors(const ColorSteps& t, const ColorRamp& ramp, std::size_t block,
+                                     const LaneFormat& format, ColorFormat pixels) {
     const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
-      return channel_codes(position_.column_pair[block & 1], position_.row_pair[block >> 1], t.step_x[p], t.step_y[p],
-                           anchor[p], t.low[p], t.high[p]);
+      return color_codes(ramp[p](block), I16(t.low[p]), I16(t.high[p]), format);
     };
-    return packed(pair(0) | pair(1) << 8);
+    return packed(pair(0) | pair(1) << 8, pixels);
   }
 
   /// Two channels' codes, in the halves of each lane, as everything here: columns and rows from the anchor.
   [[nodiscard]] HALFPLANE_INLINE I16 channel_codes(const I16& column, const I16& row, const I16& step_x,
                                                    const I16& step_y, const I16& anchor, const I16& low,
                                                    const I16& high) const {
-    const S32 value = as<S32>(column) * as<S32>(step_x) + as<S32>(row) * as<S32>(step_y) + as<S32>(anchor);
-    const S32 code = shift_right_logical(value, color_format_.down) - static_cast<std::int16_t>(color_format_.bias);
+    return color_codes(as<S32>(column) * as<S32>(step_x) + as<S32>(row) * as<S32>(step_y) + as<S32>(anchor), low, high,
+                       color_format_);
+  }
+  [[nodiscard]] HALFPLANE_INLINE static I16 color_codes(const S32& value, const I16& low, const I16& high,
+                                                        const LaneFormat& format) {
+    const S32 code = shift_right_logical(value, format.down) - static_cast<std::int16_t>(format.bias);
     return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
   }
 
   /// Colours of 8 bits a channel, R lowest, as the target has them.
-  [[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& rgba) const {
-    if (config_.color_format == ColorFormat::rgba8888) return rgba;
+  [[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& rgba) const { return packed(rgba, config_.color_format); }
+  [[nodiscard]] HALFPLANE_INLINE static I16 packed(const I16& rgba, ColorFormat format) {
+    if (format == ColorFormat::rgba8888) return rgba;
     const I16 r = rgba & 255, g = shift_right_logical(rgba, 8) & 255, b = shift_right_logical(rgba, 16) & 255;
     return (r * 249 + 1014) >> 11 << 11 | (g * 253 + 505) >> 10 << 5 | (b * 249 + 1014) >> 11;
   }
@@ -567,12 +619,6 @@ class Bin {
     }
   }
 
-  /// Depths of a triangle in block 0...3 of a tile, from the value at the tile's anchor.
-  HALFPLANE_INLINE I16 depth_block(const BinTriangle& t, std::int32_t anchor, std::size_t block) const {
-    return decode(position_.column[block & 1] * t.z_step_x + position_.row[block >> 1] * t.z_step_y + anchor,
-                  depth_format_, t.z_low, t.z_high);
-  }
-
   void find_bin_range() {
     I16 low = I16::load(tile_low_), high = I16::load(tile_high_);
     for (int t = 16; t < kTiles; t += 16) {
@@ -631,44 +677,97 @@ class Bin {
     std::array<I16, 3> edge;  ///< at the tiles' first pixels
   };
 
-  HALFPLANE_INLINE TileLanes classify_tiles(const BinTriangle& t, int row) {
+  /// What the pairs of rows of a triangle have in common. Of the depths at the tiles' anchors the bits below `drop` only
+  /// carry: where their sums fit 32 bits, that is all that a lane needs.
+  struct TileRows {
+    std::array<std::int32_t, 3> outside, cut, edge_step;  ///< from a tile's first pixel to where an edge is largest, smallest
+    std::array<I16, 3> edge;   ///< of the first pair of rows
+    I16 beside;                ///< signs: columns without a pixel of the box
+    std::int32_t to_low, to_high;  ///< from an anchor
+    bool is_narrow;
+    I16 upper, lower;  ///< depth at the anchors of row 0
+    std::int32_t upper_step, lower_step;
+    I16 z_low, z_high;
+  };
+
+  HALFPLANE_INLINE TileRows tile_rows(const BinTriangle& t) const {
+    TileRows rows;
+    constexpr int kExtent = kTileSize - 1, kSumBits = 4;  // sums of 7 + 7 + 1
+    const I16 x = position_.pair_x * kTileSize, y = position_.pair_y * kTileSize;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int32_t dx = t.dx[i], dy = t.dy[i];
+      rows.edge[i] = y * dx - x * dy + t.edge[i];
+      rows.edge_step[i] = kTileSize * dx;
+      rows.outside[i] = kExtent * (std::max(dx, 0) + std::max(-dy, 0));
+      rows.cut[i] = kExtent * (std::min(dx, 0) + std::min(-dy, 0));
+    }
+    rows.beside = (x + (kExtent - t.left)) | (t.right - x);
+    // From the anchor a tile reaches four pixels to the left and up, three to the right and down.
+    const auto reach = [](std::int32_t step, bool is_high) HALFPLANE_LAMBDA {
+      return (step > 0) == is_high ? (kTileSize / 2 - 1) * step : -kTileSize / 2 * step;
+    };
+    rows.to_low = reach(t.z_step_x, false) + reach(t.z_step_y, false);
+    rows.to_high = reach(t.z_step_x, true) + reach(t.z_step_y, true);
+    const int drop = depth_format_.drop;
+    rows.is_narrow = drop + kSumBits <= 32;
+    if (rows.is_narrow) {
+      const auto upper = [drop](std::int64_t v) HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v >> drop); };
+      const auto lower = [drop](std::int64_t v)
+                             HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v & ((std::int64_t{1} << drop) - 1)); };
+      rows.upper_step = upper(t.z_tile_y);
+      rows.lower_step = lower(t.z_tile_y);
+      rows.upper = position_.pair_x * upper(t.z_tile_x) + position_.pair_y * rows.upper_step + upper(t.z_anchor);
+      rows.lower = position_.pair_x * lower(t.z_tile_x) + position_.pair_y * rows.lower_step + lower(t.z_anchor);
+    }
+    rows.z_low = I16(t.z_low);
+    rows.z_high = I16(t.z_high);
+    return rows;
+  }
+
+  HALFPLANE_INLINE TileLanes classify_tiles(const BinTriangle& t, const TileRows& rows, int row) {
     TileLanes lanes;
-    const I16 x = position_.pair_x * kTileSize, y = (position_.pair_y + row) * kTileSize;
     constexpr int kExtent = kTileSize - 1;
     I16 outside(0), cut(0);
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::int32_t dx = t.dx[i], dy = t.dy[i];
-      lanes.edge[i] = y * dx - x * dy + t.edge[i];
-      outside |= lanes.edge[i] + kExtent * (std::max(dx, 0) + std::max(-dy, 0));
-      cut |= lanes.edge[i] + kExtent * (std::min(dx, 0) + std::min(-dy, 0));
+      lanes.edge[i] = rows.edge[i] + row * rows.edge_step[i];
+      outside |= lanes.edge[i] + rows.outside[i];
+      cut |= lanes.edge[i] + rows.cut[i];
     }
-    const I16 in_box = ~(((x + kExtent - t.left) | (t.right - x) | (y + kExtent - t.top) | (t.bottom - y)) >> 31);
-    if (!t.is_whole) cut |= (x - t.left) | ((t.right - kExtent) - x) | (y - t.top) | ((t.bottom - kExtent) - y);
-    lanes.live = in_box & ~(outside >> 31);
-    lanes.full = lanes.live & ~(cut >> 31);
-    const auto box = static_cast<unsigned>(std::popcount(bits_of(in_box)));
-    job_.counters.tiles_visited += box;
-    if (skip_.tiles_outside)
-      job_.counters.skipped.tiles_outside += box - static_cast<unsigned>(std::popcount(bits_of(lanes.live)));
-    else
-      lanes.live = in_box;
-    lanes.z_low = I16(t.z_low);
-    lanes.z_high = I16(t.z_high);
+    const I16 y = position_.pair_y * kTileSize + row * kTileSize;
+    const I16 apart = rows.beside | (y + (kExtent - t.top)) | (t.bottom - y);  // from the box
+    if (!t.is_whole) {
+      const I16 x = position_.pair_x * kTileSize;
+      cut |= (x - t.left) | ((t.right - kExtent) - x) | (y - t.top) | ((t.bottom - kExtent) - y);
+    }
+    const std::uint32_t box = ~bits_of(apart) & 0xffff;
+    outside |= apart;
+    job_.counters.tiles_visited += static_cast<unsigned>(std::popcount(box));
+    if (skip_.tiles_outside) {
+      job_.counters.skipped.tiles_outside += static_cast<unsigned>(std::popcount(bits_of(outside) & box));
+      lanes.live = ~(outside >> 31);
+    } else {
+      lanes.live = ~(apart >> 31);
+    }
+    lanes.full = ~((outside | cut) >> 31);
+    lanes.z_low = rows.z_low;
+    lanes.z_high = rows.z_high;
     if (t.is_gentle) {
-      const L16 value = convert<std::int64_t>(position_.pair_x) * t.z_tile_x +
-                        convert<std::int64_t>(position_.pair_y) * t.z_tile_y +
-                        static_cast<std::int64_t>(static_cast<std::uint64_t>(t.z_anchor) + product(t.z_tile_y, row));
-      const I16 anchor = convert<std::int32_t>(value >> depth_format_.drop) << depth_format_.up;
-      // From the anchor a tile reaches four pixels to the left and up, three to the right and down.
-      const auto reach = [](std::int32_t step, bool is_high) HALFPLANE_LAMBDA {
-        return (step > 0) == is_high ? (kTileSize / 2 - 1) * step : -kTileSize / 2 * step;
-      };
-      lanes.z_low =
-          decode(anchor + (reach(t.z_step_x, false) + reach(t.z_step_y, false)), depth_format_, t.z_low, t.z_high);
-      lanes.z_high =
-          decode(anchor + (reach(t.z_step_x, true) + reach(t.z_step_y, true)), depth_format_, t.z_low, t.z_high);
+      const I16 anchor = depth_anchors(t, rows, row);
+      lanes.z_low = decode(anchor + rows.to_low, depth_format_, rows.z_low, rows.z_high);
+      lanes.z_high = decode(anchor + rows.to_high, depth_format_, rows.z_low, rows.z_high);
     }
     return lanes;
+  }
+
+  /// The depths at the anchors of a pair of rows of tiles, in lanes.
+  HALFPLANE_INLINE I16 depth_anchors(const BinTriangle& t, const TileRows& rows, int row) const {
+    if (rows.is_narrow)
+      return (rows.upper + row * rows.upper_step +
+              shift_right_logical(rows.lower + row * rows.lower_step, depth_format_.drop))
+             << depth_format_.up;
+    const L16 value = convert<std::int64_t>(position_.pair_x) * t.z_tile_x +
+                      convert<std::int64_t>(position_.pair_y + row) * t.z_tile_y + t.z_anchor;
+    return convert<std::int32_t>(shift_right_logical(value, depth_format_.drop)) << depth_format_.up;
   }
 
   /// Tiles where no fragment passes, and tiles where all do.
@@ -692,8 +791,10 @@ class Bin {
   void draw_large(const BinTriangle& t) {
     std::int32_t plane = -1;
     line_tiles_ = 0;
+    const TileRows rows = tile_rows(t);
+    bool is_changed = false;
     for (int row = t.top >> kTileShift & ~1; row <= t.bottom >> kTileShift; row += 2) {
-      TileLanes lanes = classify_tiles(t, row);
+      TileLanes lanes = classify_tiles(t, rows, row);
       std::int32_t* low = tile_low_ + row * kBinTiles;
       std::int32_t* high = tile_high_ + row * kBinTiles;
       const I16 stored_low = I16::load(low), stored_high = I16::load(high);
@@ -709,7 +810,9 @@ class Bin {
         if (is_any(taken)) take_tiles(t, row, taken, lanes, plane);
       }
       const std::uint32_t full_bits = bits_of(lanes.full);
-      std::uint32_t rest = bits_of(lanes.live & ~taken);
+      const std::uint32_t live_bits = bits_of(lanes.live);
+      is_changed |= live_bits != 0;
+      std::uint32_t rest = live_bits & ~bits_of(taken);
       if (rest == 0) continue;
       struct {
         std::array<std::array<std::int32_t, 16>, 3> edge;
@@ -722,7 +825,7 @@ class Bin {
                         {lane.edge[0][i], lane.edge[1][i], lane.edge[2][i]});
       }
     }
-    find_bin_range();
+    if (is_changed) find_bin_range();
   }
 
   /// Tiles that the triangle takes as a whole.
@@ -768,6 +871,14 @@ class Bin {
         if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
   }
 
+  template <class Visit>
+  HALFPLANE_INLINE static void for_each_block(Visit&& visit) {
+    visit(std::integral_constant<std::size_t, 0>{});
+    visit(std::integral_constant<std::size_t, 1>{});
+    visit(std::integral_constant<std::size_t, 2>{});
+    visit(std::integral_constant<std::size_t, 3>{});
+  }
+
   /// The part of a triangle in one tile, block by block.
   template <DepthFunc Test>
   HALFPLANE_NOINLINE void draw_tile(const BinTriangle& t, int tile, bool is_full,
@@ -777,44 +888,52 @@ class Bin {
     const int top = std::max(t.top - tile_y * kTileSize, 0), bottom = std::min(t.bottom - tile_y * kTileSize, 7);
     const bool is_whole = t.is_whole || (left == 0 && top == 0 && right == 7 && bottom == 7);
     need_depth(tile);
-    const std::int32_t depth_at = depth_anchor(t, tile_x, tile_y);
-    ChannelPairs color_at{};
-    bool has_color = false;  // asked for when a pixel passes: often none does
-    std::int32_t* depths = memory_.depth.data() + first_of(tile);
-    std::uint32_t* pixels = memory_.color.data() + first_of(tile);
-    std::array<I16, 3> ramp;
-    for (std::size_t e = 0; e < 3; ++e) ramp[e] = position_.block_y * t.dx[e] - position_.block_x * t.dy[e] + edge[e];
-    std::uint64_t covered_pixels = 0, passed_pixels = 0;
+    const BlockRamp<I16> depth_plane = depth_ramp(t, depth_anchor(t, tile_x, tile_y));
+    std::array<BlockRamp<I16>, 3> edge_plane;
+    for (std::size_t e = 0; e < 3; ++e)
+      edge_plane[e] = {position_.block_y * t.dx[e] - position_.block_x * t.dy[e] + edge[e], I16(-kBlockSize * t.dy[e]),
+                       I16(kBlockSize * t.dx[e])};
+    // Copies: what is stored to memory might change the members, for all that the compiler knows.
+    const LaneFormat format = depth_format_;
+    const I16 z_low(t.z_low), z_high(t.z_high);
+    const bool has_depth = state_.depth_write, skips = skip_.fragments_early_z;
+    std::int32_t* const stored_depths = memory_.depth.data() + first_of(tile);
+    std::array<I16, 4> passed;                          // signs
+    std::uint64_t covered_bits = 0, passed_bits = 0;  // of a block: sixteen
     I16 lowest(0x7fffffff), highest(0);
-    for (int block = 0; block < 4; ++block) {
-      const int x = (block & 1) * kBlockSize, y = (block >> 1) * kBlockSize;
-      const auto at = static_cast<std::size_t>(block) * kBlockPixels;
-      I16 signs(0);
-      if (!is_full)
-        for (std::size_t e = 0; e < 3; ++e) signs |= ramp[e] + (y * t.dx[e] - x * t.dy[e]);
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      constexpr int kX = (block & 1) * kBlockSize, kY = (block >> 1) * kBlockSize;
+      I16 outside(0);  // signs
+      if (!is_full) outside = edge_plane[0](block) | edge_plane[1](block) | edge_plane[2](block);
       if (!is_whole)
-        signs |= (position_.block_x + (x - left)) | ((right - x) - position_.block_x) |
-                 (position_.block_y + (y - top)) | ((bottom - y) - position_.block_y);
-      const I16 covered = ~(signs >> 31), stored = I16::load(depths + at);
-      const I16 depth = depth_block(t, depth_at, static_cast<std::size_t>(block));
-      const I16 passed = covered & passes<Test>(depth, stored);
-      const std::uint32_t passed_bits = bits_of(passed);
-      const I16 now = select(passed, depth, stored);
-      covered_pixels += static_cast<unsigned>(std::popcount(bits_of(covered)));
-      passed_pixels += static_cast<unsigned>(std::popcount(passed_bits));
+        outside |= (position_.block_x + (kX - left)) | ((right - kX) - position_.block_x) |
+                   (position_.block_y + (kY - top)) | ((bottom - kY) - position_.block_y);
+      std::int32_t* const at = stored_depths + block * kBlockPixels;
+      const I16 stored = I16::load(at), depth = decode(depth_plane(block), format, z_low, z_high);
+      passed[block] = ~outside & passes<Test>(depth, stored);
+      const I16 now = select_by_sign(passed[block], depth, stored);
+      covered_bits |= std::uint64_t{~bits_of(outside) & 0xffff} << (kBlockPixels * block);
+      passed_bits |= std::uint64_t{bits_of(passed[block])} << (kBlockPixels * block);
       lowest = min(lowest, now);
       highest = max(highest, now);
-      if (passed_bits == 0 && skip_.fragments_early_z) continue;
-      if (state_.depth_write) now.store(depths + at);
-      if (!state_.color_write) continue;
-      if (!has_color) {
-        need_color(tile);
-        color_at = color_anchor(t, tile_x, tile_y);
-        has_color = true;
-      }
-      const I16 color = colors(t.color, color_at, static_cast<std::size_t>(block));
-      select(passed, color, I16::load(pixels + at)).store(pixels + at);
+      if (has_depth) now.store(at);
+    });
+    if (state_.color_write && (passed_bits != 0 || !skips)) {
+      need_color(tile);
+      const ColorRamp color_plane = color_ramp(t.color, color_anchor(t, tile_x, tile_y));
+      std::uint32_t* const pixels = memory_.color.data() + first_of(tile);
+      const ColorSteps steps = t.color;
+      const LaneFormat color_format = color_format_;
+      const ColorFormat pixel_format = config_.color_format;
+      for_each_block([&](auto block) HALFPLANE_LAMBDA {
+        if ((passed_bits >> (kBlockPixels * block) & 0xffff) == 0 && skips) return;
+        std::uint32_t* const at = pixels + block * kBlockPixels;
+        const I16 color = colors(steps, color_plane, block, color_format, pixel_format);
+        select_by_sign(passed[block], color, I16::load(at)).store(at);
+      });
     }
+    const auto covered_pixels = static_cast<std::uint64_t>(std::popcount(covered_bits)),
+               passed_pixels = static_cast<std::uint64_t>(std::popcount(passed_bits));
     Counters& counters = job_.counters;
     if (is_full)
       ++counters.skipped.trivially_accepted;
@@ -833,47 +952,121 @@ class Bin {
 
   // --- end ----------------------------------------------------------------------------------------------------------
 
-  /// Everything that is new goes to the target, two tiles at a time: a cache line of each row.
+  /// Everything that is new goes to the target, a row of tiles at a time.
   void finish() {
-    for (int tile = 0; tile < kTiles; tile += 2) {
-      const std::ptrdiff_t to = in_target(tile);
-      if (to < 0) continue;
-      const bool has_right = in_target(tile + 1) >= 0;
-      finish_pair(tile, to, has_right, depth_owner_.data(), job_.target.depth.data(), TileStates::kDepthCleared,
-                  [this](int t) HALFPLANE_LAMBDA { return depths_of(t); });
-      finish_pair(tile, to, has_right, color_owner_.data(), job_.target.color.data(), TileStates::kColorCleared,
-                  [this](int t) HALFPLANE_LAMBDA { return colors_of(t); });
+    const int columns = tiles_along(job_.target.width - first_x_), rows = tiles_along(job_.target.height - first_y_);
+    const auto depths = [this](int tile) HALFPLANE_LAMBDA { return depths_of(tile); };
+    const auto colors = [this](int tile) HALFPLANE_LAMBDA { return colors_of(tile); };
+    const auto depth_rows = [this](auto&&... of) HALFPLANE_LAMBDA { write_depth_rows(of...); };
+    const auto color_rows = [this](auto&&... of) HALFPLANE_LAMBDA { write_color_rows(of...); };
+    for (int row = 0; row < rows; ++row) {
+      const int tile = row * kBinTiles;
+      const std::size_t to = job_.target.at(first_x_, first_y_ + row * kTileSize);
+      finish_row(tile, columns, job_.target.depth.data() + to, depth_owner_, TileStates::kDepthCleared, depths, depth_rows);
+      finish_row(tile, columns, job_.target.color.data() + to, color_owner_, TileStates::kColorCleared, colors, color_rows);
     }
     finish_lines();
   }
+  static int tiles_along(int pixels) { return std::min((pixels + kTileSize - 1) / kTileSize, kBinTiles); }
 
   using TileBlocks = std::array<I16, 4>;
+  /// A row of tiles as rows of pixels.
+  using PixelRows = std::array<std::array<std::uint32_t, kBinSize>, kTileSize>;
+  using TileOwners = std::array<std::int32_t, kTiles>;
 
-  /// `blocks_of(tile)`: its values. `cleared`: what is no longer pending where they were written.
-  template <class BlocksOf>
-  HALFPLANE_INLINE void finish_pair(int tile, std::ptrdiff_t to, bool has_right, const std::int32_t* owner,
-                                    std::uint32_t* image, std::uint8_t cleared, BlocksOf&& blocks_of) {
-    const bool is_left_new = owner[tile] >= kInMemory, is_right_new = has_right && owner[tile + 1] >= kInMemory;
-    if (!is_left_new && !is_right_new) return;
-    const int stride = job_.target.stride;
-    const std::size_t first_tile = static_cast<std::size_t>(job_.bin * kTiles + tile);
-    const auto written = [&](std::size_t at) HALFPLANE_LAMBDA {
+  /// The row of tiles that begins with `first`. `cleared`: what is no longer pending where they were written.
+  /// `blocks_of(tile)`: its values; `write_rows(left, right, tile, rows)`: those of two that triangles have taken.
+  template <class BlocksOf, class WriteRows>
+  HALFPLANE_INLINE void finish_row(int first, int columns, std::uint32_t* image, const TileOwners& owners,
+                                   std::uint8_t cleared, BlocksOf&& blocks_of, WriteRows&& write_rows) {
+    const std::int32_t* owner = owners.data() + first;
+    alignas(64) PixelRows rows;
+    std::uint32_t is_new = 0;
+    for (int i = 0; i < columns; ++i) is_new |= (owner[i] >= kInMemory ? 1U : 0U) << i;
+    if (is_new == 0) return;
+    for (int i = 0; i < kBinTiles; i += 2) {
+      if ((is_new >> i & 3) == 3 && owner[i] >= 0 && owner[i + 1] >= 0) {
+        const auto plane = [&](int at) HALFPLANE_LAMBDA -> const BinTriangle& {
+          return memory_.planes[static_cast<std::size_t>(owner[at])];
+        };
+        write_rows(plane(i), plane(i + 1), first + i, rows);
+        continue;
+      }
+      for (int at = i; at < i + 2; ++at) {
+        if ((is_new >> at & 1) == 0) continue;
+        const TileBlocks blocks = blocks_of(first + at);
+        for (std::size_t half = 0; half < 2; ++half)
+          store_blocks(rows[half * kBlockSize].data() + at * kTileSize, kBinSize, blocks[2 * half], blocks[2 * half + 1]);
+      }
+    }
+    const std::size_t first_tile = static_cast<std::size_t>(job_.bin * kTiles + first);
+    for (std::uint32_t rest = is_new; rest != 0; rest &= rest - 1) {
+      const std::size_t at = first_tile + static_cast<std::size_t>(std::countr_zero(rest));
       job_.tiles.pending[at] &= static_cast<std::uint8_t>(~cleared);
       job_.tiles.held[at] &= static_cast<std::uint8_t>(~cleared);
-    };
-    if (is_left_new) written(first_tile);
-    if (is_right_new) written(first_tile + 1);
-    if (is_left_new && is_right_new) {
-      const TileBlocks left = blocks_of(tile), right = blocks_of(tile + 1);
-      for (std::size_t half = 0; half < 2; ++half)
-        store_lines(image + to + static_cast<int>(half) * kBlockSize * stride, stride, are_lines_, left[2 * half],
-                    left[2 * half + 1], right[2 * half], right[2 * half + 1]);
-      return;
     }
-    const TileBlocks blocks = blocks_of(is_left_new ? tile : tile + 1);
-    for (std::size_t half = 0; half < 2; ++half)
-      store_blocks(image + to + (is_left_new ? 0 : kTileSize) + static_cast<int>(half) * kBlockSize * stride, stride,
-                   blocks[2 * half], blocks[2 * half + 1]);
+    const int stride = job_.target.stride;
+    const std::uint32_t in_lines = are_lines_ ? is_new & is_new >> 1 & 0x55 : 0, alone = is_new & ~(in_lines * 3);
+    for (int y = 0; y < kTileSize; ++y) {
+      const std::uint32_t* from = rows[static_cast<std::size_t>(y)].data();
+      std::uint32_t* const to = image + y * stride;
+      if (in_lines == 0x55) {
+        for (int x = 0; x < kBinSize; x += 16) stream_line(to + x, I16::load(from + x));
+        continue;
+      }
+      for (std::uint32_t rest = in_lines; rest != 0; rest &= rest - 1) {
+        const int x = std::countr_zero(rest) * kTileSize;
+        stream_line(to + x, I16::load(from + x));
+      }
+      for (std::uint32_t rest = alone; rest != 0; rest &= rest - 1) {
+        const int x = std::countr_zero(rest) * kTileSize;
+        std::memcpy(to + x, from + x, kTileSize * sizeof *to);
+      }
+    }
+  }
+
+  /// Depths of two tiles side by side, each a triangle's as a whole, row by row: a cache line each.
+  HALFPLANE_INLINE void write_depth_rows(const BinTriangle& left, const BinTriangle& right, int tile,
+                                         PixelRows& rows) const {
+    const int to = tile % kBinTiles * kTileSize;
+    const auto both = [&](auto&& of) HALFPLANE_LAMBDA { return halves(of(left), of(right)); };
+    const I16 step_y = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_y; });
+    const I16 low = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_low; });
+    const I16 high = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_high; });
+    I16 value = (position_.pair_x - kTileSize / 2) * both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_x; }) -
+                step_y * (kTileSize / 2) +
+                halves(depth_anchor(left, tile % kBinTiles, tile / kBinTiles),
+                       depth_anchor(right, tile % kBinTiles + 1, tile / kBinTiles));
+    for (auto& row : rows) {
+      decode(value, depth_format_, low, high).store(row.data() + to);
+      value += step_y;
+    }
+  }
+  /// Likewise colours.
+  HALFPLANE_INLINE void write_color_rows(const BinTriangle& left, const BinTriangle& right, int tile,
+                                         PixelRows& rows) const {
+    const int to = tile % kBinTiles * kTileSize;
+    const auto both = [&](const auto& of) HALFPLANE_LAMBDA { return as<S32>(halves(of(left.color), of(right.color))); };
+    const ChannelPairs at_left = color_anchor(left, tile % kBinTiles, tile / kBinTiles),
+                       at_right = color_anchor(right, tile % kBinTiles + 1, tile / kBinTiles);
+    const I16 x = position_.pair_x - kTileSize / 2;
+    const auto column = as<S32>(pairs(x, x));
+    std::array<S32, 2> value, step_y, low, high;
+    const LaneFormat format = color_format_;
+    const ColorFormat pixels = config_.color_format;
+    for (std::size_t p = 0; p < 2; ++p) {
+      step_y[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.step_y[p]; });
+      low[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.low[p]; });
+      high[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.high[p]; });
+      value[p] = column * both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.step_x[p]; }) -
+                 (step_y[p] << (kTileShift - 1)) + as<S32>(halves(at_left[p], at_right[p]));
+    }
+    for (auto& row : rows) {
+      const auto pair = [&](std::size_t p)
+                            HALFPLANE_LAMBDA { return color_codes(value[p], as<I16>(low[p]), as<I16>(high[p]), format); };
+      packed(pair(0) | pair(1) << 8, pixels).store(row.data() + to);
+      for (std::size_t p = 0; p < 2; ++p) value[p] += step_y[p];
+    }
   }
 
   /// A tile's depths, which are in memory or those of a triangle.
@@ -882,8 +1075,8 @@ class Bin {
     const std::int32_t owner = depth_owner_[tile];
     if (owner >= 0) {
       const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
-      const std::int32_t anchor = depth_anchor(t, tile % kBinTiles, tile / kBinTiles);
-      for (std::size_t i = 0; i < 4; ++i) blocks[i] = depth_block(t, anchor, i);
+      const auto ramp = depth_ramp(t, depth_anchor(t, tile % kBinTiles, tile / kBinTiles));
+      for (std::size_t i = 0; i < 4; ++i) blocks[i] = depths(t, ramp, i);
     } else {
       const std::int32_t* from = memory_.depth.data() + first_of(tile);
       for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);
@@ -895,8 +1088,8 @@ class Bin {
     const std::int32_t owner = color_owner_[tile];
     if (owner >= 0) {
       const BinTriangle& t = memory_.planes[static_cast<std::size_t>(owner)];
-      const ChannelPairs anchor = color_anchor(t, tile % kBinTiles, tile / kBinTiles);
-      for (std::size_t i = 0; i < 4; ++i) blocks[i] = colors(t.color, anchor, i);
+      const auto ramp = color_ramp(t.color, color_anchor(t, tile % kBinTiles, tile / kBinTiles));
+      for (std::size_t i = 0; i < 4; ++i) blocks[i] = colors(t.color, ramp, i, color_format_, config_.color_format);
     } else {
       const std::uint32_t* from = memory_.color.data() + first_of(tile);
       for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);

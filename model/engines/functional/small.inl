@@ -119,11 +119,11 @@ HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixe
   if (passed_bits == 0 && skip_.fragments_early_z) return;
   if (state_.depth_write) select(passed, depth, stored).store(depths);
   if (!state_.color_write) return;
-  const ColorSteps steps{{small_.c_step_x[0][i], small_.c_step_x[1][i]},
-                         {small_.c_step_y[0][i], small_.c_step_y[1][i]},
-                         {small_.c_low[0][i], small_.c_low[1][i]},
-                         {small_.c_high[0][i], small_.c_high[1][i]}};
-  const I16 color = colors(steps, {small_.c_anchor[0][of_box][i], small_.c_anchor[1][of_box][i]}, of_tile);
+  const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
+    return channel_codes(position_.column_pair[of_tile & 1], position_.row_pair[of_tile >> 1], small_.c_step_x[p][i],
+                         small_.c_step_y[p][i], small_.c_anchor[p][of_box][i], small_.c_low[p][i], small_.c_high[p][i]);
+  };
+  const I16 color = packed(pair(0) | pair(1) << 8);
   std::uint32_t* pixels = memory_.color.data() + at;
   select(passed, color, I16::load(pixels)).store(pixels);
 }
