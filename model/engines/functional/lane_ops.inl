@@ -344,24 +344,20 @@ HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
   return r;
 }
 
-/// Of the first `count` lanes those of the mask to base + 4 index. No two of them have one index.
-template <class Element>
-HALFPLANE_INLINE void scatter(Element* base, const I16& index, const I16& value, const I16& mask, int count) {
-  static_assert(sizeof(Element) == 4);
+/// Of four numbers, the one that each lane of `which` names.
+HALFPLANE_INLINE I16 spread(const std::int32_t* four, const I16& which) {
+  I16 r;
 #if HALFPLANE_ISA == 512
-  const auto lanes = static_cast<__mmask16>(bits_of(mask) & ((1U << count) - 1));
-  _mm512_mask_i32scatter_epi32(base, lanes, (__m512i)index.part[0], (__m512i)value.part[0], 4);
+  const __m128i row = _mm_loadu_si128(reinterpret_cast<const __m128i*>(four));
+  r.part[0] = (I16::Register)_mm512_permutexvar_epi32((__m512i)which.part[0], _mm512_castsi128_si512(row));
+#elif HALFPLANE_ISA == 256
+  const __m256i row = _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(four)));
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (I16::Register)_mm256_permutevar8x32_epi32(row, (__m256i)which.part[i]);
 #else
-  // What is not to be stored is stored as it was: which lanes those are, nobody can foresee.
-  std::array<std::int32_t, 16> at, what, is_in;
-  index.store(at.data());
-  value.store(what.data());
-  mask.store(is_in.data());
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const Element old = base[at[i]];
-    base[at[i]] = old ^ ((old ^ static_cast<Element>(what[i])) & static_cast<Element>(is_in[i]));
-  }
+  for (int i = 0; i < 16; ++i) r.part[i / 4][i % 4] = four[which.part[i / 4][i % 4]];
 #endif
+  return r;
 }
 
 /// One number in the lower eight lanes, another in the upper.

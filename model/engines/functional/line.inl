@@ -78,50 +78,52 @@ HALFPLANE_INLINE void draw_line(const LineBatch& lines, std::size_t i) {
 /// `Depth`: an integer as wide as the depth register, or wider.
 template <DepthFunc Test, class Depth>
 HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
-  constexpr int kDepthBits = 8 * static_cast<int>(sizeof(Depth));
+  constexpr int kDepthBits = 8 * static_cast<int>(sizeof(Depth)), kGroup = 16;
   std::int32_t* const depths = memory_.depth.data();
   std::uint32_t* const pixels = memory_.color.data();
   const int depth_down = kDepthBits - config_.depth_bits;
   const bool has_depth = state_.depth_write, has_color = state_.color_write;
   const auto depth_of = [](std::int64_t value) HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
-  const Depth depth_step = depth_of(line.depth_step[i]);
-  const I16 lane = position_.lane;
-  D16 row = position_.lane_d * line.slope[i] + line.row[i];
-  Pack<Depth, 16> depth = convert<Depth>(lane) * depth_step + depth_of(line.depth[i]);
-  std::array<I16, 4> color;
-  if (has_color)
-    for (std::size_t c = 0; c < 4; ++c) color[c] = lane * line.color_step[c][i] + line.color[c][i];
-  I16 major = lane;
+  const Depth first_depth = depth_of(line.depth[i]), depth_step = depth_of(line.depth_step[i]);
   const I16 is_x_major(line.is_x_major[i]), x_sign(line.x_sign[i]), y_sign(line.y_sign[i]);
   const I16 first_x(line.x[i] - line.x_sign[i]), first_y(line.y[i] - line.y_sign[i]);
-  std::uint32_t start = static_cast<std::uint32_t>(-line.shows_start[i]);
+  alignas(64) std::array<std::int32_t, kGroup> place, code, color;
   std::uint64_t tiles = 0, passed_pixels = 0;
-  for (std::int32_t left = line.pixels[i]; left > 0; left -= 16) {
-    const std::uint32_t there = left >= 16 ? 0xffffU : (1U << left) - 1;
-    const I16 minor = convert<std::int32_t>(row);
-    const I16 x = (select(is_x_major, major, minor) ^ x_sign) + first_x,
-              y = (select(is_x_major, minor, major) ^ y_sign) + first_y;
+  const int pixels_left = line.pixels[i];
+  for (int first = 0; first < pixels_left; first += kGroup) {
+    const int count = std::min(pixels_left - first, kGroup);
+    const I16 n = position_.lane + first;
+    const I16 moved = convert<std::int32_t>(convert<double>(n) * line.slope[i] + line.row[i]);
+    const I16 x = (select(is_x_major, n, moved) ^ x_sign) + first_x, y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
     const I16 at = place_of(x, y);  // of lanes behind the last pixel: somewhere in the bin
-    const std::uint64_t touched = or_of_bits(at >> 6, there);
+    at.store(place.data());
+    const std::uint64_t touched = or_of_bits(at >> 6, (1U << count) - 1);
     tiles |= touched;
     if ((touched & ~line_tiles_) != 0) touch_line_tiles<Test>(touched & ~line_tiles_);
-    I16 code = convert<std::int32_t>(shift_right_logical(depth, depth_down));
-    const I16 is_start = from_bits(start);
-    code = select(is_start, I16(line.depth_start[i]), code);
-    const I16 passed = passes<Test>(code, gather(depths, at));
-    const int count = std::min(left, 16);
-    passed_pixels += static_cast<unsigned>(std::popcount(bits_of(passed) & there));
-    if (has_depth) scatter(depths, at, code, passed, count);
+    const Pack<Depth, 16> depth = convert<Depth>(n) * depth_step + first_depth;
+    convert<std::int32_t>(shift_right_logical(depth, depth_down)).store(code.data());
     if (has_color) {
-      const auto code_of = [&](std::size_t c) HALFPLANE_LAMBDA { return shift_right_logical(color[c], 24); };
-      const I16 rgba = code_of(0) | code_of(1) << 8 | code_of(2) << 16 | code_of(3) << 24;
-      scatter(pixels, at, packed(select(is_start, I16(line.color_start[i]), rgba)), passed, count);
-      for (std::size_t c = 0; c < 4; ++c) color[c] += I16(16 * line.color_step[c][i]);
+      const auto channel = [&](std::size_t c)
+                               HALFPLANE_LAMBDA { return n * line.color_step[c][i] + line.color[c][i]; };
+      const auto byte = [](const I16& value, int down) HALFPLANE_LAMBDA {
+        return shift_right_logical(value, down) & static_cast<std::int32_t>(0xff000000U >> down);
+      };
+      packed(shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0))
+          .store(color.data());
     }
-    row += D16(16 * line.slope[i]);
-    depth += Pack<Depth, 16>(16 * depth_step);
-    major += I16(16);
-    start = 0;
+    if (first == 0 && line.shows_start[i] != 0) {
+      code[0] = line.depth_start[i];
+      color[0] = packed(I16(line.color_start[i])).part[0][0];
+    }
+    // What fails is stored as it was: which pixels those are, nobody can foresee.
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const auto to = static_cast<std::size_t>(place[k]);
+      const std::int32_t stored = depths[to];
+      const std::uint32_t has_passed = passes_one<Test>(code[k], stored) ? 1U : 0U, mask = 0U - has_passed;
+      passed_pixels += has_passed;
+      if (has_depth) depths[to] = stored ^ ((stored ^ code[k]) & static_cast<std::int32_t>(mask));
+      if (has_color) pixels[to] ^= (pixels[to] ^ static_cast<std::uint32_t>(color[k])) & mask;
+    }
   }
   job_.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
   count(static_cast<std::uint64_t>(line.pixels[i]), passed_pixels);

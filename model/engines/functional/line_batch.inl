@@ -42,11 +42,10 @@ HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext
   const int s = rules.grid_bits, half = 1 << (s - 1);
   for (int i = count; i < 16; ++i)  // what is not there is like the first
     for (std::size_t k = 0; k < 3; ++k) v[k][static_cast<std::size_t>(i)] = v[k][0];
-  const SnappedVertex* base = slice.vertices.data();
-  std::array<I16, 3> at;
-  for (std::size_t k = 0; k < 3; ++k) at[k] = I16::load(v[k].data()) << 2;
-  const OctantLanes line(gather(&base->x, at[0]), gather(&base->y, at[0]), gather(&base->x, at[1]),
-                         gather(&base->y, at[1]), rules);
+  const auto fetch = [&](std::size_t k)
+                         HALFPLANE_LAMBDA { return load_vertices(slice.vertices.data(), v[k].data()); };
+  const SnappedLanes start = fetch(0), end = fetch(1);
+  const OctantLanes line(start.x, start.y, end.x, end.y, rules);
 
   // Q, as in stages/line_setup: n columns on, the line is in row floor((Q + n d) / D) from the start's.
   const I16 offset = (line.first << s) + half - line.a0, base_row = line.b0 >> s;
@@ -113,21 +112,20 @@ HALFPLANE_NOINLINE void LineBatch::set_up(const Slice& slice, const FrameContext
     const I16 step = convert<std::int32_t>(step64);
     return Narrow{convert<std::int32_t>(start_of(from, step64 * to_first)) + step * low, step};
   };
-  const I16 z0 = gather(&base->z, at[0]), z1 = gather(&base->z, at[1]);
   const int unused = 64 - widths.line_depth.bits;
   if (unused >= 32) {
-    const Narrow z = narrow_attribute(z0, z1);
+    const Narrow z = narrow_attribute(start.z, end.z);
     (convert<std::int64_t>(z.value) << unused).store(depth.data());
     (convert<std::int64_t>(z.step) << unused).store(depth_step.data());
   } else {
-    const L16 step = gradient(z1 - z0);
-    ((start_of(z0, step * to_first) + step * to_bin) << unused).store(depth.data());
+    const L16 step = gradient(end.z - start.z);
+    ((start_of(start.z, step * to_first) + step * to_bin) << unused).store(depth.data());
     (step << unused).store(depth_step.data());
   }
-  z0.store(depth_start.data());
+  start.z.store(depth_start.data());
   if (!slice.state.color_write) return;
   const bool is_flat = slice.state.is_flat;
-  const I16 c0 = gather(base->rgba.data(), is_flat ? at[2] : at[0]), c1 = gather(base->rgba.data(), at[is_flat ? 2 : 1]);
+  const I16 c0 = is_flat ? fetch(2).rgba : start.rgba, c1 = is_flat ? c0 : end.rgba;
   c0.store(color_start.data());
   for (std::size_t c = 0; c < 4; ++c) {
     const int down = static_cast<int>(8 * c);

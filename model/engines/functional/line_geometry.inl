@@ -89,14 +89,14 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       const std::uint32_t lanes = (1U << count) - 1;
       I16 codes(0);
       if (slice.any_code != 0) codes = gather(slice.codes.data(), v[0]) | gather(slice.codes.data(), v[1]);
-      std::array<I16, 2> x, y, z;
-      for (std::size_t k = 0; k < 2; ++k) {
-        const I16 at = v[k] << 2;
-        x[k] = gather(&slice.vertices.data()->x, at);
-        y[k] = gather(&slice.vertices.data()->y, at);
-        z[k] = gather(&slice.vertices.data()->z, at);
-      }
-      const OctantLanes line(x[0], y[0], x[1], y[1], rules);
+      struct {
+        std::array<std::array<std::int32_t, 16>, 3> v;
+        std::array<std::int32_t, 16> z_low, z_high, left, top, right, bottom;
+      } lane;
+      for (std::size_t k = 0; k < 3; ++k) v[k].store(lane.v[k].data());
+      const SnappedLanes start = load_vertices(slice.vertices.data(), lane.v[0].data()),
+                         end = load_vertices(slice.vertices.data(), lane.v[1].data());
+      const OctantLanes line(start.x, start.y, end.x, end.y, rules);
       // In its octant it covers no row beside those of its ends, and the one before where it starts on a border of rows.
       const auto side = [&](const I16& from, const I16& to, const I16& is_negative, bool is_low)
                             HALFPLANE_LAMBDA { return select(is_negative, is_low ? ~to : ~from, is_low ? from : to); };
@@ -121,13 +121,8 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       slice.counters.drawn += counted(drawn);
       slice.counters.culled += counted(lanes & ~slow_bits & ~drawn);
       slice.counters.skipped.empty += counted(lanes & ~slow_bits & ~drawn);
-      struct {
-        std::array<std::array<std::int32_t, 16>, 3> v;
-        std::array<std::int32_t, 16> z_low, z_high, left, top, right, bottom;
-      } lane;
-      for (std::size_t k = 0; k < 3; ++k) v[k].store(lane.v[k].data());
-      min(z[0], z[1]).store(lane.z_low.data());
-      max(z[0], z[1]).store(lane.z_high.data());
+      min(start.z, end.z).store(lane.z_low.data());
+      max(start.z, end.z).store(lane.z_high.data());
       left.store(lane.left.data());
       top.store(lane.top.data());
       right.store(lane.right.data());
