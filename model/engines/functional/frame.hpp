@@ -31,18 +31,30 @@ struct FragmentState {
 
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
 
-/// A primitive with at least one pixel in its box.
+/// A primitive with at least one pixel in its box. Eight words: kernels make and take sixteen at a time, a column each.
 struct Record {
   std::array<std::uint32_t, 3> v{};    ///< into Slice::vertices, of a triangle the provoking one first, of a whole line
                                        ///< last, behind its ends; cut line: [0] into Slice::lines
   std::int32_t z_low = 0, z_high = 0;  ///< range of its depth codes
-  std::int16_t left = 0, top = 0, right = 0, bottom = 0;  ///< its box inside the scissor, pixels, inclusive
-  RecordKind kind = RecordKind::triangle;
-  std::uint8_t samples = 0;        ///< a small triangle within two by two pixels: bits, which of them it covers; else 0
-  bool is_whole : 1 = false;       ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-  bool is_small : 1 = false;       ///< whole, within two by two tiles, and of small_extent_bits()
-  bool draws_nothing : 1 = false;  ///< culled, but nobody may skip: goes through the raster and draws nothing
+  std::int32_t left_top = 0, right_bottom = 0;  ///< its box inside the scissor, pixels, inclusive: column low, row high
+  std::int32_t traits = 0;                      ///< kind in the lowest byte, and the following
+
+  static constexpr std::int32_t
+      kWhole = 1 << 8,          ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
+      kSmall = 1 << 9,          ///< whole, within two by two tiles, and of small_extent_bits()
+      kDrawsNothing = 1 << 10;  ///< culled, but nobody may skip: goes through the raster and draws nothing
+  static constexpr int kSamplesShift =
+      16;  ///< a small triangle within two by two pixels: which of them it covers; else 0
+
+  [[nodiscard]] int left() const { return static_cast<std::int16_t>(left_top); }
+  [[nodiscard]] int top() const { return left_top >> 16; }
+  [[nodiscard]] int right() const { return static_cast<std::int16_t>(right_bottom); }
+  [[nodiscard]] int bottom() const { return right_bottom >> 16; }
+  [[nodiscard]] RecordKind kind() const { return static_cast<RecordKind>(traits & 255); }
+  [[nodiscard]] bool has(std::int32_t trait) const { return (traits & trait) != 0; }
+  [[nodiscard]] int samples() const { return traits >> kSamplesShift; }
 };
+static_assert(sizeof(Record) == 32);
 
 /// One slice. What the lanes read and write is in plain arrays, as long as they need.
 struct Slice {

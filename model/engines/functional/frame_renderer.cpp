@@ -18,9 +18,7 @@ constexpr std::size_t kSlicePrimitives = 2048;  // small enough that two threads
 constexpr std::size_t kBatchPrimitives = 1 << 18;
 
 /// The range of a tile that holds no depth: in nobody's way.
-constexpr struct {
-  std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = -1;
-} kNoDepth;
+constexpr struct { std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = -1; } kNoDepth;
 
 using Clock = std::chrono::steady_clock;
 

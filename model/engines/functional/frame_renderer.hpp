@@ -50,7 +50,8 @@ class FrameRenderer {
   const Scene* scene_ = nullptr;
   Skip skip_;
   int threads_ = 1;
-  std::unique_ptr<tbb::task_arena> arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it
+  std::unique_ptr<tbb::task_arena>
+      arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it
   int bins_x_ = 0, bins_y_ = 0;
   Rendering rendering_;
   TileStates tiles_;

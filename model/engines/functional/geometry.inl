@@ -14,6 +14,104 @@ HALFPLANE_INLINE I16 snap_lanes(const D16& value, double scale) {
   return truncated + convert<std::int32_t>(is_above - is_up);
 }
 
+/// Four columns of sixteen rows of four numbers: lane i has those at row_at(i). Cheaper than a gather for each.
+struct Columns {
+  I16 first, second, third, fourth;
+};
+
+template <class RowAt>
+HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
+  Columns out;
+#if defined(__x86_64__)
+  const auto row_of = [&](int i)
+                          HALFPLANE_LAMBDA { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row_at(i))); };
+  for (int part = 0; part < I16::kParts; ++part) {
+    const int first = part * I16::kLanes;
+#if HALFPLANE_ISA == 512
+    const auto row = [&](int i) HALFPLANE_LAMBDA {  // rows i, i + 4, i + 8, i + 12
+      const __m512i one = _mm512_inserti32x4(_mm512_castsi128_si512(row_of(first + i)), row_of(first + i + 4), 1);
+      return _mm512_inserti32x4(_mm512_inserti32x4(one, row_of(first + i + 8), 2), row_of(first + i + 12), 3);
+    };
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits(a, b)
+#elif HALFPLANE_ISA == 256
+    const auto row = [&](int i) HALFPLANE_LAMBDA {
+      return _mm256_inserti128_si256(_mm256_castsi128_si256(row_of(first + i)), row_of(first + i + 4), 1);
+    };
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm256_unpack##half##_epi##bits(a, b)
+#else
+    const auto row = [&](int i) HALFPLANE_LAMBDA { return row_of(first + i); };
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm_unpack##half##_epi##bits(a, b)
+#endif
+    const auto a = row(0), b = row(1), c = row(2), d = row(3);
+    const auto ab_low = HALFPLANE_UNPACK(lo, a, b, 32), cd_low = HALFPLANE_UNPACK(lo, c, d, 32);
+    const auto ab_high = HALFPLANE_UNPACK(hi, a, b, 32), cd_high = HALFPLANE_UNPACK(hi, c, d, 32);
+    out.first.part[part] = (I16::Register)HALFPLANE_UNPACK(lo, ab_low, cd_low, 64);
+    out.second.part[part] = (I16::Register)HALFPLANE_UNPACK(hi, ab_low, cd_low, 64);
+    out.third.part[part] = (I16::Register)HALFPLANE_UNPACK(lo, ab_high, cd_high, 64);
+    out.fourth.part[part] = (I16::Register)HALFPLANE_UNPACK(hi, ab_high, cd_high, 64);
+#undef HALFPLANE_UNPACK
+  }
+#else
+  const auto column = [&](int at) HALFPLANE_LAMBDA {
+    return I16::of([&](int i) HALFPLANE_LAMBDA {
+      std::int32_t value;
+      std::memcpy(&value, reinterpret_cast<const char*>(row_at(i)) + 4 * at, sizeof value);
+      return value;
+    });
+  };
+  out = {column(0), column(1), column(2), column(3)};
+#endif
+  return out;
+}
+
+/// The other way round: lane i to the row at to + i * stride bytes.
+HALFPLANE_INLINE void store_rows(const Columns& v, void* to, std::size_t stride) {
+  char* const bytes = static_cast<char*>(to);
+#if defined(__x86_64__)
+  for (int part = 0; part < I16::kParts; ++part) {
+    const auto put = [&](int i, const __m128i& row) HALFPLANE_LAMBDA {
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(bytes + static_cast<std::size_t>(part * I16::kLanes + i) * stride), row);
+    };
+#if HALFPLANE_ISA == 512
+    const auto put_all = [&](int i, const __m512i& rows) HALFPLANE_LAMBDA {  // i, i + 4, i + 8, i + 12
+      put(i, _mm512_castsi512_si128(rows));
+      put(i + 4, _mm512_extracti32x4_epi32(rows, 1));
+      put(i + 8, _mm512_extracti32x4_epi32(rows, 2));
+      put(i + 12, _mm512_extracti32x4_epi32(rows, 3));
+    };
+    typedef __m512i Vector;
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits(a, b)
+#elif HALFPLANE_ISA == 256
+    const auto put_all = [&](int i, const __m256i& rows) HALFPLANE_LAMBDA {
+      put(i, _mm256_castsi256_si128(rows));
+      put(i + 4, _mm256_extracti128_si256(rows, 1));
+    };
+    typedef __m256i Vector;
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm256_unpack##half##_epi##bits(a, b)
+#else
+    const auto& put_all = put;
+    typedef __m128i Vector;
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm_unpack##half##_epi##bits(a, b)
+#endif
+    const auto a = (Vector)v.first.part[part], b = (Vector)v.second.part[part], c = (Vector)v.third.part[part],
+               d = (Vector)v.fourth.part[part];
+    const auto ab_low = HALFPLANE_UNPACK(lo, a, b, 32), ab_high = HALFPLANE_UNPACK(hi, a, b, 32),
+               cd_low = HALFPLANE_UNPACK(lo, c, d, 32), cd_high = HALFPLANE_UNPACK(hi, c, d, 32);
+    put_all(0, HALFPLANE_UNPACK(lo, ab_low, cd_low, 64));
+    put_all(1, HALFPLANE_UNPACK(hi, ab_low, cd_low, 64));
+    put_all(2, HALFPLANE_UNPACK(lo, ab_high, cd_high, 64));
+    put_all(3, HALFPLANE_UNPACK(hi, ab_high, cd_high, 64));
+#undef HALFPLANE_UNPACK
+  }
+#else
+  for (std::size_t i = 0; i < 16; ++i) {
+    const auto lane = [i](const I16& from) { return from.part[i / I16::kLanes][i % I16::kLanes]; };
+    const std::array<std::int32_t, 4> row{lane(v.first), lane(v.second), lane(v.third), lane(v.fourth)};
+    std::memcpy(bytes + i * stride, row.data(), sizeof row);
+  }
+#endif
+}
+
 /// Sixteen vertices of the scene, attribute by attribute.
 struct VertexLanes {
   D16 x, y, z, w;
@@ -101,17 +199,7 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
   const I16 sz = snap_lanes(z, p.codes);
   const I16 is_legal = (sx >= -p.limit) & (sx < p.limit) & (sy >= -p.limit) & (sy < p.limit) & (sz >= 0) &
                        (sz <= static_cast<std::int32_t>(p.codes)) & convert<std::int32_t>(fits);
-  std::array<std::array<std::int32_t, 16>, 4> columns;
-  sx.store(columns[0].data());
-  sy.store(columns[1].data());
-  sz.store(columns[2].data());
-  v.rgba.store(columns[3].data());
-  for (std::size_t i = 0; i < 16; ++i) {
-    out[i].x = columns[0][i];
-    out[i].y = columns[1][i];
-    out[i].z = static_cast<std::uint32_t>(columns[2][i]);
-    std::memcpy(out[i].rgba.data(), &columns[3][i], 4);
-  }
+  store_rows({sx, sy, sz, v.rgba}, out, sizeof *out);
   return codes | (~is_legal & static_cast<int>(Slice::kSlow));
 }
 
@@ -162,44 +250,11 @@ struct SnappedLanes {
   I16 x, y, z, rgba;
 };
 
-/// Those that `index` names. Rows of 16 bytes, turned: cheaper than a gather for each attribute.
+/// Those that `index` names.
 HALFPLANE_INLINE SnappedLanes load_vertices(const SnappedVertex* vertices, const std::int32_t* index) {
-  SnappedLanes out;
-#if defined(__x86_64__)
-  const auto row_of = [&](int i) HALFPLANE_LAMBDA {
-    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(vertices + index[i]));
-  };
-  for (int part = 0; part < I16::kParts; ++part) {
-    const int first = part * I16::kLanes;
-#if HALFPLANE_ISA == 512
-    const auto row = [&](int i) HALFPLANE_LAMBDA {  // vertices i, i + 4, i + 8, i + 12
-      const __m512i one = _mm512_inserti32x4(_mm512_castsi128_si512(row_of(first + i)), row_of(first + i + 4), 1);
-      return _mm512_inserti32x4(_mm512_inserti32x4(one, row_of(first + i + 8), 2), row_of(first + i + 12), 3);
-    };
-#define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits(a, b)
-#elif HALFPLANE_ISA == 256
-    const auto row = [&](int i) HALFPLANE_LAMBDA {
-      return _mm256_inserti128_si256(_mm256_castsi128_si256(row_of(first + i)), row_of(first + i + 4), 1);
-    };
-#define HALFPLANE_UNPACK(half, a, b, bits) _mm256_unpack##half##_epi##bits(a, b)
-#else
-    const auto row = [&](int i) HALFPLANE_LAMBDA { return row_of(first + i); };
-#define HALFPLANE_UNPACK(half, a, b, bits) _mm_unpack##half##_epi##bits(a, b)
-#endif
-    const auto a = row(0), b = row(1), c = row(2), d = row(3);
-    const auto xy0 = HALFPLANE_UNPACK(lo, a, b, 32), xy1 = HALFPLANE_UNPACK(lo, c, d, 32);
-    const auto zc0 = HALFPLANE_UNPACK(hi, a, b, 32), zc1 = HALFPLANE_UNPACK(hi, c, d, 32);
-    out.x.part[part] = (I16::Register)HALFPLANE_UNPACK(lo, xy0, xy1, 64);
-    out.y.part[part] = (I16::Register)HALFPLANE_UNPACK(hi, xy0, xy1, 64);
-    out.z.part[part] = (I16::Register)HALFPLANE_UNPACK(lo, zc0, zc1, 64);
-    out.rgba.part[part] = (I16::Register)HALFPLANE_UNPACK(hi, zc0, zc1, 64);
-#undef HALFPLANE_UNPACK
-  }
-#else
-  const I16 at = I16::load(index) << 2;
-  out = {gather(&vertices->x, at), gather(&vertices->y, at), gather(&vertices->z, at), gather(vertices->rgba.data(), at)};
-#endif
-  return out;
+  static_assert(sizeof(SnappedVertex) == 16);
+  const auto [x, y, z, rgba] = turned_rows([&](int i) HALFPLANE_LAMBDA { return vertices + index[i]; });
+  return {x, y, z, rgba};
 }
 
 /// Sixteen triangles while they are culled.
@@ -289,14 +344,10 @@ struct CullLanes {
       if (skip.frustum)
         frustum_bits = bits_of((a & b & c & static_cast<int>(Slice::kVolume)) != 0) & lanes & ~slow_bits;
     }
-    // Lanes to memory once: a lane read from a register costs more than one from the cache.
-    struct {
-      std::array<std::array<std::int32_t, 16>, 3> v;
-      std::array<std::int32_t, 16> z_low, z_high, left, top, right, bottom, samples;
-    } lane;
     for (std::size_t k = 0; k < 3; ++k) {
-      t.v[k].store(lane.v[k].data());
-      const SnappedLanes corner = load_vertices(slice.vertices.data(), lane.v[k].data());
+      std::array<std::int32_t, 16> at;
+      t.v[k].store(at.data());
+      const SnappedLanes corner = load_vertices(slice.vertices.data(), at.data());
       t.x[k] = corner.x;
       t.y[k] = corner.y;
       t.z[k] = corner.z;
@@ -345,13 +396,19 @@ struct CullLanes {
     const int largest = 1 << small_extent_bits(frame.widths);
     const std::uint32_t small = whole & bits_of(few_tiles & (extent(t.x) < largest) & (extent(t.y) < largest) &
                                         (z_high - z_low < steepest_small));
-    z_low.store(lane.z_low.data());
-    z_high.store(lane.z_high.data());
-    t.left.store(lane.left.data());
-    t.top.store(lane.top.data());
-    t.right.store(lane.right.data());
-    t.bottom.store(lane.bottom.data());
-    few.samples.store(lane.samples.data());
+    const auto bits_to_lanes = [](std::uint32_t bits) HALFPLANE_LAMBDA {
+      return (I16(static_cast<std::int32_t>(bits)) & I16::of([](int i) { return 1 << i; })) != 0;
+    };
+    const I16 is_small = bits_to_lanes(small), is_dropped = bits_to_lanes(dropped);
+    alignas(64) std::array<Record, 16> lane;
+    std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
+    static_assert(static_cast<int>(RecordKind::triangle) == 0);
+    store_rows({t.v[0], t.v[1], t.v[2], z_low}, words, sizeof(Record));
+    store_rows({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
+                ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) |
+                    (bits_to_lanes(whole) & Record::kWhole) | (is_small & Record::kSmall) |
+                    (is_dropped & Record::kDrawsNothing)},
+               words + 4, sizeof(Record));
     Record* out = slice.records.data() + slice.record_count;
     for (std::uint32_t rest = kept | slow_bits; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -361,20 +418,7 @@ struct CullLanes {
         out = slice.records.data() + slice.record_count;
         continue;
       }
-      const auto at = static_cast<std::size_t>(i);
-      for (std::size_t k = 0; k < 3; ++k) out->v[k] = static_cast<std::uint32_t>(lane.v[k][at]);
-      out->z_low = lane.z_low[at];
-      out->z_high = lane.z_high[at];
-      out->left = static_cast<std::int16_t>(lane.left[at]);
-      out->top = static_cast<std::int16_t>(lane.top[at]);
-      out->right = static_cast<std::int16_t>(lane.right[at]);
-      out->bottom = static_cast<std::int16_t>(lane.bottom[at]);
-      out->kind = RecordKind::triangle;
-      out->is_whole = (whole >> i & 1) != 0;
-      out->is_small = (small >> i & 1) != 0;
-      out->draws_nothing = (dropped >> i & 1) != 0;
-      out->samples = static_cast<std::uint8_t>(out->is_small && !out->draws_nothing ? lane.samples[at] : 0);
-      ++out;
+      *out++ = lane[static_cast<std::size_t>(i)];
     }
     slice.record_count = static_cast<std::size_t>(out - slice.records.data());
   }

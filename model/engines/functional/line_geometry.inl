@@ -89,13 +89,10 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       const std::uint32_t lanes = (1U << count) - 1;
       I16 codes(0);
       if (slice.any_code != 0) codes = gather(slice.codes.data(), v[0]) | gather(slice.codes.data(), v[1]);
-      struct {
-        std::array<std::array<std::int32_t, 16>, 3> v;
-        std::array<std::int32_t, 16> z_low, z_high, left, top, right, bottom;
-      } lane;
-      for (std::size_t k = 0; k < 3; ++k) v[k].store(lane.v[k].data());
-      const SnappedLanes start = load_vertices(slice.vertices.data(), lane.v[0].data()),
-                         end = load_vertices(slice.vertices.data(), lane.v[1].data());
+      std::array<std::array<std::int32_t, 16>, 2> ends;
+      for (std::size_t k = 0; k < 2; ++k) v[k].store(ends[k].data());
+      const SnappedLanes start = load_vertices(slice.vertices.data(), ends[0].data()),
+                         end = load_vertices(slice.vertices.data(), ends[1].data());
       const OctantLanes line(start.x, start.y, end.x, end.y, rules);
       // In its octant it covers no row beside those of its ends, and the one before where it starts on a border of rows.
       const auto side = [&](const I16& from, const I16& to, const I16& is_negative, bool is_low)
@@ -121,29 +118,17 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       slice.counters.drawn += counted(drawn);
       slice.counters.culled += counted(lanes & ~slow_bits & ~drawn);
       slice.counters.skipped.empty += counted(lanes & ~slow_bits & ~drawn);
-      min(start.z, end.z).store(lane.z_low.data());
-      max(start.z, end.z).store(lane.z_high.data());
-      left.store(lane.left.data());
-      top.store(lane.top.data());
-      right.store(lane.right.data());
-      bottom.store(lane.bottom.data());
+      alignas(64) std::array<Record, 16> lane;
+      std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
+      store_rows({v[0], v[1], v[2], min(start.z, end.z)}, words, sizeof(Record));
+      store_rows({max(start.z, end.z), pairs(left, top), pairs(right, bottom), I16(static_cast<int>(RecordKind::whole_line))},
+                 words + 4, sizeof(Record));
       for (std::uint32_t rest = drawn | slow_bits; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        if ((slow_bits >> i & 1) != 0) {
+        if ((slow_bits >> i & 1) != 0)
           slow(frame, slice, part, first + i);
-          continue;
-        }
-        Record& out = slice.records[slice.record_count++];
-        for (std::size_t k = 0; k < 3; ++k) out.v[k] = static_cast<std::uint32_t>(lane.v[k][i]);
-        out.z_low = lane.z_low[i];
-        out.z_high = lane.z_high[i];
-        out.left = static_cast<std::int16_t>(lane.left[i]);
-        out.top = static_cast<std::int16_t>(lane.top[i]);
-        out.right = static_cast<std::int16_t>(lane.right[i]);
-        out.bottom = static_cast<std::int16_t>(lane.bottom[i]);
-        out.kind = RecordKind::whole_line;
-        out.is_whole = out.is_small = out.draws_nothing = false;
-        out.samples = 0;
+        else
+          slice.records[slice.record_count++] = lane[i];
       }
     }
 }

@@ -77,10 +77,15 @@ struct ColorSteps {
   ChannelPairs step_x, step_y, low, high;  ///< of a pixel; codes of the vertices
 };
 
+/// Inclusive.
+struct Box {
+  std::int32_t left, top, right, bottom;
+};
+
 /// One triangle, as one bin sees it. Positions are pixels of the bin, tiles those of the bin.
 struct BinTriangle {
   std::array<std::int32_t, 3> edge, dx, dy;  ///< at the bin's first pixel, held within +-2^30; steps as in Edge
-  std::int32_t left, top, right, bottom;
+  Box box;
   std::int32_t z_low, z_high;                 ///< codes of the vertices
   std::int64_t z_anchor, z_tile_x, z_tile_y;  ///< plane at the first tile's anchor; steps from tile to tile
   std::int32_t z_step_x, z_step_y;            ///< of a pixel, in a lane
@@ -156,7 +161,7 @@ class Bin {
  private:
   static constexpr int kTiles = kBinTiles * kBinTiles;
   static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
-  static constexpr std::uint8_t kTouches = 8;  ///< small triangles after which a tile's range is found anew
+  static constexpr std::uint8_t kTouches = 4;  ///< batches of small triangles after which a tile's range is found anew
   // Who holds a tile's depths or colours; 0 and more: a triangle of planes_.
   static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3;
 
@@ -197,72 +202,62 @@ class Bin {
       if (last - first > kAhead) {
         const Record& next = slice.records[first[kAhead]];
         __builtin_prefetch(&next);
-        if (const Record& near = slice.records[first[kAhead / 2]]; near.kind == RecordKind::whole_line)
+        if (const Record& near = slice.records[first[kAhead / 2]]; near.kind() == RecordKind::whole_line)
           for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
       }
-      const int left = std::max(record.left - first_x_, 0), right = std::min(record.right - first_x_, kBinSize - 1);
-      const int top = std::max(record.top - first_y_, 0), bottom = std::min(record.bottom - first_y_, kBinSize - 1);
-      const auto leave_out = [&] {
-        const auto tiles = static_cast<unsigned>(((right >> kTileShift) - (left >> kTileShift) + 1) *
-                                                 ((bottom >> kTileShift) - (top >> kTileShift) + 1));
+      const auto box = [&]() HALFPLANE_LAMBDA {
+        return Box{std::max(record.left() - first_x_, 0), std::max(record.top() - first_y_, 0),
+                   std::min(record.right() - first_x_, kBinSize - 1), std::min(record.bottom() - first_y_, kBinSize - 1)};
+      };
+      const auto leave_out = [&](const Box& at) {
+        const auto tiles = static_cast<unsigned>(((at.right >> kTileShift) - (at.left >> kTileShift) + 1) *
+                                                 ((at.bottom >> kTileShift) - (at.top >> kTileShift) + 1));
         job_.counters.tiles_visited += tiles;
         job_.counters.skipped.tiles_hiz += tiles;
       };
       if (skip_.tiles_hiz && is_behind<Test>(record, bin_low_, bin_high_)) {
-        leave_out();
+        leave_out(box());
         continue;
       }
-      if (record.is_small) {
-        if (skip_.tiles_hiz) {
-          const int a = tile_of(left, top), b = tile_of(right, top), c = tile_of(left, bottom),
-                    d = tile_of(right, bottom);
+      if (record.has(Record::kSmall)) {
+        // Nearer than what every tile may hold: no need to look at its own.
+        if (skip_.tiles_hiz && (Test != DepthFunc::less || record.z_low >= bin_lowest_high_)) {
+          const Box at = box();
+          const int a = tile_of(at.left, at.top), b = tile_of(at.right, at.top), c = tile_of(at.left, at.bottom),
+                    d = tile_of(at.right, at.bottom);
           const std::int32_t low = std::min({tile_low_[a], tile_low_[b], tile_low_[c], tile_low_[d]});
           const std::int32_t high = std::max({tile_high_[a], tile_high_[b], tile_high_[c], tile_high_[d]});
           if (is_behind<Test>(record, low, high)) {
-            leave_out();
+            leave_out(at);
             continue;
           }
         }
-        const std::uint32_t samples = samples_in_bin(record);
-        if (record.samples != 0 && samples == 0) continue;
-        if (small_.add(record, left, top, right, bottom, samples)) draw_batch<Test>(slice);
+        if (small_.add(record)) draw_batch<Test>(slice);
         continue;
       }
-      if (record.kind == RecordKind::whole_line) {
+      if (record.kind() == RecordKind::whole_line) {
         if (lines_.add(record)) draw_lines<Test>(slice);
         continue;
       }
       draw_batch<Test>(slice);
       draw_lines<Test>(slice);
-      if (record.kind == RecordKind::cut_line) {
+      if (record.kind() == RecordKind::cut_line) {
         draw_cut_line<Test>(slice.lines[record.v[0]]);
         continue;
       }
       BinTriangle triangle;
-      triangle.left = left;
-      triangle.top = top;
-      triangle.right = right;
-      triangle.bottom = bottom;
-      triangle.is_whole = record.is_whole;
+      triangle.box = box();
+      triangle.is_whole = record.has(Record::kWhole);
       // Nearer than all of the bin: no need to look at its tiles.
       const bool may_be_behind = Test != DepthFunc::less || record.z_low >= bin_low_;
-      if (skip_.tiles_hiz && may_be_behind && is_behind_tiles<Test>(record, triangle)) {
-        leave_out();
+      if (skip_.tiles_hiz && may_be_behind && is_behind_tiles<Test>(record, triangle.box)) {
+        leave_out(triangle.box);
         continue;
       }
-      if (set_up(slice, record, triangle) && !record.draws_nothing) draw_large<Test>(triangle);
+      if (set_up(slice, record, triangle) && !record.has(Record::kDrawsNothing)) draw_large<Test>(triangle);
     }
     draw_batch<Test>(slice);
     draw_lines<Test>(slice);
-  }
-
-  /// Record::samples of the part of its box that lies in this bin.
-  [[nodiscard]] HALFPLANE_INLINE std::uint32_t samples_in_bin(const Record& record) const {
-    constexpr std::uint32_t kLeft = 1 | 4, kUpper = 1 | 2;
-    const int left = record.left - first_x_, top = record.top - first_y_;
-    std::uint32_t samples = record.samples;
-    samples = left < 0 ? samples >> 1 & kLeft : left == kBinSize - 1 ? samples & kLeft : samples;
-    return top < 0 ? samples >> 2 & kUpper : top == kBinSize - 1 ? samples & kUpper : samples;
   }
 
   static int tile_of(int x, int y) { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); }
@@ -284,7 +279,7 @@ class Bin {
 
   /// The same for all tiles of a box.
   template <DepthFunc Test>
-  HALFPLANE_INLINE bool is_behind_tiles(const Record& record, const BinTriangle& box) const {
+  HALFPLANE_INLINE bool is_behind_tiles(const Record& record, const Box& box) const {
     const int left = box.left >> kTileShift, right = box.right >> kTileShift, top = box.top >> kTileShift,
               bottom = box.bottom >> kTileShift;
     const I16 is_column = (position_.pair_x >= left) & (position_.pair_x <= right);
@@ -306,7 +301,7 @@ class Bin {
     const SnappedVertex *a = v + record.v[0], *b = v + record.v[1], *c = v + record.v[2];
     out.z_low = record.z_low;
     out.z_high = record.z_high;
-    if (record.kind == RecordKind::rectangle) {
+    if (record.kind() == RecordKind::rectangle) {
       set_up_flat(*a, out);
       return true;
     }
@@ -635,13 +630,16 @@ class Bin {
   }
 
   void find_bin_range() {
-    I16 low = I16::load(tile_low_), high = I16::load(tile_high_);
+    I16 low = I16::load(tile_low_), high = I16::load(tile_high_), lowest_high = high;
     for (int t = 16; t < kTiles; t += 16) {
+      const I16 highs = I16::load(tile_high_ + t);
       low = min(low, I16::load(tile_low_ + t));
-      high = max(high, I16::load(tile_high_ + t));
+      high = max(high, highs);
+      lowest_high = min(lowest_high, highs);
     }
     bin_low_ = min_lane(low);
     bin_high_ = max_lane(high);
+    bin_lowest_high_ = min_lane(lowest_high);
   }
 
   /// The range of a tile's depths, from its pixels.
@@ -716,7 +714,7 @@ class Bin {
       rows.outside[i] = kExtent * (std::max(dx, 0) + std::max(-dy, 0));
       rows.cut[i] = kExtent * (std::min(dx, 0) + std::min(-dy, 0));
     }
-    rows.beside = (x + (kExtent - t.left)) | (t.right - x);
+    rows.beside = (x + (kExtent - t.box.left)) | (t.box.right - x);
     // From the anchor a tile reaches four pixels to the left and up, three to the right and down.
     const auto reach = [](std::int32_t step, bool is_high) HALFPLANE_LAMBDA {
       return (step > 0) == is_high ? (kTileSize / 2 - 1) * step : -kTileSize / 2 * step;
@@ -749,10 +747,10 @@ class Bin {
       cut |= lanes.edge[i] + rows.cut[i];
     }
     const I16 y = position_.pair_y * kTileSize + row * kTileSize;
-    const I16 apart = rows.beside | (y + (kExtent - t.top)) | (t.bottom - y);  // from the box
+    const I16 apart = rows.beside | (y + (kExtent - t.box.top)) | (t.box.bottom - y);  // from the box
     if (!t.is_whole) {
       const I16 x = position_.pair_x * kTileSize;
-      cut |= (x - t.left) | ((t.right - kExtent) - x) | (y - t.top) | ((t.bottom - kExtent) - y);
+      cut |= (x - t.box.left) | ((t.box.right - kExtent) - x) | (y - t.box.top) | ((t.box.bottom - kExtent) - y);
     }
     const std::uint32_t box = ~bits_of(apart) & 0xffff;
     outside |= apart;
@@ -808,7 +806,7 @@ class Bin {
     line_tiles_ = 0;
     const TileRows rows = tile_rows(t);
     bool is_changed = false;
-    for (int row = t.top >> kTileShift & ~1; row <= t.bottom >> kTileShift; row += 2) {
+    for (int row = t.box.top >> kTileShift & ~1; row <= t.box.bottom >> kTileShift; row += 2) {
       TileLanes lanes = classify_tiles(t, rows, row);
       std::int32_t* low = tile_low_ + row * kBinTiles;
       std::int32_t* high = tile_high_ + row * kBinTiles;
@@ -853,6 +851,7 @@ class Bin {
     }
     const auto replace = [&](std::int32_t* at, const I16& with)
                              HALFPLANE_LAMBDA { select(taken, with, I16::load(at)).store(at); };
+    in_memory_ &= ~(std::uint64_t{bits_of(taken)} << (row * kBinTiles));
     if (state_.depth_write) {
       replace(depth_owner_.data() + row * kBinTiles, I16(plane));
       replace(tile_low_ + row * kBinTiles, lanes.z_low);
@@ -899,8 +898,8 @@ class Bin {
   HALFPLANE_NOINLINE void draw_tile(const BinTriangle& t, int tile, bool is_full,
                                     const std::array<std::int32_t, 3>& edge) {
     const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
-    const int left = std::max(t.left - tile_x * kTileSize, 0), right = std::min(t.right - tile_x * kTileSize, 7);
-    const int top = std::max(t.top - tile_y * kTileSize, 0), bottom = std::min(t.bottom - tile_y * kTileSize, 7);
+    const int left = std::max(t.box.left - tile_x * kTileSize, 0), right = std::min(t.box.right - tile_x * kTileSize, 7);
+    const int top = std::max(t.box.top - tile_y * kTileSize, 0), bottom = std::min(t.box.bottom - tile_y * kTileSize, 7);
     const bool is_whole = t.is_whole || (left == 0 && top == 0 && right == 7 && bottom == 7);
     need_depth(tile);
     const BlockRamp<I16> depth_plane = depth_ramp(t, depth_anchor(t, tile_x, tile_y));
@@ -1122,7 +1121,8 @@ class Bin {
   std::int32_t *tile_low_, *tile_high_;
   Memory& memory_;
   FragmentState state_;
-  std::int32_t bin_low_ = 0, bin_high_ = 0;
+  std::int32_t bin_low_ = 0, bin_high_ = 0;  ///< range of its depths, or wider
+  std::int32_t bin_lowest_high_ = 0;         ///< of its tiles' upper bounds, or of earlier ones
   const LanePositions& position_ = lane_positions();
   SmallBatch small_;
   LineBatch lines_, cut_line_;  ///< cut_line_: one, in lane 0
@@ -1130,6 +1130,7 @@ class Bin {
   std::array<Block, 16 * 16 + 1> blocks_;  ///< sixteen of a triangle, and room for one that is not kept
   bool falls_ = false, rises_ = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count_ = 0;
+  std::uint64_t in_memory_ = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches_{};
   alignas(64) std::array<std::int32_t, kTiles> depth_owner_, color_owner_;
 };

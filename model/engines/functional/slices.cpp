@@ -1,5 +1,6 @@
 // How a slice is built: its vertices, its records, its bin lists.
 #include <algorithm>
+#include <utility>
 
 #include "frame_renderer.hpp"
 
@@ -12,11 +13,12 @@ Record record_of(const std::array<std::uint32_t, 3>& v, std::int64_t z_low, std:
   record.v = v;
   record.z_low = static_cast<std::int32_t>(z_low);
   record.z_high = static_cast<std::int32_t>(z_high);
-  record.left = static_cast<std::int16_t>(box.left);
-  record.top = static_cast<std::int16_t>(box.top);
-  record.right = static_cast<std::int16_t>(box.right);
-  record.bottom = static_cast<std::int16_t>(box.bottom);
-  record.kind = kind;
+  const auto place = [](int x, int y) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(y) << 16) | (x & 0xffff);
+  };
+  record.left_top = place(box.left, box.top);
+  record.right_bottom = place(box.right, box.bottom);
+  record.traits = static_cast<std::int32_t>(kind);
   return record;
 }
 
@@ -130,24 +132,49 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   }
 }
 
-/// The records of each bin, in order: a counting sort.
+/// The records of each bin, in order: a counting sort. Most records lie in one bin.
 void FrameRenderer::fill_bins(Slice& slice) const {
+  constexpr std::uint32_t kMany = ~0U;
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
-  slice.bin_first.assign(bins + 1, 0);
-  const auto for_each_bin = [this](const Record& record, auto&& visit) {
-    const int left = record.left >> kBinShift, right = record.right >> kBinShift;
-    const int top = record.top >> kBinShift, bottom = record.bottom >> kBinShift;
-    for (int y = top; y <= bottom; ++y)
-      for (int x = left; x <= right; ++x) visit(static_cast<std::size_t>(y * bins_x_ + x));
+  static thread_local std::vector<std::uint32_t> next, bin_of;
+  next.assign(bins, 0);
+  bin_of.resize(slice.record_count);
+  const auto bin_at = [this](int x, int y) {
+    return static_cast<std::uint32_t>((y >> kBinShift) * bins_x_ + (x >> kBinShift));
+  };
+  const auto for_each_bin = [&](const Record& record, auto&& visit) {
+    const std::uint32_t first = bin_at(record.left(), record.top()),
+                        columns = bin_at(record.right(), record.top()) - first;
+    for (std::uint32_t row = first; row <= bin_at(record.left(), record.bottom());
+         row += static_cast<std::uint32_t>(bins_x_))
+      for (std::uint32_t bin = row; bin <= row + columns; ++bin) visit(bin);
   };
   const std::span records(slice.records.data(), slice.record_count);
-  for (const Record& record : records) for_each_bin(record, [&](std::size_t bin) { ++slice.bin_first[bin + 1]; });
-  for (std::size_t bin = 0; bin < bins; ++bin) slice.bin_first[bin + 1] += slice.bin_first[bin];
-  slice.bin_records.resize(slice.bin_first[bins]);
-  static thread_local std::vector<std::uint32_t> next;
-  next.assign(slice.bin_first.begin(), slice.bin_first.end() - 1);
-  for (std::size_t i = 0; i < records.size(); ++i)
-    for_each_bin(records[i], [&](std::size_t bin) { slice.bin_records[next[bin]++] = static_cast<std::uint32_t>(i); });
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Record& record = records[i];
+    const std::uint32_t bin = bin_at(record.left(), record.top());
+    const bool is_one = bin == bin_at(record.right(), record.bottom());
+    bin_of[i] = is_one ? bin : kMany;
+    if (is_one)
+      ++next[bin];
+    else
+      for_each_bin(record, [&](std::uint32_t at) { ++next[at]; });
+  }
+  slice.bin_first.resize(bins + 1);
+  std::uint32_t sum = 0;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    slice.bin_first[bin] = sum;
+    sum += std::exchange(next[bin], sum);
+  }
+  slice.bin_first[bins] = sum;
+  slice.bin_records.resize(sum);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const auto number = static_cast<std::uint32_t>(i);
+    if (bin_of[i] != kMany)
+      slice.bin_records[next[bin_of[i]]++] = number;
+    else
+      for_each_bin(records[i], [&](std::uint32_t bin) { slice.bin_records[next[bin]++] = number; });
+  }
 }
 
 }  // namespace halfplane::functional

@@ -12,19 +12,45 @@ void draw_batch(const Slice& slice) {
   if (small_.count == 0) return;
   line_tiles_ = 0;
   small_.set_up(slice, job_.frame, depth_format_, color_format_, first_x_, first_y_);
-  bool is_changed = false;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) is_changed |= touch_tiles(i);
-  if (state_.depth_write)
-    for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i)
-      for (const int tile : small_tiles(i)) forget_range<Test>(tile);
-  std::uint64_t tiles = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i)
-    tiles += static_cast<unsigned>((1 + (small_.right[i] >> kTileShift) - (small_.left[i] >> kTileShift)) *
-                                   (1 + (small_.bottom[i] >> kTileShift) - (small_.top[i] >> kTileShift)));
-  job_.counters.tiles_visited += tiles;
+  const bool is_changed = touch_tiles<Test>();
   small_.has_samples ? draw_samples<Test>() : draw_blocks<Test>();
   small_.count = 0;
   if (is_changed || Test != DepthFunc::less) find_bin_range();  // with less, a bound that is too high will do
+}
+
+/// The tiles that the boxes of the batch touch: they must be in memory, and their ranges are known no more. Every now and
+/// then finds a tile's range anew; says so.
+template <DepthFunc Test>
+HALFPLANE_INLINE bool touch_tiles() {
+  const auto tiles_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
+  const I16 left = tiles_of(small_.left), top = tiles_of(small_.top), is_wide = tiles_of(small_.right) > left,
+            is_high = tiles_of(small_.bottom) > top;
+  const std::uint32_t wide = bits_of(is_wide) & small_.live, high = bits_of(is_high) & small_.live;
+  const auto count_of = [](std::uint32_t bits) HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(bits)); };
+  job_.counters.tiles_visited += count_of(small_.live) + count_of(wide) + count_of(high) + count_of(wide & high);
+  const I16 tile = top * kBinTiles + left;
+  std::uint64_t tiles = or_of_bits(tile, small_.live);
+  if (wide != 0) tiles |= or_of_bits(tile + 1, wide);
+  if (high != 0) tiles |= or_of_bits(tile + kBinTiles, high);
+  if ((wide & high) != 0) tiles |= or_of_bits(tile + (kBinTiles + 1), wide & high);
+  for (std::uint64_t rest = tiles & ~in_memory_; rest != 0; rest &= rest - 1) {
+    const int at = std::countr_zero(rest);
+    need_depth(at);
+    if (state_.color_write) need_color(at);
+  }
+  if (state_.color_write) in_memory_ |= tiles;
+  if (!state_.depth_write) return false;
+  bool is_changed = false;
+  for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) {
+    const auto at = static_cast<std::size_t>(std::countr_zero(rest));
+    if (++touches_[at] == kTouches) {
+      touches_[at] = 0;
+      find_range(static_cast<int>(at));
+      is_changed = true;
+    }
+    forget_range<Test>(static_cast<int>(at));
+  }
+  return is_changed;
 }
 
 template <DepthFunc Test>
@@ -33,27 +59,6 @@ HALFPLANE_INLINE void draw_blocks() {
   std::uint64_t covered = 0, passed = 0;
   for (std::size_t b = 0; b < blocks; ++b) draw_block<Test>(blocks_[b], covered, passed);
   count(covered, passed);
-}
-
-/// The tiles that a small triangle's box touches: four at most, some of them the same.
-HALFPLANE_INLINE std::array<int, 4> small_tiles(std::size_t i) const {
-  const int left = small_.left[i], top = small_.top[i], right = small_.right[i], bottom = small_.bottom[i];
-  return {tile_of(left, top), tile_of(right, top), tile_of(left, bottom), tile_of(right, bottom)};
-}
-
-/// They must be in memory. Every now and then finds a tile's range anew; says so.
-HALFPLANE_INLINE bool touch_tiles(std::size_t i) {
-  const std::array<int, 4> tiles = small_tiles(i);
-  for (const int tile : tiles) {
-    need_depth(tile);
-    if (state_.color_write) need_color(tile);
-  }
-  if (!state_.depth_write) return false;
-  std::uint8_t& touches = touches_[static_cast<std::size_t>(tiles[0])];
-  if (++touches != kTouches) return false;
-  touches = 0;
-  find_range(tiles[0]);
-  return true;
 }
 
 /// The blocks of the batch in which a sample is covered, triangle by triangle. Two by two of them are looked at without
@@ -65,7 +70,8 @@ HALFPLANE_INLINE std::size_t find_blocks() {
     blocks_[blocks] = {place, covered};
     blocks += covered != 0 ? 1U : 0U;
   };
-  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) {
+  for (std::uint32_t rest = small_.live; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     std::array<I16, 3> edge, right, below;
     for (std::size_t e = 0; e < 3; ++e) {
       edge[e] = multiply_add_pairs(I16(small_.edge_step[e][i]), position_.block_yx) + small_.edge[e][i];
@@ -151,22 +157,23 @@ HALFPLANE_INLINE void draw_samples() {
     };
     packed(channels(0) | channels(1) << 8).store(color[s].data());
   }
-  // All four, covered or not: which they are, nobody can foresee.
+  const bool has_depth = state_.depth_write, has_color = state_.color_write;
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(small_.count); ++i) {
+  for (std::uint32_t rest = small_.live; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     const auto samples = static_cast<std::uint32_t>(small_.samples[i]);
     covered_pixels += static_cast<unsigned>(std::popcount(samples));
-    for (std::size_t s = 0; s < kSamples; ++s) {
+    for (std::uint32_t left_over = samples; left_over != 0; left_over &= left_over - 1) {
+      const auto s = static_cast<std::size_t>(std::countr_zero(left_over));
       const auto at = static_cast<std::size_t>(place[s][i]);
-      std::int32_t& stored = memory_.depth[at];
-      const std::uint32_t passed = samples >> s & (passes_one<Test>(depth[s][i], stored) ? 1U : 0U);
-      const std::int32_t mask = -static_cast<std::int32_t>(passed);
+      const std::int32_t stored = memory_.depth[at];
+      // Stored as it was where it fails: which do, nobody can foresee.
+      const std::uint32_t passed = passes_one<Test>(depth[s][i], stored) ? 1U : 0U, mask = 0U - passed;
       passed_pixels += passed;
-      if (state_.depth_write) stored ^= (stored ^ depth[s][i]) & mask;
-      if (state_.color_write)
-        memory_.color[at] ^= (memory_.color[at] ^ static_cast<std::uint32_t>(color[s][i])) & static_cast<std::uint32_t>(mask);
+      if (has_depth) memory_.depth[at] = stored ^ ((stored ^ depth[s][i]) & static_cast<std::int32_t>(mask));
+      if (has_color) memory_.color[at] ^= (memory_.color[at] ^ static_cast<std::uint32_t>(color[s][i])) & mask;
     }
   }
-  job_.counters.samples_tested += kSamples * static_cast<unsigned>(small_.count);
+  job_.counters.samples_tested += kSamples * static_cast<unsigned>(std::popcount(small_.live));
   count(covered_pixels, passed_pixels);
 }

@@ -8,12 +8,13 @@ struct SmallBatch {
   using LaneArray = std::array<Lane, N>;
 
   int count = 0;
-  alignas(64) LaneArray<3> v;                 ///< into Slice::vertices
+  std::array<const Record*, 16> records;
+  bool has_samples = true;  ///< of all that wait
+
+  std::uint32_t live = 0;                     ///< lanes that draw something in this bin
   alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
   alignas(64) Lane z_low, z_high;
-  alignas(64) Lane samples;   ///< Record::samples
-  bool has_samples = false;   ///< all of them are known
-  std::uint32_t dropped = 0;  ///< lanes that draw nothing
+  alignas(64) Lane samples;  ///< Record::samples() of the part of its box that lies in the bin
 
   alignas(64) LaneArray<3> edge;                ///< at the first pixel of the box's first block
   alignas(64) LaneArray<3> to_right, to_below;  ///< from a block to its neighbours
@@ -27,22 +28,14 @@ struct SmallBatch {
   alignas(64) LaneArray<2> c_step_x, c_step_y, c_low, c_high;
 
   /// True when that was the last for which there is room.
-  HALFPLANE_INLINE bool add(const Record& record, int left_, int top_, int right_, int bottom_,
-                            std::uint32_t samples_) {
-    const auto i = static_cast<std::size_t>(count);
-    for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
-    left[i] = left_;
-    top[i] = top_;
-    right[i] = right_;
-    bottom[i] = bottom_;
-    z_low[i] = record.z_low;
-    z_high[i] = record.z_high;
-    samples[i] = static_cast<std::int32_t>(samples_);
-    has_samples = (count == 0 || has_samples) && samples_ != 0;
-    dropped = (count == 0 ? 0 : dropped) | (record.draws_nothing ? 1U : 0U) << count;
+  HALFPLANE_INLINE bool add(const Record& record) {
+    has_samples = (count == 0 || has_samples) && record.samples() != 0;
+    records[static_cast<std::size_t>(count)] = &record;
     return ++count == 16;
   }
 
+  /// The records' fields: corners as indices into Slice::vertices; boxes, depths, samples, live.
+  HALFPLANE_INLINE std::array<I16, 3> load(int first_x, int first_y);
   void set_up(const Slice& slice, const FrameContext& frame, const LaneFormat& depth_format,
               const LaneFormat& color_format, int first_x, int first_y);
 };
@@ -90,19 +83,44 @@ HALFPLANE_INLINE I16 round_shift_lanes(const L16& value, int bits) {
   return convert<std::int32_t>(shift_right_logical(value + (std::int64_t{1} << (bits - 1)), bits));
 }
 
+HALFPLANE_INLINE std::array<I16, 3> SmallBatch::load(int first_x, int first_y) {
+  for (std::size_t i = static_cast<std::size_t>(count); i < 16; ++i) records[i] = records[0];
+  const auto half = [this](int i, int first_word) HALFPLANE_LAMBDA {
+    return reinterpret_cast<const std::int32_t*>(records[static_cast<std::size_t>(i)]) + first_word;
+  };
+  const auto [v0, v1, v2, low] = turned_rows([&](int i) HALFPLANE_LAMBDA { return half(i, 0); });
+  const auto [high, left_top, right_bottom, traits] = turned_rows([&](int i) HALFPLANE_LAMBDA { return half(i, 4); });
+  const I16 covered = traits >> Record::kSamplesShift;
+  low.store(z_low.data());
+  high.store(z_high.data());
+  const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
+  max(x0, I16(0)).store(left.data());
+  max(y0, I16(0)).store(top.data());
+  min((right_bottom << 16 >> 16) - first_x, I16(kBinSize - 1)).store(right.data());
+  min((right_bottom >> 16) - first_y, I16(kBinSize - 1)).store(bottom.data());
+  // Of two by two samples the bin may have one column or row: those on the left, or those on the right moved there.
+  constexpr std::int32_t kLeft = 1 | 4, kUpper = 1 | 2;
+  const I16 in_columns = select(x0 < 0, shift_right_logical(covered, 1) & kLeft,
+                                select(x0 == kBinSize - 1, covered & kLeft, covered));
+  const I16 in_bin = select(y0 < 0, shift_right_logical(in_columns, 2) & kUpper,
+                            select(y0 == kBinSize - 1, in_columns & kUpper, in_columns));
+  in_bin.store(samples.data());
+  live = ((1U << count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
+  return {v0, v1, v2};
+}
+
 HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContext& frame,
                                            const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
                                            int first_y) {
   const Config& config = frame.config;
   const Widths& widths = frame.widths;
   const int s = widths.grid_bits, F = widths.plane_fraction, half = 1 << (s - 1);
-  for (std::size_t i = static_cast<std::size_t>(count); i < 16; ++i) {  // what is not there is like the first
-    for (std::size_t k = 0; k < 3; ++k) v[k][i] = v[k][0];
-    z_low[i] = z_low[0];
-    z_high[i] = z_high[0];
-  }
-  const auto fetch = [&](std::size_t k)
-                         HALFPLANE_LAMBDA { return load_vertices(slice.vertices.data(), v[k].data()); };
+  const std::array<I16, 3> corners = load(first_x, first_y);
+  const auto fetch = [&](std::size_t k) HALFPLANE_LAMBDA {
+    Lane at;
+    corners[k].store(at.data());
+    return load_vertices(slice.vertices.data(), at.data());
+  };
   const SnappedLanes a = fetch(0);
   SnappedLanes b = fetch(1), c = fetch(2);
   const auto choose = [](const I16& mask, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
@@ -115,7 +133,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   c = choose(is_turned, b, c);
   b = turned_b;
   area = (area ^ is_turned) - is_turned;
-  dropped |= bits_of(area == 0);
+  live &= ~bits_of(area == 0);
   const auto is_before = [](const SnappedLanes& p, const SnappedLanes& q)
                              HALFPLANE_LAMBDA { return (p.y < q.y) | ((p.y == q.y) & (p.x < q.x)); };
   SnappedLanes origin = choose(is_before(b, a), b, a);
@@ -138,7 +156,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
 
   const I16 column = box_x >> 2, row = box_y >> 2, number = I16::of([](int i) { return i; });
   (number | column << 8 | row << 16).store(place.data());
-  const I16 is_drawn = I16::of([](int i) { return 1 << i; }) & ~static_cast<std::int32_t>(dropped);
+  const I16 is_drawn = I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(live);
   const I16 has_right = ((I16::load(right.data()) >> 2) > column) & 2,
             has_below = ((I16::load(bottom.data()) >> 2) > row) & 4;
   select(is_drawn != 0, has_right | has_below | ((has_right << 2) & (has_below << 1)) | 1, I16(0)).store(there.data());
