@@ -27,6 +27,7 @@ std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repe
                                          const std::function<void(double)>& progress) {
   std::vector<FrameTimes> times(frames.size());
   std::vector<bool> is_done(frames.size());
+  std::vector<double> last(frames.size());  // seconds
   const double all = static_cast<double>(frames.size()) * (repeat + 1);
   for (int turn = 0; turn <= repeat; ++turn)
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -34,7 +35,9 @@ std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repe
         progress((static_cast<double>(turn) * static_cast<double>(frames.size()) + static_cast<double>(i)) / all);
       if (is_done[i]) continue;
       try {
+        for (double spent = 0; turn > 0 && last[i] < kShortFrame && spent < kWarmUp;) spent += frames[i]().seconds;
         const FrameCost cost = frames[i]();
+        last[i] = cost.seconds;
         times[i].cycles = cost.cycles;
         is_done[i] = turn == 0 && cost.seconds > kSlowFrame;
         if (turn > 0 || is_done[i]) times[i].seconds.push_back(cost.seconds);

@@ -108,12 +108,12 @@ HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
       const auto byte = [](const I16& value, int down) HALFPLANE_LAMBDA {
         return shift_right_logical(value, down) & static_cast<std::int32_t>(0xff000000U >> down);
       };
-      packed(shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0))
+      packed(shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0), config_.color_format)
           .store(color.data());
     }
     if (first == 0 && line.shows_start[i] != 0) {
       code[0] = line.depth_start[i];
-      color[0] = packed(I16(line.color_start[i])).part[0][0];
+      color[0] = packed(I16(line.color_start[i]), config_.color_format).part[0][0];
     }
     // What fails is stored as it was: which pixels those are, nobody can foresee.
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {

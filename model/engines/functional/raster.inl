@@ -526,7 +526,7 @@ class Bin {
     const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
       return color_codes(ramp[p](block), I16(t.low[p]), I16(t.high[p]), format);
     };
-    return packed(pair(0) | pair(1) << 8, pixels);
+    return packed(pair(0), pair(1), pixels);
   }
 
   /// Two channels' codes, in the halves of each lane, as everything here: columns and rows from the anchor.
@@ -542,12 +542,19 @@ class Bin {
     return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
   }
 
-  /// Colours of 8 bits a channel, R lowest, as the target has them.
-  [[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& rgba) const { return packed(rgba, config_.color_format); }
+  /// Codes of 8 bits, red with blue and green with alpha, as the target has them.
+  [[nodiscard]] HALFPLANE_INLINE static I16 packed(const I16& red_blue, const I16& green_alpha, ColorFormat format) {
+    if (format == ColorFormat::rgba8888) return red_blue | green_alpha << 8;
+    // 16 bits suffice: 255 * 253 + 1014 < 2^16.
+    const auto rounded = [](const I16& codes, std::int16_t factor, std::int16_t addend, int drop) HALFPLANE_LAMBDA {
+      return as<I16>(shift_right_logical(as<S32>(codes) * factor + addend, drop));
+    };
+    return multiply_add_pairs(rounded(red_blue, 249, 1014, 11), I16(1 << 16 | 1 << 11)) |
+           multiply_add_pairs(rounded(green_alpha, 253, 505, 10), I16(1 << 5));
+  }
+  /// R lowest, A highest.
   [[nodiscard]] HALFPLANE_INLINE static I16 packed(const I16& rgba, ColorFormat format) {
-    if (format == ColorFormat::rgba8888) return rgba;
-    const I16 r = rgba & 255, g = shift_right_logical(rgba, 8) & 255, b = shift_right_logical(rgba, 16) & 255;
-    return (r * 249 + 1014) >> 11 << 11 | (g * 253 + 505) >> 10 << 5 | (b * 249 + 1014) >> 11;
+    return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, format);
   }
 
   // --- memory -------------------------------------------------------------------------------------------------------
@@ -1078,7 +1085,7 @@ class Bin {
     for (auto& row : rows) {
       const auto pair = [&](std::size_t p)
                             HALFPLANE_LAMBDA { return color_codes(value[p], as<I16>(low[p]), as<I16>(high[p]), format); };
-      packed(pair(0) | pair(1) << 8, pixels).store(row.data() + to);
+      packed(pair(0), pair(1), pixels).store(row.data() + to);
       for (std::size_t p = 0; p < 2; ++p) value[p] += step_y[p];
     }
   }

@@ -129,7 +129,7 @@ HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixe
     return channel_codes(position_.column_pair[of_tile & 1], position_.row_pair[of_tile >> 1], small_.c_step_x[p][i],
                          small_.c_step_y[p][i], small_.c_anchor[p][of_box][i], small_.c_low[p][i], small_.c_high[p][i]);
   };
-  const I16 color = packed(pair(0) | pair(1) << 8);
+  const I16 color = packed(pair(0), pair(1), config_.color_format);
   std::uint32_t* pixels = memory_.color.data() + at;
   select(passed, color, I16::load(pixels)).store(pixels);
 }
@@ -155,7 +155,7 @@ HALFPLANE_INLINE void draw_samples() {
       return channel_codes(columns, rows, load(small_.c_step_x[p]), load(small_.c_step_y[p]), load(small_.c_anchor[p][s]),
                            load(small_.c_low[p]), load(small_.c_high[p]));
     };
-    packed(channels(0) | channels(1) << 8).store(color[s].data());
+    packed(channels(0), channels(1), config_.color_format).store(color[s].data());
   }
   const bool has_depth = state_.depth_write, has_color = state_.color_write;
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
