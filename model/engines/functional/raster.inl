@@ -252,6 +252,7 @@ class Bin {
       const bool may_be_behind = Test != DepthFunc::less || record.z_low >= bin_low_;
       if (skip_.tiles_hiz && may_be_behind && is_behind_tiles<Test>(record, triangle.box)) {
         leave_out(triangle.box);
+        if (is_range_old_) find_bin_range();  // the bin may be about to fill
         continue;
       }
       if (set_up(slice, record, triangle) && !record.has(Record::kDrawsNothing)) draw_large<Test>(triangle);
@@ -331,10 +332,13 @@ class Bin {
     const int to_tile = kTileShift + s;
     {
       const std::int64_t az = std::int64_t{b->z} - a->z, bz = std::int64_t{c->z} - a->z;
-      const auto gradient = [R, k](std::int64_t numerator) HALFPLANE_LAMBDA {
-        return static_cast<std::int64_t>(round_shift(static_cast<int128>(numerator) * R, k));
-      };
       const std::int64_t numerator_x = az * by - bz * ay, numerator_y = ax * bz - bx * az;
+      constexpr std::int64_t kNarrow = std::int64_t{1} << 32;  // times a reciprocal of 30 bits
+      const bool is_narrow = std::abs(numerator_x) < kNarrow && std::abs(numerator_y) < kNarrow;
+      const auto gradient = [=](std::int64_t numerator) HALFPLANE_LAMBDA {
+        return is_narrow ? round_shift(numerator * R, k)
+                         : static_cast<std::int64_t>(round_shift(static_cast<int128>(numerator) * R, k));
+      };
       const std::int64_t step_x = gradient(numerator_x), step_y = gradient(numerator_y);
       out.z_anchor = static_cast<std::int64_t>((static_cast<std::uint64_t>(origin->z) << F) + product(step_x, dx) +
                                                product(step_y, dy) + depth_format_.anchor_bias);
@@ -358,16 +362,27 @@ class Bin {
     return static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b);
   }
 
-  void set_up_edges(const SnappedVertex& a, const SnappedVertex& b, const SnappedVertex& c, BinTriangle& out) const {
-    const std::array<const SnappedVertex*, 4> v{&a, &b, &c, &a};
-    for (std::size_t i = 0; i < 3; ++i) {
-      out.dx[i] = v[i + 1]->x - v[i]->x;
-      out.dy[i] = v[i + 1]->y - v[i]->y;
-      // Inside a bin a value moves by less than 2^30: beyond that its sign is the same everywhere.
-      constexpr EdgeValue kFar = EdgeValue{1} << 30;
-      const EdgeValue value = edge_function(*v[i], *v[i + 1], first_x_, first_y_, widths_.grid_bits);
-      out.edge[i] = static_cast<std::int32_t>(value < -kFar ? -kFar : value > kFar ? kFar : value);
-    }
+  /// The three edges at once: edge_function(), whose values binary64 holds. Inside a bin they move by less than 2^30:
+  /// beyond that a sign is the same everywhere.
+  HALFPLANE_INLINE void set_up_edges(const SnappedVertex& a, const SnappedVertex& b, const SnappedVertex& c,
+                                     BinTriangle& out) const {
+    typedef std::int32_t Words __attribute__((vector_size(16)));
+    typedef double Values __attribute__((vector_size(32)));
+    const int s = widths_.grid_bits, half = 1 << (s - 1);
+    const Words x{a.x, b.x, c.x, 0}, y{a.y, b.y, c.y, 0};
+    const Words dx = __builtin_shufflevector(x, x, 1, 2, 0, 3) - x, dy = __builtin_shufflevector(y, y, 1, 2, 0, 3) - y;
+    const Words px = (first_x_ << s) + half - x, py = (first_y_ << s) + half - y;
+    const auto value_of = [](const Words& v) HALFPLANE_LAMBDA { return __builtin_convertvector(v, Values); };
+    const Words is_in = (dy < 0) | ((dy == 0) & (dx > 0));  // top or left
+    Values value = value_of(dx) * value_of(py) - value_of(dy) * value_of(px) + value_of(~is_in);
+    constexpr double kFar = 1 << 30;
+    value *= 1.0 / static_cast<double>(std::int64_t{1} << s);
+    value = value < -kFar ? Values{} - kFar : value;
+    value = value > kFar - 1 ? Values{} + (kFar - 1) : value;
+    const Words edge = __builtin_convertvector(value + kFar, Words) - (1 << 30);  // truncation of what is above 0: floor
+    std::memcpy(out.edge.data(), &edge, sizeof out.edge);
+    std::memcpy(out.dx.data(), &dx, sizeof out.dx);
+    std::memcpy(out.dy.data(), &dy, sizeof out.dy);
   }
 
   struct ColorFrame {
@@ -637,6 +652,7 @@ class Bin {
   }
 
   void find_bin_range() {
+    is_range_old_ = false;
     I16 low = I16::load(tile_low_), high = I16::load(tile_high_), lowest_high = high;
     for (int t = 16; t < kTiles; t += 16) {
       const I16 highs = I16::load(tile_high_ + t);
@@ -845,7 +861,11 @@ class Bin {
                         {lane.edge[0][i], lane.edge[1][i], lane.edge[2][i]});
       }
     }
-    if (is_changed) find_bin_range();
+    if (!is_changed) return;
+    if (Test != DepthFunc::less) return find_bin_range();
+    // An upper bound that only falls: the old one will do.
+    bin_low_ = std::min(bin_low_, t.z_low);
+    is_range_old_ = true;
   }
 
   /// Tiles that the triangle takes as a whole.
@@ -1137,6 +1157,7 @@ class Bin {
   std::array<Block, 16 * 16 + 1> blocks_;  ///< sixteen of a triangle, and room for one that is not kept
   bool falls_ = false, rises_ = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count_ = 0;
+  bool is_range_old_ = false;    ///< tiles have changed since the bin's range was found
   std::uint64_t in_memory_ = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches_{};
   alignas(64) std::array<std::int32_t, kTiles> depth_owner_, color_owner_;
