@@ -177,15 +177,19 @@ void FrameRenderer::clear_whole(const Clear& command) {
     bits |= TileStates::kColorCleared;
     clear_color_ = color_code(*command.color, config_.color_format);
   }
+  // Loops that the compiler takes in lanes: nothing that they store can be one of their pointers.
   const std::size_t tiles = is_in_target_.size();
-  std::uint64_t again = 0;  // of the clear before
-  for (std::size_t i = 0; i < tiles; ++i) again += (tiles_.pending[i] & bits) != 0 ? 1U : 0U;
+  const std::uint8_t* const is_in = is_in_target_.data();
+  std::uint8_t* const pending = tiles_.pending.data();
+  std::uint32_t again = 0;  // of the clear before
+  for (std::size_t i = 0; i < tiles; ++i) again += (pending[i] & bits) != 0 ? 1U : 0U;
   rendering_.counters.skipped.clear += again;
-  for (std::size_t i = 0; i < tiles; ++i) tiles_.pending[i] |= static_cast<std::uint8_t>(is_in_target_[i] & bits);
-  const auto code = static_cast<std::int32_t>(clear_depth_);
-  for (std::size_t i = 0; i < tiles && command.depth; ++i) {
-    tiles_.z_low[i] = is_in_target_[i] != 0 ? code : kNoDepth.low;
-    tiles_.z_high[i] = is_in_target_[i] != 0 ? code : kNoDepth.high;
+  for (std::size_t i = 0; i < tiles; ++i) pending[i] = static_cast<std::uint8_t>(pending[i] | (is_in[i] & bits));
+  if (command.depth) {
+    const auto code = static_cast<std::int32_t>(clear_depth_);
+    std::int32_t *const low = tiles_.z_low.data(), *const high = tiles_.z_high.data();
+    for (std::size_t i = 0; i < tiles; ++i) low[i] = is_in[i] != 0 ? code : kNoDepth.low;
+    for (std::size_t i = 0; i < tiles; ++i) high[i] = is_in[i] != 0 ? code : kNoDepth.high;
   }
   rendering_.raster_s += std::chrono::duration<double>(Clock::now() - started).count();
   if (!skip_.clear) settle({0, 0, scene_->width, scene_->height});
