@@ -19,8 +19,10 @@ inline constexpr int kBinShift = 6, kBinSize = 1 << kBinShift;     ///< pixels a
 inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size that this engine has
 inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles along the side of a bin
 
-/// Extent of triangles that are set up sixteen at a time: 16 pixels, and products of two that 32 bits hold.
-[[nodiscard]] inline int small_extent_bits(const Widths& widths) { return std::min(4 + widths.grid_bits, 14); }
+/// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; medium ones, which may be, too.
+inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
+/// Their extent: below 32 pixels, and such that 32 bits hold products of two.
+[[nodiscard]] inline int small_extent_bits(const Widths& widths) { return std::min(5 + widths.grid_bits, 14); }
 
 /// What a draw's state asks of its fragments.
 struct FragmentState {
@@ -41,8 +43,9 @@ struct Record {
 
   static constexpr std::int32_t
       kWhole = 1 << 8,          ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-      kSmall = 1 << 9,          ///< whole, within two by two tiles, and of small_extent_bits()
-      kDrawsNothing = 1 << 10;  ///< culled, but nobody may skip: goes through the raster and draws nothing
+      kSmall = 1 << 9,          ///< whole, within kSmallTiles by kSmallTiles, and of small_extent_bits()
+      kMedium = 1 << 10,        ///< the same with kMediumTiles, small or not
+      kDrawsNothing = 1 << 11;  ///< culled, but nobody may skip: goes through the raster and draws nothing
   static constexpr int kSamplesShift =
       16;  ///< a small triangle within two by two pixels: which of them it covers; else 0
 

@@ -391,22 +391,22 @@ struct CullLanes {
     const I16 z_low = min(min(t.z[0], t.z[1]), t.z[2]), z_high = max(max(t.z[0], t.z[1]), t.z[2]);
     const std::uint32_t whole = bits_of((t.left > limit.left) & (t.top > limit.top) & (t.right < limit.right) &
                                         (t.bottom < limit.bottom));
-    const I16 few_tiles = ((t.right >> kTileShift) - (t.left >> kTileShift) <= 1) &
-                          ((t.bottom >> kTileShift) - (t.top >> kTileShift) <= 1);
+    const I16 columns = (t.right >> kTileShift) - (t.left >> kTileShift),
+              rows = (t.bottom >> kTileShift) - (t.top >> kTileShift), tiles = max(columns, rows);
     const int largest = 1 << small_extent_bits(frame.widths);
-    const std::uint32_t small = whole & bits_of(few_tiles & (extent(t.x) < largest) & (extent(t.y) < largest) &
-                                        (z_high - z_low < steepest_small));
+    const std::uint32_t medium = whole & bits_of((tiles < kMediumTiles) & (extent(t.x) < largest) &
+                                                 (extent(t.y) < largest) & (z_high - z_low < steepest_small));
     const auto bits_to_lanes = [](std::uint32_t bits) HALFPLANE_LAMBDA {
       return (I16(static_cast<std::int32_t>(bits)) & I16::of([](int i) { return 1 << i; })) != 0;
     };
-    const I16 is_small = bits_to_lanes(small), is_dropped = bits_to_lanes(dropped);
+    const I16 is_medium = bits_to_lanes(medium), is_small = is_medium & (tiles < kSmallTiles), is_dropped = bits_to_lanes(dropped);
     alignas(64) std::array<Record, 16> lane;
     std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
     static_assert(static_cast<int>(RecordKind::triangle) == 0);
     store_rows({t.v[0], t.v[1], t.v[2], z_low}, words, sizeof(Record));
     store_rows({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
                 ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) |
-                    (bits_to_lanes(whole) & Record::kWhole) | (is_small & Record::kSmall) |
+                    (bits_to_lanes(whole) & Record::kWhole) | (is_small & Record::kSmall) | (is_medium & Record::kMedium) |
                     (is_dropped & Record::kDrawsNothing)},
                words + 4, sizeof(Record));
     Record* out = slice.records.data() + slice.record_count;

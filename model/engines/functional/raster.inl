@@ -219,15 +219,20 @@ class Bin {
         leave_out(box());
         continue;
       }
-      if (record.has(Record::kSmall)) {
+      // A batch pays for medium triangles where many follow each other.
+      constexpr int kRun = 2;
+      const bool is_medium = record.has(Record::kMedium);
+      small_run_ = is_medium ? small_run_ + 1 : 0;
+      if (record.has(Record::kSmall) || (is_medium && small_run_ > kRun)) {
         // Nearer than what every tile may hold: no need to look at its own.
         if (skip_.tiles_hiz && (Test != DepthFunc::less || record.z_low >= bin_lowest_high_)) {
           const Box at = box();
           const int a = tile_of(at.left, at.top), b = tile_of(at.right, at.top), c = tile_of(at.left, at.bottom),
                     d = tile_of(at.right, at.bottom);
+          const bool is_over_two = b > a + 1 || c > a + kBinTiles;
           const std::int32_t low = std::min({tile_low_[a], tile_low_[b], tile_low_[c], tile_low_[d]});
           const std::int32_t high = std::max({tile_high_[a], tile_high_[b], tile_high_[c], tile_high_[d]});
-          if (is_behind<Test>(record, low, high)) {
+          if (is_over_two ? is_behind_tiles<Test>(record, at) : is_behind<Test>(record, low, high)) {
             leave_out(at);
             continue;
           }
@@ -1152,9 +1157,11 @@ class Bin {
   std::int32_t bin_lowest_high_ = 0;         ///< of its tiles' upper bounds, or of earlier ones
   const LanePositions& position_ = lane_positions();
   SmallBatch small_;
+  int small_run_ = 0;  ///< records in a row that were small or medium
   LineBatch lines_, cut_line_;  ///< cut_line_: one, in lane 0
   std::uint64_t line_tiles_ = 0;  ///< touched by lines since triangles last were drawn
-  std::array<Block, 16 * 16 + 1> blocks_;  ///< sixteen of a triangle, and room for one that is not kept
+  static constexpr std::size_t kSmallBlocks = kMediumTiles * kTileSize / kBlockSize;  ///< along a side
+  std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks_;  ///< and room for one that is not kept
   bool falls_ = false, rises_ = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count_ = 0;
   bool is_range_old_ = false;    ///< tiles have changed since the bin's range was found

@@ -11,28 +11,42 @@ template <DepthFunc Test>
 void draw_batch(const Slice& slice) {
   if (small_.count == 0) return;
   line_tiles_ = 0;
-  small_.set_up(slice, job_.frame, depth_format_, color_format_, first_x_, first_y_);
-  const bool is_changed = touch_tiles<Test>();
+  small_.load(first_x_, first_y_);
+  const BatchTiles tiles = batch_tiles();
+  if (tiles.is_over_two)
+    small_.set_up<kMediumTiles>(slice, job_.frame, depth_format_, color_format_, first_x_, first_y_);
+  else
+    small_.set_up<kSmallTiles>(slice, job_.frame, depth_format_, color_format_, first_x_, first_y_);
+  const bool is_changed = touch<Test>(tiles.touched);
   small_.has_samples ? draw_samples<Test>() : draw_blocks<Test>();
   small_.count = 0;
   if (is_changed || Test != DepthFunc::less) find_bin_range();  // with less, a bound that is too high will do
 }
 
-/// The tiles that the boxes of the batch touch: they must be in memory, and their ranges are known no more. Every now and
-/// then finds a tile's range anew; says so.
-template <DepthFunc Test>
-HALFPLANE_INLINE bool touch_tiles() {
+/// The tiles that the boxes of the batch touch.
+struct BatchTiles {
+  std::uint64_t touched = 0;  ///< a bit each
+  bool is_over_two = false;   ///< along the side of a box
+};
+HALFPLANE_INLINE BatchTiles batch_tiles() {
   const auto tiles_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
-  const I16 left = tiles_of(small_.left), top = tiles_of(small_.top), is_wide = tiles_of(small_.right) > left,
-            is_high = tiles_of(small_.bottom) > top;
-  const std::uint32_t wide = bits_of(is_wide) & small_.live, high = bits_of(is_high) & small_.live;
-  const auto count_of = [](std::uint32_t bits) HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(bits)); };
-  job_.counters.tiles_visited += count_of(small_.live) + count_of(wide) + count_of(high) + count_of(wide & high);
-  const I16 tile = top * kBinTiles + left;
-  std::uint64_t tiles = or_of_bits(tile, small_.live);
-  if (wide != 0) tiles |= or_of_bits(tile + 1, wide);
-  if (high != 0) tiles |= or_of_bits(tile + kBinTiles, high);
-  if ((wide & high) != 0) tiles |= or_of_bits(tile + (kBinTiles + 1), wide & high);
+  const I16 left = tiles_of(small_.left), top = tiles_of(small_.top), columns = tiles_of(small_.right) - left,
+            rows = tiles_of(small_.bottom) - top;
+  BatchTiles tiles;
+  for (int row = 0; row < kMediumTiles; ++row)
+    for (int column = 0; column < kMediumTiles; ++column) {
+      const std::uint32_t lanes = bits_of((columns >= column) & (rows >= row)) & small_.live;
+      if (lanes == 0) break;
+      tiles.touched |= or_of_bits((top + row) * kBinTiles + (left + column), lanes);
+      tiles.is_over_two |= row == 2 || column == 2;
+      job_.counters.tiles_visited += static_cast<unsigned>(std::popcount(lanes));
+    }
+  return tiles;
+}
+
+/// They must be in memory, and their ranges are known no more. Every now and then finds a tile's range anew; says so.
+template <DepthFunc Test>
+HALFPLANE_INLINE bool touch(std::uint64_t tiles) {
   for (std::uint64_t rest = tiles & ~in_memory_; rest != 0; rest &= rest - 1) {
     const int at = std::countr_zero(rest);
     need_depth(at);
@@ -86,17 +100,20 @@ HALFPLANE_INLINE std::size_t find_blocks() {
     add(place + kColumn + kRow,
         (below[0] + small_.to_right[0][i]) | (below[1] + small_.to_right[1][i]) | (below[2] + small_.to_right[2][i]),
         there >> 3 & 1);
-    const int columns = (small_.right[i] >> 2) - (small_.left[i] >> 2),
-              rows = (small_.bottom[i] >> 2) - (small_.top[i] >> 2);
+    const int columns = (small_.right[i] >> kBlockShift) - (small_.left[i] >> kBlockShift),
+              rows = (small_.bottom[i] >> kBlockShift) - (small_.top[i] >> kBlockShift);
     tested += static_cast<unsigned>((columns + 1) * (rows + 1));
     if (columns < 2 && rows < 2) continue;
-    for (int dy = 0; dy <= rows; ++dy)
-      for (int dx = dy < 2 ? 2 : 0; dx <= columns; ++dx) {
-        I16 signs(0);
-        for (std::size_t e = 0; e < 3; ++e)
-          signs |= edge[e] + (dx * small_.to_right[e][i] + dy * small_.to_below[e][i]);
-        add(place + kColumn * static_cast<std::uint32_t>(dx) + kRow * static_cast<std::uint32_t>(dy), signs, there & 1);
+    for (int dy = 0; dy <= rows; ++dy) {
+      std::array<I16, 3> at = edge;
+      for (int dx = 0; dx <= columns; ++dx) {
+        if (dx >= 2 || dy >= 2)
+          add(place + kColumn * static_cast<std::uint32_t>(dx) + kRow * static_cast<std::uint32_t>(dy),
+              at[0] | at[1] | at[2], there & 1);
+        for (std::size_t e = 0; e < 3; ++e) at[e] += I16(small_.to_right[e][i]);
       }
+      for (std::size_t e = 0; e < 3; ++e) edge[e] += I16(small_.to_below[e][i]);
+    }
   }
   job_.counters.samples_tested += kBlockPixels * tested;
   return blocks;
@@ -110,7 +127,8 @@ HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixe
   const int tile_x = column >> 1, tile_y = row >> 1;
   // Of the tiles that the box may touch, and of the blocks of a tile.
   const auto of_box =
-      static_cast<std::size_t>(tile_x - (small_.left[i] >> kTileShift) + 2 * (tile_y - (small_.top[i] >> kTileShift)));
+      static_cast<std::size_t>(tile_x - (small_.left[i] >> kTileShift) +
+                               kMediumTiles * (tile_y - (small_.top[i] >> kTileShift)));
   const auto of_tile = static_cast<std::size_t>((column & 1) + 2 * (row & 1));
   const auto at = static_cast<std::size_t>(first_of(tile_y * kBinTiles + tile_x)) + kBlockPixels * of_tile;
   const I16 value = position_.column[of_tile & 1] * small_.z_step_x[i] +
@@ -145,14 +163,14 @@ HALFPLANE_INLINE void draw_samples() {
   const std::array<I16, 2> column{from_anchor(x[0]), from_anchor(x[1])}, row{from_anchor(y[0]), from_anchor(y[1])};
   const auto load = [](const SmallBatch::Lane& lane) HALFPLANE_LAMBDA { return I16::load(lane.data()); };
   for (std::size_t s = 0; s < kSamples; ++s) {
-    const std::size_t i = s & 1, j = s >> 1;
+    const std::size_t i = s & 1, j = s >> 1, anchor = i + kMediumTiles * j;
     place_of(x[i], y[j]).store(place[s].data());
-    const I16 value = column[i] * load(small_.z_step_x) + row[j] * load(small_.z_step_y) + load(small_.z_anchor[s]);
+    const I16 value = column[i] * load(small_.z_step_x) + row[j] * load(small_.z_step_y) + load(small_.z_anchor[anchor]);
     decode(value, depth_format_, load(small_.z_low), load(small_.z_high)).store(depth[s].data());
     if (!state_.color_write) continue;
     const I16 columns = pairs(column[i], column[i]), rows = pairs(row[j], row[j]);
     const auto channels = [&](std::size_t p) HALFPLANE_LAMBDA {
-      return channel_codes(columns, rows, load(small_.c_step_x[p]), load(small_.c_step_y[p]), load(small_.c_anchor[p][s]),
+      return channel_codes(columns, rows, load(small_.c_step_x[p]), load(small_.c_step_y[p]), load(small_.c_anchor[p][anchor]),
                            load(small_.c_low[p]), load(small_.c_high[p]));
     };
     packed(channels(0), channels(1), config_.color_format).store(color[s].data());

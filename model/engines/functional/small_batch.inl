@@ -12,6 +12,7 @@ struct SmallBatch {
   bool has_samples = true;  ///< of all that wait
 
   std::uint32_t live = 0;                     ///< lanes that draw something in this bin
+  std::array<I16, 3> v;                       ///< corners, into Slice::vertices
   alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
   alignas(64) Lane z_low, z_high;
   alignas(64) Lane samples;  ///< Record::samples() of the part of its box that lies in the bin
@@ -21,10 +22,10 @@ struct SmallBatch {
   alignas(64) Lane place;                       ///< the first block: lane, column, row, a byte each
   alignas(64) Lane there;              ///< bits: the box touches that block, its right neighbour, the lower, both's
   alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
-  /// Of the tiles that the box may touch: first, right, below, both; with has_samples, of those of its four samples.
-  alignas(64) LaneArray<4> z_anchor;
+  /// Of the tiles that the box may touch, row by row; with has_samples, of those of its four samples, kMediumTiles a row.
+  alignas(64) LaneArray<kMediumTiles * kMediumTiles> z_anchor;
   alignas(64) Lane z_step_x, z_step_y;
-  alignas(64) std::array<LaneArray<4>, 2> c_anchor;  ///< by channel pair
+  alignas(64) std::array<LaneArray<kMediumTiles * kMediumTiles>, 2> c_anchor;  ///< by channel pair
   alignas(64) LaneArray<2> c_step_x, c_step_y, c_low, c_high;
 
   /// True when that was the last for which there is room.
@@ -34,8 +35,10 @@ struct SmallBatch {
     return ++count == 16;
   }
 
-  /// The records' fields: corners as indices into Slice::vertices; boxes, depths, samples, live.
-  HALFPLANE_INLINE std::array<I16, 3> load(int first_x, int first_y);
+  /// The records' fields, all but `kind`.
+  void load(int first_x, int first_y);
+  /// `Side`: tiles along a side of a box at most.
+  template <std::size_t Side>
   void set_up(const Slice& slice, const FrameContext& frame, const LaneFormat& depth_format,
               const LaneFormat& color_format, int first_x, int first_y);
 };
@@ -83,7 +86,7 @@ HALFPLANE_INLINE I16 round_shift_lanes(const L16& value, int bits) {
   return convert<std::int32_t>(shift_right_logical(value + (std::int64_t{1} << (bits - 1)), bits));
 }
 
-HALFPLANE_INLINE std::array<I16, 3> SmallBatch::load(int first_x, int first_y) {
+HALFPLANE_NOINLINE void SmallBatch::load(int first_x, int first_y) {
   for (std::size_t i = static_cast<std::size_t>(count); i < 16; ++i) records[i] = records[0];
   const auto half = [this](int i, int first_word) HALFPLANE_LAMBDA {
     return reinterpret_cast<const std::int32_t*>(records[static_cast<std::size_t>(i)]) + first_word;
@@ -91,6 +94,7 @@ HALFPLANE_INLINE std::array<I16, 3> SmallBatch::load(int first_x, int first_y) {
   const auto [v0, v1, v2, low] = turned_rows([&](int i) HALFPLANE_LAMBDA { return half(i, 0); });
   const auto [high, left_top, right_bottom, traits] = turned_rows([&](int i) HALFPLANE_LAMBDA { return half(i, 4); });
   const I16 covered = traits >> Record::kSamplesShift;
+  v = {v0, v1, v2};
   low.store(z_low.data());
   high.store(z_high.data());
   const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
@@ -106,19 +110,18 @@ HALFPLANE_INLINE std::array<I16, 3> SmallBatch::load(int first_x, int first_y) {
                             select(y0 == kBinSize - 1, in_columns & kUpper, in_columns));
   in_bin.store(samples.data());
   live = ((1U << count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
-  return {v0, v1, v2};
 }
 
+template <std::size_t Side>
 HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContext& frame,
                                            const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
                                            int first_y) {
   const Config& config = frame.config;
   const Widths& widths = frame.widths;
   const int s = widths.grid_bits, F = widths.plane_fraction, half = 1 << (s - 1);
-  const std::array<I16, 3> corners = load(first_x, first_y);
   const auto fetch = [&](std::size_t k) HALFPLANE_LAMBDA {
     Lane at;
-    corners[k].store(at.data());
+    v[k].store(at.data());
     return load_vertices(slice.vertices.data(), at.data());
   };
   const SnappedLanes a = fetch(0);
@@ -170,39 +173,55 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   };
   const I16 to_x = anchor_of(box_x, first_x) - origin.x, to_y = anchor_of(box_y, first_y) - origin.y;
   const int to_tile = kTileShift + s;
-  const auto to_next_tile = [this](const I16& at) HALFPLANE_LAMBDA {  // of the next sample; or of any next tile
+  // To the tiles that follow: with has_samples, to that of the next sample.
+  const auto to_next_tile = [this](const I16& at) HALFPLANE_LAMBDA {
     return has_samples ? (at & (kTileSize - 1)) == kTileSize - 1 : I16(-1);
   };
   const I16 to_right_tile = to_next_tile(box_x), to_lower_tile = to_next_tile(box_y);
   // A plane at the anchors of the tiles, the bits from `drop` on. Where the products of the bits below fit 32, that is all
   // that a lane needs: what is above wraps.
+  using Anchors = std::array<I16, kMediumTiles * kMediumTiles>;
   const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
-                           std::array<I16, 4>& out) HALFPLANE_LAMBDA {
+                           Anchors& out) HALFPLANE_LAMBDA {
     const int drop = format.drop;
-    if (constexpr int kOffset = 5 + 2; drop + s + kOffset < 32) {  // offsets below 24 pixels; sums of four
+    if (constexpr int kOffset = 6 + 2; drop + s + kOffset < 32) {  // offsets below 64 pixels; sums of four
       const std::int32_t below = (std::int32_t{1} << drop) - 1;
       const I16 x0 = convert<std::int32_t>(step_x) & below, y0 = convert<std::int32_t>(step_y) & below;
       const I16 x1 = convert<std::int32_t>(shift_right_logical(step_x, drop)),
                 y1 = convert<std::int32_t>(shift_right_logical(step_y, drop));
-      const I16 upper = (at_origin << (F - drop)) + x1 * to_x + y1 * to_y +
-                        static_cast<std::int32_t>(static_cast<std::uint32_t>(format.anchor_bias >> drop));
-      const I16 lower = x0 * to_x + y0 * to_y + (static_cast<std::int32_t>(format.anchor_bias) & below);
-      const auto lane = [&](const I16& high, const I16& low)
-                            HALFPLANE_LAMBDA { return (high + (low >> drop)) << format.up; };
-      const I16 right1 = upper + ((x1 << to_tile) & to_right_tile), right0 = lower + ((x0 << to_tile) & to_right_tile);
-      const I16 down1 = (y1 << to_tile) & to_lower_tile, down0 = (y0 << to_tile) & to_lower_tile;
-      out = {lane(upper, lower), lane(right1, right0), lane(upper + down1, lower + down0),
-             lane(right1 + down1, right0 + down0)};
+      I16 upper = (at_origin << (F - drop)) + x1 * to_x + y1 * to_y +
+                  static_cast<std::int32_t>(static_cast<std::uint32_t>(format.anchor_bias >> drop));
+      I16 lower = x0 * to_x + y0 * to_y + (static_cast<std::int32_t>(format.anchor_bias) & below);
+      const I16 right1 = (x1 << to_tile) & to_right_tile, right0 = (x0 << to_tile) & to_right_tile,
+                down1 = (y1 << to_tile) & to_lower_tile, down0 = (y0 << to_tile) & to_lower_tile;
+      for (std::size_t j = 0; j < Side; ++j) {
+        I16 high = upper, low = lower;
+        for (std::size_t i = 0; i < Side; ++i) {
+          out[j * kMediumTiles + i] = (high + (low >> drop)) << format.up;
+          high += right1;
+          low += right0;
+        }
+        upper += down1;
+        lower += down0;
+      }
       return;
     }
-    const L16 value = (convert<std::int64_t>(at_origin) << F) + step_x * convert<std::int64_t>(to_x) +
-                      step_y * convert<std::int64_t>(to_y) + static_cast<std::int64_t>(format.anchor_bias);
-    const L16 right_of = value + ((step_x << to_tile) & convert<std::int64_t>(to_right_tile)),
-              below = (step_y << to_tile) & convert<std::int64_t>(to_lower_tile);
-    const auto lane = [&](const L16& v64) HALFPLANE_LAMBDA {
-      return convert<std::int32_t>(shift_right_logical(v64, drop)) << format.up;
-    };
-    out = {lane(value), lane(right_of), lane(value + below), lane(right_of + below)};
+    L16 first = (convert<std::int64_t>(at_origin) << F) + step_x * convert<std::int64_t>(to_x) +
+                step_y * convert<std::int64_t>(to_y) + static_cast<std::int64_t>(format.anchor_bias);
+    const L16 aside = (step_x << to_tile) & convert<std::int64_t>(to_right_tile),
+              down = (step_y << to_tile) & convert<std::int64_t>(to_lower_tile);
+    for (std::size_t j = 0; j < Side; ++j) {
+      L16 value = first;
+      for (std::size_t i = 0; i < Side; ++i) {
+        out[j * kMediumTiles + i] = convert<std::int32_t>(shift_right_logical(value, drop)) << format.up;
+        value += aside;
+      }
+      first += down;
+    }
+  };
+  const auto for_each_anchor = [&](auto&& visit) HALFPLANE_LAMBDA {
+    for (std::size_t j = 0; j < Side; ++j)
+      for (std::size_t i = 0; i < Side; ++i) visit(j * kMediumTiles + i);
   };
   const auto local = [](const L16& step, const LaneFormat& format)
                          HALFPLANE_LAMBDA { return round_shift_lanes(step, format.step_drop) << format.up; };
@@ -222,9 +241,9 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
       step_x = gradient(az * by - bz * ay);
       step_y = gradient(ax * bz - bx * az);
     }
-    std::array<I16, 4> at;
+    Anchors at;
     anchors(origin.z, step_x, step_y, depth_format, at);
-    for (std::size_t i = 0; i < 4; ++i) at[i].store(z_anchor[i].data());
+    for_each_anchor([&](std::size_t i) HALFPLANE_LAMBDA { at[i].store(z_anchor[i].data()); });
     local(step_x, depth_format).store(z_step_x.data());
     local(step_y, depth_format).store(z_step_y.data());
   }
@@ -232,7 +251,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   const bool is_flat = slice.state.is_flat;
   for (std::size_t p = 0; p < 2; ++p) {
     struct Half {
-      std::array<I16, 4> at;
+      Anchors at;
       I16 step_x, step_y, low, high;
     };
     std::array<Half, 2> halves;
@@ -256,7 +275,8 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
       to.step_y = local(gy, color_format);
     }
     const Half &low = halves[0], &high = halves[1];
-    for (std::size_t i = 0; i < 4; ++i) pairs(low.at[i], high.at[i]).store(c_anchor[p][i].data());
+    for_each_anchor([&](std::size_t i)
+                        HALFPLANE_LAMBDA { pairs(low.at[i], high.at[i]).store(c_anchor[p][i].data()); });
     pairs(low.step_x, high.step_x).store(c_step_x[p].data());
     pairs(low.step_y, high.step_y).store(c_step_y[p].data());
     pairs(low.low, high.low).store(c_low[p].data());
