@@ -8,6 +8,7 @@
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
+#include "model/engines/functional/frame_renderer.hpp"
 #include "model/engines/functional/kernels.hpp"
 #include "model/engines/scalar.hpp"
 #include "sim/cosim/random_scene.hpp"
@@ -146,6 +147,65 @@ TEST(Functional, LinesOnBordersAndShorterThanAPixelAreTheSameOnEveryPath) {
       config.subpixel_bits = subpixel_bits;
       SCOPED_TRACE(std::string(name) + ", depth.bits " + std::to_string(depth_bits) + ", seed " + std::to_string(seed));
       expect_all_same(hard_lines(seed, 200, 150, std::ldexp(1.0, -subpixel_bits)), config);
+    }
+}
+
+/// Triangles of every way through the raster, in runs of a few and of many of one size: pixels, tiles and bins wide, with
+/// corners on and beside their borders, with each depth test.
+Scene triangles_of_all_sizes(std::uint32_t seed, int width, int height, double step) {
+  test::Random random(seed);
+  test::SceneBuilder builder(width, height);
+  Scene& scene = builder.scene;
+  constexpr std::array kTests{DepthFunc::less,     DepthFunc::lequal, DepthFunc::greater, DepthFunc::less,
+                              DepthFunc::notequal, DepthFunc::less,   DepthFunc::gequal,  DepthFunc::always};
+  for (const DepthFunc depth_test : kTests) {
+    State state = test::SceneBuilder::window_state();
+    state.depth_test = depth_test;
+    state.depth_write = random.index(4) != 0;
+    state.color_write = random.index(4) != 0;
+    state.shade = random.index(4) == 0 ? Shade::flat : state.shade;
+    scene.states.push_back(state);
+    const std::size_t first = scene.indices.size();
+    for (int run = 0; run < 12; ++run) {
+      constexpr std::array kSizes{2.0, 7.0, 17.0, 24.0, 31.0, 33.0, 90.0};
+      const double size = kSizes[static_cast<std::size_t>(random.index(7))];
+      const int count = random.index(3) == 0 ? 40 : 1 + random.index(5);
+      for (int n = 0; n < count; ++n) {
+        const double x = random.between(-8, width), y = random.between(-8, height);
+        for (int corner = 0; corner < 3; ++corner) {
+          const double grid = random.index(3) == 0 ? 8.0 : step;
+          const double vx = std::floor((x + size * random.unit()) / grid) * grid,
+                       vy = std::floor((y + size * random.unit()) / grid) * grid;
+          scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+          scene.vertices.push_back(test::at(vx, vy, random.index(4) == 0 ? 0.5 : random.unit()));
+          for (double& channel : scene.vertices.back().rgba) channel = random.index(256);
+        }
+      }
+    }
+    scene.commands.push_back(Draw{static_cast<std::uint32_t>(scene.states.size() - 1), 0, Topology::triangles, first,
+                                  scene.indices.size() - first, 0});
+  }
+  return scene;
+}
+
+TEST(Functional, TrianglesOfAllSizesAreTheSameOnEveryPath) {
+  for (const auto& [name, depth_bits, subpixel_bits] : {std::tuple{"embedded", 16, 4},
+                                                        {"embedded", 16, 0},
+                                                        {"embedded", 24, 3},
+                                                        {"small", 16, 2},
+                                                        {"full", 24, 8},
+                                                        {"full", 16, 12},
+                                                        {"full", 25, 10}})
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      Config config = config_of(name, depth_bits);
+      config.subpixel_bits = subpixel_bits;
+      config.target_width = config.target_height = 256;
+      config.guard_band = std::min(config.guard_band, 1024);
+      SCOPED_TRACE(std::string(name) + ", depth.bits " + std::to_string(depth_bits) + ", subpixel.bits " +
+                   std::to_string(subpixel_bits) + ", seed " + std::to_string(seed));
+      const Scene scene = triangles_of_all_sizes(seed, 200, 150, std::ldexp(1.0, -subpixel_bits));
+      EXPECT_TRUE(functional::is_supported(scene, config, {}));
+      expect_all_same(scene, config);
     }
 }
 
