@@ -16,8 +16,8 @@ constexpr int kBlockShift = 2, kBlockSize = 1 << kBlockShift, kBlockPixels = 16;
 /// Lanes as places.
 struct LanePositions {
   I16 pair_x, pair_y;  ///< of two rows of eight
-  I16 lane, lane_bit;  ///< its number; 1 << lane
-  D16 lane_d;
+  I16 lane;            ///< its number
+  I16 to_sign;         ///< 31 - lane: moves bit number `lane` to the sign
   I16 block_x, block_y;
   I16 block_yx;  ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
@@ -27,8 +27,7 @@ struct LanePositions {
     pair_x = I16::of([](int i) { return i % 8; });
     pair_y = I16::of([](int i) { return i / 8; });
     lane = I16::of([](int i) { return i; });
-    lane_d = convert<double>(lane);
-    lane_bit = I16::of([](int i) { return 1 << i; });
+    to_sign = I16::of([](int i) { return 31 - i; });
     block_x = I16::of([](int i) { return i % 4; });
     block_y = I16::of([](int i) { return i / 4; });
     block_yx = pairs(block_y, block_x);
@@ -480,11 +479,6 @@ class Bin {
 
   HALFPLANE_INLINE static I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
     return min(max(shift_right_logical(value, format.down) - format.bias, low), high);
-  }
-
-  /// The mask whose lanes are the bits.
-  HALFPLANE_INLINE I16 from_bits(std::uint32_t bits) const {
-    return (I16(static_cast<std::int32_t>(bits)) & position_.lane_bit) != 0;
   }
 
   template <DepthFunc Test>

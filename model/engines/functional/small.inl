@@ -124,32 +124,30 @@ template <DepthFunc Test>
 HALFPLANE_INLINE void draw_block(const Block& block, std::uint64_t& covered_pixels, std::uint64_t& passed_pixels) {
   const std::size_t i = block.place & 255;
   const int column = static_cast<int>(block.place >> 8 & 255), row = static_cast<int>(block.place >> 16);
-  const int tile_x = column >> 1, tile_y = row >> 1;
-  // Of the tiles that the box may touch, and of the blocks of a tile.
-  const auto of_box =
-      static_cast<std::size_t>(tile_x - (small_.left[i] >> kTileShift) +
-                               kMediumTiles * (tile_y - (small_.top[i] >> kTileShift)));
-  const auto of_tile = static_cast<std::size_t>((column & 1) + 2 * (row & 1));
-  const auto at = static_cast<std::size_t>(first_of(tile_y * kBinTiles + tile_x)) + kBlockPixels * of_tile;
-  const I16 value = position_.column[of_tile & 1] * small_.z_step_x[i] +
-                    position_.row[of_tile >> 1] * small_.z_step_y[i] + small_.z_anchor[of_box][i];
+  const auto of_box = static_cast<std::size_t>((column >> 1) + kMediumTiles * (row >> 1) - small_.first_tile[i]);
+  const std::size_t right = block.place >> 8 & 1, below = block.place >> 16 & 1;  // in its tile
+  const auto at = static_cast<std::size_t>(kColumnPlaces[static_cast<std::size_t>(column)] +
+                                           kRowPlaces[static_cast<std::size_t>(row)]);
+  const I16 value = position_.column[right] * small_.z_step_x[i] + position_.row[below] * small_.z_step_y[i] +
+                    small_.z_anchor[of_box][i];
   const I16 depth = decode(value, depth_format_, small_.z_low[i], small_.z_high[i]);
   std::int32_t* depths = memory_.depth.data() + at;
   const I16 stored = I16::load(depths);
-  const I16 passed = from_bits(block.covered) & passes<Test>(depth, stored);
+  const I16 covered = I16(static_cast<std::int32_t>(block.covered)) << position_.to_sign;
+  const I16 passed = covered & passes<Test>(depth, stored);  // signs
   const std::uint32_t passed_bits = bits_of(passed);
   covered_pixels += static_cast<unsigned>(std::popcount(block.covered));
   passed_pixels += static_cast<unsigned>(std::popcount(passed_bits));
   if (passed_bits == 0 && skip_.fragments_early_z) return;
-  if (state_.depth_write) select(passed, depth, stored).store(depths);
+  if (state_.depth_write) select_by_sign(passed, depth, stored).store(depths);
   if (!state_.color_write) return;
   const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
-    return channel_codes(position_.column_pair[of_tile & 1], position_.row_pair[of_tile >> 1], small_.c_step_x[p][i],
+    return channel_codes(position_.column_pair[right], position_.row_pair[below], small_.c_step_x[p][i],
                          small_.c_step_y[p][i], small_.c_anchor[p][of_box][i], small_.c_low[p][i], small_.c_high[p][i]);
   };
   const I16 color = packed(pair(0), pair(1), config_.color_format);
   std::uint32_t* pixels = memory_.color.data() + at;
-  select(passed, color, I16::load(pixels)).store(pixels);
+  select_by_sign(passed, color, I16::load(pixels)).store(pixels);
 }
 
 /// Triangles whose few samples are known: a triangle a lane, then sample by sample in their order.

@@ -14,6 +14,7 @@ struct SmallBatch {
   std::uint32_t live = 0;                     ///< lanes that draw something in this bin
   std::array<I16, 3> v;                       ///< corners, into Slice::vertices
   alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
+  alignas(64) Lane first_tile;  ///< of the box: column + kMediumTiles row
   alignas(64) Lane z_low, z_high;
   alignas(64) Lane samples;  ///< Record::samples() of the part of its box that lies in the bin
 
@@ -98,8 +99,10 @@ HALFPLANE_NOINLINE void SmallBatch::load(int first_x, int first_y) {
   low.store(z_low.data());
   high.store(z_high.data());
   const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
-  max(x0, I16(0)).store(left.data());
-  max(y0, I16(0)).store(top.data());
+  const I16 box_x = max(x0, I16(0)), box_y = max(y0, I16(0));
+  box_x.store(left.data());
+  box_y.store(top.data());
+  ((box_x >> kTileShift) + (box_y >> kTileShift) * kMediumTiles).store(first_tile.data());
   min((right_bottom << 16 >> 16) - first_x, I16(kBinSize - 1)).store(right.data());
   min((right_bottom >> 16) - first_y, I16(kBinSize - 1)).store(bottom.data());
   // Of two by two samples the bin may have one column or row: those on the left, or those on the right moved there.
