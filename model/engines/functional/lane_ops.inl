@@ -392,6 +392,108 @@ HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
 }
 HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
 
+/// Four columns of sixteen rows of four numbers.
+struct Columns {
+  I16 first, second, third, fourth;
+};
+
+#if defined(__x86_64__)
+/// Four registers, of which each quarter holds a row of four numbers: columns to rows and rows to columns.
+HALFPLANE_INLINE void turn_quarters(I16::Register& a, I16::Register& b, I16::Register& c, I16::Register& d) {
+#if HALFPLANE_ISA == 512
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits((__m512i)(a), (__m512i)(b))
+#elif HALFPLANE_ISA == 256
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm256_unpack##half##_epi##bits((__m256i)(a), (__m256i)(b))
+#else
+#define HALFPLANE_UNPACK(half, a, b, bits) _mm_unpack##half##_epi##bits((__m128i)(a), (__m128i)(b))
+#endif
+  const auto ab_low = HALFPLANE_UNPACK(lo, a, b, 32), ab_high = HALFPLANE_UNPACK(hi, a, b, 32),
+             cd_low = HALFPLANE_UNPACK(lo, c, d, 32), cd_high = HALFPLANE_UNPACK(hi, c, d, 32);
+  a = (I16::Register)HALFPLANE_UNPACK(lo, ab_low, cd_low, 64);
+  b = (I16::Register)HALFPLANE_UNPACK(hi, ab_low, cd_low, 64);
+  c = (I16::Register)HALFPLANE_UNPACK(lo, ab_high, cd_high, 64);
+  d = (I16::Register)HALFPLANE_UNPACK(hi, ab_high, cd_high, 64);
+#undef HALFPLANE_UNPACK
+}
+#endif
+
+/// Lane i: the row at row_at(i). Cheaper than a gather for each column.
+template <class RowAt>
+HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
+  Columns to;
+#if defined(__x86_64__)
+  for (int part = 0; part < I16::kParts; ++part) {
+    const auto quarter = [&](int i) HALFPLANE_LAMBDA {
+      return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row_at(part * I16::kLanes + i)));
+    };
+    const auto quarters = [&](int i) HALFPLANE_LAMBDA {  // i, i + 4, ...
+#if HALFPLANE_ISA == 512
+      const __m512i two = _mm512_inserti32x4(_mm512_castsi128_si512(quarter(i)), quarter(i + 4), 1);
+      return (I16::Register)_mm512_inserti32x4(_mm512_inserti32x4(two, quarter(i + 8), 2), quarter(i + 12), 3);
+#elif HALFPLANE_ISA == 256
+      return (I16::Register)_mm256_inserti128_si256(_mm256_castsi128_si256(quarter(i)), quarter(i + 4), 1);
+#else
+      return (I16::Register)quarter(i);
+#endif
+    };
+    I16::Register a = quarters(0), b = quarters(1), c = quarters(2), d = quarters(3);
+    turn_quarters(a, b, c, d);
+    to.first.part[part] = a;
+    to.second.part[part] = b;
+    to.third.part[part] = c;
+    to.fourth.part[part] = d;
+  }
+#else
+  const auto column = [&](int at) HALFPLANE_LAMBDA {
+    return I16::of([&](int i) HALFPLANE_LAMBDA {
+      std::int32_t value;
+      std::memcpy(&value, reinterpret_cast<const char*>(row_at(i)) + 4 * at, sizeof value);
+      return value;
+    });
+  };
+  to = {column(0), column(1), column(2), column(3)};
+#endif
+  return to;
+}
+
+/// The other way round: lane i to the row at `to` + i * `stride` bytes.
+HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
+  const auto row_at = [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; };
+#if defined(__x86_64__)
+  for (int part = 0; part < I16::kParts; ++part) {
+    const auto put = [&](int i, const I16::Register& quarters) HALFPLANE_LAMBDA {  // i, i + 4, ...
+      const auto store = [&](int at, const __m128i& row) HALFPLANE_LAMBDA {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(row_at(part * I16::kLanes + at)), row);
+      };
+#if HALFPLANE_ISA == 512
+      store(i, _mm512_castsi512_si128((__m512i)quarters));
+      store(i + 4, _mm512_extracti32x4_epi32((__m512i)quarters, 1));
+      store(i + 8, _mm512_extracti32x4_epi32((__m512i)quarters, 2));
+      store(i + 12, _mm512_extracti32x4_epi32((__m512i)quarters, 3));
+#elif HALFPLANE_ISA == 256
+      store(i, _mm256_castsi256_si128((__m256i)quarters));
+      store(i + 4, _mm256_extracti128_si256((__m256i)quarters, 1));
+#else
+      store(i, (__m128i)quarters);
+#endif
+    };
+    I16::Register a = from.first.part[part], b = from.second.part[part], c = from.third.part[part],
+                  d = from.fourth.part[part];
+    turn_quarters(a, b, c, d);
+    put(0, a);
+    put(1, b);
+    put(2, c);
+    put(3, d);
+  }
+#else
+  for (int i = 0; i < 16; ++i) {
+    const auto lane = [i](const I16& of) { return of.part[i / I16::kLanes][i % I16::kLanes]; };
+    const std::array<std::int32_t, 4> row{lane(from.first), lane(from.second), lane(from.third), lane(from.fourth)};
+    std::memcpy(row_at(i), row.data(), sizeof row);
+  }
+#endif
+}
+
 /// Four rows of four pixels of an image.
 template <class Element>
 HALFPLANE_INLINE I16 load_block(const Element* from, int stride) {
