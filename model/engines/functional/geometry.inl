@@ -301,14 +301,16 @@ struct CullLanes {
     const auto bits_to_lanes = [](std::uint32_t bits) HALFPLANE_LAMBDA {
       return (I16(static_cast<std::int32_t>(bits)) & I16::of([](int i) { return 1 << i; })) != 0;
     };
-    const I16 is_medium = bits_to_lanes(medium), is_small = is_medium & (tiles < kSmallTiles), is_dropped = bits_to_lanes(dropped);
+    const I16 is_medium = bits_to_lanes(medium), is_small = is_medium & (tiles < kSmallTiles),
+              is_dropped = bits_to_lanes(dropped);
     alignas(64) std::array<Record, 16> lane;
     std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
     static_assert(static_cast<int>(RecordKind::triangle) == 0);
     store_rows({t.v[0], t.v[1], t.v[2], z_low}, words, sizeof(Record));
     store_rows({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
                 ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) |
-                    (bits_to_lanes(whole) & Record::kWhole) | (is_small & Record::kSmall) | (is_medium & Record::kMedium) |
+                    (bits_to_lanes(whole) & Record::kWhole) | (is_small & Record::kSmall) |
+                    (is_medium & Record::kMedium) |
                     (is_dropped & Record::kDrawsNothing)},
                words + 4, sizeof(Record));
     Record* out = slice.records.data() + slice.record_count;

@@ -458,7 +458,8 @@ HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
 
 /// The other way round: lane i to the row at `to` + i * `stride` bytes.
 HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
-  const auto row_at = [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; };
+  const auto row_at = [=](int i)
+                          HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; };
 #if defined(__x86_64__)
   for (int part = 0; part < I16::kParts; ++part) {
     const auto put = [&](int i, const I16::Register& quarters) HALFPLANE_LAMBDA {  // i, i + 4, ...

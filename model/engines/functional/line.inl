@@ -83,7 +83,8 @@ HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
   std::uint32_t* const pixels = memory_.color.data();
   const int depth_down = kDepthBits - config_.depth_bits;
   const bool has_depth = state_.depth_write, has_color = state_.color_write;
-  const auto depth_of = [](std::int64_t value) HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
+  const auto depth_of = [](std::int64_t value)
+                            HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
   const Depth first_depth = depth_of(line.depth[i]), depth_step = depth_of(line.depth_step[i]);
   const I16 is_x_major(line.is_x_major[i]), x_sign(line.x_sign[i]), y_sign(line.y_sign[i]);
   const I16 first_x(line.x[i] - line.x_sign[i]), first_y(line.y[i] - line.y_sign[i]);
@@ -94,7 +95,8 @@ HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
     const int count = std::min(pixels_left - first, kGroup);
     const I16 n = position_.lane + first;
     const I16 moved = convert<std::int32_t>(convert<double>(n) * line.slope[i] + line.row[i]);
-    const I16 x = (select(is_x_major, n, moved) ^ x_sign) + first_x, y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
+    const I16 x = (select(is_x_major, n, moved) ^ x_sign) + first_x,
+              y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
     const I16 at = place_of(x, y);  // of lanes behind the last pixel: somewhere in the bin
     at.store(place.data());
     const std::uint64_t touched = or_of_bits(at >> 6, (1U << count) - 1);
@@ -108,8 +110,9 @@ HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
       const auto byte = [](const I16& value, int down) HALFPLANE_LAMBDA {
         return shift_right_logical(value, down) & static_cast<std::int32_t>(0xff000000U >> down);
       };
-      packed(shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0), config_.color_format)
-          .store(color.data());
+      const I16 rgba = shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) |
+                       byte(channel(3), 0);
+      packed(rgba, config_.color_format).store(color.data());
     }
     if (first == 0 && line.shows_start[i] != 0) {
       code[0] = line.depth_start[i];

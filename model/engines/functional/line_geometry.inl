@@ -121,8 +121,8 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       alignas(64) std::array<Record, 16> lane;
       std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
       store_rows({v[0], v[1], v[2], min(start.z, end.z)}, words, sizeof(Record));
-      store_rows({max(start.z, end.z), pairs(left, top), pairs(right, bottom), I16(static_cast<int>(RecordKind::whole_line))},
-                 words + 4, sizeof(Record));
+      constexpr auto kTraits = static_cast<std::int32_t>(RecordKind::whole_line);
+      store_rows({max(start.z, end.z), pairs(left, top), pairs(right, bottom), I16(kTraits)}, words + 4, sizeof(Record));
       for (std::uint32_t rest = drawn | slow_bits; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
         if ((slow_bits >> i & 1) != 0)

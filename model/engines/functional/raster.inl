@@ -206,7 +206,8 @@ class Bin {
       }
       const auto box = [&]() HALFPLANE_LAMBDA {
         return Box{std::max(record.left() - first_x_, 0), std::max(record.top() - first_y_, 0),
-                   std::min(record.right() - first_x_, kBinSize - 1), std::min(record.bottom() - first_y_, kBinSize - 1)};
+                   std::min(record.right() - first_x_, kBinSize - 1),
+                   std::min(record.bottom() - first_y_, kBinSize - 1)};
       };
       const auto leave_out = [&](const Box& at) {
         const auto tiles = static_cast<unsigned>(((at.right >> kTileShift) - (at.left >> kTileShift) + 1) *
@@ -383,7 +384,7 @@ class Bin {
     value *= 1.0 / static_cast<double>(std::int64_t{1} << s);
     value = value < -kFar ? Values{} - kFar : value;
     value = value > kFar - 1 ? Values{} + (kFar - 1) : value;
-    const Words edge = __builtin_convertvector(value + kFar, Words) - (1 << 30);  // truncation of what is above 0: floor
+    const Words edge = __builtin_convertvector(value + kFar, Words) - (1 << 30);  // floor: truncated above 0
     std::memcpy(out.edge.data(), &edge, sizeof out.edge);
     std::memcpy(out.dx.data(), &dx, sizeof out.dx);
     std::memcpy(out.dy.data(), &dy, sizeof out.dy);
@@ -712,10 +713,11 @@ class Bin {
     std::array<I16, 3> edge;  ///< at the tiles' first pixels
   };
 
-  /// What the pairs of rows of a triangle have in common. Of the depths at the tiles' anchors the bits below `drop` only
-  /// carry: where their sums fit 32 bits, that is all that a lane needs.
+  /// What the pairs of rows of a triangle have in common. Of the depths at the tiles' anchors the bits below `drop`
+  /// only carry: where their sums fit 32 bits, that is all that a lane needs.
   struct TileRows {
-    std::array<std::int32_t, 3> outside, cut, edge_step;  ///< from a tile's first pixel to where an edge is largest, smallest
+    std::array<std::int32_t, 3> outside, cut;  ///< from a tile's first pixel to where an edge is largest, smallest
+    std::array<std::int32_t, 3> edge_step;     ///< from a row of tiles to the next
     std::array<I16, 3> edge;   ///< of the first pair of rows
     I16 beside;                ///< signs: columns without a pixel of the box
     std::int32_t to_low, to_high;  ///< from an anchor
@@ -747,8 +749,9 @@ class Bin {
     rows.is_narrow = drop + kSumBits <= 32;
     if (rows.is_narrow) {
       const auto upper = [drop](std::int64_t v) HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v >> drop); };
-      const auto lower = [drop](std::int64_t v)
-                             HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v & ((std::int64_t{1} << drop) - 1)); };
+      const auto lower = [drop](std::int64_t v) HALFPLANE_LAMBDA {
+        return static_cast<std::int32_t>(v & ((std::int64_t{1} << drop) - 1));
+      };
       rows.upper_step = upper(t.z_tile_y);
       rows.lower_step = lower(t.z_tile_y);
       rows.upper = position_.pair_x * upper(t.z_tile_x) + position_.pair_y * rows.upper_step + upper(t.z_anchor);
@@ -924,8 +927,9 @@ class Bin {
   HALFPLANE_NOINLINE void draw_tile(const BinTriangle& t, int tile, bool is_full,
                                     const std::array<std::int32_t, 3>& edge) {
     const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
-    const int left = std::max(t.box.left - tile_x * kTileSize, 0), right = std::min(t.box.right - tile_x * kTileSize, 7);
-    const int top = std::max(t.box.top - tile_y * kTileSize, 0), bottom = std::min(t.box.bottom - tile_y * kTileSize, 7);
+    const int x = tile_x * kTileSize, y = tile_y * kTileSize;
+    const int left = std::max(t.box.left - x, 0), right = std::min(t.box.right - x, 7);
+    const int top = std::max(t.box.top - y, 0), bottom = std::min(t.box.bottom - y, 7);
     const bool is_whole = t.is_whole || (left == 0 && top == 0 && right == 7 && bottom == 7);
     need_depth(tile);
     const BlockRamp<I16> depth_plane = depth_ramp(t, depth_anchor(t, tile_x, tile_y));
@@ -1002,8 +1006,10 @@ class Bin {
     for (int row = 0; row < rows; ++row) {
       const int tile = row * kBinTiles;
       const std::size_t to = job_.target.at(first_x_, first_y_ + row * kTileSize);
-      finish_row(tile, columns, job_.target.depth.data() + to, depth_owner_, TileStates::kDepthCleared, depths, depth_rows);
-      finish_row(tile, columns, job_.target.color.data() + to, color_owner_, TileStates::kColorCleared, colors, color_rows);
+      finish_row(tile, columns, job_.target.depth.data() + to, depth_owner_, TileStates::kDepthCleared, depths,
+                 depth_rows);
+      finish_row(tile, columns, job_.target.color.data() + to, color_owner_, TileStates::kColorCleared, colors,
+                 color_rows);
     }
     finish_lines();
   }
@@ -1036,7 +1042,8 @@ class Bin {
         if ((is_new >> at & 1) == 0) continue;
         const TileBlocks blocks = blocks_of(first + at);
         for (std::size_t half = 0; half < 2; ++half)
-          store_blocks(rows[half * kBlockSize].data() + at * kTileSize, kBinSize, blocks[2 * half], blocks[2 * half + 1]);
+          store_blocks(rows[half * kBlockSize].data() + at * kTileSize, kBinSize, blocks[2 * half],
+                       blocks[2 * half + 1]);
       }
     }
     const std::size_t first_tile = static_cast<std::size_t>(job_.bin * kTiles + first);
@@ -1073,8 +1080,8 @@ class Bin {
     const I16 step_y = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_y; });
     const I16 low = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_low; });
     const I16 high = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_high; });
-    I16 value = (position_.pair_x - kTileSize / 2) * both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_x; }) -
-                step_y * (kTileSize / 2) +
+    const I16 step_x = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_x; });
+    I16 value = (position_.pair_x - kTileSize / 2) * step_x - step_y * (kTileSize / 2) +
                 halves(depth_anchor(left, tile % kBinTiles, tile / kBinTiles),
                        depth_anchor(right, tile % kBinTiles + 1, tile / kBinTiles));
     for (auto& row : rows) {
@@ -1102,8 +1109,9 @@ class Bin {
                  (step_y[p] << (kTileShift - 1)) + as<S32>(halves(at_left[p], at_right[p]));
     }
     for (auto& row : rows) {
-      const auto pair = [&](std::size_t p)
-                            HALFPLANE_LAMBDA { return color_codes(value[p], as<I16>(low[p]), as<I16>(high[p]), format); };
+      const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
+        return color_codes(value[p], as<I16>(low[p]), as<I16>(high[p]), format);
+      };
       packed(pair(0), pair(1), pixels).store(row.data() + to);
       for (std::size_t p = 0; p < 2; ++p) value[p] += step_y[p];
     }

@@ -163,13 +163,14 @@ HALFPLANE_INLINE void draw_samples() {
   for (std::size_t s = 0; s < kSamples; ++s) {
     const std::size_t i = s & 1, j = s >> 1, anchor = i + kMediumTiles * j;
     place_of(x[i], y[j]).store(place[s].data());
-    const I16 value = column[i] * load(small_.z_step_x) + row[j] * load(small_.z_step_y) + load(small_.z_anchor[anchor]);
+    const I16 value =
+        column[i] * load(small_.z_step_x) + row[j] * load(small_.z_step_y) + load(small_.z_anchor[anchor]);
     decode(value, depth_format_, load(small_.z_low), load(small_.z_high)).store(depth[s].data());
     if (!state_.color_write) continue;
     const I16 columns = pairs(column[i], column[i]), rows = pairs(row[j], row[j]);
     const auto channels = [&](std::size_t p) HALFPLANE_LAMBDA {
-      return channel_codes(columns, rows, load(small_.c_step_x[p]), load(small_.c_step_y[p]), load(small_.c_anchor[p][anchor]),
-                           load(small_.c_low[p]), load(small_.c_high[p]));
+      return channel_codes(columns, rows, load(small_.c_step_x[p]), load(small_.c_step_y[p]),
+                           load(small_.c_anchor[p][anchor]), load(small_.c_low[p]), load(small_.c_high[p]));
     };
     packed(channels(0), channels(1), config_.color_format).store(color[s].data());
   }

@@ -23,7 +23,7 @@ struct SmallBatch {
   alignas(64) Lane place;                       ///< the first block: lane, column, row, a byte each
   alignas(64) Lane there;              ///< bits: the box touches that block, its right neighbour, the lower, both's
   alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
-  /// Of the tiles that the box may touch, row by row; with has_samples, of those of its four samples, kMediumTiles a row.
+  /// Of the tiles that the box may touch, kMediumTiles a row; with has_samples, of those of its four samples.
   alignas(64) LaneArray<kMediumTiles * kMediumTiles> z_anchor;
   alignas(64) Lane z_step_x, z_step_y;
   alignas(64) std::array<LaneArray<kMediumTiles * kMediumTiles>, 2> c_anchor;  ///< by channel pair
@@ -181,8 +181,8 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
     return has_samples ? (at & (kTileSize - 1)) == kTileSize - 1 : I16(-1);
   };
   const I16 to_right_tile = to_next_tile(box_x), to_lower_tile = to_next_tile(box_y);
-  // A plane at the anchors of the tiles, the bits from `drop` on. Where the products of the bits below fit 32, that is all
-  // that a lane needs: what is above wraps.
+  // A plane at the anchors of the tiles, the bits from `drop` on. Where the products of the bits below fit 32, that is
+  // all that a lane needs: what is above wraps.
   using Anchors = std::array<I16, kMediumTiles * kMediumTiles>;
   const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
                            Anchors& out) HALFPLANE_LAMBDA {
@@ -234,8 +234,9 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
     const std::int32_t steep = std::int32_t{1} << (30 - small_extent_bits(widths));  // from here on 32 bits are too few
     if (is_any(I16::load(z_high.data()) - I16::load(z_low.data()) >= steep)) {
       const auto difference = [](const I16& p, const I16& q, const I16& r, const I16& t) HALFPLANE_LAMBDA {  // pq - rt
-        const auto product = [](const I16& m, const I16& n)
-                                 HALFPLANE_LAMBDA { return multiply_narrow(convert<std::int64_t>(m), convert<std::int64_t>(n)); };
+        const auto product = [](const I16& m, const I16& n) HALFPLANE_LAMBDA {
+          return multiply_narrow(convert<std::int64_t>(m), convert<std::int64_t>(n));
+        };
         return product(p, q) - product(r, t);
       };
       step_x = gradient(difference(az, by, bz, ay));
