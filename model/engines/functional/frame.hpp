@@ -21,8 +21,12 @@ inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles al
 
 /// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; medium ones, which may be, too.
 inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
-/// Their extent: below 32 pixels, and such that 32 bits hold products of two.
-[[nodiscard]] inline int small_extent_bits(const Widths& widths) { return std::min(5 + widths.grid_bits, 14); }
+
+/// Their extent: below that many pixels, and such that 32 bits hold products of two.
+[[nodiscard]] inline int extent_bits(int pixel_bits, const Widths& widths) {
+  return std::min(pixel_bits + widths.grid_bits, 14);
+}
+inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 
 /// What a draw's state asks of its fragments.
 struct FragmentState {
@@ -43,7 +47,7 @@ struct Record {
 
   static constexpr std::int32_t
       kWhole = 1 << 8,          ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-      kSmall = 1 << 9,          ///< whole, within kSmallTiles by kSmallTiles, and of small_extent_bits()
+      kSmall = 1 << 9,          ///< whole, within kSmallTiles by kSmallTiles, not too steep
       kMedium = 1 << 10,        ///< the same with kMediumTiles, small or not
       kDrawsNothing = 1 << 11;  ///< culled, but nobody may skip: goes through the raster and draws nothing
   static constexpr int kSamplesShift =

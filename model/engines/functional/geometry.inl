@@ -220,6 +220,19 @@ HALFPLANE_INLINE std::array<I16, 3> corner_lanes(const FrameContext& frame, cons
   return v;
 }
 
+/// What the lanes of SmallBatch hold.
+struct LaneLimits {
+  int tiles;                   ///< along the side of a triangle's box, below
+  std::int32_t extent, range;  ///< subpixels, depth codes, below
+
+  LaneLimits(int tiles_, int pixel_bits, const Widths& widths) : tiles(tiles_) {
+    const int bits = extent_bits(pixel_bits, widths);
+    extent = 1 << bits;
+    // Numerators: two products of a difference of codes and one of coordinates; times the reciprocal below 2^62.
+    range = std::int32_t{1} << std::clamp(61 - bits - widths.reciprocal.bits, 0, 30);
+  }
+};
+
 /// Turns 16 triangles into records; what must go the slow way goes it in its turn.
 struct CullLanes {
   const FrameContext& frame;
@@ -228,7 +241,7 @@ struct CullLanes {
   PixelBounds limit;
   Cull mode;
   bool is_front_cw;
-  std::int32_t steepest_small;  ///< codes over a small triangle
+  LaneLimits small, medium;
 
   /// The triangles of `part` from `first` on, `count` or sixteen of them. `number`: of the first, in the slice.
   HALFPLANE_INLINE void operator()(const Slice::Part& part, std::size_t first, std::size_t count, std::size_t number) {
@@ -295,21 +308,22 @@ struct CullLanes {
                                         (t.bottom < limit.bottom));
     const I16 columns = (t.right >> kTileShift) - (t.left >> kTileShift),
               rows = (t.bottom >> kTileShift) - (t.top >> kTileShift), tiles = max(columns, rows);
-    const int largest = 1 << small_extent_bits(frame.widths);
-    const std::uint32_t medium = whole & bits_of((tiles < kMediumTiles) & (extent(t.x) < largest) &
-                                                 (extent(t.y) < largest) & (z_high - z_low < steepest_small));
+    const I16 size = max(extent(t.x), extent(t.y)), range = z_high - z_low;
+    const auto fits = [&](const LaneLimits& limits) HALFPLANE_LAMBDA {
+      return (tiles < limits.tiles) & (size < limits.extent) & (range < limits.range);
+    };
     const auto bits_to_lanes = [](std::uint32_t bits) HALFPLANE_LAMBDA {
       return (I16(static_cast<std::int32_t>(bits)) & I16::of([](int i) { return 1 << i; })) != 0;
     };
-    const I16 is_medium = bits_to_lanes(medium), is_small = is_medium & (tiles < kSmallTiles),
-              is_dropped = bits_to_lanes(dropped);
+    const I16 is_whole = bits_to_lanes(whole), is_dropped = bits_to_lanes(dropped);
+    const I16 is_small = is_whole & fits(small), is_medium = is_small | (is_whole & fits(medium));
     alignas(64) std::array<Record, 16> lane;
     std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
     static_assert(static_cast<int>(RecordKind::triangle) == 0);
     store_rows({t.v[0], t.v[1], t.v[2], z_low}, words, sizeof(Record));
     store_rows({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
                 ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) |
-                    (bits_to_lanes(whole) & Record::kWhole) | (is_small & Record::kSmall) |
+                    (is_whole & Record::kWhole) | (is_small & Record::kSmall) |
                     (is_medium & Record::kMedium) |
                     (is_dropped & Record::kDrawsNothing)},
                words + 4, sizeof(Record));
@@ -338,10 +352,8 @@ static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
                   {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1},
                   context.state.cull,
                   context.state.front == FrontFace::cw,
-                  0};
-  // Numerators: two products of a difference of codes and one of coordinates; times the reciprocal below 2^62.
-  const int bits_left = 61 - small_extent_bits(frame.widths) - frame.widths.reciprocal.bits;
-  lanes.steepest_small = std::int32_t{1} << std::clamp(bits_left, 0, 30);
+                  {kSmallTiles, kSmallPixelBits, frame.widths},
+                  {kMediumTiles, kMediumPixelBits, frame.widths}};
   std::size_t number = 0;
   for (const Slice::Part& part : slice.parts)
     for (std::size_t first = 0; first < part.count; first += 16) {

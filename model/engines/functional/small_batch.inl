@@ -231,7 +231,7 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   {
     const I16 az = b.z - a.z, bz = c.z - a.z;
     L16 step_x, step_y;
-    const std::int32_t steep = std::int32_t{1} << (30 - small_extent_bits(widths));  // from here on 32 bits are too few
+    const std::int32_t steep = std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths));  // from here on 32 bits are too few
     if (is_any(I16::load(z_high.data()) - I16::load(z_low.data()) >= steep)) {
       const auto difference = [](const I16& p, const I16& q, const I16& r, const I16& t) HALFPLANE_LAMBDA {  // pq - rt
         const auto product = [](const I16& m, const I16& n) HALFPLANE_LAMBDA {
