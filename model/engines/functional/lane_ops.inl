@@ -344,22 +344,6 @@ HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
   return r;
 }
 
-/// Of four numbers, the one that each lane of `which` names.
-HALFPLANE_INLINE I16 spread(const std::int32_t* four, const I16& which) {
-  I16 r;
-#if HALFPLANE_ISA == 512
-  const __m128i row = _mm_loadu_si128(reinterpret_cast<const __m128i*>(four));
-  r.part[0] = (I16::Register)_mm512_permutexvar_epi32((__m512i)which.part[0], _mm512_castsi128_si512(row));
-#elif HALFPLANE_ISA == 256
-  const __m256i row = _mm256_castsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(four)));
-  for (int i = 0; i < 2; ++i)
-    r.part[i] = (I16::Register)_mm256_permutevar8x32_epi32(row, (__m256i)which.part[i]);
-#else
-  for (int i = 0; i < 16; ++i) r.part[i / 4][i % 4] = four[which.part[i / 4][i % 4]];
-#endif
-  return r;
-}
-
 /// One number in the lower eight lanes, another in the upper.
 HALFPLANE_INLINE I16 halves(std::int32_t low, std::int32_t high) {
   I16 r;
