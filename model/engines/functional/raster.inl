@@ -678,14 +678,8 @@ class Bin {
     tile_high_[tile] = max_lane(high);
   }
 
-  /// A tile may now hold depths in [low, high] beside what it held.
-  template <DepthFunc Test>
-  HALFPLANE_INLINE void widen(int tile, std::int32_t low, std::int32_t high) {
-    if (Test == DepthFunc::less || !rises_) tile_low_[tile] = std::min(tile_low_[tile], low);
-    if (Test != DepthFunc::less && !falls_) tile_high_[tile] = std::max(tile_high_[tile], high);
-  }
-
-  /// The same of any depths. A store, not a minimum: the next triangle of the tile need not wait for it.
+  /// A tile may now hold any depths beside what it held. A store, not a minimum: the next triangle of the tile need not
+  /// wait for it.
   template <DepthFunc Test>
   HALFPLANE_INLINE void forget_range(int tile) {
     if (Test == DepthFunc::less || !rises_) tile_low_[tile] = 0;
