@@ -3,12 +3,13 @@
 //
 //   triangle within two by two pixels  sixteen at a time through setup, then their samples
 //   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
+//   within three by three, in a row    the same
 //   larger                             its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
 //
 // A block is 4 x 4 pixels: sixteen lanes, one cache line. A tile is four of them.
 //
 // A tile that a triangle covers wholly, in front of all that is there, is taken without looking at a pixel: it remembers
-// the triangle. Its depths and colours are computed when somebody needs them: often nobody does.
+// the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
 // Included inside the namespace of an instruction set: see kernels.inl.
 
 constexpr int kBlockShift = 2, kBlockSize = 1 << kBlockShift, kBlockPixels = 16;

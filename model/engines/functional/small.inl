@@ -1,4 +1,5 @@
-// Small triangles: the blocks of 4 x 4 pixels that they cover; of those within two by two pixels, their samples.
+// Small and medium triangles: the blocks of 4 x 4 pixels that they cover; of those within two by two pixels, their
+// samples.
 // Included inside class Bin: see raster.inl.
 
 /// A block of a triangle of the batch with at least one covered pixel.

@@ -1,4 +1,4 @@
-// Sixteen small triangles at a time through triangle_setup: the same integers, a triangle a lane.
+// Sixteen small or medium triangles at a time through triangle_setup: the same integers, a triangle a lane.
 // Included inside the namespace of an instruction set: see raster.inl.
 
 /// Triangles of a slice that wait, and after set_up() their constants: fields of lanes, one for each.
@@ -36,7 +36,7 @@ struct SmallBatch {
     return ++count == 16;
   }
 
-  /// The records' fields, all but `kind`.
+  /// The records' fields; live.
   void load(int first_x, int first_y);
   /// `Side`: tiles along a side of a box at most.
   template <std::size_t Side>
