@@ -1,12 +1,20 @@
 #include "sim/bench/turns.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 namespace halfplane {
 namespace {
 
 constexpr double kNanosecond = 1e-9;  // an empty scene may take less than the clock shows
+
+void warm_up(const Frame& frame) {
+  using Clock = std::chrono::steady_clock;
+  const auto started = Clock::now();
+  do frame();
+  while (std::chrono::duration<double>(Clock::now() - started).count() < kWarmUp);
+}
 
 }  // namespace
 
@@ -35,7 +43,7 @@ std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repe
         progress((static_cast<double>(turn) * static_cast<double>(frames.size()) + static_cast<double>(i)) / all);
       if (is_done[i]) continue;
       try {
-        for (double spent = 0; turn > 0 && last[i] < kShortFrame && spent < kWarmUp;) spent += frames[i]().seconds;
+        if (turn > 0 && last[i] < kShortFrame) warm_up(frames[i]);
         const FrameCost cost = frames[i]();
         last[i] = cost.seconds;
         times[i].cycles = cost.cycles;

@@ -33,11 +33,11 @@ struct FrameTimes {
 /// A frame that takes longer than this to warm up, seconds, is not rendered again: that frame is its only measurement.
 inline constexpr double kSlowFrame = 2;
 
-/// Of frames shorter than this, seconds, as many go unmeasured before each that is measured as fill the second figure:
+/// Before each measurement of a frame shorter than this, seconds, frames go unmeasured for the second figure, seconds:
 /// it then finds caches and threads as a frame before it leaves them, and not as a second of somebody else's work does.
 inline constexpr double kShortFrame = 0.1, kWarmUp = 0.02;
 
-/// Renders every frame `repeat` times, in turns, so that what else the machine does falls on all of them alike; the
+/// Measures every frame `repeat` times, in turns, so that what else the machine does falls on all of them alike; the
 /// turn before warms up. Whoever throws a std::runtime_error there is left out. `progress` gets 0...1; may be empty.
 [[nodiscard]] std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repeat,
                                                        const std::function<void(double)>& progress = {});

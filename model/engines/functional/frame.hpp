@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +20,8 @@ inline constexpr int kBinShift = 6, kBinSize = 1 << kBinShift;     ///< pixels a
 inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size that this engine has
 inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles along the side of a bin
 
-/// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; medium ones, which may be, too.
+/// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; so do medium ones, which
+/// may be.
 inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
 
 /// Their extent: below that many pixels, and such that 32 bits hold products of two.
@@ -61,7 +63,9 @@ struct Record {
   [[nodiscard]] bool has(std::int32_t trait) const { return (traits & trait) != 0; }
   [[nodiscard]] int samples() const { return traits >> kSamplesShift; }
 };
-static_assert(sizeof(Record) == 32);
+static_assert(sizeof(Record) == 32 && offsetof(Record, z_low) == 12 && offsetof(Record, z_high) == 16 &&
+              offsetof(Record, left_top) == 20 && offsetof(Record, right_bottom) == 24 &&
+              offsetof(Record, traits) == 28);
 
 /// One slice. What the lanes read and write is in plain arrays, as long as they need.
 struct Slice {

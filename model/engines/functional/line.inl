@@ -116,7 +116,7 @@ HALFPLANE_NOINLINE void draw_pixels(const LineBatch& line, std::size_t i) {
     }
     if (first == 0 && line.shows_start[i] != 0) {
       code[0] = line.depth_start[i];
-      color[0] = packed(I16(line.color_start[i]), config_.color_format).part[0][0];
+      if (has_color) color[0] = packed(I16(line.color_start[i]), config_.color_format).part[0][0];
     }
     // What fails is stored as it was: which pixels those are, nobody can foresee.
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {

@@ -135,7 +135,6 @@ class Bin {
       depth_owner_[t] = (pending[t] & TileStates::kDepthCleared) != 0 ? kCleared : kInTarget;
       color_owner_[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
     }
-    find_bin_range();
     if (!are_lines_) fetch_ahead();
   }
 
@@ -220,11 +219,11 @@ class Bin {
         leave_out(box());
         continue;
       }
-      // A batch pays for medium triangles where many follow each other.
-      constexpr int kRun = 2;
+      // A batch pays for medium triangles from the third in a row on.
+      constexpr int kAlone = 2;
       const bool is_medium = record.has(Record::kMedium);
       small_run_ = is_medium ? small_run_ + 1 : 0;
-      if (record.has(Record::kSmall) || (is_medium && small_run_ > kRun)) {
+      if (record.has(Record::kSmall) || (is_medium && small_run_ > kAlone)) {
         // Nearer than what every tile may hold: no need to look at its own.
         if (skip_.tiles_hiz && (Test != DepthFunc::less || record.z_low >= bin_lowest_high_)) {
           const Box at = box();
@@ -258,7 +257,7 @@ class Bin {
       const bool may_be_behind = Test != DepthFunc::less || record.z_low >= bin_low_;
       if (skip_.tiles_hiz && may_be_behind && is_behind_tiles<Test>(record, triangle.box)) {
         leave_out(triangle.box);
-        if (is_range_old_) find_bin_range();  // the bin may be about to fill
+        if (may_be_lower_) find_bin_range();  // what follows may lie behind all of it
         continue;
       }
       if (set_up(slice, record, triangle) && !record.has(Record::kDrawsNothing)) draw_large<Test>(triangle);
@@ -653,7 +652,7 @@ class Bin {
   }
 
   void find_bin_range() {
-    is_range_old_ = false;
+    may_be_lower_ = false;
     I16 low = I16::load(tile_low_), high = I16::load(tile_high_), lowest_high = high;
     for (int t = 16; t < kTiles; t += 16) {
       const I16 highs = I16::load(tile_high_ + t);
@@ -858,11 +857,11 @@ class Bin {
                         {lane.edge[0][i], lane.edge[1][i], lane.edge[2][i]});
       }
     }
-    if (!is_changed) return;
+    if (!is_changed || !state_.depth_write) return;
     if (Test != DepthFunc::less) return find_bin_range();
     // An upper bound that only falls: the old one will do.
     bin_low_ = std::min(bin_low_, t.z_low);
-    is_range_old_ = true;
+    may_be_lower_ = true;
   }
 
   /// Tiles that the triangle takes as a whole.
@@ -1161,7 +1160,7 @@ class Bin {
   std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks_;  ///< and room for one that is not kept
   bool falls_ = false, rises_ = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count_ = 0;
-  bool is_range_old_ = false;    ///< tiles have changed since the bin's range was found
+  bool may_be_lower_ = false;    ///< the bin's upper bound, since it was found
   std::uint64_t in_memory_ = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches_{};
   alignas(64) std::array<std::int32_t, kTiles> depth_owner_, color_owner_;

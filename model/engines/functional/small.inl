@@ -21,7 +21,8 @@ void draw_batch(const Slice& slice) {
   const bool is_changed = touch<Test>(tiles.touched);
   small_.has_samples ? draw_samples<Test>() : draw_blocks<Test>();
   small_.count = 0;
-  if (is_changed || Test != DepthFunc::less) find_bin_range();  // with less, a bound that is too high will do
+  // With less, a bound that is too high will do.
+  if (is_changed || (Test != DepthFunc::less && state_.depth_write)) find_bin_range();
 }
 
 /// The tiles that the boxes of the batch touch.

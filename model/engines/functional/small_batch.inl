@@ -187,7 +187,8 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   const auto anchors = [&](const I16& at_origin, const L16& step_x, const L16& step_y, const LaneFormat& format,
                            Anchors& out) HALFPLANE_LAMBDA {
     const int drop = format.drop;
-    if (constexpr int kOffset = 6 + 2; drop + s + kOffset < 32) {  // offsets below 64 pixels; sums of four
+    // Offsets below 64 pixels; two products, two steps to tiles and a bias.
+    if (constexpr int kOffset = 6 + 2; drop + s + kOffset < 32) {
       const std::int32_t below = (std::int32_t{1} << drop) - 1;
       const I16 x0 = convert<std::int32_t>(step_x) & below, y0 = convert<std::int32_t>(step_y) & below;
       const I16 x1 = convert<std::int32_t>(shift_right_logical(step_x, drop)),
@@ -231,7 +232,8 @@ HALFPLANE_NOINLINE void SmallBatch::set_up(const Slice& slice, const FrameContex
   {
     const I16 az = b.z - a.z, bz = c.z - a.z;
     L16 step_x, step_y;
-    const std::int32_t steep = std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths));  // from here on 32 bits are too few
+    // From here on 32 bits are too few. Of medium triangles whatever Side is: that counts tiles of the bin.
+    const std::int32_t steep = std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths));
     if (is_any(I16::load(z_high.data()) - I16::load(z_low.data()) >= steep)) {
       const auto difference = [](const I16& p, const I16& q, const I16& r, const I16& t) HALFPLANE_LAMBDA {  // pq - rt
         const auto product = [](const I16& m, const I16& n) HALFPLANE_LAMBDA {
