@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene_builder.hpp"
-#include "sim/stress/line_check.hpp"
+#include "sim/study/stress/line_check.hpp"
 
 namespace halfplane::test {
 

@@ -19,8 +19,8 @@
 #include "model/engines/functional/kernels.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/widths.hpp"
-#include "sim/compare/compare.hpp"
 #include "sim/scene/capture.hpp"
+#include "sim/study/compare/compare.hpp"
 
 namespace halfplane::test {
 

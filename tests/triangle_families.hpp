@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene_builder.hpp"
-#include "sim/stress/triangle_families.hpp"
+#include "sim/study/stress/triangle_families.hpp"
 
 namespace halfplane::test {
 

@@ -8,10 +8,10 @@
 #include <thread>
 #include <tuple>
 
-#include "sim/bench/engines.hpp"
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/report/page.hpp"
+#include "sim/show/report/page.hpp"
+#include "sim/study/bench/engines.hpp"
 
 namespace halfplane {
 namespace {

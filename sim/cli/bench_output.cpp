@@ -3,9 +3,9 @@
 #include <iostream>
 #include <thread>
 
-#include "sim/bench/report.hpp"
 #include "sim/cli/bench_study.hpp"
-#include "sim/image/whole_file.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/study/bench/report.hpp"
 
 namespace halfplane {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/bench/growth.hpp"
-#include "sim/bench/rows.hpp"
-#include "sim/bench/skips.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/study/bench/growth.hpp"
+#include "sim/study/bench/rows.hpp"
+#include "sim/study/bench/skips.hpp"
 
 namespace halfplane {
 

@@ -1,4 +1,4 @@
-#include "sim/compare/compare.hpp"
+#include "sim/study/compare/compare.hpp"
 
 #include <filesystem>
 #include <iostream>
@@ -7,10 +7,10 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/study_options.hpp"
-#include "sim/image/framebuffer_files.hpp"
-#include "sim/image/panel.hpp"
-#include "sim/image/png.hpp"
-#include "sim/image/terminal.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/image/panel.hpp"
+#include "sim/show/image/png.hpp"
+#include "sim/show/image/terminal.hpp"
 
 namespace halfplane {
 namespace {

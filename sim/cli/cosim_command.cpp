@@ -4,7 +4,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cosim/report.hpp"
-#include "sim/image/whole_file.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "sim/cosim/report.hpp"
-#include "sim/image/whole_file.hpp"
 #include "sim/scene/capture.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {

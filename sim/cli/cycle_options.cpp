@@ -6,12 +6,12 @@
 #include <ostream>
 #include <utility>
 
-#include "sim/image/framebuffer_files.hpp"
-#include "sim/image/panel.hpp"
-#include "sim/image/png.hpp"
-#include "sim/image/whole_file.hpp"
-#include "sim/trace/primitive_spans.hpp"
-#include "sim/trace/timeline.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/image/panel.hpp"
+#include "sim/show/image/png.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/show/trace/primitive_spans.hpp"
+#include "sim/show/trace/timeline.hpp"
 
 namespace halfplane {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/cli/memory_options.hpp"
-#include "sim/report/hardware.hpp"
+#include "sim/show/report/hardware.hpp"
 
 namespace halfplane {
 

@@ -13,8 +13,8 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/depth_study.hpp"
-#include "sim/image/whole_file.hpp"
-#include "sim/report/page.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
 
 namespace halfplane {
 namespace {

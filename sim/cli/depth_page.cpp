@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "sim/cli/depth_study.hpp"
-#include "sim/depth/maps.hpp"
-#include "sim/depth/report.hpp"
-#include "sim/depth/theory.hpp"
-#include "sim/image/panel.hpp"
-#include "sim/image/png.hpp"
-#include "sim/image/whole_file.hpp"
+#include "sim/show/image/panel.hpp"
+#include "sim/show/image/png.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/study/depth/maps.hpp"
+#include "sim/study/depth/report.hpp"
+#include "sim/study/depth/theory.hpp"
 
 namespace halfplane {
 namespace {

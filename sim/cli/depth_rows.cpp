@@ -6,10 +6,10 @@
 #include <ostream>
 
 #include "sim/cli/depth_study.hpp"
-#include "sim/depth/error_bound.hpp"
-#include "sim/depth/measure.hpp"
-#include "sim/depth/theory.hpp"
-#include "sim/image/color_map.hpp"
+#include "sim/show/image/color_map.hpp"
+#include "sim/study/depth/error_bound.hpp"
+#include "sim/study/depth/measure.hpp"
+#include "sim/study/depth/theory.hpp"
 
 namespace halfplane {
 

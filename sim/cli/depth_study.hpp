@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "sim/cli/options.hpp"
-#include "sim/depth/answers.hpp"
-#include "sim/depth/exact_depth.hpp"
-#include "sim/depth/two_planes.hpp"
+#include "sim/study/depth/answers.hpp"
+#include "sim/study/depth/exact_depth.hpp"
+#include "sim/study/depth/two_planes.hpp"
 
 namespace halfplane {
 

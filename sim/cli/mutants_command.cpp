@@ -8,8 +8,8 @@
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/rtl_engine.hpp"
-#include "sim/image/framebuffer_files.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
 
 namespace halfplane {
 namespace {

@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "sim/config_file.hpp"
-#include "sim/image/whole_file.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/load.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {

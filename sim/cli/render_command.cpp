@@ -13,10 +13,10 @@
 #include "sim/cli/options.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/cosim/rtl_engine.hpp"
-#include "sim/image/framebuffer_files.hpp"
-#include "sim/image/panel.hpp"
-#include "sim/image/png.hpp"
-#include "sim/image/terminal.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/image/panel.hpp"
+#include "sim/show/image/png.hpp"
+#include "sim/show/image/terminal.hpp"
 
 namespace halfplane {
 namespace {

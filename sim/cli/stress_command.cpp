@@ -7,9 +7,9 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/junit.hpp"
-#include "sim/image/whole_file.hpp"
 #include "sim/scene/capture.hpp"
-#include "sim/stress/run.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/study/stress/run.hpp"
 
 namespace halfplane {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/compare/double_draws.hpp"
+#include "sim/study/compare/double_draws.hpp"
 
 namespace halfplane {
 namespace {

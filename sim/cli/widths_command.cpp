@@ -8,9 +8,9 @@
 
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/image/whole_file.hpp"
 #include "sim/scene/capture.hpp"
-#include "sim/widths/study.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/study/widths/study.hpp"
 
 namespace halfplane {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "model/widths.hpp"
 #include "sim/cli/widths_command.hpp"
-#include "sim/widths/smallest.hpp"
+#include "sim/study/widths/smallest.hpp"
 
 namespace halfplane {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
-#include "sim/compare/compare.hpp"
+#include "sim/study/compare/compare.hpp"
 
 namespace halfplane {
 namespace {

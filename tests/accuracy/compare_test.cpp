@@ -1,5 +1,5 @@
 // The comparison itself: its figures add up, and engines that are wrong are caught.
-#include "sim/compare/compare.hpp"
+#include "sim/study/compare/compare.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
-#include "sim/compare/eye_depth.hpp"
+#include "sim/study/compare/eye_depth.hpp"
 
 namespace halfplane {
 namespace {

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 
-#include "sim/depth/answers.hpp"
-#include "sim/depth/measure.hpp"
-#include "sim/depth/two_planes.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/mesh_scene.hpp"
+#include "sim/study/depth/answers.hpp"
+#include "sim/study/depth/measure.hpp"
+#include "sim/study/depth/two_planes.hpp"
 
 namespace halfplane {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
-#include "sim/compare/compare.hpp"
-#include "sim/stress/delaunay.hpp"
+#include "sim/study/compare/compare.hpp"
+#include "sim/study/stress/delaunay.hpp"
 
 namespace halfplane {
 namespace {

@@ -13,7 +13,7 @@
 #include "model/engines/functional.hpp"
 #include "model/golden/exact.hpp"
 #include "model/widths.hpp"
-#include "sim/compare/compare.hpp"
+#include "sim/study/compare/compare.hpp"
 
 namespace halfplane {
 namespace {

@@ -11,10 +11,10 @@
 #include "model/golden/golden.hpp"
 #include "model/host_stream.hpp"
 #include "model/stages/depth_encode.hpp"
-#include "sim/compare/compare.hpp"
-#include "sim/depth/exact_depth.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/depth_mapping.hpp"
+#include "sim/study/compare/compare.hpp"
+#include "sim/study/depth/exact_depth.hpp"
 
 namespace halfplane {
 namespace {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "model/config.hpp"
-#include "sim/depth/theory.hpp"
+#include "sim/study/depth/theory.hpp"
 
 namespace halfplane {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
-#include "sim/image/framebuffer_files.hpp"
 #include "sim/scene/capture.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/obj.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
 #include "tests/gltf_builder.hpp"
 
 namespace halfplane {

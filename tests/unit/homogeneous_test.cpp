@@ -13,8 +13,8 @@
 #include "model/golden/golden.hpp"
 #include "model/stages/homogeneous_setup.hpp"
 #include "model/stages/viewport.hpp"
-#include "sim/compare/double_draws.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/study/compare/double_draws.hpp"
 
 namespace halfplane {
 namespace {

@@ -9,12 +9,12 @@
 #include <iterator>
 #include <limits>
 
-#include "sim/image/color_map.hpp"
-#include "sim/image/framebuffer_files.hpp"
-#include "sim/image/panel.hpp"
-#include "sim/image/png.hpp"
-#include "sim/image/terminal.hpp"
-#include "sim/image/whole_file.hpp"
+#include "sim/show/image/color_map.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/image/panel.hpp"
+#include "sim/show/image/png.hpp"
+#include "sim/show/image/terminal.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION

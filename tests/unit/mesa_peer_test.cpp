@@ -1,5 +1,5 @@
 // Mesa's picture of a scene is ours but for rounding: what is timed is the same work.
-#include "sim/bench/mesa_peer.hpp"
+#include "sim/study/bench/mesa_peer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
-#include "sim/image/framebuffer_files.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/capture.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
 
 namespace halfplane {
 namespace {

@@ -10,8 +10,8 @@
 #include "../triangle_families.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
-#include "sim/compare/compare.hpp"
 #include "sim/scene/capture.hpp"
+#include "sim/study/compare/compare.hpp"
 
 namespace halfplane {
 namespace {

@@ -7,12 +7,12 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
-#include "sim/stress/grid.hpp"
-#include "sim/stress/independent.hpp"
-#include "sim/stress/run.hpp"
-#include "sim/stress/search.hpp"
-#include "sim/stress/shapes.hpp"
-#include "sim/stress/triangle_families.hpp"
+#include "sim/study/stress/grid.hpp"
+#include "sim/study/stress/independent.hpp"
+#include "sim/study/stress/run.hpp"
+#include "sim/study/stress/search.hpp"
+#include "sim/study/stress/shapes.hpp"
+#include "sim/study/stress/triangle_families.hpp"
 
 namespace halfplane::stress {
 namespace {

@@ -8,9 +8,9 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/stages/traversal.hpp"
-#include "sim/compare/compare.hpp"
-#include "sim/compare/double_draws.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/study/compare/compare.hpp"
+#include "sim/study/compare/double_draws.hpp"
 
 namespace halfplane {
 namespace {

@@ -4,11 +4,11 @@
 #include <sstream>
 
 #include "model/engines/scalar.hpp"
-#include "sim/compare/compare.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/capture.hpp"
-#include "sim/widths/smallest.hpp"
-#include "sim/widths/study.hpp"
+#include "sim/study/compare/compare.hpp"
+#include "sim/study/widths/smallest.hpp"
+#include "sim/study/widths/study.hpp"
 
 namespace halfplane {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "model/engines/functional.hpp"
 #include "model/stages/primitive_assembly.hpp"
-#include "sim/image/framebuffer_files.hpp"
-#include "sim/image/panel.hpp"
-#include "sim/image/png.hpp"
 #include "sim/scene/load.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/image/panel.hpp"
+#include "sim/show/image/png.hpp"
 
 namespace halfplane {
 namespace {

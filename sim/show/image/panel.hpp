@@ -1,0 +1,87 @@
+// The comparison picture: panels with captions and legends on one dark sheet.
+//
+// Pixels stay whole: small pictures are enlarged by an integer factor, those wider or higher than kMaxPanelSide are
+// reduced by one, and then a pixel of a difference panel shows the worst of its block, so that none is lost.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "sim/show/image/picture.hpp"
+#include "sim/study/compare/coverage_class.hpp"
+
+namespace halfplane {
+
+inline constexpr int kMaxPanelSide = 2048;            // pixels
+inline constexpr Rgb kNotCompared{0x2c, 0x2e, 0x33};  // neutral: on neither colour map
+
+/// A colour with its meaning.
+struct LegendEntry {
+  Rgb color;
+  std::string label;
+};
+
+/// The colours of a scale from low to high.
+struct ScaleLegend {
+  bool diverging = true;  ///< -range...range, otherwise 0...range
+  double range = 1;
+  std::string unit;
+};
+
+using Legend = std::variant<std::monostate, std::vector<LegendEntry>, ScaleLegend>;
+
+/// One cell of a sheet. Without a picture it shows its lines as text; lines with tabs form a table.
+struct Panel {
+  std::string caption;
+  std::string note;  ///< one line below the picture: statistics
+  Picture picture;
+  Legend legend;
+  std::vector<std::string> lines;
+};
+
+/// Colours and counts of the classes. `classes` holds width * height values.
+[[nodiscard]] Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes);
+
+/// Signed errors on the diverging map, or with `diverging` false magnitudes on the sequential one. NaN: not compared,
+/// shown dark. The scale ends at a round number that holds all values; if a few outliers would flatten the rest, one
+/// that holds 99.5 % of them, and the note counts those beyond.
+[[nodiscard]] Panel error_panel(std::string_view caption, int width, int height, std::span<const float> errors,
+                                std::string_view unit, bool diverging);
+
+/// How often each sample was drawn: cracks and double draws at a glance. `counts` holds width * height values.
+[[nodiscard]] Panel draws_panel(int width, int height, std::span<const std::uint32_t> counts);
+
+/// Panels in rows of `columns`, aligned, under one title. Columns share a width and rows a height.
+[[nodiscard]] Picture compose_sheet(std::string_view title, std::span<const Panel> panels, int columns);
+
+/// Everything that `compare` shows of one scene. All vectors hold width * height values, row 0 at the top.
+struct ComparisonSheet {
+  std::string title;  ///< scene, configuration and size
+  int width = 0, height = 0;
+  Picture model, golden;
+  std::vector<CoverageClass> coverage;
+  std::vector<float> depth_error;    ///< signed, LSB; NaN where not compared
+  std::vector<float> color_error;    ///< largest absolute error of the channels, LSB; NaN where not compared
+  std::vector<std::string> summary;  ///< the sixth cell: figures and bounds, one per line; left out when empty
+  std::vector<std::string> panels;   ///< of kPanelNames, those to show, in this order; empty: all
+};
+
+/// The panels of a comparison sheet.
+inline constexpr std::array<std::string_view, 6> kPanelNames{"model", "golden", "coverage",
+                                                             "depth", "color",  "summary"};
+
+/// Colour picture and draws panel side by side.
+[[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);
+
+/// Colour picture, cycles per pixel and draws panel side by side.
+[[nodiscard]] Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> cycles,
+                                 std::span<const std::uint32_t> counts);
+
+[[nodiscard]] Picture comparison_sheet(const ComparisonSheet& sheet);
+
+}  // namespace halfplane

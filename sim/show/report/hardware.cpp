@@ -1,0 +1,175 @@
+#include "sim/show/report/hardware.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+namespace halfplane {
+namespace {
+
+int number(std::string_view key, std::string_view value, int min, int max) {
+  int result = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
+  if (error != std::errc() || end != value.data() + value.size() || result < min || result > max)
+    throw InputError(std::string(key) + ": '" + std::string(value) + "' is no number from " + std::to_string(min) +
+                     " to " + std::to_string(max));
+  return result;
+}
+
+const Setting* find_setting(std::string_view key) {
+  for (const Setting& setting : settings())
+    if (setting.key == key) return &setting;
+  return nullptr;
+}
+
+std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls) {
+  CycleOptions options;
+  options.stalls = stalls;
+  return run_cycles(scene, hardware, {}, options).run.cycles;
+}
+
+std::uint64_t part(std::uint64_t whole, std::uint64_t taken) { return whole > taken ? whole - taken : 0; }
+
+}  // namespace
+
+void change(Hardware& hardware, std::string_view key, std::string_view value) {
+  if (key == "memory") {
+    hardware.memory.kind = memory_kind(value);
+  } else if (key == "memory.latency") {
+    hardware.memory.latency = number(key, value, 1, 10000);
+  } else if (key == "mhz") {
+    hardware.memory.mhz = number(key, value, 1, 1000);
+  } else if (const TimingSetting* setting = find_timing_setting(key)) {
+    hardware.parameters.*setting->member = number(key, value, setting->min, setting->max);
+  } else if (find_setting(key) != nullptr) {
+    set(hardware.config, key, value);
+  } else {
+    throw InputError("no setting '" + std::string(key) +
+                     "'; give one of 'halfplane config --list', memory, memory.latency or mhz");
+  }
+}
+
+std::string value_of(const Hardware& hardware, std::string_view key) {
+  if (key == "memory") return std::string(kMemoryKinds[static_cast<std::size_t>(hardware.memory.kind)]);
+  if (key == "memory.latency") return std::to_string(hardware.memory.latency);
+  if (key == "mhz") return std::to_string(hardware.memory.mhz);
+  if (const TimingSetting* setting = find_timing_setting(key))
+    return std::to_string(hardware.parameters.*setting->member);
+  return get(hardware.config, *find_setting(key));
+}
+
+void check(const Hardware& hardware) {
+  validate(hardware.config);
+  validate(hardware.parameters, hardware.config);
+}
+
+CycleRendering run_cycles(const Scene& scene, const Hardware& hardware, const RenderOptions& render,
+                          CycleOptions options) {
+  check(hardware);
+  options.parameters = hardware.parameters;
+  const auto memory = make_memory(hardware.memory, hardware.config);
+  return render_cycle(scene, hardware.config, *memory, render, options);
+}
+
+std::vector<StageTime> stage_times(const CycleRun& run) {
+  const TimingTotals& t = run.totals;
+  const auto use = [&run](Boundary boundary) { return run.use[static_cast<std::size_t>(boundary)]; };
+  std::vector<StageTime> stages;
+  const auto add = [&](std::string_view name, TimedStage which, Boundary out,
+                       const std::vector<StageTime::Wait>& waits) {
+    StageTime stage{name, use(out), t.works[static_cast<std::size_t>(which)], 0, {}};
+    if (stage.use.busy == 0 && stage.works == 0) return;  // it is not there, or had nothing to do
+    std::uint64_t waited = 0;
+    for (const StageTime::Wait& wait : waits) {
+      waited += wait.cycles;
+      if (wait.cycles != 0) stage.waits.push_back(wait);
+    }
+    stage.works = std::min(stage.works, part(run.cycles, waited));  // where parts work while others wait
+    stage.no_item = part(run.cycles, stage.works + waited);
+    stages.push_back(std::move(stage));
+  };
+  const std::uint64_t setup = use(Boundary::setup).stalled, fragment = use(Boundary::fragment).stalled;
+  add("cull", TimedStage::cull, Boundary::triangle, {{"triangle_setup", use(Boundary::triangle).stalled}});
+  add("triangle_setup", TimedStage::triangle_setup, Boundary::setup,
+      {{"coarse_raster", part(setup, t.slot_cycles)}, {"a context slot", t.slot_cycles}});
+  add("coarse_raster", TimedStage::coarse_raster, Boundary::tile,
+      {{"fine_raster", use(Boundary::tile).stalled},
+       {"an earlier visit of the tile (HiZ)", t.bound_cycles},
+       {"a place for one more visit", t.visit_cycles}});
+  add("fine_raster", TimedStage::fine_raster, Boundary::stamp, {{"interpolate", use(Boundary::stamp).stalled}});
+  add("line_raster", TimedStage::line_raster, Boundary::line_pixel,
+      {{"primitive_join", use(Boundary::line_pixel).stalled}});
+  add("interpolate", TimedStage::interpolate, Boundary::fragment,
+      {{"framebuffer", part(fragment, t.hazard_cycles)}, {"the fragment before (hazard)", t.hazard_cycles}});
+  add("framebuffer", TimedStage::framebuffer, Boundary::request, {{"memory", t.memory_cycles}});
+  return stages;
+}
+
+std::uint64_t Traffic::total() const {
+  std::uint64_t sum = 0;
+  for (const auto& cause : bytes) sum += cause[0] + cause[1];
+  return sum;
+}
+
+Traffic traffic(const CycleRun& run, const Config& config) {
+  const Widths widths = derive_widths(config);
+  const auto stamps =
+      static_cast<std::uint64_t>(widths.stamps_per_row) * static_cast<std::uint64_t>(widths.stamps_per_row);
+  Traffic traffic;
+  for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
+    for (const bool is_color : {false, true})
+      traffic.bytes[cause][is_color] =
+          run.totals.planes[cause][is_color] * stamps * static_cast<std::uint64_t>(stamp_bytes(config, is_color));
+  return traffic;
+}
+
+std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, const Stalls& stalls, std::uint64_t cycles,
+                               const std::function<void(double)>& progress) {
+  const bool is_pipelined = hardware.config.setup_kind == SetupKind::pipelined;
+  std::vector<Trial> trials;
+  const auto times = [&](std::string_view key, int factor) {
+    trials.push_back({std::string(key), std::to_string(std::stoi(value_of(hardware, key)) * factor), 0});
+  };
+  times("cache.lines", 4);
+  times("stamp.size", 2);
+  times("context.slots", 2);
+  times("visits", 2);
+  if (is_pipelined) {
+    for (const char* key : {"queue.tile", "queue.stamp", "queue.fragment"}) trials.push_back({key, "16", 0});
+    times("divide.bits", 2);
+  } else {
+    trials.push_back({"setup.kind", "pipelined", 0});
+  }
+  if (hardware.memory.kind != MemoryKind::fixed || hardware.memory.latency > 1)
+    trials.push_back(hardware.memory.kind == MemoryKind::fixed ? Trial{"memory.latency", "1", 0}
+                                                               : Trial{"memory", "sram", 0});
+  std::vector<Trial> helped;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (progress) progress(static_cast<double>(i) / static_cast<double>(trials.size()));
+    Hardware changed = hardware;
+    try {
+      change(changed, trials[i].key, trials[i].value);
+      trials[i].cycles = cycles_of(scene, changed, stalls);
+    } catch (const InputError&) {
+      continue;  // there is no such hardware
+    }
+    if (trials[i].cycles < cycles) helped.push_back(trials[i]);
+  }
+  std::stable_sort(helped.begin(), helped.end(), [](const Trial& a, const Trial& b) { return a.cycles < b.cycles; });
+  return helped;
+}
+
+std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                                    std::uint64_t cycles) {
+  std::vector<Saving> savings;
+  for (const auto& [key, name] :
+       {std::pair{"hiz.bits", "tiles_hiz"}, {"walk.reject", "tiles_outside"}, {"clear.fast", "fast_clear"}}) {
+    Hardware changed = hardware;
+    if (value_of(changed, key) == "0") continue;
+    change(changed, key, "0");
+    savings.push_back(
+        {name, static_cast<std::int64_t>(cycles_of(scene, changed, stalls)) - static_cast<std::int64_t>(cycles)});
+  }
+  return savings;
+}
+
+}  // namespace halfplane

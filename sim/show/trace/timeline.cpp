@@ -1,0 +1,139 @@
+#include "sim/show/trace/timeline.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "sim/show/trace/primitive_spans.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::array kTracks{"cull",
+                             "triangle_setup",
+                             "triangle_setup, second",
+                             "triangle_setup, third",
+                             "coarse_raster",
+                             "fine_raster",
+                             "line_raster",
+                             "depth_test",
+                             "framebuffer",
+                             "memory, depth",
+                             "memory, colour"};
+
+std::string tile_text(int x, int y) { return "tile (" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
+
+/// `value`: JSON.
+std::string metadata(const std::string& what, int track, const std::string& key, const std::string& value) {
+  return "{\"name\":\"" + what + "\",\"ph\":\"M\",\"pid\":1,\"tid\":" + std::to_string(track) + ",\"args\":{\"" + key +
+         "\":" + value + "}}";
+}
+
+}  // namespace
+
+Timeline::Timeline(const std::string& title)
+    : text_("{\"displayTimeUnit\":\"ms\",\"otherData\":{\"unit\":\"1 us is 1 cycle\"},\"traceEvents\":[\n") {
+  text_ += metadata("process_name", 0, "name", title);
+  for (std::size_t i = 0; i < kTracks.size(); ++i) {
+    const int track = static_cast<int>(i);
+    text_ += ",\n" + metadata("thread_name", track, "name", "\"" + std::string(kTracks[i]) + "\"");
+    text_ += ",\n" + metadata("thread_sort_index", track, "sort_index", std::to_string(i));
+  }
+}
+
+void Timeline::slice(int track, const std::string& name, Cycle from, Cycle to) {
+  if (to <= from) return;
+  text_ += ",\n{\"name\":\"" + name + "\",\"ph\":\"X\",\"ts\":" + std::to_string(from) +
+           ",\"dur\":" + std::to_string(to - from) + ",\"pid\":1,\"tid\":" + std::to_string(track) + "}";
+}
+
+void Timeline::primitive(const HostPrimitive& primitive) {
+  end_primitive();
+  name_ = kind_name(primitive.packet.kind);
+  if (is_counted(primitive.packet.kind)) name_ += " " + std::to_string(primitive.primitive);
+}
+
+void Timeline::visit(int tile_x, int tile_y) { next_tile_name_ = name_ + ", " + tile_text(tile_x, tile_y); }
+
+void Timeline::transfer(Boundary boundary, Cycle cycle) {
+  switch (boundary) {
+    case Boundary::primitive: taken_ = cycle; break;
+    case Boundary::triangle:
+      slice(cull, name_, taken_, cycle);
+      triangle_ = cycle;
+      break;
+    case Boundary::setup: {
+      const Cycle from = std::min(triangle_, cycle);  // serial: the triangle goes when its setup has gone
+      const auto lane = std::find_if(setup_ends_.begin(), setup_ends_.end(), [&](Cycle end) { return end <= from; });
+      if (lane != setup_ends_.end()) {
+        slice(setup_1 + static_cast<int>(lane - setup_ends_.begin()), name_, from, cycle);
+        *lane = cycle;
+      }
+      has_setup_ = true;
+      setup_ = last_tile_ = cycle;
+      break;
+    }
+    case Boundary::tile: {
+      const bool is_serial = has_stamps_ && !has_tile_;  // there a tile goes together with its last stamp
+      end_tile(cycle);
+      tile_name_ = next_tile_name_.empty() ? name_ + ", end" : std::exchange(next_tile_name_, {});
+      if (is_serial) slice(fine, tile_name_, first_stamp_, cycle + 1);
+      has_tile_ = !is_serial;
+      has_stamps_ = false;
+      tile_ = last_tile_ = cycle;
+      break;
+    }
+    case Boundary::stamp:
+      if (!has_stamps_) first_stamp_ = cycle;
+      has_stamps_ = true;
+      last_stamp_ = cycle;
+      break;
+    case Boundary::line:
+      has_line_ = true;
+      line_ = cycle;
+      break;
+    case Boundary::line_pixel: last_pixel_ = cycle; break;
+    case Boundary::fragment:
+      if (!has_fragments_) first_fragment_ = cycle;
+      has_fragments_ = true;
+      last_fragment_ = cycle;
+      break;
+    case Boundary::retire: end_visit(); break;
+    case Boundary::write:
+    case Boundary::request:
+    case Boundary::response: break;
+  }
+}
+
+void Timeline::end_tile(Cycle limit) {
+  if (has_tile_) slice(fine, tile_name_, tile_, std::min(limit, last_stamp_ + 1));
+  has_tile_ = false;
+}
+
+void Timeline::end_visit() {
+  if (has_fragments_) slice(depth, tile_name_.empty() ? name_ : tile_name_, first_fragment_, last_fragment_ + 1);
+  has_fragments_ = false;
+}
+
+void Timeline::end_primitive() {
+  end_visit();
+  if (has_setup_) slice(coarse, name_, setup_, std::max(last_tile_, setup_ + 1));
+  if (has_line_) slice(lines, name_, line_ + 1, last_pixel_ + 1);
+  has_setup_ = has_line_ = false;
+}
+
+void Timeline::move(MoveCause cause, bool is_color, int tile_x, int tile_y, Cycle from, Cycle to) {
+  slice(is_color ? memory_color : memory_depth,
+        std::string(kMoveCauses[static_cast<std::size_t>(cause)]) + " " + tile_text(tile_x, tile_y), from, to);
+}
+
+void Timeline::wait(Cycle from, Cycle to) { slice(framebuffer, name_, from, to); }
+
+const std::string& Timeline::finish() {
+  end_primitive();
+  end_tile(~Cycle{0});
+  text_ += "\n]}\n";
+  return text_;
+}
+
+}  // namespace halfplane

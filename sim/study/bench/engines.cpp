@@ -1,0 +1,76 @@
+#include "sim/study/bench/engines.hpp"
+
+#include <chrono>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "model/engines/functional.hpp"
+#include "model/engines/scalar.hpp"
+#include "model/golden/golden.hpp"
+#include "model/host_stream.hpp"
+#include "sim/cosim/rtl_engine.hpp"
+#include "sim/show/report/hardware.hpp"
+#include "sim/study/bench/mesa_peer.hpp"
+
+namespace halfplane {
+namespace {
+
+/// By the wall clock; `work` returns its cycles, or nothing.
+template <typename Work>
+FrameCost timed_frame(Work&& work) {
+  FrameCost cost;
+  const auto start = std::chrono::steady_clock::now();
+  if constexpr (std::is_void_v<decltype(work())>)
+    work();
+  else
+    cost.cycles = work();
+  cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return cost;
+}
+
+Frame functional_frame(std::shared_ptr<const Scene> scene, const Config& config, int threads) {
+  RenderOptions options;
+  options.threads = threads;
+  // Prepared once, as the peer's buffers are filled once. The scene must live as long.
+  auto prepared = std::make_shared<PreparedScene>(*scene);
+  return [engine = std::make_shared<FunctionalEngine>(config), scene = std::move(scene), prepared, options] {
+    return timed_frame([&] { (void)engine->render(*prepared, options); });
+  };
+}
+
+Frame rtl_frame(std::shared_ptr<const Scene> scene, const Config& config) {
+  return [dut = std::shared_ptr<Dut>(make_dut(find_dut(config))), scene = std::move(scene), config] {
+    return timed_frame([&] { return render_rtl(*dut, *scene, config, {}).run.cycles; });
+  };
+}
+
+Frame llvmpipe_frame(const Scene& scene, const Config& config, int threads) {
+  auto peer = std::make_shared<MesaPeer>(scene.width, scene.height, config.depth_bits, threads);
+  peer->upload(scene);
+  return [peer] { return FrameCost{peer->render(), 0}; };
+}
+
+}  // namespace
+
+bool has_threads(std::string_view engine) { return engine == "functional" || engine == "llvmpipe"; }
+
+bool is_bit_exact(std::string_view engine) { return engine != "golden" && engine != "llvmpipe"; }
+
+Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, const Config& config, int threads) {
+  if (engine == "functional") return functional_frame(std::move(scene), config, threads);
+  if (engine == "llvmpipe") return llvmpipe_frame(*scene, config, threads);
+  if (engine == "cycle" || engine == "rtl") check_hardware_scene(*scene, config);
+  if (engine == "rtl") return rtl_frame(std::move(scene), config);
+  if (engine == "cycle")
+    return [scene = std::move(scene), config] {
+      return timed_frame([&] { return run_cycles(*scene, {config, {}, {}}).run.cycles; });
+    };
+  if (engine == "scalar")
+    return [scene = std::move(scene), config] { return timed_frame([&] { (void)render_scalar(*scene, config); }); };
+  if (engine == "golden")
+    return [scene = std::move(scene), config] { return timed_frame([&] { (void)golden::render(*scene, config); }); };
+  throw InputError("no engine '" + std::string(engine) + "'");
+}
+
+}  // namespace halfplane

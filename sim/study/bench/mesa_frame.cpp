@@ -1,0 +1,260 @@
+#include "sim/study/bench/mesa_frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/config.hpp"
+#include "model/stages/primitive_assembly.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr const char* kVertexSource =
+    "layout(location = 0) in vec4 position; layout(location = 1) in vec4 rgba;\n"
+    "void main() { gl_Position = position; color = rgba; }\n";
+constexpr const char* kFragmentSource = "out vec4 result; void main() { result = color; }\n";
+
+struct PeerVertex {
+  std::array<float, 4> position;
+  std::array<std::uint8_t, 4> rgba;
+};
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw InputError("llvmpipe: has no " + what + "; leave llvmpipe out for this scene");
+}
+
+void check_draw_state(const State& state, Topology topology) {
+  if (state.origin != Origin::top_left) refuse("origin bottom_left");
+  if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
+  const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
+  const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
+  if (!is_line) return;
+  if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");
+  if (state.line_rule == LineRule::bresenham) refuse("line_rule bresenham");
+  if (state.line_last.value_or(false)) refuse("line_last on");
+}
+
+// Draws of one list after another are one list.
+bool continues(const Draw& last, const Draw& next) {
+  const std::size_t step = last.topology == Topology::triangles ? 3 : last.topology == Topology::lines ? 2 : 0;
+  return step != 0 && last.topology == next.topology && last.state == next.state &&
+         last.first + last.count == next.first && last.count % step == 0;
+}
+
+PeerVertex peer_vertex(const Vertex& v, const Scene& scene, Space space) {
+  PeerVertex out{};
+  if (space == Space::clip)
+    out.position = {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)};
+  else
+    out.position = {static_cast<float>((2 * v.x / scene.width - 1) * v.w),
+                    static_cast<float>((1 - 2 * v.y / scene.height) * v.w), static_cast<float>((2 * v.z - 1) * v.w),
+                    static_cast<float>(v.w)};
+  for (std::size_t c = 0; c < 4; ++c) out.rgba[c] = static_cast<std::uint8_t>(std::lround(v.rgba[c]));
+  return out;
+}
+
+gl::Name shader(const gl::Functions& gl, gl::Enum kind, const std::string& source) {
+  const gl::Name name = gl.create_shader(kind);
+  const char* text = source.c_str();
+  gl.shader_source(name, 1, &text, nullptr);
+  gl.compile_shader(name);
+  int is_compiled = 0;
+  gl.get_shaderiv(name, gl::kCompiled, &is_compiled);
+  if (is_compiled == 0) throw std::runtime_error("llvmpipe: does not compile GLSL 3.30; install Mesa 22.3 or newer");
+  return name;
+}
+
+gl::Enum mode_of(Topology topology) {
+  switch (topology) {
+    case Topology::triangles: return gl::kTriangles;
+    case Topology::triangle_strip: return gl::kTriangleStrip;
+    case Topology::triangle_fan: return gl::kTriangleFan;
+    case Topology::lines: return gl::kLines;
+    case Topology::line_strip: return gl::kLineStrip;
+    case Topology::line_loop: return gl::kLineLoop;
+    case Topology::points: break;
+  }
+  return gl::kPoints;
+}
+
+}  // namespace
+
+MesaFrame::MesaFrame(int width, int height, int depth_bits)
+    : gl_(gl::start_osmesa()), width_(width), height_(height), depth_bits_(depth_bits) {
+  make_target();
+  make_programs();
+  gl_.disable(gl::kDither);
+  gl_.enable(gl::kDepthTest);
+  gl_.primitive_restart_index(kRestart);
+}
+
+void MesaFrame::make_target() {
+  gl::Name framebuffer = 0;
+  std::array<gl::Name, 2> buffers{};
+  gl_.gen_framebuffers(1, &framebuffer);
+  gl_.bind_framebuffer(gl::kFramebuffer, framebuffer);
+  gl_.gen_renderbuffers(2, buffers.data());
+  const std::array<gl::Enum, 2> formats{gl::kRgba8, depth_bits_ <= 16 ? gl::kDepth16 : gl::kDepth24};
+  const std::array<gl::Enum, 2> attachments{gl::kColorAttachment, gl::kDepthAttachment};
+  for (std::size_t i = 0; i < 2; ++i) {
+    gl_.bind_renderbuffer(gl::kRenderbuffer, buffers[i]);
+    gl_.renderbuffer_storage(gl::kRenderbuffer, formats[i], width_, height_);
+    gl_.framebuffer_renderbuffer(gl::kFramebuffer, attachments[i], gl::kRenderbuffer, buffers[i]);
+  }
+  if (gl_.check_framebuffer_status(gl::kFramebuffer) != gl::kComplete)
+    throw std::runtime_error("llvmpipe: has no target of this size; give a smaller --size");
+}
+
+void MesaFrame::make_programs() {
+  const std::array<std::string, 3> kinds{"noperspective", "smooth", "flat"};
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const std::string head = "#version 330 core\n" + kinds[i];
+    programs_[i] = gl_.create_program();
+    gl_.attach_shader(programs_[i], shader(gl_, gl::kVertexShader, head + " out vec4 color;\n" + kVertexSource));
+    gl_.attach_shader(programs_[i], shader(gl_, gl::kFragmentShader, head + " in vec4 color;\n" + kFragmentSource));
+    gl_.link_program(programs_[i]);
+    int is_linked = 0;
+    gl_.get_programiv(programs_[i], gl::kLinked, &is_linked);
+    if (is_linked == 0) throw std::runtime_error("llvmpipe: does not link GLSL 3.30; install Mesa 22.3 or newer");
+  }
+}
+
+void MesaFrame::make_vertices(const Scene& scene, Space space) {
+  std::vector<PeerVertex> vertices;
+  vertices.reserve(scene.vertices.size());
+  for (const Vertex& v : scene.vertices) vertices.push_back(peer_vertex(v, scene, space));
+  gl::Name buffer = 0;
+  gl_.bind_vertex_array(arrays_[static_cast<std::size_t>(space)]);
+  gl_.gen_buffers(1, &buffer);
+  gl_.bind_buffer(gl::kArrayBuffer, buffer);
+  gl_.buffer_data(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(vertices.size() * sizeof(PeerVertex)), vertices.data(),
+                  gl::kStaticDraw);
+  constexpr int kStride = sizeof(PeerVertex);
+  gl_.vertex_attrib_pointer(0, 4, gl::kFloat, 0, kStride, 0);
+  gl_.vertex_attrib_pointer(1, 4, gl::kUnsignedByte, 1, kStride, offsetof(PeerVertex, rgba));
+  gl_.enable_vertex_attrib_array(0);
+  gl_.enable_vertex_attrib_array(1);
+}
+
+void MesaFrame::add_draw(const Scene& scene, const Draw& draw) {
+  if (draw.outside != 0 || draw.count == 0) return;
+  const State& state = scene.states[draw.state];
+  check_draw_state(state, draw.topology);
+  const auto first = scene.indices.begin() + static_cast<std::ptrdiff_t>(draw.first);
+  const auto last = first + static_cast<std::ptrdiff_t>(draw.count);
+  const bool has_restart = std::find(first, last, kRestart) != last;
+  if (!calls_.empty() && !calls_.back().is_clear && !calls_.back().has_restart && !has_restart &&
+      continues(calls_.back().draw, draw)) {
+    calls_.back().draw.count += draw.count;
+    return;
+  }
+  calls_.push_back({state, {}, draw, false, has_restart});
+}
+
+void MesaFrame::upload(const Scene& scene) {
+  calls_.clear();
+  for (const Command& command : scene.commands) {
+    if (const auto* next = std::get_if<Clear>(&command)) {
+      const State& state = scene.states[next->state];
+      if (state.scissor && state.origin != Origin::top_left) refuse("origin bottom_left");
+      calls_.push_back({state, *next, {}, true, false});
+    }
+    if (const auto* next = std::get_if<Draw>(&command)) add_draw(scene, *next);
+  }
+  gl::Name indices = 0;
+  gl_.gen_vertex_arrays(2, arrays_);
+  gl_.gen_buffers(1, &indices);
+  for (const Space space : {Space::clip, Space::window}) {
+    const auto is_used = [space](const Call& call) { return !call.is_clear && call.state.space == space; };
+    if (std::ranges::none_of(calls_, is_used)) continue;
+    make_vertices(scene, space);
+    gl_.bind_buffer(gl::kElementBuffer, indices);
+  }
+  gl_.buffer_data(gl::kElementBuffer, static_cast<std::ptrdiff_t>(scene.indices.size() * sizeof(std::uint32_t)),
+                  scene.indices.data(), gl::kStaticDraw);
+}
+
+void MesaFrame::apply_target(const State& state) const {
+  if (!state.scissor) return gl_.disable(gl::kScissorTest);
+  gl_.enable(gl::kScissorTest);
+  const Rect& r = *state.scissor;
+  gl_.scissor(r.x, height_ - r.y - r.height, r.width, r.height);
+}
+
+void MesaFrame::apply(const State& state, Topology topology) const {
+  apply_target(state);
+  const bool is_window = state.space == Space::window;
+  const double width = width_, height = height_;
+  Viewport view{0, 0, width, height};
+  if (state.viewport && !is_window) view = *state.viewport;
+  gl_.viewport_indexedf(0, static_cast<float>(view.x), static_cast<float>(height_ - view.y - view.height),
+                        static_cast<float>(view.width), static_cast<float>(view.height));
+  gl_.depth_range(is_window ? 0 : state.depth_range[0], is_window ? 1 : state.depth_range[1]);
+  gl_.clip_control(gl::kLowerLeft, !is_window && state.clip_z == ClipZ::zero_one ? gl::kZeroToOne : gl::kMinusOneToOne);
+  gl_.depth_func(gl::kNever + static_cast<gl::Enum>(state.depth_test));
+  gl_.depth_mask(state.depth_write ? 1 : 0);
+  const unsigned char writes = state.color_write ? 1 : 0;
+  gl_.color_mask(writes, writes, writes, writes);
+  state.cull == Cull::none ? gl_.disable(gl::kCullFace) : gl_.enable(gl::kCullFace);
+  if (state.cull != Cull::none)
+    gl_.cull_face(state.cull == Cull::back ? gl::kBack : state.cull == Cull::front ? gl::kFront : gl::kFrontAndBack);
+  gl_.front_face(state.front == FrontFace::ccw ? gl::kCcw : gl::kCw);
+  gl_.polygon_mode(gl::kFrontAndBack, state.polygon_mode == PolygonMode::fill   ? gl::kFill
+                                      : state.polygon_mode == PolygonMode::line ? gl::kLine
+                                                                                : gl::kPoint);
+  const bool has_offset =
+      primitive_type(topology) == PrimitiveType::triangle && state.polygon_offset != std::array<double, 2>{};
+  for (const gl::Enum mode : {gl::kOffsetFill, gl::kOffsetLine, gl::kOffsetPoint})
+    has_offset ? gl_.enable(mode) : gl_.disable(mode);
+  gl_.polygon_offset(static_cast<float>(state.polygon_offset[0]), static_cast<float>(state.polygon_offset[1]));
+  gl_.point_size(static_cast<float>(state.point_size));
+  gl_.provoking_vertex(state.provoking == Provoking::first ? gl::kFirstVertex : gl::kLastVertex);
+  gl_.use_program(programs_[state.shade == Shade::flat ? 2 : state.color_interp == ColorInterp::affine ? 0 : 1]);
+  gl_.bind_vertex_array(arrays_[static_cast<std::size_t>(state.space)]);
+}
+
+void MesaFrame::clear(const Call& call) const {
+  apply_target(call.state);
+  gl_.color_mask(1, 1, 1, 1);
+  gl_.depth_mask(1);
+  if (call.clear.color) {
+    const auto& c = *call.clear.color;
+    gl_.clear_color(static_cast<float>(c[0] / 255), static_cast<float>(c[1] / 255), static_cast<float>(c[2] / 255),
+                    static_cast<float>(c[3] / 255));
+  }
+  if (call.clear.depth) gl_.clear_depth(*call.clear.depth);
+  gl_.clear((call.clear.color ? gl::kColorBuffer : 0) | (call.clear.depth ? gl::kDepthBuffer : 0));
+}
+
+void MesaFrame::render() {
+  for (const Call& call : calls_) {
+    if (call.is_clear) {
+      clear(call);
+      continue;
+    }
+    apply(call.state, call.draw.topology);
+    call.has_restart ? gl_.enable(gl::kPrimitiveRestart) : gl_.disable(gl::kPrimitiveRestart);
+    gl_.draw_elements(mode_of(call.draw.topology), static_cast<int>(call.draw.count), gl::kUnsignedInt,
+                      call.draw.first * sizeof(std::uint32_t));
+  }
+  gl_.finish();
+  if (const gl::Enum error = gl_.get_error(); error != 0)
+    throw std::runtime_error("llvmpipe: OpenGL error " + std::to_string(error));
+}
+
+std::vector<std::uint32_t> MesaFrame::color() const {
+  const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+  std::vector<std::uint32_t> pixels(width * height);
+  gl_.read_pixels(0, 0, width_, height_, gl::kRgba, gl::kUnsignedByte, pixels.data());
+  for (std::size_t y = 0; y < height / 2; ++y)
+    std::swap_ranges(pixels.begin() + static_cast<std::ptrdiff_t>(y * width),
+                     pixels.begin() + static_cast<std::ptrdiff_t>((y + 1) * width),
+                     pixels.begin() + static_cast<std::ptrdiff_t>((height - 1 - y) * width));
+  return pixels;
+}
+
+std::string MesaFrame::name() const { return reinterpret_cast<const char*>(gl_.get_string(gl::kRenderer)); }
+
+}  // namespace halfplane

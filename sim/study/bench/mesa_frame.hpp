@@ -1,0 +1,54 @@
+// A Scene drawn by OpenGL into a framebuffer object: what runs inside MesaPeer's process.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/scene.hpp"
+#include "sim/study/bench/mesa_gl.hpp"
+
+namespace halfplane {
+
+/// One per process: OSMesa's context and its threads cannot be taken down again.
+class MesaFrame {
+ public:
+  /// Throws std::runtime_error when libOSMesa is missing or too old, or cannot make a target of that size.
+  MesaFrame(int width, int height, int depth_bits);
+
+  /// Vertices in binary32, colours in RGBA8, draws merged. Throws InputError for a state that OpenGL does not have.
+  void upload(const Scene& scene);
+
+  /// Every command of the scene, and waits for the last pixel. Throws std::runtime_error for an error of OpenGL.
+  void render();
+
+  /// RGBA8, R in the low byte, rows from the top.
+  [[nodiscard]] std::vector<std::uint32_t> color() const;
+
+  /// GL_RENDERER: the rasterizer, its vector width and its compiler.
+  [[nodiscard]] std::string name() const;
+
+ private:
+  struct Call {
+    State state;
+    Clear clear;  // where there is nothing to draw
+    Draw draw;
+    bool is_clear = false, has_restart = false;
+  };
+
+  void make_target();
+  void make_programs();
+  void make_vertices(const Scene& scene, Space space);
+  void add_draw(const Scene& scene, const Draw& draw);
+  void apply_target(const State& state) const;
+  void apply(const State& state, Topology topology) const;
+  void clear(const Call& call) const;
+
+  gl::Functions gl_;
+  int width_, height_, depth_bits_;
+  gl::Name programs_[3]{};  // smooth affine, smooth perspective, flat
+  gl::Name arrays_[2]{};    // of vertices that are given in clip space and in window space
+  std::vector<Call> calls_;
+};
+
+}  // namespace halfplane

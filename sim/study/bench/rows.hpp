@@ -1,0 +1,72 @@
+// Run time against error: engines, configurations and scenes, side by side.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/engines/render.hpp"
+#include "model/scene.hpp"
+#include "sim/study/bench/turns.hpp"
+
+namespace halfplane {
+
+/// A scene under a configuration.
+struct BenchCase {
+  std::string scene_name;
+  std::shared_ptr<const Scene> scene;
+  Config config;
+  std::string variation;  ///< what differs from the base configuration, "depth.bits=24 subpixel.bits=8"; empty: nothing
+};
+
+/// What a case costs in accuracy: a part of Comparison, whose units it keeps.
+struct BenchErrors {
+  double depth_lsb_max = 0, depth_lsb_rms = 0, color_lsb_max = 0, color_lsb_rms = 0;
+  std::optional<double> depth_eye_max, depth_eye_rms;      ///< eye-space units: comparable between depth formats
+  std::uint64_t coverage_mismatches = 0;                   ///< samples, against the exact oracle on snapped vertices
+  std::uint64_t coverage_missing = 0, coverage_extra = 0;  ///< samples, against the golden on unsnapped ones
+};
+
+/// What is the same for every engine on a case.
+struct BenchFacts {
+  Counters counters;    ///< with nothing skipped: every engine's rates count the same fragments
+  double coverage = 0;  ///< share of the pixels that something covers
+  std::optional<BenchErrors> errors;
+};
+
+struct BenchRow {
+  std::string engine;
+  int threads = 1;
+  std::size_t case_index = 0;
+  FrameTimes times;
+  BenchFacts facts;  ///< no errors when there is nothing to compare, or nobody wants it
+
+  [[nodiscard]] double mtri_s() const;        ///< millions of input primitives
+  [[nodiscard]] double mpix_s() const;        ///< millions of covered samples
+  [[nodiscard]] double cycles_per_s() const;  ///< hardware cycles simulated; 0: none
+};
+
+struct BenchPlan {
+  std::vector<std::string> engines;
+  std::vector<int> threads{1};  ///< of the engines that have them
+  int repeat = 5;
+  bool wants_errors = true;
+  std::function<void(double)> progress;  ///< 0...1; may be empty
+  /// Called for what an engine cannot do: the engine, and one line with the reason. May be empty.
+  std::function<void(const std::string& engine, const std::string& line)> left_out;
+};
+
+/// Measures every engine on every case; llvmpipe, which has no configuration, on the first case of each scene. What
+/// cannot be done is left out. Throws the first reason when nothing is left, and std::runtime_error when llvmpipe is
+/// asked for and missing.
+[[nodiscard]] std::vector<BenchRow> measure_rows(std::span<const BenchCase> cases, const BenchPlan& plan);
+
+/// Counters, coverage and, if wanted, errors. Throws InputError as render_functional().
+[[nodiscard]] BenchFacts find_facts(const Scene& scene, const Config& config, bool wants_errors);
+
+}  // namespace halfplane

@@ -1,0 +1,145 @@
+#include "sim/study/bench/skips.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "model/engines/functional.hpp"
+#include "sim/study/bench/growth.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::string_view kObjects = "objects";
+constexpr std::string_view kFineGrid = "grid below a subpixel";  // no built-in: it shows nothing
+
+/// Why the pairs are what they are. frustum: nearly all of `objects` lies outside, and the teapot inside. backface: a
+/// closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid and
+/// smaller than a pixel, and half-screen ones. objects_hiz: whole objects behind a wall, and objects drawn from front
+/// to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and triangles that take no tile as a whole. tiles_outside: long diagonal
+/// triangles, whose boxes are mostly empty, and ones of about a pixel. trivially_accepted: large triangles, and ones
+/// that fill no tile. fragments_early_z: overlap that tiles alone do not decide, and layers of which each passes.
+/// clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them.
+constexpr std::array<SkipPair, 13> kPairs{{{kObjects, "objects", "teapot"},
+                                           {"frustum", "objects", "teapot"},
+                                           {"backface", "ball", "layers"},
+                                           {"zero_area", kFineGrid, "layers"},
+                                           {"empty", "slivers", "layers"},
+                                           {"no_sample", "dust", "layers"},
+                                           {"objects_hiz", "hidden", "blocks"},
+                                           {"tiles_hiz", "layers_front", "layers"},
+                                           {"tiles_outside", "slivers", "dust"},
+                                           {"trivially_accepted", "layers", "dust"},
+                                           {"fragments_early_z", "blocks", "layers"},
+                                           {"attributes", "layers", "dust"},
+                                           {"clear", "teapot", "dust"}}};
+
+/// A counter of Counters::skipped, by the name of its switch.
+std::uint64_t skip_counter(const Counters& counters, std::string_view skip) {
+  const auto& s = counters.skipped;
+  const std::pair<std::string_view, std::uint64_t> all[] = {{"frustum", s.frustum},
+                                                            {"backface", s.backface},
+                                                            {"zero_area", s.zero_area},
+                                                            {"empty", s.empty},
+                                                            {"objects_hiz", s.objects_hiz},
+                                                            {"tiles_hiz", s.tiles_hiz},
+                                                            {"tiles_outside", s.tiles_outside},
+                                                            {"no_sample", s.no_sample},
+                                                            {"trivially_accepted", s.trivially_accepted},
+                                                            {"fragments_early_z", s.fragments_early_z},
+                                                            {"attributes", s.attributes},
+                                                            {"clear", s.clear}};
+  const auto* found = std::find_if(std::begin(all), std::end(all), [&](const auto& one) { return one.first == skip; });
+  return found == std::end(all) ? 0 : found->second;
+}
+
+/// Frames of an engine of its own, with or without one kind of skipping. `counters`: of the last frame; may be null.
+Frame skip_frame(std::shared_ptr<const Scene> scene, const SkipPlan& plan, std::string_view skip, bool is_on,
+                 Counters* counters) {
+  RenderOptions options;
+  options.threads = plan.threads;
+  for (const SkipName& entry : kSkipNames)
+    if (entry.name == skip) options.skip.*entry.member = is_on;
+  auto prepared = std::make_shared<PreparedScene>(*scene);
+  return [engine = std::make_shared<FunctionalEngine>(plan.config), scene = std::move(scene), prepared, options,
+          counters] {
+    const auto start = std::chrono::steady_clock::now();
+    const Rendering& rendering = engine->render(*prepared, options);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (counters != nullptr) *counters = rendering.counters;
+    return FrameCost{seconds, 0};
+  };
+}
+
+Scene make_fine_grid(const SkipPlan& plan) {
+  constexpr std::size_t kTriangles = 200'000;
+  const double cell = std::ldexp(0.25, -plan.config.subpixel_bits);  // pixels
+  return make_layered_grid({plan.width, plan.height, cell, cell, kTriangles});
+}
+
+/// Loads each scene once.
+class SceneShelf {
+ public:
+  explicit SceneShelf(const SkipPlan& plan) : plan_(plan) {}
+  const SkipScene& get(const std::string& name, bool culls_objects) {
+    const auto key = std::pair(name, culls_objects);
+    if (const auto found = scenes_.find(key); found != scenes_.end()) return found->second;
+    const SkipScene made = name == kFineGrid ? SkipScene{std::make_shared<const Scene>(make_fine_grid(plan_)), 0}
+                                             : plan_.load(name, culls_objects);
+    return scenes_.emplace(key, made).first->second;
+  }
+
+ private:
+  const SkipPlan& plan_;
+  std::map<std::pair<std::string, bool>, SkipScene> scenes_;
+};
+
+void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan) {
+  const bool is_objects = row.skip == kObjects;
+  // Objects that were culled have no triangles left for the frustum test to drop.
+  const SkipScene with = shelf.get(row.scene, row.skip != "frustum");
+  const SkipScene without = is_objects ? shelf.get(row.scene, false) : with;
+  Counters counters;
+  const std::array<Frame, 2> frames{skip_frame(with.scene, plan, row.skip, true, &counters),
+                                    skip_frame(without.scene, plan, row.skip, false, nullptr)};
+  auto times = measure_in_turns(frames, plan.repeat);
+  for (const FrameTimes& one : times)
+    if (one.refusal) std::rethrow_exception(one.refusal);
+  row.with = std::move(times[0]);
+  row.without = std::move(times[1]);
+  row.counter = is_objects ? with.primitives_culled : skip_counter(counters, row.skip);
+}
+
+}  // namespace
+
+std::span<const SkipPair> skip_pairs() { return kPairs; }
+
+std::vector<SkipRow> measure_skips(const SkipPlan& plan) {
+  std::vector<SkipRow> rows;
+  for (const SkipPair& pair : kPairs) {
+    const auto add = [&](std::string_view scene) {
+      SkipRow row;
+      row.skip = pair.skip;
+      row.scene = scene;
+      row.is_made_for = scene == pair.made_for;
+      rows.push_back(std::move(row));
+    };
+    for (const std::string& scene : plan.scenes) add(scene);
+    if (plan.scenes.empty()) {
+      add(pair.made_for);
+      add(pair.cannot_help);
+    }
+  }
+  SceneShelf shelf(plan);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (plan.progress) plan.progress(static_cast<double>(i) / static_cast<double>(rows.size()));
+    measure_skip(rows[i], shelf, plan);
+  }
+  return rows;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,54 @@
+// What leaving out work saves: every kind of skipping on a scene made for it and on one where it cannot help.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/scene.hpp"
+#include "sim/study/bench/turns.hpp"
+
+namespace halfplane {
+
+/// A kind of skipping, and the scenes that show what it is worth. `objects` is the culling of whole objects,
+/// which happens when a scene is loaded; the others are those of kSkipNames.
+struct SkipPair {
+  std::string_view skip, made_for, cannot_help;
+};
+[[nodiscard]] std::span<const SkipPair> skip_pairs();
+
+/// A scene, and how many of its primitives culling whole objects leaves out.
+struct SkipScene {
+  std::shared_ptr<const Scene> scene;
+  std::size_t primitives_culled = 0;
+};
+/// Loads a scene by name, with or without culling of whole objects.
+using SkipSceneLoader = std::function<SkipScene(const std::string& name, bool culls_objects)>;
+
+struct SkipRow {
+  std::string skip, scene;
+  bool is_made_for = false;   ///< by the table of pairs
+  FrameTimes with, without;   ///< this one skipping on and off, all others on
+  std::uint64_t counter = 0;  ///< of that name, with everything on; of `objects`, primitives
+  /// Share of the frame time that it saves; below 0 where it costs more than it saves.
+  [[nodiscard]] double saved() const { return 1 - with.median() / without.median(); }
+};
+
+struct SkipPlan {
+  Config config;
+  int width = 640, height = 480;  ///< pixels of a scene that is made here
+  int threads = 1, repeat = 5;
+  std::vector<std::string> scenes;  ///< every skip on each of them; empty: by the table of pairs
+  SkipSceneLoader load;
+  std::function<void(double)> progress;  ///< 0...1; may be empty
+};
+
+/// Measures on the functional engine, with and without in turns. Throws InputError as loader and engine do.
+[[nodiscard]] std::vector<SkipRow> measure_skips(const SkipPlan& plan);
+
+}  // namespace halfplane

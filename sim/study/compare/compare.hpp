@@ -1,0 +1,75 @@
+// Compare: one engine of the model against golden and oracle, each difference located and split into its parts.
+//
+// Four images: U unsnapped vertices, real arithmetic (golden); S the exact plane through the snapped vertices (oracle);
+// H the hardware's value before storage rounding; D the stored code. Then snap = S - U, interpolation = H - S and
+// storage = D - H. All are held as integers of 2^-20 LSB, so the parts sum to the total exactly.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/engines/render.hpp"
+#include "model/golden/golden.hpp"
+#include "model/scene.hpp"
+#include "coverage.hpp"
+#include "coverage_class.hpp"
+#include "statistics.hpp"
+
+namespace halfplane {
+
+using Engine = std::function<Rendering(const Scene&, const Config&, const RenderOptions&)>;
+
+struct CompareOptions {
+  Engine engine;     ///< none: render_functional, or render_scalar for rules that it alone has
+  StudyRules rules;  ///< the oracle follows the fill rule; the golden stays top_left
+  golden::Precision precision = golden::Precision::binary64;
+  Skip skip;
+  std::function<void(double fraction)> progress;  ///< 0...1 over engine and golden; may be empty
+};
+
+/// Why a depth or colour is not what real arithmetic makes of the unsnapped scene.
+struct ErrorParts {
+  PartStats snap, interpolation, storage, total;
+};
+
+struct Comparison {
+  // Coverage.
+  PixelCoverage coverage;           ///< against U
+  OracleResult oracle;              ///< against S, sample by sample
+  std::uint64_t other_visible = 0;  ///< pixels covered equally often by both, with different primitives visible
+
+  // Against U, over the pixels where both show the same primitive. LSB of the stored formats.
+  std::uint64_t compared_pixels = 0;
+  ErrorStats depth_lsb, color_lsb;
+  std::optional<ErrorStats> depth_eye;  ///< eye-space units; none where no perspective projection is to be found
+  std::uint64_t beyond_eye = 0;         ///< pixels left out of depth_eye: the stored code lies at or beyond infinity
+  ErrorParts parts, color_parts;        ///< colour parts refer to affine colour
+  PartStats affine;                     ///< what affine colour costs: affine - perspective, both of U
+
+  // Against S, over every pixel that the model owns, whatever U shows there: the datapath alone.
+  ErrorMoments datapath, color_datapath;
+  // H - S as well: the storage rounding of a plane that climbs by halves has a mean of its own.
+  ErrorMoments datapath_bias, color_datapath_bias;
+  ErrorMoments line_datapath;           ///< the depth of lines and points, whose bound is another; not in `datapath`
+  std::uint64_t visible_triangles = 0;  ///< of the model, behind those figures
+  std::uint64_t stage_mismatches = 0;   ///< stored values that differ from what the stages compute
+
+  // Per pixel, width * height, rows from the top. NaN where not compared. Signed; of a colour, its worst channel.
+  std::vector<float> depth_error_lsb, color_error_lsb;
+  std::vector<CoverageClass> coverage_class;
+
+  Rendering rendering;   ///< with count, ids, visible, triangles, lines and points
+  golden::Image golden;  ///< with outlines
+};
+
+/// Runs engine and golden on the scene. Throws InputError as the engine does.
+[[nodiscard]] Comparison compare(const Scene& scene, const Config& config, const CompareOptions& options = {});
+
+/// One line for every bound of docs/spec.md that the comparison breaks; empty when all hold.
+[[nodiscard]] std::vector<std::string> broken_bounds(const Comparison& comparison, const Config& config);
+
+}  // namespace halfplane

@@ -1,0 +1,202 @@
+#include "coverage.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <tuple>
+
+#include "model/golden/exact.hpp"
+#include "model/golden/viewport.hpp"
+#include "model/widths.hpp"
+#include "line_coverage.hpp"
+
+namespace halfplane {
+namespace {
+
+using golden::PixelBox;
+
+std::uint64_t difference(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }
+
+/// The pixels whose centres lie in the closed bounding box of the snapped vertices.
+PixelBox box_of(const Triangle& t, int grid_bits) {
+  const auto [x_min, x_max] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
+  const auto [y_min, y_max] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
+  const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
+  const auto first = [&](std::int64_t low) { return static_cast<int>((low + half - 1) >> grid_bits); };
+  const auto end = [&](std::int64_t high) { return static_cast<int>((high + half) >> grid_bits); };
+  return {first(x_min), first(y_min), end(x_max), end(y_max)};
+}
+
+/// Compares triangle by triangle; one object so that the result and the inputs need not be passed around.
+class OracleCheck {
+ public:
+  OracleCheck(const Config& config, const CoverageLog& log, FillRule rule)
+      : log_(log), tile_size_(config.tile_size), grid_bits_(derive_widths(config).grid_bits), rule_(rule) {}
+
+  /// `visit` runs over the log's visits; those of triangle `index` are consumed.
+  void triangle(const Triangle& t, std::uint32_t index, const PixelBox& region,
+                std::vector<CoverageLog::Visit>::const_iterator& visit) {
+    const PixelBox box = intersect(region, box_of(t, grid_bits_));
+    const exact::TriangleOracle oracle(t, grid_bits_, rule_);
+    const auto end = log_.visits().end();
+    const auto skip_to = [&](int tile_x, int tile_y) {
+      // Whatever lies before the tile was drawn outside the box, or a second time.
+      while (visit != end && visit->triangle == index &&
+             std::tie(visit->tile_y, visit->tile_x) < std::tie(tile_y, tile_x)) {
+        report(t, index, visit->tile_x * tile_size_, visit->tile_y * tile_size_, false, log_.sample_count(*visit));
+        ++visit;
+      }
+    };
+    if (!box.empty()) {
+      for (int ty = box.top / tile_size_; ty <= (box.bottom - 1) / tile_size_; ++ty) {
+        for (int tx = box.left / tile_size_; tx <= (box.right - 1) / tile_size_; ++tx) {
+          skip_to(tx, ty);
+          const bool visited = visit != end && visit->triangle == index && visit->tile_x == tx && visit->tile_y == ty;
+          tile(t, oracle, index, tx, ty, box, visited ? &*visit : nullptr);
+          if (visited) ++visit;
+        }
+      }
+    }
+    while (visit != end && visit->triangle == index) skip_to(visit->tile_x + 1, visit->tile_y);
+  }
+
+  [[nodiscard]] const OracleResult& result() const { return result_; }
+
+ private:
+  void report(const Triangle& t, std::uint32_t index, int x, int y, bool oracle_covers, std::uint64_t count) {
+    if (count > 0 && !result_.first) result_.first = CoverageMismatch{index, t.primitive, x, y, oracle_covers};
+    result_.mismatches += count;
+  }
+
+  void tile(const Triangle& t, const exact::TriangleOracle& oracle, std::uint32_t index, int tx, int ty,
+            const PixelBox& box, const CoverageLog::Visit* visit) {
+    const int x0 = tx * tile_size_, y0 = ty * tile_size_;
+    std::uint64_t drawn_inside = 0;
+    for (int y = std::max(box.top, y0); y < std::min(box.bottom, y0 + tile_size_); ++y) {
+      for (int x = std::max(box.left, x0); x < std::min(box.right, x0 + tile_size_); ++x) {
+        const bool drawn = visit != nullptr && log_.test(*visit, x - x0, y - y0);
+        const bool expected = oracle.covers(x, y);
+        drawn_inside += drawn ? 1 : 0;
+        ++result_.samples;
+        if (drawn != expected) report(t, index, x, y, expected, 1);
+      }
+    }
+    if (visit != nullptr) report(t, index, x0, y0, false, log_.sample_count(*visit) - drawn_inside);
+  }
+
+  const CoverageLog& log_;
+  int tile_size_, grid_bits_;
+  FillRule rule_;
+  OracleResult result_;
+};
+
+/// Marks in `near` the pixels of `wanted` whose centre is within `reach` pixels of the segment a - b.
+class EdgeMarker {
+ public:
+  EdgeMarker(int width, int height, double reach, const std::vector<bool>& wanted)
+      : near(wanted.size()), width_(width), height_(height), reach_(reach), wanted_(wanted) {}
+
+  void mark(double ax, double ay, double bx, double by) {
+    if (by < ay) {
+      std::swap(ax, bx);
+      std::swap(ay, by);
+    }
+    const int top = golden::first_centre(ay - reach_, height_);
+    const int bottom = golden::first_centre(by + 2 * reach_, height_);
+    for (int y = top; y < bottom; ++y) {
+      // The piece of the segment that lies within reach of this row, as a range of x.
+      const double cy = y + 0.5, dy = by - ay;
+      const double from = dy > 0 ? std::clamp((cy - reach_ - ay) / dy, 0.0, 1.0) : 0;
+      const double to = dy > 0 ? std::clamp((cy + reach_ - ay) / dy, 0.0, 1.0) : 1;
+      const auto [left, right] = std::minmax({ax + from * (bx - ax), ax + to * (bx - ax)});
+      const int end = golden::first_centre(right + 2 * reach_, width_);
+      for (int x = golden::first_centre(left - reach_, width_); x < end; ++x) {
+        const std::size_t p =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+        if (wanted_[p] && distance(x + 0.5 - ax, cy - ay, bx - ax, dy) <= reach_) near[p] = true;
+      }
+    }
+  }
+
+  std::vector<bool> near;
+
+ private:
+  /// From the point p to the segment 0 - d.
+  static double distance(double px, double py, double dx, double dy) {
+    const double length2 = dx * dx + dy * dy;
+    const double t = length2 > 0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0;
+    return std::hypot(px - t * dx, py - t * dy);
+  }
+
+  int width_, height_;
+  double reach_;
+  const std::vector<bool>& wanted_;
+};
+
+}  // namespace
+
+void CoverageLog::add(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
+  visits_.push_back({triangle, tile_x, tile_y, words_.size()});
+  words_.resize(words_.size() + words_per_tile_);
+  for (int row = 0; row < tile_size_; ++row) {
+    // A tile's side is a power of two up to 32, so a row never straddles two words.
+    const auto bit = static_cast<std::size_t>(row * tile_size_);
+    words_[visits_.back().first_word + bit / 64] |= std::uint64_t{mask[static_cast<std::size_t>(row)]} << bit % 64;
+  }
+}
+
+void CoverageLog::sort() {
+  std::sort(visits_.begin(), visits_.end(), [](const Visit& a, const Visit& b) {
+    return std::tie(a.triangle, a.tile_y, a.tile_x) < std::tie(b.triangle, b.tile_y, b.tile_x);
+  });
+}
+
+bool CoverageLog::test(const Visit& visit, int column, int row) const {
+  const auto bit = static_cast<std::size_t>(row * tile_size_ + column);
+  return (words_[visit.first_word + bit / 64] >> bit % 64 & 1) != 0;
+}
+
+std::uint64_t CoverageLog::sample_count(const Visit& visit) const {
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < words_per_tile_; ++i)
+    count += static_cast<std::uint64_t>(std::popcount(words_[visit.first_word + i]));
+  return count;
+}
+
+OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
+                            const CoverageLog& log, FillRule rule) {
+  OracleCheck check(config, log, rule);
+  auto visit = log.visits().begin();
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const State& state = scene.states[std::get<Draw>(scene.commands[triangles[i].draw]).state];
+    check.triangle(triangles[i], static_cast<std::uint32_t>(i), golden::draw_region(scene, state), visit);
+  }
+  OracleResult result = check.result();
+  for (; visit != log.visits().end(); ++visit) result.mismatches += log.sample_count(*visit);  // of no triangle at all
+  return result;
+}
+
+PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> model, const golden::Image& golden,
+                             int subpixel_bits) {
+  PixelCoverage result;
+  std::vector<bool> differs(model.size());
+  for (std::size_t p = 0; p < model.size(); ++p) {
+    const std::uint32_t k = golden.count[p], m = model[p];
+    differs[p] = k != m;
+    (k > m ? result.missing : result.extra) += difference(k, m);
+  }
+  if (result.missing + result.extra == 0) return result;
+  EdgeMarker marker(golden.width, golden.height, std::ldexp(1.0, -subpixel_bits), differs);
+  for (const golden::Outline& o : golden.outlines) {
+    if (o.corners < 3)
+      mark_uncertain(o, scene.states[std::get<Draw>(scene.commands[o.draw]).state], subpixel_bits, golden, differs,
+                     marker.near);
+    else
+      for (std::size_t i = 0; i < 3; ++i) marker.mark(o.x[i], o.y[i], o.x[(i + 1) % 3], o.y[(i + 1) % 3]);
+  }
+  for (std::size_t p = 0; p < model.size(); ++p)
+    if (marker.near[p]) result.near_edge += difference(golden.count[p], model[p]);
+  return result;
+}
+
+}  // namespace halfplane

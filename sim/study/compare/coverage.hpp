@@ -1,0 +1,72 @@
+// Coverage against the exact oracle (every sample, on snapped vertices) and against the golden (per pixel, unsnapped).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "model/engines/render.hpp"
+#include "model/golden/golden.hpp"
+
+namespace halfplane {
+
+/// Everything that an engine's coverage tap said, packed: one visit is 24 bytes and a bit per sample.
+class CoverageLog {
+ public:
+  struct Visit {
+    std::uint32_t triangle;
+    int tile_x, tile_y;
+    std::size_t first_word;
+  };
+
+  explicit CoverageLog(int tile_size)
+      : tile_size_(tile_size), words_per_tile_((static_cast<std::size_t>(tile_size * tile_size) + 63) / 64) {}
+
+  void add(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask);
+  /// Orders the visits by triangle, tile row, tile column: call once, before visits().
+  void sort();
+
+  [[nodiscard]] const std::vector<Visit>& visits() const { return visits_; }
+  [[nodiscard]] bool test(const Visit& visit, int column, int row) const;
+  [[nodiscard]] std::uint64_t sample_count(const Visit& visit) const;
+
+ private:
+  int tile_size_;
+  std::size_t words_per_tile_;
+  std::vector<Visit> visits_;
+  std::vector<std::uint64_t> words_;
+};
+
+/// A sample on which engine and oracle disagree.
+struct CoverageMismatch {
+  std::uint32_t triangle = 0;   ///< index into Rendering::triangles; 0 for lines and points
+  std::uint32_t primitive = 0;  ///< number of the input primitive
+  int x = 0, y = 0;             ///< pixels
+  bool oracle_covers = false;
+};
+
+struct OracleResult {
+  std::uint64_t samples =
+      0;  ///< compared: every pixel centre in every triangle's box that the draw may touch; the band of
+          ///< pixels around each line and point
+  std::uint64_t mismatches = 0;  ///< disagreements, and samples outside the box or in a tile visited twice
+  std::optional<CoverageMismatch> first;
+};
+
+/// Holds the logged coverage of every triangle against exact::covers by `rule`, tiles that were never visited included.
+[[nodiscard]] OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
+                                          const CoverageLog& log, FillRule rule = FillRule::top_left);
+
+struct PixelCoverage {
+  std::uint64_t missing = 0;    ///< samples that U covers and the model does not
+  std::uint64_t extra = 0;      ///< samples that the model covers and U does not
+  std::uint64_t near_edge = 0;  ///< of both: in pixels that an edge of U passes, or a line or point would have decided
+                                ///< otherwise, within one snap step
+};
+
+/// Counts per pixel against the golden's; needs Image::outlines.
+[[nodiscard]] PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> model,
+                                           const golden::Image& golden, int subpixel_bits);
+
+}  // namespace halfplane

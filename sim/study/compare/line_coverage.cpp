@@ -1,0 +1,182 @@
+#include "line_coverage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "model/golden/exact_line.hpp"
+#include "model/golden/line.hpp"
+#include "model/widths.hpp"
+
+namespace halfplane {
+namespace {
+
+using Pixel = PixelLog::Pixel;
+using GoldenLine = golden::Line<double>;
+
+/// The draw's state.
+const State& state_of(const Scene& scene, std::uint32_t command) {
+  return scene.states[std::get<Draw>(scene.commands[command]).state];
+}
+
+/// Every disagreement of two sorted lists counts, a pixel that is drawn twice as well.
+void compare_pixels(std::span<const Pixel> drawn, std::span<const Pixel> expected, OracleResult& result) {
+  const auto report = [&result](const Pixel& pixel, bool oracle_covers) {
+    ++result.mismatches;
+    if (!result.first) result.first = CoverageMismatch{0, pixel.primitive, pixel.x, pixel.y, oracle_covers};
+  };
+  auto d = drawn.begin();
+  auto e = expected.begin();
+  while (d != drawn.end() || e != expected.end()) {
+    if (e == expected.end() || (d != drawn.end() && *d < *e))
+      report(*d++, false);
+    else if (d == drawn.end() || *e < *d)
+      report(*e++, true);
+    else
+      ++d, ++e;
+  }
+}
+
+double distance_to_segment(double px, double py, const GoldenLine& line) {
+  const double dx = line.end.x - line.start.x, dy = line.end.y - line.start.y, length2 = dx * dx + dy * dy;
+  px -= line.start.x;
+  py -= line.start.y;
+  const double t = length2 > 0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0;
+  return std::hypot(px - t * dx, py - t * dy);
+}
+
+/// From a point to the border of the diamond around (cx, cy).
+double distance_to_diamond(double px, double py, double cx, double cy) {
+  // By symmetry the side from (1/2, 0) to (0, 1/2).
+  GoldenLine side;
+  side.start.x = side.end.y = 0.5;
+  return distance_to_segment(std::abs(px - cx), std::abs(py - cy), side);
+}
+
+/// Coverage changes where the segment passes a corner of the diamond, or where an end crosses its border.
+bool diamond_is_uncertain(const GoldenLine& line, int x, int y, double reach) {
+  const double cx = x + 0.5, cy = y + 0.5;
+  for (const auto& end : {line.start, line.end})
+    if (distance_to_diamond(end.x, end.y, cx, cy) <= reach) return true;
+  for (const auto& [u, v] : {std::array{0.5, 0.0}, std::array{-0.5, 0.0}, std::array{0.0, 0.5}, std::array{0.0, -0.5}})
+    if (distance_to_segment(cx + u, cy + v, line) <= reach) return true;
+  return false;
+}
+
+/// Coverage changes where an end moves to another pixel: do all pixels within reach of the ends give the same answer?
+bool rounded_is_uncertain(const GoldenLine& line, int x, int y, double reach) {
+  const auto low = [reach](double v) { return std::floor(v - reach); };
+  const auto high = [reach](double v) { return std::floor(v + reach); };
+  const auto &a = line.start, &b = line.end;
+  const bool now = covers(line, x, y);
+  for (double x0 = low(a.x); x0 <= high(a.x); ++x0)
+    for (double y0 = low(a.y); y0 <= high(a.y); ++y0)
+      for (double x1 = low(b.x); x1 <= high(b.x); ++x1)
+        for (double y1 = low(b.y); y1 <= high(b.y); ++y1)
+          if (golden::connects(x0, y0, x1, y1, line.drops_last, x, y) != now) return true;
+  return false;
+}
+
+/// Coverage changes where one of the square's borders passes the centre.
+bool point_is_uncertain(double dx, double dy, double half, double reach) {
+  const double outside = std::max(std::abs(dx), std::abs(dy)) - half;
+  return std::abs(outside) <= reach;
+}
+
+/// The pixels of `region` that a line covers by definition. `tested` counts those that were looked at.
+std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const golden::PixelBox& region, int grid_bits,
+                                 std::uint64_t& tested) {
+  const exact::Line line{drawn.start, drawn.end, rule, drawn.drops_last, grid_bits};
+  const auto real = [grid_bits](const SnappedVertex& v) {
+    golden::ScreenVertex<double> at;
+    at.x = std::ldexp(v.x, -grid_bits);
+    at.y = std::ldexp(v.y, -grid_bits);
+    return at;
+  };
+  std::vector<Pixel> pixels;
+  // The walk only says where to ask: two pixels more to each side than a line can reach.
+  golden::for_each_candidate(GoldenLine{real(drawn.start), real(drawn.end), rule, true}, region, 3, [&](int x, int y) {
+    ++tested;
+    if (exact::covers(line, x, y)) pixels.push_back({drawn.primitive, y, x});
+  });
+  return pixels;
+}
+
+/// Likewise a point.
+std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelBox& region, int grid_bits,
+                                 std::uint64_t& tested) {
+  // In halves of a subpixel, so that the border of an odd size is an integer.
+  const std::int64_t pixel = std::int64_t{2} << grid_bits, size = point.size;
+  const std::int64_t x = std::int64_t{2} * point.at.x, y = std::int64_t{2} * point.at.y;
+  const auto holds = [&](std::int64_t centre, std::int64_t at) { return at - size <= centre && centre < at + size; };
+  const auto around = [&](std::int64_t border, int low, int high) {  // the pixel that holds it, inside the region
+    return static_cast<int>(std::clamp<std::int64_t>(border >> (grid_bits + 1), low, high));
+  };
+  std::vector<Pixel> pixels;
+  for (int j = around(y - size - pixel, region.top, region.bottom);
+       j < around(y + size + 2 * pixel, region.top, region.bottom); ++j)
+    for (int i = around(x - size - pixel, region.left, region.right);
+         i < around(x + size + 2 * pixel, region.left, region.right); ++i) {
+      ++tested;
+      if (holds(i * pixel + pixel / 2, x) && holds(j * pixel + pixel / 2, y)) pixels.push_back({point.primitive, j, i});
+    }
+  return pixels;
+}
+
+}  // namespace
+
+void PixelLog::sort() { std::sort(pixels_.begin(), pixels_.end()); }
+
+void check_line_coverage(const Scene& scene, const Config& config, const Rendering& rendering, const PixelLog& log,
+                         OracleResult& result) {
+  const int grid_bits = derive_widths(config).grid_bits;
+  std::vector<Pixel> expected;
+  const auto append = [&expected](const std::vector<Pixel>& pixels) {
+    expected.insert(expected.end(), pixels.begin(), pixels.end());
+  };
+  for (const DrawnLine& line : rendering.lines) {
+    const State& state = state_of(scene, line.draw);
+    append(oracle_pixels(line, state.line_rule, golden::draw_region(scene, state), grid_bits, result.samples));
+  }
+  for (const DrawnPoint& point : rendering.points)
+    append(oracle_pixels(point, golden::draw_region(scene, state_of(scene, point.draw)), grid_bits, result.samples));
+  std::sort(expected.begin(), expected.end());
+  compare_pixels(log.pixels(), expected, result);
+}
+
+void mark_uncertain(const golden::Outline& outline, const State& state, int subpixel_bits, const golden::Image& image,
+                    const std::vector<bool>& wanted, std::vector<bool>& near) {
+  const double reach = std::ldexp(1.0, -subpixel_bits);
+  const golden::PixelBox target{0, 0, image.width, image.height};
+  const auto index = [&image](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+  };
+  if (outline.corners == 1) {
+    const double half = state.point_size / 2, far = half + reach + 1;
+    const auto pixel = [](double v, int limit) {
+      return static_cast<int>(std::clamp<double>(std::floor(v), 0, limit));
+    };
+    for (int y = pixel(outline.y[0] - far, image.height); y < pixel(outline.y[0] + far + 1, image.height); ++y)
+      for (int x = pixel(outline.x[0] - far, image.width); x < pixel(outline.x[0] + far + 1, image.width); ++x)
+        if (wanted[index(x, y)] && point_is_uncertain(x + 0.5 - outline.x[0], y + 0.5 - outline.y[0], half, reach))
+          near[index(x, y)] = true;
+    return;
+  }
+  GoldenLine line;
+  line.rule = state.line_rule;
+  line.drops_last = golden::drops_last_pixel(state);
+  line.start.x = outline.x[0];
+  line.start.y = outline.y[0];
+  line.end.x = outline.x[1];
+  line.end.y = outline.y[1];
+  // 3: an end moves by a pixel at most, and may move the line out of its column's three candidates by as much.
+  golden::for_each_candidate(line, target, 3, [&](int x, int y) {
+    if (!wanted[index(x, y)] || near[index(x, y)]) return;
+    if (line.rule == LineRule::diamond ? diamond_is_uncertain(line, x, y, reach)
+                                       : rounded_is_uncertain(line, x, y, reach))
+      near[index(x, y)] = true;
+  });
+}
+
+}  // namespace halfplane

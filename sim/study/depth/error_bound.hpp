@@ -1,0 +1,56 @@
+// How far a stored depth can be from the true one, and how far apart two surfaces must be to keep their order.
+#pragma once
+
+#include "sim/study/depth/depth_scale.hpp"
+#include "sim/study/depth/variant.hpp"
+
+namespace halfplane {
+
+/// What the pipeline may add to a fragment's depth, each as a distance of t, the interpolated depth of 0...1.
+struct DepthBudget {
+  double snap = 0;      ///< half a subpixel along x and along y, times the slope of t
+  double datapath = 0;  ///< the snap of the vertices' depth, half an LSB, and the interpolation
+  double rounding = 0;  ///< of the interpolated depth to its LSB
+};
+
+/// Predicts errors and separations of one variant. Eye-space units.
+class DepthBound {
+ public:
+  explicit DepthBound(const DepthVariant& variant);
+
+  /// `slope`: |dt/dx| + |dt/dy| per pixel. `is_flat`: every vertex has the same depth code, so that nothing is
+  /// interpolated or rounded.
+  [[nodiscard]] DepthBudget budget(double slope, bool is_flat) const;
+
+  /// The largest |z - reconstructed z| of a fragment at eye depth z.
+  [[nodiscard]] double error(double z, const DepthBudget& budget) const;
+
+  /// How far behind z a surface of the same budget must lie for its stored code to be the farther one at every sample:
+  /// the exact form of bin (1 + 2k) + 2 snap, which is what it comes to where bins hardly change. Terms in that order;
+  /// infinite where no depth between z and far is told from it.
+  struct Separation {
+    double storage = 0, datapath = 0, snap = 0;
+    [[nodiscard]] double total() const { return storage + datapath + snap; }
+  };
+  [[nodiscard]] Separation separation(double z, const DepthBudget& budget) const;
+
+  /// Slope of t per pixel of a surface that recedes `slope` units for each unit along the screen axes together, seen by a
+  /// camera whose pixels are `pixel` wide at eye depth 1: 2 tan(fov / 2) / height.
+  [[nodiscard]] double screen_slope(double z, double slope, double pixel) const;
+
+  [[nodiscard]] const DepthScale& scale() const { return scale_; }
+
+ private:
+  [[nodiscard]] double half_step(double d) const;
+  [[nodiscard]] Separation separation(double z, const DepthBudget& budget, double half_step) const;
+
+  DepthScale scale_;
+  DepthFormat format_;
+  bool is_identity_;
+  bool is_reversed_;
+  double plane_lsb_;      ///< 1 / (2^bits - 1)
+  double datapath_;       ///< LSB
+  double half_subpixel_;  ///< pixels
+};
+
+}  // namespace halfplane

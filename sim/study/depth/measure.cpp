@@ -1,0 +1,277 @@
+#include "sim/study/depth/measure.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "model/engines/functional.hpp"
+#include "model/golden/exact.hpp"
+#include "model/stages/interpolate.hpp"
+#include "model/stages/triangle_setup.hpp"
+#include "sim/scene/depth_mapping.hpp"
+#include "sim/study/compare/coverage.hpp"
+#include "sim/study/depth/error_bound.hpp"
+#include "sim/study/depth/eye_planes.hpp"
+
+namespace halfplane {
+namespace {
+
+/// One sample of one triangle.
+struct Fragment {
+  std::uint32_t pixel, code;
+  double eye_depth;  ///< exact
+};
+
+/// Errors of one decade of eye depth while they are gathered.
+struct DecadeSet {
+  ErrorSet error;
+  MomentSet snap, interpolation, storage;
+  double bound = 0, worst_share = 0;
+};
+
+class Measurer {
+ public:
+  Measurer(const Scene& scene, const DepthVariant& variant, const MeasureOptions& options)
+      : scene_(mapped(scene, variant)),
+        variant_(variant),
+        config_(variant.config),
+        options_(options),
+        widths_(derive_widths(config_)),
+        encode_(config_, variant.planes),
+        bound_(variant),
+        planes_(eye_planes(scene_)),
+        plane_top_(std::ldexp(1.0, config_.depth_bits) - 1),
+        pixels_(static_cast<std::size_t>(scene_.width) * static_cast<std::size_t>(scene_.height)) {}
+
+  DepthMeasurement run() {
+    CoverageLog log(config_.tile_size);
+    RenderOptions render;
+    render.want_ids = true;
+    render.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
+      log.add(triangle, tile_x, tile_y, mask);
+    };
+    rendering_ = render_functional(scene_, config_, render);
+    log.sort();
+    if (options_.wants_maps) {
+      result_.error.assign(pixels_, std::numeric_limits<float>::quiet_NaN());
+      result_.fights.assign(pixels_, 0);
+    }
+    result_.triangles = rendering_.triangles.size();
+    fragments_.reserve(rendering_.counters.covered);
+    walk(log);
+    rendering_ = {};
+    put_in_order();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  static Scene mapped(Scene scene, const DepthVariant& variant) {
+    scene.planes = variant.planes;
+    return in_depth_mapping(std::move(scene), variant.mapping);
+  }
+
+  void walk(const CoverageLog& log) {
+    const auto& visits = log.visits();
+    TriangleSetup setup;
+    std::uint32_t triangle = ~0U;
+    bool is_flat = false;
+    DepthBudget budget;
+    for (std::size_t i = 0; i < visits.size(); ++i) {
+      const CoverageLog::Visit& visit = visits[i];
+      const Triangle& t = rendering_.triangles[visit.triangle];
+      const EyePlane& plane = planes_[t.primitive];
+      if (visit.triangle != triangle) {
+        triangle = visit.triangle;
+        setup = setup_triangle(t, config_, widths_);
+        is_flat = t.v[0].z == t.v[1].z && t.v[1].z == t.v[2].z;
+        budget = bound_.budget(std::abs(bound_.scale().t_per_inverse_z()) * (std::abs(plane.a) + std::abs(plane.b)),
+                               is_flat);
+        if (options_.progress && triangle % 256 == 0)
+          options_.progress(0.8 * static_cast<double>(i) / static_cast<double>(visits.size()));
+      }
+      if (plane.is_empty()) continue;
+      for (int row = 0; row < config_.tile_size; ++row)
+        for (int column = 0; column < config_.tile_size; ++column)
+          if (log.test(visit, column, row))
+            sample(visit.triangle, t, setup, plane, budget, (visit.tile_x << widths_.tile_shift) + column,
+                   (visit.tile_y << widths_.tile_shift) + row);
+    }
+  }
+
+  void sample(std::uint32_t index, const Triangle& t, const TriangleSetup& setup, const EyePlane& plane,
+              const DepthBudget& budget, int x, int y) {
+    const InterpolatedDepth depth = depth_at(setup, widths_, x, y);
+    const std::uint32_t code = encode_(depth.code);
+    const double u = plane.eye_depth(x, y);
+    if (!(u > 0) || std::isinf(u)) {  // covered by the snapped triangle alone: there the true one is behind the eye
+      ++result_.beyond;
+      return;
+    }
+    const std::size_t pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(scene_.width) + static_cast<std::size_t>(x);
+    fragments_.push_back({static_cast<std::uint32_t>(pixel), code, u});
+    const bool is_visible = rendering_.visible[pixel] == static_cast<std::int32_t>(index);
+    if (is_visible && rendering_.frame.depth[rendering_.frame.at(x, y)] != code &&
+        scene_.states[std::get<Draw>(scene_.commands[t.draw]).state].depth_write)
+      ++result_.stage_mismatches;
+    if (options_.wants_errors) errors(t, depth, code, u, budget, x, y, is_visible ? &pixel : nullptr);
+  }
+
+  void errors(const Triangle& t, const InterpolatedDepth& depth, std::uint32_t code, double u,
+              const DepthBudget& budget, int x, int y, const std::size_t* visible) {
+    const DepthScale& scale = bound_.scale();
+    const exact::Rational plane = exact::depth_at(t, x, y, widths_.grid_bits);
+    const double s = scale.z_of_t(
+        static_cast<double>(static_cast<long double>(plane.numerator) / static_cast<long double>(plane.denominator)) /
+        plane_top_);
+    const double h =
+        scale.z_of_t(std::ldexp(static_cast<double>(depth.unrounded), -config_.local_guard_bits) / plane_top_);
+    const double d = scale.z_of_d(static_cast<double>(encode_.window_value(code)));
+    if (!(s > 0 && h > 0 && d > 0) || std::isinf(s + h + d)) {
+      ++result_.beyond;
+      return;
+    }
+    snap_.add(s - u);
+    interpolation_.add(h - s);
+    storage_.add(d - h);
+    total_.add(d - u);
+    DecadeSet& decade = decades_[static_cast<int>(std::floor(std::log10(u)))];
+    const double bound = bound_.error(u, budget);
+    decade.error.add(d - u);
+    decade.snap.add(s - u);
+    decade.interpolation.add(h - s);
+    decade.storage.add(d - h);
+    decade.bound = std::max(decade.bound, bound);
+    decade.worst_share = std::max(decade.worst_share, std::abs(d - u) / bound);
+    if (visible != nullptr && !result_.error.empty()) result_.error[*visible] = static_cast<float>(d - u);
+  }
+
+  /// Sorts the fragments by pixel and exact depth, and compares each pair of a pixel.
+  void put_in_order() {
+    std::vector<std::uint32_t> first(pixels_ + 1, 0);
+    for (const Fragment& f : fragments_) ++first[f.pixel + 1];
+    for (std::size_t p = 0; p < pixels_; ++p) first[p + 1] += first[p];
+    std::vector<Fragment> sorted(fragments_.size());
+    std::vector<std::uint32_t> next = first;
+    for (const Fragment& f : fragments_) sorted[next[f.pixel]++] = f;
+    result_.fragments = fragments_.size();
+    fragments_ = {};  // large scenes: 16 bytes a fragment, twice
+    result_.eye_min = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < pixels_; ++p) {
+      const std::span<Fragment> here(sorted.data() + first[p], first[p + 1] - first[p]);
+      std::sort(here.begin(), here.end(),
+                [](const Fragment& a, const Fragment& b) { return a.eye_depth < b.eye_depth; });
+      if (!here.empty()) {
+        result_.eye_min = std::min(result_.eye_min, here.front().eye_depth);
+        result_.eye_max = std::max(result_.eye_max, here.back().eye_depth);
+      }
+      pairs(p, here);
+    }
+    if (sorted.empty()) result_.eye_min = 0;
+  }
+
+  void pairs(std::size_t pixel, std::span<const Fragment> here) {
+    // A pixel of very many layers is looked at a neighbourhood at a time, or time would grow with their square.
+    constexpr std::size_t kNeighbours = 64;
+    const bool is_turned = is_reversed(variant_.mapping);
+    DepthOrder& order = result_.order;
+    bool has_tie = false, has_inversion = false, has_pair = false;
+    for (std::size_t i = 0; i < here.size(); ++i)
+      for (std::size_t j = i + 1; j < std::min(here.size(), i + 1 + kNeighbours); ++j) {
+        const Fragment &nearer = here[i], &farther = here[j];
+        if (farther.eye_depth - nearer.eye_depth <= 1e-12 * farther.eye_depth) continue;
+        has_pair = true;
+        ++order.pairs;
+        const bool is_tie = nearer.code == farther.code;
+        const bool is_inverted = !is_tie && (nearer.code > farther.code) != is_turned;
+        if (!is_tie && !is_inverted) continue;
+        ++(is_tie ? order.ties : order.inversions);
+        (is_tie ? has_tie : has_inversion) = true;
+        if (order.nearest_fight == 0 || nearer.eye_depth < order.nearest_fight) order.nearest_fight = nearer.eye_depth;
+      }
+    order.fighting_pixels += has_tie || has_inversion ? 1 : 0;
+    if (!result_.fights.empty())
+      result_.fights[pixel] = static_cast<std::uint8_t>(has_inversion ? 3 : has_tie ? 2 : has_pair ? 1 : 0);
+  }
+
+  void finish() {
+    result_.total = total_.stats();
+    result_.snap = snap_.stats();
+    result_.interpolation = interpolation_.stats();
+    result_.storage = storage_.stats();
+    for (const auto& [power, set] : decades_) {
+      const DepthDecade decade{
+          std::pow(10.0, power),     std::pow(10.0, power + 1), set.error.stats(), set.snap.stats(),
+          set.interpolation.stats(), set.storage.stats(),       set.bound,         set.worst_share};
+      result_.worst_share = std::max(result_.worst_share, set.worst_share);
+      result_.decades.push_back(decade);
+    }
+  }
+
+  const Scene scene_;
+  const DepthVariant& variant_;
+  const Config& config_;
+  const MeasureOptions& options_;
+  const Widths widths_;
+  const DepthEncode encode_;
+  const DepthBound bound_;
+  const std::vector<EyePlane> planes_;
+  const double plane_top_;
+  const std::size_t pixels_;
+  Rendering rendering_;
+  std::vector<Fragment> fragments_;
+  MomentSet snap_, interpolation_, storage_;
+  ErrorSet total_;
+  std::map<int, DecadeSet> decades_;  ///< by power of ten
+  DepthMeasurement result_;
+};
+
+}  // namespace
+
+DepthMeasurement measure_depth(const Scene& scene, const DepthVariant& variant, const MeasureOptions& options) {
+  return Measurer(scene, variant, options).run();
+}
+
+std::vector<DepthMeasurement> measure_depths(const Scene& scene, std::span<const DepthVariant> variants,
+                                             const MeasureOptions& options, int threads) {
+  std::vector<DepthMeasurement> results(variants.size());
+  std::vector<double> fractions(variants.size(), 0);
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < variants.size(); i = next++) {
+      MeasureOptions own = options;
+      own.progress = [&, i](double fraction) {
+        const std::lock_guard lock(mutex);
+        fractions[i] = fraction;
+        double sum = 0;
+        for (const double f : fractions) sum += f;
+        if (options.progress) options.progress(sum / static_cast<double>(variants.size()));
+      };
+      try {
+        results[i] = measure_depth(scene, variants[i], own);
+        own.progress(1);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        failure = std::current_exception();
+        next = variants.size();
+      }
+    }
+  };
+  std::vector<std::jthread> workers;
+  for (std::size_t i = 1; i < std::min(static_cast<std::size_t>(threads), variants.size()); ++i)
+    workers.emplace_back(work);
+  work();
+  workers.clear();  // joins
+  if (failure) std::rethrow_exception(failure);
+  return results;
+}
+
+}  // namespace halfplane

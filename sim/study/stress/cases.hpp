@@ -1,0 +1,73 @@
+// The cases: one for each entry of the stress list (docs/stress.md), and more.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "sim/study/stress/unit.hpp"
+
+namespace halfplane::stress {
+
+struct Case {
+  std::string_view name;
+  std::string_view item;         ///< of the stress list; "" for what is not on it
+  std::string_view property;     ///< in words
+  void (*run)(Unit&);            ///< makes one random input and checks it
+  int every = 1;                 ///< runs in every so manieth round: dear units run more rarely
+  bool own_configs = false;      ///< chooses its configurations itself
+  bool prefers_presets = false;  ///< half of its units run in the presets
+};
+
+/// In the order of the list.
+[[nodiscard]] std::span<const Case> cases();
+
+// mesh_cases.cpp
+void pixel_centres(Unit& unit);
+void fans(Unit& unit);
+void delaunay_small(Unit& unit);
+void delaunay_large(Unit& unit);
+void t_junctions(Unit& unit);
+void close_edges(Unit& unit);
+// triangle_cases.cpp
+void random_families(Unit& unit);
+void large_target(Unit& unit);
+void vertex_orders(Unit& unit);
+void zero_area(Unit& unit);
+void unit_area_slivers(Unit& unit);
+void snap_flip(Unit& unit);
+void guard_band_corners(Unit& unit);
+void half_subpixel_rounding(Unit& unit);
+void translation(Unit& unit);
+// plane_cases.cpp
+void steep_planes(Unit& unit);
+void cancellation(Unit& unit);
+void coplanar(Unit& unit);
+void separation(Unit& unit);
+void polygon_offset(Unit& unit);
+void mean_bias(Unit& unit);
+void subpixel_sweep(Unit& unit);
+void depth_sweep(Unit& unit);
+// clip_cases.cpp
+void near_plane(Unit& unit);
+void w_ratio(Unit& unit);
+void closed_meshes(Unit& unit);
+void slabs(Unit& unit);
+void scissor(Unit& unit);
+void viewports(Unit& unit);
+// line_cases.cpp
+void lines_random(Unit& unit);
+void lines_octants(Unit& unit);
+void lines_long(Unit& unit);
+void polylines(Unit& unit);
+void wires(Unit& unit);
+// engine_cases.cpp
+void traversals(Unit& unit);
+void fill_rules(Unit& unit);
+void full_guard_band(Unit& unit);
+void stalls(Unit& unit);
+// search.cpp
+void adversarial_depth(Unit& unit);
+void adversarial_interpolation(Unit& unit);
+void adversarial_color(Unit& unit);
+
+}  // namespace halfplane::stress

@@ -1,0 +1,112 @@
+#include "sim/study/stress/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "model/engines/scalar.hpp"
+#include "model/golden/exact.hpp"
+
+namespace halfplane::stress {
+namespace {
+
+/// |code - exact * scale_numerator / scale_denominator|.
+double code_distance(std::uint32_t code, const exact::Rational& exact, int scale_numerator = 1,
+                     int scale_denominator = 1) {
+  const int128 denominator = exact.denominator * scale_denominator;
+  const int128 distance = denominator * static_cast<std::int64_t>(code) - exact.numerator * scale_numerator;
+  return static_cast<double>(distance < 0 ? -distance : distance) / static_cast<double>(denominator);
+}
+
+}  // namespace
+
+RenderOptions render_options() {
+  RenderOptions options;
+  options.want_count = options.want_ids = options.want_triangles = true;
+  return options;
+}
+
+AttributeErrors attribute_errors(const Scene& scene, const Config& config, const Rendering& rendering) {
+  AttributeErrors errors;
+  const int grid_bits = derive_widths(config).grid_bits;
+  const auto color_max = golden::channel_max(config.color_format);
+  const int channels = golden::channel_count(config.color_format);
+  std::int32_t known = -1;
+  std::optional<exact::TriangleOracle> oracle;
+  std::size_t p = 0;
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x, ++p) {
+      const std::int32_t visible = rendering.visible[p];
+      if (visible < 0) continue;
+      if (visible != known) oracle.emplace(rendering.triangles[static_cast<std::size_t>(visible)], grid_bits);
+      known = visible;
+      const std::size_t at = rendering.frame.at(x, y);
+      ++errors.fragments;
+      errors.depth = std::max(errors.depth, code_distance(rendering.frame.depth[at], oracle->depth_at(x, y)));
+      for (int c = 0; c < channels; ++c)
+        errors.color = std::max(
+            errors.color,
+            code_distance(
+                static_cast<std::uint32_t>(golden::stored_channel(rendering.frame.color[at], config.color_format, c)),
+                oracle->color_at(x, y, c), static_cast<int>(color_max[static_cast<std::size_t>(c)]), 255));
+    }
+  return errors;
+}
+
+Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
+  CoverageLog log(unit.config.tile_size);
+  RenderOptions options = render_options();
+  options.rules.fill_rule = rule;
+  options.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
+    log.add(triangle, tile_x, tile_y, mask);
+  };
+  // Only the scalar engine has the study rules.
+  Rendering rendering = rule == FillRule::top_left ? unit.engine(scene, unit.config, options)
+                                                   : render_scalar(scene, unit.config, options);
+  // With taps the functional engine draws by the stages.
+  if (rule == FillRule::top_left) expect_same_image(unit, scene, rendering, unit.engine(scene, unit.config, {}));
+  log.sort();
+  const OracleResult oracle = check_coverage(scene, unit.config, rendering.triangles, log, rule);
+  unit.count_triangles(rendering.triangles.size());
+  unit.count_samples(oracle.samples);
+  unit.measure("coverage", "samples", static_cast<double>(oracle.mismatches), 0, scene);
+  const AttributeErrors errors = attribute_errors(scene, unit.config, rendering);
+  unit.count_samples(errors.fragments);
+  unit.measure("depth", "LSB", errors.depth, depth_error_bound(unit.config), scene);
+  unit.measure("color", "LSB", errors.color, 1, scene);
+  return rendering;
+}
+
+bool polygon_covers(std::span<const Point> polygon, int x, int y, int subpixel_bits) {
+  // Twice the grid, so that centres lie on it at S = 0 too.
+  const std::int64_t pixel = std::int64_t{2} << subpixel_bits;
+  const std::int64_t px = x * pixel + pixel / 2, py = y * pixel + pixel / 2;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    const std::int64_t dx = b.x - a.x, dy = b.y - a.y;
+    const std::int64_t e = dx * (py - 2 * a.y) - dy * (px - 2 * a.x);
+    const bool owns = dy < 0 || (dy == 0 && dx > 0);
+    if (e < 0 || (e == 0 && !owns)) return false;
+  }
+  return true;
+}
+
+void expect_once(Unit& unit, const Scene& scene, const Rendering& rendering, std::span<const Point> polygon) {
+  expect_count(unit, scene, rendering,
+               [&](int x, int y) { return polygon_covers(polygon, x, y, unit.config.subpixel_bits) ? 1 : 0; });
+}
+
+void expect_same_image(Unit& unit, const Scene& scene, const Rendering& a, const Rendering& b) {
+  std::uint64_t wrong = 0;
+  std::size_t p = 0;
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x, ++p) {
+      const std::size_t at = a.frame.at(x, y), bt = b.frame.at(x, y);
+      const bool same_count = a.count.empty() || b.count.empty() || a.count[p] == b.count[p];
+      wrong += a.frame.depth[at] != b.frame.depth[bt] || a.frame.color[at] != b.frame.color[bt] || !same_count ? 1 : 0;
+    }
+  unit.count_checks(p);
+  unit.measure("image", "pixels", static_cast<double>(wrong), 0, scene);
+}
+
+}  // namespace halfplane::stress

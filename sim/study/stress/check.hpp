@@ -1,0 +1,55 @@
+// What a drawn scene is held against: coverage sample by sample, depth and colour fragment by fragment, counts.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sim/study/stress/unit.hpp"
+
+namespace halfplane::stress {
+
+/// A point of the grid on which snapped vertices lie, in units of 2^-S pixel.
+struct Point {
+  std::int64_t x = 0, y = 0;
+  auto operator<=>(const Point&) const = default;
+};
+
+/// Draws the scene by the unit's engine and holds it against the exact oracle: every sample of every triangle's box, and
+/// depth and colour of every pixel that shows a triangle, as stored. Measures "coverage" (samples that differ), "depth"
+/// and "color" (LSB from the exact plane). Depth must be of the format `plane`. Bound of a colour: 1 LSB.
+Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule = FillRule::top_left);
+
+/// The largest |stored depth - exact plane| over the pixels that show a triangle, in LSB. Counts nothing.
+struct AttributeErrors {
+  double depth = 0, color = 0;  ///< LSB of the stored formats
+  std::uint64_t fragments = 0;  ///< of each
+};
+[[nodiscard]] AttributeErrors attribute_errors(const Scene& scene, const Config& config, const Rendering& rendering);
+
+/// Does the convex polygon (corners clockwise as seen, y down, grid points) own the centre of pixel (x, y) by the
+/// top-left rule? From the definition, edge by edge.
+[[nodiscard]] bool polygon_covers(std::span<const Point> polygon, int x, int y, int subpixel_bits);
+
+/// Requires that each pixel was covered `expected(x, y)` times; measures "count", the pixels for which this is not so.
+template <class Expected>
+void expect_count(Unit& unit, const Scene& scene, const Rendering& rendering, Expected&& expected) {
+  std::uint64_t wrong = 0;
+  std::size_t p = 0;
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x, ++p)
+      wrong += rendering.count[p] != static_cast<std::uint32_t>(expected(x, y)) ? 1 : 0;
+  unit.count_checks(p);
+  unit.measure("count", "pixels", static_cast<double>(wrong), 0, scene);
+}
+
+/// Requires that the pixels of the polygon were covered once and no others.
+void expect_once(Unit& unit, const Scene& scene, const Rendering& rendering, std::span<const Point> polygon);
+
+/// Requires equal images; measures "image", the pixels whose depth, colour or count differ.
+void expect_same_image(Unit& unit, const Scene& scene, const Rendering& a, const Rendering& b);
+
+/// The options with which every scene is drawn here: counts, visible triangles.
+[[nodiscard]] RenderOptions render_options();
+
+}  // namespace halfplane::stress

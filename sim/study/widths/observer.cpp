@@ -1,0 +1,359 @@
+#include "sim/study/widths/observer.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/stages/coarse_raster.hpp"
+#include "model/stages/fine_raster.hpp"
+#include "model/stages/interpolate.hpp"
+#include "model/stages/line_raster.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::array kByConstruction{&Widths::primitive_id, &Widths::slot,     &Widths::stored_color,
+                                     &Widths::kind,         &Widths::flag,     &Widths::depth_func,
+                                     &Widths::cull_mode,    &Widths::hiz_code, &Widths::hiz_update,
+                                     &Widths::memory_lane,  &Widths::counter};
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::logic_error(std::string("the width observer and the stage disagree: ") + what);
+}
+
+/// A plane of `bits` bits at a covered sample: the window of its residues begins half the range of the codes below 0.
+std::int64_t decoded(std::uint64_t residue, int bits) {
+  const std::uint64_t below = std::uint64_t{1} << (bits - 2);
+  return static_cast<std::int64_t>(wrap_unsigned(residue + below, bits)) - static_cast<std::int64_t>(below);
+}
+
+/// A coordinate of a line that runs against its axis, as line_setup turns it round.
+std::int64_t turned_pixel(std::int64_t pixel, bool is_negative) { return is_negative ? ~pixel : pixel; }
+
+constexpr int kWalkedPixels = 256;
+
+}  // namespace
+
+Interval value_range(const Width& width, const Widths& widths, const Config& config) {
+  const auto codes = [&](int code_bits) {
+    const int fraction = width.bits - code_bits - 1;
+    // Storage is no part of it: what is left of the bound below 1/2 is the datapath's own.
+    const auto error = static_cast<int128>(std::ceil(std::ldexp(depth_error_bound(config) - 0.5, fraction)));
+    return Interval{-error, (((int128{1} << code_bits) - 1) << fraction) + error};
+  };
+  if (&width == &widths.depth_plane || &width == &widths.local_depth) return codes(config.depth_bits);
+  if (&width == &widths.color_plane || &width == &widths.local_color) return codes(widths.color_code.bits);
+  return width.range;
+}
+
+WidthObserver::WidthObserver(const Config& config)
+    : config_(config),
+      widths_(derive_widths(config)),
+      target_{0, 0, config.target_width - 1, config.target_height - 1},
+      all_(widths_.all()),
+      is_observed_(all_.size(), true),
+      seen_(all_.size()) {
+  // place_of() searches: the members are declared in the order of all().
+  require(std::is_sorted(all_.begin(), all_.end(), std::less<>()), "the order of Widths::all()");
+  for (const auto member : kByConstruction) is_observed_[place_of(widths_.*member)] = false;
+}
+
+std::size_t WidthObserver::place_of(const Width& width) const {
+  return static_cast<std::size_t>(std::lower_bound(all_.begin(), all_.end(), &width, std::less<>()) - all_.begin());
+}
+
+void WidthObserver::see(const Width& width, int128 value) { seen_[place_of(width)].add(value); }
+
+template <class Packet>
+void WidthObserver::see_packet(const Packet& packet) {
+  for_each_field<Packet>(widths_, [&](const auto& field, const Width& width, std::size_t count) {
+    const std::size_t place = place_of(width);
+    if (width.is_modular || !is_observed_[place]) return;
+    const auto& member = packet.*field.member;
+    if constexpr (kArraySize<std::remove_cvref_t<decltype(member)>> != 0)
+      for (std::size_t i = 0; i < count; ++i) seen_[place].add(static_cast<int128>(member[i]));
+    else
+      seen_[place].add(static_cast<int128>(member));
+  });
+}
+
+void WidthObserver::clear() { std::fill(seen_.begin(), seen_.end(), Seen{}); }
+
+void WidthObserver::observe(const Probe& probe) {
+  if (probe.is_line)
+    observe_line(probe);
+  else
+    observe_triangle(probe.v);
+}
+
+// ----------------------------------------------------------------------------------------------------------- triangles
+
+struct WidthObserver::TriangleStages {
+  TrianglePacket packet;
+  TriangleSetup setup;  // what interpolate_at() takes
+  SetupPacket setup_packet;
+  ContextPacket context;
+  EdgeContext edges;
+};
+
+void WidthObserver::observe_triangle(const std::array<SnappedVertex, 3>& v) {
+  PrimitivePacket primitive;
+  set_vertices(primitive, v, widths_);
+  set_box(primitive, target_);
+  see_packet(primitive);
+  observe_area(v);
+  CounterPacket counters;
+  const auto kept = cull(primitive, widths_, counters);
+  if (!kept) return;
+  TriangleStages stages{*kept, setup_primitive(*kept, config_, widths_), setup_packet(*kept, config_, widths_), {}, {}};
+  stages.context = make_context(stages.setup_packet, widths_);
+  stages.edges = make_edge_context(stages.setup_packet);
+  see_packet(stages.packet);
+  see_packet(stages.setup_packet);
+  see_packet(stages.context);
+  see_packet(stages.edges);
+  observe_edges(stages.packet);
+  observe_planes(stages);
+
+  // The tiles of the corners and vertices, and those in which an edge crosses a border or a middle line of the box.
+  const auto& box = stages.packet;
+  const int to_pixel = widths_.grid_bits, to_tile = widths_.tile_shift;
+  const std::array<int, 3> columns{box.left, (box.left + box.right) / 2, box.right},
+      rows{box.top, (box.top + box.bottom) / 2, box.bottom};
+  std::vector<std::pair<int, int>> tiles;  // (y, x)
+  const auto add = [&](double x, double y) {
+    const int pixel_x = static_cast<int>(std::clamp<double>(x, box.left, box.right)),
+              pixel_y = static_cast<int>(std::clamp<double>(y, box.top, box.bottom));
+    tiles.emplace_back(pixel_y >> to_tile, pixel_x >> to_tile);
+  };
+  for (const int y : {rows.front(), rows.back()})
+    for (const int x : {columns.front(), columns.back()}) add(x, y);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = std::ldexp(v[i].x, -to_pixel), y = std::ldexp(v[i].y, -to_pixel);
+    const double dx = std::ldexp(v[(i + 1) % 3].x, -to_pixel) - x, dy = std::ldexp(v[(i + 1) % 3].y, -to_pixel) - y;
+    add(x, y);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (dy != 0) add(x + dx / dy * (rows[k] + 0.5 - y), rows[k]);
+      if (dx != 0) add(columns[k], y + dy / dx * (columns[k] + 0.5 - x));
+    }
+  }
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  for (const auto& [y, x] : tiles) observe_tile(stages, x, y);
+}
+
+void WidthObserver::observe_area(const std::array<SnappedVertex, 3>& v) {
+  const int128 ax = int128{v[1].x} - v[0].x, ay = int128{v[1].y} - v[0].y;
+  const int128 bx = int128{v[2].x} - v[0].x, by = int128{v[2].y} - v[0].y;
+  for (const int128 delta : {ax, ay, bx, by}) see(widths_.delta, delta);
+  for (const int128 product : {ax * by, ay * bx}) see(widths_.edge_product, product);
+  const int128 area = ax * by - ay * bx;
+  see(widths_.area, area < 0 ? -area : area);
+  require(area == signed_area(v[0], v[1], v[2]), "area");
+}
+
+/// cull: the edge functions at the first pixel of the first tile.
+void WidthObserver::observe_edges(const TrianglePacket& packet) {
+  const auto v = vertices_of(packet);
+  const int s = widths_.grid_bits, shift = widths_.tile_shift;
+  const auto centre = [&](int pixel) { return (int128{pixel >> shift << shift} << s) + (int128{1} << (s - 1)); };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
+    const int128 dx = int128{to.x} - from.x, dy = int128{to.y} - from.y;
+    const int128 px = centre(packet.left) - from.x, py = centre(packet.top) - from.y;
+    for (const int128 delta : {px, py}) see(widths_.delta, delta);
+    for (const int128 product : {dx * py, dy * px}) see(widths_.edge_product, product);
+    const int bias = is_top_left(from, to) ? 0 : 1;
+    require((dx * py - dy * px - bias) >> s == packet.edge_value[i], "edge value");
+  }
+}
+
+/// triangle_setup: numerators and their products with the reciprocal.
+void WidthObserver::observe_planes(const TriangleStages& stages) {
+  const auto v = vertices_of(stages.packet);
+  const int128 ax = int128{v[1].x} - v[0].x, ay = int128{v[1].y} - v[0].y;
+  const int128 bx = int128{v[2].x} - v[0].x, by = int128{v[2].y} - v[0].y;
+  const Reciprocal r = reciprocal(stages.setup.area, config_.depth_bits + config_.reciprocal_extra_bits);
+  see(widths_.reciprocal, static_cast<int128>(r.value));
+  see(widths_.reciprocal_shift, r.shift);
+  const auto plane = [&](std::int64_t c0, std::int64_t c1, std::int64_t c2, const Plane& result, const Width& numerator,
+                         const Width& product, int bits) {
+    const int128 ac = c1 - c0, bc = c2 - c0;
+    const std::array<int128, 2> numerators{ac * by - bc * ay, ax * bc - bx * ac};
+    const std::array<std::int64_t, 2> steps{result.step_x, result.step_y};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int128 value = numerators[i] * static_cast<int128>(r.value);
+      see(numerator, numerators[i]);
+      see(product, value);
+      const auto step = static_cast<std::int64_t>(round_shift(value, r.shift - widths_.plane_fraction));
+      require(wrap_signed(step, bits) == steps[i], "gradient");
+    }
+  };
+  for (const std::size_t i : {1, 2}) see(widths_.depth_delta, int128{v[i].z} - v[0].z);
+  plane(v[0].z, v[1].z, v[2].z, stages.setup.depth, widths_.depth_numerator, widths_.depth_product,
+        widths_.depth_plane.bits);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c)
+    plane(v[0].rgba[c], v[1].rgba[c], v[2].rgba[c], stages.setup.color[c], widths_.color_numerator,
+          widths_.color_product, widths_.color_plane.bits);
+}
+
+/// coarse_raster and fine_raster.
+void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int tile_y) {
+  const EdgeValues edges = edges_at_tile(stages.setup_packet, tile_x, tile_y, widths_);
+  for (const EdgeValue value : edges) see(widths_.edge_value, value);
+  if (classify(stages.setup, edges, config_.tile_size) == TileClass::outside) return;
+  const TilePacket tile = make_tile_packet(stages.setup_packet, tile_x, tile_y, 0, widths_);
+  see_packet(tile);
+  const int last = config_.tile_size - 1;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const int y : {0, last})
+      for (const int x : {0, last})
+        see(widths_.sample_edge,
+            int128{tile.edge_value[i]} + int128{x} * stages.edges.step_x[i] + int128{y} * stages.edges.step_y[i]);
+  StampPacket first, newest;  // that cover something: among them the extremes of every field
+  fine_raster(tile, stages.edges, config_, widths_, [&](const StampPacket& stamp) {
+    if (stamp.mask == 0) return;
+    if (first.mask == 0) first = stamp;
+    newest = stamp;
+  });
+  if (first.mask == 0) return;
+  observe_stamp(stages, first);
+  if (newest.stamp != first.stamp) observe_stamp(stages, newest);
+}
+
+/// interpolate.
+void WidthObserver::observe_stamp(const TriangleStages& stages, const StampPacket& stamp) {
+  see_packet(stamp);
+  const FragmentPacket fragment = interpolate(stamp, stages.context, config_, widths_);
+  see_packet(fragment);
+  const int first = std::countr_zero(stamp.mask), last = 63 - std::countl_zero(stamp.mask);
+  observe_sample(stages, fragment, static_cast<std::size_t>(first));
+  if (last != first) observe_sample(stages, fragment, static_cast<std::size_t>(last));
+}
+
+/// The planes at a covered sample, before rounding and clamp.
+void WidthObserver::observe_sample(const TriangleStages& stages, const FragmentPacket& fragment, std::size_t sample) {
+  const int number = static_cast<int>(sample), size = config_.stamp_size, shift = widths_.tile_shift;
+  const int x = (fragment.tile_x << shift) + fragment.stamp % widths_.stamps_per_row * size + number % size;
+  const int y = (fragment.tile_y << shift) + fragment.stamp / widths_.stamps_per_row * size + number / size;
+  const TriangleSetup& setup = stages.setup;
+  const Interpolated at = interpolate_at(setup, widths_, x, y);
+  require(at.depth_code == fragment.depth[sample], "depth at a sample");
+  const auto subpixels = [&](int pixel, int box) {  // from the anchor of the first tile
+    const int anchor = (box >> shift << shift) + config_.tile_size / 2;
+    return static_cast<std::uint64_t>(std::int64_t{pixel - anchor} << widths_.grid_bits);
+  };
+  const std::uint64_t dx = subpixels(x, setup.left), dy = subpixels(y, setup.top);
+  const auto wide = [&](const Plane& plane, int bits) {
+    return decoded(static_cast<std::uint64_t>(plane.value) + static_cast<std::uint64_t>(plane.step_x) * dx +
+                       static_cast<std::uint64_t>(plane.step_y) * dy,
+                   bits);
+  };
+  see(widths_.depth_plane, wide(setup.depth, widths_.depth_plane.bits));
+  see(widths_.local_depth, at.depth);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c) {
+    see(widths_.color_plane, wide(setup.color[c], widths_.color_plane.bits));
+    see(widths_.local_color, at.color[c]);
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------------- lines
+
+void WidthObserver::observe_line(const Probe& probe) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const std::int32_t v : {probe.v[i].x, probe.v[i].y}) see(widths_.coordinate, v);
+    see(widths_.depth_code, probe.v[i].z);
+    for (const std::uint8_t code : probe.v[i].rgba) see(widths_.color_code, code);
+  }
+  // Nothing is cut away here: the pixels that a line in the guard band covers lie at most one outside of it.
+  const int edge = config_.guard_band + 2;
+  const PixelBounds everything{-edge, -edge, edge, edge};
+  for (const bool is_whole : {true, false}) {
+    const auto line =
+        setup_line(probe.v[0], probe.v[1], probe.rule, false, is_whole ? everything : target_, config_, widths_);
+    if (!line) continue;
+    observe_positions(probe, *line, is_whole);
+    if (is_whole) continue;
+    see_packet(*line);
+    observe_attributes(probe, *line);
+    observe_pixels(*line);
+  }
+}
+
+namespace {
+
+/// The ends of a line along one axis of its octant, as line_setup turns them.
+struct Ends {
+  std::int64_t from, to;
+};
+
+Ends ends_of(std::int32_t from, std::int32_t to, bool is_negative, LineRule rule, int s) {
+  const auto at = [&](std::int32_t v) -> std::int64_t {  // the textbooks' rules begin at the pixel's centre
+    const std::int64_t end = rule == LineRule::diamond ? v : (std::int64_t{v >> s} << s) + (std::int64_t{1} << (s - 1));
+    return is_negative ? -end : end;
+  };
+  return {at(from), at(to)};
+}
+
+}  // namespace
+
+/// The position along the minor axis at the first and the last pixel; of a whole line, what it was made from.
+void WidthObserver::observe_positions(const Probe& probe, const LineSetup& line, bool is_whole) {
+  const int s = widths_.grid_bits;
+  const bool x_major = line.is_x_major != 0, x_negative = line.is_x_negative != 0, y_negative = line.is_y_negative != 0;
+  const Ends x = ends_of(probe.v[0].x, probe.v[1].x, x_negative, probe.rule, s),
+             y = ends_of(probe.v[0].y, probe.v[1].y, y_negative, probe.rule, s);
+  const Ends &a = x_major ? x : y, &b = x_major ? y : x;
+  const int128 d = line.step_stay, D = d - line.step_move;
+  require(d == b.to - b.from && D == std::max<std::int64_t>(a.to - a.from, 1), "line deltas");
+  const std::int64_t column = x_major ? turned_pixel(line.x, x_negative) : turned_pixel(line.y, y_negative);
+  const std::int64_t row =
+      (x_major ? turned_pixel(line.y, y_negative) : turned_pixel(line.x, x_negative)) - (b.from >> s);
+  const int128 position = row * D + line.error - d + D;
+  see(widths_.line_position, position);
+  see(widths_.line_position, position + d * line.remaining);
+  if (!is_whole) return;
+  const int128 pixel = int128{1} << s, offset = (int128{column} << s) + pixel / 2 - a.from;
+  const int128 numerator = (int128{b.from} & (pixel - 1)) * D + d * offset;
+  const bool moves = numerator >> s == position;  // a tie; where there is none the bias changes nothing
+  require(moves || (numerator - 1) >> s == position, "line position");
+  see(widths_.line_numerator, numerator - (moves ? 0 : 1));
+}
+
+void WidthObserver::observe_attributes(const Probe& probe, const LineSetup& line) {
+  const bool x_major = line.is_x_major != 0, is_negative = (x_major ? line.is_x_negative : line.is_y_negative) != 0;
+  const auto along = [x_major](const SnappedVertex& v) { return x_major ? v.x : v.y; };
+  const Ends a = ends_of(along(probe.v[0]), along(probe.v[1]), is_negative, probe.rule, widths_.grid_bits);
+  const Reciprocal r = reciprocal(a.to - a.from, config_.depth_bits + config_.reciprocal_extra_bits);
+  const int128 delta = int128{probe.v[1].z} - probe.v[0].z, product = delta * static_cast<int128>(r.value);
+  see(widths_.reciprocal, static_cast<int128>(r.value));
+  see(widths_.reciprocal_shift, r.shift);
+  see(widths_.depth_delta, delta);
+  see(widths_.line_product, product);
+  const int128 step = round_shift(product, r.shift - widths_.grid_bits - widths_.line_guard_bits);
+  require(wrap_unsigned(static_cast<std::uint64_t>(step), widths_.line_depth.bits) == line.depth_step, "line step");
+}
+
+void WidthObserver::observe_pixels(const LineSetup& line) {
+  const auto pixel = [&](const LineState& state) {
+    see(widths_.line_error, state.error);
+    see(widths_.line_count, state.remaining);
+    see_packet(pixel_of(state, line, widths_));
+    if (state.is_before_start != 0) return;  // it shows the start's codes
+    see(widths_.line_depth, static_cast<int128>(state.depth));
+    for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c)
+      see(widths_.line_color, static_cast<int128>(state.color[c]));
+  };
+  LineState state = first_state(line);
+  pixel(state);
+  for (int i = 1; i < kWalkedPixels && state.remaining != 0; ++i) pixel(state = next_state(state, line, widths_));
+  if (state.remaining == 0) return;
+  see(widths_.line_depth,
+      static_cast<int128>(wrap_unsigned(state.depth + state.remaining * line.depth_step, widths_.line_depth.bits)));
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c)
+    see(widths_.line_color, static_cast<int128>(wrap_unsigned(state.color[c] + state.remaining * line.color_step[c],
+                                                              widths_.line_color.bits)));
+}
+
+}  // namespace halfplane

@@ -1,0 +1,231 @@
+#include "sim/study/widths/smallest.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "model/packets.hpp"
+#include "model/stages/line_raster.hpp"
+#include "model/widths.hpp"
+#include "sim/study/compare/compare.hpp"
+
+namespace halfplane {
+namespace {
+
+/// A setting that is searched. The guard band counts by its logarithm, so that each step is one bit.
+struct Axis {
+  std::string_view key;
+  int Config::*member;
+  bool is_logarithm = false;
+};
+constexpr std::array kAxes{
+    Axis{"depth.bits", &Config::depth_bits}, Axis{"plane.local_guard_bits", &Config::local_guard_bits},
+    Axis{"reciprocal.extra_bits", &Config::reciprocal_extra_bits}, Axis{"subpixel.bits", &Config::subpixel_bits},
+    Axis{"guard.band", &Config::guard_band, true}};
+using Point = std::array<int, kAxes.size()>;
+
+std::string refusal(const Config& config) {
+  try {
+    validate(config);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+std::string broken_line(const char* what, double value, const char* unit, double bound) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: %.4g%s (bound %.4g)", what, value, unit, bound);
+  return text;
+}
+
+class Search {
+ public:
+  Search(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
+         const std::function<void(double)>& progress)
+      : scenes_(scenes), start_(start), bounds_(bounds), progress_(progress) {
+    for (std::size_t a = 0; a < kAxes.size(); ++a) {
+      const int value = value_of(start_, a);
+      low_[a] = high_[a] = value;
+      if (is_fixed(a)) continue;
+      low_[a] = setting_range(a).first;
+      high_[a] = kAxes[a].is_logarithm ? value : setting_range(a).second;
+    }
+    // The widest that is legal: what must be given up goes where it helps least.
+    for (const std::size_t a : {2U, 1U, 3U, 0U})
+      while (!refusal(at(high_)).empty() && high_[a] > value_of(start_, a)) --high_[a];
+  }
+
+  Smallest run() {
+    Smallest result;
+    result.widest = trial(high_);
+    if (result.widest.holds()) {
+      raise_lower_ends();
+      const Point found = cheapest();
+      result.found = trial(found);
+      for (std::size_t a = 0; a < kAxes.size(); ++a) result.one_less.push_back(one_less(found, a));
+    }
+    result.trials = static_cast<int>(trials_.size());
+    return result;
+  }
+
+ private:
+  [[nodiscard]] bool is_fixed(std::size_t a) const {
+    if (kAxes[a].member == &Config::subpixel_bits) return !bounds_.coverage;
+    if (kAxes[a].member == &Config::depth_bits) return !bounds_.depth;
+    if (kAxes[a].is_logarithm) return false;
+    return !bounds_.depth && !bounds_.color;
+  }
+
+  static int value_of(const Config& config, std::size_t a) {
+    const int value = config.*kAxes[a].member;
+    return kAxes[a].is_logarithm ? floor_log2(static_cast<uint128>(value)) : value;
+  }
+
+  static std::pair<int, int> setting_range(std::size_t a) {
+    const auto all = settings();
+    const auto setting = std::find_if(all.begin(), all.end(), [a](const Setting& s) { return s.key == kAxes[a].key; });
+    if (!kAxes[a].is_logarithm) return {setting->min, setting->max};
+    return {floor_log2(static_cast<uint128>(setting->min)), floor_log2(static_cast<uint128>(setting->max))};
+  }
+
+  [[nodiscard]] Config at(const Point& point) const {
+    Config config = start_;
+    for (std::size_t a = 0; a < kAxes.size(); ++a)
+      config.*kAxes[a].member = kAxes[a].is_logarithm ? 1 << point[a] : point[a];
+    return config;
+  }
+
+  /// Measures one scene. Returns what is broken.
+  [[nodiscard]] std::string measure(const Scene& scene, const Config& config, SceneErrors& errors) const {
+    const Comparison c = compare(scene, config);
+    errors.depth = std::max(c.datapath.max, c.line_datapath.max) / (std::ldexp(1.0, config.depth_bits) - 1);
+    errors.color = c.color_datapath.max;
+    errors.coverage = c.coverage.missing + c.coverage.extra;
+    if (bounds_.depth && errors.depth > *bounds_.depth)
+      return broken_line("depth", errors.depth, " of the range", *bounds_.depth);
+    if (bounds_.coverage && errors.coverage > *bounds_.coverage)
+      return broken_line("coverage", static_cast<double>(errors.coverage), " pixels missing or extra",
+                         static_cast<double>(*bounds_.coverage));
+    if (bounds_.color && errors.color > *bounds_.color)
+      return broken_line("colour", errors.color, " LSB", *bounds_.color);
+    return "";
+  }
+
+  const TriedConfig& trial(const Point& point) {
+    const auto known = trials_.find(point);
+    if (known != trials_.end()) return known->second;
+    TriedConfig trial{at(point), {}, ""};
+    trial.broken = refusal(trial.config);
+    for (const Scene& scene : scenes_) {
+      if (!trial.holds()) break;
+      try {
+        trial.scenes.emplace_back();
+        trial.broken = measure(scene, trial.config, trial.scenes.back());
+        if (!trial.holds() && scenes_.size() > 1) trial.broken = scene.name + ": " + trial.broken;
+      } catch (const InputError& error) {  // a vertex in window space outside a smaller guard band
+        if (point == high_) throw;
+        trial.scenes.pop_back();
+        trial.broken = error.what();
+      }
+    }
+    const TriedConfig& kept = trials_.emplace(point, std::move(trial)).first->second;
+    const auto done = static_cast<double>(trials_.size());
+    if (progress_) progress_(done / (done + 8));  // how many will be needed is not known
+    return kept;
+  }
+
+  /// Below these no other setting helps: each is the least that does with all others at their most.
+  void raise_lower_ends() {
+    for (std::size_t a = 0; a < kAxes.size(); ++a) {
+      int fails = low_[a] - 1, holds = high_[a];
+      while (holds - fails > 1) {
+        Point point = high_;
+        point[a] = (fails + holds) / 2;
+        (trial(point).holds() ? holds : fails) = point[a];
+      }
+      low_[a] = holds;
+    }
+  }
+
+  /// The cheapest point that holds, in order of cost.
+  Point cheapest() {
+    std::vector<std::pair<long, Point>> points;
+    Point point = low_;
+    for (bool is_more = true; is_more;) {
+      if (refusal(at(point)).empty()) points.emplace_back(hardware_bits(at(point)).total(), point);
+      is_more = false;
+      for (std::size_t a = 0; a < kAxes.size() && !is_more; ++a) {  // an odometer
+        is_more = point[a] < high_[a];
+        point[a] = is_more ? point[a] + 1 : low_[a];
+      }
+    }
+    std::sort(points.begin(), points.end());
+    std::vector<Point> failed;
+    for (const auto& [cost, candidate] : points) {
+      const bool is_below = std::any_of(failed.begin(), failed.end(), [&p = candidate](const Point& f) {
+        for (std::size_t a = 0; a < kAxes.size(); ++a)
+          if (p[a] > f[a]) return false;
+        return true;
+      });
+      if (is_below) continue;
+      if (trial(candidate).holds()) return candidate;
+      failed.push_back(candidate);
+    }
+    return high_;  // which holds
+  }
+
+  OneLess one_less(const Point& found, std::size_t a) {
+    OneLess less{kAxes[a].key, at(found).*kAxes[a].member, is_fixed(a), ""};
+    if (less.is_fixed) return less;
+    Point point = found;
+    --point[a];
+    if (point[a] < setting_range(a).first)
+      less.broken = "the least that the setting takes";
+    else
+      less.broken = trial(point).broken;
+    return less;
+  }
+
+  const std::vector<Scene>& scenes_;
+  const Config& start_;
+  const ErrorBounds& bounds_;
+  const std::function<void(double)>& progress_;
+  Point low_{}, high_{};
+  std::map<Point, TriedConfig> trials_;
+};
+
+}  // namespace
+
+HardwareBits hardware_bits(const Config& config) {
+  const Widths w = derive_widths(config);
+  HardwareBits bits;
+  bits.packets = packet_bits<PrimitivePacket>(w) + packet_bits<TrianglePacket>(w) + packet_bits<SetupPacket>(w) +
+                 packet_bits<TilePacket>(w) + packet_bits<StampPacket>(w) + packet_bits<FragmentPacket>(w) +
+                 packet_bits<WritePacket>(w);
+  if (config.line_units != 0) bits.packets += packet_bits<LineSetup>(w) + packet_bits<LinePixel>(w);
+  bits.context = config.context_slots * (packet_bits<ContextPacket>(w) + packet_bits<EdgeContext>(w));
+  bits.products = 2 * (w.edge_product.bits + w.depth_numerator.bits + w.depth_product.bits);
+  bits.tiles =
+      long{config.cache_lines} * config.tile_size * config.tile_size * (w.depth_code.bits + w.stored_color.bits);
+  return bits;
+}
+
+SceneErrors TriedConfig::worst() const {
+  SceneErrors worst;
+  for (const SceneErrors& scene : scenes) {
+    worst.depth = std::max(worst.depth, scene.depth);
+    worst.color = std::max(worst.color, scene.color);
+    worst.coverage = std::max(worst.coverage, scene.coverage);
+  }
+  return worst;
+}
+
+Smallest find_smallest(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
+                       const std::function<void(double fraction)>& progress) {
+  validate(start);
+  return Search(scenes, start, bounds, progress).run();
+}
+
+}  // namespace halfplane

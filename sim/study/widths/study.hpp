@@ -1,0 +1,62 @@
+// The widths of a configuration, tried: how much of each derived range is ever used, and what would overflow with a bit
+// less.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/widths.hpp"
+#include "sim/study/widths/probes.hpp"
+
+namespace halfplane {
+
+/// An input whose value does not fit a width that has one bit less.
+struct Overflow {
+  Probe probe;
+  int128 value = 0;
+  std::uint64_t first_probe = 0;    ///< the first of the random probes that overflows, from 1; 0: the search alone did
+  std::uint64_t random_probes = 0;  ///< how many of them do
+};
+
+/// One width, as derived and as seen.
+struct WidthRow {
+  Width width;
+  bool is_observed = false;  ///< else exact by construction: see WidthObserver::is_observed()
+  Interval range;            ///< value_range()
+  Seen seen;
+  int needed_bits = 0;                ///< that hold what was seen
+  std::optional<Overflow> overflows;  ///< with one bit less; none: nothing seen does
+
+  [[nodiscard]] bool attains_lo() const { return seen.count != 0 && seen.lo == range.lo; }
+  [[nodiscard]] bool attains_hi() const { return seen.count != 0 && seen.hi == range.hi; }
+  [[nodiscard]] bool is_within() const { return seen.count == 0 || (seen.lo >= range.lo && seen.hi <= range.hi); }
+  [[nodiscard]] int spare_bits() const { return width.bits - needed_bits; }
+  /// The largest share of either end that was seen, 0...1.
+  [[nodiscard]] double used() const;
+};
+
+/// Bits that hold every value of [lo, hi]: in two's complement if `is_signed`; modulo 2^bits, as many as tell its values
+/// apart.
+[[nodiscard]] int bits_needed(const Interval& values, bool is_signed, bool is_modular);
+
+struct WidthStudyOptions {
+  std::uint64_t seed = 1;
+  std::uint64_t samples = 20000;  ///< random probes
+  int climb_steps = 1500;         ///< for each end of each width, half of them from a fresh start
+  std::function<void(double fraction)> progress;
+};
+
+struct WidthStudy {
+  std::uint64_t probes = 0;    ///< tried in all
+  std::vector<WidthRow> rows;  ///< in the order of Widths::all()
+
+  /// Places of the rows that a bit less would overflow: by the first random probe that does, then by how many do.
+  [[nodiscard]] std::vector<std::size_t> overflow_order() const;
+};
+
+/// Random probes, the directed extremes, and a search from the best of them towards each end of each range.
+[[nodiscard]] WidthStudy study_widths(const Config& config, const WidthStudyOptions& options);
+
+}  // namespace halfplane
