@@ -1,5 +1,5 @@
-// The ONE authored configuration. Everything else that has a width (C++ lanes, raster_pkg.sv, the table in docs/spec.md)
-// is derived from it by model/widths.hpp.
+// The ONE authored configuration. Everything else that has a width (C++ lanes, raster_pkg.sv, the table that
+// `halfplane config --widths` prints) is derived from it by model/widths.hpp.
 #pragma once
 
 #include <algorithm>

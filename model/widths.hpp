@@ -1,7 +1,7 @@
 // Every intermediate of the pipeline: its range by interval arithmetic from the configuration, and the bits it needs.
 //
-// No width is typed in anywhere else. C++ checks its lanes against these, raster_pkg.sv and the table in docs/spec.md
-// are printed from them, and a configuration whose widths do not fit is refused by validate().
+// No width is typed in anywhere else. C++ checks its lanes against these, raster_pkg.sv and the table of `halfplane config
+// --widths` are printed from them, and a configuration whose widths do not fit is refused by validate().
 #pragma once
 
 #include <string_view>

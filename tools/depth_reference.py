@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exact reference for depth quantization, written without a look at sim/depth, from the definitions in docs/depth.md.
+"""Exact reference for depth quantization, written without a look at sim/study/depth, from the definitions in docs/depth.md.
 
 Usage: tools/depth_reference.py > tests/data/depth_reference.csv
 """

@@ -105,9 +105,9 @@ class Renderer {
     }
   }
 
-  void fill(const PixelBox& box, const Clear& clear) {
-    for (int y = box.top; y < box.bottom; ++y) {
-      for (int x = box.left; x < box.right; ++x) {
+  void fill(const PixelRange& range, const Clear& clear) {
+    for (int y = range.begin_y; y < range.end_y; ++y) {
+      for (int x = range.begin_x; x < range.end_x; ++x) {
         const std::size_t p = pixel(x, y);
         if (clear.depth) z_[p] = static_cast<Real>(depth_buffer_.window_depth(*clear.depth));
         if (clear.color) write_color(p, *clear.color, *clear.color, ColorInterp::affine);
@@ -121,7 +121,7 @@ class Renderer {
     const State& state;
     const Viewport vp;
     const std::array<Plane<Real>, 6> planes;
-    const PixelBox region;
+    const PixelRange region;
     const std::uint32_t command;
     std::uint32_t primitive = 0;
     Real offset = 0;  ///< polygon offset, window depth
@@ -214,13 +214,13 @@ class Renderer {
   void draw_homogeneous(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {
     const HomogeneousSetup<Real> t = setup_homogeneous(v, d.state, d.vp);
     if (is_culled(t.determinant, d.state)) return;
-    const PixelBox box = homogeneous_box(t, d.region, scene_);
+    const PixelRange range = homogeneous_range(t, d.region, scene_);
     const auto [per_x, per_y] = depth_slopes(t);
-    d.was_drawn = !box.empty();
+    d.was_drawn = !range.empty();
     d.offset =
         polygon_offset(PlaneNormal<Real>{per_x, per_y, 1}, d.state.polygon_offset, static_cast<Real>(depth_max_));
-    for (int y = box.top; y < box.bottom; ++y) {
-      for (int x = box.left; x < box.right; ++x) {
+    for (int y = range.begin_y; y < range.end_y; ++y) {
+      for (int x = range.begin_x; x < range.end_x; ++x) {
         const Real px = static_cast<Real>(x) + Real(0.5), py = static_cast<Real>(y) + Real(0.5);
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
@@ -249,10 +249,10 @@ class Renderer {
     ScreenVertex<Real> at = screen(v, d);
     add_outline(std::span(&at, 1), d);
     d.was_drawn = true;
-    const PixelBox box = intersect(d.region, point_box(at, d.state.point_size, scene_));
+    const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
     const Fragment<Real> fragment{at.z + d.offset, at.rgba, at.rgba};
-    for (int y = box.top; y < box.bottom; ++y)
-      for (int x = box.left; x < box.right; ++x) shade(x, y, fragment, d);
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) shade(x, y, fragment, d);
   }
 
   void add_outline(std::span<const ScreenVertex<Real>> v, const DrawState& d) {
@@ -286,10 +286,10 @@ class Renderer {
   void rasterize(const Setup<Real>& t, const DrawState& d) {
     const auto [left, right] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
     const auto [top, bottom] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
-    // One pixel wider on the far sides: a sample on the very border is decided by the edges, not by the box.
-    const PixelBox box = intersect(d.region, pixel_box(left, top, right + 1, bottom + 1, scene_));
-    for (int y = box.top; y < box.bottom; ++y) {
-      for (int x = box.left; x < box.right; ++x) {
+    // One pixel wider on the far sides: a sample on the very border is decided by the edges, not by the range.
+    const PixelRange range = intersect(d.region, pixel_range(left, top, right + 1, bottom + 1, scene_));
+    for (int y = range.begin_y; y < range.end_y; ++y) {
+      for (int x = range.begin_x; x < range.end_x; ++x) {
         const Real px = static_cast<Real>(x) + Real(0.5), py = static_cast<Real>(y) + Real(0.5);
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;

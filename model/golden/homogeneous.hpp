@@ -5,7 +5,7 @@
 // With v = (X, Y, W), window coordinates times w, a pixel (x, y, 1) is sum b_i v_i with b_i = e_i / det, e_0 = v1 x v2
 // and so on, and b_i is the weight of vertex i in space over the w of the point seen there. So the point is one of the
 // triangle, in front of the eye, when no b_i is negative; and sum b_i f_i is f / w of that point for whatever is linear
-// in clip space. No vertex is divided by its w but for the box.
+// in clip space. No vertex is divided by its w but for the range of pixels.
 #pragma once
 
 #include <algorithm>
@@ -92,14 +92,15 @@ template <class Real>
 
 /// The pixels to ask: those around the vertices, or all of `region` when one has no place in the window.
 template <class Real>
-[[nodiscard]] PixelBox homogeneous_box(const HomogeneousSetup<Real>& t, const PixelBox& region, const Scene& scene) {
+[[nodiscard]] PixelRange homogeneous_range(const HomogeneousSetup<Real>& t, const PixelRange& region,
+                                           const Scene& scene) {
   if (t.is_outside) return {};
   if (!t.is_in_front) return region;
   const auto& [p, q, r] = t.v;
   const auto [left, right] = std::minmax({p.x / p.w, q.x / q.w, r.x / r.w});
   const auto [top, bottom] = std::minmax({p.y / p.w, q.y / q.w, r.y / r.w});
   // One pixel wider on all sides: a sample on the very border is decided by the edges, not by the quotients.
-  return intersect(region, pixel_box(left - 1, top - 1, right + 1, bottom + 1, scene));
+  return intersect(region, pixel_range(left - 1, top - 1, right + 1, bottom + 1, scene));
 }
 
 /// Whether a sample with the edge values `e` belongs to the triangle, between near and far.

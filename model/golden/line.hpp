@@ -96,19 +96,19 @@ struct Track {
   }
 };
 
-/// Calls visit(x, y) for the pixels of `box` that lie within `margin` pixels of the line along both axes: one column of
-/// 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a pixel that is covered holds, or
+/// Calls visit(x, y) for the pixels of `range` that lie within `margin` pixels of the line along both axes: one column
+/// of 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a pixel that is covered holds, or
 /// touches, the point in which the line crosses its column or ends in it.
 template <class Real, class Visit>
-void for_each_candidate(const Line<Real>& line, const PixelBox& box, int margin, Visit&& visit) {
+void for_each_candidate(const Line<Real>& line, const PixelRange& range, int margin, Visit&& visit) {
   const Track<Real> track(line);
   const bool x_major = track.is_x_major();
   const double a0 = x_major ? track.x0 : track.y0, a1 = x_major ? track.x1 : track.y1;
   const double b0 = x_major ? track.y0 : track.x0, b1 = x_major ? track.y1 : track.x1;
   if (!std::isfinite(a0) || !std::isfinite(a1) || !std::isfinite(b0) || !std::isfinite(b1)) return;
   const auto pixel = [](double v) { return static_cast<int>(std::floor(std::clamp(v, -1e9, 1e9))); };
-  const int low = x_major ? box.left : box.top, high = x_major ? box.right : box.bottom;
-  const int minor_low = x_major ? box.top : box.left, minor_high = x_major ? box.bottom : box.right;
+  const int low = x_major ? range.begin_x : range.begin_y, high = x_major ? range.end_x : range.end_y;
+  const int minor_low = x_major ? range.begin_y : range.begin_x, minor_high = x_major ? range.end_y : range.end_x;
   const int end = std::min(high, pixel(std::max(a0, a1)) + margin + 1);
   for (int i = std::max(low, pixel(std::min(a0, a1)) - margin); i < end; ++i) {
     const double t = x_major ? track.parameter(i, 0) : track.parameter(0, i);
@@ -137,10 +137,10 @@ template <class Real>
 
 /// The pixels of a square point of that size, inside the target: centres in [x - size/2, x + size/2), likewise y.
 template <class Real>
-[[nodiscard]] PixelBox point_box(const ScreenVertex<Real>& at, double size, const Scene& scene) {
+[[nodiscard]] PixelRange point_range(const ScreenVertex<Real>& at, double size, const Scene& scene) {
   const double x = at.x, y = at.y, half = size / 2;
   if (!std::isfinite(x) || !std::isfinite(y)) return {};
-  return pixel_box(x - half, y - half, x + half, y + half, scene);
+  return pixel_range(x - half, y - half, x + half, y + half, scene);
 }
 
 }  // namespace halfplane::golden

@@ -19,14 +19,16 @@ struct ScreenVertex {
   std::array<Real, 4> rgba{};  ///< 0...255
 };
 
-/// Pixels in half-open ranges.
-struct PixelBox {
-  int left = 0, top = 0, right = 0, bottom = 0;
-  [[nodiscard]] bool empty() const { return left >= right || top >= bottom; }
+/// A rectangle of pixels, half-open: `end_x` and `end_y` are no longer of it. (Boxes and bounds of the model are
+/// inclusive.)
+struct PixelRange {
+  int begin_x = 0, begin_y = 0, end_x = 0, end_y = 0;
+  [[nodiscard]] bool empty() const { return begin_x >= end_x || begin_y >= end_y; }
 };
 
-[[nodiscard]] inline PixelBox intersect(const PixelBox& a, const PixelBox& b) {
-  return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
+[[nodiscard]] inline PixelRange intersect(const PixelRange& a, const PixelRange& b) {
+  return {std::max(a.begin_x, b.begin_x), std::max(a.begin_y, b.begin_y), std::min(a.end_x, b.end_x),
+          std::min(a.end_y, b.end_y)};
 }
 
 /// The first pixel whose centre is at or right of (below) `position`; held inside 0...limit.
@@ -34,20 +36,20 @@ struct PixelBox {
   return static_cast<int>(std::clamp(std::ceil(position - 0.5), 0.0, static_cast<double>(limit)));
 }
 
-/// The pixels whose centres lie in the box [left, right) x [top, bottom), inside the target.
-[[nodiscard]] inline PixelBox pixel_box(double left, double top, double right, double bottom, const Scene& scene) {
+/// The pixels whose centres lie in [left, right) x [top, bottom), inside the target.
+[[nodiscard]] inline PixelRange pixel_range(double left, double top, double right, double bottom, const Scene& scene) {
   return {first_centre(left, scene.width), first_centre(top, scene.height), first_centre(right, scene.width),
           first_centre(bottom, scene.height)};
 }
 
 /// Target and scissor: what a clear fills.
-[[nodiscard]] inline PixelBox clear_region(const Scene& scene, const State& state) {
+[[nodiscard]] inline PixelRange clear_region(const Scene& scene, const State& state) {
   if (!state.scissor) return {0, 0, scene.width, scene.height};
   const double x = state.scissor->x, y = state.scissor->y;  // double: x + width may not fit an int
   const double bottom = y + state.scissor->height;
   const bool is_up = state.origin == Origin::bottom_left;
-  return pixel_box(x, is_up ? scene.height - bottom : y, x + state.scissor->width, is_up ? scene.height - y : bottom,
-                   scene);
+  return pixel_range(x, is_up ? scene.height - bottom : y, x + state.scissor->width, is_up ? scene.height - y : bottom,
+                     scene);
 }
 
 /// How far the outer corner of the first pixel lies from the origin of the state's window coordinates, along each axis.
@@ -76,11 +78,11 @@ template <class Real>
 }
 
 /// Target, scissor and, in clip space, the viewport: what a draw may touch.
-[[nodiscard]] inline PixelBox draw_region(const Scene& scene, const State& state) {
-  const PixelBox box = clear_region(scene, state);
-  if (state.space == Space::window) return box;
+[[nodiscard]] inline PixelRange draw_region(const Scene& scene, const State& state) {
+  const PixelRange range = clear_region(scene, state);
+  if (state.space == Space::window) return range;
   const Viewport vp = viewport_of(scene, state);
-  return intersect(box, pixel_box(vp.x, vp.y, vp.x + vp.width, vp.y + vp.height, scene));
+  return intersect(range, pixel_range(vp.x, vp.y, vp.x + vp.width, vp.y + vp.height, scene));
 }
 
 template <class Real>

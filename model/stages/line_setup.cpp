@@ -16,12 +16,12 @@ struct OctantLine {
 };
 
 /// First and last pixel of `limit` along one axis of the octant.
-struct Range {
+struct Bounds {
   std::int64_t low, high;
 };
 
-Range turned(std::int64_t low, std::int64_t high, bool is_negative) {
-  return is_negative ? Range{~high, ~low} : Range{low, high};
+Bounds turned(std::int64_t low, std::int64_t high, bool is_negative) {
+  return is_negative ? Bounds{~high, ~low} : Bounds{low, high};
 }
 
 OctantLine to_octant(const SnappedVertex& start, const SnappedVertex& end, LineRule rule, int s) {
@@ -113,8 +113,8 @@ Positions positions_of(const OctantLine& line, LineRule rule, std::int64_t first
 }
 
 /// Cuts `steps` to those n whose row, floor((Q + d n) / D), lies in `rows` (relative to the base). Rows never fall.
-Range clip_to_rows(Range steps, const Range& rows, std::int64_t q, std::int64_t d, std::int64_t D) {
-  const Range none{0, -1};
+Bounds clip_to_rows(Bounds steps, const Bounds& rows, std::int64_t q, std::int64_t d, std::int64_t D) {
+  const Bounds none{0, -1};
   if (q + d * steps.low < rows.low * D) {
     if (d == 0) return none;
     steps.low = divide_up(rows.low * D - q, d);
@@ -157,11 +157,11 @@ std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVer
   const Columns columns = columns_of(line, rule, drops_last, s);
   const Positions q = positions_of(line, rule, columns.first, s);
 
-  const Range x = turned(limit.left, limit.right, line.is_x_major ? line.is_major_negative : line.is_minor_negative);
-  const Range y = turned(limit.top, limit.bottom, line.is_x_major ? line.is_minor_negative : line.is_major_negative);
-  const Range &major = line.is_x_major ? x : y, &minor = line.is_x_major ? y : x;
-  Range steps{std::max<std::int64_t>(0, major.low - columns.first),
-              std::min(columns.end - 1, major.high) - columns.first};
+  const Bounds x = turned(limit.left, limit.right, line.is_x_major ? line.is_major_negative : line.is_minor_negative);
+  const Bounds y = turned(limit.top, limit.bottom, line.is_x_major ? line.is_minor_negative : line.is_major_negative);
+  const Bounds &major = line.is_x_major ? x : y, &minor = line.is_x_major ? y : x;
+  Bounds steps{std::max<std::int64_t>(0, major.low - columns.first),
+               std::min(columns.end - 1, major.high) - columns.first};
   if (steps.low > steps.high || minor.low > minor.high) return std::nullopt;
   steps = clip_to_rows(steps, {minor.low - q.base, minor.high - q.base}, q.first, d, D);
   if (steps.low > steps.high) return std::nullopt;

@@ -5,8 +5,8 @@
 namespace halfplane {
 namespace {
 
-/// What the planes of one triangle share.
-struct PlaneFrame {
+/// What the planes of one triangle share, and the rules for them.
+struct RulesFrame {
   std::int64_t ax, ay, bx, by;  // v1 - v0 and v2 - v0, subpixels
   std::int64_t dx, dy;          // from v0 to the anchor of the first tile, subpixels
   std::uint64_t x_reciprocal = 0, y_reciprocal = 0;
@@ -24,14 +24,14 @@ std::int64_t held(int128 value, int bits, Accumulator accumulator) {
 }
 
 /// Per subpixel, F fraction bits.
-int128 gradient(std::int64_t numerator, std::uint64_t reciprocal, const PlaneFrame& f) {
+int128 gradient(std::int64_t numerator, std::uint64_t reciprocal, const RulesFrame& f) {
   const int128 product = static_cast<int128>(numerator) * static_cast<int128>(reciprocal);
   const int drop = f.shift - f.kept;
   if (f.rules.gradients != Gradients::truncated) return round_shift(product, drop);
   return (drop > 0 ? product >> drop : product << -drop) << (f.fraction - f.kept);
 }
 
-Plane plane_by_rules(std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f, int bits) {
+Plane plane_by_rules(std::int64_t c0, std::int64_t c1, std::int64_t c2, const RulesFrame& f, int bits) {
   const std::int64_t ac = c1 - c0, bc = c2 - c0;
   const Accumulator accumulator = f.rules.accumulator;
   Plane plane;
@@ -73,7 +73,7 @@ void set_planes(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, con
   const auto anchor = [&](int first) {  // centre of pixel T/2 of the tile that holds pixel `first`, subpixels
     return (std::int64_t{(first >> tile << tile) + config.tile_size / 2} << s) + (std::int64_t{1} << (s - 1));
   };
-  PlaneFrame frame{.ax = std::int64_t{v[1].x} - v[0].x,
+  RulesFrame frame{.ax = std::int64_t{v[1].x} - v[0].x,
                    .ay = std::int64_t{v[1].y} - v[0].y,
                    .bx = std::int64_t{v[2].x} - v[0].x,
                    .by = std::int64_t{v[2].y} - v[0].y,

@@ -15,7 +15,7 @@ using namespace test;
 using golden::Image;
 using GoldenLine = golden::Line<double>;
 
-constexpr golden::PixelBox kEverywhere{-10000, -10000, 10000, 10000};
+constexpr golden::PixelRange kEverywhere{-10000, -10000, 10000, 10000};
 
 /// The same line for the golden: its ends lie on the snap grid, so that nothing is lost.
 GoldenLine to_golden(const exact::Line& line) {
@@ -151,16 +151,16 @@ struct Expected {
 Expected expect(const Scene& scene) {
   Expected expected;
   const State& state = scene.states[0];
-  const golden::PixelBox box = golden::draw_region(scene, state);
+  const golden::PixelRange range = golden::draw_region(scene, state);
   const auto add = [&](int x, int y, double z, double red) {
     const auto p = static_cast<std::size_t>(y * kWidth + x);
     ++expected.count[p];
     expected.depth[p] = z;
     expected.red[p] = red;
   };
-  const auto for_each_pixel = [&box](auto&& visit) {
-    for (int y = box.top; y < box.bottom; ++y)
-      for (int x = box.left; x < box.right; ++x) visit(x, y);
+  const auto for_each_pixel = [&range](auto&& visit) {
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) visit(x, y);
   };
   for (const Command& command : scene.commands) {
     const auto* draw = std::get_if<Draw>(&command);

@@ -20,6 +20,9 @@ inline constexpr int kBinShift = 6, kBinSize = 1 << kBinShift;     ///< pixels a
 inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size that this engine has
 inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles along the side of a bin
 
+/// A block is sixteen lanes, one cache line; a tile is four of them.
+inline constexpr int kBlockShift = 2, kBlockSize = 1 << kBlockShift, kBlockPixels = 16;
+
 /// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; so do medium ones, which
 /// may be.
 inline constexpr int kSmallTiles = 2, kMediumTiles = 3;

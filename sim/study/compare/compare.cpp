@@ -8,6 +8,9 @@
 #include <limits>
 #include <utility>
 
+#include "eye_depth.hpp"
+#include "line_coverage.hpp"
+#include "line_pixels.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
@@ -16,9 +19,6 @@
 #include "model/stages/rop.hpp"
 #include "model/stages/triangle_setup.hpp"
 #include "model/stages/viewport.hpp"
-#include "eye_depth.hpp"
-#include "line_coverage.hpp"
-#include "line_pixels.hpp"
 
 namespace halfplane {
 namespace {

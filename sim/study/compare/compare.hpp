@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "coverage.hpp"
+#include "coverage_class.hpp"
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/golden/golden.hpp"
 #include "model/scene.hpp"
-#include "coverage.hpp"
-#include "coverage_class.hpp"
 #include "statistics.hpp"
 
 namespace halfplane {

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <tuple>
 
+#include "line_coverage.hpp"
 #include "model/golden/exact.hpp"
 #include "model/golden/viewport.hpp"
 #include "model/widths.hpp"
-#include "line_coverage.hpp"
 
 namespace halfplane {
 namespace {
 
-using golden::PixelBox;
+using golden::PixelRange;
 
 std::uint64_t difference(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }
 
 /// The pixels whose centres lie in the closed bounding box of the snapped vertices.
-PixelBox box_of(const Triangle& t, int grid_bits) {
+PixelRange range_of(const Triangle& t, int grid_bits) {
   const auto [x_min, x_max] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
   const auto [y_min, y_max] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
   const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
@@ -34,25 +34,25 @@ class OracleCheck {
       : log_(log), tile_size_(config.tile_size), grid_bits_(derive_widths(config).grid_bits), rule_(rule) {}
 
   /// `visit` runs over the log's visits; those of triangle `index` are consumed.
-  void triangle(const Triangle& t, std::uint32_t index, const PixelBox& region,
+  void triangle(const Triangle& t, std::uint32_t index, const PixelRange& region,
                 std::vector<CoverageLog::Visit>::const_iterator& visit) {
-    const PixelBox box = intersect(region, box_of(t, grid_bits_));
+    const PixelRange range = intersect(region, range_of(t, grid_bits_));
     const exact::TriangleOracle oracle(t, grid_bits_, rule_);
     const auto end = log_.visits().end();
     const auto skip_to = [&](int tile_x, int tile_y) {
-      // Whatever lies before the tile was drawn outside the box, or a second time.
+      // Whatever lies before the tile was drawn outside the range, or a second time.
       while (visit != end && visit->triangle == index &&
              std::tie(visit->tile_y, visit->tile_x) < std::tie(tile_y, tile_x)) {
         report(t, index, visit->tile_x * tile_size_, visit->tile_y * tile_size_, false, log_.sample_count(*visit));
         ++visit;
       }
     };
-    if (!box.empty()) {
-      for (int ty = box.top / tile_size_; ty <= (box.bottom - 1) / tile_size_; ++ty) {
-        for (int tx = box.left / tile_size_; tx <= (box.right - 1) / tile_size_; ++tx) {
+    if (!range.empty()) {
+      for (int ty = range.begin_y / tile_size_; ty <= (range.end_y - 1) / tile_size_; ++ty) {
+        for (int tx = range.begin_x / tile_size_; tx <= (range.end_x - 1) / tile_size_; ++tx) {
           skip_to(tx, ty);
           const bool visited = visit != end && visit->triangle == index && visit->tile_x == tx && visit->tile_y == ty;
-          tile(t, oracle, index, tx, ty, box, visited ? &*visit : nullptr);
+          tile(t, oracle, index, tx, ty, range, visited ? &*visit : nullptr);
           if (visited) ++visit;
         }
       }
@@ -69,11 +69,11 @@ class OracleCheck {
   }
 
   void tile(const Triangle& t, const exact::TriangleOracle& oracle, std::uint32_t index, int tx, int ty,
-            const PixelBox& box, const CoverageLog::Visit* visit) {
+            const PixelRange& range, const CoverageLog::Visit* visit) {
     const int x0 = tx * tile_size_, y0 = ty * tile_size_;
     std::uint64_t drawn_inside = 0;
-    for (int y = std::max(box.top, y0); y < std::min(box.bottom, y0 + tile_size_); ++y) {
-      for (int x = std::max(box.left, x0); x < std::min(box.right, x0 + tile_size_); ++x) {
+    for (int y = std::max(range.begin_y, y0); y < std::min(range.end_y, y0 + tile_size_); ++y) {
+      for (int x = std::max(range.begin_x, x0); x < std::min(range.end_x, x0 + tile_size_); ++x) {
         const bool drawn = visit != nullptr && log_.test(*visit, x - x0, y - y0);
         const bool expected = oracle.covers(x, y);
         drawn_inside += drawn ? 1 : 0;

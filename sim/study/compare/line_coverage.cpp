@@ -85,7 +85,7 @@ bool point_is_uncertain(double dx, double dy, double half, double reach) {
 }
 
 /// The pixels of `region` that a line covers by definition. `tested` counts those that were looked at.
-std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const golden::PixelBox& region, int grid_bits,
+std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const golden::PixelRange& region, int grid_bits,
                                  std::uint64_t& tested) {
   const exact::Line line{drawn.start, drawn.end, rule, drawn.drops_last, grid_bits};
   const auto real = [grid_bits](const SnappedVertex& v) {
@@ -104,7 +104,7 @@ std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const go
 }
 
 /// Likewise a point.
-std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelBox& region, int grid_bits,
+std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelRange& region, int grid_bits,
                                  std::uint64_t& tested) {
   // In halves of a subpixel, so that the border of an odd size is an integer.
   const std::int64_t pixel = std::int64_t{2} << grid_bits, size = point.size;
@@ -114,10 +114,10 @@ std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelBox
     return static_cast<int>(std::clamp<std::int64_t>(border >> (grid_bits + 1), low, high));
   };
   std::vector<Pixel> pixels;
-  for (int j = around(y - size - pixel, region.top, region.bottom);
-       j < around(y + size + 2 * pixel, region.top, region.bottom); ++j)
-    for (int i = around(x - size - pixel, region.left, region.right);
-         i < around(x + size + 2 * pixel, region.left, region.right); ++i) {
+  for (int j = around(y - size - pixel, region.begin_y, region.end_y);
+       j < around(y + size + 2 * pixel, region.begin_y, region.end_y); ++j)
+    for (int i = around(x - size - pixel, region.begin_x, region.end_x);
+         i < around(x + size + 2 * pixel, region.begin_x, region.end_x); ++i) {
       ++tested;
       if (holds(i * pixel + pixel / 2, x) && holds(j * pixel + pixel / 2, y)) pixels.push_back({point.primitive, j, i});
     }
@@ -148,7 +148,7 @@ void check_line_coverage(const Scene& scene, const Config& config, const Renderi
 void mark_uncertain(const golden::Outline& outline, const State& state, int subpixel_bits, const golden::Image& image,
                     const std::vector<bool>& wanted, std::vector<bool>& near) {
   const double reach = std::ldexp(1.0, -subpixel_bits);
-  const golden::PixelBox target{0, 0, image.width, image.height};
+  const golden::PixelRange target{0, 0, image.width, image.height};
   const auto index = [&image](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
   };

@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
+#include "coverage.hpp"
 #include "model/engines/render.hpp"
 #include "model/golden/golden.hpp"
-#include "coverage.hpp"
 
 namespace halfplane {
 

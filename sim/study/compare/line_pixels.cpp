@@ -52,8 +52,8 @@ class LinePixels {
   }
 
   [[nodiscard]] PixelBounds region_of(std::uint32_t command) const {
-    const golden::PixelBox box = golden::draw_region(scene_, state_of(command));
-    return {box.left, box.top, box.right - 1, box.bottom - 1};
+    const golden::PixelRange range = golden::draw_region(scene_, state_of(command));
+    return {range.begin_x, range.begin_y, range.end_x - 1, range.end_y - 1};
   }
 
   /// Is what the pixel holds what the candidate would have written?

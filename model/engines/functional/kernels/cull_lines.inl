@@ -1,5 +1,5 @@
 // Lines, sixteen at a time: what stages/line_setup makes of one, up to the columns that it covers, and their culling.
-// Included inside the namespace of an instruction set: see kernels.inl.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
 /// How the lines of a draw end.
 struct LineRules {
@@ -11,11 +11,6 @@ struct LineRules {
         drops_last(is_diamond || (state.line_last ? !*state.line_last : drops_last_by_default(state.line_rule))),
         grid_bits(widths.grid_bits) {}
 };
-
-HALFPLANE_INLINE I16 magnitude(const I16& v) { return max(v, -v); }
-
-/// -v where the mask is set.
-HALFPLANE_INLINE I16 turned(const I16& v, const I16& mask) { return (v ^ mask) - mask; }
 
 /// Sixteen lines, each in its own octant, and the columns [first, end) that they cover: OctantLine and Columns of
 /// stages/line_setup. Turning an axis round takes coordinate v to -v, and so pixel i to ~i.
@@ -122,7 +117,8 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
       store_rows({v[0], v[1], v[2], min(start.z, end.z)}, words, sizeof(Record));
       constexpr auto kTraits = static_cast<std::int32_t>(RecordKind::whole_line);
-      store_rows({max(start.z, end.z), pairs(left, top), pairs(right, bottom), I16(kTraits)}, words + 4, sizeof(Record));
+      store_rows({max(start.z, end.z), pairs(left, top), pairs(right, bottom), I16(kTraits)}, words + 4,
+                 sizeof(Record));
       for (std::uint32_t rest = drawn | slow_bits; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
         if ((slow_bits >> i & 1) != 0)

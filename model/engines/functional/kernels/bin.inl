@@ -1,0 +1,131 @@
+// The state of a bin while its records are drawn: its pixels, what its tiles hold, what waits. Everything that follows
+// is functions over it.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// Lanes as places.
+struct LanePositions {
+  I16 pair_x, pair_y;  ///< of two rows of eight
+  I16 lane;            ///< its number
+  I16 to_sign;         ///< 31 - lane: moves bit number `lane` to the sign
+  I16 block_x, block_y;
+  I16 block_yx;  ///< pairs: row low, column high
+  /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
+  std::array<I16, 2> column, row, column_pair, row_pair;
+
+  LanePositions() {
+    pair_x = I16::of([](int i) { return i % 8; });
+    pair_y = I16::of([](int i) { return i / 8; });
+    lane = I16::of([](int i) { return i; });
+    to_sign = I16::of([](int i) { return 31 - i; });
+    block_x = I16::of([](int i) { return i % 4; });
+    block_y = I16::of([](int i) { return i / 4; });
+    block_yx = pairs(block_y, block_x);
+    for (int side = 0; side < 2; ++side) {
+      const auto at = static_cast<std::size_t>(side);
+      column[at] = block_x + (kBlockSize * side - kTileSize / 2);
+      row[at] = block_y + (kBlockSize * side - kTileSize / 2);
+      column_pair[at] = pairs(column[at], column[at]);
+      row_pair[at] = pairs(row[at], row[at]);
+    }
+  }
+};
+
+/// Made when a kernel first runs, not when the program starts: the machine may not have these instructions.
+static const LanePositions& lane_positions() {
+  static const LanePositions positions;
+  return positions;
+}
+
+/// What the colours of a triangle have in common, in lanes.
+struct ColorSteps {
+  ChannelPairs step_x, step_y, low, high;  ///< of a pixel; codes of the vertices
+};
+
+/// Inclusive.
+struct Box {
+  std::int32_t left, top, right, bottom;
+};
+
+/// One triangle, as one bin sees it. Positions are pixels of the bin, tiles those of the bin.
+struct BinTriangle {
+  std::array<std::int32_t, 3> edge, dx, dy;  ///< at the bin's first pixel, held within +-2^30; steps as in Edge
+  Box box;
+  std::int32_t z_low, z_high;                 ///< codes of the vertices
+  std::int64_t z_anchor, z_tile_x, z_tile_y;  ///< plane at the first tile's anchor; steps from tile to tile
+  std::int32_t z_step_x, z_step_y;            ///< of a pixel, in a lane
+  bool is_gentle;                             ///< no value of a tile that it touches wraps
+  bool is_whole;                              ///< its edges alone say what it covers
+  std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< likewise, channel by channel
+  ColorSteps color;
+};
+
+/// A block of a triangle of the small batch with at least one covered pixel.
+struct Block {
+  std::uint32_t place;    ///< lane of the batch, column and row among the bin's blocks: a byte each
+  std::uint32_t covered;  ///< bits
+};
+
+/// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
+struct BinMemory {
+  static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
+  alignas(64) std::array<std::int32_t, kBinSize * kBinSize> depth;
+  alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> color;
+  alignas(64) std::array<BinTriangle, kPlanes> planes;
+
+  static BinMemory& of_thread() {
+    static thread_local BinMemory memory;
+    return memory;
+  }
+};
+
+struct Bin {
+  static constexpr int kTiles = kBinTiles * kBinTiles;
+  // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
+  static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3;
+  static constexpr std::size_t kSmallBlocks = kMediumTiles * kTileSize / kBlockSize;  ///< along a side
+
+  explicit Bin(BinJob& job_)
+      : job(job_),
+        config(job.frame.config),
+        widths(job.frame.widths),
+        skip(job.frame.skip),
+        depth_format(config.depth_bits, widths.local_depth, 32, widths),
+        color_format(8, widths.local_color, 16, widths),
+        first_x(job.bin % job.frame.bins_x * kBinSize),
+        first_y(job.bin / job.frame.bins_x * kBinSize),
+        are_lines(job.target.has_whole_lines()),
+        tile_low(job.tiles.z_low.data() + std::ptrdiff_t{job.bin} * kTiles),
+        tile_high(job.tiles.z_high.data() + std::ptrdiff_t{job.bin} * kTiles),
+        memory(BinMemory::of_thread()) {
+    const std::uint8_t* pending = job.tiles.pending.data() + std::ptrdiff_t{job.bin} * kTiles;
+    for (int t = 0; t < kTiles; ++t) {
+      depth_owner[t] = (pending[t] & TileStates::kDepthCleared) != 0 ? kCleared : kInTarget;
+      color_owner[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
+    }
+  }
+
+  BinJob& job;
+  const Config& config;
+  const Widths& widths;
+  const Skip& skip;
+  LaneFormat depth_format, color_format;
+  int first_x, first_y;  ///< pixels
+  bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
+  std::int32_t *tile_low, *tile_high;
+  BinMemory& memory;
+  FragmentState state;
+  std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
+  std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
+  const LanePositions& position = lane_positions();
+  SmallBatch small;
+  int small_run = 0;                                               ///< records in a row that were small or medium
+  LineBatch lines, cut_line;                                       ///< cut_line: one, in lane 0
+  std::uint64_t line_tiles = 0;                                    ///< touched by lines since triangles last were drawn
+  std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks;  ///< and room for one that is not kept
+  bool falls = false, rises = false;                               ///< what a passing depth may do to the stored one
+  std::size_t plane_count = 0;
+  bool may_be_lower = false;    ///< the bin's upper bound, since it was found
+  std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
+  std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
+  alignas(64) std::array<std::int32_t, kTiles> depth_owner, color_owner;
+};

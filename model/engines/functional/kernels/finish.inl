@@ -1,0 +1,124 @@
+// The end of a bin: everything that is new goes to the target, a row of tiles at a time.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+inline int tiles_along(int pixels) { return std::min((pixels + kTileSize - 1) / kTileSize, kBinTiles); }
+
+/// A row of tiles as rows of pixels.
+using PixelRows = std::array<std::array<std::uint32_t, kBinSize>, kTileSize>;
+
+using TileOwners = std::array<std::int32_t, Bin::kTiles>;
+
+/// The row of tiles that begins with `first`. `cleared`: what is no longer pending where they were written.
+/// `blocks_of(tile)`: its values; `write_rows(left, right, tile, rows)`: those of two that triangles have taken.
+template <class BlocksOf, class WriteRows>
+HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t* image, const TileOwners& owners,
+                                 std::uint8_t cleared, BlocksOf&& blocks_of, WriteRows&& write_rows) {
+  const std::int32_t* owner = owners.data() + first;
+  alignas(64) PixelRows rows;
+  std::uint32_t is_new = 0;
+  for (int i = 0; i < columns; ++i) is_new |= (owner[i] >= Bin::kInMemory ? 1U : 0U) << i;
+  if (is_new == 0) return;
+  for (int i = 0; i < kBinTiles; i += 2) {
+    if ((is_new >> i & 3) == 3 && owner[i] >= 0 && owner[i + 1] >= 0) {
+      const auto plane = [&](int at) HALFPLANE_LAMBDA -> const BinTriangle& {
+        return bin.memory.planes[static_cast<std::size_t>(owner[at])];
+      };
+      write_rows(plane(i), plane(i + 1), first + i, rows);
+      continue;
+    }
+    for (int at = i; at < i + 2; ++at) {
+      if ((is_new >> at & 1) == 0) continue;
+      const TileBlocks blocks = blocks_of(first + at);
+      for (std::size_t half = 0; half < 2; ++half)
+        store_blocks(rows[half * kBlockSize].data() + at * kTileSize, kBinSize, blocks[2 * half], blocks[2 * half + 1]);
+    }
+  }
+  const std::size_t first_tile = static_cast<std::size_t>(bin.job.bin * Bin::kTiles + first);
+  for (std::uint32_t rest = is_new; rest != 0; rest &= rest - 1) {
+    const std::size_t at = first_tile + static_cast<std::size_t>(std::countr_zero(rest));
+    bin.job.tiles.pending[at] &= static_cast<std::uint8_t>(~cleared);
+    bin.job.tiles.held[at] &= static_cast<std::uint8_t>(~cleared);
+  }
+  const int stride = bin.job.target.stride;
+  const std::uint32_t in_lines = bin.are_lines ? is_new & is_new >> 1 & 0x55 : 0, alone = is_new & ~(in_lines * 3);
+  for (int y = 0; y < kTileSize; ++y) {
+    const std::uint32_t* from = rows[static_cast<std::size_t>(y)].data();
+    std::uint32_t* const to = image + y * stride;
+    if (in_lines == 0x55) {
+      for (int x = 0; x < kBinSize; x += 16) stream_line(to + x, I16::load(from + x));
+      continue;
+    }
+    for (std::uint32_t rest = in_lines; rest != 0; rest &= rest - 1) {
+      const int x = std::countr_zero(rest) * kTileSize;
+      stream_line(to + x, I16::load(from + x));
+    }
+    for (std::uint32_t rest = alone; rest != 0; rest &= rest - 1) {
+      const int x = std::countr_zero(rest) * kTileSize;
+      std::memcpy(to + x, from + x, kTileSize * sizeof *to);
+    }
+  }
+}
+
+/// Depths of two tiles side by side, each a triangle's as a whole, row by row: a cache line each.
+HALFPLANE_INLINE void write_depth_rows(const Bin& bin, const BinTriangle& left, const BinTriangle& right, int tile,
+                                       PixelRows& rows) {
+  const int to = tile % kBinTiles * kTileSize;
+  const auto both = [&](auto&& of) HALFPLANE_LAMBDA { return halves(of(left), of(right)); };
+  const I16 step_y = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_y; });
+  const I16 low = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_low; });
+  const I16 high = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_high; });
+  const I16 step_x = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_x; });
+  I16 value = (bin.position.pair_x - kTileSize / 2) * step_x - step_y * (kTileSize / 2) +
+              halves(depth_anchor(bin, left, tile % kBinTiles, tile / kBinTiles),
+                     depth_anchor(bin, right, tile % kBinTiles + 1, tile / kBinTiles));
+  for (auto& row : rows) {
+    decode(value, bin.depth_format, low, high).store(row.data() + to);
+    value += step_y;
+  }
+}
+
+/// Likewise colours.
+HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, const BinTriangle& right, int tile,
+                                       PixelRows& rows) {
+  const int to = tile % kBinTiles * kTileSize;
+  const auto both = [&](const auto& of) HALFPLANE_LAMBDA { return as<S32>(halves(of(left.color), of(right.color))); };
+  const ChannelPairs at_left = color_anchor(bin, left, tile % kBinTiles, tile / kBinTiles),
+                     at_right = color_anchor(bin, right, tile % kBinTiles + 1, tile / kBinTiles);
+  const I16 x = bin.position.pair_x - kTileSize / 2;
+  const auto column = as<S32>(pairs(x, x));
+  std::array<S32, 2> value, step_y, low, high;
+  const LaneFormat format = bin.color_format;
+  const ColorFormat pixels = bin.config.color_format;
+  for (std::size_t p = 0; p < 2; ++p) {
+    step_y[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.step_y[p]; });
+    low[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.low[p]; });
+    high[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.high[p]; });
+    value[p] = column * both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.step_x[p]; }) -
+               (step_y[p] << (kTileShift - 1)) + as<S32>(halves(at_left[p], at_right[p]));
+  }
+  for (auto& row : rows) {
+    const auto pair = [&](std::size_t p)
+                          HALFPLANE_LAMBDA { return color_codes(value[p], as<I16>(low[p]), as<I16>(high[p]), format); };
+    packed(pair(0), pair(1), pixels).store(row.data() + to);
+    for (std::size_t p = 0; p < 2; ++p) value[p] += step_y[p];
+  }
+}
+
+/// Everything that is new goes to the target, a row of tiles at a time.
+inline void finish(Bin& bin) {
+  const int columns = tiles_along(bin.job.target.width - bin.first_x),
+            rows = tiles_along(bin.job.target.height - bin.first_y);
+  const auto depths = [&bin](int tile) HALFPLANE_LAMBDA { return depths_of(bin, tile); };
+  const auto colors = [&bin](int tile) HALFPLANE_LAMBDA { return colors_of(bin, tile); };
+  const auto depth_rows = [&bin](auto&&... of) HALFPLANE_LAMBDA { write_depth_rows(bin, of...); };
+  const auto color_rows = [&bin](auto&&... of) HALFPLANE_LAMBDA { write_color_rows(bin, of...); };
+  for (int row = 0; row < rows; ++row) {
+    const int tile = row * kBinTiles;
+    const std::size_t to = bin.job.target.at(bin.first_x, bin.first_y + row * kTileSize);
+    finish_row(bin, tile, columns, bin.job.target.depth.data() + to, bin.depth_owner, TileStates::kDepthCleared, depths,
+               depth_rows);
+    finish_row(bin, tile, columns, bin.job.target.color.data() + to, bin.color_owner, TileStates::kColorCleared, colors,
+               color_rows);
+  }
+  finish_lines();
+}

@@ -1,0 +1,160 @@
+// The leaf arithmetic of the stages, in lanes: reciprocal, gradient, rounding, decode, pack. Each stands here once.
+//
+// Not the stages' own templates: GCC compiles a template for the instruction set that was chosen where it is written,
+// not where it is used, so that one from a shared header would take these lanes apart (ADR 15). The tests of the engine
+// hold them together.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// The fill rule: a sample on an edge belongs to the triangle where the edge is a left or a top one. A mask.
+template <class Lanes>
+HALFPLANE_INLINE auto is_top_left(const Lanes& dx, const Lanes& dy) {
+  return (dy < 0) | ((dy == 0) & (dx > 0));
+}
+
+/// Of two vectors: twice the area that they span, and on which side of an edge a point lies.
+template <class Lanes>
+HALFPLANE_INLINE Lanes cross(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by) {
+  return ax * by - ay * bx;
+}
+
+HALFPLANE_INLINE I16 magnitude(const I16& v) { return max(v, -v); }
+
+/// -v where the mask is set.
+HALFPLANE_INLINE I16 turned(const I16& v, const I16& mask) { return (v ^ mask) - mask; }
+
+/// How the values of a tile are held and read back: in the upper bits of a lane, so that they wrap by themselves.
+struct LaneFormat {
+  int drop;       ///< from a plane's value at the anchor to a tile's
+  int up;         ///< from a tile's value to a lane
+  int down;       ///< from a lane to a code plus `bias`
+  int step_drop;  ///< from a plane's step to a step of a pixel in a tile
+  std::int32_t bias;
+  std::uint64_t anchor_bias;
+
+  /// `lane_bits`: of the lane.
+  LaneFormat(int bits, const Width& local, int lane_bits, const Widths& widths) {
+    const int guard_bits = local.bits - bits - 1;
+    drop = widths.plane_fraction - guard_bits;
+    up = lane_bits - local.bits;
+    down = up + guard_bits;
+    step_drop = drop - widths.grid_bits;
+    bias = std::int32_t{1} << (bits - 1);
+    anchor_bias = plane_bias(bits, widths);
+  }
+};
+
+/// Two channels in the halves of a lane: red and blue, green and alpha.
+using ChannelPairs = std::array<std::int32_t, 2>;
+
+/// The codes of values in lanes, clamped to those of the vertices.
+HALFPLANE_INLINE I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
+  return min(max(shift_right_logical(value, format.down) - format.bias, low), high);
+}
+
+[[nodiscard]] HALFPLANE_INLINE I16 color_codes(const S32& value, const I16& low, const I16& high,
+                                               const LaneFormat& format) {
+  const S32 code = shift_right_logical(value, format.down) - static_cast<std::int16_t>(format.bias);
+  return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
+}
+
+/// Codes of 8 bits, red with blue and green with alpha, as the target has them.
+[[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& red_blue, const I16& green_alpha, ColorFormat format) {
+  if (format == ColorFormat::rgba8888) return red_blue | green_alpha << 8;
+  // 16 bits suffice: 255 * 253 + 1014 < 2^16.
+  const auto rounded = [](const I16& codes, std::int16_t factor, std::int16_t addend, int drop) HALFPLANE_LAMBDA {
+    return as<I16>(shift_right_logical(as<S32>(codes) * factor + addend, drop));
+  };
+  return multiply_add_pairs(rounded(red_blue, 249, 1014, 11), I16(1 << 16 | 1 << 11)) |
+         multiply_add_pairs(rounded(green_alpha, 253, 505, 10), I16(1 << 5));
+}
+/// R lowest, A highest.
+[[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& rgba, ColorFormat format) {
+  return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, format);
+}
+
+/// reciprocal() by a division in binary64, put right by its remainder: exact.
+HALFPLANE_INLINE Reciprocal fast_reciprocal(std::int64_t area, int significant_bits) {
+  const int shift = 63 - std::countl_zero(static_cast<std::uint64_t>(area)) + significant_bits;
+  double power;
+  const std::uint64_t bits = static_cast<std::uint64_t>(1023 + shift + 1) << 52;
+  std::memcpy(&power, &bits, sizeof power);
+  std::int64_t quotient = static_cast<std::int64_t>(power / static_cast<double>(area));
+  const std::uint64_t numerator =
+      shift + 1 < 64 ? std::uint64_t{2} << shift : 0;  // modulo 2^64: the remainder is small
+  const auto remainder =
+      static_cast<std::int64_t>(numerator - static_cast<std::uint64_t>(quotient) * static_cast<std::uint64_t>(area));
+  quotient += remainder < 0 ? -1 : remainder >= area ? 1 : 0;
+  return {static_cast<std::uint64_t>((quotient + 1) >> 1), shift};
+}
+/// The reciprocals of sixteen areas below 2^31 and their shifts. significant_bits <= 29: a quotient fits 31 bits.
+HALFPLANE_INLINE void reciprocal_lanes(const I16& area, int significant_bits, L16& value, L16& shift) {
+  const D16 divisor = convert<double>(max(area, I16(1)));
+  const auto bits = as<L16>(divisor);
+  shift = shift_right_logical(bits, 52) - (1023 - significant_bits);
+  const L16 power_bits = (shift + 1024) << 52;  // of 2^(shift + 1)
+  const auto power = as<D16>(power_bits);
+  L16 quotient = convert<std::int64_t>(convert<std::int32_t>(power / divisor));
+  const L16 remainder = (L16(1) << (shift + 1)) - multiply_narrow(quotient, convert<std::int64_t>(area));
+  quotient = quotient + (remainder < 0) - (remainder >= convert<std::int64_t>(area));
+  value = shift_right_logical(quotient + 1, 1);
+}
+
+/// Gradients of sixteen planes: numerators times reciprocals, rounded.
+struct GradientLanes {
+  static constexpr std::int64_t kRaise = std::int64_t{1} << 62;  ///< makes a product positive: no shift needs a sign
+  L16 reciprocal, left, right;                                   ///< shifts: one of them 0
+  L16 addend, lowered;
+
+  /// `k`: bits that a product drops; negative: gains.
+  HALFPLANE_INLINE GradientLanes(const L16& reciprocal_, const I16& k)
+      : reciprocal(reciprocal_),
+        left(convert<std::int64_t>(max(-k, I16(0)))),
+        right(convert<std::int64_t>(max(k, I16(0)))),
+        addend(shift_right_logical(L16(1) << right, 1) + kRaise),
+        lowered(shift_right_logical(L16(kRaise), right)) {}
+
+  HALFPLANE_INLINE L16 operator()(const I16& numerator) const {
+    return rounded(multiply_narrow(convert<std::int64_t>(numerator), reciprocal));
+  }
+  HALFPLANE_INLINE L16 operator()(const L16& numerator) const { return rounded(numerator * reciprocal); }
+
+  HALFPLANE_INLINE L16 rounded(const L16& product) const {
+    return shift_right_logical((product << left) + addend, right) - lowered;
+  }
+};
+
+/// round_shift(), the lower 32 bits. bits <= 32.
+HALFPLANE_INLINE I16 round_shift_lanes(const L16& value, int bits) {
+  if (bits <= 0) return convert<std::int32_t>(value << -bits);
+  return convert<std::int32_t>(shift_right_logical(value + (std::int64_t{1} << (bits - 1)), bits));
+}
+
+/// A number for each channel.
+typedef std::int64_t Channels __attribute__((vector_size(32)));
+HALFPLANE_INLINE Channels load(const std::array<std::int64_t, 4>& from) {
+  typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
+  return *reinterpret_cast<const InMemory*>(from.data());
+}
+HALFPLANE_INLINE void store(std::array<std::int64_t, 4>& to, const Channels& value) {
+  typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
+  *reinterpret_cast<InMemory*>(to.data()) = value;
+}
+/// Of the lower halves: red with blue, green with alpha.
+HALFPLANE_INLINE ChannelPairs channel_pairs(const Channels& value) {
+  typedef std::int32_t Codes __attribute__((vector_size(16)));
+  const Codes code = __builtin_convertvector(value, Codes);
+  const Codes pair = (code & 0xffff) | __builtin_shufflevector(code, code, 2, 3, 0, 1) << 16;
+  return {pair[0], pair[1]};
+}
+/// round_shift(). The lanes have no signed shift: what is left of the sign bit goes through all bits above it.
+HALFPLANE_INLINE Channels round_shift_channels(const Channels& value, int bits) {
+  if (bits <= 0) return value << -bits;
+  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+  const Channels half = (Channels)((Unsigned)value >> (bits - 1)) & 1;
+  const auto sign = static_cast<std::int64_t>(std::uint64_t{1} << (63 - bits));
+  return (((Channels)((Unsigned)value >> bits)) ^ sign) - sign + half;
+}
+
+inline std::uint64_t product(std::int64_t a, std::int64_t b) {
+  return static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b);
+}

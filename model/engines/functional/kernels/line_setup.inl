@@ -1,0 +1,172 @@
+// Sixteen lines at a time through line_setup, and to the part of each that lies in the bin: a line a lane.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// Lines of a slice that wait, and after set_up_lines() where each of them enters the bin and how it goes on.
+///
+/// Codes are held in the upper bits of a lane: their registers then wrap by themselves.
+struct LineBatch {
+  using Lane = std::array<std::int32_t, 16>;
+
+  int count = 0;
+  alignas(64) std::array<Lane, 3> v;                         ///< into Slice::vertices: start, end, the provoking one
+  alignas(64) Lane pixels;                                   ///< in the bin; none when below 1
+  alignas(64) Lane x, y;                                     ///< of the first of them, from the bin's
+  alignas(64) Lane is_x_major, x_sign, y_sign, shows_start;  ///< -1: so, negative
+  alignas(64) std::array<double, 16> row, slope;             ///< rows moved n pixels on: floor(row + n slope)
+  alignas(64) std::array<std::int64_t, 16> depth, depth_step;
+  alignas(64) std::array<Lane, 4> color, color_step;
+  alignas(64) Lane depth_start, color_start;
+
+  /// True when that was the last for which there is room.
+  HALFPLANE_INLINE bool add(const Record& record) {
+    const auto i = static_cast<std::size_t>(count);
+    for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
+    return ++count == 16;
+  }
+};
+
+/// floor(numerator / denominator) of integers below 2^53, the quotient in an int32. Rounding never reaches an integer
+/// from below: the next one is at least 1 / denominator away.
+HALFPLANE_INLINE I16 floor_divide(const D16& numerator, const D16& denominator) {
+  const D16 quotient = numerator / denominator;
+  const I16 truncated = convert<std::int32_t>(quotient);
+  return truncated + convert<std::int32_t>(convert<double>(truncated) > quotient);
+}
+
+/// Where sixteen lines run in the bin.
+struct LineWay {
+  I16 offset;  ///< subpixels from the start to the centre of the first column
+  I16 low;     ///< the first step in the bin
+};
+
+/// pixels, row, slope, x, y, signs of a batch.
+HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, const LineRules& rules, int first_x,
+                                    int first_y) {
+  // Q, as in stages/line_setup: n columns on, the line is in row floor((Q + n d) / D) from the start's.
+  const int s = rules.grid_bits, half = 1 << (s - 1);
+  const I16 offset = (line.first << s) + half - line.a0, base_row = line.b0 >> s;
+  const D16 D = convert<double>(line.D), d = convert<double>(line.d);
+  const L16 numerator = convert<std::int64_t>(line.b0 & ((1 << s) - 1)) * convert<std::int64_t>(line.D) +
+                        convert<std::int64_t>(line.d) * convert<std::int64_t>(offset) +
+                        convert<std::int64_t>(~line.tie_moves(rules));
+  const D16 Q = convert<double>(numerator >> s);
+
+  // Steps whose column and row lie in the bin.
+  const auto bin_range = [](const I16& from, const I16& is_negative, bool is_low) HALFPLANE_LAMBDA {
+    const I16 to = from + (kBinSize - 1);
+    return select(is_negative, is_low ? ~to : ~from, is_low ? from : to);
+  };
+  const I16 bin_major = select(line.is_x_major, I16(first_x), I16(first_y)),
+            bin_minor = select(line.is_x_major, I16(first_y), I16(first_x));
+  I16 low = max(bin_range(bin_major, line.is_major_negative, true) - line.first, I16(0));
+  I16 high = min(bin_range(bin_major, line.is_major_negative, false), line.end - 1) - line.first;
+  const D16 top = convert<double>(bin_range(bin_minor, line.is_minor_negative, true) - base_row),
+            bottom = convert<double>(bin_range(bin_minor, line.is_minor_negative, false) - base_row);
+  const D16 never(1 << 20), some_d = max(d, D16(1.0));
+  const L16 is_level = d == 0.0;
+  const D16 missing = top * D - Q;                  // until the bin's first row
+  const D16 room = (bottom + 1.0) * D - (Q + 1.0);  // to its last
+  const D16 enters = select(is_level, never, min((missing + (d - 1.0)) / some_d, never));
+  const D16 leaves = select(is_level, never, min(room / some_d, never));
+  low = max(low, convert<std::int32_t>(select(missing > 0.0, enters, D16(0.0))));
+  high = min(high, convert<std::int32_t>(select(room < 0.0, D16(-1.0), leaves)));
+  (high - low + 1).store(batch.pixels.data());
+
+  const D16 steps = convert<double>(low), position = Q + d * steps;
+  const I16 moved = floor_divide(position, D);
+  const D16 reciprocal_D = 1.0 / D;
+  // Half a unit off every border between rows: far more than what these products are off.
+  ((position - convert<double>(moved) * D + 0.5) * reciprocal_D).store(batch.row.data());
+  (d * reciprocal_D).store(batch.slope.data());
+  const I16 major = (line.first + low) ^ line.is_major_negative, minor = (base_row + moved) ^ line.is_minor_negative;
+  (select(line.is_x_major, major, minor) - first_x).store(batch.x.data());
+  (select(line.is_x_major, minor, major) - first_y).store(batch.y.data());
+  line.is_x_major.store(batch.is_x_major.data());
+  select(line.is_x_major, line.is_major_negative, line.is_minor_negative).store(batch.x_sign.data());
+  select(line.is_x_major, line.is_minor_negative, line.is_major_negative).store(batch.y_sign.data());
+  ((low == 0) & (offset < 0)).store(batch.shows_start.data());
+  return {offset, low};
+}
+
+/// An attribute along sixteen lines. Values wrap far above their bits: shifts need no sign. Steps do as well, but not
+/// where they are still to be shifted down: a line shorter than a pixel has steps above the whole range.
+struct LineAttributes {
+  GradientLanes gradient;
+  int grid_bits, guard_bits;
+  L16 to_first;
+  I16 low;
+
+  /// The value in the centre of the first column.
+  [[nodiscard]] HALFPLANE_INLINE L16 start_of(const I16& from, const L16& step) const {
+    const std::int64_t half_code = std::int64_t{1} << (guard_bits - 1), half_step = std::int64_t{1} << (grid_bits - 1);
+    return (convert<std::int64_t>(from) << guard_bits) + half_code +
+           shift_right_logical(step * to_first + half_step, grid_bits);
+  }
+
+  struct Narrow {
+    I16 value, step;
+  };
+  /// The value at the first step in the bin, of 32 bits.
+  [[nodiscard]] HALFPLANE_INLINE Narrow narrow(const I16& from, const I16& to) const {
+    const L16 step64 = gradient(to - from);
+    const I16 step = convert<std::int32_t>(step64);
+    return {convert<std::int32_t>(start_of(from, step64)) + step * low, step};
+  }
+};
+
+HALFPLANE_INLINE void set_up_line_depth(LineBatch& batch, const LineAttributes& along, const I16& from, const I16& to,
+                                        int bits) {
+  const int unused = 64 - bits;
+  if (unused >= 32) {
+    const LineAttributes::Narrow z = along.narrow(from, to);
+    (convert<std::int64_t>(z.value) << unused).store(batch.depth.data());
+    (convert<std::int64_t>(z.step) << unused).store(batch.depth_step.data());
+  } else {
+    const L16 step = along.gradient(to - from);
+    ((along.start_of(from, step) + step * convert<std::int64_t>(along.low)) << unused).store(batch.depth.data());
+    (step << unused).store(batch.depth_step.data());
+  }
+  from.store(batch.depth_start.data());
+}
+
+/// `from`, `to`: colours, R lowest.
+HALFPLANE_INLINE void set_up_line_colors(LineBatch& batch, const LineAttributes& along, const I16& from, const I16& to,
+                                         int bits) {
+  from.store(batch.color_start.data());
+  for (std::size_t c = 0; c < 4; ++c) {
+    const int down = static_cast<int>(8 * c);
+    const auto code = [down](const I16& rgba) HALFPLANE_LAMBDA { return shift_right_logical(rgba, down) & 255; };
+    const LineAttributes::Narrow channel = along.narrow(code(from), code(to));
+    (channel.value << (32 - bits)).store(batch.color[c].data());
+    (channel.step << (32 - bits)).store(batch.color_step[c].data());
+  }
+}
+
+/// Everything about the lines that wait.
+HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const FrameContext& frame, int first_x,
+                                     int first_y) {
+  const Config& config = frame.config;
+  const Widths& widths = frame.widths;
+  const LineRules rules(slice.context->state, widths);
+  for (int i = batch.count; i < 16; ++i)  // what is not there is like the first
+    for (std::size_t k = 0; k < 3; ++k) batch.v[k][static_cast<std::size_t>(i)] = batch.v[k][0];
+  const auto fetch = [&](std::size_t k)
+                         HALFPLANE_LAMBDA { return load_vertices(slice.vertices.data(), batch.v[k].data()); };
+  const SnappedLanes start = fetch(0), end = fetch(1);
+  const OctantLanes line(start.x, start.y, end.x, end.y, rules);
+  const LineWay way = set_up_way(batch, line, rules, first_x, first_y);
+  L16 reciprocal, shift;
+  reciprocal_lanes(line.D, config.depth_bits + config.reciprocal_extra_bits, reciprocal, shift);
+  reciprocal = select(convert<std::int64_t>(line.a1 == line.a0), L16(0), reciprocal);
+  const int s = rules.grid_bits, guard_bits = widths.line_guard_bits;
+  const LineAttributes along{{reciprocal, convert<std::int32_t>(shift) - (s + guard_bits)},
+                             s,
+                             guard_bits,
+                             convert<std::int64_t>(way.offset),
+                             way.low};
+  set_up_line_depth(batch, along, start.z, end.z, widths.line_depth.bits);
+  if (!slice.state.color_write) return;
+  const bool is_flat = slice.state.is_flat;
+  const I16 c0 = is_flat ? fetch(2).rgba : start.rgba;
+  set_up_line_colors(batch, along, c0, is_flat ? c0 : end.rgba, widths.line_color.bits);
+}

@@ -1,0 +1,145 @@
+// Setup, coarse raster, fine raster, interpolation, depth test and ROP of one bin, fused. Bits as in the stages; the
+// order of the work is this engine's own:
+//
+//   triangle within two by two pixels  sixteen at a time through setup, then their samples
+//   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
+//   within three by three, in a row    the same
+//   larger                             its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
+//
+// A block is 4 x 4 pixels: sixteen lanes, one cache line. A tile is four of them.
+//
+// A tile that a triangle covers wholly, in front of all that is there, is taken without looking at a pixel: it remembers
+// the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// The part of a record's box that lies in the bin.
+HALFPLANE_INLINE Box box_of(const Bin& bin, const Record& record) {
+  return {std::max(record.left() - bin.first_x, 0), std::max(record.top() - bin.first_y, 0),
+          std::min(record.right() - bin.first_x, kBinSize - 1), std::min(record.bottom() - bin.first_y, kBinSize - 1)};
+}
+
+/// Counts what lies behind its tiles.
+inline void leave_out(Bin& bin, const Box& at) {
+  const auto tiles = static_cast<unsigned>(((at.right >> kTileShift) - (at.left >> kTileShift) + 1) *
+                                           ((at.bottom >> kTileShift) - (at.top >> kTileShift) + 1));
+  bin.job.counters.tiles_visited += tiles;
+  bin.job.counters.skipped.tiles_hiz += tiles;
+}
+
+/// Whether all tiles of a box hide a record.
+template <class Fragments>
+HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const Record& record, const Box& box) {
+  const int left = box.left >> kTileShift, right = box.right >> kTileShift, top = box.top >> kTileShift,
+            bottom = box.bottom >> kTileShift;
+  const I16 is_column = (bin.position.pair_x >= left) & (bin.position.pair_x <= right);
+  I16 low(0x7fffffff), high(-1);
+  for (int row = top & ~1; row <= bottom; row += 2) {
+    const I16 y = bin.position.pair_y + row, is_in = is_column & (y >= top) & (y <= bottom);
+    high = max(high, select(is_in, I16::load(bin.tile_high + row * kBinTiles), I16(-1)));
+    if (!Fragments::kIsLess) low = min(low, select(is_in, I16::load(bin.tile_low + row * kBinTiles), I16(0x7fffffff)));
+  }
+  return Fragments::is_behind(bin.state, record, Fragments::kIsLess ? 0 : min_lane(low), max_lane(high));
+}
+
+/// The same for a small or medium triangle.
+template <class Fragments>
+HALFPLANE_INLINE bool is_small_behind(const Bin& bin, const Record& record, const Box& box) {
+  const auto tile_of = [](int x, int y) HALFPLANE_LAMBDA { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); };
+  const int a = tile_of(box.left, box.top), b = tile_of(box.right, box.top), c = tile_of(box.left, box.bottom),
+            d = tile_of(box.right, box.bottom);
+  const bool is_over_two = b > a + 1 || c > a + kBinTiles;
+  if (is_over_two) return is_behind_tiles<Fragments>(bin, record, box);
+  const auto &low = bin.tile_low, &high = bin.tile_high;
+  return Fragments::is_behind(bin.state, record, std::min({low[a], low[b], low[c], low[d]}),
+                              std::max({high[a], high[b], high[c], high[d]}));
+}
+
+/// What the next records need is asked for now.
+HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
+  constexpr std::ptrdiff_t kAhead = 8;
+  if (last - first <= kAhead) return;
+  __builtin_prefetch(&slice.records[first[kAhead]]);
+  if (const Record& near = slice.records[first[kAhead / 2]]; near.kind() == RecordKind::whole_line)
+    for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
+}
+
+/// A triangle that is drawn by itself.
+template <class Fragments>
+HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record) {
+  BinTriangle triangle;
+  triangle.box = box_of(bin, record);
+  triangle.is_whole = record.has(Record::kWhole);
+  // Nearer than all of the bin: no need to look at its tiles.
+  const bool may_be_behind = !Fragments::kIsLess || record.z_low >= bin.low;
+  if (bin.skip.tiles_hiz && may_be_behind && is_behind_tiles<Fragments>(bin, record, triangle.box)) {
+    leave_out(bin, triangle.box);
+    if (bin.may_be_lower) find_bin_range(bin);  // what follows may lie behind all of it
+    return;
+  }
+  if (set_up(bin, slice, record, triangle) && !record.has(Record::kDrawsNothing)) draw_large<Fragments>(bin, triangle);
+}
+
+/// The records of one slice.
+template <class Fragments>
+void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
+  bin.line_tiles = 0;
+  for (; first != last; ++first) {
+    const Record& record = slice.records[*first];
+    fetch_records(slice, first, last);
+    if (bin.skip.tiles_hiz && Fragments::is_behind(bin.state, record, bin.low, bin.high)) {
+      leave_out(bin, box_of(bin, record));
+      continue;
+    }
+    // A batch pays for medium triangles from the third in a row on.
+    constexpr int kAlone = 2;
+    const bool is_medium = record.has(Record::kMedium);
+    bin.small_run = is_medium ? bin.small_run + 1 : 0;
+    if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
+      // Nearer than what every tile may hold: no need to look at its own.
+      if (bin.skip.tiles_hiz && (!Fragments::kIsLess || record.z_low >= bin.lowest_high)) {
+        const Box at = box_of(bin, record);
+        if (is_small_behind<Fragments>(bin, record, at)) {
+          leave_out(bin, at);
+          continue;
+        }
+      }
+      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
+      continue;
+    }
+    if (record.kind() == RecordKind::whole_line) {
+      if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
+      continue;
+    }
+    draw_batch<Fragments>(bin, slice);
+    draw_lines<Fragments>(bin, slice);
+    if (record.kind() == RecordKind::cut_line)
+      draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
+    else
+      draw_alone<Fragments>(bin, slice, record);
+  }
+  draw_batch<Fragments>(bin, slice);
+  draw_lines<Fragments>(bin, slice);
+}
+
+/// The kernel: a bin, slice after slice.
+static void raster(BinJob& job) {
+  Bin bin(job);
+  if (!bin.are_lines) fetch_target(bin);
+  const auto number = static_cast<std::size_t>(job.bin);
+  for (const Slice* const at : job.slices) {
+    const Slice& slice = *at;
+    const std::uint32_t* first = slice.bin_records.data() + slice.bin_first[number];
+    const std::uint32_t* last = slice.bin_records.data() + slice.bin_first[number + 1];
+    if (first == last) continue;
+    bin.state = slice.state;
+    find_bin_range(bin);
+    bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
+    bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
+    // Twice: for the test that nearly every scene has, and for any.
+    if (bin.state.depth_test == DepthFunc::less)
+      draw_records<OpaqueFragments<true>>(bin, slice, first, last);
+    else
+      draw_records<OpaqueFragments<false>>(bin, slice, first, last);
+  }
+  finish(bin);
+}

@@ -1,0 +1,164 @@
+// Where a tile's pixels are: in the target, in the bin's memory, or still a triangle; and the range of its depths.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// First pixel of a tile in the bin's memory.
+inline int first_of(int tile) { return tile * kTileSize * kTileSize; }
+
+/// First pixels of the blocks in the bin's memory: what a column of blocks adds, and a row.
+using BlockPlaces = std::array<std::int32_t, kBinSize / kBlockSize>;
+
+static constexpr BlockPlaces kColumnPlaces = [] {
+  BlockPlaces places{};
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = static_cast<std::int32_t>((i >> 1) * kTileSize * kTileSize + (i & 1) * kBlockPixels);
+  return places;
+}();
+
+static constexpr BlockPlaces kRowPlaces = [] {
+  BlockPlaces places{};
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = static_cast<std::int32_t>((i >> 1) * kBinTiles * kTileSize * kTileSize + (i & 1) * 2 * kBlockPixels);
+  return places;
+}();
+
+/// Where pixel (x, y) of the bin is in its memory.
+HALFPLANE_INLINE I16 place_of(const I16& x, const I16& y) {
+  return (((x & 56) << 3) | ((x & 4) << 2) | (x & 3)) + (((y & 56) << 6) | ((y & 4) << 3) | ((y & 3) << 2));
+}
+
+/// The bin's part of the target is asked for now: it is written at the end, and comes from far away.
+inline void fetch_target(const Bin& bin) {
+  constexpr int kLine = 16;  // pixels
+  const int rows = std::min(kBinSize, bin.job.target.height - bin.first_y),
+            columns = std::min(kBinSize, bin.job.target.width - bin.first_x);
+  for (int y = 0; y < rows; ++y) {
+    const std::size_t at = bin.job.target.at(bin.first_x, bin.first_y + y);
+    for (int x = 0; x < columns + kLine - 1; x += kLine) {
+      const std::size_t pixel = at + static_cast<std::size_t>(std::min(x, columns - 1));
+      __builtin_prefetch(bin.job.target.depth.data() + pixel, 1, 2);
+      __builtin_prefetch(bin.job.target.color.data() + pixel, 1, 2);
+    }
+  }
+}
+
+/// First pixel of a tile in the target, or none where the bin hangs over it.
+[[nodiscard]] inline std::ptrdiff_t in_target(const Bin& bin, int tile) {
+  const int x = bin.first_x + tile % kBinTiles * kTileSize, y = bin.first_y + tile / kBinTiles * kTileSize;
+  if (x >= bin.job.target.width || y >= bin.job.target.height) return -1;
+  return static_cast<std::ptrdiff_t>(bin.job.target.at(x, y));
+}
+
+using TileBlocks = std::array<I16, 4>;
+
+/// A tile's depths, which are in memory or those of a triangle.
+HALFPLANE_INLINE TileBlocks depths_of(const Bin& bin, int tile) {
+  TileBlocks blocks;
+  const std::int32_t owner = bin.depth_owner[tile];
+  if (owner >= 0) {
+    const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(owner)];
+    const auto ramp = depth_ramp(bin, t, depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = block_depths(bin, t, ramp, i);
+  } else {
+    const std::int32_t* from = bin.memory.depth.data() + first_of(tile);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);
+  }
+  return blocks;
+}
+
+HALFPLANE_INLINE TileBlocks colors_of(const Bin& bin, int tile) {
+  TileBlocks blocks;
+  const std::int32_t owner = bin.color_owner[tile];
+  if (owner >= 0) {
+    const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(owner)];
+    const auto ramp = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+    for (std::size_t i = 0; i < 4; ++i)
+      blocks[i] = block_colors(t.color, ramp, i, bin.color_format, bin.config.color_format);
+  } else {
+    const std::uint32_t* from = bin.memory.color.data() + first_of(tile);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);
+  }
+  return blocks;
+}
+
+template <class Element>
+void fetch_tile(const Bin& bin, Element* to, int tile, bool is_cleared, std::uint32_t clear,
+                const Framebuffer::Image& image) {
+  const std::ptrdiff_t from = in_target(bin, tile);
+  for (int block = 0; block < 4; ++block) {
+    const std::ptrdiff_t at =
+        from + (block >> 1) * kBlockSize * std::ptrdiff_t{bin.job.target.stride} + (block & 1) * kBlockSize;
+    const I16 value = is_cleared || from < 0 ? I16(static_cast<std::int32_t>(clear))
+                                             : load_block(image.data() + at, bin.job.target.stride);
+    value.store(to + kBlockPixels * block);
+  }
+}
+
+HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
+  std::int32_t* to = bin.memory.depth.data() + first_of(tile);
+  const std::int32_t owner = bin.depth_owner[tile];
+  if (owner >= 0) {
+    const TileBlocks blocks = depths_of(bin, tile);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
+    bin.depth_owner[tile] = Bin::kInMemory;
+    return;
+  }
+  fetch_tile(bin, to, tile, owner == Bin::kCleared, bin.job.clear_depth, bin.job.target.depth);
+  bin.depth_owner[tile] = Bin::kInMemory;
+}
+
+HALFPLANE_NOINLINE void fetch_color(Bin& bin, int tile) {
+  std::uint32_t* to = bin.memory.color.data() + first_of(tile);
+  const std::int32_t owner = bin.color_owner[tile];
+  if (owner >= 0) {
+    const TileBlocks blocks = colors_of(bin, tile);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
+    bin.color_owner[tile] = Bin::kInMemory;
+    return;
+  }
+  fetch_tile(bin, to, tile, owner == Bin::kCleared, bin.job.clear_color, bin.job.target.color);
+  bin.color_owner[tile] = Bin::kInMemory;
+}
+
+/// Makes the tile's depths be in memory.
+HALFPLANE_INLINE void need_depth(Bin& bin, int tile) {
+  if (bin.depth_owner[tile] != Bin::kInMemory) fetch_depth(bin, tile);
+}
+
+HALFPLANE_INLINE void need_color(Bin& bin, int tile) {
+  if (bin.color_owner[tile] != Bin::kInMemory) fetch_color(bin, tile);
+}
+
+inline void find_bin_range(Bin& bin) {
+  bin.may_be_lower = false;
+  I16 low = I16::load(bin.tile_low), high = I16::load(bin.tile_high), lowest_high = high;
+  for (int t = 16; t < Bin::kTiles; t += 16) {
+    const I16 highs = I16::load(bin.tile_high + t);
+    low = min(low, I16::load(bin.tile_low + t));
+    high = max(high, highs);
+    lowest_high = min(lowest_high, highs);
+  }
+  bin.low = min_lane(low);
+  bin.high = max_lane(high);
+  bin.lowest_high = min_lane(lowest_high);
+}
+
+/// The range of a tile's depths, from its pixels.
+HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
+  const std::int32_t* from = bin.memory.depth.data() + first_of(tile);
+  I16 low = I16::load(from), high = low;
+  for (int block = 1; block < 4; ++block) {
+    const I16 depth = I16::load(from + kBlockPixels * block);
+    low = min(low, depth);
+    high = max(high, depth);
+  }
+  bin.tile_low[tile] = min_lane(low);
+  bin.tile_high[tile] = max_lane(high);
+}
+
+/// A tile may now hold any depths beside what it held. A store, not a minimum: the next triangle of the tile need not
+/// wait for it.
+template <class Fragments>
+HALFPLANE_INLINE void forget_range(Bin& bin, int tile) {
+  if (Fragments::kIsLess || !bin.rises) bin.tile_low[tile] = 0;
+  if (!Fragments::kIsLess && !bin.falls) bin.tile_high[tile] = 0x7fffffff;
+}

@@ -1,0 +1,61 @@
+// Depths and colours of a tile, block by block: from the plane's value at the tile's anchor.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// The depth at a tile's anchor, in a lane.
+HALFPLANE_INLINE std::int32_t depth_anchor(const Bin& bin, const BinTriangle& t, int tile_x, int tile_y) {
+  const auto value = static_cast<std::uint64_t>(t.z_anchor) + product(t.z_tile_x, tile_x) + product(t.z_tile_y, tile_y);
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(value) >> bin.depth_format.drop)
+                                   << bin.depth_format.up);
+}
+HALFPLANE_INLINE ChannelPairs color_anchor(const Bin& bin, const BinTriangle& t, int tile_x, int tile_y) {
+  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+  const Channels value = load(t.c_anchor) + load(t.c_tile_x) * tile_x + load(t.c_tile_y) * tile_y;
+  return channel_pairs((Channels)((Unsigned)value >> bin.color_format.drop << bin.color_format.up));
+}
+
+/// A plane over a tile: its first block, and the steps from there to the blocks on the right and below.
+template <class Lanes>
+struct BlockRamp {
+  Lanes first, right, below;
+
+  HALFPLANE_INLINE Lanes operator()(std::size_t block) const {
+    const Lanes upper = (block & 1) != 0 ? first + right : first;
+    return (block >> 1) != 0 ? upper + below : upper;
+  }
+};
+using ColorRamp = std::array<BlockRamp<S32>, 2>;
+
+HALFPLANE_INLINE BlockRamp<I16> depth_ramp(const Bin& bin, const BinTriangle& t, std::int32_t anchor) {
+  return {bin.position.column[0] * t.z_step_x + bin.position.row[0] * t.z_step_y + anchor, I16(kBlockSize * t.z_step_x),
+          I16(kBlockSize * t.z_step_y)};
+}
+HALFPLANE_INLINE ColorRamp color_ramp(const Bin& bin, const ColorSteps& t, const ChannelPairs& anchor) {
+  ColorRamp ramp;
+  for (std::size_t p = 0; p < 2; ++p) {
+    const auto step_x = as<S32>(I16(t.step_x[p])), step_y = as<S32>(I16(t.step_y[p]));
+    ramp[p] = {as<S32>(bin.position.column_pair[0]) * step_x + as<S32>(bin.position.row_pair[0]) * step_y +
+                   as<S32>(I16(anchor[p])),
+               step_x << kBlockShift, step_y << kBlockShift};
+  }
+  return ramp;
+}
+
+/// Depths in block 0...3 of a tile.
+HALFPLANE_INLINE I16 block_depths(const Bin& bin, const BinTriangle& t, const BlockRamp<I16>& ramp, std::size_t block) {
+  return decode(ramp(block), bin.depth_format, t.z_low, t.z_high);
+}
+/// Packed colours.
+HALFPLANE_INLINE I16 block_colors(const ColorSteps& t, const ColorRamp& ramp, std::size_t block,
+                                  const LaneFormat& format, ColorFormat pixels) {
+  const auto pair = [&](std::size_t p)
+                        HALFPLANE_LAMBDA { return color_codes(ramp[p](block), I16(t.low[p]), I16(t.high[p]), format); };
+  return packed(pair(0), pair(1), pixels);
+}
+
+/// Two channels' codes, in the halves of each lane, as everything here: columns and rows from the anchor.
+[[nodiscard]] HALFPLANE_INLINE I16 channel_codes(const Bin& bin, const I16& column, const I16& row, const I16& step_x,
+                                                 const I16& step_y, const I16& anchor, const I16& low,
+                                                 const I16& high) {
+  return color_codes(as<S32>(column) * as<S32>(step_x) + as<S32>(row) * as<S32>(step_y) + as<S32>(anchor), low, high,
+                     bin.color_format);
+}

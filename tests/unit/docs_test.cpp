@@ -1,0 +1,214 @@
+// What the pages and the comments point at is there: files, folders, headings, and the stems of rtl_ref/README.md.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace halfplane {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+const fs::path kRoot{HALFPLANE_SOURCE_DIR};
+constexpr std::array<std::string_view, 7> kFolders{"cmake", "docs", "model", "rtl_ref", "sim", "tests", "tools"};
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+bool has_suffix(std::string_view text, std::string_view suffix) {
+  return text.size() >= suffix.size() && text.substr(text.size() - suffix.size()) == suffix;
+}
+
+bool is_code(std::string_view name) {
+  const std::array<std::string_view, 4> endings{".hpp", ".cpp", ".inl", ".sv"};
+  return std::any_of(endings.begin(), endings.end(), [&](auto ending) { return has_suffix(name, ending); });
+}
+
+/// Every file and folder of the project by its path from the root; `ends` holds what a path may be shortened to.
+struct Tree {
+  std::set<std::string> paths, ends;
+
+  Tree() {
+    for (const auto& entry : fs::directory_iterator(kRoot))
+      if (entry.is_regular_file()) add(entry.path());
+    for (const std::string_view folder : kFolders) {
+      add(kRoot / folder);
+      for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) add(entry.path());
+    }
+  }
+
+  void add(const fs::path& path) {
+    const std::string text = path.lexically_relative(kRoot).generic_string();
+    paths.insert(text);
+    ends.insert(text);
+    for (std::size_t slash = text.find('/'); slash != std::string::npos; slash = text.find('/', slash + 1))
+      ends.insert(text.substr(slash + 1));
+  }
+};
+
+const Tree& tree() {
+  static const Tree tree;
+  return tree;
+}
+
+/// `NAME.sv` stands for any name, `_serial.sv` for the end of one; what is in build/ is made.
+bool is_placeholder(const std::string& word) {
+  if (word[0] == '.' || word[0] == '_' || word.rfind("build/", 0) == 0) return true;
+  const std::string stem = fs::path(word).stem().string();
+  return std::all_of(stem.begin(), stem.end(), [](unsigned char c) { return std::isupper(c) != 0; });
+}
+
+/// The words of `text` that name a file or a folder from the root, or a source file by the end of its path, and are none.
+Texts untrue_paths(std::string_view text) {
+  Texts result;
+  const auto is_part = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '/';
+  };
+  for (auto at = text.begin(); at != text.end();) {
+    const auto begin = std::find_if(at, text.end(), is_part);
+    at = std::find_if_not(begin, text.end(), is_part);
+    std::string word(begin, at);
+    const bool is_pattern = at != text.end() && (*at == '*' || *at == '<' || *at == '{' || *at == '$');
+    while (!word.empty() && (word.back() == '.' || word.back() == '/')) word.pop_back();
+    while (word.rfind("../", 0) == 0) word.erase(0, 3);
+    if (word.rfind("halfplane/", 0) == 0) word.erase(0, 10);  // as installed
+    const std::string top = word.substr(0, word.find('/'));
+    const bool is_rooted = top != word && std::find(kFolders.begin(), kFolders.end(), top) != kFolders.end();
+    if (is_pattern || (!is_rooted && !is_code(word))) continue;
+    if (tree().ends.count(word) == 0 && !is_placeholder(word)) result.push_back(word);
+  }
+  return result;
+}
+
+/// A heading's anchor, as GitHub makes it.
+std::string anchor_of(std::string_view heading) {
+  std::string anchor;
+  for (const char c : heading) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == ' ' || c == '-') anchor += '-';
+    if (std::isalnum(u) != 0 || c == '_' || u >= 0x80) anchor += static_cast<char>(std::tolower(u));
+  }
+  return anchor;
+}
+
+bool has_anchor(const std::string& page, const std::string& anchor) {
+  for (std::size_t at = 0; at < page.size();) {
+    const std::size_t end = std::min(page.find('\n', at), page.size());
+    const std::string_view line(page.data() + at, end - at);
+    const std::size_t text = line.find_first_not_of('#');
+    if (text != 0 && text != std::string_view::npos && anchor_of(line.substr(text + 1)) == anchor) return true;
+    at = end + 1;
+  }
+  return false;
+}
+
+/// The links of a page at `folder` whose file or heading is not there. An empty `text` before '#' means the page itself.
+Texts untrue_links(const std::string& page, const fs::path& folder) {
+  Texts result;
+  for (std::size_t at = page.find("]("); at != std::string::npos; at = page.find("](", at + 2)) {
+    const std::string link = page.substr(at + 2, page.find_first_of(") \n", at + 2) - at - 2);
+    if (link.find("://") != std::string::npos) continue;
+    const std::size_t hash = std::min(link.find('#'), link.size());
+    const fs::path target = folder / link.substr(0, hash);
+    const bool is_there = hash == 0 || fs::exists(target);
+    const std::string other = hash < link.size() && hash != 0 ? read(target) : page;
+    if (!is_there || (hash < link.size() && !has_anchor(other, link.substr(hash + 1)))) result.push_back(link);
+  }
+  return result;
+}
+
+std::vector<fs::path> files(std::string_view folder, const std::vector<std::string>& endings) {
+  std::vector<fs::path> result;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
+    if (std::find(endings.begin(), endings.end(), entry.path().extension()) != endings.end()) result.push_back(entry);
+  return result;
+}
+
+std::vector<fs::path> pages() {
+  std::vector<fs::path> result = files("docs", {".md"});
+  for (const char* page : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "rtl_ref/README.md"})
+    result.push_back(kRoot / page);
+  return result;
+}
+
+/// What is after "//" in each line.
+std::string comments_of(const std::string& source) {
+  std::string result;
+  for (std::size_t at = source.find("//"); at != std::string::npos; at = source.find("//", at)) {
+    const std::size_t end = std::min(source.find('\n', at), source.size());
+    result.append(source, at, end - at).push_back('\n');
+    at = end;
+  }
+  return result;
+}
+
+void expect_none(const Texts& untrue, const fs::path& where) {
+  for (const std::string& word : untrue)
+    ADD_FAILURE() << where.lexically_relative(kRoot).generic_string() << " points at " << word
+                  << ", which is not there";
+}
+
+TEST(Docs, EveryLinkLeadsToAFileAndAHeading) {
+  for (const fs::path& page : pages()) expect_none(untrue_links(read(page), page.parent_path()), page);
+}
+
+// Decisions and changes of old speak of the files of their day.
+TEST(Docs, EveryPathInAPageIsThere) {
+  for (const fs::path& page : pages()) {
+    if (page.parent_path().filename() == "adr" || page.filename() == "CHANGELOG.md") continue;
+    expect_none(untrue_paths(read(page)), page);
+  }
+}
+
+TEST(Docs, EveryPathInACommentIsThere) {
+  for (const std::string_view folder : {"model", "rtl_ref", "sim", "tests", "tools"})
+    for (const fs::path& source : files(folder, {".hpp", ".cpp", ".inl", ".sv"}))
+      expect_none(untrue_paths(comments_of(read(source))), source);
+}
+
+TEST(Docs, PathsAndLinksThatAreNotThereAreFound) {
+  EXPECT_EQ(untrue_paths("`model/config.hpp`, config.hpp, sim/scene/, tests/formal/NAME.sv, docs/*.md, build/x.cpp"),
+            Texts{});
+  EXPECT_EQ(untrue_paths("see model/confog.hpp and ../sim/nowhere; cull.svh confog.inl."),
+            (Texts{"model/confog.hpp", "sim/nowhere", "confog.inl"}));
+  EXPECT_EQ(
+      untrue_links("# A `b`: c\n[1](#a-b-c) [2](#a) [3](docs/spec.md#lines) [4](docs/spec.md#none) [5](no.md)", kRoot),
+      (Texts{"#a", "docs/spec.md#none", "no.md"}));
+}
+
+/// Stems of the files in a folder.
+std::set<std::string> stems(std::string_view folder, const std::vector<std::string>& endings) {
+  std::set<std::string> result;
+  for (const fs::path& file : files(folder, endings)) result.insert(file.stem().string());
+  return result;
+}
+
+TEST(Docs, StagesOfTheRtlHaveTheStemsOfTheModelBesidesTheExceptionsNamed) {
+  const std::set<std::string> model = stems("model/stages", {".hpp", ".cpp"}), rtl = stems("rtl_ref/stages", {".sv"});
+  for (std::string stem : rtl) {
+    if (has_suffix(stem, "_serial")) stem.resize(stem.size() - 7);
+    EXPECT_EQ(model.count(stem), 1U) << "rtl_ref/stages/" << stem << ".sv has no namesake in model/stages";
+  }
+  const std::string page = read(kRoot / "rtl_ref/README.md");
+  const std::size_t begin = page.find("## Stems");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string table = page.substr(begin, page.find("\n## ", begin) - begin);
+  for (const std::string& stem : model)
+    EXPECT_TRUE(rtl.count(stem) == 1 || table.find('`' + stem + '`') != std::string::npos)
+        << "model/stages/" << stem << " has no RTL, and rtl_ref/README.md does not say so";
+}
+
+}  // namespace
+}  // namespace halfplane

@@ -1,0 +1,54 @@
+# shellcheck shell=bash
+# Part of ./dev: lint and format.
+
+sources() { find model sim tests tools -name '*.[ch]pp' -o -name '*.inl' | sort; }
+
+# Files that differ from the last commit; all of them where git cannot tell.
+changed_sources() {
+  if [[ ${1:-} == --all ]] || ! git rev-parse -q --verify HEAD >/dev/null 2>&1; then
+    sources
+  else
+    comm -12 <(sources) <({ git diff --name-only HEAD && git ls-files --others --exclude-standard; } | sort)
+  fi
+}
+
+# Switches that clang-format 14 does not know, because more than the words themselves stands in the comment.
+format_switches() { ! sources | xargs grep -nE '// clang-format (on|off).+'; }
+
+# Each module with the widths of `embedded`, the whole design with those of every preset.
+lint_rtl() {
+  local file package status=0
+  for file in rtl_ref/stages/*.sv rtl_ref/lib/*.sv; do
+    verilate_lint rtl_ref/raster_pkg.sv "$file" || status=1
+  done
+  for package in rtl_ref/raster_pkg.sv rtl_ref/presets/*/raster_pkg.sv; do
+    verilate_lint "$package" rtl_ref/raster_top.sv || status=1
+    verilate_lint "$package" rtl_ref/cosim/raster_cosim.sv || status=1
+  done
+  return $status
+}
+
+verilate_lint() {
+  verilator_bin --lint-only -Wall -Irtl_ref -Irtl_ref/lib -Irtl_ref/stages --top-module "$(basename "$2" .sv)" "$1" "$2"
+}
+
+lint() {
+  ensure "${everyday[@]}" lint
+  insist build sim test rtl lint
+  local changed
+  mapfile -t changed < <(changed_sources "$@" | grep -E '^(model|sim|tests)/.*\.cpp$')
+  step 'shellcheck' shellcheck --external-sources --check-sourced dev .ci/run tools/mesa/run
+  step "clang-format's switches" format_switches
+  step 'clang-format' xargs -a <(sources) clang-format --dry-run -Werror
+  step 'verilator --lint-only' lint_rtl
+  step 'configure' configure release
+  ((${#changed[@]} > 0)) || return 0
+  step "clang-tidy: ${#changed[@]} files" xargs -a <(printf '%s\n' "${changed[@]}") -n 1 -P "$(jobs)" \
+    clang-tidy --quiet -p build/release --warnings-as-errors='*'
+}
+
+format() {
+  ensure lint
+  insist lint
+  xargs -a <(sources) clang-format -i
+}
