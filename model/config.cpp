@@ -196,8 +196,11 @@ void validate(const Config& config) {
   require_bits(widths.area, 63, "a 64-bit lane");
   require_bits(widths.edge_value, 64, "a 64-bit lane");
   require_bits(widths.sample_edge, 32, "a 32-bit lane");
-  require_bits(widths.depth_plane, 64, "a 64-bit lane");
-  require_bits(widths.depth_product, 127, "a 128-bit product");
+  for (int a = 0; a < widths.attributes.attributes; ++a) {
+    const AttributeWidths& attribute = widths.attribute[static_cast<std::size_t>(a)];
+    require_bits(attribute.plane, 64, "a 64-bit lane");
+    require_bits(attribute.product, 127, "a 128-bit product");
+  }
   const double bound = depth_error_bound(config);
   char text[16];
   std::snprintf(text, sizeof text, "%.2f", bound);

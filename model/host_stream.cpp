@@ -1,27 +1,27 @@
 #include "host_stream.hpp"
 
+#include "fragment_ops.hpp"
+
 namespace halfplane {
 namespace {
 
 /// A primitive without vertices: one depth and one colour over its whole box.
 PrimitivePacket flat_packet(PrimitiveKind kind, const Rect& rect) {
   PrimitivePacket packet;
-  packet.kind = static_cast<std::uint8_t>(kind);
-  packet.depth_test = static_cast<std::uint8_t>(DepthFunc::always);
-  set_box(packet, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
+  packet.kind = kind;
+  packet.state.depth_test = DepthFunc::always;
+  packet.box = to_box({rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
   return packet;
 }
 
-void clear_depth(PrimitivePacket& packet, std::uint32_t code) {
-  packet.depth_write = 1;
-  packet.z.fill(code);
+void clear_depth(PrimitivePacket& packet, double z, const Config& config) {
+  packet.state.depth_write = true;
+  for (auto& code : packet.vertex.code) code[kDepthPlane] = snap_depth(z, config.depth_bits);
 }
 
-void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, const Widths& widths) {
-  std::array<std::uint8_t, 4> code;
-  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(color[c]);
-  packet.color_write = 1;
-  packet.rgba.fill(packet_color(code, widths));
+void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, const Config& config) {
+  packet.state.color_write = true;
+  for (auto& code : packet.vertex.code) copy_color(code, snap_codes(0, color, config), config);
 }
 
 }  // namespace
@@ -32,8 +32,8 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   check_hardware_scene(scene, config);
   widths_ = derive_widths(config);
   PrimitivePacket first = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene.width, scene.height});
-  clear_depth(first, snap_depth(1.0, config.depth_bits));
-  clear_color(first, {0, 0, 0, 255}, widths_);
+  clear_depth(first, 1.0, config);
+  clear_color(first, {0, 0, 0, 255}, config);
   send(first, 0);
   pending_.back().command = HostPrimitive::kNoCommand;
 }
@@ -109,8 +109,7 @@ void HostStream::send_outline(const AssembledPrimitive& assembled) {
   }
   for (const PointPrimitive& point : outline_.points) {
     PrimitivePacket packet = draw_packet(PrimitiveKind::point, point.box);
-    packet.z.fill(point.drawn.at.z);
-    packet.rgba.fill(packet_color(point.drawn.at.rgba, widths_));
+    packet.vertex.code.fill(point.drawn.at.code);
     send(packet, primitive_);
   }
 }
@@ -118,11 +117,9 @@ void HostStream::send_outline(const AssembledPrimitive& assembled) {
 PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
   const State& state = context_->state;
   PrimitivePacket packet;
-  packet.kind = static_cast<std::uint8_t>(kind);
-  packet.depth_test = static_cast<std::uint8_t>(state.depth_test);
-  packet.depth_write = state.depth_write ? 1 : 0;
-  packet.color_write = state.color_write ? 1 : 0;
-  set_box(packet, box);
+  packet.kind = kind;
+  packet.state = fragment_state(state);
+  packet.box = to_box(box);
   return packet;
 }
 
@@ -131,9 +128,9 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_clipped) {
   const Rect& rect = context_->rect;
   PrimitivePacket packet =
       draw_packet(PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
-  packet.cull = static_cast<std::uint8_t>(is_clipped ? Cull::none : state.cull);
-  packet.front_cw = state.front == FrontFace::cw ? 1 : 0;
-  set_vertices(packet, triangle.v, widths_);
+  packet.cull = is_clipped ? Cull::none : state.cull;
+  packet.front_cw = state.front == FrontFace::cw;
+  set_vertices(packet.vertex, triangle.v);
   send(packet, triangle.primitive);
 }
 
@@ -142,15 +139,17 @@ void HostStream::send_clear(const Clear& command) {
   if (rect.width <= 0 || rect.height <= 0 || (!command.depth && !command.color)) return;
   const bool is_whole = rect == Rect{0, 0, scene_.width, scene_.height};
   PrimitivePacket packet = flat_packet(is_whole ? PrimitiveKind::fast_clear : PrimitiveKind::rectangle, rect);
-  if (command.depth) clear_depth(packet, snap_depth(*command.depth, config_.depth_bits));
-  if (command.color) clear_color(packet, *command.color, widths_);
+  if (command.depth) clear_depth(packet, *command.depth, config_);
+  if (command.color) clear_color(packet, *command.color, config_);
   send(packet, primitive_);
 }
 
 void HostStream::send(const PrimitivePacket& packet, std::uint32_t primitive) {
-  HostPrimitive sent{packet, std::nullopt, primitive, static_cast<std::uint32_t>(command_ - 1)};
+  HostPrimitive& sent = pending_.emplace_back();
+  sent.packet = packet;
   sent.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
-  pending_.push_back(sent);
+  sent.primitive = primitive;
+  sent.command = static_cast<std::uint32_t>(command_ - 1);
 }
 
 double HostStream::progress() const {

@@ -1,5 +1,6 @@
-// The packets on the arrows between the stages. Each has ONE field list: it yields the packed SystemVerilog struct
-// (model/raster_pkg.hpp), the bits that go into and come out of the RTL, the trace line and the field-by-field diff.
+// The packets on the arrows between the stages. Each field is authored ONCE: name, type and width. From it follow the C++
+// member, the packed SystemVerilog struct (model/raster_pkg.hpp), the bits that go into and come out of the RTL, and the
+// field-by-field diff (model/packet_words.hpp). Which stages an arrow joins is said in model/pipeline_graph.hpp.
 //
 // Units: coordinates in subpixels of 2^-s pixel (s = max(S, 1)), depth and colour in codes (LSB).
 #pragma once
@@ -11,23 +12,38 @@
 #include <tuple>
 #include <type_traits>
 
+#include "samples.hpp"
+#include "scene.hpp"
 #include "widths.hpp"
 
 namespace halfplane {
 
-/// Name, member and width of one field. An array field is packed element 0 lowest; `count` says how many of its elements
-/// this configuration has, none: all of them.
-template <class Packet, class Member>
+// ------------------------------------------------------------------------------------------------------- what a field is
+
+/// Stands for the width of a member that has fields of its own.
+struct Nested {};
+
+/// Stands for the width of one plane's values.
+struct OfPlane {
+  Width AttributeWidths::*width;
+  std::size_t plane;
+};
+inline constexpr OfPlane kDepthCode{&AttributeWidths::code, kDepthPlane};
+
+/// One field of a packet. `width`: of an element: a member of Widths, or a member of AttributeWidths for a member that has an
+/// element for each plane, or OfPlane, or Nested. An array is packed element 0 lowest; `count` says how many of its elements this
+/// configuration has, none: all of them.
+template <class Packet, class Member, class Place>
 struct Field {
   std::string_view name;
   Member Packet::*member;
-  Width Widths::*width;
+  Place width;
   int Widths::*count = nullptr;
 };
-template <class Packet, class Member>
-Field(std::string_view, Member Packet::*, Width Widths::*) -> Field<Packet, Member>;
-template <class Packet, class Member>
-Field(std::string_view, Member Packet::*, Width Widths::*, int Widths::*) -> Field<Packet, Member>;
+template <class Packet, class Member, class Place>
+Field(std::string_view, Member Packet::*, Place) -> Field<Packet, Member, Place>;
+template <class Packet, class Member, class Place>
+Field(std::string_view, Member Packet::*, Place, int Widths::*) -> Field<Packet, Member, Place>;
 
 /// Elements of an array member; 0 for a plain one.
 template <class T>
@@ -35,24 +51,55 @@ inline constexpr std::size_t kArraySize = 0;
 template <class T, std::size_t N>
 inline constexpr std::size_t kArraySize<std::array<T, N>> = N;
 
-/// Elements of a field in one configuration; 1 for a plain one.
-template <class Packet, class Member>
-[[nodiscard]] constexpr std::size_t element_count(const Field<Packet, Member>& field, const Widths& widths) {
-  if (field.count != nullptr) return static_cast<std::size_t>(widths.*field.count);
-  return std::max<std::size_t>(1, kArraySize<Member>);
+namespace packet_detail {
+
+template <int N>
+struct Line {};
+
+/// The fields that a packet declares on the lines First...Last of this file, in order.
+template <class Packet, int First, int Last>
+constexpr auto fields_between() {
+  if constexpr (First > Last)
+    return std::tuple{};
+  else if constexpr (requires { Packet::field(Line<First>{}); })
+    return std::tuple_cat(std::tuple{Packet::field(Line<First>{})}, fields_between<Packet, First + 1, Last>());
+  else
+    return fields_between<Packet, First + 1, Last>();
 }
+
+}  // namespace packet_detail
+
+// PACKET, FIELDs, each on a line of its own, PACKET_END: a struct that knows its fields. FIELD(type, name, width[, count]).
+#define PACKET(Type, text)                       \
+  using Self = Type;                             \
+  static constexpr std::string_view name = text; \
+  static constexpr int kFirstLine = __LINE__
+#define FIELD(Type, member_name, ...)                                                           \
+  Type member_name{};                                                                           \
+  static constexpr auto field(packet_detail::Line<__LINE__>) {                                  \
+    return ::halfplane::Field{std::string_view(#member_name), &Self::member_name, __VA_ARGS__}; \
+  }
+#define PACKET_END                                                                         \
+  static constexpr int kLastLine = __LINE__;                                               \
+  template <class Packet = Self>                                                           \
+  static constexpr auto fields() {                                                         \
+    return packet_detail::fields_between<Packet, Packet::kFirstLine, Packet::kLastLine>(); \
+  }
+
+// ------------------------------------------------------------------------------------------------------- parts of packets
 
 /// A vertex after the snap.
 struct SnappedVertex {
-  std::int32_t x = 0, y = 0;           ///< subpixels, y down
-  std::uint32_t z = 0;                 ///< depth code
-  std::array<std::uint8_t, 4> rgba{};  ///< colour codes, 8 bits a channel
+  std::int32_t x = 0, y = 0;       ///< subpixels, y down
+  PerPlane<std::uint32_t> code{};  ///< of each plane
   bool operator==(const SnappedVertex&) const = default;
+  [[nodiscard]] constexpr std::uint32_t& depth() { return code[kDepthPlane]; }
+  [[nodiscard]] constexpr std::uint32_t depth() const { return code[kDepthPlane]; }
 };
 
 /// The order of vertices on which setup and the fan of a clipped polygon agree: by (Y, X, Z).
 [[nodiscard]] inline bool canonically_before(const SnappedVertex& a, const SnappedVertex& b) {
-  return std::tie(a.y, a.x, a.z) < std::tie(b.y, b.x, b.z);
+  return std::tie(a.y, a.x, a.code[kDepthPlane]) < std::tie(b.y, b.x, b.code[kDepthPlane]);
 }
 
 /// A triangle between viewport and triangle_setup: where the RTL starts. One input triangle that was clipped yields
@@ -63,7 +110,7 @@ struct Triangle {
   std::array<SnappedVertex, 3> v{};
 };
 
-/// What a primitive is. Rectangles and points cover their whole box with one depth and one colour. Bit 1 set: a token,
+/// What a primitive is. Rectangles and points cover their whole box with one code a plane. Bit 1 set: a token,
 /// which visits no tile on its way to depth_test.
 enum class PrimitiveKind : std::uint8_t {
   triangle = 0,
@@ -75,377 +122,325 @@ enum class PrimitiveKind : std::uint8_t {
 };
 
 /// What the counters count; clears and flushes are the host's own.
-[[nodiscard]] constexpr bool is_counted(std::uint8_t kind) {
-  return kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) ||
-         kind == static_cast<std::uint8_t>(PrimitiveKind::point) ||
-         kind == static_cast<std::uint8_t>(PrimitiveKind::line);
+[[nodiscard]] constexpr bool is_counted(PrimitiveKind kind) {
+  return kind == PrimitiveKind::triangle || kind == PrimitiveKind::point || kind == PrimitiveKind::line;
 }
-
-/// The states that ride with a primitive.
-struct PrimitiveState {
-  std::uint8_t depth_test = 0;   ///< DepthFunc
-  std::uint8_t depth_write = 0;  ///< 0 or 1; for a fast clear: clears depth
-  std::uint8_t color_write = 0;  ///< likewise
-  bool operator==(const PrimitiveState&) const = default;
-};
-
-/// A rectangle of pixels, inclusive; empty when left > right or top > bottom.
-struct PixelBox {
-  std::uint16_t left = 0, top = 0, right = 0, bottom = 0;
-};
-
-/// host -> cull: a snapped primitive, as it was named.
-struct PrimitivePacket : PixelBox, PrimitiveState {
-  std::uint8_t kind = 0;           ///< PrimitiveKind
-  std::uint32_t primitive_id = 0;  ///< Triangle::primitive modulo 2^key.primitive_bits
-  std::uint8_t cull = 0;           ///< Cull
-  std::uint8_t front_cw = 0;       ///< 1: clockwise is the front
-  std::array<std::int32_t, 3> x{}, y{};
-  std::array<std::uint32_t, 3> z{};
-  std::array<std::uint32_t, 3> rgba{};  ///< 8 bits a stored channel, R lowest
-  // left...bottom: the scissor, inside the target
-
-  static constexpr std::string_view name = "primitive_packet";
-  static constexpr auto fields() {
-    using P = PrimitivePacket;
-    return std::tuple{Field{"kind", &P::kind, &Widths::kind},
-                      Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"left", &P::left, &Widths::pixel_x},
-                      Field{"top", &P::top, &Widths::pixel_y},
-                      Field{"right", &P::right, &Widths::pixel_x},
-                      Field{"bottom", &P::bottom, &Widths::pixel_y},
-                      Field{"depth_test", &P::depth_test, &Widths::depth_func},
-                      Field{"depth_write", &P::depth_write, &Widths::flag},
-                      Field{"color_write", &P::color_write, &Widths::flag},
-                      Field{"cull", &P::cull, &Widths::cull_mode},
-                      Field{"front_cw", &P::front_cw, &Widths::flag},
-                      Field{"x", &P::x, &Widths::coordinate},
-                      Field{"y", &P::y, &Widths::coordinate},
-                      Field{"z", &P::z, &Widths::depth_code},
-                      Field{"rgba", &P::rgba, &Widths::vertex_color}};
-  }
-};
-
-/// cull -> triangle_setup: a triangle that faces the right way and has a pixel centre in its box, in canonical order.
-struct TrianglePacket : PixelBox, PrimitiveState {
-  std::uint8_t kind = 0;
-  std::uint32_t primitive_id = 0;
-  std::array<std::int32_t, 3> x{}, y{};
-  std::array<std::uint32_t, 3> z{};
-  std::array<std::uint32_t, 3> rgba{};
-  std::uint64_t area = 0;                    ///< twice the area, square subpixels; 0 for other kinds
-  std::array<std::int64_t, 3> edge_value{};  ///< edge_function at the first pixel of the first tile; 0 for other kinds
-  // left...bottom: pixel centres of the triangle inside the scissor
-
-  static constexpr std::string_view name = "triangle_packet";
-  static constexpr auto fields() {
-    using P = TrianglePacket;
-    return std::tuple{Field{"kind", &P::kind, &Widths::kind},
-                      Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"left", &P::left, &Widths::pixel_x},
-                      Field{"top", &P::top, &Widths::pixel_y},
-                      Field{"right", &P::right, &Widths::pixel_x},
-                      Field{"bottom", &P::bottom, &Widths::pixel_y},
-                      Field{"depth_test", &P::depth_test, &Widths::depth_func},
-                      Field{"depth_write", &P::depth_write, &Widths::flag},
-                      Field{"color_write", &P::color_write, &Widths::flag},
-                      Field{"x", &P::x, &Widths::coordinate},
-                      Field{"y", &P::y, &Widths::coordinate},
-                      Field{"z", &P::z, &Widths::depth_code},
-                      Field{"rgba", &P::rgba, &Widths::vertex_color},
-                      Field{"area", &P::area, &Widths::area},
-                      Field{"edge_value", &P::edge_value, &Widths::edge_value}};
-  }
-};
-
-/// triangle_setup -> coarse_raster: everything that stays constant over the primitive.
-struct SetupPacket : PixelBox, PrimitiveState {
-  std::uint8_t kind = 0;
-  std::uint32_t primitive_id = 0;
-  std::array<std::int32_t, 3> dx{}, dy{};    ///< of each edge, subpixels; 0 for other kinds than triangles
-  std::array<std::int64_t, 3> edge_value{};  ///< edge_function at the first pixel of the first tile; likewise 0
-  std::int64_t depth_value = 0;              ///< Plane::value + plane_bias()
-  std::int64_t depth_step_x = 0, depth_step_y = 0;
-  std::array<std::int64_t, 4> color_value{};  ///< likewise
-  std::array<std::int64_t, 4> color_step_x{}, color_step_y{};
-  std::uint32_t depth_min = 0, depth_max = 0;
-  std::array<std::uint8_t, 4> color_min{}, color_max{};
-
-  static constexpr std::string_view name = "setup_packet";
-  static constexpr auto fields() {
-    using P = SetupPacket;
-    return std::tuple{Field{"kind", &P::kind, &Widths::kind},
-                      Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"left", &P::left, &Widths::pixel_x},
-                      Field{"top", &P::top, &Widths::pixel_y},
-                      Field{"right", &P::right, &Widths::pixel_x},
-                      Field{"bottom", &P::bottom, &Widths::pixel_y},
-                      Field{"depth_test", &P::depth_test, &Widths::depth_func},
-                      Field{"depth_write", &P::depth_write, &Widths::flag},
-                      Field{"color_write", &P::color_write, &Widths::flag},
-                      Field{"dx", &P::dx, &Widths::delta},
-                      Field{"dy", &P::dy, &Widths::delta},
-                      Field{"edge_value", &P::edge_value, &Widths::edge_value},
-                      Field{"depth_value", &P::depth_value, &Widths::depth_plane},
-                      Field{"depth_step_x", &P::depth_step_x, &Widths::depth_plane},
-                      Field{"depth_step_y", &P::depth_step_y, &Widths::depth_plane},
-                      Field{"color_value", &P::color_value, &Widths::color_plane, &Widths::color_channels},
-                      Field{"color_step_x", &P::color_step_x, &Widths::color_plane, &Widths::color_channels},
-                      Field{"color_step_y", &P::color_step_y, &Widths::color_plane, &Widths::color_channels},
-                      Field{"depth_min", &P::depth_min, &Widths::depth_code},
-                      Field{"depth_max", &P::depth_max, &Widths::depth_code},
-                      Field{"color_min", &P::color_min, &Widths::color_code, &Widths::color_channels},
-                      Field{"color_max", &P::color_max, &Widths::color_code, &Widths::color_channels}};
-  }
-};
-
-/// The part of a primitive's constants that waits in the context RAM, by slot, until its stamps come to interpolate.
-struct ContextPacket : PrimitiveState {
-  std::int64_t depth_step_x = 0, depth_step_y = 0;  ///< LocalPlane steps
-  std::array<std::int64_t, 4> color_step_x{}, color_step_y{};
-  std::uint32_t depth_min = 0, depth_max = 0;
-  std::array<std::uint8_t, 4> color_min{}, color_max{};
-
-  static constexpr std::string_view name = "context_packet";
-  static constexpr auto fields() {
-    using P = ContextPacket;
-    return std::tuple{Field{"depth_test", &P::depth_test, &Widths::depth_func},
-                      Field{"depth_write", &P::depth_write, &Widths::flag},
-                      Field{"color_write", &P::color_write, &Widths::flag},
-                      Field{"depth_step_x", &P::depth_step_x, &Widths::local_depth},
-                      Field{"depth_step_y", &P::depth_step_y, &Widths::local_depth},
-                      Field{"color_step_x", &P::color_step_x, &Widths::local_color, &Widths::color_channels},
-                      Field{"color_step_y", &P::color_step_y, &Widths::local_color, &Widths::color_channels},
-                      Field{"depth_min", &P::depth_min, &Widths::depth_code},
-                      Field{"depth_max", &P::depth_max, &Widths::depth_code},
-                      Field{"color_min", &P::color_min, &Widths::color_code, &Widths::color_channels},
-                      Field{"color_max", &P::color_max, &Widths::color_code, &Widths::color_channels}};
-  }
-};
-
-/// coarse_raster -> fine_raster: one tile of one primitive, or (is_visit = 0) only the news that a primitive has ended.
-struct TilePacket {
-  std::uint8_t kind = 0;
-  std::uint8_t is_visit = 0;        ///< 0: no tile; fast clears, flushes, and primitives whose last tile was skipped
-  std::uint8_t ends_primitive = 0;  ///< nothing of this primitive follows
-  std::uint32_t primitive_id = 0;
-  std::uint8_t slot = 0;                                  ///< context RAM slot of the triangle's constants
-  std::uint16_t tile_x = 0, tile_y = 0;                   ///< tiles; without a visit: the last tile of the box
-  std::uint8_t left = 0, top = 0, right = 0, bottom = 0;  ///< pixels of the tile inside box and scissor, inclusive
-  std::uint8_t is_inside = 0;                             ///< trivially accepted: every sample of the box is covered
-  std::array<std::int32_t, 3> edge_value{};  ///< edge values at the tile's first pixel, saturated (coarse_raster.hpp)
-  std::int64_t depth_anchor = 0;             ///< LocalPlane::anchor
-  std::array<std::int64_t, 4> color_anchor{};
-
-  static constexpr std::string_view name = "tile_packet";
-  static constexpr auto fields() {
-    return std::tuple{Field{"kind", &TilePacket::kind, &Widths::kind},
-                      Field{"is_visit", &TilePacket::is_visit, &Widths::flag},
-                      Field{"ends_primitive", &TilePacket::ends_primitive, &Widths::flag},
-                      Field{"primitive_id", &TilePacket::primitive_id, &Widths::primitive_id},
-                      Field{"slot", &TilePacket::slot, &Widths::slot},
-                      Field{"tile_x", &TilePacket::tile_x, &Widths::tile_x},
-                      Field{"tile_y", &TilePacket::tile_y, &Widths::tile_y},
-                      Field{"left", &TilePacket::left, &Widths::tile_pixel},
-                      Field{"top", &TilePacket::top, &Widths::tile_pixel},
-                      Field{"right", &TilePacket::right, &Widths::tile_pixel},
-                      Field{"bottom", &TilePacket::bottom, &Widths::tile_pixel},
-                      Field{"is_inside", &TilePacket::is_inside, &Widths::flag},
-                      Field{"edge_value", &TilePacket::edge_value, &Widths::tile_edge},
-                      Field{"depth_anchor", &TilePacket::depth_anchor, &Widths::local_depth},
-                      Field{"color_anchor", &TilePacket::color_anchor, &Widths::local_color, &Widths::color_channels}};
-  }
-};
-
-/// The part of a triangle's constants that fine_raster reads: what each edge value gains per pixel.
-struct EdgeContext {
-  std::array<std::int32_t, 3> step_x{};  ///< -dy: per pixel to the right
-  std::array<std::int32_t, 3> step_y{};  ///< dx: per pixel down
-
-  static constexpr std::string_view name = "edge_context";
-  static constexpr auto fields() {
-    return std::tuple{Field{"step_x", &EdgeContext::step_x, &Widths::edge_step},
-                      Field{"step_y", &EdgeContext::step_y, &Widths::edge_step}};
-  }
-};
-
-/// fine_raster -> interpolate: one stamp. Sent when a sample is covered or when it ends something.
-struct StampPacket {
-  std::uint8_t kind = 0;
-  std::uint8_t ends_visit = 0;      ///< the last of its tile visit
-  std::uint8_t ends_primitive = 0;  ///< the last of its primitive
-  std::uint32_t primitive_id = 0;
-  std::uint8_t slot = 0;
-  std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint16_t stamp = 0;  ///< row-major number of the stamp in its tile
-  std::uint64_t mask = 0;   ///< bit j * stamp_size + i: sample in column i, row j of the stamp is covered
-  std::int64_t depth_anchor = 0;
-  std::array<std::int64_t, 4> color_anchor{};
-
-  static constexpr std::string_view name = "stamp_packet";
-  static constexpr auto fields() {
-    using P = StampPacket;
-    return std::tuple{Field{"kind", &P::kind, &Widths::kind},
-                      Field{"ends_visit", &P::ends_visit, &Widths::flag},
-                      Field{"ends_primitive", &P::ends_primitive, &Widths::flag},
-                      Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"slot", &P::slot, &Widths::slot},
-                      Field{"tile_x", &P::tile_x, &Widths::tile_x},
-                      Field{"tile_y", &P::tile_y, &Widths::tile_y},
-                      Field{"stamp", &P::stamp, &Widths::stamp_index},
-                      Field{"mask", &P::mask, &Widths::sample_mask},
-                      Field{"depth_anchor", &P::depth_anchor, &Widths::local_depth},
-                      Field{"color_anchor", &P::color_anchor, &Widths::local_color, &Widths::color_channels}};
-  }
-};
-
-/// interpolate -> primitive_join -> depth_test: a stamp with its attributes. Samples that are not covered carry values too.
-struct FragmentPacket : PrimitiveState {
-  std::uint8_t kind = 0, ends_visit = 0, ends_primitive = 0;
-  std::uint32_t primitive_id = 0;
-  std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint16_t stamp = 0;
-  std::uint64_t mask = 0;
-  std::array<std::uint32_t, 64> depth{};  ///< codes, clamped to the vertices' range
-  std::array<std::uint32_t, 64> rgba{};   ///< 8 bits a stored channel, R lowest
-
-  static constexpr std::string_view name = "fragment_packet";
-  static constexpr auto fields() {
-    using P = FragmentPacket;
-    return std::tuple{Field{"kind", &P::kind, &Widths::kind},
-                      Field{"ends_visit", &P::ends_visit, &Widths::flag},
-                      Field{"ends_primitive", &P::ends_primitive, &Widths::flag},
-                      Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"tile_x", &P::tile_x, &Widths::tile_x},
-                      Field{"tile_y", &P::tile_y, &Widths::tile_y},
-                      Field{"stamp", &P::stamp, &Widths::stamp_index},
-                      Field{"mask", &P::mask, &Widths::sample_mask},
-                      Field{"depth_test", &P::depth_test, &Widths::depth_func},
-                      Field{"depth_write", &P::depth_write, &Widths::flag},
-                      Field{"color_write", &P::color_write, &Widths::flag},
-                      Field{"depth", &P::depth, &Widths::depth_code, &Widths::samples},
-                      Field{"rgba", &P::rgba, &Widths::vertex_color, &Widths::samples}};
-  }
-};
-
-/// depth_test, rop -> framebuffer: what is written, and where; sent for every stamp with a covered sample.
-struct WritePacket {
-  std::uint32_t primitive_id = 0;
-  std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint16_t stamp = 0;
-  std::uint64_t passed = 0;                        ///< samples that passed the depth test
-  std::uint64_t write_depth = 0, write_color = 0;  ///< of those, the ones to write
-  std::array<std::uint32_t, 64> depth{};           ///< codes; also of samples that are not written
-  std::array<std::uint32_t, 64> color{};           ///< stored colours; likewise
-
-  static constexpr std::string_view name = "write_packet";
-  static constexpr auto fields() {
-    using P = WritePacket;
-    return std::tuple{Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"tile_x", &P::tile_x, &Widths::tile_x},
-                      Field{"tile_y", &P::tile_y, &Widths::tile_y},
-                      Field{"stamp", &P::stamp, &Widths::stamp_index},
-                      Field{"passed", &P::passed, &Widths::sample_mask},
-                      Field{"write_depth", &P::write_depth, &Widths::sample_mask},
-                      Field{"write_color", &P::write_color, &Widths::sample_mask},
-                      Field{"depth", &P::depth, &Widths::depth_code, &Widths::samples},
-                      Field{"color", &P::color, &Widths::stored_color, &Widths::samples}};
-  }
-};
 
 /// What the end of a tile visit does to the tile's HiZ bound.
 enum class HizUpdate : std::uint8_t { none, set, clear };
 
+/// An enum as the generated package has it: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
+template <class Enum>
+struct Enumerator {
+  Enum value;
+  std::string_view name;
+};
+template <class Enum>
+struct WireEnum;  // name; width; all: its enumerators
+template <>
+struct WireEnum<PrimitiveKind> {
+  static constexpr std::string_view name = "primitive_kind";
+  static constexpr Width Widths::*width = &Widths::kind;
+  static constexpr Enumerator<PrimitiveKind> all[] = {
+      {PrimitiveKind::triangle, "triangle"},     {PrimitiveKind::rectangle, "rectangle"},
+      {PrimitiveKind::fast_clear, "fast_clear"}, {PrimitiveKind::flush, "flush"},
+      {PrimitiveKind::point, "point"},           {PrimitiveKind::line, "line"}};
+};
+template <>
+struct WireEnum<DepthFunc> {
+  static constexpr std::string_view name = "depth_func";
+  static constexpr Width Widths::*width = &Widths::depth_func;
+  static constexpr Enumerator<DepthFunc> all[] = {{DepthFunc::never, "never"},       {DepthFunc::less, "less"},
+                                                  {DepthFunc::lequal, "lequal"},     {DepthFunc::equal, "equal"},
+                                                  {DepthFunc::greater, "greater"},   {DepthFunc::gequal, "gequal"},
+                                                  {DepthFunc::notequal, "notequal"}, {DepthFunc::always, "always"}};
+};
+template <>
+struct WireEnum<Cull> {
+  static constexpr std::string_view name = "cull_mode";
+  static constexpr Width Widths::*width = &Widths::cull_mode;
+  static constexpr Enumerator<Cull> all[] = {
+      {Cull::none, "none"}, {Cull::back, "back"}, {Cull::front, "front"}, {Cull::both, "both"}};
+};
+template <>
+struct WireEnum<HizUpdate> {
+  static constexpr std::string_view name = "hiz_update";
+  static constexpr Width Widths::*width = &Widths::hiz_update;
+  static constexpr Enumerator<HizUpdate> all[] = {
+      {HizUpdate::none, "none"}, {HizUpdate::set, "set"}, {HizUpdate::clear, "clear"}};
+};
+
+/// A rectangle of pixels, inclusive; empty when left > right or top > bottom.
+struct PixelBox {
+  PACKET(PixelBox, "pixel_box");
+  FIELD(std::uint16_t, left, &Widths::pixel_x)
+  FIELD(std::uint16_t, top, &Widths::pixel_y)
+  FIELD(std::uint16_t, right, &Widths::pixel_x)
+  FIELD(std::uint16_t, bottom, &Widths::pixel_y)
+  PACKET_END
+};
+
+/// The same inside one tile, from its first pixel.
+struct TileBox {
+  PACKET(TileBox, "tile_box");
+  FIELD(std::uint8_t, left, &Widths::tile_pixel)
+  FIELD(std::uint8_t, top, &Widths::tile_pixel)
+  FIELD(std::uint8_t, right, &Widths::tile_pixel)
+  FIELD(std::uint8_t, bottom, &Widths::tile_pixel)
+  PACKET_END
+};
+
+/// The states that ride with a primitive.
+struct PrimitiveState {
+  PACKET(PrimitiveState, "primitive_state");
+  FIELD(DepthFunc, depth_test, &Widths::depth_func)
+  FIELD(bool, depth_write, &Widths::flag)  ///< for a fast clear: clears depth
+  FIELD(bool, color_write, &Widths::flag)  ///< likewise
+  PACKET_END
+  [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
+};
+
+/// Whose tile it is.
+struct TileKey {
+  PACKET(TileKey, "tile_key");
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< Triangle::primitive modulo 2^key.primitive_bits
+  FIELD(std::uint16_t, tile_x, &Widths::tile_x)              ///< tiles
+  FIELD(std::uint16_t, tile_y, &Widths::tile_y)
+  PACKET_END
+};
+
+/// Three vertices, and the codes of each.
+struct TriangleVertices {
+  PACKET(TriangleVertices, "triangle_vertices");
+  using Coordinates = std::array<std::int32_t, 3>;
+  using Codes = std::array<PerPlane<std::uint32_t>, 3>;
+  FIELD(Coordinates, x, &Widths::coordinate)
+  FIELD(Coordinates, y, &Widths::coordinate)
+  FIELD(Codes, code, &AttributeWidths::code)
+  PACKET_END
+};
+
+/// The range of the vertices' codes, to which the final ones are clamped.
+struct CodeRange {
+  PACKET(CodeRange, "code_range");
+  FIELD(PerPlane<std::uint32_t>, low, &AttributeWidths::code)
+  FIELD(PerPlane<std::uint32_t>, high, &AttributeWidths::code)
+  PACKET_END
+};
+
+/// One value for each edge of a triangle.
+using EdgeValues = std::array<std::int64_t, 3>;
+using EdgeDeltas = std::array<std::int32_t, 3>;
+
+// ------------------------------------------------------------------------------------------------------------- the packets
+
+/// host -> cull: a snapped primitive, as it was named.
+struct PrimitivePacket {
+  PACKET(PrimitivePacket, "primitive_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(PixelBox, box, Nested{})  ///< the scissor, inside the target
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(Cull, cull, &Widths::cull_mode)
+  FIELD(bool, front_cw, &Widths::flag)  ///< clockwise is the front
+  FIELD(TriangleVertices, vertex, Nested{})
+  PACKET_END
+};
+
+/// cull -> triangle_setup: a triangle that faces the right way and has a pixel centre in its box, in canonical order.
+struct TrianglePacket {
+  PACKET(TrianglePacket, "triangle_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(PixelBox, box, Nested{})  ///< pixel centres of the triangle inside the scissor
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(TriangleVertices, vertex, Nested{})
+  FIELD(std::uint64_t, area, &Widths::area)           ///< twice the area, square subpixels; 0 for other kinds
+  FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< at the first pixel of the first tile; 0 for other kinds
+  PACKET_END
+};
+
+/// triangle_setup -> coarse_raster: everything that stays constant over the primitive.
+struct SetupPacket {
+  PACKET(SetupPacket, "setup_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(PixelBox, box, Nested{})
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(EdgeDeltas, dx, &Widths::delta)  ///< of each edge, subpixels; 0 for other kinds than triangles
+  FIELD(EdgeDeltas, dy, &Widths::delta)
+  FIELD(EdgeValues, edge_value, &Widths::edge_value)             ///< edge_function at the first pixel of the first tile
+  FIELD(PerPlane<std::int64_t>, value, &AttributeWidths::plane)  ///< Plane::value + plane_bias()
+  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::plane)  ///< per subpixel
+  FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::plane)
+  FIELD(CodeRange, range, Nested{})
+  PACKET_END
+};
+
+/// The part of a primitive's constants that waits in the context RAM, by slot, until its stamps come to interpolate.
+struct ContextPacket {
+  PACKET(ContextPacket, "context_packet");
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::local)  ///< LocalPlane steps
+  FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::local)
+  FIELD(CodeRange, range, Nested{})
+  PACKET_END
+};
+
+/// coarse_raster -> fine_raster: one tile of one primitive, or (is_visit = 0) only the news that a primitive has ended.
+struct TilePacket {
+  PACKET(TilePacket, "tile_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(bool, is_visit,
+        &Widths::flag)  ///< 0: no tile; fast clears, flushes, and primitives whose last tile was skipped
+  FIELD(bool, ends_primitive, &Widths::flag)         ///< nothing of this primitive follows
+  FIELD(TileKey, key, Nested{})                      ///< without a visit: the last tile of the box
+  FIELD(std::uint8_t, slot, &Widths::slot)           ///< context RAM slot of the triangle's constants
+  FIELD(TileBox, box, Nested{})                      ///< pixels of the tile inside box and scissor
+  FIELD(bool, is_inside, &Widths::flag)              ///< trivially accepted: every sample of the box is covered
+  FIELD(EdgeDeltas, edge_value, &Widths::tile_edge)  ///< at the tile's first pixel, saturated (coarse_raster.hpp)
+  FIELD(PerPlane<std::int64_t>, anchor, &AttributeWidths::local)  ///< LocalPlane::anchor
+  PACKET_END
+};
+
+/// The part of a triangle's constants that fine_raster reads: what each edge value gains per pixel.
+struct EdgeContext {
+  PACKET(EdgeContext, "edge_context");
+  FIELD(EdgeDeltas, step_x, &Widths::edge_step)  ///< -dy: per pixel to the right
+  FIELD(EdgeDeltas, step_y, &Widths::edge_step)  ///< dx: per pixel down
+  PACKET_END
+};
+
+/// fine_raster -> interpolate: one stamp. Sent when a sample is covered or when it ends something.
+struct StampPacket {
+  PACKET(StampPacket, "stamp_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(bool, ends_visit, &Widths::flag)      ///< the last of its tile visit
+  FIELD(bool, ends_primitive, &Widths::flag)  ///< the last of its primitive
+  FIELD(TileKey, key, Nested{})
+  FIELD(std::uint8_t, slot, &Widths::slot)
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)  ///< row-major number of the stamp in its tile
+  FIELD(SampleMask, mask, &Widths::sample_mask)      ///< covered samples
+  FIELD(PerPlane<std::int64_t>, anchor, &AttributeWidths::local)
+  PACKET_END
+};
+
+/// interpolate -> primitive_join -> depth_test: a stamp with its attributes. Samples that are not covered carry values too.
+struct FragmentPacket {
+  PACKET(FragmentPacket, "fragment_packet");
+  using Codes = std::array<PerPlane<std::uint32_t>, kMaxSamples>;
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(bool, ends_visit, &Widths::flag)
+  FIELD(bool, ends_primitive, &Widths::flag)
+  FIELD(TileKey, key, Nested{})
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(SampleMask, mask, &Widths::sample_mask)
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(Codes, code, &AttributeWidths::code, &Widths::samples)  ///< of each sample, clamped to the vertices' range
+  PACKET_END
+};
+
+/// depth_test, rop -> framebuffer: what is written, and where; sent for every stamp with a covered sample.
+struct WritePacket {
+  PACKET(WritePacket, "write_packet");
+  using Codes = std::array<std::uint32_t, kMaxSamples>;
+  FIELD(TileKey, key, Nested{})
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(SampleMask, passed, &Widths::sample_mask)       ///< samples that passed the depth test
+  FIELD(SampleMask, write_depth, &Widths::sample_mask)  ///< of those, the ones to write
+  FIELD(SampleMask, write_color, &Widths::sample_mask)
+  FIELD(Codes, depth, kDepthCode, &Widths::samples)             ///< codes; also of samples that are not written
+  FIELD(Codes, color, &Widths::stored_color, &Widths::samples)  ///< stored colours; likewise
+  PACKET_END
+};
+
 /// depth_test -> coarse_raster: a tile visit has retired.
 struct RetirePacket {
-  std::uint32_t primitive_id = 0;
-  std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint8_t update = 0;     ///< HizUpdate
-  std::uint32_t hiz_code = 0;  ///< the bound for `set`, all ones for `clear`, 0 for `none`
+  PACKET(RetirePacket, "retire_packet");
+  FIELD(TileKey, key, Nested{})
+  FIELD(HizUpdate, update, &Widths::hiz_update)
+  FIELD(std::uint32_t, hiz_code, &Widths::hiz_code)  ///< the bound for `set`, all ones for `clear`, 0 for `none`
+  PACKET_END
+};
 
-  static constexpr std::string_view name = "retire_packet";
-  static constexpr auto fields() {
-    using P = RetirePacket;
-    return std::tuple{Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"tile_x", &P::tile_x, &Widths::tile_x}, Field{"tile_y", &P::tile_y, &Widths::tile_y},
-                      Field{"update", &P::update, &Widths::hiz_update},
-                      Field{"hiz_code", &P::hiz_code, &Widths::hiz_code}};
-  }
+/// host -> line_raster: a line with at least one pixel inside the scissor; what line_setup makes (stages/line_setup.hpp).
+/// The states ride with the line's place in program order, a PrimitivePacket of kind line.
+struct LineSetup {
+  PACKET(LineSetup, "line_setup");
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< that of the PrimitivePacket; left at 0 by setup_line
+  FIELD(std::int32_t, x, &Widths::pixel_x)  ///< the first pixel; inside the target when it goes to the RTL
+  FIELD(std::int32_t, y, &Widths::pixel_y)
+  FIELD(bool, is_x_major, &Widths::flag)     ///< every step changes x
+  FIELD(bool, is_x_negative, &Widths::flag)  ///< x falls
+  FIELD(bool, is_y_negative, &Widths::flag)  ///< likewise y
+  FIELD(bool, is_before_start,
+        &Widths::flag)  ///< the first pixel's centre lies before the start: it shows the start's codes
+  FIELD(std::uint32_t, remaining, &Widths::line_count)  ///< pixels after the first
+  FIELD(std::int64_t, error, &Widths::line_error)       ///< p: >= 0 when the next pixel lies in the next row
+  FIELD(std::int64_t, step_stay, &Widths::line_stay)    ///< d, added to p after a step along the major axis alone
+  FIELD(std::int64_t, step_move, &Widths::line_move)    ///< d - D, added to p after a step along both
+  FIELD(PerPlane<std::uint64_t>, value,
+        &AttributeWidths::line)  ///< 2^-G' LSB at the first pixel's major coordinate, plus 1/2 LSB
+  FIELD(PerPlane<std::uint64_t>, step, &AttributeWidths::line)   ///< per pixel
+  FIELD(PerPlane<std::uint32_t>, start, &AttributeWidths::code)  ///< codes of the start
+  PACKET_END
+};
+
+/// line_raster -> primitive_join: one covered pixel.
+struct LinePixel {
+  PACKET(LinePixel, "line_pixel");
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(std::int32_t, x, &Widths::pixel_x)
+  FIELD(std::int32_t, y, &Widths::pixel_y)
+  FIELD(bool, is_last, &Widths::flag)  ///< the line ends here
+  FIELD(PerPlane<std::uint32_t>, code, &AttributeWidths::code)
+  PACKET_END
+  bool operator==(const LinePixel&) const = default;
 };
 
 /// framebuffer -> memory: one stamp of one plane. Requests go in program order; reads are answered in the same order.
 struct MemoryRequest {
-  std::uint8_t is_write = 0;
-  std::uint8_t is_color = 0;  ///< 0: the depth plane
-  std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint16_t stamp = 0;
-  std::array<std::uint32_t, 64> data{};  ///< one code a sample; 0 for a read
-
-  static constexpr std::string_view name = "memory_request";
-  static constexpr auto fields() {
-    using P = MemoryRequest;
-    return std::tuple{Field{"is_write", &P::is_write, &Widths::flag},
-                      Field{"is_color", &P::is_color, &Widths::flag},
-                      Field{"tile_x", &P::tile_x, &Widths::tile_x},
-                      Field{"tile_y", &P::tile_y, &Widths::tile_y},
-                      Field{"stamp", &P::stamp, &Widths::stamp_index},
-                      Field{"data", &P::data, &Widths::memory_lane, &Widths::samples}};
-  }
+  PACKET(MemoryRequest, "memory_request");
+  using Lanes = std::array<std::uint32_t, kMaxSamples>;
+  FIELD(bool, is_write, &Widths::flag)
+  FIELD(bool, is_color, &Widths::flag)  ///< 0: the depth plane
+  FIELD(std::uint16_t, tile_x, &Widths::tile_x)
+  FIELD(std::uint16_t, tile_y, &Widths::tile_y)
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 for a read
+  PACKET_END
 };
 
 /// memory -> framebuffer: the answer to a read.
 struct MemoryResponse {
-  std::array<std::uint32_t, 64> data{};
-
-  static constexpr std::string_view name = "memory_response";
-  static constexpr auto fields() {
-    return std::tuple{Field{"data", &MemoryResponse::data, &Widths::memory_lane, &Widths::samples}};
-  }
+  PACKET(MemoryResponse, "memory_response");
+  FIELD(MemoryRequest::Lanes, data, &Widths::memory_lane, &Widths::samples)
+  PACKET_END
 };
 
-/// The performance counters of the hardware: items since reset, modulo 2^32. Names as in Counters (engines/render.hpp).
+/// The performance counters of the hardware: items since reset, modulo 2^32. Names as in Counters (counters.hpp).
 struct CounterPacket {
-  std::uint32_t primitives_in = 0;  ///< triangles, points and lines that came to cull
-  std::uint32_t zero_area = 0, backface = 0, empty = 0;
-  std::uint32_t tiles_visited = 0, tiles_outside = 0, trivially_accepted = 0, tiles_hiz = 0, samples_tested = 0;
-  std::uint32_t covered = 0, depth_passed = 0, written = 0;
-  std::uint32_t tile_fills = 0, tile_evictions = 0, tile_clears = 0;  ///< by plane: depth and colour count apart
-
-  static constexpr std::string_view name = "counter_packet";
-  static constexpr auto fields() {
-    using P = CounterPacket;
-    return std::tuple{Field{"primitives_in", &P::primitives_in, &Widths::counter},
-                      Field{"zero_area", &P::zero_area, &Widths::counter},
-                      Field{"backface", &P::backface, &Widths::counter},
-                      Field{"empty", &P::empty, &Widths::counter},
-                      Field{"tiles_visited", &P::tiles_visited, &Widths::counter},
-                      Field{"tiles_outside", &P::tiles_outside, &Widths::counter},
-                      Field{"trivially_accepted", &P::trivially_accepted, &Widths::counter},
-                      Field{"tiles_hiz", &P::tiles_hiz, &Widths::counter},
-                      Field{"samples_tested", &P::samples_tested, &Widths::counter},
-                      Field{"covered", &P::covered, &Widths::counter},
-                      Field{"depth_passed", &P::depth_passed, &Widths::counter},
-                      Field{"written", &P::written, &Widths::counter},
-                      Field{"tile_fills", &P::tile_fills, &Widths::counter},
-                      Field{"tile_evictions", &P::tile_evictions, &Widths::counter},
-                      Field{"tile_clears", &P::tile_clears, &Widths::counter}};
-  }
+  PACKET(CounterPacket, "counter_packet");
+  FIELD(std::uint32_t, primitives_in, &Widths::counter)  ///< triangles, points and lines that came to cull
+  FIELD(std::uint32_t, zero_area, &Widths::counter)
+  FIELD(std::uint32_t, backface, &Widths::counter)
+  FIELD(std::uint32_t, empty, &Widths::counter)
+  FIELD(std::uint32_t, tiles_visited, &Widths::counter)
+  FIELD(std::uint32_t, tiles_outside, &Widths::counter)
+  FIELD(std::uint32_t, trivially_accepted, &Widths::counter)
+  FIELD(std::uint32_t, tiles_hiz, &Widths::counter)
+  FIELD(std::uint32_t, samples_tested, &Widths::counter)
+  FIELD(std::uint32_t, covered, &Widths::counter)
+  FIELD(std::uint32_t, depth_passed, &Widths::counter)
+  FIELD(std::uint32_t, written, &Widths::counter)
+  FIELD(std::uint32_t, tile_fills, &Widths::counter)  ///< by plane, as the next two: depth and colour count apart
+  FIELD(std::uint32_t, tile_evictions, &Widths::counter)
+  FIELD(std::uint32_t, tile_clears, &Widths::counter)
+  PACKET_END
 };
 
-/// Calls visit(field, width, elements) for each field of a packet type, first field first.
-template <class Packet, class Visit>
-constexpr void for_each_field(const Widths& widths, Visit&& visit) {
-  std::apply([&](const auto&... field) { (visit(field, widths.*field.width, element_count(field, widths)), ...); },
-             Packet::fields());
-}
-
-/// Bits of the packed struct.
-template <class Packet>
-[[nodiscard]] constexpr int packet_bits(const Widths& widths) {
-  int bits = 0;
-  for_each_field<Packet>(
-      widths, [&](const auto&, const Width& width, std::size_t n) { bits += width.bits * static_cast<int>(n); });
-  return bits;
-}
+#undef PACKET
+#undef FIELD
+#undef PACKET_END
 
 }  // namespace halfplane

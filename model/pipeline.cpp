@@ -87,10 +87,9 @@ bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& cont
   return pixel_bounds(v, bounds_of(context.rect), std::max(context.config.subpixel_bits, 1)).is_empty();
 }
 
-std::array<std::uint8_t, 4> flat_color(const DrawContext& context, std::uint32_t provoking) {
-  std::array<std::uint8_t, 4> code;
-  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(context.scene.vertices[provoking].rgba[c]);
-  return code;
+/// Codes whose colour is the provoking vertex's.
+PerPlane<std::uint32_t> flat_color(const DrawContext& context, std::uint32_t provoking) {
+  return snap_codes(0, context.scene.vertices[provoking].rgba, context.config);
 }
 
 /// An input triangle after clip, viewport and snap.
@@ -121,7 +120,7 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
     polygon.v[2] = c.snapped;
   }
   if (context.state.shade == Shade::flat)
-    for (SnappedVertex& v : polygon.v) v.rgba = flat_color(context, index[0]);
+    for (SnappedVertex& v : polygon.v) copy_color(v.code, flat_color(context, index[0]), context.config);
   counters.culled += polygon.size < 3 ? 1 : 0;
   return result;
 }
@@ -147,7 +146,8 @@ std::int64_t offset_codes(const SnappedPolygon& polygon, const DrawContext& cont
     const std::int64_t area = signed_area(a, b, c);
     if (std::abs(area) <= largest) continue;
     largest = std::abs(area);
-    const double dz1 = static_cast<double>(b.z) - a.z, dz2 = static_cast<double>(c.z) - a.z;
+    const double dz1 = static_cast<double>(b.code[kDepthPlane]) - a.code[kDepthPlane],
+                 dz2 = static_cast<double>(c.code[kDepthPlane]) - a.code[kDepthPlane];
     const double per_x = dz1 * (c.y - a.y) - dz2 * (b.y - a.y), per_y = dz2 * (b.x - a.x) - dz1 * (c.x - a.x);
     slope = std::max(std::abs(per_x), std::abs(per_y)) / static_cast<double>(largest) *
             static_cast<double>(std::int64_t{1} << std::max(context.config.subpixel_bits, 1));
@@ -156,13 +156,14 @@ std::int64_t offset_codes(const SnappedPolygon& polygon, const DrawContext& cont
   return snap(std::clamp(factor * slope + constant, -codes, codes), 1.0);
 }
 
-std::uint32_t offset_depth(std::uint32_t z, std::int64_t offset, int depth_bits) {
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(z + offset, 0, (std::int64_t{1} << depth_bits) - 1));
+void move_depth(SnappedVertex& v, std::int64_t offset, int depth_bits) {
+  std::uint32_t& code = v.code[kDepthPlane];
+  code = static_cast<std::uint32_t>(std::clamp<std::int64_t>(code + offset, 0, (std::int64_t{1} << depth_bits) - 1));
 }
 
 void apply_polygon_offset(SnappedPolygon& polygon, const DrawContext& context) {
   if (const std::int64_t offset = offset_codes(polygon, context); offset != 0)
-    for (SnappedVertex& v : polygon.v) v.z = offset_depth(v.z, offset, context.config.depth_bits);
+    for (SnappedVertex& v : polygon.v) move_depth(v, offset, context.config.depth_bits);
 }
 
 /// Calls visit(piece) for the triangles of a polygon's fan. A piece turned over by the snap is left out.
@@ -192,9 +193,9 @@ class OutlineBuilder {
                  Outline& out)
       : context_(context), widths_(widths), cache_(cache), number_(number), out_(out) {}
 
-  std::optional<std::array<std::uint8_t, 4>> color;  ///< of every vertex, if shading is flat
-  std::int64_t depth_offset = 0;                     ///< codes
-  bool is_cut = false;                               ///< a line so far was
+  std::optional<PerPlane<std::uint32_t>> color;  ///< of every vertex, if shading is flat
+  std::int64_t depth_offset = 0;                 ///< codes
+  bool is_cut = false;                           ///< a line so far was
 
   void add_line(std::uint32_t a, std::uint32_t b) {
     const VertexCache::Entry &from = cache_.get(context_, a), &to = cache_.get(context_, b);
@@ -237,8 +238,8 @@ class OutlineBuilder {
            (state.line_last ? !*state.line_last : drops_last_by_default(state.line_rule));
   }
   void finish(SnappedVertex& v) const {
-    if (color) v.rgba = *color;
-    if (depth_offset != 0) v.z = offset_depth(v.z, depth_offset, context_.config.depth_bits);
+    if (color) copy_color(v.code, *color, context_.config);
+    if (depth_offset != 0) move_depth(v, depth_offset, context_.config.depth_bits);
   }
 
   const DrawContext& context_;
@@ -399,37 +400,6 @@ Rect clear_rect(const Scene& scene, const Clear& command) {
   State state = scene.states[command.state];
   state.viewport.reset();
   return raster_rect(state, scene.width, scene.height);
-}
-
-void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config) {
-  Framebuffer& frame = rendering.frame;
-  const Rect rect = clear_rect(scene, command);
-  const auto fill = [&rect](auto& image, int stride, auto value) {
-    for (int y = rect.y; y < rect.y + rect.height; ++y)
-      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(y) * stride + rect.x, rect.width, value);
-  };
-  if (command.depth) fill(frame.depth, frame.stride, DepthEncode(config, scene.planes).of_window(*command.depth));
-  if (command.color) {
-    std::array<std::uint8_t, 4> code;
-    for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color((*command.color)[c]);
-    fill(frame.color, frame.stride, pack_color(config.color_format, code));
-  }
-  if (!rendering.ids.empty()) fill(rendering.ids, frame.width, -1);
-  if (!rendering.visible.empty()) fill(rendering.visible, frame.width, -1);
-}
-
-Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options) {
-  Rendering rendering;
-  rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
-  std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(),
-            DepthEncode(config, scene.planes).of_window(1.0));
-  std::fill(rendering.frame.color.begin(), rendering.frame.color.end(),
-            pack_color(config.color_format, {0, 0, 0, 255}));
-  const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
-  if (options.want_count) rendering.count.assign(pixels, 0);
-  if (options.want_ids) rendering.ids.assign(pixels, -1);
-  if (options.want_ids && options.keeps_triangles()) rendering.visible.assign(pixels, -1);
-  return rendering;
 }
 
 }  // namespace halfplane

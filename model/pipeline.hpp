@@ -1,28 +1,20 @@
-// The pipeline, in order. Read this file first: each line below is a stage, and each stage is a file.
+// The host's side of the pipeline (pipeline_graph.hpp): one primitive of a scene to what goes into the hardware, or into an
+// engine that does what the hardware does.
 #pragma once
 
-// clang-format off: the order is the point.
-#include "stages/clip.hpp"                // homogeneous triangle    -> convex polygon                       host
-#include "stages/coarse_raster.hpp"       // setup                   -> tiles, rejected and accepted
-#include "stages/cull.hpp"                // signed area             -> keep or drop
-#include "stages/depth_encode.hpp"        // interpolated depth      -> stored depth code
-#include "stages/depth_test.hpp"          // fragment, stored depth  -> pass or fail
-#include "stages/fine_raster.hpp"         // tile                    -> covered samples of its stamps
-#include "stages/framebuffer.hpp"         // stored codes            -> the two images
-#include "stages/hiz.hpp"                 // retired tile visits     -> a bound on the depths of each tile
-#include "stages/interpolate.hpp"         // planes at the tile      -> depth and colour at a sample
-#include "stages/line_raster.hpp"         // line setup              -> pixels with depth and colour
-#include "stages/line_setup.hpp"          // two snapped vertices    -> first pixel, error term, steps       host
-#include "stages/point_raster.hpp"        // a snapped vertex        -> the box of its pixels                host
-#include "stages/primitive_assembly.hpp"  // indices and topology    -> triangles, lines, points             host
-#include "stages/primitive_join.hpp"      // line pixels, stamps     -> fragments in program order
-#include "stages/rop.hpp"                 // passed fragment         -> stored colour
-#include "stages/tile_cache.hpp"          // passed stamps           -> on-chip tiles, memory requests
-#include "stages/triangle_setup.hpp"      // three snapped vertices  -> edges, reciprocal, planes
-#include "stages/viewport.hpp"            // clip coordinates        -> snapped window vertex                host
-// clang-format on
+#include <array>
+#include <cstdint>
+#include <vector>
 
-#include "engines/render.hpp"
+#include "counters.hpp"
+#include "scene.hpp"
+#include "stages/clip.hpp"
+#include "stages/cull.hpp"
+#include "stages/depth_encode.hpp"
+#include "stages/line_setup.hpp"
+#include "stages/point_raster.hpp"
+#include "stages/primitive_assembly.hpp"
+#include "stages/viewport.hpp"
 
 namespace halfplane {
 
@@ -107,11 +99,5 @@ void check_scene(const Scene& scene, const Config& config);
 
 /// The pixels that a clear fills: it obeys the scissor alone, not the viewport.
 [[nodiscard]] Rect clear_rect(const Scene& scene, const Clear& command);
-
-/// Clears depth and colour inside the scissor; nobody owns the cleared pixels any more.
-void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config);
-
-/// An empty target: the farthest depth, opaque black, and the buffers that the options ask for.
-[[nodiscard]] Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options);
 
 }  // namespace halfplane

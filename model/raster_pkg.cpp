@@ -1,11 +1,14 @@
 #include "raster_pkg.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <set>
 #include <sstream>
 
-#include "packets.hpp"
-#include "stages/line_raster.hpp"
+#include "packet_words.hpp"
+#include "pipeline_graph.hpp"
+#include "raster_taps.hpp"
 
 namespace halfplane {
 namespace {
@@ -21,22 +24,93 @@ void print_constant(std::ostream& out, const std::string& name, long long value,
   out << "  localparam int " << name << " = " << value << ";  // " << why << "\n";
 }
 
-template <class Packet, class Member>
-void print_field(std::ostream& out, const Field<Packet, Member>& field, const Widths& widths) {
-  const Width& width = widths.*field.width;
-  const std::string bits = constant_name(width.name) + "_BITS";
-  if constexpr (kArraySize<Member> !=
-                0)  // flat, because Yosys reads no packed 2-D members; element i is [i*BITS +: BITS]
-    out << "    logic [" << element_count(field, widths) << "*" << bits << "-1:0] " << field.name << ";\n";
-  else
-    out << "    logic " << (width.is_signed ? "signed " : "") << "[" << bits << "-1:0] " << field.name << ";\n";
+/// The word for a member of AttributeWidths in the names of its tables: CODE_BITS_OF, CODE_AT, ALL_CODE_BITS.
+struct PlaneTable {
+  const char* word;
+  Width AttributeWidths::*width;
+  const char* what;
+};
+constexpr PlaneTable kPlaneTables[] = {{"CODE", &AttributeWidths::code, "codes"},
+                                       {"PLANE", &AttributeWidths::plane, "values and gradients"},
+                                       {"LOCAL", &AttributeWidths::local, "values and gradients inside a tile"},
+                                       {"LINE", &AttributeWidths::line, "values along a line"}};
+
+std::string all_bits(Width AttributeWidths::*width) {
+  const auto* table = std::ranges::find(kPlaneTables, width, &PlaneTable::width);
+  return "ALL_" + std::string(table->word) + "_BITS";
+}
+
+/// Of each plane the bits of a value and where it begins in an array over the planes, 32 bits an entry, plane 0 lowest;
+/// the bits of the whole array, and those of its widest value.
+void print_plane_table(std::ostream& out, const PlaneTable& table, const Widths& widths) {
+  std::string bits, at;
+  int sum = 0, most = 0;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const int width = (widths.of_plane(p).*table.width).bits;
+    const auto entry = [p](int value) { return "32'd" + std::to_string(value) + (p == 0 ? "" : ", "); };
+    bits = entry(width) + bits;
+    at = entry(sum) + at;
+    sum += width;
+    most = std::max(most, width);
+  }
+  const std::string word = table.word, type = "  localparam logic [32*PLANES-1:0] " + word;
+  out << type << "_BITS_OF = {" << bits << "};  // " << table.what << "\n" << type << "_AT = {" << at << "};\n";
+  print_constant(out, "ALL_" + word + "_BITS", sum, "of one for each plane");
+  print_constant(out, "MAX_" + word + "_BITS", most, "of the widest");
+}
+
+template <class Enum>
+void print_enum(std::ostream& out, const Widths& widths) {
+  using Wire = WireEnum<Enum>;
+  const int bits = (widths.*Wire::width).bits;
+  out << "\n  typedef enum logic [" << constant_name((widths.*Wire::width).name) << "_BITS-1:0] {";
+  const char* separator = "\n";
+  for (const Enumerator<Enum>& entry : Wire::all) {
+    out << separator << "    " << constant_name(Wire::name) << "_" << constant_name(entry.name) << " = " << bits << "'d"
+        << static_cast<int>(entry.value);
+    separator = ",\n";
+  }
+  out << "\n  } " << Wire::name << "_t;\n";
+}
+
+template <class Packet, class Member, class Place>
+void print_field(std::ostream& out, const Field<Packet, Member, Place>& field, const Widths& widths) {
+  const auto logic = [&](bool is_signed, const std::string& bits) {
+    out << "    logic " << (is_signed ? "signed " : "") << "[" << bits << "-1:0] " << field.name << ";\n";
+  };
+  if constexpr (std::is_same_v<Place, Nested>) {
+    out << "    " << Member::name << "_t " << field.name << ";\n";
+  } else if constexpr (std::is_enum_v<Member>) {
+    out << "    " << WireEnum<Member>::name << "_t " << field.name << ";\n";
+  } else if constexpr (std::is_same_v<Place, Width AttributeWidths::*>) {
+    const std::size_t count = element_count(field, widths);
+    logic(false, (count > 1 ? std::to_string(count) + "*" : "") + all_bits(field.width));
+  } else {
+    const Width& width = [&]() -> const Width& {
+      if constexpr (std::is_same_v<Place, OfPlane>)
+        return widths.of_plane(field.width.plane).*field.width.width;
+      else
+        return widths.*field.width;
+    }();
+    const std::string bits = constant_name(width.name) + "_BITS";
+    if constexpr (kArraySize<Member> !=
+                  0)  // flat, because Yosys reads no packed 2-D members: element i is [i*BITS +: BITS]
+      logic(false, std::to_string(element_count(field, widths)) + "*" + bits);
+    else
+      logic(width.is_signed, bits);
+  }
+}
+
+template <class Packet>
+void print_struct(std::ostream& out, const Widths& widths) {
+  out << "\n  typedef struct packed {\n";
+  std::apply([&](const auto&... field) { (print_field(out, field, widths), ...); }, Packet::fields());
+  out << "  } " << Packet::name << "_t;\n";
 }
 
 template <class Packet>
 void print_packet(std::ostream& out, const Widths& widths) {
-  out << "\n  typedef struct packed {\n";
-  std::apply([&](const auto&... field) { (print_field(out, field, widths), ...); }, Packet::fields());
-  out << "  } " << Packet::name << "_t;\n";
+  print_struct<Packet>(out, widths);
   print_constant(out, constant_name(Packet::name) + "_BITS", packet_bits<Packet>(widths), "of the struct above");
 }
 
@@ -84,32 +158,40 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "GUARD_BITS", widths.guard_bits, "G: fraction bits of a gradient per pixel");
   print_constant(out, "PLANE_FRACTION", widths.plane_fraction, "F = G + s");
   print_constant(out, "TILE_SHIFT", widths.tile_shift, "log2 of the tile size");
-  print_constant(out, "LINE_GUARD_BITS", widths.line_guard_bits, "G': fraction bits of depth and colour along a line");
-  print_constant(out, "STAMPS_PER_ROW", widths.stamps_per_row, "stamps along the side of a tile");
-  print_constant(out, "COLOR_CHANNELS", widths.color_channels, "channels that the colour format stores");
+  print_constant(out, "LINE_GUARD_BITS", widths.line_guard_bits, "G': fraction bits of the planes along a line");
+  print_constant(out, "STAMPS_PER_ROW", widths.stamps.stamps_per_row, "stamps along the side of a tile");
+  print_constant(out, "PLANES", widths.planes, "that are interpolated: depth, the colours and what follows them");
+  print_constant(out, "COLOR_PLANES", widths.color_planes, "of the stored colour: plane 1 and the next ones");
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
   print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
   print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
   print_constant(out, "LINE_X_BITS", widths.line_x_bits, "low bits of tile x in a cache line's number");
   print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "low bits of tile y in a cache line's number, above those");
-  out << "\n  // Derived widths, each with its bound.\n";
+  out << stall_constants() << "\n  // Derived widths, each with its bound.\n";
   for (const Width* width : widths.all())
     print_constant(out, constant_name(width->name) + "_BITS", width->bits, std::string(width->bound));
-  out << "\n  // Packets. Array fields are flat, element 0 lowest.";
-  print_packet<PrimitivePacket>(out, widths);
-  print_packet<TrianglePacket>(out, widths);
-  print_packet<SetupPacket>(out, widths);
-  print_packet<ContextPacket>(out, widths);
-  print_packet<TilePacket>(out, widths);
-  print_packet<EdgeContext>(out, widths);
-  print_packet<StampPacket>(out, widths);
-  print_packet<LineSetup>(out, widths);
-  print_packet<LinePixel>(out, widths);
-  print_packet<FragmentPacket>(out, widths);
-  print_packet<WritePacket>(out, widths);
-  print_packet<RetirePacket>(out, widths);
-  print_packet<MemoryRequest>(out, widths);
-  print_packet<MemoryResponse>(out, widths);
+  out << "\n  // The planes: depth, then the colours. Each table has 32 bits for a plane, plane 0 lowest.\n";
+  for (const PlaneTable& table : kPlaneTables) print_plane_table(out, table, widths);
+  print_constant(out, "MAX_DELTA_BITS", widest(widths, &AttributeWidths::delta).bits, "of the widest plane");
+  print_constant(out, "MAX_NUMERATOR_BITS", widest(widths, &AttributeWidths::numerator).bits, "likewise");
+  out << "\n  // What a field can say.";
+  print_enum<PrimitiveKind>(out, widths);
+  print_enum<DepthFunc>(out, widths);
+  print_enum<Cull>(out, widths);
+  print_enum<HizUpdate>(out, widths);
+  out << "\n  // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.";
+  print_struct<PixelBox>(out, widths);
+  print_struct<TileBox>(out, widths);
+  print_struct<PrimitiveState>(out, widths);
+  print_struct<TileKey>(out, widths);
+  print_struct<TriangleVertices>(out, widths);
+  print_struct<CodeRange>(out, widths);
+  out << "\n  // Packets.";
+  std::set<std::string_view> printed;
+  for (std::size_t i = 0; i < kArrows; ++i)
+    with_packet_type(static_cast<Arrow>(i), [&]<class Packet>(std::type_identity<Packet>) {
+      if (printed.insert(Packet::name).second) print_packet<Packet>(out, widths);
+    });
   print_packet<CounterPacket>(out, widths);
   out << "\nendpackage\n";
   return out.str();

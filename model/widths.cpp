@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 namespace halfplane {
 namespace {
@@ -16,42 +18,86 @@ int bits_of(Interval range) {
   return bits == 0 ? 1 : bits;  // a wire of width 0 does not exist
 }
 
-Width exact(std::string_view name, std::string_view bound, Interval range) {
-  return {name, bound, range, bits_of(range), range.lo < 0, false};
+Width exact(std::string name, std::string bound, Interval range) {
+  return {std::move(name), std::move(bound), range, bits_of(range), range.lo < 0, false};
 }
 
-Width modular(std::string_view name, std::string_view bound, int bits) {
+Width modular(std::string name, std::string bound, int bits) {
   const int128 half = int128{1} << (bits - 1);
-  return {name, bound, {-half, half - 1}, bits, true, true};
+  return {std::move(name), std::move(bound), {-half, half - 1}, bits, true, true};
 }
 
 /// A residue that is never negative.
-Width residue(std::string_view name, std::string_view bound, int bits) {
-  return {name, bound, {0, (int128{1} << bits) - 1}, bits, false, true};
+Width residue(std::string name, std::string bound, int bits) {
+  return {std::move(name), std::move(bound), {0, (int128{1} << bits) - 1}, bits, false, true};
+}
+
+/// "2^B - 1", "modulo 2^(B + 1 + F)": `symbol` stands for the bits of a code.
+std::string with_symbol(std::string text, std::string_view symbol) { return text.replace(text.find('#'), 1, symbol); }
+
+/// The planes of one attribute. The numerator is twice an area in a box of `side` subpixels by 2^bits - 1 codes.
+AttributeWidths derive_attribute(const Attribute& a, int128 side, const Width& reciprocal, const Widths& w) {
+  if (a.is_signed || !a.is_clamped || a.interpolation != Interpolation::affine || a.base != BaseVertex::canonical ||
+      a.guard_bits != w.attributes.begin()->guard_bits || a.reciprocal_bits != w.attributes.begin()->reciprocal_bits)
+    throw std::logic_error("no stage interpolates an attribute like " + std::string(a.name) + " yet");
+  const std::string name(a.name);
+  const int128 max = (int128{1} << a.bits) - 1;
+  const auto bound = [&a](const char* text) { return with_symbol(text, a.symbol); };
+  AttributeWidths d;
+  d.code = exact(name + " code", bound("2^# - 1"), {0, max});
+  d.delta = exact(name + " delta", "code - code", symmetric(max));
+  d.numerator = exact(name + " numerator", bound("L * (2^# - 1)"), symmetric(side * max));
+  d.product = exact(name + " product", name + " numerator * reciprocal", d.numerator.range * reciprocal.range);
+  d.plane = modular(name + " plane", bound("modulo 2^(# + 1 + F)"), a.bits + 1 + w.plane_fraction);
+  d.local = modular("local " + name, bound("modulo 2^(# + 1 + l)"), a.bits + 1 + a.guard_bits);
+  d.line = residue("line " + name, bound("modulo 2^(# + G')"), a.bits + w.line_guard_bits);
+  return d;
+}
+
+void derive_attributes(Widths& w, const Config& config, int128 side) {
+  w.attributes = attributes_of(config);
+  w.planes = plane_count(w.attributes);
+  if (w.planes > kMaxPlanes) throw std::logic_error("more planes than kMaxPlanes");
+  w.color_planes = color_planes(w.attributes);
+  w.line_guard_bits = ceil_log2(static_cast<uint128>(int128{2} * config.guard_band)) + 2;
+  int r = 0;
+  for (const Attribute& a : w.attributes) r = std::max(r, a.reciprocal_bits);
+  w.reciprocal = exact("reciprocal", "2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra", {0, int128{1} << r});
+  w.reciprocal_shift =
+      exact("reciprocal shift", "k = m + r, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(side * side)) + r});
+  std::size_t plane = 0, index = 0;
+  for (const Attribute& a : w.attributes) {
+    w.attribute[index] = derive_attribute(a, side, w.reciprocal, w);
+    for (int i = 0; i < a.planes; ++i, ++plane) {
+      w.attribute_of[plane] = static_cast<std::uint8_t>(index);
+      w.line_mask[plane] = ~0ULL >> (64 - w.attribute[index].line.bits);
+    }
+    ++index;
+  }
+  w.attribute[0].plane.bound += ", F = G + s";
+  w.attribute[0].local.bound += ", l local guard bits";
+  w.attribute[0].line.bound += ", G' = log2(2 g) + 2";
 }
 
 void derive_line_widths(Widths& w, const Config& config) {
   const int128 side = w.delta.range.hi, pixel = int128{1} << w.grid_bits;
-  w.line_guard_bits = ceil_log2(static_cast<uint128>(int128{2} * config.guard_band)) + 2;
   // From the start's row, at the line's first column. o: from the start to its centre, -2^(s-1) <= o <= 2^s subpixels.
   w.line_numerator = exact("line numerator", "f D + d o - 1, f < 2^s", {-pixel / 2 * side - 1, (2 * pixel - 1) * side});
   w.line_position = exact("line position", "(line numerator >> s) + d n, n columns: d n <= L^2 / 2^s",
                           (w.line_numerator.range >> w.grid_bits) + (Interval{0, side * side} >> w.grid_bits));
-  w.line_product = exact("line product", "depth delta * reciprocal", w.depth_delta.range * w.reciprocal.range);
+  const Width& longest = widest(w, &AttributeWidths::delta);
+  w.line_product = exact("line product", longest.name + " * reciprocal", longest.range * w.reciprocal.range);
   w.line_stay = exact("line stay", "d, 0 <= d <= D <= L", {0, side});
   w.line_move = exact("line move", "d - D", {-side, 0});
   w.line_error = exact("line error", "d - D <= p < d", {-side, side - 1});
   w.line_count = exact("line count", "longer side of the target, less the first pixel",
                        {0, std::max(config.target_width, config.target_height) - 1});
-  w.line_depth = residue("line depth", "modulo 2^(B + G'), G' = log2(2 g) + 2", config.depth_bits + w.line_guard_bits);
-  w.line_color = residue("line color", "modulo 2^(8 + G')", 8 + w.line_guard_bits);
 }
 
 }  // namespace
 
 Widths derive_widths(const Config& config) {
   Widths w;
-  const int B = config.depth_bits;
   w.grid_bits = config.subpixel_bits > 1 ? config.subpixel_bits : 1;
   const int s = w.grid_bits;
   const int128 band = config.guard_band;
@@ -60,9 +106,8 @@ Widths derive_widths(const Config& config) {
   w.guard_bits = std::max(ceil_log2(static_cast<uint128>(4 * band)) + 4, config.local_guard_bits + 1);
   w.plane_fraction = w.guard_bits + s;
   w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
-  w.stamps_per_row = config.tile_size / config.stamp_size;
-  w.color_channels = config.color_format == ColorFormat::rgb565 ? 3 : 4;
-  w.samples = config.stamp_size * config.stamp_size;
+  w.stamps = {config.stamp_size, config.tile_size / config.stamp_size};
+  w.samples = w.stamps.samples();
   w.tiles_x = (config.target_width + config.tile_size - 1) / config.tile_size;
   w.tiles_y = (config.target_height + config.tile_size - 1) / config.tile_size;
   const int line_bits = floor_log2(static_cast<uint128>(config.cache_lines));
@@ -87,38 +132,18 @@ Widths derive_widths(const Config& config) {
   w.tile_edge.range = {-(int128{1} << (w.tile_edge.bits - 1)), (int128{1} << (w.tile_edge.bits - 1)) - 1};
   w.sample_edge = exact("sample edge", "tile edge + (T-1)(|dx|+|dy|)", w.tile_edge.range + symmetric(extent));
 
-  // Planes. The numerator is twice an area in a box of L subpixels by 2^bits - 1 codes.
-  const int128 depth_max = (int128{1} << B) - 1;
-  w.depth_code = exact("depth code", "2^B - 1", {0, depth_max});
-  w.depth_delta = exact("depth delta", "Z - Z", symmetric(depth_max));
-  w.depth_numerator = exact("depth numerator", "L * (2^B - 1)", symmetric(side * depth_max));
-  w.color_code = exact("color code", "2^8 - 1", {0, 255});
-  w.color_numerator = exact("color numerator", "L * (2^8 - 1)", symmetric(side * 255));
-  const int r = B + config.reciprocal_extra_bits;
-  w.reciprocal = exact("reciprocal", "2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra", {0, int128{1} << r});
-  w.reciprocal_shift =
-      exact("reciprocal shift", "k = m + r, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(edge.hi)) + r});
-  w.depth_product =
-      exact("depth product", "depth numerator * reciprocal", w.depth_numerator.range * w.reciprocal.range);
-  w.color_product =
-      exact("color product", "color numerator * reciprocal", w.color_numerator.range * w.reciprocal.range);
-  w.depth_plane = modular("depth plane", "modulo 2^(B + 1 + F), F = G + s", B + 1 + w.plane_fraction);
-  w.color_plane = modular("color plane", "modulo 2^(8 + 1 + F)", 8 + 1 + w.plane_fraction);
-  w.local_depth = modular("local depth", "modulo 2^(B + 1 + l), l local guard bits", B + 1 + config.local_guard_bits);
-  w.local_color = modular("local color", "modulo 2^(8 + 1 + l)", 8 + 1 + config.local_guard_bits);
+  derive_attributes(w, config, side);
 
   // Keys and positions.
-  const auto count = [](std::string_view name, std::string_view bound, int128 n) {
-    return exact(name, bound, {0, n - 1});
-  };
+  const auto count = [](const char* name, const char* bound, int128 n) { return exact(name, bound, {0, n - 1}); };
   const int tile = config.tile_size;
   w.primitive_id = count("primitive id", "modulo 2^key.primitive_bits", int128{1} << config.primitive_id_bits);
   w.slot = count("slot", "context.slots", config.context_slots);
   w.tile_x = count("tile x", "target width / T", w.tiles_x);
   w.tile_y = count("tile y", "target height / T", w.tiles_y);
   w.tile_pixel = count("tile pixel", "T", tile);
-  w.stamp_index = count("stamp index", "(T / stamp)^2", int128{w.stamps_per_row} * w.stamps_per_row);
-  const auto bits = [](std::string_view name, std::string_view bound, int n) {
+  w.stamp_index = count("stamp index", "(T / stamp)^2", w.stamps.stamps());
+  const auto bits = [](const char* name, const char* bound, int n) {
     return exact(name, bound, {0, (int128{1} << n) - 1});
   };
   const int color_bits = config.color_format == ColorFormat::rgb565 ? 16 : 32;
@@ -132,11 +157,11 @@ Widths derive_widths(const Config& config) {
   w.cull_mode = count("cull mode", "Cull", 4);
   w.pixel_x = count("pixel x", "target width", config.target_width);
   w.pixel_y = count("pixel y", "target height", config.target_height);
-  w.vertex_color = bits("vertex color", "8 bits a stored channel", 8 * w.color_channels);
+  w.vertex_color = bits("vertex color", "8 bits a stored channel", w.color().code.bits * w.color_planes);
   w.hiz_code = bits("hiz code", "hiz.bits, at most depth.bits, at least 1", std::max(1, hiz_code_bits(config)));
   w.hiz_update = count("hiz update", "HizUpdate", 3);
   w.counter = bits("counter", "modulo 2^32", 32);
-  w.memory_lane = bits("memory lane", "a depth code or a stored colour", B > color_bits ? B : color_bits);
+  w.memory_lane = bits("memory lane", "a depth code or a stored colour", std::max(w.depth().code.bits, color_bits));
   derive_line_widths(w, config);
   return w;
 }
@@ -187,56 +212,36 @@ std::vector<const Width*> HomogeneousWidths::all() const& {
   return {&coefficient, &offset, &edge_value, &weight_step, &weight, &color_step, &color_weight};
 }
 
+const Width& widest(const Widths& widths, Width AttributeWidths::*width) {
+  const auto* first = widths.attribute.data();
+  const auto shorter = [width](const auto& a, const auto& b) { return (a.*width).bits < (b.*width).bits; };
+  return std::max_element(first, first + widths.attributes.attributes, shorter)->*width;
+}
+
+std::string_view Widths::plane_name(std::size_t p) const {
+  std::size_t part = p;
+  for (std::size_t a = 0; a < attribute_of[p]; ++a) part -= static_cast<std::size_t>(attributes.attribute[a].planes);
+  return attributes.attribute[attribute_of[p]].part[part];
+}
+
 std::vector<const Width*> Widths::all() const& {
-  return {&coordinate,
-          &delta,
-          &edge_product,
-          &area,
-          &edge_value,
-          &edge_step,
-          &tile_edge,
-          &sample_edge,
-          &depth_code,
-          &depth_delta,
-          &depth_numerator,
-          &color_code,
-          &color_numerator,
-          &reciprocal,
-          &reciprocal_shift,
-          &depth_product,
-          &color_product,
-          &depth_plane,
-          &color_plane,
-          &local_depth,
-          &local_color,
-          &primitive_id,
-          &slot,
-          &tile_x,
-          &tile_y,
-          &tile_pixel,
-          &stamp_index,
-          &sample_mask,
-          &stored_color,
-          &kind,
-          &flag,
-          &depth_func,
-          &cull_mode,
-          &pixel_x,
-          &pixel_y,
-          &vertex_color,
-          &hiz_code,
-          &hiz_update,
-          &memory_lane,
-          &counter,
-          &line_numerator,
-          &line_position,
-          &line_product,
-          &line_error,
-          &line_stay,
-          &line_move,
-          &line_count,
-          &line_depth,
-          &line_color};
+  std::vector<const Width*> list{&coordinate, &delta,     &edge_product, &area,
+                                 &edge_value, &edge_step, &tile_edge,    &sample_edge};
+  const auto add = [&list](std::initializer_list<const Width*> widths) { list.insert(list.end(), widths); };
+  const auto add_of_attributes = [&](std::initializer_list<Width AttributeWidths::*> members) {
+    for (int a = 0; a < attributes.attributes; ++a)
+      for (const auto member : members) list.push_back(&(attribute[static_cast<std::size_t>(a)].*member));
+  };
+  using A = AttributeWidths;
+  add_of_attributes({&A::code, &A::delta, &A::numerator});
+  add({&reciprocal, &reciprocal_shift});
+  for (const auto member : {&A::product, &A::plane, &A::local}) add_of_attributes({member});
+  add({&primitive_id, &slot,       &tile_x,     &tile_y,      &tile_pixel, &stamp_index,    &sample_mask,
+       &stored_color, &kind,       &flag,       &depth_func,  &cull_mode,  &pixel_x,        &pixel_y,
+       &vertex_color, &hiz_code,   &hiz_update, &memory_lane, &counter,    &line_numerator, &line_position,
+       &line_product, &line_error, &line_stay,  &line_move,   &line_count});
+  add_of_attributes({&A::line});
+  return list;
 }
 
 }  // namespace halfplane

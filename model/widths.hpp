@@ -4,11 +4,14 @@
 // --widths` are printed from them, and a configuration whose widths do not fit is refused by validate().
 #pragma once
 
-#include <string_view>
+#include <array>
+#include <string>
 #include <vector>
 
+#include "attributes.hpp"
 #include "config.hpp"
 #include "fixed.hpp"
+#include "samples.hpp"
 
 namespace halfplane {
 
@@ -32,12 +35,20 @@ struct Interval {
 
 /// One intermediate: what it is called, why it is no larger, and how many bits hold it.
 struct Width {
-  std::string_view name;   ///< "edge value"; also the base of its constant in raster_pkg.sv: EDGE_VALUE_BITS
-  std::string_view bound;  ///< the formula behind `range`, in the symbols of docs/spec.md
-  Interval range;          ///< every value it takes; for a modular quantity, the residues
+  std::string name;   ///< "edge value"; also the base of its constant in raster_pkg.sv: EDGE_VALUE_BITS
+  std::string bound;  ///< the formula behind `range`, in the symbols of docs/spec.md
+  Interval range;     ///< every value it takes; for a modular quantity, the residues
   int bits = 0;
   bool is_signed = false;
   bool is_modular = false;  ///< lives modulo 2^bits; only its final value is decoded
+};
+
+/// What each plane of an attribute takes.
+struct AttributeWidths {
+  Width code, delta, numerator, product, plane, local, line;
+
+  /// l: fraction bits of a local plane.
+  [[nodiscard]] int guard_bits() const { return local.bits - code.bits - 1; }
 };
 
 /// The derived widths of a configuration, and the few derived constants beside them.
@@ -47,8 +58,9 @@ struct Widths {
   int guard_bits = 0;      ///< G: fraction bits of a gradient per pixel below one LSB
   int plane_fraction = 0;  ///< F = G + s: fraction bits of a plane at subpixel resolution
   int tile_shift = 0;      ///< log2 of the tile size
-  int stamps_per_row = 0;  ///< stamps along the side of a tile
-  int color_channels = 0;  ///< channels that the colour format stores: 3 or 4
+  StampGrid stamps;        ///< the stamps of a tile, the samples of a stamp
+  int planes = 0;          ///< of all attributes together
+  int color_planes = 0;    ///< those of the stored colour: kColorPlane and the next ones
   int samples = 0;         ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
   int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's x and y that choose its cache line
@@ -56,21 +68,33 @@ struct Widths {
 
   // Coverage.
   Width coordinate, delta, edge_product, area, edge_value, edge_step, tile_edge, sample_edge;
-  // Planes.
-  Width depth_code, depth_delta, depth_numerator, color_code, color_numerator;
-  Width reciprocal, reciprocal_shift, depth_product, color_product;
-  Width depth_plane, color_plane, local_depth, local_color;
+  // Planes, by attribute.
+  AttributeList attributes;
+  std::array<AttributeWidths, kMaxAttributes> attribute;
+  PerPlane<std::uint8_t> attribute_of{};  ///< index of each plane's attribute
+  PerPlane<std::uint64_t> line_mask{};    ///< all ones in AttributeWidths::line
+  Width reciprocal, reciprocal_shift;
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, memory_lane, counter;
   // Lines.
-  Width line_numerator, line_position, line_product;                           // line_setup
-  Width line_error, line_stay, line_move, line_count, line_depth, line_color;  // registers and steps of line_raster
+  Width line_numerator, line_position, line_product;   // line_setup
+  Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, beside those of the planes
 
-  /// All of them, in the order above: for tables and for raster_pkg.sv.
+  /// Those of one plane.
+  [[nodiscard]] const AttributeWidths& of_plane(std::size_t p) const { return attribute[attribute_of[p]]; }
+  [[nodiscard]] const AttributeWidths& depth() const { return of_plane(kDepthPlane); }
+  [[nodiscard]] const AttributeWidths& color() const { return of_plane(kColorPlane); }
+  /// "depth", "red", ...
+  [[nodiscard]] std::string_view plane_name(std::size_t p) const;
+
+  /// All of them, as a reader wants them: coverage, planes, keys, lines. For tables and for raster_pkg.sv.
   [[nodiscard]] std::vector<const Width*> all() const&;
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
 };
+
+/// The widest of the attributes: what one datapath for all planes must hold.
+[[nodiscard]] const Width& widest(const Widths& widths, Width AttributeWidths::*width);
 
 /// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to say.
 [[nodiscard]] Widths derive_widths(const Config& config);

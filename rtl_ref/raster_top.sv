@@ -4,15 +4,16 @@
 //                                 ^                                   line_raster ^              |              ^ v
 //                                 '-- the retirement of tile visits (HiZ) <----------------------'             memory
 //
-// Every arrow is a stream: a packet moves when valid and ready are both high. stall_i holds a stream back for a cycle,
-// for tests; hardware ties it to 0. Nothing in here depends on when packets come, only on what they say.
+// Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i holds
+// arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
+// finds them. Nothing in here depends on when packets come, only on what they say.
 // docs/pipeline.md says what each stage takes and how long; the host must clear depth and colour once before it draws.
 module raster_top (
     input logic clk_i,
     input logic rst_ni,
 
     /* verilator lint_off UNUSEDSIGNAL */  // without the unit of lines
-    input logic [9:0] stall_i,  // primitive, triangle, setup, tile, stamp, fragment, request, response, line, line_pixel
+    input logic [raster_pkg::STALL_BITS-1:0] stall_i,
     /* verilator lint_on UNUSEDSIGNAL */
 
     // From the host
@@ -65,19 +66,19 @@ module raster_top (
   logic request_offered, response_ready;
   logic triangle_accepted, setup_accepted, tile_accepted, stamp_accepted, fragment_accepted;
 
-  assign primitive_ready_o = primitive_ready && !stall_i[0];
-  assign triangle_valid    = triangle_offered && !stall_i[1];
-  assign triangle_ready    = triangle_accepted && !stall_i[1];
-  assign setup_valid       = setup_offered && !stall_i[2];
-  assign setup_ready       = setup_accepted && !stall_i[2];
-  assign tile_valid        = tile_offered && !stall_i[3];
-  assign tile_ready        = tile_accepted && !stall_i[3];
-  assign stamp_valid       = stamp_offered && !stall_i[4];
-  assign stamp_ready       = stamp_accepted && !stall_i[4];
-  assign fragment_valid    = fragment_offered && !stall_i[5];
-  assign fragment_ready    = fragment_accepted && !stall_i[5];
-  assign request_valid_o   = request_offered && !stall_i[6];
-  assign response_ready_o  = response_ready && !stall_i[7];
+  assign primitive_ready_o = primitive_ready && !stall_i[raster_pkg::STALL_PRIMITIVE];
+  assign triangle_valid    = triangle_offered && !stall_i[raster_pkg::STALL_TRIANGLE];
+  assign triangle_ready    = triangle_accepted && !stall_i[raster_pkg::STALL_TRIANGLE];
+  assign setup_valid       = setup_offered && !stall_i[raster_pkg::STALL_SETUP];
+  assign setup_ready       = setup_accepted && !stall_i[raster_pkg::STALL_SETUP];
+  assign tile_valid        = tile_offered && !stall_i[raster_pkg::STALL_TILE];
+  assign tile_ready        = tile_accepted && !stall_i[raster_pkg::STALL_TILE];
+  assign stamp_valid       = stamp_offered && !stall_i[raster_pkg::STALL_STAMP];
+  assign stamp_ready       = stamp_accepted && !stall_i[raster_pkg::STALL_STAMP];
+  assign fragment_valid    = fragment_offered && !stall_i[raster_pkg::STALL_FRAGMENT];
+  assign fragment_ready    = fragment_accepted && !stall_i[raster_pkg::STALL_FRAGMENT];
+  assign request_valid_o   = request_offered && !stall_i[raster_pkg::STALL_REQUEST];
+  assign response_ready_o  = response_ready && !stall_i[raster_pkg::STALL_RESPONSE];
 
   logic is_primitive, is_zero_area, is_backface, is_empty, is_dropped;
   logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
@@ -92,72 +93,91 @@ module raster_top (
   logic                             lines_are_done;  // none is in the unit
 
   // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
-  // until they are through with it and do one thing at a time.
+  // until they are through with it and do one thing at a time. The ports are the same.
+  logic fine_valid, fine_ready, made_valid, made_ready;  // what fine_raster and interpolate send
+  var raster_pkg::stamp_packet_t    fine_data;
+  var raster_pkg::fragment_packet_t made_data;
+`define RASTER_FRONT(CULL, TRIANGLE_SETUP, COARSE_RASTER, FINE_RASTER, INTERPOLATE) \
+    CULL u_cull (                                                                       \
+        .clk_i,                                                                         \
+        .rst_ni,                                                                        \
+        .primitive_valid_i(primitive_valid_i && !stall_i[raster_pkg::STALL_PRIMITIVE]), \
+        .primitive_ready_o(primitive_ready),                                            \
+        .primitive_i,                                                                   \
+        .triangle_valid_o (triangle_offered),                                           \
+        .triangle_ready_i (triangle_ready),                                             \
+        .triangle_o       (triangle_data),                                              \
+        .is_primitive_o   (is_primitive),                                               \
+        .is_zero_area_o   (is_zero_area),                                               \
+        .is_backface_o    (is_backface),                                                \
+        .is_empty_o       (is_empty),                                                   \
+        .is_dropped_o     (is_dropped)                                                  \
+    );                                                                                  \
+    TRIANGLE_SETUP u_triangle_setup (                                                   \
+        .clk_i,                                                                         \
+        .rst_ni,                                                                        \
+        .triangle_valid_i(triangle_valid),                                              \
+        .triangle_ready_o(triangle_accepted),                                           \
+        .triangle_i      (triangle_data),                                               \
+        .setup_valid_o   (setup_offered),                                               \
+        .setup_ready_i   (setup_ready),                                                 \
+        .setup_o         (setup_data)                                                   \
+    );                                                                                  \
+    COARSE_RASTER u_coarse_raster (                                                     \
+        .clk_i,                                                                         \
+        .rst_ni,                                                                        \
+        .setup_valid_i   (setup_valid),                                                 \
+        .setup_ready_o   (setup_accepted),                                              \
+        .setup_i         (setup_data),                                                  \
+        .context_slot_o  (context_slot),                                                \
+        .context_o       (context_data),                                                \
+        .slot_free_i     (slot_free),                                                   \
+        .tile_valid_o    (tile_offered),                                                \
+        .tile_ready_i    (tile_ready),                                                  \
+        .tile_o          (tile_data),                                                   \
+        .edges_o         (edges_data),                                                  \
+        .retire_valid_i  (retire_valid),                                                \
+        .retire_i        (retire_data),                                                 \
+        .is_visited_o    (is_visited),                                                  \
+        .is_outside_o    (is_outside),                                                  \
+        .is_accepted_o   (is_accepted),                                                 \
+        .is_hiz_o        (is_hiz),                                                      \
+        .samples_tested_o(samples_tested),                                              \
+        .visits_are_done_o(visits_are_done)                                             \
+    );                                                                                  \
+    FINE_RASTER u_fine_raster (                                                         \
+        .clk_i,                                                                         \
+        .rst_ni,                                                                        \
+        .tile_valid_i (tile_valid),                                                     \
+        .tile_ready_o (tile_accepted),                                                  \
+        .tile_i       (tile_data),                                                      \
+        .edges_i      (edges_data),                                                     \
+        .stamp_valid_o(fine_valid),                                                     \
+        .stamp_ready_i(fine_ready),                                                     \
+        .stamp_o      (fine_data)                                                       \
+    );                                                                                  \
+    INTERPOLATE u_interpolate (                                                         \
+        .clk_i,                                                                         \
+        .rst_ni,                                                                        \
+        .stamp_valid_i   (stamp_valid),                                                 \
+        .stamp_ready_o   (stamp_accepted),                                              \
+        .stamp_i         (stamp_data),                                                  \
+        .context_read_o  (context_read),                                                \
+        .context_slot_o  (read_slot),                                                   \
+        .context_i       (stamp_context),                                               \
+        .slot_free_o     (slot_free),                                                   \
+        .fragment_valid_o(made_valid),                                                  \
+        .fragment_ready_i(made_ready),                                                  \
+        .fragment_o      (made_data)                                                    \
+    );
+
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_pipelined
-      cull u_cull (
-          .clk_i,
-          .rst_ni,
-          .primitive_valid_i(primitive_valid_i && !stall_i[0]),
-          .primitive_ready_o(primitive_ready),
-          .primitive_i,
-          .triangle_valid_o (triangle_offered),
-          .triangle_ready_i (triangle_ready),
-          .triangle_o       (triangle_data),
-          .is_primitive_o   (is_primitive),
-          .is_zero_area_o   (is_zero_area),
-          .is_backface_o    (is_backface),
-          .is_empty_o       (is_empty),
-          .is_dropped_o     (is_dropped)
-      );
+      `RASTER_FRONT(cull, triangle_setup, coarse_raster, fine_raster, interpolate)
 
-      triangle_setup u_triangle_setup (
-          .clk_i,
-          .rst_ni,
-          .triangle_valid_i(triangle_valid),
-          .triangle_ready_o(triangle_accepted),
-          .triangle_i      (triangle_data),
-          .setup_valid_o   (setup_offered),
-          .setup_ready_i   (setup_ready),
-          .setup_o         (setup_data)
-      );
-
-      coarse_raster u_coarse_raster (
-          .clk_i,
-          .rst_ni,
-          .setup_valid_i   (setup_valid),
-          .setup_ready_o   (setup_accepted),
-          .setup_i         (setup_data),
-          .context_slot_o  (context_slot),
-          .context_o       (context_data),
-          .slot_free_i     (slot_free),
-          .tile_valid_o    (tile_offered),
-          .tile_ready_i    (tile_ready),
-          .tile_o          (tile_data),
-          .edges_o         (edges_data),
-          .retire_valid_i  (retire_valid),
-          .retire_i        (retire_data),
-          .is_visited_o    (is_visited),
-          .is_outside_o    (is_outside),
-          .is_accepted_o   (is_accepted),
-          .is_hiz_o        (is_hiz),
-          .samples_tested_o(samples_tested),
-          .visits_are_done_o(visits_are_done)
-      );
-
-      logic fine_valid, fine_ready;
-      var raster_pkg::stamp_packet_t fine_data;
-      fine_raster u_fine_raster (
-          .clk_i,
-          .rst_ni,
-          .tile_valid_i (tile_valid),
-          .tile_ready_o (tile_accepted),
-          .tile_i       (tile_data),
-          .edges_i      (edges_data),
-          .stamp_valid_o(fine_valid),
-          .stamp_ready_i(fine_ready),
-          .stamp_o      (fine_data)
-      );
+      assign shaded_valid = made_valid;
+      assign made_ready   = shaded_ready;
+      assign shaded_data  = made_data;
 
       // Behind here every step waits for the next one combinationally; the buffer keeps that out of the stages before.
       skid_buffer #(
@@ -172,102 +192,14 @@ module raster_top (
           .ready_i(stamp_ready),
           .data_o (stamp_data)
       );
-
-      interpolate u_interpolate (
-          .clk_i,
-          .rst_ni,
-          .stamp_valid_i   (stamp_valid),
-          .stamp_ready_o   (stamp_accepted),
-          .stamp_i         (stamp_data),
-          .context_read_o  (context_read),
-          .context_slot_o  (read_slot),
-          .context_i       (stamp_context),
-          .slot_free_o     (slot_free),
-          .fragment_valid_o(shaded_valid),
-          .fragment_ready_i(shaded_ready),
-          .fragment_o      (shaded_data)
-      );
     end else begin : gen_serial
-      cull_serial u_cull (
-          .clk_i,
-          .rst_ni,
-          .primitive_valid_i(primitive_valid_i && !stall_i[0]),
-          .primitive_ready_o(primitive_ready),
-          .primitive_i,
-          .triangle_valid_o (triangle_offered),
-          .triangle_ready_i (triangle_ready),
-          .triangle_o       (triangle_data),
-          .is_primitive_o   (is_primitive),
-          .is_zero_area_o   (is_zero_area),
-          .is_backface_o    (is_backface),
-          .is_empty_o       (is_empty),
-          .is_dropped_o     (is_dropped)
-      );
+      `RASTER_FRONT(cull_serial, triangle_setup_serial, coarse_raster_serial, fine_raster_serial, interpolate_serial)
 
-      triangle_setup_serial u_triangle_setup (
-          .clk_i,
-          .rst_ni,
-          .triangle_valid_i(triangle_valid),
-          .triangle_ready_o(triangle_accepted),
-          .triangle_i      (triangle_data),
-          .setup_valid_o   (setup_offered),
-          .setup_ready_i   (setup_ready),
-          .setup_o         (setup_data)
-      );
-
-      coarse_raster_serial u_coarse_raster (
-          .clk_i,
-          .rst_ni,
-          .setup_valid_i   (setup_valid),
-          .setup_ready_o   (setup_accepted),
-          .setup_i         (setup_data),
-          .context_slot_o  (context_slot),
-          .context_o       (context_data),
-          .slot_free_i     (slot_free),
-          .tile_valid_o    (tile_offered),
-          .tile_ready_i    (tile_ready),
-          .tile_o          (tile_data),
-          .edges_o         (edges_data),
-          .retire_valid_i  (retire_valid),
-          .retire_i        (retire_data),
-          .is_visited_o    (is_visited),
-          .is_outside_o    (is_outside),
-          .is_accepted_o   (is_accepted),
-          .is_hiz_o        (is_hiz),
-          .samples_tested_o(samples_tested),
-          .visits_are_done_o(visits_are_done)
-      );
-
-      fine_raster_serial u_fine_raster (
-          .clk_i,
-          .rst_ni,
-          .tile_valid_i (tile_valid),
-          .tile_ready_o (tile_accepted),
-          .tile_i       (tile_data),
-          .edges_i      (edges_data),
-          .stamp_valid_o(stamp_offered),
-          .stamp_ready_i(stamp_ready),
-          .stamp_o      (stamp_data)
-      );
+      assign stamp_offered = fine_valid;
+      assign fine_ready    = stamp_ready;
+      assign stamp_data    = fine_data;
 
       // Behind here a step waits for the framebuffer combinationally; the buffer keeps that out of the stages before.
-      logic made_valid, made_ready;
-      var raster_pkg::fragment_packet_t made_data;
-      interpolate_serial u_interpolate (
-          .clk_i,
-          .rst_ni,
-          .stamp_valid_i   (stamp_valid),
-          .stamp_ready_o   (stamp_accepted),
-          .stamp_i         (stamp_data),
-          .context_read_o  (context_read),
-          .context_slot_o  (read_slot),
-          .context_i       (stamp_context),
-          .slot_free_o     (slot_free),
-          .fragment_valid_o(made_valid),
-          .fragment_ready_i(made_ready),
-          .fragment_o      (made_data)
-      );
-
       skid_buffer #(
           .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS)
       ) u_fragments (
@@ -287,15 +219,15 @@ module raster_top (
   generate
     if (raster_pkg::LINES_UNIT != 0) begin : gen_lines
       logic line_ready, pixel_offered, pixel_accepted;
-      assign line_ready_o     = line_ready && !stall_i[8];
-      assign line_pixel_valid = pixel_offered && !stall_i[9];
-      assign line_pixel_ready = pixel_accepted && !stall_i[9];
+      assign line_ready_o     = line_ready && !stall_i[raster_pkg::STALL_LINE];
+      assign line_pixel_valid = pixel_offered && !stall_i[raster_pkg::STALL_LINE_PIXEL];
+      assign line_pixel_ready = pixel_accepted && !stall_i[raster_pkg::STALL_LINE_PIXEL];
       assign lines_are_done   = !pixel_offered;
 
       line_raster u_line_raster (
           .clk_i,
           .rst_ni,
-          .line_valid_i (line_valid_i && !stall_i[8]),
+          .line_valid_i (line_valid_i && !stall_i[raster_pkg::STALL_LINE]),
           .line_ready_o (line_ready),
           .line_i,
           .pixel_valid_o(pixel_offered),
@@ -379,9 +311,9 @@ module raster_top (
       .write_valid_i   (write_valid),
       .write_i         (write_data),
       .request_valid_o (request_offered),
-      .request_ready_i (request_ready_i && !stall_i[6]),
+      .request_ready_i (request_ready_i && !stall_i[raster_pkg::STALL_REQUEST]),
       .request_o,
-      .response_valid_i(response_valid_i && !stall_i[7]),
+      .response_valid_i(response_valid_i && !stall_i[raster_pkg::STALL_RESPONSE]),
       .response_ready_o(response_ready),
       .response_i,
       .fill_o          (fill),

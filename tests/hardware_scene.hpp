@@ -21,10 +21,10 @@ inline Config with(const char* preset_name, std::initializer_list<std::pair<cons
 /// Remembers what the tests ask about.
 struct Recorder : PacketSink {
   using PacketSink::take;
-  void take(const TilePacket& packet) override { tiles.push_back(packet); }
-  void take(const StampPacket& packet) override { stamps.push_back(packet); }
-  void take(const RetirePacket& packet) override { retired.push_back(packet); }
-  void take(const MemoryRequest& packet) override { requests.push_back(packet); }
+  void take(On<Arrow::tile>, const TilePacket& packet) override { tiles.push_back(packet); }
+  void take(On<Arrow::stamp>, const StampPacket& packet) override { stamps.push_back(packet); }
+  void take(On<Arrow::retire>, const RetirePacket& packet) override { retired.push_back(packet); }
+  void take(On<Arrow::request>, const MemoryRequest& packet) override { requests.push_back(packet); }
   std::vector<TilePacket> tiles;
   std::vector<StampPacket> stamps;
   std::vector<RetirePacket> retired;

@@ -20,6 +20,8 @@
 #include "model/engines/scalar.hpp"
 #include "model/widths.hpp"
 #include "sim/scene/capture.hpp"
+#include "sim/scene/capture_states.hpp"
+#include "sim/scene/random_state.hpp"
 #include "sim/study/compare/compare.hpp"
 
 namespace halfplane::test {
@@ -102,26 +104,13 @@ class CaptureFromBytes {
   }
 
   void set_state() {
-    constexpr std::array kTests{"less", "lequal", "greater", "gequal", "equal", "notequal", "always", "never"};
-    constexpr std::array kSwitch{"on", "off"};
-    switch (bytes_.byte() % 12) {
-      case 0: return line(std::string("state depth_test ") + bytes_.pick(kTests));
-      case 1: return line(std::string("state depth_write ") + bytes_.pick(kSwitch));
-      case 2: return line(std::string("state color_write ") + bytes_.pick(kSwitch));
-      case 3: return line(std::string("state cull ") + bytes_.pick(std::array{"none", "back", "front", "both"}));
-      case 4: return line(std::string("state front ") + bytes_.pick(std::array{"ccw", "cw"}));
-      case 5: return line(std::string("state shade ") + bytes_.pick(std::array{"smooth", "flat"}));
-      case 6: return line(std::string("state provoking ") + bytes_.pick(std::array{"first", "last"}));
-      case 7:
-        return line(std::string("state line_rule ") + bytes_.pick(std::array{"diamond", "midpoint", "bresenham"}));
-      case 8: return line("state point_size " + exact(1 + bytes_.byte() / 16.0));
-      case 9: return line(std::string("state polygon_mode ") + bytes_.pick(std::array{"fill", "line", "point"}));
-      case 10:
-        return line("state scissor " + std::to_string(bytes_.between(0, 20)) + " " +
-                    std::to_string(bytes_.between(0, 20)) + " " + std::to_string(bytes_.between(0, 48)) + " " +
-                    std::to_string(bytes_.between(0, 48)));
-      default: return line("state polygon_offset " + exact(bytes_.between(-4, 4)) + " " + exact(bytes_.between(-4, 4)));
-    }
+    const auto states = capture_states();
+    const DrawState& row = states[bytes_.byte() % states.size()];
+    State state;
+    row.set(state, random_value(row, [this](std::uint32_t n) { return bytes_.byte() % n; }));
+    std::string text = "state " + std::string(row.name);
+    write_state_value(state, row, text);
+    line(text);
   }
 
   /// Coordinates: anywhere near the target, on pixel centres and half-edge points, beside the vertex before, or anywhere

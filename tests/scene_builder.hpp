@@ -1,4 +1,4 @@
-// Small scenes for tests, one call per triangle, and the tests' own random numbers.
+// Small scenes for tests, one call per triangle, and the tests' own random numbers and states.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/scene/random_state.hpp"
 #include "sim/scene/scene_builder.hpp"
 
 namespace halfplane::test {

@@ -39,7 +39,7 @@ SRAMS = ('*sram*',)
 OFFSETS = ('*edge_offset*',)
 HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
 STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
-HIZ_TWINS = (15, 16, 17, ('s_q.depth_min[Z-1-:HIZ] > bound', 's_q.depth_min[Z-1-:HIZ] >= bound'))
+HIZ_TWINS = (15, 16, 17, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'))
 
 PROOFS = [
     Proof('edge_offset_step', 'a', 'lib/edge_offset.sv', 'value + x step_x + y step_y', is_combinational=True,
@@ -47,9 +47,9 @@ PROOFS = [
           twins=(("(moved & WIDTH'((1 << b) - 1))", "(moved & WIDTH'((1 << b) - 2))"),)),
     Proof('edge_offset_signed', 'a', 'lib/edge_offset.sv', 'the same, x and y in two\'s complement', is_combinational=True,
           file='edge_offset_step', twins=(("(SIGNED != 0 && b == OFFSET - 1)", "(SIGNED != 0 && b == 0)"),),
-          parameters=(('WIDTH', 'LOCAL_DEPTH_BITS'), ('OFFSET', 'TILE_PIXEL_BITS'), ('SIGNED', 1))),
+          parameters=(('WIDTH', 'MAX_LOCAL_BITS'), ('OFFSET', 'TILE_PIXEL_BITS'), ('SIGNED', 1))),
     Proof('plane_offset_step', 'a', 'lib/plane_offset.sv', 'value + offset step, offset in two\'s complement',
-          is_combinational=True, parameters=(('WIDTH', 'LOCAL_DEPTH_BITS'), ('OFFSET', 'TILE_PIXEL_BITS')),
+          is_combinational=True, parameters=(('WIDTH', 'MAX_LOCAL_BITS'), ('OFFSET', 'TILE_PIXEL_BITS')),
           quick=TINY, twins=(("{value_i, 1'b1} + {digit, is_negative}", "{value_i, 1'b0} + {digit, is_negative}"),)),
     Proof('fine_raster_rows', 'a, e', 'stages/fine_raster.sv', 'edge values of each row of stamps; no sum overflows',
           twins=(('value_q + (step_y <<< STAMP_SHIFT)', 'value_q + step_x'),
@@ -62,7 +62,7 @@ PROOFS = [
           is_combinational=True, twins=(27, 29)),
     Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',
           quick=TINY, twins=(40, 41, 42), cover_depth=6),
-    Proof('line_raster_planes', 'a', 'stages/line_raster.sv', 'depth and colour of pixel n are first + n step', quick=TINY,
+    Proof('line_raster_planes', 'a', 'stages/line_raster.sv', 'every plane of pixel n is first + n step', quick=TINY,
           twins=(44, 45)),
     Proof('cull_fill_rule', 'b', 'stages/cull.sv', 'top-left rule by its definition; one of an edge\'s two sides covers a sample',
           quick=TINY, twins=(1, 5), cuts=MULTIPLIERS),

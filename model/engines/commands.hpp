@@ -5,6 +5,10 @@
 #include <chrono>
 
 #include "../pipeline.hpp"
+#include "../stages/depth_test.hpp"
+#include "../stages/line_raster.hpp"
+#include "../stages/rop.hpp"
+#include "render.hpp"
 
 namespace halfplane {
 
@@ -12,22 +16,21 @@ namespace halfplane {
 template <class Color>
 void shade_sample(const DrawContext& context, const RenderOptions& options, int x, int y, std::uint32_t plane_code,
                   Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering) {
-  const State& state = context.state;
+  const FragmentState state = fragment_state(context.state);
   const std::uint32_t depth = context.depth_encode(plane_code);
   const std::size_t pixel = rendering.frame.at(x, y);
   const auto plain =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering.frame.width) + static_cast<std::size_t>(x);
   ++rendering.counters.covered;
   if (!rendering.count.empty()) ++rendering.count[plain];
-  if (!depth_passes(state.depth_test, depth, rendering.frame.depth[pixel])) {
+  if (!apply_fragment(state, context.config.color_format, depth, color, rendering.frame.depth[pixel],
+                      rendering.frame.color[pixel])) {
     rendering.counters.skipped.fragments_early_z += options.skip.fragments_early_z ? 1 : 0;
     return;
   }
   ++rendering.counters.depth_passed;
-  if (!state.depth_write && !state.color_write) return;
+  if (!state.writes()) return;
   ++rendering.counters.written;
-  if (state.depth_write) rendering.frame.depth[pixel] = depth;
-  if (state.color_write) rendering.frame.color[pixel] = pack_color(context.config.color_format, color());
   if (!rendering.ids.empty()) rendering.ids[plain] = static_cast<std::int32_t>(primitive);
   if (!rendering.visible.empty()) rendering.visible[plain] = visible;
 }
@@ -35,28 +38,68 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
 /// `visible` of a pixel that a line or a point owns.
 inline constexpr std::int32_t kVisibleOutline = -2;
 
+/// The fragments of a line, from the registers that line_raster reads its pixels off.
+inline void tap_line(const LinePrimitive& line, const Widths& widths, std::uint32_t item, const FragmentTap& tap) {
+  const int guard_bits = widths.line_guard_bits;
+  TappedFragment fragment{PrimitiveKind::line,
+                          line.drawn.primitive,
+                          line.drawn.draw,
+                          item,
+                          nullptr,
+                          &line.drawn,
+                          nullptr,
+                          0,
+                          0,
+                          guard_bits,
+                          {}};
+  for (LineState state = first_state(line.setup);; advance(state, line.setup, widths)) {
+    const LinePixel pixel = pixel_of(state, line.setup, widths);
+    const auto sample = [&](std::uint64_t value, std::uint32_t code) -> PlaneSample {
+      // Before the start shows its codes as they are; a register carries half an LSB.
+      if (state.is_before_start) return {std::int64_t{code} << guard_bits, code};
+      return {static_cast<std::int64_t>(value) - (std::int64_t{1} << (guard_bits - 1)), code};
+    };
+    fragment.x = pixel.x;
+    fragment.y = pixel.y;
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+      fragment.plane[p] = sample(state.value[p], pixel.code[p]);
+    tap(fragment);
+    if (state.remaining == 0) return;
+  }
+}
+
+/// Those of a point: the vertex everywhere.
+inline void tap_point(const PointPrimitive& point, std::uint32_t item, const FragmentTap& tap) {
+  const DrawnPoint& drawn = point.drawn;
+  TappedFragment fragment{PrimitiveKind::point, drawn.primitive, drawn.draw, item, nullptr, nullptr, &drawn};
+  for (std::size_t p = 0; p < kMaxPlanes; ++p)
+    fragment.plane[p] = {static_cast<std::int64_t>(drawn.at.code[p]), drawn.at.code[p]};
+  for (fragment.y = point.box.top; fragment.y <= point.box.bottom; ++fragment.y)
+    for (fragment.x = point.box.left; fragment.x <= point.box.right; ++fragment.x) tap(fragment);
+}
+
 inline void draw_line(const DrawContext& context, const Widths& widths, const RenderOptions& options,
                       const LinePrimitive& line, Rendering& rendering) {
+  if (options.fragment_tap)
+    tap_line(line, widths, static_cast<std::uint32_t>(rendering.lines.size()), options.fragment_tap);
   line_raster(line.setup, widths, [&](const LinePixel& pixel) {
     if (options.pixel_tap) options.pixel_tap(line.drawn.primitive, pixel.x, pixel.y);
-    const auto color = [&pixel] {
-      std::array<std::uint8_t, 4> code;
-      for (std::size_t c = 0; c < 4; ++c) code[c] = static_cast<std::uint8_t>(pixel.color >> 8 * c);
-      return code;
-    };
-    shade_sample(context, options, pixel.x, pixel.y, pixel.depth, color, line.drawn.primitive, kVisibleOutline,
-                 rendering);
+    shade_sample(
+        context, options, pixel.x, pixel.y, pixel.code[kDepthPlane], [&pixel] { return color_channels(pixel.code); },
+        line.drawn.primitive, kVisibleOutline, rendering);
   });
 }
 
 inline void draw_point(const DrawContext& context, const RenderOptions& options, const PointPrimitive& point,
                        Rendering& rendering) {
+  if (options.fragment_tap) tap_point(point, static_cast<std::uint32_t>(rendering.points.size()), options.fragment_tap);
   const SnappedVertex& at = point.drawn.at;
   for (int y = point.box.top; y <= point.box.bottom; ++y)
     for (int x = point.box.left; x <= point.box.right; ++x) {
       if (options.pixel_tap) options.pixel_tap(point.drawn.primitive, x, y);
       shade_sample(
-          context, options, x, y, at.z, [&at] { return at.rgba; }, point.drawn.primitive, kVisibleOutline, rendering);
+          context, options, x, y, at.code[kDepthPlane], [&at] { return color_channels(at.code); },
+          point.drawn.primitive, kVisibleOutline, rendering);
     }
 }
 

@@ -3,26 +3,23 @@
 #include <algorithm>
 #include <chrono>
 
-#include "../pipeline.hpp"
+#include "../stages/coarse_raster.hpp"
+#include "../stages/cull.hpp"
+#include "../stages/depth_test.hpp"
+#include "../stages/fine_raster.hpp"
+#include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
+#include "../stages/rop.hpp"
+#include "../stages/triangle_setup.hpp"
 
 namespace halfplane {
-namespace {
-
-std::uint32_t stored_color(std::uint32_t rgba, const Config& config) {
-  return pack_color(config.color_format,
-                    {static_cast<std::uint8_t>(rgba), static_cast<std::uint8_t>(rgba >> 8),
-                     static_cast<std::uint8_t>(rgba >> 16), static_cast<std::uint8_t>(rgba >> 24)});
-}
-
-}  // namespace
 
 std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample, const Widths& widths) {
   // Spread over all bits by an odd factor, so that a wrong tile, stamp or sample shows in narrow codes too.
   std::uint32_t value = 0xDEADBEEFU ^ (is_color ? 0x5A5A5A5AU : 0U);
   for (const int part : {tile_x, tile_y, stamp, sample})
     value = (value ^ static_cast<std::uint32_t>(part)) * 0x9E3779B1U ^ value >> 15;
-  const Width& code = is_color ? widths.stored_color : widths.depth_code;
+  const Width& code = is_color ? widths.stored_color : widths.depth().code;
   return static_cast<std::uint32_t>(wrap_unsigned(value, code.bits));
 }
 
@@ -30,7 +27,8 @@ TileMemory::TileMemory(const Config& config) : widths_(derive_widths(config)) {
   block_.resize(2 * static_cast<std::size_t>(widths_.tiles_x) * static_cast<std::size_t>(widths_.tiles_y), kNone);
 }
 
-void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, 64> data) const {
+void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
+                      std::span<std::uint32_t, kMaxSamples> data) const {
   const std::uint32_t block = block_[index(is_color, tile_x, tile_y)];
   if (block == kNone) {
     for (int s = 0; s < samples(); ++s)
@@ -40,7 +38,8 @@ void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp, std::spa
   std::copy_n(lanes_.begin() + first_lane(block, stamp), samples(), data.begin());
 }
 
-void TileMemory::write(bool is_color, int tile_x, int tile_y, int stamp, std::span<const std::uint32_t, 64> data) {
+void TileMemory::write(bool is_color, int tile_x, int tile_y, int stamp,
+                       std::span<const std::uint32_t, kMaxSamples> data) {
   std::uint32_t& block = block_[index(is_color, tile_x, tile_y)];
   if (block == kNone) {
     block = blocks_++;
@@ -54,41 +53,25 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   Framebuffer frame(width, height, config.tile_size);
   std::ranges::fill(frame.depth, snap_depth(1.0, config.depth_bits));
   std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
-  const int tile = config.tile_size, size = config.stamp_size, stamps_per_row = tile / size;
-  std::array<std::uint32_t, 64> data;
+  const int tile = config.tile_size, size = config.stamp_size;
+  const StampGrid stamps{size, tile / size};
+  std::array<std::uint32_t, kMaxSamples> data;
   const auto copy_stamp = [&](Framebuffer::Image& image, int x, int y) {
-    for (int s = 0; s < size * size; ++s)
-      if (x + s % size < width && y + s / size < height)
-        image[frame.at(x + s % size, y + s / size)] = data[static_cast<std::size_t>(s)];
+    for (int s = 0; s < stamps.samples(); ++s) {
+      const PixelOffset pixel = stamps.pixel_of(s);
+      if (x + pixel.x < width && y + pixel.y < height)
+        image[frame.at(x + pixel.x, y + pixel.y)] = data[static_cast<std::size_t>(s)];
+    }
   };
   for (int y = 0; y < height; y += size)
     for (int x = 0; x < width; x += size) {
-      const int stamp = y % tile / size * stamps_per_row + x % tile / size;
+      const int stamp = stamps.stamp_at(x % tile, y % tile);
       memory.read(false, x / tile, y / tile, stamp, data);
       copy_stamp(frame.depth, x, y);
       memory.read(true, x / tile, y / tile, stamp, data);
       copy_stamp(frame.color, x, y);
     }
   return frame;
-}
-
-WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored, const Config& config,
-                       const Widths& widths) {
-  WritePacket packet;
-  packet.primitive_id = fragment.primitive_id;
-  packet.tile_x = fragment.tile_x;
-  packet.tile_y = fragment.tile_y;
-  packet.stamp = fragment.stamp;
-  const auto func = static_cast<DepthFunc>(fragment.depth_test);
-  for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
-    packet.depth[s] = fragment.depth[s];
-    packet.color[s] = stored_color(fragment.rgba[s], config);
-    const bool passes = (fragment.mask >> s & 1) != 0 && depth_passes(func, fragment.depth[s], stored[s]);
-    packet.passed |= std::uint64_t{passes} << s;
-  }
-  packet.write_depth = fragment.depth_write != 0 ? packet.passed : 0;
-  packet.write_color = fragment.color_write != 0 ? packet.passed : 0;
-  return packet;
 }
 
 HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
@@ -102,22 +85,22 @@ HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
   const auto triangle = cull(primitive, widths_, counters_);
   if (!triangle) return;
-  sink_.take(*triangle);
+  sink_.take(on<Arrow::triangle>, *triangle);
   const SetupPacket setup = setup_packet(*triangle, config_, widths_);
-  sink_.take(setup);
+  sink_.take(on<Arrow::setup>, setup);
   const ContextPacket context = make_context(setup, widths_);
-  sink_.take(context);
+  sink_.take(on<Arrow::context>, context);
   const EdgeContext edges = make_edge_context(setup);
   coarse_raster(setup, slot_, hiz_, widths_, counters_, [&](const TilePacket& tile) {
-    sink_.take(tile);
-    sink_.take(edges);
-    fine_raster(tile, edges, config_, widths_, [&](const StampPacket& stamp) {
-      sink_.take(stamp);
-      const FragmentPacket fragment = interpolate(stamp, context, config_, widths_);
+    sink_.take(on<Arrow::tile>, tile);
+    sink_.take(on<Arrow::edges>, edges);
+    fine_raster(tile, edges, widths_, [&](const StampPacket& stamp) {
+      sink_.take(on<Arrow::stamp>, stamp);
+      const FragmentPacket fragment = interpolate(stamp, context, widths_);
       if (line) {
         line_raster(*line, widths_, [&](const LinePixel& pixel) {
-          sink_.take(pixel);
-          join(line_fragment(fragment, pixel, config_, widths_));
+          sink_.take(on<Arrow::line_pixel>, pixel);
+          join(line_fragment(fragment, pixel, widths_));
         });
       } else {
         join(fragment);
@@ -128,15 +111,15 @@ void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<Li
 }
 
 void HardwareModel::join(const FragmentPacket& fragment) {
-  sink_.take(fragment);
+  sink_.take(on<Arrow::fragment>, fragment);
   shade(fragment);
 }
 
 /// depth_test, rop and framebuffer.
 void HardwareModel::shade(const FragmentPacket& fragment) {
-  switch (static_cast<PrimitiveKind>(fragment.kind)) {
+  switch (fragment.kind) {
     case PrimitiveKind::fast_clear:
-      cache_.fast_clear(fragment, stored_color(fragment.rgba[0], config_), *this, counters_);
+      cache_.fast_clear(fragment, stored_color(fragment.code[0], config_), *this, counters_);
       return;
     case PrimitiveKind::flush: cache_.flush(fragment, *this, counters_); return;
     case PrimitiveKind::triangle:
@@ -144,37 +127,37 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     case PrimitiveKind::point:
     case PrimitiveKind::line: break;
   }
-  if (fragment.mask != 0) {
-    cache_.access(fragment.tile_x, fragment.tile_y, *this, counters_);
-    const auto stored = cache_.stored(TilePlane::depth, fragment.tile_x, fragment.tile_y, fragment.stamp);
-    const WritePacket packet = depth_test(fragment, stored, config_, widths_);
-    sink_.take(packet);
+  if (fragment.mask.any()) {
+    cache_.access(fragment.key.tile_x, fragment.key.tile_y, *this, counters_);
+    const auto stored = cache_.stored(TilePlane::depth, fragment.key.tile_x, fragment.key.tile_y, fragment.stamp);
+    const WritePacket packet = rop(fragment, depth_test(fragment, stored, widths_), config_, widths_);
+    sink_.take(on<Arrow::write>, packet);
     cache_.write(packet);
-    if (fragment.kind != static_cast<std::uint8_t>(PrimitiveKind::line)) visit_.add(fragment, packet.passed, widths_);
+    if (fragment.kind != PrimitiveKind::line) visit_.add(fragment, packet.passed, widths_);
     if (is_counted(fragment.kind)) {
-      const auto passed = static_cast<std::uint32_t>(std::popcount(packet.passed));
-      counters_.covered += static_cast<std::uint32_t>(std::popcount(fragment.mask));
+      const auto passed = static_cast<std::uint32_t>(packet.passed.count());
+      counters_.covered += static_cast<std::uint32_t>(fragment.mask.count());
       counters_.depth_passed += passed;
-      if (fragment.depth_write != 0 || fragment.color_write != 0) counters_.written += passed;
+      if (fragment.state.writes()) counters_.written += passed;
     }
   }
-  if (fragment.ends_visit != 0) {
+  if (fragment.ends_visit) {
     const RetirePacket retired = visit_.retire(fragment, config_, widths_);
-    sink_.take(retired);
+    sink_.take(on<Arrow::retire>, retired);
     hiz_.update(retired);
     visit_ = {};
   }
 }
 
 void HardwareModel::write(const MemoryRequest& request) {
-  sink_.take(request);
-  memory_.write(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, request.data);
+  sink_.take(on<Arrow::request>, request);
+  memory_.write(request.is_color, request.tile_x, request.tile_y, request.stamp, request.data);
 }
 
 const MemoryResponse& HardwareModel::read(const MemoryRequest& request) {
-  sink_.take(request);
-  memory_.read(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, response_.data);
-  sink_.take(response_);
+  sink_.take(on<Arrow::request>, request);
+  memory_.read(request.is_color, request.tile_x, request.tile_y, request.stamp, response_.data);
+  sink_.take(on<Arrow::response>, response_);
   return response_;
 }
 

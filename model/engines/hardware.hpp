@@ -7,30 +7,14 @@
 #include <vector>
 
 #include "../host_stream.hpp"
+#include "../pipeline_graph.hpp"
+#include "../stages/depth_test.hpp"
 #include "../stages/hiz.hpp"
 #include "../stages/line_raster.hpp"
 #include "../stages/tile_cache.hpp"
 #include "render.hpp"
 
 namespace halfplane {
-
-/// Who wants to see packets overrides the overloads it needs. Each arrow's packets come in the order of that arrow;
-/// packets of different arrows come interleaved as the work happens.
-struct PacketSink {
-  virtual ~PacketSink() = default;
-  virtual void take(const TrianglePacket&) {}  ///< cull -> triangle_setup
-  virtual void take(const SetupPacket&) {}     ///< triangle_setup -> coarse_raster
-  virtual void take(const ContextPacket&) {}   ///< beside each SetupPacket
-  virtual void take(const TilePacket&) {}      ///< coarse_raster -> fine_raster
-  virtual void take(const EdgeContext&) {}     ///< beside each TilePacket
-  virtual void take(const StampPacket&) {}     ///< fine_raster -> interpolate
-  virtual void take(const LinePixel&) {}       ///< line_raster -> primitive_join
-  virtual void take(const FragmentPacket&) {}  ///< primitive_join -> depth_test
-  virtual void take(const WritePacket&) {}     ///< depth_test, rop -> framebuffer
-  virtual void take(const RetirePacket&) {}    ///< depth_test -> coarse_raster
-  virtual void take(const MemoryRequest&) {}   ///< framebuffer -> memory
-  virtual void take(const MemoryResponse&) {}  ///< memory -> framebuffer
-};
 
 /// The lanes of a stamp that nobody has written yet: different everywhere, and the same for every TileMemory.
 [[nodiscard]] std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample,
@@ -41,12 +25,12 @@ class TileMemory {
  public:
   explicit TileMemory(const Config& config);
   /// The first `samples` lanes of `data`; the others are left alone.
-  void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, 64> data) const;
-  void write(bool is_color, int tile_x, int tile_y, int stamp, std::span<const std::uint32_t, 64> data);
+  void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
+  void write(bool is_color, int tile_x, int tile_y, int stamp, std::span<const std::uint32_t, kMaxSamples> data);
   [[nodiscard]] int tiles_x() const { return widths_.tiles_x; }  ///< of the widest and highest target
   [[nodiscard]] int tiles_y() const { return widths_.tiles_y; }
-  [[nodiscard]] int stamps() const { return widths_.stamps_per_row * widths_.stamps_per_row; }  ///< of a tile
-  [[nodiscard]] int samples() const { return widths_.samples; }                                 ///< of a stamp
+  [[nodiscard]] int stamps() const { return widths_.stamps.stamps(); }  ///< of a tile
+  [[nodiscard]] int samples() const { return widths_.samples; }         ///< of a stamp
   /// Whether any stamp of the tile was ever written. Two memories with equal writes agree on it.
   [[nodiscard]] bool is_written(bool is_color, int tile_x, int tile_y) const {
     return block_[index(is_color, tile_x, tile_y)] != kNone;
@@ -70,10 +54,6 @@ class TileMemory {
 
 /// The two images, as the memory holds them. Padding as in an empty target: farthest depth, opaque black.
 [[nodiscard]] Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config);
-
-/// Depth test and rop of one stamp. `stored`: the depth codes of its samples in the tile RAM.
-[[nodiscard]] WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
-                                     const Config& config, const Widths& widths);
 
 /// The whole chip and the memory behind it, after reset. `sink` must outlive it.
 class HardwareModel final : private MemoryPort {
@@ -112,7 +92,7 @@ class DrawnCount {
   /// Primitives that cull has dropped so far.
   [[nodiscard]] static std::uint32_t dropped(const CounterPacket& c) { return c.zero_area + c.backface + c.empty; }
   void add(const HostPrimitive& primitive, bool is_kept) {
-    if (primitive.packet.kind != static_cast<std::uint8_t>(PrimitiveKind::triangle) || !is_kept) return;
+    if (primitive.packet.kind != PrimitiveKind::triangle || !is_kept) return;
     if (last_ == primitive.primitive) return;
     ++count_;
     last_ = primitive.primitive;

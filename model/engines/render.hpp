@@ -1,6 +1,7 @@
 // What every engine of the model takes and gives: one interface, so that engines can be exchanged and compared.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -8,85 +9,13 @@
 #include <vector>
 
 #include "../config.hpp"
+#include "../counters.hpp"
 #include "../packets.hpp"
 #include "../rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
 
 namespace halfplane {
-
-/// What an engine may leave out when it cannot change the image. Each has a counter of the same name. An engine that has
-/// no way to leave something out does not look at its switch.
-struct Skip {
-  bool frustum = true;             ///< triangles wholly outside one clip plane skip the clipper
-  bool backface = true;            ///< triangles that face away skip binning and setup
-  bool zero_area = true;           ///< triangles of no area likewise
-  bool empty = true;               ///< triangles whose box holds no pixel centre likewise
-  bool no_sample = true;           ///< triangles of a few pixel centres that cover none likewise
-  bool objects_hiz = true;         ///< objects behind what is drawn skip everything
-  bool tiles_hiz = true;           ///< tiles behind what is drawn skip the fine raster
-  bool tiles_outside = true;       ///< tiles wholly outside one edge skip the fine raster
-  bool trivially_accepted = true;  ///< tiles wholly inside all edges skip the edge tests
-  bool fragments_early_z = true;   ///< fragments that fail the depth test skip the other attributes
-  bool attributes = true;          ///< fragments that are drawn over skip the other attributes
-  bool clear = true;               ///< a clear waits until somebody touches the tile
-  bool operator==(const Skip&) const = default;
-};
-
-/// The switches by name, as --skip takes them.
-struct SkipName {
-  const char* name;
-  bool Skip::*member;
-};
-inline constexpr SkipName kSkipNames[] = {{"frustum", &Skip::frustum},
-                                          {"backface", &Skip::backface},
-                                          {"zero_area", &Skip::zero_area},
-                                          {"empty", &Skip::empty},
-                                          {"no_sample", &Skip::no_sample},
-                                          {"objects_hiz", &Skip::objects_hiz},
-                                          {"tiles_hiz", &Skip::tiles_hiz},
-                                          {"tiles_outside", &Skip::tiles_outside},
-                                          {"trivially_accepted", &Skip::trivially_accepted},
-                                          {"fragments_early_z", &Skip::fragments_early_z},
-                                          {"attributes", &Skip::attributes},
-                                          {"clear", &Skip::clear}};
-
-/// Nothing may be left out.
-[[nodiscard]] inline Skip skip_none() {
-  Skip skip;
-  for (const SkipName& entry : kSkipNames) skip.*entry.member = false;
-  return skip;
-}
-
-/// Work done and work saved. The JSON keys of `render` have the same names.
-struct Counters {
-  std::uint64_t primitives_in = 0, culled = 0, drawn = 0, clipped = 0;
-  std::uint64_t covered = 0;         ///< samples that the fine raster produced
-  std::uint64_t depth_passed = 0;    ///< in program order: equal for every engine and skip setting
-  std::uint64_t written = 0;         ///< of those, with depth or colour writes enabled
-  std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated; scanline: samples visited
-  std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
-  struct {
-    std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
-                  fragments_early_z = 0, tiles_hiz = 0;
-    std::uint64_t no_sample = 0, objects_hiz = 0;
-    std::uint64_t attributes = 0;  ///< fragments
-    std::uint64_t clear = 0;       ///< tiles of which nobody wrote a pixel between two clears, or a clear and the end
-  } skipped;
-};
-
-/// A line as it went into line_setup, and a point as it went into point_raster.
-struct DrawnLine {
-  std::uint32_t primitive = 0;  ///< number of the input primitive, over the whole scene
-  std::uint32_t draw = 0;       ///< index into Scene::commands
-  SnappedVertex start, end;
-  bool drops_last = false;
-};
-struct DrawnPoint {
-  std::uint32_t primitive = 0, draw = 0;  ///< likewise
-  SnappedVertex at;
-  std::int32_t size = 0;  ///< side of the square, subpixels
-};
 
 /// Which samples of one tile a triangle covers: bit i of row j. Rows beyond the tile size are 0.
 using TileMask = std::array<std::uint32_t, 32>;
@@ -98,19 +27,38 @@ using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int t
 /// Called for every covered pixel of a line or a point: its primitive, as in Rendering::ids.
 using PixelTap = std::function<void(std::uint32_t primitive, int x, int y)>;
 
+/// A covered sample with its attributes, as it comes to the operations: nothing has encoded, tested or packed it.
+struct TappedFragment {
+  PrimitiveKind kind = PrimitiveKind::triangle;  ///< triangle, line or point
+  std::uint32_t primitive = 0;                   ///< as in Rendering::ids
+  std::uint32_t draw = 0;                        ///< index into Scene::commands
+  std::uint32_t item = 0;                        ///< index into Rendering::triangles, lines or points
+  const Triangle* triangle = nullptr;            ///< the same, valid during the call; null for the other two kinds
+  const DrawnLine* line = nullptr;               ///< likewise
+  const DrawnPoint* point = nullptr;             ///< likewise
+  int x = 0, y = 0;                              ///< pixels
+  int guard_bits = 0;                            ///< l of its planes; of a line's G'
+  PerPlane<PlaneSample> plane{};
+};
+
+/// Called for every fragment in program order.
+using FragmentTap = std::function<void(const TappedFragment& fragment)>;
+
 struct RenderOptions {
   Skip skip;
   int threads = 1;                                ///< of the functional engine; the image does not depend on it
   std::string_view instruction_set;               ///< likewise: portable, avx2, avx512; otherwise the machine's best
+  bool general_fragments = false;                 ///< likewise: fragments one by one, as tests ask of it
   StudyRules rules;                               ///< anything but the default: render_scalar alone has it
   bool want_count = false;                        ///< fill Rendering::count
   bool want_ids = false;                          ///< fill Rendering::ids
   bool want_triangles = false;                    ///< keep Rendering::triangles (and fill `visible` beside `ids`)
   CoverageTap coverage_tap;                       ///< implies want_triangles
   PixelTap pixel_tap;                             ///< may be empty
+  FragmentTap fragment_tap;                       ///< of render_scalar alone; implies want_triangles
   std::function<void(double fraction)> progress;  ///< 0...1, called a few times a second at most; may be empty
 
-  [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap; }
+  [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap || fragment_tap; }
 };
 
 struct Rendering {
@@ -124,5 +72,11 @@ struct Rendering {
   std::vector<DrawnPoint> points;     ///< likewise
   double geometry_s = 0, raster_s = 0;
 };
+
+/// An empty target: the farthest depth, opaque black, and the buffers that the options ask for.
+[[nodiscard]] Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options);
+
+/// Clears depth and colour inside the scissor; nobody owns the cleared pixels any more.
+void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config);
 
 }  // namespace halfplane

@@ -2,7 +2,10 @@
 
 #include <optional>
 
+#include "../stages/coarse_raster.hpp"
+#include "../stages/fine_raster.hpp"
 #include "../stages/homogeneous_setup.hpp"
+#include "../stages/interpolate.hpp"
 #include "../stages/plane_rules.hpp"
 #include "../stages/traversal.hpp"
 #include "commands.hpp"
@@ -10,13 +13,39 @@
 namespace halfplane {
 namespace {
 
+/// As the tap has it.
+TappedFragment tapped(const Interpolated& value, const Triangle& triangle, std::uint32_t index, int guard_bits, int x,
+                      int y) {
+  TappedFragment fragment{PrimitiveKind::triangle,
+                          triangle.primitive,
+                          triangle.draw,
+                          index,
+                          &triangle,
+                          nullptr,
+                          nullptr,
+                          x,
+                          y,
+                          guard_bits,
+                          {}};
+  for (std::size_t p = 0; p < kMaxPlanes; ++p) fragment.plane[p] = {value.unrounded[p], value.code[p]};
+  return fragment;
+}
+
+/// A triangle that the host side has left, and its number.
+struct NumberedTriangle {
+  const Triangle& triangle;
+  std::uint32_t index;
+};
+
 /// One covered sample of a triangle through interpolate, depth_test and rop.
 void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Widths& widths,
-                  const RenderOptions& options, std::uint32_t index, int x, int y, Rendering& rendering) {
+                  const RenderOptions& options, const NumberedTriangle& t, int x, int y, Rendering& rendering) {
   const Interpolated value = interpolate_by_rules(setup, options.rules, widths, x, y);
+  if (options.fragment_tap)
+    options.fragment_tap(tapped(value, t.triangle, t.index, context.config.local_guard_bits, x, y));
   shade_sample(
-      context, options, x, y, value.depth_code, [&value] { return value.color_code; }, setup.primitive,
-      static_cast<std::int32_t>(index), rendering);
+      context, options, x, y, value.code[kDepthPlane], [&value] { return color_channels(value.code); }, setup.primitive,
+      static_cast<std::int32_t>(t.index), rendering);
 }
 
 /// What stays the same over a scene.
@@ -28,11 +57,11 @@ struct ScalarEngine {
 
 /// The pipeline's own traversal: coarse_raster and fine_raster.
 void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const TriangleSetup& setup,
-                  std::uint32_t index, Rendering& rendering) {
+                  const NumberedTriangle& t, Rendering& rendering) {
   const Config& config = engine.config;
   const Widths& widths = engine.widths;
   const Skip& skip = engine.options.skip;
-  const int stamp = config.stamp_size, shift = widths.tile_shift;
+  const int shift = widths.tile_shift;
   const SetupPacket packet = to_setup_packet(setup, widths);
   const EdgeContext edges = make_edge_context(setup);
   Counters& counters = rendering.counters;
@@ -45,25 +74,23 @@ void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const 
         continue;
       }
       TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, widths);
-      tile.is_inside = tile.is_inside != 0 && skip.trivially_accepted;
-      if (tile.is_inside != 0)
+      tile.is_inside = tile.is_inside && skip.trivially_accepted;
+      if (tile.is_inside)
         ++counters.skipped.trivially_accepted;
       else
-        counters.samples_tested +=
-            static_cast<std::uint64_t>((tile.right - tile.left + 1) * (tile.bottom - tile.top + 1));
+        counters.samples_tested += to_bounds(tile.box).samples();
       TileMask mask{};
-      fine_raster(tile, edges, config, widths, [&](const StampPacket& covered) {
-        const int column = covered.stamp % widths.stamps_per_row * stamp,
-                  row = covered.stamp / widths.stamps_per_row * stamp;
-        for (int s = 0; s < stamp * stamp; ++s) {
-          if ((covered.mask >> s & 1) == 0) continue;
-          const int i = column + s % stamp, j = row + s / stamp;
+      fine_raster(tile, edges, widths, [&](const StampPacket& covered) {
+        const PixelOffset origin = widths.stamps.origin_of(covered.stamp);
+        covered.mask.for_each([&](std::size_t s) {
+          const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
+          const int i = origin.x + pixel.x, j = origin.y + pixel.y;
           mask[static_cast<std::size_t>(j)] |= 1U << i;
-          shade_sample(context, setup, engine.widths, engine.options, index, (tile_x << shift) + i,
-                       (tile_y << shift) + j, rendering);
-        }
+          shade_sample(context, setup, engine.widths, engine.options, t, (tile_x << shift) + i, (tile_y << shift) + j,
+                       rendering);
+        });
       });
-      if (engine.options.coverage_tap) engine.options.coverage_tap(index, tile_x, tile_y, mask);
+      if (engine.options.coverage_tap) engine.options.coverage_tap(t.index, tile_x, tile_y, mask);
     }
   }
 }
@@ -96,11 +123,12 @@ class TapTiles {
 };
 
 /// A triangle by other rules than the pipeline's.
-void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, const Triangle& triangle,
-                     TriangleSetup& setup, std::uint32_t index, Rendering& rendering) {
+void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
+                     TriangleSetup& setup, Rendering& rendering) {
   const StudyRules& rules = engine.options.rules;
   const int grid_bits = engine.widths.grid_bits;
-  const auto v = canonical(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
+  const auto& corner = t.triangle.v;
+  const auto v = canonical(corner, signed_area(corner[0], corner[1], corner[2]));
   set_fill_rule(setup, v, rules.fill_rule, engine.widths);
   set_planes(setup, v, rules, engine.config, engine.widths);
   const bool taps = static_cast<bool>(engine.options.coverage_tap) && !setup.is_empty();
@@ -108,11 +136,11 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
   if (taps && rules.traversal != Traversal::tiled) tiles.emplace(setup, engine.widths.tile_shift);
   const auto emit = [&](int x, int y) {
     if (tiles) tiles->add(x, y);
-    shade_sample(context, setup, engine.widths, engine.options, index, x, y, rendering);
+    shade_sample(context, setup, engine.widths, engine.options, t, x, y, rendering);
   };
   std::uint64_t& tested = rendering.counters.samples_tested;
   switch (rules.traversal) {
-    case Traversal::tiled: raster_tiles(engine, context, setup, index, rendering); break;
+    case Traversal::tiled: raster_tiles(engine, context, setup, t, rendering); break;
     case Traversal::bbox: tested += traverse_bbox(setup, engine.widths, emit); break;
     case Traversal::scanline: {
       const PixelBounds box{setup.left, setup.top, setup.right, setup.bottom};
@@ -125,7 +153,7 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
       break;
     }
   }
-  if (tiles) tiles->send(engine.options.coverage_tap, index);
+  if (tiles) tiles->send(engine.options.coverage_tap, t.index);
 }
 
 /// The triangles of a draw without geometric clipping.
@@ -144,8 +172,8 @@ void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, st
     counters.samples_tested += traverse_homogeneous(setup, [&](int x, int y) {
       const Interpolated value = interpolate_at(setup, engine.widths, x, y);
       shade_sample(
-          context, engine.options, x, y, value.depth_code, [&value] { return value.color_code; }, number,
-          kVisibleOutline, rendering);
+          context, engine.options, x, y, value.code[kDepthPlane], [&value] { return color_channels(value.code); },
+          number, kVisibleOutline, rendering);
     });
   });
 }
@@ -175,9 +203,9 @@ Rendering render_scalar(const Scene& scene, const Config& config, const RenderOp
         // brute visits the whole target whatever the box is.
         if (setup.is_empty() && (options.rules.traversal != Traversal::brute || setup.area == 0)) return;
         if (is_default)
-          raster_tiles(engine, context, setup, index, rendering);
+          raster_tiles(engine, context, setup, {triangle, index}, rendering);
         else
-          raster_by_rules(engine, context, triangle, setup, index, rendering);
+          raster_by_rules(engine, context, {triangle, index}, setup, rendering);
       },
       [&](const DrawContext& context, std::uint32_t& primitive, Rendering& rendering) {
         if (options.rules.clipping == Clipping::polygon || context.state.space == Space::window) return false;

@@ -5,10 +5,9 @@
 #include <bit>
 #include <cstring>
 
+#include "../fragment_ops.hpp"
 #include "../stages/depth_encode.hpp"
-#include "../stages/depth_test.hpp"
 #include "../stages/interpolate.hpp"
-#include "../stages/rop.hpp"
 #include "render.hpp"
 
 namespace halfplane {
@@ -50,22 +49,13 @@ struct TriangleLanes {
       depth_column[i] = static_cast<Lane>(i - T / 2);
     }
     for (std::size_t e = 0; e < 3; ++e) edge_ramp[e] = column * -setup.edge[e].dy;
-    depth = local_plane(0, setup.depth, depth_format, widths);
+    depth = local_plane(0, setup.plane[kDepthPlane], depth_format, widths);
     depth_ramp = depth_column * depth.step_x;
     for (std::size_t c = 0; c < 4; ++c) {
-      color[c] = local_plane(0, setup.color[c], color_format, widths);
+      color[c] = local_plane(0, setup.plane[kColorPlane + c], color_format, widths);
       color_ramp[c] = (Lanes<std::uint32_t, T>)(column - T / 2) * color[c].step_x;
     }
   }
-};
-
-/// A depth function as the three outcomes of one comparison: all bits set where the outcome passes.
-struct DepthOutcomes {
-  std::uint32_t less, equal, greater;
-  explicit DepthOutcomes(DepthFunc func)
-      : less(depth_passes(func, 0, 1) ? ~0U : 0U),
-        equal(depth_passes(func, 0, 0) ? ~0U : 0U),
-        greater(depth_passes(func, 1, 0) ? ~0U : 0U) {}
 };
 
 /// T: the tile size. The tiles of triangles that share the depth test and the write masks.
@@ -75,15 +65,15 @@ class TileKernel {
   using Mask = Lanes<std::uint32_t, T>;  ///< one lane per column: all bits set or none
 
   /// `encode`: not null where stored codes are not plane codes.
-  TileKernel(DepthFunc depth_test, bool depth_write, bool color_write, const Config& config, const Widths& widths,
+  TileKernel(const FragmentState& state, const Config& config, const Widths& widths,
              const DepthEncode* encode = nullptr)
       : widths_(widths),
         encode_(encode),
-        channels_(static_cast<std::size_t>(widths.color_channels)),
+        channels_(static_cast<std::size_t>(widths.color_planes)),
         format_(config.color_format),
-        outcomes_(depth_test),
-        depth_write_(depth_write),
-        color_write_(color_write) {}
+        outcomes_(state.depth_test),
+        depth_write_(state.depth_write),
+        color_write_(state.color_write) {}
 
   /// Draws the part of tile (tile_x, tile_y) that lies in the triangle's box. `edges`: the edge values at the tile's
   /// first pixel; `is_accepted`: no need to look at them. Calls on_row(j, covered, passed) for each row with a covered
@@ -94,8 +84,8 @@ class TileKernel {
     const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
     Mask in_box;
     for (int i = 0; i < T; ++i) in_box[i] = i >= box.left && i <= box.right ? ~0U : 0U;
-    const auto anchor = plane_at_tile(setup, setup.depth, tile_x, tile_y, widths_, 64);
-    Tile tile{tile_x, tile_y, local_plane(anchor, setup.depth, lanes.depth_format, widths_).anchor};
+    const auto anchor = plane_at_tile(setup.plane[kDepthPlane], tile_offset(setup, tile_x, tile_y, widths_), 64);
+    Tile tile{tile_x, tile_y, local_plane(anchor, setup.plane[kDepthPlane], lanes.depth_format, widths_).anchor};
     const std::array<std::int32_t, 3> edge0{saturate_tile_edge(edges[0], widths_),
                                             saturate_tile_edge(edges[1], widths_),
                                             saturate_tile_edge(edges[2], widths_)};
@@ -169,41 +159,39 @@ class TileKernel {
     std::uint32_t* stored_depth = frame.depth.data() + first;
     const Lane row = static_cast<Lane>(tile.depth + static_cast<Lane>(j - T / 2) * lanes.depth.step_y);
     const Lanes<Lane, T> value = lanes.depth_ramp + row;
-    Mask depth = decode_row<Lane>(value, lanes.depth_format, setup.depth_min, setup.depth_max);
+    Mask depth =
+        decode_row<Lane>(value, lanes.depth_format, setup.range.low[kDepthPlane], setup.range.high[kDepthPlane]);
     if (encode_ != nullptr)
       for (int i = 0; i < T; ++i) depth[i] = covered[i] != 0 ? (*encode_)(depth[i]) : 0;
     Mask stored;
     load(stored, stored_depth);
-    const Mask passed =
-        covered & (((Mask)(depth < stored) & outcomes_.less) | ((Mask)(depth == stored) & outcomes_.equal) |
-                   ((Mask)(depth > stored) & outcomes_.greater));
+    const Mask passed = covered & outcomes_(depth, stored);
     if (!shades_failed && !is_any(passed)) return passed;
-    if (depth_write_) store(stored_depth, (depth & passed) | (stored & ~passed));
+    if (depth_write_) store(stored_depth, write_where(passed, depth, stored));
     if (color_write_) color_row(setup, lanes, tile, j, passed, frame.color.data() + first);
     return passed;
   }
 
   void color_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j, const Mask& passed,
                  std::uint32_t* stored_color) const {
-    const bool has_alpha = format_ == ColorFormat::rgba8888;
     if (!tile.has_color) {
       tile.has_color = true;
+      const TileOffset offset = tile_offset(setup, tile.x, tile.y, widths_);
       for (std::size_t c = 0; c < channels_; ++c) {
-        const auto anchor = plane_at_tile(setup, setup.color[c], tile.x, tile.y, widths_, 64);
-        tile.color[c] = local_plane(anchor, setup.color[c], lanes.color_format, widths_).anchor;
+        const auto anchor = plane_at_tile(setup.plane[kColorPlane + c], offset, 64);
+        tile.color[c] = local_plane(anchor, setup.plane[kColorPlane + c], lanes.color_format, widths_).anchor;
       }
     }
     std::array<Mask, 4> channel;
     for (std::size_t c = 0; c < channels_; ++c) {
       const std::uint32_t row = tile.color[c] + static_cast<std::uint32_t>(j - T / 2) * lanes.color[c].step_y;
       const Mask value = lanes.color_ramp[c] + row;
-      channel[c] = decode_row<std::uint32_t>(value, lanes.color_format, setup.color_min[c], setup.color_max[c]);
+      channel[c] = decode_row<std::uint32_t>(value, lanes.color_format, setup.range.low[kColorPlane + c],
+                                             setup.range.high[kColorPlane + c]);
     }
-    const Mask packed = has_alpha ? pack_rgba8888(channel[0], channel[1], channel[2], channel[3])
-                                  : pack_rgb565(channel[0], channel[1], channel[2]);
     Mask stored;
     load(stored, stored_color);
-    store(stored_color, (packed & passed) | (stored & ~passed));
+    store(stored_color, write_where(passed, pack_color(format_, channel), stored));
   }
 
   const Widths& widths_;

@@ -94,19 +94,19 @@ bool TriangleOracle::covers(int x, int y) const {
   return true;
 }
 
-Rational TriangleOracle::plane_at(std::int64_t c0, std::int64_t c1, std::int64_t c2, int x, int y) const {
+PlaneWeights TriangleOracle::weights_at(int x, int y) const {
   const Point p = centre(x, y, grid_bits_);
   const auto weight = [&p](const Edge& e) { return int128{e.dx} * (p.y - e.y) - int128{e.dy} * (p.x - e.x); };
-  return {weight(edge_[0]) * c0 + weight(edge_[1]) * c1 + weight(edge_[2]) * c2, area_};
+  return {{weight(edge_[0]), weight(edge_[1]), weight(edge_[2])}, area_};
 }
 
 Rational TriangleOracle::depth_at(int x, int y) const {
-  return plane_at(triangle_.v[0].z, triangle_.v[1].z, triangle_.v[2].z, x, y);
+  return weights_at(x, y).plane({triangle_.v[0].depth(), triangle_.v[1].depth(), triangle_.v[2].depth()});
 }
 
 Rational TriangleOracle::color_at(int x, int y, int channel) const {
-  const auto c = static_cast<std::size_t>(channel);
-  return plane_at(triangle_.v[0].rgba[c], triangle_.v[1].rgba[c], triangle_.v[2].rgba[c], x, y);
+  const std::size_t p = kColorPlane + static_cast<std::size_t>(channel);
+  return weights_at(x, y).plane({triangle_.v[0].code[p], triangle_.v[1].code[p], triangle_.v[2].code[p]});
 }
 
 std::int64_t on_grid(const Rational& value, int scale_numerator, int scale_denominator) {

@@ -36,6 +36,16 @@ struct Rational {
 /// The same through the 8-bit colour codes of one channel, in LSB of 8 bits.
 [[nodiscard]] Rational color_at(const Triangle& triangle, int x, int y, int grid_bits, int channel);
 
+/// What the vertices weigh at one sample: every plane through three codes follows from it.
+struct PlaneWeights {
+  std::array<int128, 3> weight{};
+  int128 area = 1;  ///< their sum
+
+  [[nodiscard]] Rational plane(const std::array<std::uint32_t, 3>& code) const {
+    return {weight[0] * code[0] + weight[1] * code[1] + weight[2] * code[2], area};
+  }
+};
+
 /// The same answers for many samples of one triangle: what they share is computed once, and products that fit are taken
 /// in 64 bits. Still each sample by itself, without stepping.
 class TriangleOracle {
@@ -44,14 +54,13 @@ class TriangleOracle {
   [[nodiscard]] bool covers(int x, int y) const;
   [[nodiscard]] Rational depth_at(int x, int y) const;
   [[nodiscard]] Rational color_at(int x, int y, int channel) const;
+  [[nodiscard]] PlaneWeights weights_at(int x, int y) const;
 
  private:
   struct Edge {
     std::int64_t x, y, dx, dy;  ///< start and direction, turned so that the inside is positive
     bool owns;                  ///< the samples exactly on it
   };
-  [[nodiscard]] Rational plane_at(std::int64_t c0, std::int64_t c1, std::int64_t c2, int x, int y) const;
-
   Triangle triangle_;
   int grid_bits_;
   int128 area_;                  ///< doubled, not negative

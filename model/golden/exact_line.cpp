@@ -87,7 +87,9 @@ bool centre_covers(const Line& line, Integer x, Integer y) {
   return side * rise < 0;
 }
 
-Rational along(const Line& line, int x, int y, Integer from, Integer to) {
+}  // namespace
+
+Rational plane_at(const Line& line, int x, int y, Integer from, Integer to) {
   const Integer pixel = Integer{1} << line.grid_bits;
   const auto at = [&](Integer v) {
     return line.rule == LineRule::diamond ? v : (v >> line.grid_bits) * pixel + pixel / 2;
@@ -101,17 +103,15 @@ Rational along(const Line& line, int x, int y, Integer from, Integer to) {
   return {int128{from} * std::abs(length) + int128{to - from} * inside, std::abs(length)};
 }
 
-}  // namespace
-
 bool covers(const Line& line, int x, int y) {
   return line.rule == LineRule::diamond ? diamond_covers(line, x, y) : centre_covers(line, x, y);
 }
 
-Rational depth_at(const Line& line, int x, int y) { return along(line, x, y, line.start.z, line.end.z); }
+Rational depth_at(const Line& line, int x, int y) { return plane_at(line, x, y, line.start.depth(), line.end.depth()); }
 
 Rational color_at(const Line& line, int x, int y, int channel) {
-  const auto c = static_cast<std::size_t>(channel);
-  return along(line, x, y, line.start.rgba[c], line.end.rgba[c]);
+  const std::size_t p = kColorPlane + static_cast<std::size_t>(channel);
+  return plane_at(line, x, y, line.start.code[p], line.end.code[p]);
 }
 
 }  // namespace halfplane::exact

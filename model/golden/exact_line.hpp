@@ -24,6 +24,10 @@ struct Line {
 /// |x - x_c| + |y - y_c| < 1/2, and does not end in it.
 [[nodiscard]] bool covers(const Line& line, int x, int y);
 
+/// What runs from `from` at the start to `to` at the end, at the pixel's major coordinate, held between the two. A line
+/// without length has its start's.
+[[nodiscard]] Rational plane_at(const Line& line, int x, int y, std::int64_t from, std::int64_t to);
+
 /// Depth at the pixel's major coordinate, clamped to the ends; in LSB. A line without length has its start's depth.
 [[nodiscard]] Rational depth_at(const Line& line, int x, int y);
 

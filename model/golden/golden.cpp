@@ -9,7 +9,7 @@
 
 #include "clip.hpp"
 #include "depth_format.hpp"
-#include "depth_test.hpp"
+#include "fragment_buffer.hpp"
 #include "homogeneous.hpp"
 #include "interpolate.hpp"
 #include "line.hpp"
@@ -55,18 +55,14 @@ class Renderer {
         config_(config),
         options_(options),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
-        depth_buffer_(config, scene.planes) {
+        depth_buffer_(config, scene.planes),
+        pixels_(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height), Real(1), {}) {
     const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
     image_.width = scene.width;
     image_.height = scene.height;
     image_.count.assign(pixels, 0);
-    image_.ids.assign(pixels, -1);
     image_.depth.resize(pixels);
-    image_.affine.resize(pixels);
-    image_.perspective.resize(pixels);
     image_.frame = Framebuffer(scene.width, scene.height, config.tile_size);
-    z_.resize(pixels);
-    stored_.resize(pixels);
     fill({0, 0, scene.width, scene.height}, Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});  // an empty target
   }
 
@@ -77,6 +73,8 @@ class Renderer {
       if (const auto* draw = std::get_if<Draw>(&scene_.commands[i])) this->draw(*draw, static_cast<std::uint32_t>(i));
     }
     round_frame();
+    image_.ids = pixels_.owners();
+    image_.color = pixels_.values();
     return std::move(image_);
   }
 
@@ -85,22 +83,15 @@ class Renderer {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   }
 
-  void write_color(std::size_t p, const std::array<double, 4>& affine, const std::array<double, 4>& perspective,
-                   ColorInterp stored) {
-    image_.affine[p] = affine;
-    image_.perspective[p] = perspective;
-    stored_[p] = stored;
-  }
-
   /// The real values at the end, rounded: nothing in between depends on the codes.
   void round_frame() {
     for (int y = 0; y < image_.height; ++y) {
       for (int x = 0; x < image_.width; ++x) {
         const std::size_t p = pixel(x, y), at = image_.frame.at(x, y);
-        image_.depth[p] = static_cast<double>(z_[p]) * depth_max_;
-        image_.frame.depth[at] = depth_buffer_.code(depth_buffer_.stored_depth(static_cast<double>(z_[p])));
-        image_.frame.color[at] = pack_color(
-            stored_[p] == ColorInterp::affine ? image_.affine[p] : image_.perspective[p], config_.color_format);
+        const auto z = static_cast<double>(pixels_.depth(p));
+        image_.depth[p] = z * depth_max_;
+        image_.frame.depth[at] = depth_buffer_.code(depth_buffer_.stored_depth(z));
+        image_.frame.color[at] = pack_color(pixels_.value(p), config_.color_format);
       }
     }
   }
@@ -109,9 +100,9 @@ class Renderer {
     for (int y = range.begin_y; y < range.end_y; ++y) {
       for (int x = range.begin_x; x < range.end_x; ++x) {
         const std::size_t p = pixel(x, y);
-        if (clear.depth) z_[p] = static_cast<Real>(depth_buffer_.window_depth(*clear.depth));
-        if (clear.color) write_color(p, *clear.color, *clear.color, ColorInterp::affine);
-        image_.ids[p] = -1;
+        if (clear.depth) pixels_.clear_depth(p, static_cast<Real>(depth_buffer_.window_depth(*clear.depth)));
+        if (clear.color) pixels_.clear_value(p, *clear.color);
+        pixels_.disown(p);
       }
     }
   }
@@ -225,7 +216,7 @@ class Renderer {
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
         if (!covers(t, e)) continue;
-        Fragment<Real> fragment = interpolate(t, e);
+        Fragment<Real> fragment = interpolate(t, e, rule_of(d));
         fragment.z += d.offset;
         shade(x, y, fragment, d);
       }
@@ -240,7 +231,7 @@ class Renderer {
     for (auto& end : v) end.z += d.offset;
     const Line<Real> line{v[0], v[1], d.state.line_rule, drops_last_pixel(d.state)};
     for_each_candidate(line, d.region, 1, [&](int x, int y) {
-      if (covers(line, x, y)) shade(x, y, interpolate(line, x, y), d);
+      if (covers(line, x, y)) shade(x, y, interpolate(line, x, y, rule_of(d)), d);
     });
   }
 
@@ -250,7 +241,7 @@ class Renderer {
     add_outline(std::span(&at, 1), d);
     d.was_drawn = true;
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
-    const Fragment<Real> fragment{at.z + d.offset, at.rgba, at.rgba};
+    const Fragment<Real> fragment{at.z + d.offset, at.rgba};
     for (int y = range.begin_y; y < range.end_y; ++y)
       for (int x = range.begin_x; x < range.end_x; ++x) shade(x, y, fragment, d);
   }
@@ -294,24 +285,24 @@ class Renderer {
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
         if (!(t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]))) continue;
-        shade(x, y, interpolate(t, e), d);
+        shade(x, y, interpolate(t, e, rule_of(d)), d);
       }
     }
   }
 
+  [[nodiscard]] ColorInterp rule_of(const DrawState& d) const {
+    return options_.color_interp.value_or(d.state.color_interp);
+  }
+
   void shade(int x, int y, Fragment<Real> fragment, const DrawState& d) {
-    const State& state = d.state;
     if (d.offset != 0) fragment.z = std::clamp(fragment.z, Real(0), Real(1));
     const std::size_t p = pixel(x, y);
     ++image_.counters.covered;
     ++image_.count[p];
-    if (!passes(state.depth_test, fragment.z, z_[p])) return;
-    ++image_.counters.depth_passed;
-    if (!state.depth_write && !state.color_write) return;
-    ++image_.counters.written;
-    image_.ids[p] = static_cast<std::int32_t>(d.primitive);
-    if (state.depth_write) z_[p] = fragment.z;
-    if (state.color_write) write_color(p, widen(fragment.affine), widen(fragment.perspective), state.color_interp);
+    const Fate fate =
+        pixels_.apply(p, d.state, fragment.z, widen(fragment.rgba), static_cast<std::int32_t>(d.primitive));
+    image_.counters.depth_passed += fate.passed ? 1 : 0;
+    image_.counters.written += fate.written ? 1 : 0;
   }
 
   const Scene& scene_;
@@ -320,8 +311,7 @@ class Renderer {
   double depth_max_;  // 2^B - 1
   const DepthBuffer depth_buffer_;
   Image image_;
-  std::vector<Real> z_;              // the depth buffer that the test reads, 0...1
-  std::vector<ColorInterp> stored_;  // which of the two colours the frame holds
+  FragmentBuffer<Real, std::array<double, 4>> pixels_;  // window depth, 0...1; colour, 0...255
 };
 
 }  // namespace

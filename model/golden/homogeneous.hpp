@@ -112,19 +112,21 @@ template <class Real>
   return near >= 0 && far >= 0;
 }
 
-/// The attributes there. Colour is affine over the whole triangle, as given; with a vertex behind the eye that has no
+/// The attributes there. Affine colour is so over the whole triangle, as given; with a vertex behind the eye that has no
 /// meaning on the screen, and both rules are perspective.
 template <class Real>
-[[nodiscard]] Fragment<Real> interpolate(const HomogeneousSetup<Real>& t, const std::array<Real, 3>& e) {
+[[nodiscard]] Fragment<Real> interpolate(const HomogeneousSetup<Real>& t, const std::array<Real, 3>& e,
+                                         ColorInterp rule) {
   const auto& [v0, v1, v2] = t.v;
   // sum e_i w_i is the determinant; summed from these values, it keeps a depth equal at all vertices to one ulp or so.
   const Real one = e[0] * v0.w + e[1] * v1.w + e[2] * v2.w, inverse_w = e[0] + e[1] + e[2];
+  const bool is_affine = rule == ColorInterp::affine && t.is_in_front;
   Fragment<Real> f;
   f.z = (e[0] * v0.z + e[1] * v1.z + e[2] * v2.z) / one;
   for (std::size_t c = 0; c < 4; ++c) {
     const Real d1 = v1.rgba[c] - v0.rgba[c], d2 = v2.rgba[c] - v0.rgba[c];
-    f.perspective[c] = v0.rgba[c] + (e[1] * d1 + e[2] * d2) / inverse_w;
-    f.affine[c] = t.is_in_front ? v0.rgba[c] + (e[1] * v1.w * d1 + e[2] * v2.w * d2) / one : f.perspective[c];
+    f.rgba[c] = is_affine ? v0.rgba[c] + (e[1] * v1.w * d1 + e[2] * v2.w * d2) / one
+                          : v0.rgba[c] + (e[1] * d1 + e[2] * d2) / inverse_w;
   }
   return f;
 }

@@ -20,13 +20,9 @@ namespace halfplane {
 
 enum class TileClass { outside, cut, inside };
 
-/// Edge values at the first pixel of a tile.
-using EdgeValues = std::array<EdgeValue, 3>;
-
 /// `edge_dx`, `edge_dy`: of the three edges, subpixels; `value`: at the tile's first pixel.
-[[nodiscard]] constexpr TileClass classify(const std::array<std::int32_t, 3>& edge_dx,
-                                           const std::array<std::int32_t, 3>& edge_dy, const EdgeValues& value,
-                                           int tile_size) {
+[[nodiscard]] constexpr TileClass classify(const EdgeDeltas& edge_dx, const EdgeDeltas& edge_dy,
+                                           const EdgeValues& value, int tile_size) {
   const EdgeValue extent = tile_size - 1;
   TileClass result = TileClass::inside;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -62,22 +58,29 @@ using EdgeValues = std::array<EdgeValue, 3>;
   return value;
 }
 
-/// A plane at the anchor of tile (tile_x, tile_y), modulo 2^bits.
-[[nodiscard]] inline PlaneValue plane_at_tile(const TriangleSetup& setup, const Plane& plane, int tile_x, int tile_y,
-                                              const Widths& widths, int bits) {
-  const int to_subpixels = widths.tile_shift + widths.grid_bits;
-  const auto dx = static_cast<std::uint64_t>(std::int64_t{tile_x - (setup.left >> widths.tile_shift)} << to_subpixels);
-  const auto dy = static_cast<std::uint64_t>(std::int64_t{tile_y - (setup.top >> widths.tile_shift)} << to_subpixels);
+/// From the first tile to another one, subpixels, modulo 2^64.
+struct TileOffset {
+  std::uint64_t dx, dy;
+};
+[[nodiscard]] inline TileOffset tile_offset(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
+  const auto subpixels = [&widths](int tiles) {
+    return static_cast<std::uint64_t>(std::int64_t{tiles} << (widths.tile_shift + widths.grid_bits));
+  };
+  return {subpixels(tile_x - (setup.left >> widths.tile_shift)), subpixels(tile_y - (setup.top >> widths.tile_shift))};
+}
+
+/// A plane at the anchor of the tile there, modulo 2^bits.
+[[nodiscard]] inline PlaneValue plane_at_tile(const Plane& plane, const TileOffset& offset, int bits) {
   return wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) +
-                                               static_cast<std::uint64_t>(plane.step_x) * dx +
-                                               static_cast<std::uint64_t>(plane.step_y) * dy),
+                                               static_cast<std::uint64_t>(plane.step_x) * offset.dx +
+                                               static_cast<std::uint64_t>(plane.step_y) * offset.dy),
                      bits);
 }
 
 /// The same for a packet.
 [[nodiscard]] inline EdgeValues edges_at_tile(const SetupPacket& setup, int tile_x, int tile_y, const Widths& widths) {
-  const int steps_x = (tile_x - (setup.left >> widths.tile_shift)) << widths.tile_shift;
-  const int steps_y = (tile_y - (setup.top >> widths.tile_shift)) << widths.tile_shift;
+  const int steps_x = (tile_x - (setup.box.left >> widths.tile_shift)) << widths.tile_shift;
+  const int steps_y = (tile_y - (setup.box.top >> widths.tile_shift)) << widths.tile_shift;
   EdgeValues value;
   for (std::size_t i = 0; i < 3; ++i)
     value[i] = setup.edge_value[i] - EdgeValue{steps_x} * setup.dy[i] + EdgeValue{steps_y} * setup.dx[i];
@@ -102,16 +105,17 @@ using EdgeValues = std::array<EdgeValue, 3>;
 template <class Emit>
 void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
                    Emit&& emit) {
-  const int first_x = setup.left >> widths.tile_shift, last_x = setup.right >> widths.tile_shift;
-  const int first_y = setup.top >> widths.tile_shift, last_y = setup.bottom >> widths.tile_shift;
+  const int first_x = setup.box.left >> widths.tile_shift, last_x = setup.box.right >> widths.tile_shift;
+  const int first_y = setup.box.top >> widths.tile_shift, last_y = setup.box.bottom >> widths.tile_shift;
   const auto emit_end = [&] {  // the end of the primitive without a visit
     TilePacket packet = make_tile_packet(setup, last_x, last_y, slot, widths);
-    packet.is_visit = packet.is_inside = 0;
+    packet.is_visit = packet.is_inside = false;
     emit(packet);
   };
-  const auto kind = static_cast<PrimitiveKind>(setup.kind);
+  const PrimitiveKind kind = setup.kind;
   if (kind == PrimitiveKind::fast_clear || kind == PrimitiveKind::flush || kind == PrimitiveKind::line) {
-    if (kind == PrimitiveKind::fast_clear && setup.depth_write != 0) hiz.clear(last_x, last_y, setup.depth_max);
+    if (kind == PrimitiveKind::fast_clear && setup.state.depth_write)
+      hiz.clear(last_x, last_y, setup.range.high[kDepthPlane]);
     if (kind == PrimitiveKind::line) hiz.pass_line(setup);
     emit_end();
     return;
@@ -134,8 +138,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       if (tile_class == TileClass::inside)
         ++count.trivially_accepted;
       else
-        count.samples_tested +=
-            static_cast<std::uint32_t>((packet.right - packet.left + 1) * (packet.bottom - packet.top + 1));
+        count.samples_tested += static_cast<std::uint32_t>(to_bounds(packet.box).samples());
       emit(packet);
     }
 }

@@ -57,90 +57,89 @@ struct PixelBounds {
           std::min(limit.right, (x_max - half) >> grid_bits), std::min(limit.bottom, (y_max - half) >> grid_bits)};
 }
 
-/// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one.
-[[nodiscard]] inline std::array<SnappedVertex, 3> canonical(const std::array<SnappedVertex, 3>& v, std::int64_t area) {
+/// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one. Their indices in that order.
+[[nodiscard]] inline std::array<std::size_t, 3> canonical_order(const std::array<SnappedVertex, 3>& v,
+                                                                std::int64_t area) {
   const auto first = static_cast<std::size_t>(std::min_element(v.begin(), v.end(), canonically_before) - v.begin());
-  std::array<SnappedVertex, 3> order{v[first], v[(first + 1) % 3], v[(first + 2) % 3]};
-  if (area < 0) std::swap(order[1], order[2]);
-  return order;
+  const std::size_t next = (first + 1) % 3, last = (first + 2) % 3;
+  return area < 0 ? std::array{first, last, next} : std::array{first, next, last};
 }
 
-/// The vertices of a PrimitivePacket or TrianglePacket. A channel that is not stored is 0.
-template <class Packet>
-[[nodiscard]] std::array<SnappedVertex, 3> vertices_of(const Packet& packet) {
+/// The vertices themselves.
+[[nodiscard]] inline std::array<SnappedVertex, 3> canonical(const std::array<SnappedVertex, 3>& v, std::int64_t area) {
+  const auto order = canonical_order(v, area);
+  return {v[order[0]], v[order[1]], v[order[2]]};
+}
+
+/// The vertices as a packet holds them, and back.
+[[nodiscard]] inline std::array<SnappedVertex, 3> to_snapped(const TriangleVertices& vertex) {
   std::array<SnappedVertex, 3> v;
-  for (std::size_t i = 0; i < 3; ++i) {
-    v[i] = {packet.x[i], packet.y[i], packet.z[i], {}};
-    for (std::size_t c = 0; c < 4; ++c) v[i].rgba[c] = static_cast<std::uint8_t>(packet.rgba[i] >> 8 * c);
-  }
+  for (std::size_t i = 0; i < 3; ++i) v[i] = {vertex.x[i], vertex.y[i], vertex.code[i]};
   return v;
 }
-
-/// The channels as a packet holds them: R lowest, those that are not stored left out.
-[[nodiscard]] inline std::uint32_t packet_color(const std::array<std::uint8_t, 4>& rgba, const Widths& widths) {
-  std::uint32_t packed = 0;
-  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_channels); ++c)
-    packed |= std::uint32_t{rgba[c]} << 8 * c;
-  return packed;
-}
-
-/// The other way: makes `v` the vertices of the packet.
-template <class Packet>
-void set_vertices(Packet& packet, const std::array<SnappedVertex, 3>& v, const Widths& widths) {
+inline void set_vertices(TriangleVertices& vertex, const std::array<SnappedVertex, 3>& v) {
   for (std::size_t i = 0; i < 3; ++i) {
-    packet.x[i] = v[i].x;
-    packet.y[i] = v[i].y;
-    packet.z[i] = v[i].z;
-    packet.rgba[i] = packet_color(v[i].rgba, widths);
+    vertex.x[i] = v[i].x;
+    vertex.y[i] = v[i].y;
+    vertex.code[i] = v[i].code;
   }
 }
 
-/// Takes bounds that lie inside the target.
-inline void set_box(PixelBox& box, const PixelBounds& bounds) {
-  box.left = static_cast<std::uint16_t>(bounds.left);
-  box.top = static_cast<std::uint16_t>(bounds.top);
-  box.right = static_cast<std::uint16_t>(bounds.right);
-  box.bottom = static_cast<std::uint16_t>(bounds.bottom);
+/// Bounds that lie inside the target, as a packet holds them, and back.
+[[nodiscard]] constexpr PixelBox to_box(const PixelBounds& bounds) {
+  return {static_cast<std::uint16_t>(bounds.left), static_cast<std::uint16_t>(bounds.top),
+          static_cast<std::uint16_t>(bounds.right), static_cast<std::uint16_t>(bounds.bottom)};
+}
+template <class Box>
+[[nodiscard]] constexpr PixelBounds to_bounds(const Box& box) {
+  return {box.left, box.top, box.right, box.bottom};
 }
 
 /// The stage. Each dropped triangle is counted once, by the first reason that holds.
 [[nodiscard]] inline std::optional<TrianglePacket> cull(const PrimitivePacket& in, const Widths& widths,
                                                         CounterPacket& counters) {
-  TrianglePacket out;
-  static_cast<PrimitiveState&>(out) = in;
-  out.kind = in.kind;
-  out.primitive_id = in.primitive_id;
-  const auto v = vertices_of(in);
-  if (is_counted(in.kind)) ++counters.primitives_in;
-  if (in.kind != static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
-    if (in.left > in.right || in.top > in.bottom) {
-      if (is_counted(in.kind)) ++counters.empty;
-      return std::nullopt;
-    }
-    static_cast<PixelBox&>(out) = in;
-    set_vertices(out, v, widths);
+  std::optional<TrianglePacket> kept;  // the one that is returned: a packet is much to copy
+  const auto keep = [&](const PixelBox& box) -> TrianglePacket& {
+    TrianglePacket& out = kept.emplace();
+    out.kind = in.kind;
+    out.primitive_id = in.primitive_id;
+    out.state = in.state;
+    out.box = box;
     return out;
+  };
+  if (is_counted(in.kind)) ++counters.primitives_in;
+  if (in.kind != PrimitiveKind::triangle) {
+    if (!to_bounds(in.box).is_empty())
+      keep(in.box).vertex = in.vertex;
+    else if (is_counted(in.kind))
+      ++counters.empty;
+    return kept;
   }
+  const auto v = to_snapped(in.vertex);
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
-  const CullResult result = cull(area, static_cast<Cull>(in.cull), in.front_cw != 0 ? FrontFace::cw : FrontFace::ccw);
+  const CullResult result = cull(area, in.cull, in.front_cw ? FrontFace::cw : FrontFace::ccw);
   if (result != CullResult::keep) {
     ++(result == CullResult::zero_area ? counters.zero_area : counters.backface);
-    return std::nullopt;
+    return kept;
   }
-  const PixelBounds bounds = pixel_bounds(v, {in.left, in.top, in.right, in.bottom}, widths.grid_bits);
+  const PixelBounds bounds = pixel_bounds(v, to_bounds(in.box), widths.grid_bits);
   if (bounds.is_empty()) {
     ++counters.empty;
-    return std::nullopt;
+    return kept;
   }
-  set_box(out, bounds);
-  const auto order = canonical(v, area);
-  set_vertices(out, order, widths);
-  const int first_x = out.left >> widths.tile_shift << widths.tile_shift;  // first pixel of the first tile
-  const int first_y = out.top >> widths.tile_shift << widths.tile_shift;
-  for (std::size_t i = 0; i < 3; ++i)
-    out.edge_value[i] = edge_function(order[i], order[(i + 1) % 3], first_x, first_y, widths.grid_bits);
+  TrianglePacket& out = keep(to_box(bounds));
+  const auto order = canonical_order(v, area);
+  const int first_x = bounds.left >> widths.tile_shift << widths.tile_shift;  // first pixel of the first tile
+  const int first_y = bounds.top >> widths.tile_shift << widths.tile_shift;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t from = order[i], to = order[(i + 1) % 3];
+    out.vertex.x[i] = in.vertex.x[from];
+    out.vertex.y[i] = in.vertex.y[from];
+    out.vertex.code[i] = in.vertex.code[from];
+    out.edge_value[i] = edge_function(v[from], v[to], first_x, first_y, widths.grid_bits);
+  }
   out.area = static_cast<std::uint64_t>(area < 0 ? -area : area);
-  return out;
+  return kept;
 }
 
 }  // namespace halfplane

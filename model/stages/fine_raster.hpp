@@ -30,17 +30,17 @@ namespace halfplane {
   return context;
 }
 
-/// Coverage of one stamp whose first sample is pixel (x, y) of the tile: bit j * stamp_size + i.
-[[nodiscard]] inline std::uint64_t stamp_mask(const TilePacket& tile, const EdgeContext& edges, int x, int y,
-                                              int stamp_size) {
-  std::uint64_t mask = 0;
-  for (int j = 0; j < stamp_size; ++j) {
-    for (int i = 0; i < stamp_size; ++i) {
-      bool covered = x + i >= tile.left && x + i <= tile.right && y + j >= tile.top && y + j <= tile.bottom;
-      for (std::size_t e = 0; e < 3 && tile.is_inside == 0; ++e)
-        covered &= tile.edge_value[e] + (x + i) * edges.step_x[e] + (y + j) * edges.step_y[e] >= 0;
-      mask |= std::uint64_t{covered} << (j * stamp_size + i);
-    }
+/// Coverage of the stamp whose first pixel is `origin` of the tile.
+[[nodiscard]] inline SampleMask stamp_mask(const TilePacket& tile, const EdgeContext& edges, PixelOffset origin,
+                                           const StampGrid& stamps) {
+  SampleMask mask;
+  for (int s = 0; s < stamps.samples(); ++s) {
+    const PixelOffset pixel = stamps.pixel_of(s);
+    const int x = origin.x + pixel.x, y = origin.y + pixel.y;
+    bool covered = x >= tile.box.left && x <= tile.box.right && y >= tile.box.top && y <= tile.box.bottom;
+    for (std::size_t e = 0; e < 3 && !tile.is_inside; ++e)
+      covered &= tile.edge_value[e] + x * edges.step_x[e] + y * edges.step_y[e] >= 0;
+    mask.set(s, covered);
   }
   return mask;
 }
@@ -49,43 +49,37 @@ namespace halfplane {
 [[nodiscard]] inline StampPacket empty_stamp(const TilePacket& tile) {
   StampPacket stamp;
   stamp.kind = tile.kind;
-  stamp.primitive_id = tile.primitive_id;
+  stamp.key = tile.key;
   stamp.slot = tile.slot;
-  stamp.tile_x = tile.tile_x;
-  stamp.tile_y = tile.tile_y;
-  stamp.depth_anchor = tile.depth_anchor;
-  stamp.color_anchor = tile.color_anchor;
+  stamp.anchor = tile.anchor;
   return stamp;
 }
 
 /// Calls emit(StampPacket) for every stamp of the tile that has coverage or ends something.
 template <class Emit>
-void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Config& config, const Widths& widths,
-                 Emit&& emit) {
-  const int size = config.stamp_size, last_row = tile.bottom / size;
+void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Widths& widths, Emit&& emit) {
+  const StampGrid& stamps = widths.stamps;
+  const int size = stamps.size, last_row = tile.box.bottom / size;
   StampPacket stamp = empty_stamp(tile);
-  if (tile.is_visit == 0) {
+  if (!tile.is_visit) {
     stamp.ends_primitive = tile.ends_primitive;
     emit(stamp);
     return;
   }
-  const auto number = [&](int row, int column) {
-    return static_cast<std::uint16_t>(row * widths.stamps_per_row + column);
-  };
   StampPacket held = stamp;  // the last one of the last row so far
-  held.stamp = number(last_row, 0);
-  for (int row = tile.top / size; row <= last_row; ++row) {
-    for (int column = tile.left / size; column <= tile.right / size; ++column) {
-      stamp.mask = stamp_mask(tile, edges, column * size, row * size, size);
-      if (stamp.mask == 0) continue;
-      stamp.stamp = number(row, column);
+  held.stamp = static_cast<std::uint16_t>(stamps.stamp_at(0, last_row * size));
+  for (int row = tile.box.top / size; row <= last_row; ++row) {
+    for (int column = tile.box.left / size; column <= tile.box.right / size; ++column) {
+      stamp.mask = stamp_mask(tile, edges, {column * size, row * size}, stamps);
+      if (!stamp.mask.any()) continue;
+      stamp.stamp = static_cast<std::uint16_t>(stamps.stamp_at(column * size, row * size));
       const bool is_last_row = row == last_row;
       if (!is_last_row) emit(stamp);
-      if (is_last_row && held.mask != 0) emit(held);
+      if (is_last_row && held.mask.any()) emit(held);
       if (is_last_row) held = stamp;
     }
   }
-  held.ends_visit = 1;
+  held.ends_visit = true;
   held.ends_primitive = tile.ends_primitive;
   emit(held);
 }

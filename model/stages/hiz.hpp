@@ -10,11 +10,10 @@
 // other tests only lower depths, which leaves bounds what they are.
 #pragma once
 
-#include <bit>
 #include <vector>
 
+#include "../fragment_ops.hpp"
 #include "../packets.hpp"
-#include "../scene.hpp"
 
 namespace halfplane {
 
@@ -38,26 +37,26 @@ class Hiz {
     const auto tiles = [&widths](int first, int last) {
       return (last >> widths.tile_shift) - (first >> widths.tile_shift) + 1;
     };
-    const auto func = static_cast<DepthFunc>(setup.depth_test);
-    return bits_ > 0 && holds_ && setup.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) &&
-           (tiles(setup.left, setup.right) > untested_tiles_ || tiles(setup.top, setup.bottom) > untested_tiles_) &&
+    const DepthFunc func = setup.state.depth_test;
+    const PixelBox& box = setup.box;
+    return bits_ > 0 && holds_ && setup.kind == PrimitiveKind::triangle &&
+           (tiles(box.left, box.right) > untested_tiles_ || tiles(box.top, box.bottom) > untested_tiles_) &&
            (func == DepthFunc::less || func == DepthFunc::lequal || func == DepthFunc::equal);
   }
 
   /// Whether no sample of an eligible primitive can pass in this tile.
   [[nodiscard]] bool rejects(const SetupPacket& setup, int tile_x, int tile_y) const {
-    const std::uint64_t nearest = setup.depth_min, farthest = bound(tile_x, tile_y);
-    return setup.depth_test == static_cast<std::uint8_t>(DepthFunc::less) ? nearest >= farthest : nearest > farthest;
+    const std::uint64_t nearest = setup.range.low[kDepthPlane], farthest = bound(tile_x, tile_y);
+    return setup.state.depth_test == DepthFunc::less ? nearest >= farthest : nearest > farthest;
   }
 
   void update(const RetirePacket& retired) {
-    if (retired.update != static_cast<std::uint8_t>(HizUpdate::none))
-      code_[index(retired.tile_x, retired.tile_y)] = retired.hiz_code;
+    if (retired.update != HizUpdate::none) code_[index(retired.key.tile_x, retired.key.tile_y)] = retired.hiz_code;
   }
 
   /// A line follows; its pixels do not show here.
   void pass_line(const SetupPacket& line) {
-    if (line.depth_write != 0 && line.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) holds_ = false;
+    if (line.state.depth_write && can_raise_depth(line.state.depth_test)) holds_ = false;
   }
 
   /// Tiles (0, 0) to (last_x, last_y), the whole target, now hold the clear depth.
@@ -82,47 +81,6 @@ class Hiz {
   int bits_, low_bits_;  ///< bits stored, and dropped, of a depth code
   std::size_t tiles_x_;
   std::vector<std::uint32_t> code_;
-};
-
-/// What a visit that writes depth does to its tile's bound. `is_full`: every sample of the tile was covered and passed,
-/// the largest depth code was `largest`; `has_passed`: one at least.
-inline void set_hiz_update(RetirePacket& packet, const PrimitiveState& state, bool is_full, bool has_passed,
-                           std::uint32_t largest, const Config& config, const Widths& widths) {
-  if (config.hiz_bits == 0 || state.depth_write == 0) return;
-  if (is_full) {
-    packet.update = static_cast<std::uint8_t>(HizUpdate::set);
-    packet.hiz_code = largest >> (config.depth_bits - hiz_code_bits(config));
-  } else if (has_passed && state.depth_test >= static_cast<std::uint8_t>(DepthFunc::greater)) {
-    packet.update = static_cast<std::uint8_t>(HizUpdate::clear);  // these tests can raise a depth
-    packet.hiz_code = static_cast<std::uint32_t>(widths.hiz_code.range.hi);
-  }
-}
-
-/// What depth_test gathers over the stamps of one tile visit.
-class TileVisit {
- public:
-  void add(const FragmentPacket& fragment, std::uint64_t passed, const Widths& widths) {
-    full_stamps_ += std::popcount(passed) == widths.samples ? 1 : 0;
-    has_passed_ = has_passed_ || passed != 0;
-    for (std::uint64_t rest = passed; rest != 0; rest &= rest - 1)
-      largest_ = std::max(largest_, fragment.depth[static_cast<std::size_t>(std::countr_zero(rest))]);
-  }
-
-  /// The end of the visit; `last` is its last stamp.
-  [[nodiscard]] RetirePacket retire(const FragmentPacket& last, const Config& config, const Widths& widths) const {
-    RetirePacket packet;
-    packet.primitive_id = last.primitive_id;
-    packet.tile_x = last.tile_x;
-    packet.tile_y = last.tile_y;
-    const bool is_full = full_stamps_ == widths.stamps_per_row * widths.stamps_per_row;
-    set_hiz_update(packet, last, is_full, has_passed_, largest_, config, widths);
-    return packet;
-  }
-
- private:
-  int full_stamps_ = 0;  ///< stamps of which every sample was covered and passed
-  bool has_passed_ = false;
-  std::uint32_t largest_ = 0;  ///< depth code
 };
 
 }  // namespace halfplane

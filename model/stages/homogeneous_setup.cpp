@@ -12,10 +12,10 @@ namespace {
 
 /// A vertex in window coordinates times w, all scaled by a power of two that the triangle shares.
 struct Corner {
-  double x = 0, y = 0, w = 0;          ///< pixels
-  double z = 0;                        ///< window depth, 0...1
-  double near = 0, far = 0;            ///< distances: not negative inside
-  std::array<std::uint8_t, 4> rgba{};  ///< codes
+  double x = 0, y = 0, w = 0;      ///< pixels
+  double z = 0;                    ///< window depth, 0...1
+  double near = 0, far = 0;        ///< distances: not negative inside
+  PerPlane<std::uint32_t> code{};  ///< of the planes but depth
 };
 
 /// a x + b y + c in pixels, before it is rounded.
@@ -42,7 +42,7 @@ Corner to_corner(const Vertex& v, int exponent, const HomogeneousFrame& frame) {
   corner.z = low * w + (high - low) * (is_zero_one ? z : (z + w) / 2);
   corner.near = is_zero_one ? z : z + w;
   corner.far = w - z;
-  for (std::size_t c = 0; c < 4; ++c) corner.rgba[c] = snap_color(v.rgba[c]);
+  corner.code = snap_codes(0, v.rgba, frame.config);
   return corner;
 }
 
@@ -143,12 +143,13 @@ void set_depth(HomogeneousSetup& setup, const Lines& e, const Corners& v, double
   const int bits = frame.config.depth_bits;
   const double top = std::ldexp(1.0, bits) - 1;
   const Line z = blend(e, v, [&](const Corner& c) { return c.z / determinant * top; });
-  setup.triangle.depth = to_plane(z, setup.triangle, frame, frame.widths.depth_plane.bits);
+  setup.triangle.plane[kDepthPlane] = to_plane(z, setup.triangle, frame, frame.widths.depth().plane.bits);
+  CodeRange& range = setup.triangle.range;
   const auto [a, b] = std::minmax(frame.state.depth_range[0], frame.state.depth_range[1]);
   const auto code = [&, low = a, high = b](double depth) { return snap_depth(std::clamp(depth, low, high), bits); };
-  std::tie(setup.triangle.depth_min, setup.triangle.depth_max) = std::pair(code(a), code(b));
+  std::tie(range.low[kDepthPlane], range.high[kDepthPlane]) = std::pair(code(a), code(b));
   if (is_in_front)
-    std::tie(setup.triangle.depth_min, setup.triangle.depth_max) =
+    std::tie(range.low[kDepthPlane], range.high[kDepthPlane]) =
         std::minmax({code(v[0].z / v[0].w), code(v[1].z / v[1].w), code(v[2].z / v[2].w)});
   const auto& [factor, constant] = frame.state.polygon_offset;
   const double offset = factor * std::max(std::abs(z.a), std::abs(z.b)) + constant;
@@ -157,7 +158,7 @@ void set_depth(HomogeneousSetup& setup, const Lines& e, const Corners& v, double
 
 /// Scales 1 / w and colour / w by one factor, so that their quotient keeps its value: by the largest magnitude that
 /// the weights have together at a corner of the box or as a step.
-void set_perspective_color(HomogeneousSetup& setup, const Lines& e, const Corners& v, const HomogeneousFrame& frame) {
+void set_perspective(HomogeneousSetup& setup, const Lines& e, const Corners& v, const HomogeneousFrame& frame) {
   const TriangleSetup& box = setup.triangle;
   double largest = 0;
   const auto include = [&](auto&& part) {
@@ -174,20 +175,21 @@ void set_perspective_color(HomogeneousSetup& setup, const Lines& e, const Corner
     return LinearFunction{round(line.a), round(line.b), round(line.at(box.left + 0.5, box.top + 0.5))};
   };
   setup.weight = scaled([](const Corner&) { return 1.0; });
-  for (std::size_t c = 0; c < 4; ++c)
-    setup.color_weight[c] = scaled([c](const Corner& corner) { return static_cast<double>(corner.rgba[c]); });
+  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(frame.widths.planes); ++p)
+    setup.code_weight[p] = scaled([p](const Corner& corner) { return static_cast<double>(corner.code[p]); });
 }
 
-void set_color(HomogeneousSetup& setup, const Lines& e, const Corners& v, double determinant,
-               const HomogeneousFrame& frame) {
+/// Every plane but depth.
+void set_attributes(HomogeneousSetup& setup, const Lines& e, const Corners& v, double determinant,
+                    const HomogeneousFrame& frame) {
   TriangleSetup& triangle = setup.triangle;
-  for (std::size_t c = 0; c < 4; ++c) {
-    std::tie(triangle.color_min[c], triangle.color_max[c]) = std::minmax({v[0].rgba[c], v[1].rgba[c], v[2].rgba[c]});
+  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(frame.widths.planes); ++p) {
+    std::tie(triangle.range.low[p], triangle.range.high[p]) = std::minmax({v[0].code[p], v[1].code[p], v[2].code[p]});
     if (!setup.is_perspective)
-      triangle.color[c] = to_plane(blend(e, v, [&](const Corner& p) { return p.w / determinant * p.rgba[c]; }),
-                                   triangle, frame, frame.widths.color_plane.bits);
+      triangle.plane[p] = to_plane(blend(e, v, [&](const Corner& c) { return c.w / determinant * c.code[p]; }),
+                                   triangle, frame, frame.widths.of_plane(p).plane.bits);
   }
-  if (setup.is_perspective) set_perspective_color(setup, e, v, frame);
+  if (setup.is_perspective) set_perspective(setup, e, v, frame);
 }
 
 bool all_of(const Corners& v, bool (*holds)(const Corner&)) { return holds(v[0]) && holds(v[1]) && holds(v[2]); }
@@ -231,23 +233,23 @@ HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& vertices, const 
     setup.bound[4] = to_bound(blend(e, v, [](const Corner& c) { return c.far; }), frame.homogeneous);
   set_depth(setup, e, v, determinant, is_in_front, frame);
   setup.is_perspective = !is_in_front;
-  set_color(setup, e, v, determinant, frame);
+  set_attributes(setup, e, v, determinant, frame);
   return setup;
 }
 
 Interpolated interpolate_at(const HomogeneousSetup& setup, const Widths& widths, int x, int y) {
   const TriangleSetup& triangle = setup.triangle;
   Interpolated result = interpolate_at(triangle, widths, x, y);
-  const std::int64_t moved = result.depth_code + setup.depth_offset,
-                     largest = static_cast<std::int64_t>(widths.depth_code.range.hi);
-  result.depth_code = static_cast<std::uint32_t>(std::clamp<std::int64_t>(moved, 0, largest));
+  const std::int64_t moved = result.code[kDepthPlane] + setup.depth_offset,
+                     largest = static_cast<std::int64_t>(widths.depth().code.range.hi);
+  result.code[kDepthPlane] = static_cast<std::uint32_t>(std::clamp<std::int64_t>(moved, 0, largest));
   if (!setup.is_perspective) return result;
   const int i = x - triangle.left, j = y - triangle.top;
   const std::int64_t weight = std::max<std::int64_t>(1, setup.weight.at(i, j));  // positive but for its rounding
-  for (std::size_t c = 0; c < 4; ++c) {
-    const std::int64_t color = std::max<std::int64_t>(0, setup.color_weight[c].at(i, j));
-    result.color_code[c] = static_cast<std::uint8_t>(
-        std::clamp<std::int64_t>((2 * color + weight) / (2 * weight), triangle.color_min[c], triangle.color_max[c]));
+  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const std::int64_t code = std::max<std::int64_t>(0, setup.code_weight[p].at(i, j));
+    result.code[p] = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>((2 * code + weight) / (2 * weight), triangle.range.low[p], triangle.range.high[p]));
   }
   return result;
 }

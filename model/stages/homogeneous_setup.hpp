@@ -47,7 +47,7 @@ struct HomogeneousSetup {
   std::int64_t depth_offset = 0;  ///< polygon offset, codes: added at the sample
   bool is_perspective = false;    ///< then the next two are set, and the colour planes are not
   LinearFunction weight;          ///< 1 / w, scaled; (0, 0) is the first pixel of the box
-  std::array<LinearFunction, 4> color_weight{};  ///< colour / w likewise
+  PerPlane<LinearFunction> code_weight{};  ///< codes / w likewise, of the planes but depth
 };
 
 /// What stays the same over a draw.

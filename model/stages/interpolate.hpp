@@ -1,6 +1,6 @@
 // Interpolate: attributes at the covered samples of a tile.
 //
-// In: the planes at the tile's anchor. Out: depth and colour codes per sample. Inside a tile a plane is narrow:
+// In: the planes at the tile's anchor. Out: a code for each plane and sample. Inside a tile a plane is narrow:
 // l local guard bits, anchored at the centre of pixel (T/2, T/2), so the rounding of a step acts over at most T/2 pixels a
 // side. The value at a pixel is the closed form anchor + i step_x + j step_y: every traversal computes the same one.
 // Final value: floor(v + 1/2), clamped to the range of the triangle's vertices.
@@ -25,6 +25,7 @@ struct LocalFormat {
   int guard_bits = 0;  ///< l >= 1
   Lane modulus_mask = 0;
 
+  explicit LocalFormat(const AttributeWidths& widths) : LocalFormat(widths.code.bits, widths.guard_bits()) {}
   LocalFormat(int bits_, int guard_bits_)
       : bits(bits_), guard_bits(guard_bits_), modulus_mask(static_cast<Lane>(~0ULL >> (63 - bits_ - guard_bits_))) {}
 
@@ -52,25 +53,18 @@ template <class SignedLane, class Lane>
   return code < low ? low : code > high ? high : code;
 }
 
-/// Every attribute at one pixel, before and after the final rounding.
+/// Every plane at one pixel.
 struct Interpolated {
-  std::int64_t depth = 0;  ///< 2^-l LSB, before rounding and clamp
-  std::uint32_t depth_code = 0;
-  std::array<std::int64_t, 4> color{};  ///< 2^-l LSB of an 8-bit code, before rounding and clamp
-  std::array<std::uint8_t, 4> color_code{};
+  PerPlane<std::int64_t> unrounded{};  ///< as in PlaneSample
+  PerPlane<std::uint32_t> code{};
 };
 
-/// The depth of a triangle at pixel (x, y), and all its attributes: the specification that every engine must match.
-struct InterpolatedDepth {
-  std::int64_t unrounded = 0;  ///< 2^-l LSB, before rounding and clamp
-  std::uint32_t code = 0;
-};
-[[nodiscard]] InterpolatedDepth depth_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
+/// Plane `p` of a triangle at pixel (x, y), and all of them: the specification that every engine must match.
+[[nodiscard]] PlaneSample plane_at(const TriangleSetup& setup, std::size_t p, const Widths& widths, int x, int y);
 [[nodiscard]] Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
 
-/// The stage: depth and colour of every sample of the stamp, covered or not, from its tile's anchors. `context` is
+/// The stage: the codes of every sample of the stamp, covered or not, from its tile's anchors. `context` is
 /// that of the stamp's slot.
-[[nodiscard]] FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Config& config,
-                                         const Widths& widths);
+[[nodiscard]] FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths);
 
 }  // namespace halfplane

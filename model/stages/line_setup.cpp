@@ -134,10 +134,9 @@ struct Slope {
   int grid_bits = 0, guard_bits = 0;
 };
 
-/// `value` at the first pixel and `step` per pixel, modulo 2^(code_bits + G').
-void setup_attribute(std::int64_t from, std::int64_t to, const Slope& slope, int code_bits, std::uint64_t& value,
+/// `value` at the first pixel and `step` per pixel, in a register of `bits` bits.
+void setup_attribute(std::int64_t from, std::int64_t to, const Slope& slope, int bits, std::uint64_t& value,
                      std::uint64_t& step) {
-  const int bits = code_bits + slope.guard_bits;
   const auto wrap = [bits](int128 v) { return wrap_unsigned(static_cast<std::uint64_t>(v), bits); };
   const int128 product = int128{to - from} * static_cast<int128>(slope.reciprocal.value);
   const int128 gradient = round_shift(product, slope.reciprocal.shift - slope.grid_bits - slope.guard_bits);
@@ -184,11 +183,9 @@ std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVer
 
   Slope slope{{}, q.offset + (steps.low << s), s, widths.line_guard_bits};
   slope.reciprocal = reciprocal(line.a1 - line.a0, config.depth_bits + config.reciprocal_extra_bits);
-  setup_attribute(start.z, end.z, slope, config.depth_bits, out.depth, out.depth_step);
-  out.depth_start = start.z;
-  for (std::size_t c = 0; c < 4; ++c)
-    setup_attribute(start.rgba[c], end.rgba[c], slope, widths.color_code.bits, out.color[c], out.color_step[c]);
-  out.color_start = packet_color(start.rgba, widths);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+    setup_attribute(start.code[p], end.code[p], slope, widths.of_plane(p).line.bits, out.value[p], out.step[p]);
+  out.start = start.code;
   return out;
 }
 

@@ -25,48 +25,6 @@
 
 namespace halfplane {
 
-/// line_setup -> line_raster: a line with at least one pixel inside the scissor.
-/// The states ride with the line's place in program order, a PrimitivePacket of kind line.
-struct LineSetup {
-  std::uint32_t primitive_id = 0;    ///< that of the PrimitivePacket; left at 0 by setup_line
-  std::int32_t x = 0, y = 0;         ///< the first pixel; inside the target when it goes to the RTL
-  std::uint8_t is_x_major = 0;       ///< 1: every step changes x
-  std::uint8_t is_x_negative = 0;    ///< 1: x falls
-  std::uint8_t is_y_negative = 0;    ///< likewise y
-  std::uint8_t is_before_start = 0;  ///< 1: the first pixel's centre lies before the start: it shows the start's codes
-  std::uint32_t remaining = 0;       ///< pixels after the first
-  std::int64_t error = 0;            ///< p: >= 0 when the next pixel lies in the next row
-  std::int64_t step_stay = 0;        ///< d, added to p after a step along the major axis alone
-  std::int64_t step_move = 0;        ///< d - D, added to p after a step along both
-  std::uint64_t depth = 0;           ///< 2^-G' LSB at the first pixel's major coordinate, plus one half LSB
-  std::uint64_t depth_step = 0;      ///< per pixel
-  std::uint32_t depth_start = 0;     ///< code of the start
-  std::array<std::uint64_t, 4> color{}, color_step{};  ///< likewise
-  std::uint32_t color_start = 0;                       ///< 8 bits a stored channel, R lowest
-
-  static constexpr std::string_view name = "line_setup";
-  static constexpr auto fields() {
-    using P = LineSetup;
-    return std::tuple{Field{"primitive_id", &P::primitive_id, &Widths::primitive_id},
-                      Field{"x", &P::x, &Widths::pixel_x},
-                      Field{"y", &P::y, &Widths::pixel_y},
-                      Field{"is_x_major", &P::is_x_major, &Widths::flag},
-                      Field{"is_x_negative", &P::is_x_negative, &Widths::flag},
-                      Field{"is_y_negative", &P::is_y_negative, &Widths::flag},
-                      Field{"is_before_start", &P::is_before_start, &Widths::flag},
-                      Field{"remaining", &P::remaining, &Widths::line_count},
-                      Field{"error", &P::error, &Widths::line_error},
-                      Field{"step_stay", &P::step_stay, &Widths::line_stay},
-                      Field{"step_move", &P::step_move, &Widths::line_move},
-                      Field{"depth", &P::depth, &Widths::line_depth},
-                      Field{"depth_step", &P::depth_step, &Widths::line_depth},
-                      Field{"depth_start", &P::depth_start, &Widths::depth_code},
-                      Field{"color", &P::color, &Widths::line_color, &Widths::color_channels},
-                      Field{"color_step", &P::color_step, &Widths::line_color, &Widths::color_channels},
-                      Field{"color_start", &P::color_start, &Widths::vertex_color}};
-  }
-};
-
 /// Whether a rule leaves out the last pixel when nobody says: the textbooks draw both ends; diamond exit never does.
 [[nodiscard]] constexpr bool drops_last_by_default(LineRule rule) { return rule == LineRule::diamond; }
 

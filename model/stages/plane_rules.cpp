@@ -42,13 +42,11 @@ Plane plane_by_rules(std::int64_t c0, std::int64_t c1, std::int64_t c2, const Ru
   return plane;
 }
 
-struct Value {
-  std::int64_t unrounded, code;
-};
-
-/// A saturated plane at pixel (x, y), clamped to [low, high].
-Value saturated_at(const TriangleSetup& setup, const Plane& plane, int plane_bits, int local_bits, int guard_bits,
-                   const Widths& widths, int x, int y, std::int64_t low, std::int64_t high) {
+/// Saturated plane `p` at pixel (x, y), clamped to the range of the vertices.
+PlaneSample saturated_at(const TriangleSetup& setup, std::size_t p, const Widths& widths, int x, int y) {
+  const Plane& plane = setup.plane[p];
+  const int plane_bits = widths.of_plane(p).plane.bits, local_bits = widths.of_plane(p).local.bits;
+  const int guard_bits = widths.of_plane(p).guard_bits();
   const int shift = widths.tile_shift, to_subpixels = shift + widths.grid_bits;
   const int tile_x = x >> shift, tile_y = y >> shift;
   const auto tiles = [to_subpixels](int last, int first) { return int128{last - first} << to_subpixels; };
@@ -62,7 +60,8 @@ Value saturated_at(const TriangleSetup& setup, const Plane& plane, int plane_bit
       held(int128{round_shift(anchor, drop)} + i * round_shift(plane.step_x, drop - widths.grid_bits) +
                j * round_shift(plane.step_y, drop - widths.grid_bits),
            local_bits, Accumulator::saturate);
-  return {value, std::clamp(round_shift(value, guard_bits), low, high)};
+  return {value, static_cast<std::uint32_t>(std::clamp<std::int64_t>(round_shift(value, guard_bits), setup.range.low[p],
+                                                                     setup.range.high[p]))};
 }
 
 }  // namespace
@@ -92,25 +91,18 @@ void set_planes(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, con
     frame.x_reciprocal = static_cast<std::uint64_t>(one / area);
     frame.y_reciprocal = static_cast<std::uint64_t>((one + area - 1) / area);
   }
-  setup.depth = plane_by_rules(v[0].z, v[1].z, v[2].z, frame, widths.depth_plane.bits);
-  for (std::size_t c = 0; c < 4; ++c)
-    setup.color[c] = plane_by_rules(v[0].rgba[c], v[1].rgba[c], v[2].rgba[c], frame, widths.color_plane.bits);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+    setup.plane[p] = plane_by_rules(v[0].code[p], v[1].code[p], v[2].code[p], frame, widths.of_plane(p).plane.bits);
 }
 
 Interpolated interpolate_by_rules(const TriangleSetup& setup, const StudyRules& rules, const Widths& widths, int x,
                                   int y) {
   if (rules.accumulator == Accumulator::wrap) return interpolate_at(setup, widths, x, y);
-  const int guard_bits = widths.local_color.bits - 8 - 1;  // l
   Interpolated result;
-  const Value depth = saturated_at(setup, setup.depth, widths.depth_plane.bits, widths.local_depth.bits, guard_bits,
-                                   widths, x, y, setup.depth_min, setup.depth_max);
-  result.depth = depth.unrounded;
-  result.depth_code = static_cast<std::uint32_t>(depth.code);
-  for (std::size_t c = 0; c < 4; ++c) {
-    const Value color = saturated_at(setup, setup.color[c], widths.color_plane.bits, widths.local_color.bits,
-                                     guard_bits, widths, x, y, setup.color_min[c], setup.color_max[c]);
-    result.color[c] = color.unrounded;
-    result.color_code[c] = static_cast<std::uint8_t>(color.code);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const PlaneSample sample = saturated_at(setup, p, widths, x, y);
+    result.unrounded[p] = sample.unrounded;
+    result.code[p] = sample.code;
   }
   return result;
 }

@@ -13,19 +13,19 @@ namespace halfplane {
 
 /// A pixel of the line whose place is `token`: a stamp with one covered sample, which belongs to no tile visit.
 [[nodiscard]] inline FragmentPacket line_fragment(const FragmentPacket& token, const LinePixel& pixel,
-                                                  const Config& config, const Widths& widths) {
-  const int size = config.stamp_size, last = (1 << widths.tile_shift) - 1;
+                                                  const Widths& widths) {
+  const StampGrid& stamps = widths.stamps;
+  const int last = (1 << widths.tile_shift) - 1;
   const int x = pixel.x & last, y = pixel.y & last;  // in the tile
   FragmentPacket fragment = token;
-  fragment.ends_visit = 0;
+  fragment.ends_visit = false;
   fragment.ends_primitive = pixel.is_last;
-  fragment.tile_x = static_cast<std::uint16_t>(pixel.x >> widths.tile_shift);
-  fragment.tile_y = static_cast<std::uint16_t>(pixel.y >> widths.tile_shift);
-  fragment.stamp = static_cast<std::uint16_t>(y / size * widths.stamps_per_row + x / size);
-  fragment.mask = std::uint64_t{1} << (y % size * size + x % size);
+  fragment.key.tile_x = static_cast<std::uint16_t>(pixel.x >> widths.tile_shift);
+  fragment.key.tile_y = static_cast<std::uint16_t>(pixel.y >> widths.tile_shift);
+  fragment.stamp = static_cast<std::uint16_t>(stamps.stamp_at(x, y));
+  fragment.mask = SampleMask::only(stamps.sample_at(x % stamps.size, y % stamps.size));
   // In every lane: the other samples are not looked at, and a lane of hardware need not know which one is.
-  std::fill_n(fragment.depth.begin(), widths.samples, pixel.depth);
-  std::fill_n(fragment.rgba.begin(), widths.samples, pixel.color);
+  std::fill_n(fragment.code.begin(), widths.samples, pixel.code);
   return fragment;
 }
 

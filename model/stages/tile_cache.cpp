@@ -66,9 +66,9 @@ struct TileCache::DataMover {
 };
 
 TileCache::TileCache(const Config& config, const Widths& widths)
-    : stamps_(widths.stamps_per_row * widths.stamps_per_row),
+    : stamps_(widths.stamps.stamps()),
       samples_(widths.samples),
-      code_mask_{static_cast<std::uint32_t>(widths.depth_code.range.hi),
+      code_mask_{static_cast<std::uint32_t>(widths.depth().code.range.hi),
                  static_cast<std::uint32_t>(widths.stored_color.range.hi)},
       directory_(config, widths) {
   const auto pixels = static_cast<std::size_t>(config.tile_size) * static_cast<std::size_t>(config.tile_size);
@@ -94,29 +94,26 @@ void TileCache::access(int tile_x, int tile_y, MemoryPort& memory, CounterPacket
 }
 
 void TileCache::write(const WritePacket& packet) {
-  const std::size_t line = directory_.line_of(packet.tile_x, packet.tile_y);
-  const auto masked_copy = [&](TilePlane plane, std::uint64_t mask, const std::array<std::uint32_t, 64>& from) {
+  const std::size_t line = directory_.line_of(packet.key.tile_x, packet.key.tile_y);
+  const auto masked_copy = [&](TilePlane plane, SampleMask mask, const WritePacket::Codes& from) {
     const auto to = lanes(plane, line, packet.stamp);
-    for (; mask != 0; mask &= mask - 1) {
-      const auto sample = static_cast<std::size_t>(std::countr_zero(mask));
-      to[sample] = from[sample];
-    }
+    mask.for_each([&](std::size_t sample) { to[sample] = from[sample]; });
   };
   masked_copy(TilePlane::depth, packet.write_depth, packet.depth);
   masked_copy(TilePlane::color, packet.write_color, packet.color);
-  directory_.wrote(packet.tile_x, packet.tile_y, packet.write_depth != 0, packet.write_color != 0);
+  directory_.wrote(packet.key.tile_x, packet.key.tile_y, packet.write_depth.any(), packet.write_color.any());
 }
 
 void TileCache::fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory,
                            CounterPacket& counters) {
-  const std::array<bool, 2> clears{token.depth_write != 0, token.color_write != 0};
-  directory_.fast_clear(token.tile_x, token.tile_y, clears, DataMover{*this, memory}, counters);
-  if (clears[0]) clear_value_[0] = token.depth[0];
+  const std::array<bool, 2> clears{token.state.depth_write, token.state.color_write};
+  directory_.fast_clear(token.key.tile_x, token.key.tile_y, clears, DataMover{*this, memory}, counters);
+  if (clears[0]) clear_value_[0] = token.code[0][kDepthPlane];
   if (clears[1]) clear_value_[1] = color;
 }
 
 void TileCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters) {
-  directory_.flush(token.tile_x, token.tile_y, DataMover{*this, memory}, counters);
+  directory_.flush(token.key.tile_x, token.key.tile_y, DataMover{*this, memory}, counters);
 }
 
 }  // namespace halfplane

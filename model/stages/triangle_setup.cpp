@@ -21,17 +21,15 @@ PlaneValue gradient(std::int64_t numerator, const PlaneFrame& frame) {
   return static_cast<PlaneValue>(round_shift(product, frame.reciprocal.shift - frame.fraction));  // modulo 2^64
 }
 
-Plane setup_plane(std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f, int bits) {
+void setup_plane(Plane& plane, std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f, int bits) {
   const std::int64_t ac = c1 - c0, bc = c2 - c0;
   const auto wrap = [bits](std::uint64_t value) { return wrap_signed(static_cast<std::int64_t>(value), bits); };
-  Plane plane;
   plane.step_x = wrap(static_cast<std::uint64_t>(gradient(ac * f.by - bc * f.ay, f)));
   plane.step_y = wrap(static_cast<std::uint64_t>(gradient(f.ax * bc - f.bx * ac, f)));
   // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is a residue of that.
   plane.value = wrap((static_cast<std::uint64_t>(c0) << f.fraction) +
                      static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(f.dx) +
                      static_cast<std::uint64_t>(plane.step_y) * static_cast<std::uint64_t>(f.dy));
-  return plane;
 }
 
 /// Everything that follows from the vertices in canonical order, their area and the box.
@@ -57,23 +55,20 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
                          anchor(first_y) - v[0].y,
                          reciprocal(setup.area, config.depth_bits + config.reciprocal_extra_bits),
                          widths.plane_fraction};
-  setup.depth = setup_plane(v[0].z, v[1].z, v[2].z, frame, widths.depth_plane.bits);
-  std::tie(setup.depth_min, setup.depth_max) = std::minmax({v[0].z, v[1].z, v[2].z});
-  for (std::size_t c = 0; c < 4; ++c) {
-    setup.color[c] = setup_plane(v[0].rgba[c], v[1].rgba[c], v[2].rgba[c], frame, widths.color_plane.bits);
-    std::tie(setup.color_min[c], setup.color_max[c]) = std::minmax({v[0].rgba[c], v[1].rgba[c], v[2].rgba[c]});
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const std::uint32_t c0 = v[0].code[p], c1 = v[1].code[p], c2 = v[2].code[p];
+    setup_plane(setup.plane[p], c0, c1, c2, frame, widths.of_plane(p).plane.bits);
+    std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({c0, c1, c2});
   }
 }
 
-/// The constants of a primitive that has one depth and one colour and no edges.
+/// The constants of a primitive that has one code a plane and no edges.
 void finish_flat_setup(TriangleSetup& setup, const SnappedVertex& v, const Widths& widths) {
-  const auto constant = [&](std::uint64_t code, int bits) {
-    return Plane{wrap_signed(static_cast<std::int64_t>(code << widths.plane_fraction), bits), 0, 0};
-  };
-  setup.depth = constant(v.z, widths.depth_plane.bits);
-  setup.depth_min = setup.depth_max = v.z;
-  for (std::size_t c = 0; c < 4; ++c) setup.color[c] = constant(v.rgba[c], widths.color_plane.bits);
-  setup.color_min = setup.color_max = v.rgba;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const std::uint64_t value = std::uint64_t{v.code[p]} << widths.plane_fraction;
+    setup.plane[p] = {wrap_signed(static_cast<std::int64_t>(value), widths.of_plane(p).plane.bits), 0, 0};
+  }
+  setup.range.low = setup.range.high = v.code;
 }
 
 }  // namespace
@@ -110,51 +105,43 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
                         {-config.guard_band, -config.guard_band, 2 * config.guard_band, 2 * config.guard_band});
 }
 
-std::uint64_t plane_bias(int bits, const Widths& widths) {
-  const int guard_bits = widths.local_depth.bits - widths.depth_code.bits - 1;  // l, at least 1
-  const int drop = widths.plane_fraction - guard_bits;                          // F - l, at least 2
-  const std::uint64_t to_window = std::uint64_t{1} << (bits - 1 + guard_bits),
+std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths) {
+  const int guard_bits = attribute.guard_bits();        // l, at least 1
+  const int drop = widths.plane_fraction - guard_bits;  // F - l, at least 2
+  const std::uint64_t to_window = std::uint64_t{1} << (attribute.code.bits - 1 + guard_bits),
                       half = std::uint64_t{1} << (guard_bits - 1);
   return (std::uint64_t{1} << (drop - 1)) + ((to_window + half) << drop);
 }
 
 SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths) {
-  const auto biased = [](const Plane& plane, std::uint64_t bias, int bits) {
-    return wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) + bias), bits);
-  };
   SetupPacket packet;
-  set_box(packet, {setup.left, setup.top, setup.right, setup.bottom});
+  packet.box = to_box({setup.left, setup.top, setup.right, setup.bottom});
   packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(setup.primitive, widths.primitive_id.bits));
   for (std::size_t i = 0; i < 3; ++i) {
     packet.dx[i] = setup.edge[i].dx;
     packet.dy[i] = setup.edge[i].dy;
     packet.edge_value[i] = setup.edge[i].value;
   }
-  packet.depth_value = biased(setup.depth, plane_bias(widths.depth_code.bits, widths), widths.depth_plane.bits);
-  packet.depth_step_x = setup.depth.step_x;
-  packet.depth_step_y = setup.depth.step_y;
-  packet.depth_min = setup.depth_min;
-  packet.depth_max = setup.depth_max;
-  const std::uint64_t color_bias = plane_bias(8, widths);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_channels); ++c) {
-    packet.color_value[c] = biased(setup.color[c], color_bias, widths.color_plane.bits);
-    packet.color_step_x[c] = setup.color[c].step_x;
-    packet.color_step_y[c] = setup.color[c].step_y;
-    packet.color_min[c] = setup.color_min[c];
-    packet.color_max[c] = setup.color_max[c];
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const AttributeWidths& attribute = widths.of_plane(p);
+    const std::uint64_t biased = static_cast<std::uint64_t>(setup.plane[p].value) + plane_bias(attribute, widths);
+    packet.value[p] = wrap_signed(static_cast<std::int64_t>(biased), attribute.plane.bits);
+    packet.step_x[p] = setup.plane[p].step_x;
+    packet.step_y[p] = setup.plane[p].step_y;
   }
+  packet.range = setup.range;
   return packet;
 }
 
 TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
   TriangleSetup setup;
   setup.primitive = primitive.primitive_id;
-  setup.left = primitive.left;
-  setup.top = primitive.top;
-  setup.right = primitive.right;
-  setup.bottom = primitive.bottom;
-  const auto v = vertices_of(primitive);
-  if (primitive.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+  setup.left = primitive.box.left;
+  setup.top = primitive.box.top;
+  setup.right = primitive.box.right;
+  setup.bottom = primitive.box.bottom;
+  const auto v = to_snapped(primitive.vertex);
+  if (primitive.kind == PrimitiveKind::triangle) {
     setup.area = static_cast<std::int64_t>(primitive.area);
     finish_setup(setup, v, config, widths);
   } else {
@@ -165,7 +152,7 @@ TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& con
 
 SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
   SetupPacket packet = to_setup_packet(setup_primitive(primitive, config, widths), widths);
-  static_cast<PrimitiveState&>(packet) = primitive;
+  packet.state = primitive.state;
   packet.kind = primitive.kind;
   return packet;
 }

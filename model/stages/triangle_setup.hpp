@@ -41,10 +41,8 @@ struct TriangleSetup {
   std::int64_t area = 0;  ///< twice the area, square subpixels, > 0
   std::array<Edge, 3> edge{};
   int left = 0, top = 0, right = -1, bottom = -1;  ///< box of pixel centres inside the scissor, inclusive
-  Plane depth;
-  std::array<Plane, 4> color{};
-  std::uint32_t depth_min = 0, depth_max = 0;            ///< the final depth is clamped to the vertices' codes
-  std::array<std::uint8_t, 4> color_min{}, color_max{};  ///< likewise
+  PerPlane<Plane> plane{};
+  CodeRange range;  ///< of the vertices: the final codes are clamped to it
 
   [[nodiscard]] bool is_empty() const { return left > right || top > bottom; }
 };
@@ -63,9 +61,9 @@ struct Reciprocal {
 /// The same over the whole guard band: for questions about a single pixel.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths);
 
-/// What SetupPacket adds to the value of a plane of `bits`-bit codes: half of the last place that a tile keeps, and
+/// What SetupPacket adds to the value of a plane: half of the last place that a tile keeps, and
 /// what makes decode() a shift. With it, a tile's local anchor is the stepped value shifted right by F - l.
-[[nodiscard]] std::uint64_t plane_bias(int bits, const Widths& widths);
+[[nodiscard]] std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths);
 
 /// A setup whose box lies inside the target, as it goes to coarse_raster. Kind and state are left at 0.
 [[nodiscard]] SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths);

@@ -90,6 +90,14 @@ std::uint32_t snap_depth(double z, int depth_bits) {
   return static_cast<std::uint32_t>(snap(z, static_cast<double>((std::int64_t{1} << depth_bits) - 1)));
 }
 
+PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, const Config& config) {
+  PerPlane<std::uint32_t> code{};
+  code[kDepthPlane] = snap_depth(z, config.depth_bits);
+  const auto colors = static_cast<std::size_t>(color_planes(attributes_of(config)));
+  for (std::size_t c = 0; c < colors; ++c) code[kColorPlane + c] = snap_color(rgba[c]);
+  return code;
+}
+
 SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba, const Config& config,
                           const VertexSource& source) {
   const double band = config.guard_band;
@@ -99,15 +107,15 @@ SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& 
   const int S = config.subpixel_bits, grid_bits = std::max(S, 1);
   const double scale = static_cast<double>(std::int64_t{1} << S);
   const std::int64_t x = snap(p.x, scale) << (grid_bits - S), y = snap(p.y, scale) << (grid_bits - S);
-  const std::int64_t z = snap(p.z, static_cast<double>((std::int64_t{1} << config.depth_bits) - 1));
+  const std::int64_t z =
+      snap(p.z, static_cast<double>((std::int64_t{1} << config.depth_bits) - 1));  // may be out of range
   const std::int64_t limit = static_cast<std::int64_t>(config.guard_band) << grid_bits;
   if (x < -limit || x >= limit || y < -limit || y >= limit || z < 0 || z >= std::int64_t{1} << config.depth_bits)
     refuse_vertex(p, source, config);
   SnappedVertex v;
   v.x = static_cast<std::int32_t>(x);
   v.y = static_cast<std::int32_t>(y);
-  v.z = static_cast<std::uint32_t>(z);
-  for (std::size_t c = 0; c < 4; ++c) v.rgba[c] = snap_color(rgba[c]);
+  v.code = snap_codes(p.z, rgba, config);
   return v;
 }
 

@@ -45,6 +45,15 @@ struct VertexSource {
 [[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,
                                         const Config& config, const VertexSource& source);
 
+/// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. A plane more gets its codes here.
+[[nodiscard]] PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, const Config& config);
+
+/// Gives `to` the colour of `from`.
+constexpr void copy_color(PerPlane<std::uint32_t>& to, const PerPlane<std::uint32_t>& from, const Config& config) {
+  const auto colors = static_cast<std::size_t>(color_planes(attributes_of(config)));
+  for (std::size_t p = kColorPlane; p < kColorPlane + colors; ++p) to[p] = from[p];
+}
+
 /// A colour channel (0...255) as its 8-bit code.
 [[nodiscard]] std::uint8_t snap_color(double channel);
 

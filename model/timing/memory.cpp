@@ -30,8 +30,7 @@ class AddressMap {
   }
   [[nodiscard]] std::uint64_t bytes(bool is_color) const { return bytes_[is_color]; }
   [[nodiscard]] std::uint64_t address(const MemoryAccess& a) const {
-    const auto stamps =
-        static_cast<std::uint64_t>(widths_.stamps_per_row) * static_cast<std::uint64_t>(widths_.stamps_per_row);
+    const auto stamps = static_cast<std::uint64_t>(widths_.stamps.stamps());
     const auto tiles_x = static_cast<std::uint64_t>(widths_.tiles_x),
                tiles_y = static_cast<std::uint64_t>(widths_.tiles_y);
     const std::uint64_t tile = static_cast<std::uint64_t>(a.tile_y) * tiles_x + static_cast<std::uint64_t>(a.tile_x);

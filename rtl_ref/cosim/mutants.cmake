@@ -25,8 +25,7 @@ mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third v
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
 mutant(11 stages/triangle_setup.sv "carry: planes start half a local unit low"
-  [=[(value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS)]=]
-  [=[(value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS) - (P'(1) << (F - L - 1))]=])
+  [=[start_q + move_x_q + move_y_q]=] [=[start_q + move_x_q + move_y_q - (P'(1) << (F - L - 1))]=])
 
 # coarse_raster
 mutant(12 stages/coarse_raster.sv "trivial reject: a tile whose best sample is on the edge is skipped"
@@ -38,15 +37,17 @@ mutant(14 stages/coarse_raster.sv "saturation: large edge values wrap"
 mutant(15 stages/coarse_raster.sv "stale HiZ: a tile's bound is read while an earlier visit is under way"
   [=[is_eligible && !conflicts]=] [=[is_eligible]=])
 mutant(16 stages/coarse_raster.sv "HiZ: a bound that equals the smallest depth rejects, whatever the depth test"
-  [=[(s_q.depth_test == 3'd1 && is_equal)]=] [=[is_equal]=])
+  [=[(s_q.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal)]=] [=[is_equal]=])
 mutant(17 stages/coarse_raster.sv "HiZ: greater and its like are tested"
-  [=[s_q.depth_test != 3'd0 && !s_q.depth_test[2]]=] [=[s_q.depth_test != 3'd0]=])
+  [=[s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise]=]
+  [=[s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER]=])
 mutant(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
-  [=[depth_row_q + (s_q.depth_step_y << (TS + S))]=] [=[depth_q + (s_q.depth_step_y << (TS + S))]=])
+  [=[row_q + (s_q.step_y[PLANE+:P] << (TS + S))]=]
+  [=[(i == 0 ? value_q : row_q) + (s_q.step_y[PLANE+:P] << (TS + S))]=])  # depth alone
 mutant(19 stages/coarse_raster.sv "off by one: the last column of a tile that the box crosses is left out"
-  [=[is_last_column ? s_q.right[TS-1:0] : '1]=] [=[is_last_column ? s_q.right[TS-1:0] : ~TS'(1)]=])
+  [=[is_last_column ? s_q.box.right[TS-1:0] : '1]=] [=[is_last_column ? s_q.box.right[TS-1:0] : ~TS'(1)]=])
 mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is truncated"
-  [=[LD'(setup_i.depth_step_x[NARROW-1])]=] [=[LD'(0)]=])
+  [=[B'(step_x[NARROW-1])]=] [=[i == 0 ? B'(0) : B'(step_x[NARROW-1])]=])
 mutant(21 stages/coarse_raster.sv "counter: rectangles count as triangles"
   [=[steps && is_triangle]=] [=[steps]=])
 mutant(22 stages/coarse_raster.sv "context: a fifth primitive takes a slot that is still read"
@@ -56,7 +57,7 @@ mutant(22 stages/coarse_raster.sv "context: a fifth primitive takes a slot that 
 mutant(23 stages/fine_raster.sv "tie rule: samples on an edge are outside"
   [=[sample < 0]=] [=[sample <= 0]=])
 mutant(24 stages/fine_raster.sv "scissor: the right side of the box is not looked at"
-  [=[PIXEL'(i) <= tile_q.right]=] [=[(PIXEL'(i) <= '1)]=])
+  [=[PIXEL'(i) <= tile_q.box.right]=] [=[(PIXEL'(i) <= '1)]=])
 mutant(25 stages/fine_raster.sv "end of visit: told with every row"
   [=[stamps_last_row_q && is_last_stamp && stamp_tile_q.is_visit]=] [=[is_last_stamp && stamp_tile_q.is_visit]=])
 mutant(26 stages/fine_raster.sv "dropped stall: a row moves on before its stamps are taken over"
@@ -74,13 +75,15 @@ mutant_text(30 lib/skid_buffer.sv "dropped stall: a full buffer takes one more"
 
 # depth_test and rop
 mutant(31 stages/depth_test.sv "hazard: the mask of the stamp ahead is ignored, its depth is not seen"
-  [=[valid_q && fragment_q.depth_write && fragment_q.tile_x == fragment_i.tile_x]=] [=[1'b0 && fragment_q.tile_x == fragment_i.tile_x]=])
+  [=[valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x]=]
+  [=[1'b0 && fragment_q.key.tile_x == fragment_i.key.tile_x]=])
 mutant(32 stages/depth_test.sv "depth test: gequal fails on equal codes"
-  [=[func == 3'd5]=] [=[1'b0]=])
+  [=[func == raster_pkg::DEPTH_FUNC_GEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS]=]
+  [=[func == raster_pkg::DEPTH_FUNC_ALWAYS]=])
 mutant(33 stages/depth_test.sv "HiZ: the bound comes from the stamp's first sample"
   [=[corner > max_q ? corner : max_q]=] [=[corner_00 > max_q ? corner_00 : max_q]=])
 mutant(34 stages/depth_test.sv "stale HiZ: greater and its like leave the bound as it was"
-  [=[fragment_q.depth_write && func[2] && any_passed]=] [=[1'b0]=])
+  [=[fragment_q.state.depth_write && greater_passes && any_passed]=] [=[1'b0]=])
 mutant(35 stages/depth_test.sv "counter: samples count as written with both masks off"
   [=[is_counted && writes]=] [=[is_counted]=])
 
@@ -90,7 +93,7 @@ mutant(36 stages/framebuffer.sv "write back: colour is always taken for dirty"
 mutant(37 stages/framebuffer.sv "fast clear: the flag of a plane outlives its write back"
   [=[{2{is_write_back && ends_plane}} & {plane_q, !plane_q}]=] [=[{2{state_q == CLEAR && ends_plane}} & {plane_q, !plane_q}]=])
 mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
-  [=[tag_y == access_i.tile_y >> LINE_Y]=] [=[1'b1]=])
+  [=[tag_y == access_i.key.tile_y >> LINE_Y]=] [=[1'b1]=])
 
 # reset
 mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"
@@ -106,9 +109,10 @@ mutant(42 stages/line_raster.sv "direction: every line goes down"
 mutant(43 stages/line_raster.sv "off by one: the last pixel of a line is left out"
   [=[remaining_q == '0]=] [=[remaining_q <= COUNT'(1)]=])
 mutant(44 stages/line_raster.sv "start: a pixel before the line's start shows an extrapolated depth"
-  [=[is_before_start_q ? line_q.depth_start : depth_q[D-1-:CODE]]=] [=[depth_q[D-1-:CODE]]=])
+  [=[is_before_start_q ? line_q.start[CODE+:B] : value_q[W-1-:B]]=]
+  [=[is_before_start_q && p != 0 ? line_q.start[CODE+:B] : value_q[W-1-:B]]=])
 mutant(45 stages/line_raster.sv "depth: only steps to the next row change it"
-  [=[depth_q + line_q.depth_step]=] [=[depth_q + (moves ? line_q.depth_step : '0)]=])
+  [=[value_q + line_q.step[LINE+:W]]=] [=[value_q + (moves || p != 0 ? line_q.step[LINE+:W] : '0)]=])
 mutant(46 stages/line_raster.sv "dropped stall: the next line is taken while the last pixel waits"
   [=[!valid_q || (pixel_ready_i && is_last)]=] [=[!valid_q || is_last]=])
 
@@ -121,18 +125,20 @@ mutant(48 stages/primitive_join.sv "end of line: a line's place is gone after on
 mutant_text(49 stages/primitive_join.sv "state: lines write depth, whatever the mask"
   [=[      fragment_o.mask           = mask;]=]
   [=[      fragment_o.mask           = mask;
-      if (raster_cosim.mutant_q == 16'd49) fragment_o.depth_write = 1'b1;]=])
+      if (raster_cosim.mutant_q == 16'd49) fragment_o.state.depth_write = 1'b1;]=])
 mutant(50 stages/primitive_join.sv "order: a pixel goes first when it is there first"
-  [=[fragment_i.kind == 3'd6]=] [=[pixel_valid_i]=])
+  [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE]=] [=[pixel_valid_i]=])
 
 # lines and points on their way through the other stages
 mutant(51 stages/coarse_raster.sv "stale HiZ: bounds are read behind a line that can raise depths"
-  [=[bounds_hold_q && s_q.kind == TRIANGLE]=] [=[s_q.kind == TRIANGLE]=])
+  [=[bounds_hold_q && is_triangle]=] [=[is_triangle]=])
 mutant(52 stages/depth_test.sv "HiZ: pixels of a line count for the tile visit behind it"
   [=[is_stamp && !fragment_q.kind[1]]=] [=[is_stamp]=])
 mutant(53 stages/depth_test.sv "counter: samples of points and lines are left out"
-  [=[(fragment_q.kind == TRIANGLE || fragment_q.kind[2])]=] [=[fragment_q.kind == TRIANGLE]=])
+  [=[(fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || fragment_q.kind[2])]=]
+  [=[fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=])
 mutant(54 stages/cull.sv "counter: points and lines do not count as primitives"
   [=[is_triangle || p_q.kind[2]]=] [=[is_triangle]=])
 mutant(55 stages/framebuffer.sv "token: pixels of a line are taken for a fast clear"
-  [=[access_i.kind[1] && !access_i.kind[2]]=] [=[access_i.kind[1]]=])
+  [=[access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR]=]
+  [=[access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_LINE]=])

@@ -51,19 +51,17 @@ module coarse_raster (
   localparam int TY = raster_pkg::TILE_Y_BITS;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
-  localparam int DP = raster_pkg::DEPTH_PLANE_BITS;
-  localparam int CP = raster_pkg::COLOR_PLANE_BITS;
-  localparam int LD = raster_pkg::LOCAL_DEPTH_BITS;
-  localparam int LC = raster_pkg::LOCAL_COLOR_BITS;
-  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
+  localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
+  localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
+  localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
   localparam int S = raster_pkg::GRID_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
   localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
   localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses
-
-  localparam logic [2:0] TRIANGLE = 3'd0, FAST_CLEAR = 3'd2;
 
   localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, BOUND = 3'd3, END = 3'd4, CLEAR = 3'd5;
   logic [2:0] state_q;
@@ -76,11 +74,15 @@ module coarse_raster (
   logic [SLOT-1:0] slot_q;   // of the primitive in s_q
   logic [SLOT:0]   used_q;   // slots that are not free
 
-  logic takes, steps, is_last_column, is_last_tile, has_walk, is_eligible, finishes;
+  logic is_triangle, is_fast_clear, has_walk, clears_bounds;
+  logic takes, steps, is_last_column, is_last_tile, is_eligible, finishes;
   logic is_outside, is_inside, is_behind, conflicts, visit_is_full, visits_are_done;
-  assign has_walk       = !s_q.kind[1];  // triangles and rectangles
-  assign is_last_column = tile_x_q == s_q.right[PX-1:TS];
-  assign is_last_tile   = is_last_column && tile_y_q == s_q.bottom[PY-1:TS];
+  assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+  assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
+  assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line)
+  assign clears_bounds  = is_fast_clear && s_q.state.depth_write && HIZ != 0;
+  assign is_last_column = tile_x_q == s_q.box.right[PX-1:TS];
+  assign is_last_tile   = is_last_column && tile_y_q == s_q.box.bottom[PY-1:TS];
   assign setup_ready_o  = (state_q == IDLE || finishes) && used_q != (SLOT + 1)'(SLOTS);
   assign takes          = setup_valid_i && setup_ready_o;
   assign context_slot_o = slot_q + SLOT'(state_q == IDLE ? 0 : 1);
@@ -108,7 +110,7 @@ module coarse_raster (
           IDLE: if (takes) state_q <= PREPARE;
           PREPARE:
           if (has_walk) state_q <= WALK;
-          else if (s_q.kind != FAST_CLEAR || !s_q.depth_write || HIZ == 0) state_q <= END;
+          else if (!clears_bounds) state_q <= END;
           else if (visits_are_done) state_q <= CLEAR;
           WALK:
           if (is_outside && is_last_tile) state_q <= END;
@@ -130,18 +132,18 @@ module coarse_raster (
   always_ff @(posedge clk_i) begin
     if (takes) begin
       s_q <= setup_i;
-      if (setup_i.kind[1] && setup_i.kind != FAST_CLEAR) begin
-        tile_x_q <= setup_i.right[PX-1:TS];
-        tile_y_q <= setup_i.bottom[PY-1:TS];
+      if (setup_i.kind[1] && setup_i.kind != raster_pkg::PRIMITIVE_KIND_FAST_CLEAR) begin
+        tile_x_q <= setup_i.box.right[PX-1:TS];
+        tile_y_q <= setup_i.box.bottom[PY-1:TS];
       end else begin
-        tile_x_q <= setup_i.left[PX-1:TS];
-        tile_y_q <= setup_i.top[PY-1:TS];
+        tile_x_q <= setup_i.box.left[PX-1:TS];
+        tile_y_q <= setup_i.box.top[PY-1:TS];
       end
-    end else if (state_q == PREPARE && !has_walk && (!s_q.depth_write || HIZ == 0)) begin
-      tile_x_q <= s_q.right[PX-1:TS];  // nothing to clear here
-      tile_y_q <= s_q.bottom[PY-1:TS];
+    end else if (state_q == PREPARE && !has_walk && (!s_q.state.depth_write || HIZ == 0)) begin
+      tile_x_q <= s_q.box.right[PX-1:TS];  // nothing to clear here
+      tile_y_q <= s_q.box.bottom[PY-1:TS];
     end else if ((steps || clears) && !is_last_tile) begin
-      tile_x_q <= is_last_column ? s_q.left[PX-1:TS] : tile_x_q + TX'(1);
+      tile_x_q <= is_last_column ? s_q.box.left[PX-1:TS] : tile_x_q + TX'(1);
       if (is_last_column) tile_y_q <= tile_y_q + TY'(1);
     end
   end
@@ -194,63 +196,36 @@ module coarse_raster (
   assign is_outside = edge_is_outside != '0;
   assign is_inside  = edge_is_inside == '1;
 
-  // --- Planes: the wide value at the tile's anchor; setup added what makes the local anchor its high bits.
-  logic [DP-1:0]          depth_q, depth_row_q, depth_next;
-  logic [CHANNELS*LC-1:0] color_anchor;
-  assign depth_next = is_last_column ? depth_row_q + (s_q.depth_step_y << (TS + S)) : depth_q + (s_q.depth_step_x << (TS + S));
-
-  always_ff @(posedge clk_i) begin
-    if (takes) begin
-      depth_q     <= setup_i.depth_value;
-      depth_row_q <= setup_i.depth_value;
-    end else if (steps && !is_last_tile) begin
-      depth_q <= depth_next;
-      if (is_last_column) depth_row_q <= depth_next;
-    end
-  end
-
+  // --- Planes: the wide value at the tile's anchor; setup added what makes the local anchor its high bits. In the context
+  // are steps per pixel, narrowed to the local guard bits.
   generate
-    for (i = 0; i < CHANNELS; i++) begin : gen_color
-      logic [CP-1:0] value_q, row_q, next;
-      assign next = is_last_column ? row_q + (s_q.color_step_y[i*CP+:CP] << (TS + S)) :
-                                     value_q + (s_q.color_step_x[i*CP+:CP] << (TS + S));
+    for (i = 0; i < PLANES; i++) begin : gen_plane
+      localparam int P = PLANE_BITS_OF[32*i+:32];
+      localparam int PLANE = PLANE_AT[32*i+:32];
+      localparam int B = LOCAL_BITS_OF[32*i+:32];
+      localparam int LOCAL = LOCAL_AT[32*i+:32];
+      logic [P-1:0] value_q, row_q, next, value, step_x, step_y;
+      assign value  = setup_i.value[PLANE+:P];
+      assign step_x = setup_i.step_x[PLANE+:P];
+      assign step_y = setup_i.step_y[PLANE+:P];
+      assign next   = is_last_column ? row_q + (s_q.step_y[PLANE+:P] << (TS + S)) :
+                                       value_q + (s_q.step_x[PLANE+:P] << (TS + S));
       always_ff @(posedge clk_i) begin
         if (takes) begin
-          value_q <= setup_i.color_value[i*CP+:CP];
-          row_q   <= setup_i.color_value[i*CP+:CP];
+          value_q <= value;
+          row_q   <= value;
         end else if (steps && !is_last_tile) begin
           value_q <= next;
           if (is_last_column) row_q <= next;
         end
       end
-      assign color_anchor[i*LC+:LC] = value_q[CP-1-:LC];
+      assign tile_o.anchor[LOCAL+:B]    = value_q[P-1-:B];
+      assign context_o.step_x[LOCAL+:B] = B'($signed(step_x) >>> NARROW) + B'(step_x[NARROW-1]);
+      assign context_o.step_y[LOCAL+:B] = B'($signed(step_y) >>> NARROW) + B'(step_y[NARROW-1]);
     end
   endgenerate
-
-  // --- The context: steps per pixel, narrowed to the local guard bits.
-  logic [LD-1:0]          context_depth_step_x, context_depth_step_y;
-  logic [CHANNELS*LC-1:0] context_color_step_x, context_color_step_y;
-  assign context_depth_step_x = LD'($signed(setup_i.depth_step_x) >>> NARROW) + LD'(setup_i.depth_step_x[NARROW-1]);
-  assign context_depth_step_y = LD'($signed(setup_i.depth_step_y) >>> NARROW) + LD'(setup_i.depth_step_y[NARROW-1]);
-  generate
-    for (i = 0; i < CHANNELS; i++) begin : gen_context
-      assign context_color_step_x[i*LC+:LC] =
-          LC'($signed(setup_i.color_step_x[i*CP+:CP]) >>> NARROW) + LC'(setup_i.color_step_x[i*CP+NARROW-1]);
-      assign context_color_step_y[i*LC+:LC] =
-          LC'($signed(setup_i.color_step_y[i*CP+:CP]) >>> NARROW) + LC'(setup_i.color_step_y[i*CP+NARROW-1]);
-    end
-  endgenerate
-  assign context_o.depth_test   = setup_i.depth_test;
-  assign context_o.depth_write  = setup_i.depth_write;
-  assign context_o.color_write  = setup_i.color_write;
-  assign context_o.depth_step_x = context_depth_step_x;
-  assign context_o.depth_step_y = context_depth_step_y;
-  assign context_o.color_step_x = context_color_step_x;
-  assign context_o.color_step_y = context_color_step_y;
-  assign context_o.depth_min    = setup_i.depth_min;
-  assign context_o.depth_max    = setup_i.depth_max;
-  assign context_o.color_min    = setup_i.color_min;
-  assign context_o.color_max    = setup_i.color_max;
+  assign context_o.state = setup_i.state;
+  assign context_o.range = setup_i.range;
 
   // --- Visits under way, oldest first: their tiles, for the wait, in a ring.
   localparam int VISITS = 8;
@@ -298,22 +273,25 @@ module coarse_raster (
 
     // --- HiZ: an upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
     if (HIZ > 0) begin : gen_hiz
-      localparam logic [2:0] LINE = 3'd6;
+      logic [Z-1:0]   depth_min;
       logic [HIZ-1:0] bound;
-      logic           is_wide, is_high, writes;
+      logic           is_wide, is_high, can_raise, writes;
       logic           bounds_hold_q;  // no line can have raised a depth since the last fast clear
+      assign depth_min   = s_q.range.low[0+:Z];
       /* verilator lint_off CMPCONST */  // a small target has no such box
-      assign is_wide     = s_q.right[PX-1:TS] - s_q.left[PX-1:TS] > TX'(1);
-      assign is_high     = s_q.bottom[PY-1:TS] - s_q.top[PY-1:TS] > TY'(1);
+      assign is_wide     = s_q.box.right[PX-1:TS] - s_q.box.left[PX-1:TS] > TX'(1);
+      assign is_high     = s_q.box.bottom[PY-1:TS] - s_q.box.top[PY-1:TS] > TY'(1);
       /* verilator lint_on CMPCONST */
-      assign is_eligible = bounds_hold_q && s_q.kind == TRIANGLE && (is_wide || is_high) && s_q.depth_test != 3'd0 && !s_q.depth_test[2];
-      assign writes      = clears || (retire_valid_i && retire_i.update != 2'd0);
+      assign can_raise   = s_q.state.depth_test[2];  // the functions that let a farther sample pass
+      assign is_eligible = bounds_hold_q && is_triangle && (is_wide || is_high) &&
+                           s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise;
+      assign writes      = clears || (retire_valid_i && retire_i.update != raster_pkg::HIZ_UPDATE_NONE);
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) bounds_hold_q <= 1'b1;
-        else if (state_q == PREPARE && s_q.depth_write) begin
-          if (s_q.kind == FAST_CLEAR) bounds_hold_q <= 1'b1;
-          if (raster_pkg::LINES_UNIT != 0 && s_q.kind == LINE && s_q.depth_test[2]) bounds_hold_q <= 1'b0;
+        else if (state_q == PREPARE && s_q.state.depth_write) begin
+          if (is_fast_clear) bounds_hold_q <= 1'b1;
+          if (raster_pkg::LINES_UNIT != 0 && s_q.kind == raster_pkg::PRIMITIVE_KIND_LINE && can_raise) bounds_hold_q <= 1'b0;
         end
       end
 
@@ -326,18 +304,18 @@ module coarse_raster (
           .read_address_i ({tile_y_q, tile_x_q}),
           .data_o         (bound),
           .write_i        (writes),
-          .write_address_i(clears ? {tile_y_q, tile_x_q} : {retire_i.tile_y, retire_i.tile_x}),
-          .data_i         (clears ? s_q.depth_min[Z-1-:HIZ] : retire_i.hiz_code)
+          .write_address_i(clears ? {tile_y_q, tile_x_q} : {retire_i.key.tile_y, retire_i.key.tile_x}),
+          .data_i         (clears ? depth_min[Z-1-:HIZ] : retire_i.hiz_code)
       );
 
       // Behind: depth_min > bound; for `less` equality will do.
       logic is_equal;
       if (HIZ == Z) begin : gen_exact
-        assign is_equal = s_q.depth_min == bound;
+        assign is_equal = depth_min == bound;
       end else begin : gen_high_bits
-        assign is_equal = s_q.depth_min[Z-1-:HIZ] == bound && s_q.depth_min[Z-HIZ-1:0] == '1;
+        assign is_equal = depth_min[Z-1-:HIZ] == bound && depth_min[Z-HIZ-1:0] == '1;
       end
-      assign is_behind = s_q.depth_min[Z-1-:HIZ] > bound || (s_q.depth_test == 3'd1 && is_equal);
+      assign is_behind = depth_min[Z-1-:HIZ] > bound || (s_q.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal);
     end else begin : gen_no_hiz
       assign is_eligible = 1'b0;
       assign is_behind   = 1'b0;
@@ -345,27 +323,23 @@ module coarse_raster (
   endgenerate
 
   // --- The packet
-  logic [TS-1:0] left, top, right, bottom;
-  assign left   = tile_x_q == s_q.left[PX-1:TS] ? s_q.left[TS-1:0] : '0;
-  assign top    = tile_y_q == s_q.top[PY-1:TS] ? s_q.top[TS-1:0] : '0;
-  assign right  = is_last_column ? s_q.right[TS-1:0] : '1;
-  assign bottom = tile_y_q == s_q.bottom[PY-1:TS] ? s_q.bottom[TS-1:0] : '1;
+  var raster_pkg::tile_box_t box;
+  assign box.left   = tile_x_q == s_q.box.left[PX-1:TS] ? s_q.box.left[TS-1:0] : '0;
+  assign box.top    = tile_y_q == s_q.box.top[PY-1:TS] ? s_q.box.top[TS-1:0] : '0;
+  assign box.right  = is_last_column ? s_q.box.right[TS-1:0] : '1;
+  assign box.bottom = tile_y_q == s_q.box.bottom[PY-1:TS] ? s_q.box.bottom[TS-1:0] : '1;
 
   assign tile_o.kind           = s_q.kind;
   assign tile_o.is_visit       = state_q != END;
   assign tile_o.ends_primitive = is_last_tile;
-  assign tile_o.primitive_id   = s_q.primitive_id;
   assign tile_o.slot           = slot_q;
-  assign tile_o.tile_x         = tile_x_q;
-  assign tile_o.tile_y         = tile_y_q;
-  assign tile_o.left           = left;
-  assign tile_o.top            = top;
-  assign tile_o.right          = right;
-  assign tile_o.bottom         = bottom;
+  assign tile_o.box            = box;
   assign tile_o.is_inside      = is_inside && state_q != END;
   assign tile_o.edge_value     = edge_value;
-  assign tile_o.depth_anchor   = depth_q[DP-1-:LD];
-  assign tile_o.color_anchor   = color_anchor;
+
+  assign tile_o.key.primitive_id = s_q.primitive_id;
+  assign tile_o.key.tile_x       = tile_x_q;
+  assign tile_o.key.tile_y       = tile_y_q;
 
   logic [3*D-1:0] step_x;
   generate
@@ -377,12 +351,10 @@ module coarse_raster (
   assign edges_o.step_y = s_q.dx;
 
   // --- Counters
-  logic            is_triangle;
   logic [TS:0]     width, height;
   logic [2*TS:0]   area;
-  assign is_triangle = s_q.kind == TRIANGLE;
-  assign width       = (TS + 1)'(right) - (TS + 1)'(left) + (TS + 1)'(1);
-  assign height      = (TS + 1)'(bottom) - (TS + 1)'(top) + (TS + 1)'(1);
+  assign width       = (TS + 1)'(box.right) - (TS + 1)'(box.left) + (TS + 1)'(1);
+  assign height      = (TS + 1)'(box.bottom) - (TS + 1)'(box.top) + (TS + 1)'(1);
   always_comb begin  // no multiplier for a counter
     area = '0;
     for (int b = 0; b <= TS; b++) area = area + (height[b] ? (2 * TS + 1)'(width) << b : '0);

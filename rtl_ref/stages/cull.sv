@@ -30,7 +30,7 @@ module cull (
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int R = raster_pkg::VERTEX_COLOR_BITS;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex; the lowest is its depth, Z
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
@@ -44,14 +44,11 @@ module cull (
   localparam logic [1:0] IDLE = 2'd0, ROTATE = 2'd1, EDGES = 2'd2, OFFER = 2'd3;
   logic [1:0] step_q;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // x, y, z, rgba are in the registers below from the first step on
+  /* verilator lint_off UNUSEDSIGNAL */  // box and vertices are in the registers below
   var raster_pkg::primitive_packet_t p_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [3*C-1:0] x_q, y_q;
-  logic [3*Z-1:0] z_q;
-  logic [3*R-1:0] rgba_q;
-  logic [PX-1:0]  left_q, right_q;
-  logic [PY-1:0]  top_q, bottom_q;
+  var raster_pkg::triangle_vertices_t vertex_q;
+  var raster_pkg::pixel_box_t         box_q;
   logic           is_empty_q;
   logic [3*E-1:0] edge_q;  // before orientation; the newest is the highest
   logic [3*D-1:0] dx_q, dy_q;  // of the three edges, for the fill rule; likewise
@@ -59,33 +56,35 @@ module cull (
   logic signed [E-1:0] area_q;
 
   logic is_triangle, is_counted, takes, is_zero, is_back, is_dropped;
-  assign is_triangle       = p_q.kind == 3'd0;
-  assign is_counted        = is_triangle || p_q.kind[2];
+  assign is_triangle       = p_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+  assign is_counted        = is_triangle || p_q.kind[2];  // point, line
   assign primitive_ready_o = step_q == IDLE || (step_q == OFFER && (triangle_ready_i || is_dropped));
   assign takes             = primitive_valid_i && primitive_ready_o;
+
+  logic signed [C-1:0] x0, x1, x2, y0, y1, y2;
+  assign x0 = vertex_q.x[0+:C];
+  assign x1 = vertex_q.x[C+:C];
+  assign x2 = vertex_q.x[2*C+:C];
+  assign y0 = vertex_q.y[0+:C];
+  assign y1 = vertex_q.y[C+:C];
+  assign y2 = vertex_q.y[2*C+:C];
 
   // --- ROTATE, once or twice: the smallest (Y, X, Z) first. Flipping the sign bits makes signed numbers comparable as
   // unsigned ones.
   logic [KEY-1:0] key0, key1, key2;
   logic           is_0_first, is_1_first;
-  assign key0 = {~y_q[C-1], y_q[0+:C-1], ~x_q[C-1], x_q[0+:C-1], z_q[0+:Z]};
-  assign key1 = {~y_q[2*C-1], y_q[C+:C-1], ~x_q[2*C-1], x_q[C+:C-1], z_q[Z+:Z]};
-  assign key2 = {~y_q[3*C-1], y_q[2*C+:C-1], ~x_q[3*C-1], x_q[2*C+:C-1], z_q[2*Z+:Z]};
+  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], vertex_q.code[0+:Z]};
+  assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1], vertex_q.code[CODES+:Z]};
+  assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1], vertex_q.code[2*CODES+:Z]};
   assign is_0_first = key0 <= key1 && key0 <= key2;
   assign is_1_first = key1 <= key2;
 
   // --- Meanwhile the box: pixel centres within the vertices' bounds, cut by the scissor.
   localparam int B = C + 1;  // a coordinate plus half a pixel
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
-  logic signed [C-1:0] x0, x1, x2, y0, y1, y2, x_min, x_max, y_min, y_max;
+  logic signed [C-1:0] x_min, x_max, y_min, y_max;
   logic signed [B-1:0] first_x, first_y, last_x, last_y;  // pixels
   logic signed [B-1:0] left, top, right, bottom;
-  assign x0 = x_q[0+:C];
-  assign x1 = x_q[C+:C];
-  assign x2 = x_q[2*C+:C];
-  assign y0 = y_q[0+:C];
-  assign y1 = y_q[C+:C];
-  assign y2 = y_q[2*C+:C];
   always_comb begin
     x_min = x0 < x1 ? x0 : x1;
     x_min = x_min < x2 ? x_min : x2;
@@ -100,10 +99,10 @@ module cull (
   assign first_y = (B'(y_min) + HALF - B'(1)) >>> S;
   assign last_x  = (B'(x_max) - HALF) >>> S;
   assign last_y  = (B'(y_max) - HALF) >>> S;
-  assign left    = is_triangle && first_x > $signed(B'(p_q.left)) ? first_x : $signed(B'(p_q.left));
-  assign top     = is_triangle && first_y > $signed(B'(p_q.top)) ? first_y : $signed(B'(p_q.top));
-  assign right   = is_triangle && last_x < $signed(B'(p_q.right)) ? last_x : $signed(B'(p_q.right));
-  assign bottom  = is_triangle && last_y < $signed(B'(p_q.bottom)) ? last_y : $signed(B'(p_q.bottom));
+  assign left    = is_triangle && first_x > $signed(B'(p_q.box.left)) ? first_x : $signed(B'(p_q.box.left));
+  assign top     = is_triangle && first_y > $signed(B'(p_q.box.top)) ? first_y : $signed(B'(p_q.box.top));
+  assign right   = is_triangle && last_x < $signed(B'(p_q.box.right)) ? last_x : $signed(B'(p_q.box.right));
+  assign bottom  = is_triangle && last_y < $signed(B'(p_q.box.bottom)) ? last_y : $signed(B'(p_q.box.bottom));
 
   // --- EDGES, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from vertex
   // 0 to 1, 1 to 2, 2 to 0. The vertices turn round once, so that the operands are always those of the lowest two.
@@ -111,8 +110,8 @@ module cull (
   logic signed [D-1:0] dx, dy, to_px, to_py;
   logic                edge_start, edge_done;
   logic signed [E-1:0] edge_value;
-  assign px    = $signed((C + 1)'({left_q[PX-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
-  assign py    = $signed((C + 1)'({top_q[PY-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
+  assign px    = $signed((C + 1)'({box_q.left[PX-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
+  assign py    = $signed((C + 1)'({box_q.top[PY-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
   assign dx    = D'(x1) - D'(x0);
   assign dy    = D'(y1) - D'(y0);
   assign to_px = D'(px) - D'(x0);
@@ -140,7 +139,7 @@ module cull (
   assign is_negative = area_q < 0;
   assign is_zero     = is_triangle && area_q == 0;
   assign is_front    = is_negative != p_q.front_cw;  // positive area: clockwise as seen
-  assign is_back     = is_triangle && !is_zero && (is_front ? p_q.cull[1] : p_q.cull[0]);
+  assign is_back     = is_triangle && !is_zero && (is_front ? p_q.cull[1] : p_q.cull[0]);  // bit 1: front faces
   assign is_dropped  = is_zero || is_back || is_empty_q;
 
   logic leaves;
@@ -168,26 +167,22 @@ module cull (
   always_ff @(posedge clk_i) begin
     if (takes) begin
       p_q          <= primitive_i;
-      x_q          <= primitive_i.x;
-      y_q          <= primitive_i.y;
-      z_q          <= primitive_i.z;
-      rgba_q       <= primitive_i.rgba;
+      vertex_q     <= primitive_i.vertex;
       edge_count_q <= 2'd0;
       issued_q     <= 2'd0;
       edge_q       <= '0;
       area_q       <= '0;
     end else if ((step_q == ROTATE && !is_0_first) || edge_start) begin
-      x_q    <= {x_q[0+:C], x_q[C+:2*C]};
-      y_q    <= {y_q[0+:C], y_q[C+:2*C]};
-      z_q    <= {z_q[0+:Z], z_q[Z+:2*Z]};
-      rgba_q <= {rgba_q[0+:R], rgba_q[R+:2*R]};
+      vertex_q.x    <= {vertex_q.x[0+:C], vertex_q.x[C+:2*C]};
+      vertex_q.y    <= {vertex_q.y[0+:C], vertex_q.y[C+:2*C]};
+      vertex_q.code <= {vertex_q.code[0+:CODES], vertex_q.code[CODES+:2*CODES]};
     end
     if (step_q == ROTATE) begin
-      left_q     <= PX'(left);
-      top_q      <= PY'(top);
-      right_q    <= PX'(right);
-      bottom_q   <= PY'(bottom);
-      is_empty_q <= left > right || top > bottom;
+      box_q.left   <= PX'(left);
+      box_q.top    <= PY'(top);
+      box_q.right  <= PX'(right);
+      box_q.bottom <= PY'(bottom);
+      is_empty_q   <= left > right || top > bottom;
     end
     if (edge_start) begin
       issued_q <= issued_q + 2'd1;
@@ -202,13 +197,15 @@ module cull (
   end
 
   // Of a triangle of negative area vertices 1 and 2 change places: its edges run the other way round.
-  logic [3*C-1:0] x, y;
-  logic [3*Z-1:0] z;
-  logic [3*R-1:0] rgba;
-  assign x    = is_negative ? {x_q[C+:C], x_q[2*C+:C], x_q[0+:C]} : x_q;
-  assign y    = is_negative ? {y_q[C+:C], y_q[2*C+:C], y_q[0+:C]} : y_q;
-  assign z    = is_negative ? {z_q[Z+:Z], z_q[2*Z+:Z], z_q[0+:Z]} : z_q;
-  assign rgba = is_negative ? {rgba_q[R+:R], rgba_q[2*R+:R], rgba_q[0+:R]} : rgba_q;
+  var raster_pkg::triangle_vertices_t turned_vertex;
+  always_comb begin
+    turned_vertex = vertex_q;
+    if (is_negative) begin
+      turned_vertex.x    = {vertex_q.x[C+:C], vertex_q.x[2*C+:C], vertex_q.x[0+:C]};
+      turned_vertex.y    = {vertex_q.y[C+:C], vertex_q.y[2*C+:C], vertex_q.y[0+:C]};
+      turned_vertex.code = {vertex_q.code[CODES+:CODES], vertex_q.code[2*CODES+:CODES], vertex_q.code[0+:CODES]};
+    end
+  end
 
   logic [3*V-1:0] value;
   genvar i;
@@ -231,17 +228,9 @@ module cull (
   assign triangle_valid_o        = step_q == OFFER && !is_dropped;
   assign triangle_o.kind         = p_q.kind;
   assign triangle_o.primitive_id = p_q.primitive_id;
-  assign triangle_o.left         = left_q;
-  assign triangle_o.top          = top_q;
-  assign triangle_o.right        = right_q;
-  assign triangle_o.bottom       = bottom_q;
-  assign triangle_o.depth_test   = p_q.depth_test;
-  assign triangle_o.depth_write  = p_q.depth_write;
-  assign triangle_o.color_write  = p_q.color_write;
-  assign triangle_o.x            = x;
-  assign triangle_o.y            = y;
-  assign triangle_o.z            = z;
-  assign triangle_o.rgba         = rgba;
+  assign triangle_o.box          = box_q;
+  assign triangle_o.state        = p_q.state;
+  assign triangle_o.vertex       = turned_vertex;
   assign triangle_o.area         = A'(is_negative ? -area_q : area_q);
   assign triangle_o.edge_value   = value;
 

@@ -32,7 +32,7 @@ module cull_serial (
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int K = raster_pkg::VERTEX_COLOR_BITS;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex; the lowest is its depth, Z
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
@@ -51,8 +51,8 @@ module cull_serial (
   logic [1:0]       edge_q;
   logic             is_triangle, is_counted, takes, leaves, is_dropped, multiplies, product_ends;
   logic             is_negative_q;  // the area
-  assign is_triangle  = primitive_i.kind == 3'd0;
-  assign is_counted   = is_triangle || primitive_i.kind[2];
+  assign is_triangle  = primitive_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+  assign is_counted   = is_triangle || primitive_i.kind[2];  // point, line
   assign takes        = state_q == IDLE && primitive_valid_i;
   assign multiplies   = state_q == AREA || state_q == EDGES;
   assign product_ends = multiplies && count_q == COUNT'(LAST + 1);
@@ -84,16 +84,15 @@ module cull_serial (
   end
 
   // --------------------------------------------------------------------------------------------------------- vertices
-  logic [C-1:0] x0_q, x1_q, x2_q, y0_q, y1_q, y2_q;
-  logic [Z-1:0] z0_q, z1_q, z2_q;
-  logic [K-1:0] rgba0_q, rgba1_q, rgba2_q;
-  logic         turns, swaps, is_odd_q;  // is_odd_q: the order runs round the other way than the host's
+  logic [C-1:0]     x0_q, x1_q, x2_q, y0_q, y1_q, y2_q;
+  logic [CODES-1:0] code0_q, code1_q, code2_q;
+  logic             turns, swaps, is_odd_q;  // is_odd_q: the order runs round the other way than the host's
 
   // Flipping the sign bits makes signed numbers comparable as unsigned ones. Equal keys: no area, dropped in any order.
   logic [KEY-1:0] key0, key1;
   logic           is_1_first_q;  // in the cycle before
-  assign key0 = {~y0_q[C-1], y0_q[0+:C-1], ~x0_q[C-1], x0_q[0+:C-1], z0_q};
-  assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1], z1_q};
+  assign key0 = {~y0_q[C-1], y0_q[0+:C-1], ~x0_q[C-1], x0_q[0+:C-1], code0_q[0+:Z]};
+  assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1], code1_q[0+:Z]};
 
   assign turns = (state_q == SORT && count_q[1]) || (state_q == BOX && count_q != COUNT'(3)) || state_q == FLIP ||
                  (state_q == EDGES && product_ends);
@@ -102,15 +101,14 @@ module cull_serial (
   always_ff @(posedge clk_i) begin
     is_1_first_q <= key1 < key0;
     if (takes) begin
-      {x2_q, x1_q, x0_q}          <= primitive_i.x;
-      {y2_q, y1_q, y0_q}          <= primitive_i.y;
-      {z2_q, z1_q, z0_q}          <= primitive_i.z;
-      {rgba2_q, rgba1_q, rgba0_q} <= primitive_i.rgba;
+      {x2_q, x1_q, x0_q}          <= primitive_i.vertex.x;
+      {y2_q, y1_q, y0_q}          <= primitive_i.vertex.y;
+      {code2_q, code1_q, code0_q} <= primitive_i.vertex.code;
       is_odd_q                    <= 1'b0;
     end else if (turns || swaps) begin
-      {x0_q, y0_q, z0_q, rgba0_q} <= {x1_q, y1_q, z1_q, rgba1_q};
-      {x1_q, y1_q, z1_q, rgba1_q} <= swaps ? {x0_q, y0_q, z0_q, rgba0_q} : {x2_q, y2_q, z2_q, rgba2_q};
-      if (!swaps) {x2_q, y2_q, z2_q, rgba2_q} <= {x0_q, y0_q, z0_q, rgba0_q};
+      {x0_q, y0_q, code0_q} <= {x1_q, y1_q, code1_q};
+      {x1_q, y1_q, code1_q} <= swaps ? {x0_q, y0_q, code0_q} : {x2_q, y2_q, code2_q};
+      if (!swaps) {x2_q, y2_q, code2_q} <= {x0_q, y0_q, code0_q};
       is_odd_q <= is_odd_q ^ swaps;
     end
   end
@@ -135,10 +133,10 @@ module cull_serial (
   assign last_x         = below_x[B-1:S];
   assign first_y        = above_y[B-1:S];
   assign last_y         = below_y[B-1:S];
-  assign scissor_left   = N'(primitive_i.left);
-  assign scissor_top    = N'(primitive_i.top);
-  assign scissor_right  = N'(primitive_i.right);
-  assign scissor_bottom = N'(primitive_i.bottom);
+  assign scissor_left   = N'(primitive_i.box.left);
+  assign scissor_top    = N'(primitive_i.box.top);
+  assign scissor_right  = N'(primitive_i.box.right);
+  assign scissor_bottom = N'(primitive_i.box.bottom);
   assign left           = is_triangle && first_x > scissor_left ? first_x : scissor_left;
   assign top            = is_triangle && first_y > scissor_top ? first_y : scissor_top;
   assign right          = is_triangle && last_x < scissor_right ? last_x : scissor_right;
@@ -224,7 +222,7 @@ module cull_serial (
   logic is_zero, is_front, is_back;
   assign is_zero    = state_q == JUDGE && !any_q;
   assign is_front   = (is_negative_q ^ is_odd_q) != primitive_i.front_cw;  // positive area: clockwise as seen
-  assign is_back    = state_q == JUDGE && any_q && (is_front ? primitive_i.cull[1] : primitive_i.cull[0]);
+  assign is_back    = state_q == JUDGE && any_q && (is_front ? primitive_i.cull[1] : primitive_i.cull[0]);  // bit 1: front faces
   assign is_dropped = is_zero || is_back || ((state_q == JUDGE || state_q == OFFER) && is_empty_q);
   assign primitive_ready_o = is_dropped || (state_q == OFFER && triangle_ready_i);
   assign leaves            = primitive_valid_i && primitive_ready_o;
@@ -237,17 +235,14 @@ module cull_serial (
   assign triangle_valid_o        = state_q == OFFER && primitive_valid_i && !is_empty_q;
   assign triangle_o.kind         = primitive_i.kind;
   assign triangle_o.primitive_id = primitive_i.primitive_id;
-  assign triangle_o.left         = PX'(left_q);
-  assign triangle_o.top          = PY'(top_q);
-  assign triangle_o.right        = PX'(right_q);
-  assign triangle_o.bottom       = PY'(bottom_q);
-  assign triangle_o.depth_test   = primitive_i.depth_test;
-  assign triangle_o.depth_write  = primitive_i.depth_write;
-  assign triangle_o.color_write  = primitive_i.color_write;
-  assign triangle_o.x            = {x2_q, x1_q, x0_q};
-  assign triangle_o.y            = {y2_q, y1_q, y0_q};
-  assign triangle_o.z            = {z2_q, z1_q, z0_q};
-  assign triangle_o.rgba         = {rgba2_q, rgba1_q, rgba0_q};
+  assign triangle_o.box.left     = PX'(left_q);
+  assign triangle_o.box.top      = PY'(top_q);
+  assign triangle_o.box.right    = PX'(right_q);
+  assign triangle_o.box.bottom   = PY'(bottom_q);
+  assign triangle_o.state        = primitive_i.state;
+  assign triangle_o.vertex.x     = {x2_q, x1_q, x0_q};
+  assign triangle_o.vertex.y     = {y2_q, y1_q, y0_q};
+  assign triangle_o.vertex.code  = {code2_q, code1_q, code0_q};
   assign triangle_o.area         = area_q;
   assign triangle_o.edge_value   = value_q;
 

@@ -37,33 +37,31 @@ module depth_test (
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
-  localparam int RGBA = raster_pkg::VERTEX_COLOR_BITS;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a sample; the lowest is its depth, above that its colours
+  localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
   localparam int COUNT = $clog2(SAMPLES + 1);
-  localparam logic [2:0] TRIANGLE = 3'd0;
-  localparam logic [1:0] RETIRE_NONE = 2'd0;
-  localparam logic [1:0] RETIRE_SET = 2'd1;
-  localparam logic [1:0] RETIRE_CLEAR = 2'd2;
 
-  // D0: the fragment on offer. Tokens have kind[1] set and no covered sample; those of lines have become pixels by now.
+  // D0: the fragment on offer. Tokens (bit 1 of a kind) have no covered sample; those of lines have become pixels by now.
   logic needs_access, must_wait, takes_fragment;
   logic [SAMPLES*COLOR-1:0] color;
 
   // D1: never stalls.
   logic valid_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // kind, ends_primitive and rgba end here
+  /* verilator lint_off UNUSEDSIGNAL */  // kind, ends_primitive and all codes but depth end here
   var raster_pkg::fragment_packet_t fragment_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*COLOR-1:0] color_q;
+  logic [SAMPLES*CODE-1:0]  depth;
   logic [SAMPLES-1:0]       passed;
   logic                     is_stamp;
 
   assign needs_access = fragment_i.kind[1] || fragment_i.mask != '0;
-  assign must_wait = valid_q && fragment_q.depth_write && fragment_q.tile_x == fragment_i.tile_x &&
-                     fragment_q.tile_y == fragment_i.tile_y && fragment_q.stamp == fragment_i.stamp &&
+  assign must_wait = valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x &&
+                     fragment_q.key.tile_y == fragment_i.key.tile_y && fragment_q.stamp == fragment_i.stamp &&
                      (fragment_q.mask & fragment_i.mask) != '0;
   assign access_valid_o   = fragment_valid_i && needs_access && !must_wait;
   assign access_o         = fragment_i;
@@ -82,24 +80,28 @@ module depth_test (
   end
 
   // The depth function as the three orders in which it lets a sample pass.
-  logic [2:0] func;
-  logic       less_passes, equal_passes, greater_passes;
-  assign func           = fragment_q.depth_test;
-  assign less_passes    = func == 3'd1 || func == 3'd2 || func[2:1] == 2'd3;
-  assign equal_passes   = func == 3'd2 || func == 3'd3 || func == 3'd5 || func == 3'd7;
-  assign greater_passes = func[2];
+  var raster_pkg::depth_func_t func;
+  logic less_passes, equal_passes, greater_passes;
+  assign func           = fragment_q.state.depth_test;
+  assign less_passes    = func == raster_pkg::DEPTH_FUNC_LESS || func == raster_pkg::DEPTH_FUNC_LEQUAL ||
+                          func == raster_pkg::DEPTH_FUNC_NOTEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
+  assign equal_passes   = func == raster_pkg::DEPTH_FUNC_EQUAL || func == raster_pkg::DEPTH_FUNC_LEQUAL ||
+                          func == raster_pkg::DEPTH_FUNC_GEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
+  assign greater_passes = func == raster_pkg::DEPTH_FUNC_GREATER || func == raster_pkg::DEPTH_FUNC_GEQUAL ||
+                          func == raster_pkg::DEPTH_FUNC_NOTEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
 
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
       logic is_less, is_equal;
-      assign is_less  = fragment_q.depth[s*CODE+:CODE] < stored_depth_i[s*CODE+:CODE];
-      assign is_equal = fragment_q.depth[s*CODE+:CODE] == stored_depth_i[s*CODE+:CODE];
+      assign depth[s*CODE+:CODE] = fragment_q.code[s*CODES+:CODE];
+      assign is_less  = depth[s*CODE+:CODE] < stored_depth_i[s*CODE+:CODE];
+      assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*CODE+:CODE];
       assign passed[s] = fragment_q.mask[s] &&
                          (is_less ? less_passes : (is_equal ? equal_passes : greater_passes));
 
       rop u_rop (
-          .rgba_i (fragment_i.rgba[s*RGBA+:RGBA]),
+          .rgba_i (fragment_i.code[s*CODES+CODE+:COLORS]),
           .color_o(color[s*COLOR+:COLOR])
       );
     end
@@ -107,14 +109,12 @@ module depth_test (
 
   assign is_stamp             = valid_q && fragment_q.mask != '0;
   assign write_valid_o        = is_stamp;
-  assign write_o.primitive_id = fragment_q.primitive_id;
-  assign write_o.tile_x       = fragment_q.tile_x;
-  assign write_o.tile_y       = fragment_q.tile_y;
+  assign write_o.key          = fragment_q.key;
   assign write_o.stamp        = fragment_q.stamp;
   assign write_o.passed       = passed;
-  assign write_o.write_depth  = fragment_q.depth_write ? passed : '0;
-  assign write_o.write_color  = fragment_q.color_write ? passed : '0;
-  assign write_o.depth        = fragment_q.depth;
+  assign write_o.write_depth  = fragment_q.state.depth_write ? passed : '0;
+  assign write_o.write_color  = fragment_q.state.color_write ? passed : '0;
+  assign write_o.depth        = depth;
   assign write_o.color        = color_q;
 
   // Counters, one cycle late: the sums stay out of the path from the RAM to its write enable.
@@ -124,8 +124,8 @@ module depth_test (
   endfunction
 
   logic is_counted, writes;
-  assign is_counted = valid_q && (fragment_q.kind == TRIANGLE || fragment_q.kind[2]);
-  assign writes     = fragment_q.depth_write || fragment_q.color_write;
+  assign is_counted = valid_q && (fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || fragment_q.kind[2]);  // point, line
+  assign writes     = fragment_q.state.depth_write || fragment_q.state.color_write;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -140,28 +140,19 @@ module depth_test (
   end
 
   // The retirement of a visit.
-  logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] retire_primitive_q;
-  logic [raster_pkg::TILE_X_BITS-1:0]       retire_tile_x_q;
-  logic [raster_pkg::TILE_Y_BITS-1:0]       retire_tile_y_q;
+  var raster_pkg::tile_key_t retire_key_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) retire_valid_o <= 1'b0;
     else retire_valid_o <= valid_q && fragment_q.ends_visit;
   end
 
-  always_ff @(posedge clk_i) begin
-    retire_primitive_q <= fragment_q.primitive_id;
-    retire_tile_x_q    <= fragment_q.tile_x;
-    retire_tile_y_q    <= fragment_q.tile_y;
-  end
-
-  assign retire_o.primitive_id = retire_primitive_q;
-  assign retire_o.tile_x       = retire_tile_x_q;
-  assign retire_o.tile_y       = retire_tile_y_q;
+  always_ff @(posedge clk_i) retire_key_q <= fragment_q.key;
+  assign retire_o.key = retire_key_q;
 
   generate
     if (raster_pkg::HIZ_BITS == 0) begin : gen_no_hiz
-      assign retire_o.update   = RETIRE_NONE;
+      assign retire_o.update   = raster_pkg::HIZ_UPDATE_NONE;
       assign retire_o.hiz_code = '0;
     end else begin : gen_hiz
       // What the visit has done before this stamp. The visit covers its tile when the last of STAMPS full stamps comes.
@@ -170,7 +161,7 @@ module depth_test (
       logic [HIZ-1:0]        max_q;
       logic                  is_full, any_passed, covers_tile;
       logic [HIZ-1:0]        max;
-      logic [1:0]            update, update_q;
+      var raster_pkg::hiz_update_t update, update_q;
       logic [HIZ-1:0]        code_q;
 
       assign is_full     = passed == '1;
@@ -180,10 +171,10 @@ module depth_test (
       // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a
       // corner of the tile. So one sample of a stamp is enough, the one towards the tile's corner on the stamp's side.
       logic [HIZ-1:0] corner_00, corner_01, corner_10, corner_11, corner;  // row, column
-      assign corner_00 = fragment_q.depth[CODE-1-:HIZ];
-      assign corner_01 = fragment_q.depth[STAMP*CODE-1-:HIZ];
-      assign corner_10 = fragment_q.depth[(SAMPLES-STAMP+1)*CODE-1-:HIZ];
-      assign corner_11 = fragment_q.depth[SAMPLES*CODE-1-:HIZ];
+      assign corner_00 = depth[CODE-1-:HIZ];
+      assign corner_01 = depth[STAMP*CODE-1-:HIZ];
+      assign corner_10 = depth[(SAMPLES-STAMP+1)*CODE-1-:HIZ];
+      assign corner_11 = depth[SAMPLES*CODE-1-:HIZ];
 
       if (STAMPS == 1) begin : gen_one_stamp
         logic [HIZ-1:0] top, bottom;
@@ -199,9 +190,9 @@ module depth_test (
       assign max = corner > max_q ? corner : max_q;
 
       always_comb begin
-        update = RETIRE_NONE;
-        if (fragment_q.depth_write && covers_tile) update = RETIRE_SET;
-        else if (fragment_q.depth_write && func[2] && any_passed) update = RETIRE_CLEAR;
+        update = raster_pkg::HIZ_UPDATE_NONE;
+        if (fragment_q.state.depth_write && covers_tile) update = raster_pkg::HIZ_UPDATE_SET;
+        else if (fragment_q.state.depth_write && greater_passes && any_passed) update = raster_pkg::HIZ_UPDATE_CLEAR;
       end
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -222,7 +213,7 @@ module depth_test (
 
       always_ff @(posedge clk_i) begin
         update_q <= update;
-        code_q   <= update == RETIRE_SET ? max : {HIZ{update == RETIRE_CLEAR}};
+        code_q   <= update == raster_pkg::HIZ_UPDATE_SET ? max : {HIZ{update == raster_pkg::HIZ_UPDATE_CLEAR}};
       end
       assign retire_o.update   = update_q;
       assign retire_o.hiz_code = code_q;

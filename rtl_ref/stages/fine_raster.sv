@@ -51,8 +51,8 @@ module fine_raster (
   logic [ROW-1:0]   in_box;
   logic [PIXEL-1:0] first_y;
 
-  assign first_y      = (tile_i.top >> STAMP_SHIFT) << STAMP_SHIFT;
-  assign is_last_row  = !tile_q.is_visit || (y_q >> STAMP_SHIFT) == (tile_q.bottom >> STAMP_SHIFT);
+  assign first_y      = (tile_i.box.top >> STAMP_SHIFT) << STAMP_SHIFT;
+  assign is_last_row  = !tile_q.is_visit || (y_q >> STAMP_SHIFT) == (tile_q.box.bottom >> STAMP_SHIFT);
   assign covered      = in_box & ({ROW{tile_q.is_inside}} | ~(outside[0+:ROW] | outside[ROW+:ROW] | outside[2*ROW+:ROW]));
   assign row_is_sent  = covered != '0 || is_last_row;
   assign row_leaves   = row_valid_q && (stamps_ready || !row_is_sent);
@@ -122,10 +122,10 @@ module fine_raster (
     /* verilator lint_off UNSIGNED */  // the first and the last column compare with a constant
     /* verilator lint_off CMPCONST */
     for (i = 0; i < TILE; i++) begin : gen_box_column
-      assign column_in_box[i] = PIXEL'(i) >= tile_q.left && PIXEL'(i) <= tile_q.right;
+      assign column_in_box[i] = PIXEL'(i) >= tile_q.box.left && PIXEL'(i) <= tile_q.box.right;
     end
     for (j = 0; j < STAMP; j++) begin : gen_box_row
-      assign row_in_box[j] = tile_q.is_visit && y_q + PIXEL'(j) >= tile_q.top && y_q + PIXEL'(j) <= tile_q.bottom;
+      assign row_in_box[j] = tile_q.is_visit && y_q + PIXEL'(j) >= tile_q.box.top && y_q + PIXEL'(j) <= tile_q.box.bottom;
       for (i = 0; i < TILE; i++) begin : gen_sample
         assign in_box[(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = column_in_box[i] && row_in_box[j];
       end
@@ -184,13 +184,10 @@ module fine_raster (
   assign stamp_o.kind           = stamp_tile_q.kind;
   assign stamp_o.ends_visit     = stamps_last_row_q && is_last_stamp && stamp_tile_q.is_visit;
   assign stamp_o.ends_primitive = stamps_last_row_q && is_last_stamp && stamp_tile_q.ends_primitive;
-  assign stamp_o.primitive_id   = stamp_tile_q.primitive_id;
+  assign stamp_o.key            = stamp_tile_q.key;
   assign stamp_o.slot           = stamp_tile_q.slot;
-  assign stamp_o.tile_x         = stamp_tile_q.tile_x;
-  assign stamp_o.tile_y         = stamp_tile_q.tile_y;
   assign stamp_o.mask           = mask;
-  assign stamp_o.depth_anchor   = stamp_tile_q.depth_anchor;
-  assign stamp_o.color_anchor   = stamp_tile_q.color_anchor;
+  assign stamp_o.anchor         = stamp_tile_q.anchor;
 
   generate
     if (PER_ROW == 1) begin : gen_one_stamp

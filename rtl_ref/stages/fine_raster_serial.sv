@@ -38,10 +38,10 @@ module fine_raster_serial (
   logic [COLUMN-1:0] column_q, row_q;  // of the stamp whose edge values these are
   logic [COLUMN-1:0] first_column, last_column, first_row, last_row, next_column, next_row;
   logic              scans, is_last_column, is_last_row, is_end, starts, passes, is_way_down, moves, tile_leaves;
-  assign first_column   = COLUMN'(tile_i.left >> STAMP_SHIFT);
-  assign last_column    = COLUMN'(tile_i.right >> STAMP_SHIFT);
-  assign first_row      = COLUMN'(tile_i.top >> STAMP_SHIFT);
-  assign last_row       = COLUMN'(tile_i.bottom >> STAMP_SHIFT);
+  assign first_column   = COLUMN'(tile_i.box.left >> STAMP_SHIFT);
+  assign last_column    = COLUMN'(tile_i.box.right >> STAMP_SHIFT);
+  assign first_row      = COLUMN'(tile_i.box.top >> STAMP_SHIFT);
+  assign last_row       = COLUMN'(tile_i.box.bottom >> STAMP_SHIFT);
   assign next_column    = column_q + COLUMN'(1);
   assign next_row       = row_q + COLUMN'(1);
   assign scans          = state_q == SCAN;
@@ -126,7 +126,7 @@ module fine_raster_serial (
           logic [PIXEL-1:0] x, y;
           assign x = PIXEL'(column_q) << STAMP_SHIFT | PIXEL'(i);
           assign y = PIXEL'(row_q) << STAMP_SHIFT | PIXEL'(j);
-          assign is_sample_in_box = x >= tile_i.left && x <= tile_i.right && y >= tile_i.top && y <= tile_i.bottom;
+          assign is_sample_in_box = x >= tile_i.box.left && x <= tile_i.box.right && y >= tile_i.box.top && y <= tile_i.box.bottom;
           /* verilator lint_on CMPCONST */
           /* verilator lint_on UNSIGNED */
         end
@@ -168,13 +168,10 @@ module fine_raster_serial (
   assign stamp_o.kind           = tile_i.kind;
   assign stamp_o.ends_visit     = sends_end;
   assign stamp_o.ends_primitive = (sends_end || sends_token) && tile_i.ends_primitive;
-  assign stamp_o.primitive_id   = tile_i.primitive_id;
+  assign stamp_o.key            = tile_i.key;
   assign stamp_o.slot           = tile_i.slot;
-  assign stamp_o.tile_x         = tile_i.tile_x;
-  assign stamp_o.tile_y         = tile_i.tile_y;
   assign stamp_o.mask           = uses_held ? held_mask_q : mask;
-  assign stamp_o.depth_anchor   = tile_i.depth_anchor;
-  assign stamp_o.color_anchor   = tile_i.color_anchor;
+  assign stamp_o.anchor         = tile_i.anchor;
 
   generate
     if (PER_ROW == 1) begin : gen_one_stamp

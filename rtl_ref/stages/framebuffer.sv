@@ -88,7 +88,7 @@ module framebuffer (
   logic              dirty_depth_q[0:LINES-1];
   logic              dirty_color_q[0:LINES-1];
 
-  logic is_token, clears_all, hits;
+  logic is_clear, is_token, clears_all, hits;
   logic [LINE-1:0] access_line, write_line, line;
   logic [TILE_X-1:0] tag_x;
   logic [TILE_Y-1:0] tag_y;
@@ -106,22 +106,23 @@ module framebuffer (
   logic [TILE_Y-1:0] tile_y;
   logic [1:0]        flag_write;  // colour, depth
 
-  assign is_token    = access_i.kind[1] && !access_i.kind[2];  // not a pixel of a line
-  assign clears_all  = !access_i.kind[0] && access_i.depth_write && access_i.color_write;
-  assign access_line = (LINE'(access_i.tile_x) & LINE_X_MASK) | ((LINE'(access_i.tile_y) & LINE_Y_MASK) << LINE_X);
-  assign write_line  = (LINE'(write_i.tile_x) & LINE_X_MASK) | ((LINE'(write_i.tile_y) & LINE_Y_MASK) << LINE_X);
+  assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
+  assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
+  assign clears_all  = is_clear && access_i.state.depth_write && access_i.state.color_write;
+  assign access_line = (LINE'(access_i.key.tile_x) & LINE_X_MASK) | ((LINE'(access_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
+  assign write_line  = (LINE'(write_i.key.tile_x) & LINE_X_MASK) | ((LINE'(write_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
 
   // One look-up: of the access while it is served, of line_q after that.
   assign line  = state_q == SERVE ? access_line : line_q;
   assign tag_x = tag_x_q[line];
   assign tag_y = tag_y_q[line];
-  assign hits  = valid_q[line] && tag_x == access_i.tile_x >> LINE_X && tag_y == access_i.tile_y >> LINE_Y;
+  assign hits  = valid_q[line] && tag_x == access_i.key.tile_x >> LINE_X && tag_y == access_i.key.tile_y >> LINE_Y;
   assign line_depth_dirty = valid_q[line] && dirty_depth_q[line];
   assign line_color_dirty = valid_q[line] && dirty_color_q[line];
   assign is_last_line     = line_q == LINE'(LINES - 1);
 
-  assign walk_ends_row = walk_x_q == access_i.tile_x;
-  assign walk_ends     = walk_ends_row && walk_y_q == access_i.tile_y;
+  assign walk_ends_row = walk_x_q == access_i.key.tile_x;
+  assign walk_ends     = walk_ends_row && walk_y_q == access_i.key.tile_y;
   assign tile_done     = state_q == MARK || (state_q == TEST && !flag_depth && !flag_color);
   assign walks         = tile_done && (!walk_ends || access_valid_i);
 
@@ -135,7 +136,7 @@ module framebuffer (
       CHECK:
       if (line_depth_dirty || line_color_dirty) state_d = EVICT;
       else if (!is_token) state_d = FILL;
-      else if (is_last_line) state_d = access_i.kind[0] ? LOOK : MARK;
+      else if (is_last_line) state_d = is_clear ? MARK : LOOK;
       EVICT: if (ends_plane) state_d = CHECK;
       FILL: if (fill_ends) state_d = SERVE;
       MARK: if (walks && walk_ends) state_d = SERVE;
@@ -168,8 +169,8 @@ module framebuffer (
   end
 
   always_ff @(posedge clk_i) begin
-    if (state_q == MARK && access_i.depth_write) clear_depth_q <= access_i.depth[0+:CODE];
-    if (state_q == MARK && access_i.color_write) clear_color_q <= access_color_i;
+    if (state_q == MARK && access_i.state.depth_write) clear_depth_q <= access_i.code[0+:CODE];
+    if (state_q == MARK && access_i.state.color_write) clear_color_q <= access_color_i;
   end
 
   // Requests: a plane is a run of stamps. Those of a fill may run ahead of the answers.
@@ -198,8 +199,8 @@ module framebuffer (
   // The tile that is moved, marked or looked at.
   assign line_above_x = line_q >> LINE_X;
   always_comb begin
-    tile_x = is_token ? walk_x_q : access_i.tile_x;
-    tile_y = is_token ? walk_y_q : access_i.tile_y;
+    tile_x = is_token ? walk_x_q : access_i.key.tile_x;
+    tile_y = is_token ? walk_y_q : access_i.key.tile_y;
     if (state_q == EVICT) begin
       tile_x = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
       tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
@@ -241,8 +242,8 @@ module framebuffer (
 
   always_ff @(posedge clk_i) begin
     if (fill_ends) begin
-      tag_x_q[line_q] <= access_i.tile_x >> LINE_X;
-      tag_y_q[line_q] <= access_i.tile_y >> LINE_Y;
+      tag_x_q[line_q] <= access_i.key.tile_x >> LINE_X;
+      tag_y_q[line_q] <= access_i.key.tile_y >> LINE_Y;
     end
     if (sets_dirty_depth || fill_ends || (state_q == EVICT && ends_plane && !plane_q))
       dirty_depth_q[dirty_line] <= state_q == SERVE;
@@ -264,7 +265,7 @@ module framebuffer (
   end
 
   // One bit a tile and plane.
-  assign flag_write = (state_q == MARK) ? {access_i.color_write, access_i.depth_write}
+  assign flag_write = (state_q == MARK) ? {access_i.state.color_write, access_i.state.depth_write}
                                         : {2{is_write_back && ends_plane}} & {plane_q, !plane_q};
 
   sram #(

@@ -1,4 +1,4 @@
-// Interpolate: depth and colour codes at the samples of a stamp.
+// Interpolate: the codes of every plane at the samples of a stamp.
 //
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; then its code, clamped to
@@ -24,7 +24,7 @@ module interpolate (
     input  raster_pkg::context_packet_t      context_i,
     output logic                             slot_free_o,  // the oldest slot will not be read again
 
-    // To depth_test
+    // To primitive_join
     output logic                         fragment_valid_o,
     input  logic                         fragment_ready_i,
     output raster_pkg::fragment_packet_t fragment_o
@@ -33,14 +33,14 @@ module interpolate (
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int STAMP_SHIFT = $clog2(STAMP);
   localparam int SAMPLES = raster_pkg::SAMPLES;
-  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
-  localparam int PLANES = 1 + CHANNELS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
+  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
+  localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a sample
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
-  localparam int LD = raster_pkg::LOCAL_DEPTH_BITS;
-  localparam int LC = raster_pkg::LOCAL_COLOR_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int K = raster_pkg::COLOR_CODE_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x
@@ -111,34 +111,25 @@ module interpolate (
     end
   endgenerate
 
-  logic [SAMPLES*Z-1:0]          depth_q;
-  logic [SAMPLES*CHANNELS*K-1:0] rgba_q;
+  logic [SAMPLES*CODES-1:0] code_q;
 
   genvar p, s;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_plane
-      localparam int W = p == 0 ? LD : LC;  // of a local value
-      localparam int B = p == 0 ? Z : K;    // of a code
+      localparam int W = LOCAL_BITS_OF[32*p+:32];
+      localparam int LOCAL = LOCAL_AT[32*p+:32];
+      localparam int B = CODE_BITS_OF[32*p+:32];
+      localparam int CODE = CODE_AT[32*p+:32];
       logic signed [W-1:0] anchor, context_step_x, x_step_y, y_step_x, y_step_y;  // modulo 2^W signs do not matter
       logic signed [W-1:0] x_value_q, y_value_q;
       logic [B-1:0] low, high;
-      if (p == 0) begin : gen_depth
-        assign anchor         = context_stamp_q.depth_anchor;
-        assign context_step_x = context_i.depth_step_x;
-        assign x_step_y       = x_context_q.depth_step_y;
-        assign y_step_x       = y_context_q.depth_step_x;
-        assign y_step_y       = y_context_q.depth_step_y;
-        assign low            = samples_context_q.depth_min;
-        assign high           = samples_context_q.depth_max;
-      end else begin : gen_color
-        assign anchor         = context_stamp_q.color_anchor[(p-1)*LC+:LC];
-        assign context_step_x = context_i.color_step_x[(p-1)*LC+:LC];
-        assign x_step_y       = x_context_q.color_step_y[(p-1)*LC+:LC];
-        assign y_step_x       = y_context_q.color_step_x[(p-1)*LC+:LC];
-        assign y_step_y       = y_context_q.color_step_y[(p-1)*LC+:LC];
-        assign low            = samples_context_q.color_min[(p-1)*K+:K];
-        assign high           = samples_context_q.color_max[(p-1)*K+:K];
-      end
+      assign anchor         = context_stamp_q.anchor[LOCAL+:W];
+      assign context_step_x = context_i.step_x[LOCAL+:W];
+      assign x_step_y       = x_context_q.step_y[LOCAL+:W];
+      assign y_step_x       = y_context_q.step_x[LOCAL+:W];
+      assign y_step_y       = y_context_q.step_y[LOCAL+:W];
+      assign low            = samples_context_q.range.low[CODE+:B];
+      assign high           = samples_context_q.range.high[CODE+:B];
 
       // x, then y; the stamp lies on either side of the centre.
       logic signed [W-1:0] x_value, y_value;
@@ -193,11 +184,7 @@ module interpolate (
 
         assign code    = $signed({1'b0, value_q[W-1:L]}) - $signed((B + 2)'(1) << (B - 1));
         assign clamped = code < $signed((B + 2)'(low)) ? low : code > $signed((B + 2)'(high)) ? high : code[B-1:0];
-        if (p == 0) begin : gen_depth_code
-          always_ff @(posedge clk_i) if (codes_ready) depth_q[s*Z+:Z] <= clamped;
-        end else begin : gen_color_code
-          always_ff @(posedge clk_i) if (codes_ready) rgba_q[(s*CHANNELS+p-1)*K+:K] <= clamped;
-        end
+        always_ff @(posedge clk_i) if (codes_ready) code_q[s*CODES+CODE+:B] <= clamped;
       end
     end
   endgenerate
@@ -217,15 +204,10 @@ module interpolate (
   assign fragment_o.kind           = codes_stamp_q.kind;
   assign fragment_o.ends_visit     = codes_stamp_q.ends_visit;
   assign fragment_o.ends_primitive = codes_stamp_q.ends_primitive;
-  assign fragment_o.primitive_id   = codes_stamp_q.primitive_id;
-  assign fragment_o.tile_x         = codes_stamp_q.tile_x;
-  assign fragment_o.tile_y         = codes_stamp_q.tile_y;
+  assign fragment_o.key            = codes_stamp_q.key;
   assign fragment_o.stamp          = codes_stamp_q.stamp;
   assign fragment_o.mask           = codes_stamp_q.mask;
-  assign fragment_o.depth_test     = codes_context_q.depth_test;
-  assign fragment_o.depth_write    = codes_context_q.depth_write;
-  assign fragment_o.color_write    = codes_context_q.color_write;
-  assign fragment_o.depth          = depth_q;
-  assign fragment_o.rgba           = rgba_q;
+  assign fragment_o.state          = codes_context_q.state;
+  assign fragment_o.code           = code_q;
 
 endmodule

@@ -20,7 +20,7 @@ module interpolate_serial (
     input  raster_pkg::context_packet_t      context_i,
     output logic                             slot_free_o,  // the oldest slot will not be read again
 
-    // To depth_test
+    // To primitive_join
     output logic                         fragment_valid_o,
     input  logic                         fragment_ready_i,
     output raster_pkg::fragment_packet_t fragment_o
@@ -29,14 +29,14 @@ module interpolate_serial (
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int STAMP_SHIFT = $clog2(STAMP);
   localparam int SAMPLES = raster_pkg::SAMPLES;
-  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
-  localparam int PLANES = 1 + CHANNELS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
+  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
+  localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a sample
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
-  localparam int LD = raster_pkg::LOCAL_DEPTH_BITS;
-  localparam int LC = raster_pkg::LOCAL_COLOR_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int K = raster_pkg::COLOR_CODE_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end in the step x
@@ -89,29 +89,20 @@ module interpolate_serial (
     end
   endgenerate
 
-  logic [SAMPLES*Z-1:0]          depth;
-  logic [SAMPLES*CHANNELS*K-1:0] rgba;
-
   genvar p, s;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_plane
-      localparam int W = p == 0 ? LD : LC;  // of a local value
-      localparam int B = p == 0 ? Z : K;    // of a code
+      localparam int W = LOCAL_BITS_OF[32*p+:32];
+      localparam int LOCAL = LOCAL_AT[32*p+:32];
+      localparam int B = CODE_BITS_OF[32*p+:32];
+      localparam int CODE = CODE_AT[32*p+:32];
       logic [W-1:0] anchor, step_x, step_y, x_value, y_value, x_value_q, y_value_q;
       logic [B-1:0] low, high;
-      if (p == 0) begin : gen_depth
-        assign anchor = stamp_i.depth_anchor;
-        assign step_x = context_i.depth_step_x;
-        assign step_y = context_i.depth_step_y;
-        assign low    = context_i.depth_min;
-        assign high   = context_i.depth_max;
-      end else begin : gen_color
-        assign anchor = stamp_i.color_anchor[(p-1)*LC+:LC];
-        assign step_x = context_i.color_step_x[(p-1)*LC+:LC];
-        assign step_y = context_i.color_step_y[(p-1)*LC+:LC];
-        assign low    = context_i.color_min[(p-1)*K+:K];
-        assign high   = context_i.color_max[(p-1)*K+:K];
-      end
+      assign anchor = stamp_i.anchor[LOCAL+:W];
+      assign step_x = context_i.step_x[LOCAL+:W];
+      assign step_y = context_i.step_y[LOCAL+:W];
+      assign low    = context_i.range.low[CODE+:B];
+      assign high   = context_i.range.high[CODE+:B];
 
       plane_offset #(
           .WIDTH (W),
@@ -143,7 +134,6 @@ module interpolate_serial (
         logic signed [W-1:0] value;
         /* verilator lint_on UNUSEDSIGNAL */
         logic [B:0]          code, low_code, high_code;  // plus 2^(B-1): the window [-2^(B-1), 3 * 2^(B-1)) from 0
-        logic [B-1:0]        clamped;
         edge_offset #(
             .WIDTH (W),
             .OFFSET(PIXEL)
@@ -158,12 +148,8 @@ module interpolate_serial (
         assign code      = value[W-1:L];
         assign low_code  = {low[B-1], !low[B-1], low[B-2:0]};
         assign high_code = {high[B-1], !high[B-1], high[B-2:0]};
-        assign clamped   = code < low_code ? low : code > high_code ? high : {!code[B-1], code[B-2:0]};
-        if (p == 0) begin : gen_depth_code
-          assign depth[s*Z+:Z] = clamped;
-        end else begin : gen_color_code
-          assign rgba[(s*CHANNELS+p-1)*K+:K] = clamped;
-        end
+        assign fragment_o.code[s*CODES+CODE+:B] =
+            code < low_code ? low : code > high_code ? high : {!code[B-1], code[B-2:0]};
       end
     end
   endgenerate
@@ -172,15 +158,9 @@ module interpolate_serial (
   assign fragment_o.kind           = y_stamp_q.kind;
   assign fragment_o.ends_visit     = y_stamp_q.ends_visit;
   assign fragment_o.ends_primitive = y_stamp_q.ends_primitive;
-  assign fragment_o.primitive_id   = y_stamp_q.primitive_id;
-  assign fragment_o.tile_x         = y_stamp_q.tile_x;
-  assign fragment_o.tile_y         = y_stamp_q.tile_y;
+  assign fragment_o.key            = y_stamp_q.key;
   assign fragment_o.stamp          = y_stamp_q.stamp;
   assign fragment_o.mask           = y_stamp_q.mask;
-  assign fragment_o.depth_test     = context_i.depth_test;
-  assign fragment_o.depth_write    = context_i.depth_write;
-  assign fragment_o.color_write    = context_i.color_write;
-  assign fragment_o.depth          = depth;
-  assign fragment_o.rgba           = rgba;
+  assign fragment_o.state          = context_i.state;
 
 endmodule

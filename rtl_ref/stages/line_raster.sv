@@ -1,8 +1,8 @@
 // Line raster: the pixels of one line, from its start to its end.
 //
 // In: line setups, from the host. Out: one pixel per cycle. What changes along a line is in registers, one adder each,
-// two of them chosen by the sign of the error. Depth and colour have half an LSB in them, so that a code is the upper
-// bits. The next line is taken in the cycle in which the last pixel leaves; latency 1 cycle.
+// two of them chosen by the sign of the error. The planes have half an LSB in them, so that a code is the upper bits.
+// The next line is taken in the cycle in which the last pixel leaves; latency 1 cycle.
 // Specification: model/stages/line_raster.hpp.
 module line_raster (
     input logic clk_i,
@@ -23,10 +23,11 @@ module line_raster (
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
   localparam int E = raster_pkg::LINE_ERROR_BITS;
   localparam int COUNT = raster_pkg::LINE_COUNT_BITS;
-  localparam int D = raster_pkg::LINE_DEPTH_BITS;
-  localparam int C = raster_pkg::LINE_COLOR_BITS;
-  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
+  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] LINE_BITS_OF = raster_pkg::LINE_BITS_OF;
+  localparam logic [32*PLANES-1:0] LINE_AT = raster_pkg::LINE_AT;
 
   logic valid_q;  // a pixel is on offer
   /* verilator lint_off UNUSEDSIGNAL */  // what changes is in the registers below
@@ -37,8 +38,6 @@ module line_raster (
   logic signed [E-1:0]   error_q;      // >= 0: the next pixel lies in the next row
   logic [COUNT-1:0]      remaining_q;  // pixels behind this one
   logic                  is_before_start_q;
-  logic [D-1:0]          depth_q;
-  logic [CHANNELS*C-1:0] color_q;
 
   logic is_last, takes, moves;
   assign is_last       = remaining_q == '0;
@@ -68,14 +67,12 @@ module line_raster (
       error_q           <= line_i.error;
       remaining_q       <= line_i.remaining;
       is_before_start_q <= line_i.is_before_start;
-      depth_q           <= line_i.depth;
     end else if (pixel_ready_i) begin
       if (line_q.is_x_major || moves) x_q <= x_q + step_x;
       if (!line_q.is_x_major || moves) y_q <= y_q + step_y;
       error_q           <= error_q + (moves ? step_move : step_stay);
       remaining_q       <= remaining_q - 1'b1;
       is_before_start_q <= 1'b0;
-      depth_q           <= depth_q + line_q.depth_step;
     end
   end
 
@@ -83,16 +80,20 @@ module line_raster (
   assign pixel_o.x            = x_q;
   assign pixel_o.y            = y_q;
   assign pixel_o.is_last      = is_last;
-  assign pixel_o.depth        = is_before_start_q ? line_q.depth_start : depth_q[D-1-:CODE];
 
-  genvar c;
+  genvar p;
   generate
-    for (c = 0; c < CHANNELS; c++) begin : gen_channel
+    for (p = 0; p < PLANES; p++) begin : gen_plane
+      localparam int W = LINE_BITS_OF[32*p+:32];
+      localparam int LINE = LINE_AT[32*p+:32];
+      localparam int B = CODE_BITS_OF[32*p+:32];
+      localparam int CODE = CODE_AT[32*p+:32];
+      logic [W-1:0] value_q;
       always_ff @(posedge clk_i) begin
-        if (takes) color_q[c*C+:C] <= line_i.color[c*C+:C];
-        else if (pixel_ready_i) color_q[c*C+:C] <= color_q[c*C+:C] + line_q.color_step[c*C+:C];
+        if (takes) value_q <= line_i.value[LINE+:W];
+        else if (pixel_ready_i) value_q <= value_q + line_q.step[LINE+:W];
       end
-      assign pixel_o.color[8*c+:8] = is_before_start_q ? line_q.color_start[8*c+:8] : color_q[(c+1)*C-1-:8];
+      assign pixel_o.code[CODE+:B] = is_before_start_q ? line_q.start[CODE+:B] : value_q[W-1-:B];
     end
   endgenerate
 

@@ -32,7 +32,7 @@ module primitive_join (
   localparam int TY = raster_pkg::TILE_Y_BITS;
 
   logic is_line;
-  assign is_line          = fragment_i.kind == 3'd6;
+  assign is_line          = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE;
   assign fragment_valid_o = fragment_valid_i && (!is_line || pixel_valid_i);
   assign fragment_ready_o = fragment_ready_i && (!is_line || (pixel_valid_i && pixel_i.is_last));
   assign pixel_ready_o    = fragment_ready_i && fragment_valid_i && is_line;
@@ -58,12 +58,11 @@ module primitive_join (
     if (is_line) begin
       fragment_o.ends_visit     = 1'b0;
       fragment_o.ends_primitive = pixel_i.is_last;
-      fragment_o.tile_x         = TX'(pixel_i.x >> TS);
-      fragment_o.tile_y         = TY'(pixel_i.y >> TS);
+      fragment_o.key.tile_x     = TX'(pixel_i.x >> TS);
+      fragment_o.key.tile_y     = TY'(pixel_i.y >> TS);
       fragment_o.stamp          = stamp;
       fragment_o.mask           = mask;
-      fragment_o.depth          = {SAMPLES{pixel_i.depth}};
-      fragment_o.rgba           = {SAMPLES{pixel_i.color}};
+      fragment_o.code           = {SAMPLES{pixel_i.code}};
     end
   end
 

@@ -1,5 +1,5 @@
 // Triangle setup: everything that stays constant over the triangle, from its three vertices: the reciprocal of its area,
-// and for each plane (depth, then the colours) two gradients and the value at the anchor of its first tile.
+// and for each plane two gradients and the value at the anchor of its first tile.
 //
 // Three parts, each holding one triangle, so that three are under way:
 //   divide     R = floor(2^k / A + 1/2), three quotient bits a cycle; meanwhile the numerators N_x, N_y of every plane
@@ -24,17 +24,20 @@ module triangle_setup (
 
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int C = raster_pkg::COORDINATE_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int K = raster_pkg::COLOR_CODE_BITS;
-  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
-  localparam int PLANES = 1 + CHANNELS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
+  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
+  localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex
+  // The parts have the width of the widest plane, whichever is at work.
+  localparam int Z = raster_pkg::MAX_CODE_BITS;
+  localparam int DC = raster_pkg::MAX_DELTA_BITS;
+  localparam int N = raster_pkg::MAX_NUMERATOR_BITS;
+  localparam int P = raster_pkg::MAX_PLANE_BITS;
   localparam int A = raster_pkg::AREA_BITS;
   localparam int M = $clog2(A);  // bits of floor(log2 A)
-  localparam int N = raster_pkg::DEPTH_NUMERATOR_BITS;  // depth codes are the widest
-  localparam int DC = raster_pkg::DEPTH_DELTA_BITS;
   localparam int R = raster_pkg::RECIPROCAL_BITS;
-  localparam int P = raster_pkg::DEPTH_PLANE_BITS;
-  localparam int CP = raster_pkg::COLOR_PLANE_BITS;
   localparam int F = raster_pkg::PLANE_FRACTION;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int S = raster_pkg::GRID_BITS;
@@ -50,7 +53,6 @@ module triangle_setup (
   localparam int GRADIENT_LAST = PLANES + 2;
   localparam int VALUE_LAST = PLANES + 1;
   localparam int STEP = $clog2(DIVIDE_LAST + 1);
-  localparam int COLOR = raster_pkg::VERTEX_COLOR_BITS;
 
   // ----------------------------------------------------------------------------------------------------------- divide
   var raster_pkg::triangle_packet_t t_q;
@@ -104,21 +106,32 @@ module triangle_setup (
     end
   end
 
-  // One plane a cycle: its code at each vertex, the differences from vertex 0, the range. Plane 0 is depth.
+  // One plane a cycle: its code at each vertex, the differences from vertex 0, the range.
   logic signed [D-1:0] ax_q, ay_q, bx_q, by_q, to_anchor_x_q, to_anchor_y_q;
   logic [Z-1:0]        c0, c1, c2, low, high;
   logic signed [DC-1:0] ac, bc, ac_q, bc_q;
   logic [PLANES*Z-1:0] low_q, high_q;  // the newest is the highest
+  logic [PLANES*Z-1:0] codes_0, codes_1, codes_2;
   logic                is_1_below_0, is_2_below_0, is_2_below_1;
+  genvar p;
+  generate
+    for (p = 0; p < PLANES; p++) begin : gen_codes
+      localparam int B = CODE_BITS_OF[32*p+:32];
+      localparam int AT = CODE_AT[32*p+:32];
+      assign codes_0[p*Z+:Z] = Z'(t_q.vertex.code[AT+:B]);
+      assign codes_1[p*Z+:Z] = Z'(t_q.vertex.code[CODES+AT+:B]);
+      assign codes_2[p*Z+:Z] = Z'(t_q.vertex.code[2*CODES+AT+:B]);
+    end
+  endgenerate
   always_comb begin
-    c0 = t_q.z[0+:Z];
-    c1 = t_q.z[Z+:Z];
-    c2 = t_q.z[2*Z+:Z];
-    for (int c = 0; c < CHANNELS; c++) begin
-      if (divide_step_q == STEP'(c + 1)) begin
-        c0 = Z'(t_q.rgba[c*K+:K]);
-        c1 = Z'(t_q.rgba[COLOR+c*K+:K]);
-        c2 = Z'(t_q.rgba[2*COLOR+c*K+:K]);
+    c0 = codes_0[0+:Z];
+    c1 = codes_1[0+:Z];
+    c2 = codes_2[0+:Z];
+    for (int i = 1; i < PLANES; i++) begin
+      if (divide_step_q == STEP'(i)) begin
+        c0 = codes_0[i*Z+:Z];
+        c1 = codes_1[i*Z+:Z];
+        c2 = codes_2[i*Z+:Z];
       end
     end
   end
@@ -132,8 +145,8 @@ module triangle_setup (
 
   // From vertex 0 to the centre of pixel (T/2, T/2) of the first tile, subpixels.
   logic signed [C:0] anchor_x, anchor_y;
-  assign anchor_x = $signed((C + 1)'({t_q.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
-  assign anchor_y = $signed((C + 1)'({t_q.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
+  assign anchor_x = $signed((C + 1)'({t_q.box.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
+  assign anchor_y = $signed((C + 1)'({t_q.box.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
 
   // The numerators: N_x = ac by - bc ay, N_y = ax bc - bx ac, one plane a cycle, into a chain that the gradients take them
   // from. A part is never a step behind the one before it, so whatever moves the chain moves it for both.
@@ -182,12 +195,12 @@ module triangle_setup (
       remainder_q   <= (t_q.area == highest) ? '0 : {highest, 1'b0};
       quotient_q    <= QUOTIENT'(t_q.area == highest);
       log2_area_q   <= log2_area;
-      ax_q          <= D'($signed(t_q.x[C+:C])) - D'($signed(t_q.x[0+:C]));
-      ay_q          <= D'($signed(t_q.y[C+:C])) - D'($signed(t_q.y[0+:C]));
-      bx_q          <= D'($signed(t_q.x[2*C+:C])) - D'($signed(t_q.x[0+:C]));
-      by_q          <= D'($signed(t_q.y[2*C+:C])) - D'($signed(t_q.y[0+:C]));
-      to_anchor_x_q <= D'(anchor_x) - D'($signed(t_q.x[0+:C]));
-      to_anchor_y_q <= D'(anchor_y) - D'($signed(t_q.y[0+:C]));
+      ax_q          <= D'($signed(t_q.vertex.x[C+:C])) - D'($signed(t_q.vertex.x[0+:C]));
+      ay_q          <= D'($signed(t_q.vertex.y[C+:C])) - D'($signed(t_q.vertex.y[0+:C]));
+      bx_q          <= D'($signed(t_q.vertex.x[2*C+:C])) - D'($signed(t_q.vertex.x[0+:C]));
+      by_q          <= D'($signed(t_q.vertex.y[2*C+:C])) - D'($signed(t_q.vertex.y[0+:C]));
+      to_anchor_x_q <= D'(anchor_x) - D'($signed(t_q.vertex.x[0+:C]));
+      to_anchor_y_q <= D'(anchor_y) - D'($signed(t_q.vertex.y[0+:C]));
     end else if (divide_step_q < STEP'(DIVIDE_CYCLES < DIVIDE_LAST ? DIVIDE_CYCLES + 1 : DIVIDE_LAST)) begin
       remainder_q <= remainder_d;
       quotient_q  <= quotient_d;
@@ -237,7 +250,7 @@ module triangle_setup (
 
   // round_shift(N * R, k - F): k - F = m + OFFSET, which may be negative: LEFT zeros go below the product first, so that
   // what remains is a shift to the right by at least 1, of which the rounding takes the last.
-  localparam int OFFSET = raster_pkg::DEPTH_BITS + raster_pkg::RECIPROCAL_EXTRA_BITS - F;
+  localparam int OFFSET = R - 1 - F;
   localparam int LEFT = OFFSET < 1 ? 1 - OFFSET : 0;
   localparam int SHIFT_BASE = OFFSET + LEFT - 1;
   localparam int PRODUCT = N + R + 1;
@@ -286,8 +299,8 @@ module triangle_setup (
   /* verilator lint_on UNUSEDSIGNAL */
   logic                value_busy_q;
   logic [STEP-1:0]     value_step_q;
+  /* verilator lint_off UNUSEDSIGNAL */  // most planes have fewer bits than the widest
   logic [PLANES*P-1:0] v_steps_x_q, v_steps_y_q, values_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // colours have fewer bits than depth
   logic [PLANES*Z-1:0] v_low_q, v_high_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic signed [D-1:0] v_to_anchor_x_q, v_to_anchor_y_q;
@@ -308,15 +321,23 @@ module triangle_setup (
     end else if (value_step_q != STEP'(VALUE_LAST)) value_step_q <= value_step_q + STEP'(1);
   end
 
-  // Half a unit of the local plane's last place, and the offset of its window (LocalFormat), so that a tile's anchor is a
-  // shift. Only the first plane is depth.
-  localparam logic [P-1:0] DEPTH_BIAS = P'(1) << (F - L - 1) | P'(1) << (F - 1) | P'(1) << (F + Z - 1);
-  localparam logic [P-1:0] COLOR_BIAS = P'(1) << (F - L - 1) | P'(1) << (F - 1) | P'(1) << (F + K - 1);
-
-  logic [Z-1:0] v_c0;  // the plane's code at vertex 0
+  // A plane at vertex 0: its code with F fraction bits, half a unit of the local plane's last place, and the offset of its
+  // window (LocalFormat), 2^(B-1), so that a tile's anchor is a shift.
+  localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
+  logic [PLANES*(Z+1)-1:0] starts;  // without those halves
+  logic [Z:0]              start;
+  generate
+    for (p = 0; p < PLANES; p++) begin : gen_start
+      localparam int B = CODE_BITS_OF[32*p+:32];
+      localparam int AT = CODE_AT[32*p+:32];
+      logic [B-1:0] code;
+      assign code                 = v_q.vertex.code[AT+:B];
+      assign starts[p*(Z+1)+:Z+1] = (Z + 1)'({code[B-1], !code[B-1], code[0+:B-1]});
+    end
+  endgenerate
   always_comb begin
-    v_c0 = v_q.z[0+:Z];
-    for (int c = 0; c < CHANNELS; c++) if (value_step_q == STEP'(c + 1)) v_c0 = Z'(v_q.rgba[c*K+:K]);
+    start = starts[0+:Z+1];
+    for (int i = 1; i < PLANES; i++) if (value_step_q == STEP'(i)) start = starts[i*(Z+1)+:Z+1];
   end
 
   always_ff @(posedge clk_i) begin
@@ -332,7 +353,7 @@ module triangle_setup (
     if (takes_step) begin
       move_x_q    <= $signed(steps_x_q[0+:P]) * v_to_anchor_x_q;
       move_y_q    <= $signed(steps_y_q[0+:P]) * v_to_anchor_y_q;
-      start_q     <= (P'(v_c0) << F) + (value_step_q == '0 ? DEPTH_BIAS : COLOR_BIAS);
+      start_q     <= P'({start, HALVES});
       v_steps_x_q <= {steps_x_q[0+:P], v_steps_x_q[P+:(PLANES-1)*P]};
       v_steps_y_q <= {steps_y_q[0+:P], v_steps_y_q[P+:(PLANES-1)*P]};
     end
@@ -341,38 +362,24 @@ module triangle_setup (
 
   assign setup_o.kind         = v_q.kind;
   assign setup_o.primitive_id = v_q.primitive_id;
-  assign setup_o.left         = v_q.left;
-  assign setup_o.top          = v_q.top;
-  assign setup_o.right        = v_q.right;
-  assign setup_o.bottom       = v_q.bottom;
-  assign setup_o.depth_test   = v_q.depth_test;
-  assign setup_o.depth_write  = v_q.depth_write;
-  assign setup_o.color_write  = v_q.color_write;
+  assign setup_o.box          = v_q.box;
+  assign setup_o.state        = v_q.state;
   assign setup_o.dx           = v_dx_q;
   assign setup_o.dy           = v_dy_q;
   assign setup_o.edge_value   = v_q.edge_value;
-  assign setup_o.depth_value  = values_q[0+:P];
-  assign setup_o.depth_step_x = v_steps_x_q[0+:P];
-  assign setup_o.depth_step_y = v_steps_y_q[0+:P];
-  assign setup_o.depth_min    = v_low_q[0+:Z];
-  assign setup_o.depth_max    = v_high_q[0+:Z];
 
-  logic [CHANNELS*CP-1:0] color_value, color_step_x, color_step_y;
-  logic [CHANNELS*K-1:0]  color_min, color_max;
-  genvar i;
   generate
-    for (i = 0; i < CHANNELS; i++) begin : gen_channel
-      assign color_value[i*CP+:CP]  = values_q[(i+1)*P+:CP];
-      assign color_step_x[i*CP+:CP] = v_steps_x_q[(i+1)*P+:CP];
-      assign color_step_y[i*CP+:CP] = v_steps_y_q[(i+1)*P+:CP];
-      assign color_min[i*K+:K]      = v_low_q[(i+1)*Z+:K];
-      assign color_max[i*K+:K]      = v_high_q[(i+1)*Z+:K];
+    for (p = 0; p < PLANES; p++) begin : gen_plane
+      localparam int B = PLANE_BITS_OF[32*p+:32];
+      localparam int AT = PLANE_AT[32*p+:32];
+      localparam int CB = CODE_BITS_OF[32*p+:32];
+      localparam int CODE = CODE_AT[32*p+:32];
+      assign setup_o.value[AT+:B]         = values_q[p*P+:B];
+      assign setup_o.step_x[AT+:B]        = v_steps_x_q[p*P+:B];
+      assign setup_o.step_y[AT+:B]        = v_steps_y_q[p*P+:B];
+      assign setup_o.range.low[CODE+:CB]  = v_low_q[p*Z+:CB];
+      assign setup_o.range.high[CODE+:CB] = v_high_q[p*Z+:CB];
     end
   endgenerate
-  assign setup_o.color_value  = color_value;
-  assign setup_o.color_step_x = color_step_x;
-  assign setup_o.color_step_y = color_step_y;
-  assign setup_o.color_min    = color_min;
-  assign setup_o.color_max    = color_max;
 
 endmodule

@@ -2,7 +2,7 @@
 // one bit a cycle. It costs about as many flip-flops as a setup packet has bits, because every intermediate waits in a
 // result register that is not needed yet.
 //
-// Bits run lowest first through chains: shift registers that hold a field of all planes, depth lowest, then the colours.
+// Bits run lowest first through chains: shift registers that hold a field of all planes, plane 0 lowest.
 // A pass moves a chain through once, plane by plane, so no bit is ever selected by an index.
 //   SUBTRACT  the ring: raw coordinates become dx, dy and the way to the anchor; meanwhile R, with a subtractor of its own
 //   FIRST     numerators: (c2 - c0) d0 of all planes into the value chain
@@ -29,24 +29,24 @@ module triangle_setup_serial (
 
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int C = raster_pkg::COORDINATE_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int K = raster_pkg::COLOR_CODE_BITS;
-  localparam int CHANNELS = raster_pkg::COLOR_CHANNELS;
-  localparam int PLANES = 1 + CHANNELS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
+  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
+  localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
   localparam int A = raster_pkg::AREA_BITS;
   localparam int R = raster_pkg::RECIPROCAL_BITS;
-  localparam int V = raster_pkg::VERTEX_COLOR_BITS;
-  localparam int P = raster_pkg::DEPTH_PLANE_BITS;
-  localparam int CP = raster_pkg::COLOR_PLANE_BITS;
+  localparam int P = raster_pkg::MAX_PLANE_BITS;
   localparam int F = raster_pkg::PLANE_FRACTION;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
-  localparam int CHAIN = P + CHANNELS * CP;  // a gradient or a value of every plane
-  localparam int CODES = Z + CHANNELS * K;  // a code of every plane
+  localparam int CHAIN = raster_pkg::ALL_PLANE_BITS;  // a gradient or a value of every plane
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // a code of every plane
   localparam int RING = 8 * D;
+  localparam int UNIT = $clog2(PLANES > 8 ? PLANES : 8);
 
   // The dividend starts at 1, so that after j = ceil(log2 A) quotient bits of 0 come the R that count, and
   // quotient = floor(2^(j + R - 1) / A). SHIFT = j + R - 2 - F is what brings a product to F fraction bits; it includes
@@ -62,11 +62,13 @@ module triangle_setup_serial (
       TURN_B = 4'd6, TURN_C = 4'd7, VALUE_X = 4'd8, TURN_D = 4'd9, VALUE_Y = 4'd10, OFFER = 4'd11, TAKE = 4'd12;
   (* fsm_encoding = "none" *) logic [3:0] state_q;
   logic             is_x_q;  // the numerators and gradients at work
-  logic [2:0]       unit_q;  // plane, or word of the ring
+  logic [UNIT-1:0]  unit_q;  // plane, or word of the ring
   logic [COUNT-1:0] bit_q, last_bit, shift_q;  // shift_q: SHIFT + LEAD - 1
   logic             keeps_q;  // GRADIENT: the bits that are dropped have gone by
   logic             waits_q, has_moved;  // and so have those that are kept, but not all of the numerator
-  logic [2:0]       last_unit;
+  logic [UNIT-1:0]  last_unit;
+  logic [COUNT-1:0] code_bits, last_of_plane;  // of the plane
+  logic [MOVED-1:0] all_moved;                 // of its numerator, with LEAD zeros
   logic             is_numerator, is_gradient, is_value, is_turn, is_last_bit, unit_ends, state_ends, load;
 
   assign is_numerator = state_q == FIRST || state_q == SECOND;
@@ -75,15 +77,27 @@ module triangle_setup_serial (
   assign is_turn      = state_q == TURN_A || state_q == TURN_B || state_q == TURN_C || state_q == TURN_D;
   assign load         = state_q == IDLE;
   always_comb begin
-    last_bit = unit_q == 3'd0 ? COUNT'(P - 1) : COUNT'(CP - 1);
+    code_bits     = COUNT'(CODE_BITS_OF[0+:32]);
+    last_of_plane = COUNT'(PLANE_BITS_OF[0+:32] - 1);
+    all_moved     = MOVED'(PLANE_BITS_OF[0+:32] + LEAD);
+    for (int i = 1; i < PLANES; i++) begin
+      if (unit_q == UNIT'(i)) begin
+        code_bits     = COUNT'(CODE_BITS_OF[32*i+:32]);
+        last_of_plane = COUNT'(PLANE_BITS_OF[32*i+:32] - 1);
+        all_moved     = MOVED'(PLANE_BITS_OF[32*i+:32] + LEAD);
+      end
+    end
+  end
+  always_comb begin
+    last_bit = last_of_plane;
     if (is_turn || state_q == SUBTRACT) last_bit = COUNT'(D - 1);
     if (is_gradient && !keeps_q) last_bit = shift_q;
     case (state_q)
-      SUBTRACT: last_unit = 3'd7;
-      TURN_A, TURN_B: last_unit = 3'd1;
-      TURN_C: last_unit = 3'd4;
-      TURN_D: last_unit = 3'd3;
-      default: last_unit = 3'(CHANNELS);
+      SUBTRACT: last_unit = UNIT'(7);
+      TURN_A, TURN_B: last_unit = UNIT'(1);
+      TURN_C: last_unit = UNIT'(4);
+      TURN_D: last_unit = UNIT'(3);
+      default: last_unit = UNIT'(PLANES - 1);
     endcase
   end
   assign is_last_bit = bit_q == last_bit;
@@ -112,7 +126,7 @@ module triangle_setup_serial (
     if (load || is_last_bit || waits_q) bit_q <= '0;
     else bit_q <= bit_q + COUNT'(1);
     if (load || state_ends) unit_q <= '0;
-    else if (unit_ends) unit_q <= unit_q + 3'd1;
+    else if (unit_ends) unit_q <= unit_q + UNIT'(1);
     if (load) is_x_q <= 1'b0;
     else if (is_gradient && state_ends) is_x_q <= !is_x_q;
     if (load) keeps_q <= 1'b0;
@@ -149,8 +163,8 @@ module triangle_setup_serial (
 
   // From the way to the anchor of the first tile: its centre is that of pixel (T/2, T/2).
   logic [D-1:0] anchor_x, anchor_y;
-  assign anchor_x = D'({triangle_i.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S | D'(1 << (S - 1));
-  assign anchor_y = D'({triangle_i.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S | D'(1 << (S - 1));
+  assign anchor_x = D'({triangle_i.box.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S | D'(1 << (S - 1));
+  assign anchor_y = D'({triangle_i.box.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S | D'(1 << (S - 1));
 
   // The anchors meet the fourth and the eighth word of the ring; the second chain is the continuation of the first.
   logic [2*CHAIN-1:0] anchors;
@@ -159,43 +173,46 @@ module triangle_setup_serial (
   // c_0 with F fraction bits, half a unit of the local plane's last place, and the offset of its window (LocalFormat).
   localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
   logic [CHAIN-1:0] base;
-  assign base[0+:P] = {triangle_i.z[Z-1], !triangle_i.z[Z-1], triangle_i.z[0+:Z-1], HALVES};
-  genvar i;
+  genvar p;
   generate
-    for (i = 0; i < CHANNELS; i++) begin : gen_base
-      assign base[P+i*CP+:CP] = {
-        triangle_i.rgba[i*K+K-1], !triangle_i.rgba[i*K+K-1], triangle_i.rgba[i*K+:K-1], HALVES
-      };
+    for (p = 0; p < PLANES; p++) begin : gen_base
+      localparam int B = PLANE_BITS_OF[32*p+:32];
+      localparam int AT = PLANE_AT[32*p+:32];
+      localparam int CB = CODE_BITS_OF[32*p+:32];
+      localparam int CODE = CODE_AT[32*p+:32];
+      logic [CB-1:0] code;
+      assign code        = triangle_i.vertex.code[CODE+:CB];
+      assign base[AT+:B] = {code[CB-1], !code[CB-1], code[0+:CB-1], HALVES};
     end
   endgenerate
 
-  assign moves_codes = is_numerator && bit_q < (unit_q == 3'd0 ? COUNT'(Z) : COUNT'(K));
+  assign moves_codes = is_numerator && bit_q < code_bits;
   assign keeps       = is_gradient && keeps_q;
 
   always_ff @(posedge clk_i) begin
     if (load) begin
       ring_q <= {
-        D'($signed(triangle_i.y[0+:C])),
-        D'($signed(triangle_i.y[2*C+:C])),
-        D'($signed(triangle_i.y[C+:C])),
-        D'($signed(triangle_i.y[0+:C])),
-        D'($signed(triangle_i.x[0+:C])),
-        D'($signed(triangle_i.x[2*C+:C])),
-        D'($signed(triangle_i.x[C+:C])),
-        D'($signed(triangle_i.x[0+:C]))
+        D'($signed(triangle_i.vertex.y[0+:C])),
+        D'($signed(triangle_i.vertex.y[2*C+:C])),
+        D'($signed(triangle_i.vertex.y[C+:C])),
+        D'($signed(triangle_i.vertex.y[0+:C])),
+        D'($signed(triangle_i.vertex.x[0+:C])),
+        D'($signed(triangle_i.vertex.x[2*C+:C])),
+        D'($signed(triangle_i.vertex.x[C+:C])),
+        D'($signed(triangle_i.vertex.x[0+:C]))
       };
     end else if (is_turn || state_q == SUBTRACT) ring_q <= {ring_in, ring_q[RING-1:1]};
 
     if (load) begin
-      min_q <= {triangle_i.rgba[V+:V], triangle_i.z[Z+:Z]};
-      max_q <= {triangle_i.rgba[2*V+:V], triangle_i.z[2*Z+:Z]};
+      min_q <= triangle_i.vertex.code[CODES+:CODES];
+      max_q <= triangle_i.vertex.code[2*CODES+:CODES];
     end else if (moves_codes) begin
       min_q <= {min_in, min_q[CODES-1:1]};
       max_q <= {max_in, max_q[CODES-1:1]};
     end
 
     // The codes of vertex 0 wait in the highest bits of step_x.
-    if (load) step_x_q[CHAIN-1-:CODES] <= {triangle_i.rgba[0+:V], triangle_i.z[0+:Z]};
+    if (load) step_x_q[CHAIN-1-:CODES] <= triangle_i.vertex.code[0+:CODES];
     else if (moves_codes || (keeps && is_x_q) || state_q == VALUE_X)
       step_x_q <= {is_numerator ? c0 : is_gradient ? sum : step_x_q[0], step_x_q[CHAIN-1:1]};
 
@@ -255,14 +272,13 @@ module triangle_setup_serial (
   // ------------------------------------------------------------------------------------------------- multiply and add
   // The serial factor comes lowest bit first and goes on with its sign, so the product comes out modulo any power of two.
   logic               factor, sign_q, restarts, product, addend, negates, carry_q;
-  logic [MOVED-1:0]   moved_q, all_moved;  // bits of the numerator that have gone by, after LEAD zeros
+  logic [MOVED-1:0]   moved_q;  // bits of the numerator that have gone by, after LEAD zeros
   logic [ACC-1:0]     operand;
   /* verilator lint_off UNUSEDSIGNAL */
   logic [ACC+1:0]     total;  // its lowest bit only makes the carry
   /* verilator lint_on UNUSEDSIGNAL */
   logic [ACC-1:0]     acc_q;
 
-  assign all_moved       = unit_q == 3'd0 ? MOVED'(P + LEAD) : MOVED'(CP + LEAD);
   assign has_moved       = moved_q == all_moved;
   /* verilator lint_off UNSIGNED */  // LEAD may be 0
   assign moves_numerator = is_gradient && moved_q >= MOVED'(LEAD) && !has_moved;
@@ -309,25 +325,15 @@ module triangle_setup_serial (
 
   assign setup_o.kind         = triangle_i.kind;
   assign setup_o.primitive_id = triangle_i.primitive_id;
-  assign setup_o.left         = triangle_i.left;
-  assign setup_o.top          = triangle_i.top;
-  assign setup_o.right        = triangle_i.right;
-  assign setup_o.bottom       = triangle_i.bottom;
-  assign setup_o.depth_test   = triangle_i.depth_test;
-  assign setup_o.depth_write  = triangle_i.depth_write;
-  assign setup_o.color_write  = triangle_i.color_write;
+  assign setup_o.box          = triangle_i.box;
+  assign setup_o.state        = triangle_i.state;
   assign setup_o.dx           = ring_q[D+:3*D];  // the ring has turned by 15 words
   assign setup_o.dy           = ring_q[5*D+:3*D];
   assign setup_o.edge_value   = triangle_i.edge_value;
-  assign setup_o.depth_value  = value_q[0+:P];
-  assign setup_o.depth_step_x = step_x_q[0+:P];
-  assign setup_o.depth_step_y = step_y_q[0+:P];
-  assign setup_o.color_value  = value_q[P+:CHANNELS*CP];
-  assign setup_o.color_step_x = step_x_q[P+:CHANNELS*CP];
-  assign setup_o.color_step_y = step_y_q[P+:CHANNELS*CP];
-  assign setup_o.depth_min    = min_q[0+:Z];
-  assign setup_o.depth_max    = max_q[0+:Z];
-  assign setup_o.color_min    = min_q[Z+:CHANNELS*K];
-  assign setup_o.color_max    = max_q[Z+:CHANNELS*K];
+  assign setup_o.value        = value_q;
+  assign setup_o.step_x       = step_x_q;
+  assign setup_o.step_y       = step_y_q;
+  assign setup_o.range.low    = min_q;
+  assign setup_o.range.high   = max_q;
 
 endmodule

@@ -5,6 +5,7 @@
 
 #include "model/engines/cycle/stage_table.hpp"
 #include "model/raster_pkg.hpp"
+#include "model/raster_taps.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
@@ -73,7 +74,7 @@ Json widths_json(const std::vector<const Width*>& widths) {
 }
 
 struct ConfigOptions : CommonOptions {
-  bool list = false, widths = false, stages = false, sv = false;
+  bool list = false, widths = false, stages = false, sv = false, taps = false;
 };
 
 int run(const ConfigOptions& options) {
@@ -82,6 +83,10 @@ int run(const ConfigOptions& options) {
   std::ostream& out = human(options);
   if (options.sv) {
     std::cout << raster_pkg(config);
+    return exit_ok;
+  }
+  if (options.taps) {
+    std::cout << raster_taps();
     return exit_ok;
   }
   const Widths hardware = derive_widths(config);
@@ -110,8 +115,10 @@ int run(const ConfigOptions& options) {
   if (options.stages) {
     Json stages = Json::array();
     for (const StageRow& row : stage_table(config))
-      stages.push_back(
-          {{"stage", row.stage}, {"latency", row.latency}, {"interval", row.interval}, {"holds", row.holds}});
+      stages.push_back({{"stage", info(row.stage).name},
+                        {"latency", row.latency},
+                        {"interval", row.interval},
+                        {"holds", row.holds}});
     result["stages"] = stages;
   }
   result["wall_s"] = seconds_since(start);
@@ -133,6 +140,9 @@ void add_config_command(CLI::App& app, Action& selected) {
   command->add_flag("--widths", options->widths, "every derived width with its bound");
   command->add_flag("--stages", options->stages, "latency and interval of every stage, in cycles");
   command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration")->excludes("--json");
+  command->add_flag("--taps", options->taps, "prints cosim/taps.svh, the taps of the co-simulation")
+      ->excludes("--json")
+      ->excludes("--sv");
   command->footer(
       "\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });

@@ -41,10 +41,10 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["memory"] = memory_json(options.memory);
   result["mutant"] = options.mutant;
   Json stages = Json::object(), arrows = Json::object();
-  for (std::size_t i = 0; i < kArrows; ++i) {
-    const std::string stage(kArrowInfo[i].stage);
-    stages[stage] = stages.value(stage, std::uint64_t{0}) + r.compared[i];
-    arrows[std::string(kArrowInfo[i].name)] = r.compared[i];
+  for (const Arrow arrow : kCompared) {
+    const std::string stage(info(suspect(arrow)).name);
+    stages[stage] = stages.value(stage, std::uint64_t{0}) + r.compared[index(arrow)];
+    arrows[std::string(info(arrow).name)] = r.compared[index(arrow)];
   }
   result["packets"] = stages;
   result["arrows"] = arrows;
@@ -57,7 +57,8 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["mismatches"] = r.mismatch ? 1 : 0;  // the run stops at the first
   result["first_mismatch"] = nullptr;
   Json crossings = Json::object();
-  for (std::size_t i = 0; i < kBoundaries; ++i) crossings[std::string(kBoundaryNames[i])] = r.cycles_compared[i];
+  for (const Arrow boundary : kBoundaries)
+    crossings[std::string(info(boundary).name)] = r.cycles_compared[index(boundary)];
   result["crossings"] = crossings;
   const bool is_late = r.mismatch && r.mismatch->kind == Mismatch::Kind::cycle && !r.mismatch->fields.empty();
   const auto error = [&r] {
@@ -88,8 +89,8 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
     if (mutant.id == options.mutant)
       out << "mutant      " << mutant.id << ", " << mutant.file << ": " << mutant.what << '\n';
   std::string line = "compared   ";
-  for (std::size_t i = 0; i < kArrows; ++i) {
-    const std::string word = " " + std::string(kArrowInfo[i].name) + " " + with_commas(r.compared[i]) + ",";
+  for (const Arrow arrow : kCompared) {
+    const std::string word = " " + std::string(info(arrow).name) + " " + with_commas(r.compared[index(arrow)]) + ",";
     if (line.size() + word.size() > 100) {
       out << line << '\n';
       line = std::string(11, ' ');

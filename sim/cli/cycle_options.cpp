@@ -59,7 +59,7 @@ std::vector<std::pair<std::string, std::string>> variations(const CycleCommandOp
 class Tee final : public TransferSink {
  public:
   Tee(TransferSink* first, TransferSink* second) : sinks_{first, second} {}
-  void transfer(Boundary boundary, Cycle cycle) override {
+  void transfer(Arrow boundary, Cycle cycle) override {
     each([&](TransferSink& s) { s.transfer(boundary, cycle); });
   }
   void primitive(const HostPrimitive& p) override {

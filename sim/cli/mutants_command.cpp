@@ -79,7 +79,7 @@ std::string column(std::string text, std::size_t width) {
 
 std::string stage_of(const Mutant& mutant) { return std::filesystem::path(mutant.file).stem().string(); }
 
-/// "setup depth_step_x", "counters tiles_hiz +1", "tile never comes".
+/// "setup step_x[depth]", "counters tiles_hiz +1", "tile never comes".
 std::string where(const Mismatch& m) {
   const auto fields = m.differing();
   const std::string more = fields.size() > 1 ? " +" + std::to_string(fields.size() - 1) : "";

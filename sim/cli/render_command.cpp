@@ -135,9 +135,9 @@ Json counters_json(const Counters& c) {
 /// {stage: {busy, stalled, starved, items}}, in cycles of the stage's output.
 Json stages_json(const LockstepResult& run) {
   Json stages = Json::object();
-  for (std::size_t i = 0; i < kStreams; ++i) {
+  for (std::size_t i = 0; i < kStreams.size(); ++i) {
     const StreamUse& use = run.use[i];
-    stages[std::string(kStreamStages[i])] = {
+    stages[std::string(sender_name(kStreams[i]))] = {
         {"busy", use.busy},
         {"stalled", use.stalled},
         {"starved", use.starved - (run.clocks - run.cycles)},  // without the clocks behind the last packet

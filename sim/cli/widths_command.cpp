@@ -52,8 +52,8 @@ Json probe_json(const Probe& probe, const Config& config) {
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)
     vertices.push_back({{"x", scene.vertices[i].x},
                         {"y", scene.vertices[i].y},
-                        {"depth_code", probe.v[i].z},
-                        {"rgba", probe.v[i].rgba}});
+                        {"depth_code", probe.v[i].depth()},
+                        {"rgba", color_channels(probe.v[i].code)}});
   Json json{{"kind", probe.is_line ? "line" : "triangle"}};
   if (probe.is_line) json["line_rule"] = probe.rule == LineRule::diamond ? "diamond" : "midpoint";
   json["vertices"] = vertices;

@@ -1,70 +1,14 @@
-// The arrows between the stages that co-simulation compares, in the order of the pipeline.
+// The packets of an arrow, field by field, as model and RTL have them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "model/packets.hpp"
-#include "model/stages/line_raster.hpp"
+#include "model/pipeline_graph.hpp"
 
 namespace halfplane {
-
-/// In this order they are the bits of raster_cosim's fire_o; `request` is a port of its own.
-enum class Arrow : std::uint8_t {
-  triangle,
-  setup,
-  context,
-  tile,
-  edges,
-  stamp,
-  line_pixel,
-  fragment,
-  write,
-  retire,
-  request
-};
-inline constexpr std::size_t kArrows = 11;
-
-struct ArrowInfo {
-  std::string_view name;
-  std::string_view stage;  ///< that sends it: the first suspect
-};
-inline constexpr std::array<ArrowInfo, kArrows> kArrowInfo{{{"triangle", "cull"},
-                                                            {"setup", "triangle_setup"},
-                                                            {"context", "triangle_setup"},
-                                                            {"tile", "coarse_raster"},
-                                                            {"edges", "coarse_raster"},
-                                                            {"stamp", "fine_raster"},
-                                                            {"line_pixel", "line_raster"},
-                                                            {"fragment", "interpolate"},
-                                                            {"write", "rop"},
-                                                            {"retire", "depth_test"},
-                                                            {"request", "framebuffer"}}};
-
-[[nodiscard]] constexpr const ArrowInfo& info(Arrow arrow) { return kArrowInfo[static_cast<std::size_t>(arrow)]; }
-
-/// Calls visit(std::type_identity<Packet>{}) with the packet type of an arrow.
-template <class Visit>
-decltype(auto) with_packet_type(Arrow arrow, Visit&& visit) {
-  switch (arrow) {
-    case Arrow::triangle: return visit(std::type_identity<TrianglePacket>{});
-    case Arrow::setup: return visit(std::type_identity<SetupPacket>{});
-    case Arrow::context: return visit(std::type_identity<ContextPacket>{});
-    case Arrow::tile: return visit(std::type_identity<TilePacket>{});
-    case Arrow::edges: return visit(std::type_identity<EdgeContext>{});
-    case Arrow::stamp: return visit(std::type_identity<StampPacket>{});
-    case Arrow::line_pixel: return visit(std::type_identity<LinePixel>{});
-    case Arrow::fragment: return visit(std::type_identity<FragmentPacket>{});
-    case Arrow::write: return visit(std::type_identity<WritePacket>{});
-    case Arrow::retire: return visit(std::type_identity<RetirePacket>{});
-    case Arrow::request: break;
-  }
-  return visit(std::type_identity<MemoryRequest>{});
-}
 
 /// One element of a packet on both sides.
 struct FieldPair {

@@ -16,20 +16,14 @@
 
 namespace halfplane {
 
-/// The elastic streams inside, in the order of raster_cosim's stream_valid_o: triangle, setup, tile, stamp, line_pixel,
-/// fragment.
-inline constexpr std::size_t kStreams = 6;
-inline constexpr std::array<std::string_view, kStreams> kStreamStages{"cull",        "triangle_setup", "coarse_raster",
-                                                                      "fine_raster", "line_raster",    "interpolate"};
-
 /// What the design shows in one cycle, before the clock edge.
 struct DutOutputs {
-  std::uint32_t fired = 0;  ///< bit per Arrow but `request`: this packet moves now
+  std::uint32_t fired = 0;  ///< bit i: a packet of arrow kTapped[i] moves now
   bool primitive_ready = false, line_ready = false, request_valid = false, response_ready = false, idle = false;
   bool moves_tiles = false;                          ///< the framebuffer is busy with memory or a clear
-  std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit per stream
-  std::array<const void*, kArrows> packet{};         ///< little-endian bytes of each arrow's packet, rounded up
-  const void* counters = nullptr;                    ///< CounterPacket, likewise
+  std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit i: kStreams[i]
+  std::array<const void*, kArrows> packet{};  ///< little-endian bytes of what the RTL sends, rounded up; by Arrow
+  const void* counters = nullptr;             ///< CounterPacket, likewise
 };
 
 class Dut {

@@ -11,24 +11,7 @@ namespace {
 constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
 constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
 constexpr std::uint64_t kReportCycles = 1 << 16;
-
-/// Context and edges go beside setup and tile.
-std::optional<Boundary> boundary_of(Arrow arrow) {
-  switch (arrow) {
-    case Arrow::triangle: return Boundary::triangle;
-    case Arrow::setup: return Boundary::setup;
-    case Arrow::tile: return Boundary::tile;
-    case Arrow::stamp: return Boundary::stamp;
-    case Arrow::line_pixel: return Boundary::line_pixel;
-    case Arrow::fragment: return Boundary::fragment;
-    case Arrow::write: return Boundary::write;
-    case Arrow::retire: return Boundary::retire;
-    case Arrow::context:
-    case Arrow::edges:
-    case Arrow::request: break;
-  }
-  return std::nullopt;
-}
+constexpr std::uint32_t kWrites = tap_bit(Arrow::write);
 
 std::array<std::size_t, kArrows> packet_bytes(const Widths& widths) {
   std::array<std::size_t, kArrows> bytes{};
@@ -46,16 +29,15 @@ std::vector<std::uint32_t> words_from(const void* bytes, std::size_t count) {
   return words;
 }
 
-/// The stage to look at first. A write packet carries the results of two stages, and so does the fragment of a line.
-std::string suspect(Arrow arrow, const Mismatch& mismatch) {
-  if (arrow == Arrow::fragment && mismatch.kind == Mismatch::Kind::differs)
-    for (const FieldPair& field : mismatch.fields)
-      if (field.name == "kind" && field.model == static_cast<std::uint64_t>(PrimitiveKind::line))
-        return "primitive_join";
-  if (arrow != Arrow::write || mismatch.kind != Mismatch::Kind::differs) return std::string(info(arrow).stage);
-  for (const std::string& name : mismatch.differing())
-    if (!name.starts_with("color[")) return "depth_test";
-  return "rop";
+/// What the blame depends on: of a packet that differs, which fields do.
+Stage suspect(Arrow arrow, const Mismatch& mismatch) {
+  if (mismatch.kind != Mismatch::Kind::differs) return suspect(arrow);
+  Difference difference;
+  for (const FieldPair& field : mismatch.fields) {
+    if (field.name == "kind") difference.is_of_line = field.model == static_cast<std::uint64_t>(PrimitiveKind::line);
+    if (field.differs() && !field.name.starts_with("color[")) difference.is_in_color_only = false;
+  }
+  return suspect(arrow, difference);
 }
 
 }  // namespace
@@ -73,10 +55,12 @@ std::uint64_t LockstepResult::total_cycles_compared() const {
 }
 
 void LockstepResult::add(const LockstepResult& later) {
-  for (std::size_t i = 0; i < kArrows; ++i) compared[i] += later.compared[i];
+  for (std::size_t i = 0; i < kArrows; ++i) {
+    compared[i] += later.compared[i];
+    cycles_compared[i] += later.cycles_compared[i];
+  }
   memory_compared += later.memory_compared;
   counters_compared += later.counters_compared;
-  for (std::size_t i = 0; i < kBoundaries; ++i) cycles_compared[i] += later.cycles_compared[i];
   if (!mismatch) mismatch = later.mismatch;
   is_stopped |= later.is_stopped;
   triangles += later.triangles;
@@ -89,7 +73,7 @@ void LockstepResult::add(const LockstepResult& later) {
   clocks += later.clocks;
   raster_cycles += later.raster_cycles;
   tile_cycles += later.tile_cycles;
-  for (std::size_t i = 0; i < kStreams; ++i) {
+  for (std::size_t i = 0; i < use.size(); ++i) {
     use[i].busy += later.use[i].busy;
     use[i].stalled += later.use[i].stalled;
     use[i].starved += later.use[i].starved;
@@ -219,7 +203,7 @@ void Lockstep::offer_primitive(HostStream& host) {
     expected_.set_sequence(static_cast<std::uint32_t>(sent_.size()));
     model_.run(next->packet, next->line);
     if (cycle_model_) cycle_model_->run(*next);
-  } else if (next->packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle)) {
+  } else if (next->packet.kind == PrimitiveKind::triangle) {
     CounterPacket ignored;  // pieces of one input triangle follow each other
     if (cull(next->packet, widths_, ignored) && std::exchange(last_drawn_, next->primitive) != next->primitive)
       ++result_.drawn;
@@ -236,26 +220,26 @@ void Lockstep::step(HostStream& host) {
     has_response_ = due != nullptr;
   }
   const std::uint32_t stalls = stall_bits(options_.seed, cycle_, threshold_);
-  const bool request_ready = memory_.is_ready(cycle_) && !is_stalled(options_.seed, stall_memory, cycle_, threshold_);
+  const bool request_ready = memory_.is_ready(cycle_) && !is_stalled(options_.seed, kMemoryStall, cycle_, threshold_);
   const DutOutputs& out = dut_.evaluate(stalls, request_ready);
 
   bool moved = out.fired != 0;
   if (options_.compares)
     for (std::uint32_t left = out.fired; left != 0 && !result_.mismatch; left &= left - 1) {
-      const auto arrow = static_cast<std::size_t>(std::countr_zero(left));
-      compare(static_cast<Arrow>(arrow), out.packet[arrow]);
-      if (const auto boundary = boundary_of(static_cast<Arrow>(arrow))) compare_cycle(*boundary);
+      const Arrow arrow = kTapped[static_cast<std::size_t>(std::countr_zero(left))];
+      compare(arrow, out.packet[index(arrow)]);
+      if (is_boundary(arrow)) compare_cycle(arrow);
     }
   if (out.request_valid || has_held_) {
     const bool taken = out.request_valid && request_ready;
     if (threshold_ != 0) watch_request(out, stalls, taken);
     if (taken && !result_.mismatch) {
-      const void* request = out.packet[static_cast<std::size_t>(Arrow::request)];
+      const void* request = out.packet[index(Arrow::request)];
       if (options_.compares) {
         compare(Arrow::request, request);
-        compare_cycle(Boundary::request);
+        compare_cycle(Arrow::request);
       }
-      std::memcpy(held_.data(), request, bytes_[static_cast<std::size_t>(Arrow::request)]);
+      std::memcpy(held_.data(), request, bytes_[index(Arrow::request)]);
       memory_.accept(held_.data(), cycle_);
       moved = true;
     }
@@ -264,25 +248,24 @@ void Lockstep::step(HostStream& host) {
     memory_.pop();
     has_response_ = false;
     moved = true;
-    compare_cycle(Boundary::response);
+    compare_cycle(Arrow::response);
   }
   const bool taken = has_primitive_ && out.primitive_ready;
   if (taken) {
     has_primitive_ = false;
     moved = true;
-    drains_ =
-        options_.drains_clears && sent_.back().packet.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear);
+    drains_ = options_.drains_clears && sent_.back().packet.kind == PrimitiveKind::fast_clear;
     count_taken();
-    compare_cycle(Boundary::primitive);
+    compare_cycle(Arrow::primitive);
   }
   if (has_line_ && out.line_ready) {
-    compare_cycle(Boundary::line);
+    compare_cycle(Arrow::line);
     lines_.pop();
     has_line_ = false;
     moved = true;
   }
   if (result_.primitives() != 0 && out.moves_tiles) ++tile_cycles_;
-  if ((out.fired >> static_cast<int>(Arrow::write) & 1) != 0 && result_.primitives() != 0) {
+  if ((out.fired & kWrites) != 0 && result_.primitives() != 0) {
     result_.raster_cycles = cycle_ - first_taken_ + 1;
     result_.tile_cycles = tile_cycles_;
   }
@@ -295,42 +278,39 @@ void Lockstep::step(HostStream& host) {
 
 /// The primitive on offer has been taken.
 void Lockstep::count_taken() {
-  const std::uint8_t kind = sent_.back().packet.kind;
+  const PrimitiveKind kind = sent_.back().packet.kind;
   if (!is_counted(kind)) return;
   if (result_.primitives() == 0) {
     first_taken_ = cycle_;
     tile_cycles_ = 0;
   }
-  ++(kind == static_cast<std::uint8_t>(PrimitiveKind::line)    ? result_.lines
-     : kind == static_cast<std::uint8_t>(PrimitiveKind::point) ? result_.points
-                                                               : result_.triangles);
+  ++(kind == PrimitiveKind::line ? result_.lines : kind == PrimitiveKind::point ? result_.points : result_.triangles);
 }
 
 void Lockstep::compare(Arrow arrow, const void* rtl) {
-  const auto index = static_cast<std::size_t>(arrow);
+  const std::size_t bytes = bytes_[index(arrow)];
   PacketQueue& queue = expected_[arrow];
-  ++result_.compared[index];
-  if (!queue.empty() && std::memcmp(queue.front(), rtl, bytes_[index]) == 0) {
+  ++result_.compared[index(arrow)];
+  if (!queue.empty() && std::memcmp(queue.front(), rtl, bytes) == 0) {
     queue.pop();
     return;
   }
-  const auto words = words_from(rtl, bytes_[index]);
+  const auto words = words_from(rtl, bytes);
   if (queue.empty()) {
     const std::vector<std::uint32_t> nothing(words.size());
     result_.mismatch = packet_mismatch(Mismatch::Kind::extra, arrow, nothing.data(), words.data(), ~0U);
     return;
   }
   result_.mismatch = packet_mismatch(Mismatch::Kind::differs, arrow, queue.front(), words.data(), queue.front_tag());
-  if (queue.size() > 1 && std::memcmp(queue.front(1), rtl, bytes_[index]) == 0)
+  if (queue.size() > 1 && std::memcmp(queue.front(1), rtl, bytes) == 0)
     result_.mismatch->hint = "the RTL's packet is the model's next one: this one was lost";
 }
 
 /// An item crosses `boundary` in this cycle.
-void Lockstep::compare_cycle(Boundary boundary) {
+void Lockstep::compare_cycle(Arrow boundary) {
   if (!cycle_model_ || result_.mismatch) return;
-  const auto index = static_cast<std::size_t>(boundary);
   auto& queue = expected_cycles_[boundary];
-  ++result_.cycles_compared[index];
+  ++result_.cycles_compared[index(boundary)];
   if (!queue.empty() && queue.front() == cycle_) {
     queue.pop_front();
     return;
@@ -342,14 +322,14 @@ void Lockstep::compare_cycle(Boundary boundary) {
 }
 
 /// Without a pair of cycles there is none to compare: `fields` is empty.
-Mismatch Lockstep::cycle_mismatch(Boundary boundary, std::vector<FieldPair> fields, const std::string& hint) const {
-  const auto index = static_cast<std::size_t>(boundary);
+Mismatch Lockstep::cycle_mismatch(Arrow boundary, std::vector<FieldPair> fields, const std::string& hint) const {
   Mismatch m;
   m.kind = Mismatch::Kind::cycle;
-  m.arrow = kBoundaryNames[index];
-  m.stage = kBoundarySenders[index];
+  m.arrow = info(boundary).name;
+  m.stage = sender_name(boundary);
   m.cycle = cycle_;
-  m.number = result_.cycles_compared[index] - std::min<std::uint64_t>(1, result_.cycles_compared[index]);
+  const std::uint64_t compared = result_.cycles_compared[index(boundary)];
+  m.number = compared - std::min<std::uint64_t>(1, compared);
   m.fields = std::move(fields);
   m.hint = hint;
   return m;
@@ -357,21 +337,21 @@ Mismatch Lockstep::cycle_mismatch(Boundary boundary, std::vector<FieldPair> fiel
 
 /// Under back-pressure a request must wait unchanged. A cycle that stalls the stream itself shows no offer.
 void Lockstep::watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken) {
-  const void* request = out.packet[static_cast<std::size_t>(Arrow::request)];
-  const std::size_t bytes = bytes_[static_cast<std::size_t>(Arrow::request)];
-  const bool is_hidden = (stalls >> stall_request & 1) != 0;
+  const void* request = out.packet[index(Arrow::request)];
+  const std::size_t bytes = bytes_[index(Arrow::request)];
+  const bool is_hidden = (stalls & stall_bit(Arrow::request)) != 0;
   if (has_held_ && !is_hidden) {
     if (!out.request_valid)
-      fail_protocol("framebuffer", "request_valid_o fell before the request was taken");
+      fail_protocol(std::string(info(Stage::framebuffer).name), "request_valid_o fell before the request was taken");
     else if (std::memcmp(held_.data(), request, bytes) != 0)
-      fail_protocol("framebuffer", "request_o changed before the request was taken");
+      fail_protocol(std::string(info(Stage::framebuffer).name), "request_o changed before the request was taken");
   }
   if (out.request_valid && !taken) std::memcpy(held_.data(), request, bytes);
   has_held_ = (has_held_ || out.request_valid) && !taken;
 }
 
 void Lockstep::count_use(const DutOutputs& out) {
-  for (std::size_t i = 0; i < kStreams; ++i) {
+  for (std::size_t i = 0; i < kStreams.size(); ++i) {
     const bool valid = (out.stream_valid >> i & 1) != 0, ready = (out.stream_ready >> i & 1) != 0;
     result_.use[i].busy += valid && ready ? 1 : 0;
     result_.use[i].stalled += valid && !ready ? 1 : 0;
@@ -391,9 +371,9 @@ Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::
   m.kind = kind;
   m.arrow = info(arrow).name;
   m.fields = field_pairs(arrow, widths_, model, rtl);
-  m.stage = suspect(arrow, m);
+  m.stage = info(suspect(arrow, m)).name;
   m.cycle = cycle_;
-  const std::uint64_t compared = result_.compared[static_cast<std::size_t>(arrow)];
+  const std::uint64_t compared = result_.compared[index(arrow)];
   m.number = kind == Mismatch::Kind::missing ? compared : compared - 1;
   if (tag < sent_.size() && is_counted(sent_[tag].packet.kind)) m.primitive = sent_[tag].primitive;
   for (const FieldPair& field : m.fields) {

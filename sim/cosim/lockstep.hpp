@@ -44,7 +44,7 @@ struct LockstepResult {
   std::array<std::uint64_t, kArrows> compared{};  ///< packets, by arrow
   std::uint64_t memory_compared = 0;              ///< stamps of either plane in the final memory
   std::uint64_t counters_compared = 0;
-  std::array<std::uint64_t, kBoundaries> cycles_compared{};  ///< crossings, by boundary
+  std::array<std::uint64_t, kArrows> cycles_compared{};  ///< crossings, by boundary
   std::optional<Mismatch> mismatch;
   bool is_stopped = false;                             ///< by options.progress: neither equal nor different
   std::uint64_t triangles = 0, lines = 0, points = 0;  ///< taken by the RTL
@@ -55,7 +55,7 @@ struct LockstepResult {
   std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of the next two
   std::uint64_t clocks = 0;  ///< simulated, those that waited for a packet too many included
   std::uint64_t drawn = 0;   ///< input triangles of which a piece passed cull; only when nothing is compared
-  std::array<StreamUse, kStreams> use{};  ///< only when nothing is compared
+  std::array<StreamUse, kStreams.size()> use{};  ///< by kStreams; only when nothing is compared
 
   [[nodiscard]] std::uint64_t total() const;
   [[nodiscard]] std::uint64_t total_cycles_compared() const;
@@ -64,31 +64,20 @@ struct LockstepResult {
   void add(const LockstepResult& later);
 };
 
-/// Takes the model's packets into one queue per arrow.
-class ExpectedPackets final : public PacketSink {
+/// Takes the packets that the RTL sends, as the model has them, into one queue per arrow.
+class ExpectedPackets final : public EveryPacket<ExpectedPackets> {
  public:
   explicit ExpectedPackets(const Widths& widths);
   void set_sequence(std::uint32_t sequence) { sequence_ = sequence; }
-  [[nodiscard]] PacketQueue& operator[](Arrow arrow) { return queue_[static_cast<std::size_t>(arrow)]; }
+  [[nodiscard]] PacketQueue& operator[](Arrow arrow) { return queue_[index(arrow)]; }
   [[nodiscard]] bool empty() const;
 
-  void take(const TrianglePacket& p) override { push(Arrow::triangle, p); }
-  void take(const SetupPacket& p) override { push(Arrow::setup, p); }
-  void take(const ContextPacket& p) override { push(Arrow::context, p); }
-  void take(const TilePacket& p) override { push(Arrow::tile, p); }
-  void take(const EdgeContext& p) override { push(Arrow::edges, p); }
-  void take(const StampPacket& p) override { push(Arrow::stamp, p); }
-  void take(const LinePixel& p) override { push(Arrow::line_pixel, p); }
-  void take(const FragmentPacket& p) override { push(Arrow::fragment, p); }
-  void take(const WritePacket& p) override { push(Arrow::write, p); }
-  void take(const RetirePacket& p) override { push(Arrow::retire, p); }
-  void take(const MemoryRequest& p) override { push(Arrow::request, p); }
+  template <Arrow A>
+  void take_any(const PacketOf<A>& packet) {
+    if constexpr (is_compared(A)) pack_words(packet, widths_, (*this)[A].push(sequence_));
+  }
 
  private:
-  template <class Packet>
-  void push(Arrow arrow, const Packet& packet) {
-    pack_words(packet, widths_, (*this)[arrow].push(sequence_));
-  }
   const Widths& widths_;
   std::vector<PacketQueue> queue_;
   std::uint32_t sequence_ = 0;  ///< of the primitive at work: comes back as the tag of its packets
@@ -97,13 +86,11 @@ class ExpectedPackets final : public PacketSink {
 /// Takes the cycles of the cycle model into one queue per boundary.
 class ExpectedCycles final : public TransferSink {
  public:
-  void transfer(Boundary boundary, Cycle cycle) override {
-    queue_[static_cast<std::size_t>(boundary)].push_back(cycle);
-  }
-  [[nodiscard]] std::deque<Cycle>& operator[](Boundary boundary) { return queue_[static_cast<std::size_t>(boundary)]; }
+  void transfer(Arrow boundary, Cycle cycle) override { queue_[index(boundary)].push_back(cycle); }
+  [[nodiscard]] std::deque<Cycle>& operator[](Arrow boundary) { return queue_[index(boundary)]; }
 
  private:
-  std::array<std::deque<Cycle>, kBoundaries> queue_;
+  std::array<std::deque<Cycle>, kArrows> queue_;
 };
 
 /// A design and its model, side by side since reset.
@@ -128,10 +115,9 @@ class Lockstep {
   void offer_primitive(HostStream& host);
   void step(HostStream& host);
   void compare(Arrow arrow, const void* rtl);
-  void compare_cycle(Boundary boundary);
+  void compare_cycle(Arrow boundary);
   void report_missing_cycle();
-  [[nodiscard]] Mismatch cycle_mismatch(Boundary boundary, std::vector<FieldPair> fields,
-                                        const std::string& hint) const;
+  [[nodiscard]] Mismatch cycle_mismatch(Arrow boundary, std::vector<FieldPair> fields, const std::string& hint) const;
   void count_taken();
   void watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken);
   void count_use(const DutOutputs& out);

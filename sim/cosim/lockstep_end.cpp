@@ -6,26 +6,20 @@ namespace halfplane {
 /// At the end: a crossing that the cycle model expects and that never came.
 void Lockstep::report_missing_cycle() {
   if (!cycle_model_) return;
-  for (std::size_t i = 0; i < kBoundaries && !result_.mismatch; ++i) {
-    const auto boundary = static_cast<Boundary>(i);
-    if (!expected_cycles_[boundary].empty())
-      result_.mismatch = cycle_mismatch(
-          boundary, {}, "the cycle model has one more in cycle " + std::to_string(expected_cycles_[boundary].front()));
-  }
+  for (const Arrow boundary : kBoundaries)
+    if (const auto& left = expected_cycles_[boundary]; !left.empty() && !result_.mismatch)
+      result_.mismatch =
+          cycle_mismatch(boundary, {}, "the cycle model has one more in cycle " + std::to_string(left.front()));
 }
 
 /// Says which streams hold a packet that nobody takes, and blames the stage behind the last of them.
 void Lockstep::explain_standstill(Mismatch& mismatch) {
-  constexpr std::array<Arrow, kStreams> kArrowOf{Arrow::triangle, Arrow::setup,      Arrow::tile,
-                                                 Arrow::stamp,    Arrow::line_pixel, Arrow::fragment};
-  constexpr std::array<std::string_view, kStreams> kConsumer{"triangle_setup", "coarse_raster",  "fine_raster",
-                                                             "interpolate",    "primitive_join", "depth_test"};
   const DutOutputs& out = dut_.evaluate(0, true);
   std::string waiting;
-  for (std::size_t i = 0; i < kStreams; ++i) {
+  for (std::size_t i = 0; i < kStreams.size(); ++i) {
     if ((out.stream_valid >> i & ~(out.stream_ready >> i) & 1) == 0) continue;
-    waiting += (waiting.empty() ? "" : ", ") + std::string(info(kArrowOf[i]).name);
-    mismatch.stage = kConsumer[i];
+    waiting += (waiting.empty() ? "" : ", ") + std::string(info(kStreams[i]).name);
+    mismatch.stage = info(info(kStreams[i]).to).name;
   }
   mismatch.hint = "nothing moves after cycle " + std::to_string(last_moved_) + "; " +
                   (waiting.empty() ? "no stream holds a packet" : "offered and not taken: " + waiting);
@@ -33,16 +27,14 @@ void Lockstep::explain_standstill(Mismatch& mismatch) {
 
 /// Of the packets that never came, the one of the earliest primitive: behind it everything else is waiting.
 void Lockstep::report_missing() {
-  std::size_t first = kArrows;
-  for (std::size_t i = 0; i < kArrows; ++i) {
-    const auto arrow = static_cast<Arrow>(i);
+  std::optional<Arrow> first;
+  for (const Arrow arrow : kCompared) {
     if (expected_[arrow].empty()) continue;
-    if (first == kArrows || expected_[arrow].front_tag() < expected_[static_cast<Arrow>(first)].front_tag()) first = i;
+    if (!first || expected_[arrow].front_tag() < expected_[*first].front_tag()) first = arrow;
   }
-  const auto arrow = static_cast<Arrow>(first);
-  const PacketQueue& queue = expected_[arrow];
+  const PacketQueue& queue = expected_[*first];
   const std::vector<std::uint32_t> nothing(queue.words());
-  result_.mismatch = packet_mismatch(Mismatch::Kind::missing, arrow, queue.front(), nothing.data(), queue.front_tag());
+  result_.mismatch = packet_mismatch(Mismatch::Kind::missing, *first, queue.front(), nothing.data(), queue.front_tag());
   result_.mismatch->cycle = last_moved_;
   explain_standstill(*result_.mismatch);
 }
@@ -56,11 +48,13 @@ void Lockstep::compare_counters() {
   const auto names = m.differing();
   if (names.empty()) return;
   m.arrow = "counters";
-  m.stage = names[0].starts_with("tile_")                                                  ? "framebuffer"
-            : names[0] == "covered" || names[0] == "depth_passed" || names[0] == "written" ? "depth_test"
-            : names[0].starts_with("tiles_") || names[0] == "trivially_accepted" || names[0] == "samples_tested"
-                ? "coarse_raster"
-                : "cull";
+  const Stage counts =
+      names[0].starts_with("tile_")                                                  ? Stage::framebuffer
+      : names[0] == "covered" || names[0] == "depth_passed" || names[0] == "written" ? Stage::depth_test
+      : names[0].starts_with("tiles_") || names[0] == "trivially_accepted" || names[0] == "samples_tested"
+          ? Stage::coarse_raster
+          : Stage::cull;
+  m.stage = info(counts).name;
   m.cycle = cycle_;
   result_.mismatch = std::move(m);
 }

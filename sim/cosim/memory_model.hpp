@@ -5,7 +5,7 @@
 
 #include "model/engines/hardware.hpp"
 #include "model/timing/memory.hpp"
-#include "sim/cosim/packet_words.hpp"
+#include "sim/cosim/packet_queue.hpp"
 
 namespace halfplane {
 
@@ -24,15 +24,15 @@ class MemoryModel {
     const auto request = unpack_words<MemoryRequest>(words, widths_);
     const bool is_inside =  // a faulty design may ask for what is not there: nothing is kept of it
         request.tile_x < tiles_.tiles_x() && request.tile_y < tiles_.tiles_y() && request.stamp < tiles_.stamps();
-    const Cycle due = timing_->accept(
-        {request.is_write != 0, request.is_color != 0, request.tile_x, request.tile_y, request.stamp}, cycle);
-    if (request.is_write != 0) {
+    const Cycle due =
+        timing_->accept({request.is_write, request.is_color, request.tile_x, request.tile_y, request.stamp}, cycle);
+    if (request.is_write) {
       if (!is_inside) return;
-      tiles_.write(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, request.data);
+      tiles_.write(request.is_color, request.tile_x, request.tile_y, request.stamp, request.data);
       return;
     }
     MemoryResponse response;
-    if (is_inside) tiles_.read(request.is_color != 0, request.tile_x, request.tile_y, request.stamp, response.data);
+    if (is_inside) tiles_.read(request.is_color, request.tile_x, request.tile_y, request.stamp, response.data);
     pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(due)));
   }
 

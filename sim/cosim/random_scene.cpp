@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "model/widths.hpp"
 #include "sim/scene/random.hpp"
+#include "sim/scene/random_state.hpp"
 
 namespace halfplane {
 namespace {
@@ -13,7 +16,8 @@ using Point = std::array<std::int64_t, 2>;  // subpixels of 2^-s pixel
 
 class Generator {
  public:
-  Generator(const Config& config, std::uint64_t seed) : config_(config), widths_(derive_widths(config)), random_(seed) {
+  Generator(const Config& config, std::uint64_t seed)
+      : config_(config), widths_(derive_widths(config)), seed_(seed), random_(seed) {
     unit_ = std::int64_t{1} << widths_.grid_bits;
     step_ = config.subpixel_bits == 0 ? 2 : 1;  // at S = 0 a vertex has even coordinates
     scene_.name = "random-" + std::to_string(seed);
@@ -47,6 +51,7 @@ class Generator {
       scene_.commands.push_back(draw);
       made += run;
     }
+    set_newer();
     return std::move(scene_);
   }
 
@@ -70,6 +75,8 @@ class Generator {
     lines_raise_ = chance(0.3);
   }
   State state();
+  void set_any(State& s, std::string_view name);
+  void set_newer();
   void clear();
   void line_and_point_state(State& s);
   void primitive(std::size_t corners, bool is_again);
@@ -82,6 +89,7 @@ class Generator {
 
   const Config& config_;
   Widths widths_;
+  std::uint64_t seed_;
   Random random_;
   Scene scene_;
   std::int64_t unit_ = 1;   // subpixels of a pixel
@@ -98,14 +106,13 @@ State Generator::state() {
   State s;
   s.space = Space::window;
   constexpr std::array<DepthFunc, 3> kUsual{DepthFunc::less, DepthFunc::lequal, DepthFunc::equal};
-  s.depth_test = chance(hiz_chunk_ ? 0.9
-                        : is_pile_ ? 0.25
-                                   : 0.5)
-                     ? kUsual[static_cast<std::size_t>(below(hiz_chunk_ ? 2 : 3))]
-                     : static_cast<DepthFunc>(below(8));
+  if (chance(hiz_chunk_ ? 0.9 : is_pile_ ? 0.25 : 0.5))
+    s.depth_test = kUsual[static_cast<std::size_t>(below(hiz_chunk_ ? 2 : 3))];
+  else
+    set_any(s, "depth_test");
   s.depth_write = chance(0.85);
   s.color_write = chance(0.85);
-  s.cull = chance(0.6) ? Cull::none : static_cast<Cull>(below(4));
+  if (!chance(0.6)) set_any(s, "cull");
   s.front = chance(0.5) ? FrontFace::ccw : FrontFace::cw;
   s.shade = chance(0.8) ? Shade::smooth : Shade::flat;
   if (chance(0.25)) s.scissor = scissor();
@@ -118,9 +125,24 @@ State Generator::state() {
   return s;
 }
 
+/// Any value of the state's row in the table.
+void Generator::set_any(State& s, std::string_view name) {
+  const DrawState& row = draw_state(name);
+  row.set(s, random_value(row, chooser(random_)));
+}
+
+/// States of the hardware that came after these five, by random numbers of their own: the scenes of a seed are held by
+/// hashes and cycle counts, so the stream of numbers that makes them stays.
+void Generator::set_newer() {
+  StateRows rows = states_but({"depth_test", "depth_write", "color_write", "cull", "front"});
+  std::erase_if(rows, [](const DrawState* row) { return row->home == StateHome::host; });
+  Random random(~seed_);
+  for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
+}
+
 void Generator::line_and_point_state(State& s) {
   if (s.depth_test >= DepthFunc::greater) s.depth_write = s.depth_write && lines_raise_;
-  s.line_rule = static_cast<LineRule>(below(3));
+  set_any(s, "line_rule");
   if (chance(0.5)) s.line_last = chance(0.5);
   s.point_size = static_cast<double>(unit_ + (chance(0.4) ? 0 : below(sized(12 * unit_)))) / static_cast<double>(unit_);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "model/draw_states.hpp"
 #include "model/host_stream.hpp"
 
 namespace halfplane {
@@ -159,7 +160,7 @@ class Reducer {
   void simplify_states();
   void simplify_vertices();
   template <class Change>
-  void simplify(Change change);
+  bool simplify(Change change);
 
   const Config& config_;
   const FailTest& test_;
@@ -220,43 +221,39 @@ void Reducer::remove() {
 }
 
 /// Applies change(item) to all items at once, and if that no longer fails, to each alone. It returns whether it changed.
+/// Returns whether any change was kept.
 template <class Change>
-void Reducer::simplify(Change change) {
+bool Reducer::simplify(Change change) {
   Items all = items_;
   bool has_changed = false;
   for (Item& item : all) has_changed |= change(item);
-  if (!has_changed || try_items(std::move(all)) || items_.size() > 64) return;
-  for (std::size_t i = 0; i < items_.size(); ++i) {
+  if (!has_changed) return false;
+  if (try_items(std::move(all))) return true;
+  bool is_kept = false;
+  for (std::size_t i = 0; items_.size() <= 64 && i < items_.size(); ++i) {
     Items one = items_;
-    if (change(one[i])) try_items(std::move(one));
+    if (change(one[i])) is_kept |= try_items(std::move(one));
   }
+  return is_kept;
 }
 
+/// Each state of the table; those of the hardware last, and the last of them first: what is culled fails no more, so
+/// that `front` alone may have to stay until `cull` is reset. Hence again, until nothing changes.
 void Reducer::simplify_states() {
-  const auto reset = [this](auto member) {
-    const State plain;
-    simplify([&](Item& item) {
-      if (item.state.*member == plain.*member) return false;
-      item.state.*member = plain.*member;
-      return true;
-    });
-  };
-  reset(&State::scissor);
-  reset(&State::viewport);
-  reset(&State::depth_range);
-  reset(&State::polygon_mode);
-  reset(&State::polygon_offset);
-  reset(&State::line_rule);
-  reset(&State::line_last);
-  reset(&State::point_size);
-  reset(&State::point_clip);
-  reset(&State::shade);
-  reset(&State::provoking);
-  reset(&State::cull);
-  reset(&State::front);
-  reset(&State::color_write);
-  reset(&State::depth_write);
-  reset(&State::depth_test);
+  std::vector<const DrawState*> rows;
+  for (const DrawState& row : draw_states()) rows.push_back(&row);
+  const auto hardware = std::stable_partition(rows.begin(), rows.end(),
+                                              [](const DrawState* row) { return row->home == StateHome::host; });
+  std::reverse(hardware, rows.end());
+  for (bool has_changed = true; has_changed && !is_late();) {
+    has_changed = false;
+    for (const DrawState* row : rows)
+      has_changed |= simplify([row, simplest = row->simplest_value()](Item& item) {
+        if (row->value(item.state) == simplest) return false;
+        row->set(item.state, simplest);
+        return true;
+      });
+  }
 }
 
 void Reducer::simplify_vertices() {
@@ -305,8 +302,8 @@ void to_window_line(Item& item, const LineSetup& line, const Widths& widths, con
   item.state.scissor.reset();  // its box is where it begins
   bool is_first = true;
   line_raster(line, widths, [&](const LinePixel& pixel) {
-    const Vertex v{pixel.x + 0.5, pixel.y + 0.5, pixel.depth / static_cast<double>(widths.depth_code.range.hi), 1,
-                   color(pixel.color)};
+    const Vertex v{pixel.x + 0.5, pixel.y + 0.5,
+                   pixel.code[kDepthPlane] / static_cast<double>(widths.depth().code.range.hi), 1, color(pixel.code)};
     if (std::exchange(is_first, false)) item.v[0] = v;
     item.v[1] = v;
   });
@@ -316,8 +313,11 @@ void to_window_line(Item& item, const LineSetup& line, const Widths& widths, con
 template <class Color>
 void to_window_point(Item& item, const PrimitivePacket& p, double largest, const Color& color) {
   item.topology = Topology::points;
-  item.state.point_size = std::max(p.right - p.left, p.bottom - p.top) + 1;
-  item.v[0] = {(p.left + p.right + 1) / 2.0, (p.top + p.bottom + 1) / 2.0, p.z[0] / largest, 1, color(p.rgba[0])};
+  const PixelBox& box = p.box;
+  const auto& code = p.vertex.code[0];
+  item.state.point_size = std::max(box.right - box.left, box.bottom - box.top) + 1;
+  item.v[0] = {(box.left + box.right + 1) / 2.0, (box.top + box.bottom + 1) / 2.0, code[kDepthPlane] / largest, 1,
+               color(code)};
 }
 
 Scene window_scene(const Scene& scene, const Config& config) {
@@ -331,34 +331,35 @@ Scene window_scene(const Scene& scene, const Config& config) {
     if (sent->command == HostPrimitive::kNoCommand) continue;  // the first clear and the flush
     Item item;
     item.state.space = Space::window;
-    if (p.left > 0 || p.top > 0 || p.right + 1 < scene.width || p.bottom + 1 < scene.height)
-      item.state.scissor = Rect{p.left, p.top, p.right - p.left + 1, p.bottom - p.top + 1};
-    const auto color = [&](std::uint32_t rgba) {
+    const PixelBox& box = p.box;
+    if (box.left > 0 || box.top > 0 || box.right + 1 < scene.width || box.bottom + 1 < scene.height)
+      item.state.scissor = Rect{box.left, box.top, box.right - box.left + 1, box.bottom - box.top + 1};
+    const auto color = [&](const PerPlane<std::uint32_t>& code) {
       std::array<double, 4> c{0, 0, 0, 255};
-      for (int i = 0; i < widths.color_channels; ++i) c[static_cast<std::size_t>(i)] = rgba >> (8 * i) & 0xff;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(widths.color_planes); ++i) c[i] = code[kColorPlane + i];
       return c;
     };
     if (!is_counted(p.kind)) {
       Clear clear;
-      if (p.depth_write != 0) clear.depth = p.z[0] / largest;
-      if (p.color_write != 0) clear.color = color(p.rgba[0]);
+      if (p.state.depth_write) clear.depth = p.vertex.code[0][kDepthPlane] / largest;
+      if (p.state.color_write) clear.color = color(p.vertex.code[0]);
       item.clear = clear;
     } else {
-      item.state.depth_test = static_cast<DepthFunc>(p.depth_test);
-      item.state.depth_write = p.depth_write != 0;
-      item.state.color_write = p.color_write != 0;
-      item.state.cull = static_cast<Cull>(p.cull);
-      item.state.front = p.front_cw != 0 ? FrontFace::cw : FrontFace::ccw;
-      if (p.kind == static_cast<std::uint8_t>(PrimitiveKind::line))
+      const State& drawn = scene.states[std::get<Draw>(scene.commands[sent->command]).state];
+      for (const DrawState& row : draw_states())
+        if (row.home != StateHome::host) row.set(item.state, row.value(drawn));
+      item.state.cull = p.cull;  // none where it was clipped
+      item.state.front = p.front_cw ? FrontFace::cw : FrontFace::ccw;
+      if (p.kind == PrimitiveKind::line)
         to_window_line(item, *sent->line, widths, color);
-      else if (p.kind == static_cast<std::uint8_t>(PrimitiveKind::point))
+      else if (p.kind == PrimitiveKind::point)
         to_window_point(item, p, largest, color);
       else
         for (std::size_t i = 0; i < 3; ++i) {
-          item.v[i].x = p.x[i] / grid;
-          item.v[i].y = p.y[i] / grid;
-          item.v[i].z = p.z[i] / largest;
-          item.v[i].rgba = color(p.rgba[i]);
+          item.v[i].x = p.vertex.x[i] / grid;
+          item.v[i].y = p.vertex.y[i] / grid;
+          item.v[i].z = p.vertex.code[i][kDepthPlane] / largest;
+          item.v[i].rgba = color(p.vertex.code[i]);
         }
     }
     items.push_back(item);

@@ -112,8 +112,8 @@ std::string mismatch_report(const Mismatch& m) {
 
 std::string compared_report(const LockstepResult& result) {
   std::string text;
-  for (std::size_t i = 0; i < kArrows; ++i)
-    text += std::string(kArrowInfo[i].name) + " " + std::to_string(result.compared[i]) + ", ";
+  for (const Arrow arrow : kCompared)
+    text += std::string(info(arrow).name) + " " + std::to_string(result.compared[index(arrow)]) + ", ";
   return text + "memory " + std::to_string(result.memory_compared) + " stamps, counters " +
          std::to_string(result.counters_compared);
 }
@@ -128,7 +128,7 @@ std::vector<JunitCase> junit_cases(const LockstepResult& result) {
     }
     cases.push_back(std::move(c));
   };
-  for (std::size_t i = 0; i < kArrows; ++i) add(std::string(kArrowInfo[i].name), std::to_string(result.compared[i]));
+  for (const Arrow arrow : kCompared) add(std::string(info(arrow).name), std::to_string(result.compared[index(arrow)]));
   add("memory", std::to_string(result.memory_compared));
   add("counters", std::to_string(result.counters_compared));
   if (result.mismatch && result.mismatch->kind == Mismatch::Kind::protocol)

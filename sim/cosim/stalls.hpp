@@ -9,8 +9,8 @@ namespace halfplane {
 [[nodiscard]] constexpr std::uint32_t stall_bits(std::uint64_t seed, std::uint64_t cycle, std::uint64_t threshold) {
   unsigned bits = 0;
   if (threshold != 0)
-    for (int stream = 0; stream < stall_memory; ++stream)
-      bits |= (is_stalled(seed, stream, cycle, threshold) ? 1U : 0U) << stream;
+    for (const Arrow arrow : kElastic)
+      if (is_stalled(seed, info(arrow).flow.stall, cycle, threshold)) bits |= stall_bit(arrow);
   return bits;
 }
 

@@ -47,7 +47,7 @@ class VerilatedDut final : public Dut {
   /// raster_cosim registers its inputs, so the edge that ends the last cycle is the one at which they are taken over.
   const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) override {
     if (top_->clk_i != 0) fall();  // a cycle more that nobody counts, as for the counters after the last
-    top_->stall_i = static_cast<std::uint16_t>(stalls);
+    top_->stall_i = static_cast<std::remove_reference_t<decltype(top_->stall_i)>>(stalls);
     top_->request_ready_i = request_ready;
     top_->clk_i = 1;
     top_->eval();
@@ -124,10 +124,17 @@ class VerilatedDut final : public Dut {
     top_->rst_ni = 1;
     top_->eval();
     time_ = 0;  // so that cycle c begins at time 2 c
-    out_.packet = {&top_->triangle_o, &top_->setup_o,  &top_->context_o,    &top_->tile_o,
-                   &top_->edges_o,    &top_->stamp_o,  &top_->line_pixel_o, &top_->fragment_o,
-                   &top_->write_o,    &top_->retire_o, &top_->request_o};
+#define HALFPLANE_CONNECT(name, ...) \
+  connect<Arrow::name>([](auto& top) -> decltype(&top.name##_o) { return &top.name##_o; });
+    HALFPLANE_ARROWS(HALFPLANE_CONNECT)
+#undef HALFPLANE_CONNECT
     out_.counters = &top_->counters_o;
+  }
+
+  /// `port`: where raster_cosim shows the packets of arrow A, if the RTL sends them.
+  template <Arrow A, class Port>
+  void connect([[maybe_unused]] Port port) {
+    if constexpr (is_compared(A)) out_.packet[index(A)] = port(*top_);
   }
 
   void fall() {

@@ -21,31 +21,6 @@ namespace {
 
 constexpr int max_side = 16384;  // pixels along a side of the target
 
-/// Spreads states over buckets, so that a file with a new state for each triangle is still read in linear time.
-struct StateHash {
-  std::size_t operator()(const State& state) const {
-    std::size_t hash = 0;
-    const auto mix = [&hash](std::size_t value) { hash = (hash ^ value) * 0x9e3779b97f4a7c15u + (hash >> 29); };
-    const auto mix_number = [&mix](double value) { mix(std::hash<double>{}(value)); };
-    for (const int value :
-         {static_cast<int>(state.space), static_cast<int>(state.depth_test), static_cast<int>(state.depth_write),
-          static_cast<int>(state.color_write), static_cast<int>(state.cull), static_cast<int>(state.front),
-          static_cast<int>(state.shade), static_cast<int>(state.color_interp), static_cast<int>(state.clip_z),
-          static_cast<int>(state.provoking), static_cast<int>(state.polygon_mode), static_cast<int>(state.line_rule),
-          static_cast<int>(state.line_last.value_or(false)), static_cast<int>(state.point_clip),
-          static_cast<int>(state.pixel_center), static_cast<int>(state.origin)})
-      mix(static_cast<std::size_t>(value));
-    const Rect scissor = state.scissor.value_or(Rect{});
-    for (const int value : {scissor.x, scissor.y, scissor.width, scissor.height}) mix(static_cast<std::size_t>(value));
-    const Viewport viewport = state.viewport.value_or(Viewport{});
-    for (const double value : {viewport.x, viewport.y, viewport.width, viewport.height}) mix_number(value);
-    for (const double value : state.depth_range) mix_number(value);
-    for (const double value : state.polygon_offset) mix_number(value);
-    mix_number(state.point_size);
-    return hash;
-  }
-};
-
 /// Builds the scene, one line at a time.
 class CaptureReader {
  public:
@@ -83,6 +58,7 @@ class CaptureReader {
   std::uint32_t state_number_ = 0;
   std::uint32_t object_ = 0;
   std::size_t target_line_ = 0;  // 0: not given yet
+  /// By hash, so that a file with a new state for each triangle is still read in linear time.
   std::unordered_map<State, std::uint32_t, StateHash> state_numbers_;
   std::unordered_map<std::string, std::uint32_t> object_numbers_{{"", 0}};
 };
@@ -119,7 +95,7 @@ void CaptureReader::read_rare_line(std::string_view word) {
   if (word == "clear") return read_clear();
   if (word == "target") return read_target();
   if (word == "space") {
-    capture_space().read(text_, state_);
+    read_state_value(text_, capture_space(), state_);
     state_changed_ = true;
   } else if (word == "frame") {
     scene_.commands.emplace_back(EndFrame{});
@@ -183,12 +159,12 @@ void CaptureReader::read_state() {
   const auto settings = capture_states();
   const auto setting = std::find_if(settings.begin(), settings.end(), [&](const auto& s) { return s.name == name; });
   if (setting != settings.end()) {
-    setting->read(text_, state_);
+    read_state_value(text_, *setting, state_);
     state_changed_ = true;
     return;
   }
   std::string known;
-  for (const CaptureState& s : settings) known.append(known.empty() ? "" : ", ").append(s.name);
+  for (const DrawState& s : settings) known.append(known.empty() ? "" : ", ").append(s.name);
   text_.fail((name.empty() ? "state without a name" : "state " + quoted_word(name) + " is not known") +
              "; write one of " + known);
 }

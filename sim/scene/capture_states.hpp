@@ -1,4 +1,4 @@
-// The `state` settings of a capture: one table that the reader, the writer and the messages go by.
+// The draw states of a capture, read and written as their table (model/draw_states.hpp) has them; and its words for draws.
 #pragma once
 
 #include <array>
@@ -7,23 +7,22 @@
 #include <string_view>
 
 #include "capture_text.hpp"
+#include "model/draw_states.hpp"
 #include "model/scene.hpp"
 
 namespace halfplane {
 
-/// One setting: how it is named, read, written and compared.
-struct CaptureState {
-  std::string_view name;
-  void (*read)(CaptureText& text, State& state);        ///< takes the values from the line
-  void (*write)(const State& state, std::string& out);  ///< appends the values, each after a blank
-  bool (*is_same)(const State& a, const State& b);      ///< whether a and b agree in this setting
-};
+/// Reads the value of `row` from the line into `state`. `space` has a line of its own, the others stand on `state` lines.
+void read_state_value(CaptureText& text, const DrawState& row, State& state);
 
-/// All settings of `state` lines, in the order in which they are written.
-[[nodiscard]] std::span<const CaptureState> capture_states();
+/// Appends the value of `row`, each of its words and numbers after a blank.
+void write_state_value(const State& state, const DrawState& row, std::string& out);
 
-/// `space` has a line of its own; otherwise it is a setting like the others.
-[[nodiscard]] const CaptureState& capture_space();
+/// The rows that `state` lines may name: all but `space`, in the order in which they are written.
+[[nodiscard]] std::span<const DrawState> capture_states();
+
+/// The row of `space`.
+[[nodiscard]] const DrawState& capture_space();
 
 /// How a draw is written: its word, and how many indices it takes.
 struct CaptureDraw {

@@ -123,19 +123,19 @@ void CaptureWriter::write_vertex(const Vertex& vertex) {
 }
 
 void CaptureWriter::write_state(const State& wanted) {
-  const CaptureState& space_line = capture_space();
-  const auto write = [&](const CaptureState& setting) {
-    buffer_ += setting.name;
-    setting.write(wanted, buffer_);
+  const auto write = [&](const DrawState& row) {
+    buffer_ += row.name;
+    write_state_value(wanted, row, buffer_);
     buffer_ += '\n';
   };
-  if (!space_is_named_ || !space_line.is_same(state_, wanted)) write(space_line);
+  if (!space_is_named_ || !capture_space().is_same(state_, wanted)) write(capture_space());
   space_is_named_ = true;
-  for (const CaptureState& setting : capture_states()) {
-    if (setting.is_same(state_, wanted)) continue;
-    buffer_ += "state ";
-    write(setting);
-  }
+  if (!(state_ == wanted))
+    for (const DrawState& row : capture_states()) {
+      if (row.is_same(state_, wanted)) continue;
+      buffer_ += "state ";
+      write(row);
+    }
   state_ = wanted;
 }
 

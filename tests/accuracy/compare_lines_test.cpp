@@ -119,19 +119,7 @@ Scene random_state_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
   for (int d = 0; d < 20; ++d) {
-    State state = SceneBuilder::window_state();
-    state.depth_test = static_cast<DepthFunc>(random.index(8));
-    state.depth_write = random.index(4) != 0;
-    state.cull = static_cast<Cull>(random.index(5) % 4);
-    state.shade = static_cast<Shade>(random.index(2));
-    state.provoking = static_cast<Provoking>(random.index(2));
-    state.polygon_mode = static_cast<PolygonMode>(random.index(3));
-    if (random.index(2) == 0) state.polygon_offset = {1.0, random.index(3) - 1.0};  // level planes: no slope
-    state.line_rule = static_cast<LineRule>(random.index(3));
-    state.point_size = 1 + random.index(64) / 16.0;
-    if (random.index(2) == 0)
-      state.scissor = Rect{random.index(30) - 5, random.index(30) - 5, 1 + random.index(40), 30};
-    scene.states.push_back(state);
+    scene.states.push_back(random_state(SceneBuilder::window_state(), states_but({"space"}), chooser(random)));
     const double z = random.index(6) / 5.0;  // equal depths meet often
     const std::size_t first = scene.indices.size();
     for (int i = 3 + random.index(6); i > 0; --i) {

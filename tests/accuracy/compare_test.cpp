@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
+#include "model/engines/scalar.hpp"
 #include "sim/study/compare/eye_depth.hpp"
 
 namespace halfplane {
@@ -250,6 +252,180 @@ TEST(CompareMustFail, AnotherTriangleInFrontIsNotComparedButCounted) {
   EXPECT_EQ(c.compared_pixels, 255u);
   EXPECT_EQ(c.coverage_class[5], CoverageClass::other);
   EXPECT_TRUE(std::isnan(c.depth_error_lsb[5]));
+}
+
+// --- before the operations, and in them ---
+
+/// The specification with something done to its fragments.
+CompareOptions with_fragments(std::function<void(TappedFragment&)> damage) {
+  CompareOptions options;
+  options.specification = [damage](const Scene& scene, const Config& config, const RenderOptions& asked) {
+    RenderOptions changed = asked;
+    changed.fragment_tap = [&](const TappedFragment& fragment) {
+      TappedFragment copy = fragment;
+      damage(copy);
+      asked.fragment_tap(copy);
+    };
+    return render_scalar(scene, config, changed);
+  };
+  return options;
+}
+
+bool blames_fragments(const std::vector<std::string>& broken) {
+  return std::any_of(broken.begin(), broken.end(), [](const auto& line) { return line.starts_with("fragments: "); });
+}
+
+/// A triangle, a line and a point, apart from each other.
+Scene one_of_each() {
+  SceneBuilder builder(32, 32);
+  builder.triangle(at(1.3, 2.1, 0.1, kRed), at(30.7, 4.9, 0.9, kGreen), at(7.7, 20.3, 0.4, kBlue));
+  Scene& scene = builder.scene;
+  const std::size_t first = scene.indices.size();
+  for (const Vertex& v : {at(2.5, 28.5, 0.2, kRed), at(20.5, 25.5, 0.7, kBlue), at(28.5, 28.5, 0.5, kGreen)}) {
+    scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+    scene.vertices.push_back(v);
+  }
+  scene.commands.push_back(Draw{0, 0, Topology::lines, first, 2, 0});
+  scene.commands.push_back(Draw{0, 0, Topology::points, first + 2, 1, 0});
+  return scene;
+}
+
+TEST(CompareMustFail, APlaneOffByOneLsbBeforeTheOperationsIsBlamedOnTheFragmentsAlone) {
+  for (const auto name : {"embedded", "full"}) {
+    const Config config = preset(name);
+    for (const auto kind : {PrimitiveKind::triangle, PrimitiveKind::line, PrimitiveKind::point})
+      for (std::size_t plane = 0; plane < judged_planes(config).size(); ++plane) {
+        SCOPED_TRACE(std::string(name) + ", kind " + std::to_string(static_cast<int>(kind)) + ", plane " +
+                     std::to_string(plane));
+        const Comparison c = compare(one_of_each(), config, with_fragments([&](TappedFragment& f) {
+                                       if (f.kind == kind) ++f.plane[plane].code;
+                                     }));
+        const auto broken = broken_bounds(c, config);
+        if (kind == PrimitiveKind::point) {
+          EXPECT_EQ(c.fragments.planes[plane].worst_of_lines, 1);  // exact but for the fault: on the bound of a colour
+        } else {
+          ASSERT_EQ(broken.size(), 1u);
+          EXPECT_TRUE(broken[0].starts_with("fragments: " + std::string(judged_planes(config)[plane].name)))
+              << broken[0];
+        }
+        EXPECT_EQ(c.stage_mismatches, 0u);
+        EXPECT_EQ(c.fragments.coverage.mismatches, 0u);
+      }
+  }
+}
+
+TEST(CompareMustFail, AnUnroundedPlaneOffByOneLsbIsBlamedOnTheFragments) {
+  const Config config = preset("embedded");
+  const Comparison c =
+      compare(one_of_each(), config,
+              with_fragments([](TappedFragment& f) { f.plane[2].unrounded += std::int64_t{1} << f.guard_bits; }));
+  EXPECT_TRUE(blames_fragments(broken_bounds(c, config)));
+  EXPECT_GT(c.fragments.planes[2].worst_unrounded, 0.9);
+  EXPECT_LT(c.fragments.planes[1].worst_unrounded, 0.5);
+}
+
+TEST(CompareMustFail, AFragmentOnePixelAsideIsBlamedOnTheFragments) {
+  const Config config = preset("embedded");
+  for (const auto& [x, y] : {std::pair{10, 11}, {8, 27}, {28, 28}}) {  // of the triangle, the line, the point
+    std::uint64_t moved = 0;
+    const auto move = [&, x = x, y = y](TappedFragment& f) {
+      if (f.x == x && f.y == y) ++f.x, ++moved;
+    };
+    const Comparison c = compare(one_of_each(), config, with_fragments(move));
+    ASSERT_EQ(moved, 1u) << x << ", " << y;
+    EXPECT_EQ(c.fragments.coverage.mismatches,
+              2u);  // one pixel lacks it, and one has it twice or without a right to it
+    EXPECT_EQ(c.oracle.mismatches, 0u);
+    EXPECT_TRUE(blames_fragments(broken_bounds(c, config)));
+  }
+}
+
+/// The engine of `options` draws with another depth function than the scene asks for.
+Engine with_depth_test(Engine engine, DepthFunc func) {
+  return [engine, func](const Scene& scene, const Config& config, const RenderOptions& options) {
+    Scene other = scene;
+    for (State& state : other.states) state.depth_test = func;
+    return engine(other, config, options);
+  };
+}
+/// The engine of `options` drops the fraction of a channel where the pack rounds it, and swaps nothing.
+Engine with_truncated_pack(Engine engine) {
+  return [engine](const Scene& scene, const Config& config, const RenderOptions& options) {
+    RenderOptions changed = options;
+    std::vector<std::array<std::uint32_t, 4>> code(static_cast<std::size_t>(scene.width * scene.height));
+    Rendering rendering = engine(scene, config, changed);
+    RenderOptions taps;
+    taps.fragment_tap = [&](const TappedFragment& f) {
+      for (std::size_t c = 0; c < 4; ++c)
+        code[static_cast<std::size_t>(f.y * scene.width + f.x)][c] = f.plane[c + 1].code;
+    };
+    const Rendering made = render_scalar(scene, config, taps);
+    for (int y = 0; y < scene.height; ++y)
+      for (int x = 0; x < scene.width; ++x) {
+        const auto& c = code[static_cast<std::size_t>(y * scene.width + x)];
+        if (c[0] + c[1] + c[2] != 0)
+          rendering.frame.color[rendering.frame.at(x, y)] =
+              c[0] * 31 / 256 << 11 | c[1] * 63 / 256 << 5 | c[2] * 31 / 256;
+      }
+    return rendering;
+  };
+}
+
+/// Two triangles of the same depth and another colour each; less shows the first.
+Scene equal_depths() {
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::less;
+  SceneBuilder builder(16, 16, state);
+  builder.triangle(at(0, 0, 0.5, kRed), at(40, 0, 0.5, kRed), at(0, 40, 0.5, kRed))
+      .triangle(at(0, 0, 0.5, kBlue), at(40, 0, 0.5, kBlue), at(0, 40, 0.5, kBlue));
+  return builder.scene;
+}
+
+TEST(CompareMustFail, AWrongDepthFunctionIsBlamedOnTheFramebufferAndNotOnTheFragments) {
+  const Config config = preset("embedded");
+  EXPECT_TRUE(broken_bounds(compare(equal_depths(), config), config).empty());
+  for (const bool is_in_both : {false, true}) {
+    CompareOptions options;
+    options.engine = with_depth_test(render_functional, DepthFunc::lequal);
+    // The golden's own operations see it even when the specification has it as well.
+    if (is_in_both) options.specification = with_depth_test(render_scalar, DepthFunc::lequal);
+    const Comparison c = compare(equal_depths(), config, options);
+    EXPECT_GE(c.stage_mismatches, 256u);
+    const auto broken = broken_bounds(c, config);
+    EXPECT_FALSE(broken.empty());
+    EXPECT_FALSE(blames_fragments(broken)) << broken.front();
+    EXPECT_GT(c.color_datapath.max, 20);
+  }
+}
+
+TEST(CompareMustFail, AWrongPackIsBlamedOnTheFramebufferAndNotOnTheFragments) {
+  const Config config = preset("embedded");
+  EXPECT_TRUE(broken_bounds(compare(one_of_each(), config), config).empty());
+  for (const bool is_in_both : {false, true}) {
+    CompareOptions options;
+    options.engine = with_truncated_pack(render_functional);
+    if (is_in_both) options.specification = with_truncated_pack(render_scalar);
+    const Comparison c = compare(one_of_each(), config, options);
+    const auto broken = broken_bounds(c, config);
+    ASSERT_FALSE(broken.empty());
+    EXPECT_FALSE(blames_fragments(broken)) << broken.front();
+    EXPECT_GT(c.color_datapath.max, 1);
+    EXPECT_EQ(c.stage_mismatches > 0, !is_in_both);
+    EXPECT_LT(c.fragments.planes[1].worst, 0.7);
+  }
+}
+
+TEST(Compare, FragmentsAreJudgedHiddenOnesToo) {
+  const Config config = preset("embedded");
+  const Comparison c = compare(equal_depths(), config);
+  EXPECT_EQ(c.fragments.fragments, 512u);
+  EXPECT_EQ(c.fragments.coverage.mismatches, 0u);
+  EXPECT_GE(c.fragments.coverage.samples, 512u);
+  EXPECT_EQ(c.fragments.planes.size(), 4u);
+  const Comparison of_all = compare(one_of_each(), config);
+  EXPECT_EQ(of_all.fragments.fragments, of_all.rendering.counters.covered);
+  EXPECT_GT(of_all.fragments.planes[0].worst, 0.4);
+  EXPECT_GT(of_all.fragments.planes[0].worst_of_lines, 0.3);
 }
 
 }  // namespace

@@ -18,25 +18,12 @@ using test::SceneBuilder;
 
 constexpr int kWidth = 40, kHeight = 36;
 
-State random_state(Random& random) {
-  State state;
-  state.space = Space::window;
-  state.depth_test = static_cast<DepthFunc>(random.index(8));
-  state.depth_write = random.index(4) != 0;
-  state.color_write = random.index(4) != 0;
-  state.cull = static_cast<Cull>(random.index(5) % 4);
-  state.front = random.index(2) == 0 ? FrontFace::ccw : FrontFace::cw;
-  state.shade = random.index(2) == 0 ? Shade::smooth : Shade::flat;
-  if (random.index(2) == 0) state.scissor = Rect{random.index(30) - 5, random.index(30) - 5, 1 + random.index(40), 30};
-  return state;
-}
-
 /// Draws of every topology at one of five depths each, on the 1/16 pixel grid; a clear now and then.
 Scene random_window_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
   for (int d = 0; d < 24; ++d) {
-    scene.states.push_back(random_state(random));
+    scene.states.push_back(random_state(SceneBuilder::window_state(), states_but({"space"}), chooser(random)));
     const auto state = static_cast<std::uint32_t>(scene.states.size() - 1);
     if (random.index(8) == 0) {
       Clear clear{state, {}, {}};

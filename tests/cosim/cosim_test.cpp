@@ -82,7 +82,7 @@ TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
       SCOPED_TRACE(factory.name + ", " + std::string(kMemoryKinds[static_cast<std::size_t>(kind)]));
       const Session session = run(factory, options, random_scenes(factory.config, 8, 250));
       EXPECT_EQ(describe(session), "");
-      EXPECT_GT(session.result.cycles_compared[static_cast<std::size_t>(Boundary::response)], 1000u);
+      EXPECT_GT(session.result.cycles_compared[index(Arrow::response)], 1000u);
     }
 }
 
@@ -203,8 +203,6 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
 }
 
 TEST(Cosim, TheStageTableOfTheCycleEngineIsThatOfTheRtl) {
-  constexpr std::array kBoundaryOf{Boundary::triangle, Boundary::setup,      Boundary::tile,
-                                   Boundary::stamp,    Boundary::line_pixel, Boundary::fragment};
   for (const DutFactory& factory : verilated_duts())
     for (const char* name : {"city:4", "wireframe:3"}) {
       const int width = std::min(96, factory.config.target_width), height = std::min(64, factory.config.target_height);
@@ -217,11 +215,11 @@ TEST(Cosim, TheStageTableOfTheCycleEngineIsThatOfTheRtl) {
       EXPECT_EQ(cycle.cycles, rtl.run.cycles);
       EXPECT_EQ(cycle.raster_cycles, rtl.run.raster_cycles);
       EXPECT_EQ(cycle.tile_cycles, rtl.run.tile_cycles);
-      for (std::size_t i = 0; i < kStreams; ++i) {
-        const StreamUse& use = cycle.use[static_cast<std::size_t>(kBoundaryOf[i])];
-        EXPECT_EQ(use.busy, rtl.run.use[i].busy) << kStreamStages[i];
-        EXPECT_EQ(use.stalled, rtl.run.use[i].stalled) << kStreamStages[i];
-        EXPECT_EQ(use.starved + rtl.run.clocks - rtl.run.cycles, rtl.run.use[i].starved) << kStreamStages[i];
+      for (std::size_t i = 0; i < kStreams.size(); ++i) {
+        const StreamUse& use = cycle.use[index(kStreams[i])];
+        EXPECT_EQ(use.busy, rtl.run.use[i].busy) << sender_name(kStreams[i]);
+        EXPECT_EQ(use.stalled, rtl.run.use[i].stalled) << sender_name(kStreams[i]);
+        EXPECT_EQ(use.starved + rtl.run.clocks - rtl.run.cycles, rtl.run.use[i].starved) << sender_name(kStreams[i]);
       }
     }
 }

@@ -3,6 +3,7 @@
   // update, and a clear sets it. (1) When the stage decides by the bound, it is that of every earlier visit. (2) When it
   // rejects, the real depth test fails for any fragment not before depth_min against any stored depth not behind the bound.
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;
   localparam int SAMPLES = raster_pkg::SAMPLES;
   (* anyconst *) logic [TX-1:0] any_x;
   (* anyconst *) logic [TY-1:0] any_y;
@@ -11,14 +12,14 @@
   logic           has_bound_q;  // it was written once; before that the stream has no triangle
   logic           is_it, retires_it;
   assign is_it      = tile_x_q == any_x && tile_y_q == any_y;
-  assign retires_it = retire_valid_i && retire_i.tile_x == any_x && retire_i.tile_y == any_y;
+  assign retires_it = retire_valid_i && retire_i.key.tile_x == any_x && retire_i.key.tile_y == any_y;
   always_comb assume (32'(any_y) < raster_pkg::TILES_Y && 32'(tile_y_q) < raster_pkg::TILES_Y);
   always_ff @(posedge clk_i) begin
     if (!rst_ni) has_bound_q <= 1'b0;
     else if (clears && is_it) begin
-      bound_g     <= s_q.depth_min[Z-1-:HIZ];
+      bound_g     <= s_q.range.low[Z-1-:HIZ];
       has_bound_q <= 1'b1;
-    end else if (retires_it && retire_i.update != 2'd0 && !clears) begin
+    end else if (retires_it && retire_i.update != raster_pkg::HIZ_UPDATE_NONE && !clears) begin
       bound_g     <= retire_i.hiz_code;
       has_bound_q <= 1'b1;
     end
@@ -26,7 +27,7 @@
 
   // Visits retire in the order in which they started, and no more of them than started.
   always_comb if (retire_valid_i)
-    assume (visit_valid_q[oldest_q] && {retire_i.tile_y, retire_i.tile_x} == visit_tile_q[32'(oldest_q)*(TX+TY)+:TX+TY]);
+    assume (visit_valid_q[oldest_q] && {retire_i.key.tile_y, retire_i.key.tile_x} == visit_tile_q[32'(oldest_q)*(TX+TY)+:TX+TY]);
 
   logic decides;
   assign decides = runs_q && state_q == BOUND && is_it && has_bound_q;
@@ -49,10 +50,10 @@
   logic rejected_q;
   logic [SAMPLES*CODE-1:0] stored;
   always_comb begin
-    fragment             = '0;
-    fragment.mask        = '1;
-    fragment.depth_test  = s_q.depth_test;
-    fragment.depth       = any_fragment;
+    fragment                  = '0;
+    fragment.mask             = '1;
+    fragment.state.depth_test = s_q.state.depth_test;
+    for (int s = 0; s < SAMPLES; s++) fragment.code[s*CODES+:CODE] = any_fragment[s*CODE+:CODE];
   end
   assign stored = any_stored;
   logic access_valid, write_valid, retire_valid, fragment_ready;
@@ -67,14 +68,14 @@
   logic [CODE-1:0] depth_min_q, farthest_q;
   always_ff @(posedge clk_i) begin
     rejected_q  <= decides && is_behind;
-    depth_min_q <= s_q.depth_min;
+    depth_min_q <= s_q.range.low[0+:CODE];
     farthest_q  <= (CODE'(bound_g) << (CODE - HIZ)) | CODE'((1 << (CODE - HIZ)) - 1);
   end
   genvar k;
   generate
     for (k = 0; k < SAMPLES; k++) begin : gen_proof
       always_comb begin
-        assume (any_fragment[k*CODE+:CODE] >= s_q.depth_min);
+        assume (any_fragment[k*CODE+:CODE] >= s_q.range.low[0+:CODE]);
         assume (any_stored[k*CODE+:CODE] <= farthest_q);
       end
     end

@@ -6,14 +6,14 @@
   logic          goes, wraps;
   var raster_pkg::setup_packet_t g_q;
   assign goes  = steps && !is_last_tile;
-  assign wraps = tile_x_g == g_q.right[PX-1:TS];
+  assign wraps = tile_x_g == g_q.box.right[PX-1:TS];
   always_ff @(posedge clk_i) begin
     if (takes) begin
       g_q      <= setup_i;
-      tile_x_g <= setup_i.left[PX-1:TS];
-      tile_y_g <= setup_i.top[PY-1:TS];
+      tile_x_g <= setup_i.box.left[PX-1:TS];
+      tile_y_g <= setup_i.box.top[PY-1:TS];
     end else if (goes) begin
-      tile_x_g <= wraps ? g_q.left[PX-1:TS] : tile_x_g + TX'(1);
+      tile_x_g <= wraps ? g_q.box.left[PX-1:TS] : tile_x_g + TX'(1);
       if (wraps) tile_y_g <= tile_y_g + TY'(1);
     end
   end
@@ -21,11 +21,10 @@
   assign walks = runs_q && (state_q == WALK || state_q == BOUND) && has_walk;
   always_comb if (walks) begin
     assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g);
-    assert (tile_o.depth_anchor == gen_proof_plane[0].tile_q[DP-1-:LD]);
   end
   always_comb if (runs_q && state_q != IDLE) assert (s_q == g_q);
   always_comb if (runs_q && state_q == PREPARE && has_walk)
-    assert (tile_x_q == g_q.left[PX-1:TS] && tile_y_q == g_q.top[PY-1:TS] && tile_x_g == tile_x_q && tile_y_g == tile_y_q);
+    assert (tile_x_q == g_q.box.left[PX-1:TS] && tile_y_q == g_q.box.top[PY-1:TS] && tile_x_g == tile_x_q && tile_y_g == tile_y_q);
   genvar k;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
@@ -49,13 +48,15 @@
       assign worst = (TE'(gen_edge[k].worst) <<< TS) - TE'(gen_edge[k].worst);
       always_comb if (walks) assert (gen_edge[k].best_q == best && gen_edge[k].worst_q == worst);
     end
-    for (k = 0; k < 1 + CHANNELS; k++) begin : gen_proof_plane
-      localparam int P = k == 0 ? DP : CP;
-      localparam int AT = k == 0 ? 0 : k - 1;
+    for (k = 0; k < PLANES; k++) begin : gen_proof_plane
+      localparam int P = PLANE_BITS_OF[32*k+:32];
+      localparam int AT = PLANE_AT[32*k+:32];
+      localparam int B = LOCAL_BITS_OF[32*k+:32];
+      localparam int LOCAL = LOCAL_AT[32*k+:32];
       logic [P-1:0] tile_q, row_first_q, step_x, step_y, value;
-      assign value  = k == 0 ? P'(setup_i.depth_value) : setup_i.color_value[AT*CP+:P];
-      assign step_x = (k == 0 ? P'(g_q.depth_step_x) : g_q.color_step_x[AT*CP+:P]) << (TS + S);
-      assign step_y = (k == 0 ? P'(g_q.depth_step_y) : g_q.color_step_y[AT*CP+:P]) << (TS + S);
+      assign value  = setup_i.value[AT+:P];
+      assign step_x = g_q.step_x[AT+:P] << (TS + S);
+      assign step_y = g_q.step_y[AT+:P] << (TS + S);
       always_ff @(posedge clk_i) begin
         if (takes) begin
           tile_q      <= value;
@@ -65,9 +66,8 @@
           if (wraps) row_first_q <= row_first_q + step_y;
         end
       end
-      always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk))) begin
-        if (k == 0) assert (depth_q == tile_q[DP-1:0] && depth_row_q == row_first_q[DP-1:0]);
-        else assert (gen_color[AT].value_q == tile_q && gen_color[AT].row_q == row_first_q);
-      end
+      always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
+        assert (gen_plane[k].value_q == tile_q && gen_plane[k].row_q == row_first_q);
+      always_comb if (walks) assert (tile_o.anchor[LOCAL+:B] == tile_q[P-1-:B]);
     end
   endgenerate

@@ -12,8 +12,8 @@
   end
   // From outside: a box, a slot is freed when one is used, a visit retires when one is under way.
   always_comb begin
-    if (setup_valid_i) assume (setup_i.left <= setup_i.right && setup_i.top <= setup_i.bottom);
-    if (setup_valid_i) assume (setup_i.kind != FAST_CLEAR || (setup_i.left == '0 && setup_i.top == '0));
+    if (setup_valid_i) assume (setup_i.box.left <= setup_i.box.right && setup_i.box.top <= setup_i.box.bottom);
+    if (setup_valid_i) assume (setup_i.kind != raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || (setup_i.box.left == '0 && setup_i.box.top == '0));
     if (slot_free_i) assume (used_q > (SLOT + 1)'(state_q != IDLE));
     if (retire_valid_i) assume (visit_valid_q[oldest_q]);
   end
@@ -23,20 +23,20 @@
     else visits_q <= visits_q + (VISIT + 1)'(starts_visit) - (VISIT + 1)'(retire_valid_i);
   end
   logic is_before_end;  // the walk has not passed the last tile
-  assign is_before_end = tile_y_q < s_q.bottom[PY-1:TS] || (tile_y_q == s_q.bottom[PY-1:TS] && tile_x_q <= s_q.right[PX-1:TS]);
+  assign is_before_end = tile_y_q < s_q.box.bottom[PY-1:TS] || (tile_y_q == s_q.box.bottom[PY-1:TS] && tile_x_q <= s_q.box.right[PX-1:TS]);
   always_comb if (runs_q) begin
     assert (under_way_q == (state_q != IDLE));
     if (takes) assert (!under_way_q || ends);
-    if (tile_valid_o) assert (under_way_q && tile_o.primitive_id == g_q.primitive_id && tile_o.kind == g_q.kind);
-    if (under_way_q) assert (s_q == g_q && s_q.left <= s_q.right && s_q.top <= s_q.bottom);
+    if (tile_valid_o) assert (under_way_q && tile_o.key.primitive_id == g_q.primitive_id && tile_o.kind == g_q.kind);
+    if (under_way_q) assert (s_q == g_q && s_q.box.left <= s_q.box.right && s_q.box.top <= s_q.box.bottom);
     assert (used_q <= (SLOT + 1)'(SLOTS) && used_q >= (SLOT + 1)'(under_way_q));
     assert (visits_q <= (VISIT + 1)'(VISITS));
     if (starts_visit) assert (!visit_is_full);
     assert (state_q <= CLEAR);
-    if (state_q == CLEAR) assert (s_q.kind == FAST_CLEAR);
-    if (under_way_q) assert (s_q.kind != FAST_CLEAR || (s_q.left == '0 && s_q.top == '0));
+    if (state_q == CLEAR) assert (s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR);
+    if (under_way_q) assert (s_q.kind != raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || (s_q.box.left == '0 && s_q.box.top == '0));
     if (state_q == WALK || state_q == BOUND) assert (has_walk);
-    if (under_way_q) assert (is_before_end && tile_x_q >= s_q.left[PX-1:TS] && tile_x_q <= s_q.right[PX-1:TS]);
+    if (under_way_q) assert (is_before_end && tile_x_q >= s_q.box.left[PX-1:TS] && tile_x_q <= s_q.box.right[PX-1:TS]);
     if (state_q == END) assert (is_last_tile);
     // With a ready consumer and every visit retired each state moves on.
     if (tile_ready_i && visits_are_done && (state_q == WALK || state_q == BOUND))

@@ -3,14 +3,14 @@
   // guard band is larger.
   localparam int WIDE = C + 4;
   logic signed [WIDE-1:0] wide_px, wide_py;
-  assign wide_px = (WIDE'({left_q[PX-1:TS], {TS{1'b0}}}) << S) + WIDE'(1 << (S - 1));
-  assign wide_py = (WIDE'({top_q[PY-1:TS], {TS{1'b0}}}) << S) + WIDE'(1 << (S - 1));
+  assign wide_px = (WIDE'({box_q.left[PX-1:TS], {TS{1'b0}}}) << S) + WIDE'(1 << (S - 1));
+  assign wide_py = (WIDE'({box_q.top[PY-1:TS], {TS{1'b0}}}) << S) + WIDE'(1 << (S - 1));
   logic scissor_is_inside;
-  assign scissor_is_inside = 32'(p_q.left) < raster_pkg::TARGET_WIDTH && 32'(p_q.right) < raster_pkg::TARGET_WIDTH &&
-                             32'(p_q.top) < raster_pkg::TARGET_HEIGHT && 32'(p_q.bottom) < raster_pkg::TARGET_HEIGHT;
+  assign scissor_is_inside = 32'(p_q.box.left) < raster_pkg::TARGET_WIDTH && 32'(p_q.box.right) < raster_pkg::TARGET_WIDTH &&
+                             32'(p_q.box.top) < raster_pkg::TARGET_HEIGHT && 32'(p_q.box.bottom) < raster_pkg::TARGET_HEIGHT;
   always_comb if (primitive_valid_i)
-    assume (32'(primitive_i.left) < raster_pkg::TARGET_WIDTH && 32'(primitive_i.right) < raster_pkg::TARGET_WIDTH &&
-            32'(primitive_i.top) < raster_pkg::TARGET_HEIGHT && 32'(primitive_i.bottom) < raster_pkg::TARGET_HEIGHT);
+    assume (32'(primitive_i.box.left) < raster_pkg::TARGET_WIDTH && 32'(primitive_i.box.right) < raster_pkg::TARGET_WIDTH &&
+            32'(primitive_i.box.top) < raster_pkg::TARGET_HEIGHT && 32'(primitive_i.box.bottom) < raster_pkg::TARGET_HEIGHT);
   always_comb if (runs_q && step_q != IDLE) begin
     assert (scissor_is_inside);
     assert (WIDE'(dx) == WIDE'(x1) - WIDE'(x0) && WIDE'(dy) == WIDE'(y1) - WIDE'(y0));
@@ -24,6 +24,6 @@
   end
   always_comb if (runs_q && (step_q == EDGES || step_q == OFFER)) begin
     if (!is_empty_q)
-      assert (left_q <= right_q && 32'(right_q) < raster_pkg::TARGET_WIDTH && top_q <= bottom_q &&
-              32'(bottom_q) < raster_pkg::TARGET_HEIGHT);
+      assert (box_q.left <= box_q.right && 32'(box_q.right) < raster_pkg::TARGET_WIDTH && box_q.top <= box_q.bottom &&
+              32'(box_q.bottom) < raster_pkg::TARGET_HEIGHT);
   end

@@ -16,10 +16,10 @@
   end
   always_comb if (is_visit_stamp) begin
     assume ((STAMP_BITS + 1)'(fragment_i.stamp) >= next_q);
-    if (fragment_i.stamp == '0) assume (fragment_i.depth[0+:CODE] == c00);
-    if (32'(fragment_i.stamp) == PER_ROW - 1) assume (fragment_i.depth[(STAMP-1)*CODE+:CODE] == c01);
-    if (32'(fragment_i.stamp) == LAST - (PER_ROW - 1)) assume (fragment_i.depth[(SAMPLES-STAMP)*CODE+:CODE] == c10);
-    if (32'(fragment_i.stamp) == LAST) assume (fragment_i.depth[(SAMPLES-1)*CODE+:CODE] == c11);
+    if (fragment_i.stamp == '0) assume (fragment_i.code[0+:CODE] == c00);
+    if (32'(fragment_i.stamp) == PER_ROW - 1) assume (fragment_i.code[(STAMP-1)*CODES+:CODE] == c01);
+    if (32'(fragment_i.stamp) == LAST - (PER_ROW - 1)) assume (fragment_i.code[(SAMPLES-STAMP)*CODES+:CODE] == c10);
+    if (32'(fragment_i.stamp) == LAST) assume (fragment_i.code[(SAMPLES-1)*CODES+:CODE] == c11);
   end
   // A pixel of a line has no visit to end; a packet without samples neither changes nor sends anything else.
   always_comb if (fragment_i.kind[1]) assume (!fragment_i.ends_visit);
@@ -33,10 +33,10 @@
   assign holds_stamp = is_stamp && !fragment_q.kind[1];
   always_comb if (runs_q && holds_stamp) begin  // what was assumed of it when it came
     assert ((STAMP_BITS + 1)'(fragment_q.stamp) >= before_q);
-    if (fragment_q.stamp == '0) assert (fragment_q.depth[0+:CODE] == c00);
-    if (32'(fragment_q.stamp) == PER_ROW - 1) assert (fragment_q.depth[(STAMP-1)*CODE+:CODE] == c01);
-    if (32'(fragment_q.stamp) == LAST - (PER_ROW - 1)) assert (fragment_q.depth[(SAMPLES-STAMP)*CODE+:CODE] == c10);
-    if (32'(fragment_q.stamp) == LAST) assert (fragment_q.depth[(SAMPLES-1)*CODE+:CODE] == c11);
+    if (fragment_q.stamp == '0) assert (depth[0+:CODE] == c00);
+    if (32'(fragment_q.stamp) == PER_ROW - 1) assert (depth[(STAMP-1)*CODE+:CODE] == c01);
+    if (32'(fragment_q.stamp) == LAST - (PER_ROW - 1)) assert (depth[(SAMPLES-STAMP)*CODE+:CODE] == c10);
+    if (32'(fragment_q.stamp) == LAST) assert (depth[(SAMPLES-1)*CODE+:CODE] == c11);
   end
   always_comb if (runs_q && valid_q)
     assert (next_q == (fragment_q.ends_visit ? '0 : holds_stamp ? (STAMP_BITS + 1)'(fragment_q.stamp) + 1'b1 : before_q));
@@ -51,11 +51,11 @@
       if (32'(done) > PER_ROW - 1) assert (gen_hiz.max_q >= h01);
       if (32'(done) > LAST - (PER_ROW - 1)) assert (gen_hiz.max_q >= h10);
     end
-    if (valid_q && fragment_q.ends_visit && gen_hiz.update == RETIRE_SET)
+    if (valid_q && fragment_q.ends_visit && gen_hiz.update == raster_pkg::HIZ_UPDATE_SET)
       assert (gen_hiz.max >= h00 && gen_hiz.max >= h01 && gen_hiz.max >= h10 && gen_hiz.max >= h11);
     // A visit that can raise a depth without setting the bound clears it.
-    if (valid_q && fragment_q.ends_visit && fragment_q.depth_write && func[2] && (passed != '0 || gen_hiz.any_passed_q))
-      assert (gen_hiz.update == RETIRE_SET || gen_hiz.update == RETIRE_CLEAR);
-    if (gen_hiz.update_q == RETIRE_CLEAR) assert (gen_hiz.code_q == '1);
+    if (valid_q && fragment_q.ends_visit && fragment_q.state.depth_write && greater_passes && (passed != '0 || gen_hiz.any_passed_q))
+      assert (gen_hiz.update == raster_pkg::HIZ_UPDATE_SET || gen_hiz.update == raster_pkg::HIZ_UPDATE_CLEAR);
+    if (gen_hiz.update_q == raster_pkg::HIZ_UPDATE_CLEAR) assert (gen_hiz.code_q == '1);
     assert (done <= (STAMP_BITS + 1)'(STAMPS));
   end

@@ -12,15 +12,13 @@
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     assert (write_valid_o == $past(takes_fragment && fragment_i.mask != '0));
     if (write_valid_o) begin
-      assert (write_o.primitive_id == $past(fragment_i.primitive_id) && write_o.tile_x == $past(fragment_i.tile_x) &&
-              write_o.tile_y == $past(fragment_i.tile_y) && write_o.stamp == $past(fragment_i.stamp) &&
-              write_o.depth == $past(fragment_i.depth));
+      assert (write_o.key == $past(fragment_i.key) && write_o.stamp == $past(fragment_i.stamp));
       assert ((write_o.passed & ~$past(fragment_i.mask)) == '0);
-      assert (write_o.write_depth == ($past(fragment_i.depth_write) ? write_o.passed : '0));
-      assert (write_o.write_color == ($past(fragment_i.color_write) ? write_o.passed : '0));
+      assert (write_o.write_depth == ($past(fragment_i.state.depth_write) ? write_o.passed : '0));
+      assert (write_o.write_color == ($past(fragment_i.state.color_write) ? write_o.passed : '0));
       // What is written one cycle after its access is not read by an access of this cycle.
-      if (access_valid_o && write_o.write_depth != '0 && access_o.tile_x == write_o.tile_x &&
-          access_o.tile_y == write_o.tile_y && access_o.stamp == write_o.stamp)
+      if (access_valid_o && write_o.write_depth != '0 && access_o.key.tile_x == write_o.key.tile_x &&
+          access_o.key.tile_y == write_o.key.tile_y && access_o.stamp == write_o.stamp)
         assert ((write_o.write_depth & access_o.mask) == '0);
     end
     // An access on offer stays while its fragment does; no fragment waits for more than one cycle by itself.
@@ -39,9 +37,12 @@
   always_comb if (runs_q) begin
     assert (retire_valid_o == ended_2_q);
     assert (ended_q == (valid_q && fragment_q.ends_visit) && fragment_q == before_q);
-    if (retire_valid_o)
-      assert (retire_o.primitive_id == before_2_q.primitive_id && retire_o.tile_x == before_2_q.tile_x &&
-              retire_o.tile_y == before_2_q.tile_y);
-    assert (retire_primitive_q == before_2_q.primitive_id && retire_tile_x_q == before_2_q.tile_x &&
-            retire_tile_y_q == before_2_q.tile_y);
+    if (retire_valid_o) assert (retire_o.key == before_2_q.key);
+    assert (retire_key_q == before_2_q.key);
   end
+  genvar k;
+  generate
+    for (k = 0; k < SAMPLES; k++) begin : gen_proof
+      always_comb if (runs_q && write_valid_o) assert (write_o.depth[k*CODE+:CODE] == before_q.code[k*CODES+:CODE]);
+    end
+  endgenerate

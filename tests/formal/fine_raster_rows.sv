@@ -33,8 +33,8 @@
     end
   endgenerate
   // From coarse_raster: a box. The walk ends with it.
-  always_comb if (tile_valid_i) assume (tile_i.top <= tile_i.bottom);
+  always_comb if (tile_valid_i) assume (tile_i.box.top <= tile_i.box.bottom);
   always_comb if (runs_q && row_valid_q) begin
     assert ((y_q & PIXEL'(STAMP - 1)) == '0);
-    if (tile_q.is_visit) assert ((y_q >> STAMP_SHIFT) <= (tile_q.bottom >> STAMP_SHIFT));
+    if (tile_q.is_visit) assert ((y_q >> STAMP_SHIFT) <= (tile_q.box.bottom >> STAMP_SHIFT));
   end

@@ -30,8 +30,8 @@
       logic [PIXEL-1:0] y;
       assign y = y_q + PIXEL'(c / TILE);
       always_comb
-        assert (covered[AT] == (tile_q.is_visit && PIXEL'(c % TILE) >= tile_q.left && PIXEL'(c % TILE) <= tile_q.right &&
-                                y >= tile_q.top && y <= tile_q.bottom &&
+        assert (covered[AT] == (tile_q.is_visit && PIXEL'(c % TILE) >= tile_q.box.left && PIXEL'(c % TILE) <= tile_q.box.right &&
+                                y >= tile_q.box.top && y <= tile_q.box.bottom &&
                                 (tile_q.is_inside || !(outside[AT] || outside[ROW+AT] || outside[2*ROW+AT]))));
     end
   endgenerate

@@ -16,7 +16,7 @@
 
   always_comb assume ((any_row & PIXEL'(STAMP - 1)) == '0 && {1'b0, any_column} < (COLUMN + 1)'(PER_ROW));
   // From coarse_raster: a box.
-  always_comb if (tile_valid_i) assume (tile_i.top <= tile_i.bottom && tile_i.left <= tile_i.right);
+  always_comb if (tile_valid_i) assume (tile_i.box.top <= tile_i.box.bottom && tile_i.box.left <= tile_i.box.right);
 
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -46,7 +46,7 @@
   logic [SAMPLES-1:0] left_of_it;  // what of the stamp is still to be sent
   assign left_of_it = pending_q[32'(any_column)*SAMPLES+:SAMPLES];
   logic row_has_passed;
-  assign row_has_passed = g_q.is_visit && any_row >= ((g_q.top >> STAMP_SHIFT) << STAMP_SHIFT) && any_row <= g_q.bottom;
+  assign row_has_passed = g_q.is_visit && any_row >= ((g_q.box.top >> STAMP_SHIFT) << STAMP_SHIFT) && any_row <= g_q.box.bottom;
 
   always_comb if (runs_q) begin
     // Nothing is lost or told twice.
@@ -54,8 +54,7 @@
     if (done_q) assert (sent_q == (want_q != '0) && has_want_q == row_has_passed);
     if (done_q) assert (!in_rows_q && !in_stamps_q);
     if (stamp_leaves && in_stamps_q) begin
-      assert (stamp_o.primitive_id == g_q.primitive_id && stamp_o.slot == g_q.slot && stamp_o.kind == g_q.kind &&
-              stamp_o.tile_x == g_q.tile_x && stamp_o.tile_y == g_q.tile_y);
+      assert (stamp_o.key == g_q.key && stamp_o.slot == g_q.slot && stamp_o.kind == g_q.kind);
       assert (stamp_o.ends_visit == (g_q.is_visit && stamps_last_row_q && is_last_stamp));
       assert (stamp_o.ends_primitive == (g_q.ends_primitive && stamps_last_row_q && is_last_stamp));
       if (mask != '0) assert ((PIXEL + 1)'(column) >= last_q);  // in order
@@ -68,8 +67,8 @@
     if (in_rows_q) assert (row_valid_q && tile_q == g_q && !done_q);
     if (in_stamps_q) assert (stamps_valid_q && stamp_tile_q == g_q && !done_q);
     if (in_stamps_q) assert (stamps_last_row_q == !in_rows_q);
-    if (row_valid_q) assert ((y_q & PIXEL'(STAMP - 1)) == '0 && tile_q.top <= tile_q.bottom);
-    if (row_valid_q) assert (y_q <= tile_q.bottom && (y_q >> STAMP_SHIFT) >= (tile_q.top >> STAMP_SHIFT));
+    if (row_valid_q) assert ((y_q & PIXEL'(STAMP - 1)) == '0 && tile_q.box.top <= tile_q.box.bottom);
+    if (row_valid_q) assert (y_q <= tile_q.box.bottom && (y_q >> STAMP_SHIFT) >= (tile_q.box.top >> STAMP_SHIFT));
     if (in_rows_q && y_q <= any_row) assert (!has_want_q);
     if (in_rows_q && y_q > any_row) assert (has_want_q == row_has_passed);
     if (!in_rows_q && (in_stamps_q || done_q)) assert (has_want_q == row_has_passed);
@@ -83,10 +82,10 @@
     if (row_valid_q && !tile_q.is_visit) assert (is_last_row && covered == '0);
     if (in_rows_q && !g_q.is_visit) assert (!in_stamps_q);
     if (stamps_valid_q && !stamps_last_row_q) assert (pending_q != '0);
-    if (in_stamps_q) assert (g_q.top <= g_q.bottom && stamps_y_q <= g_q.bottom);
-    if (in_stamps_q && g_q.is_visit) assert (stamps_y_q >= ((g_q.top >> STAMP_SHIFT) << STAMP_SHIFT));
+    if (in_stamps_q) assert (g_q.box.top <= g_q.box.bottom && stamps_y_q <= g_q.box.bottom);
+    if (in_stamps_q && g_q.is_visit) assert (stamps_y_q >= ((g_q.box.top >> STAMP_SHIFT) << STAMP_SHIFT));
     if (in_stamps_q && stamps_last_row_q && g_q.is_visit)
-      assert ((stamps_y_q >> STAMP_SHIFT) == (g_q.bottom >> STAMP_SHIFT));
+      assert ((stamps_y_q >> STAMP_SHIFT) == (g_q.box.bottom >> STAMP_SHIFT));
     if (in_stamps_q) assert ((stamps_y_q & PIXEL'(STAMP - 1)) == '0);
     cover (done_q && sent_q);
   end

@@ -11,14 +11,14 @@
   assign any_line      = (LINE'(any_x) & LINE_X_MASK) | ((LINE'(any_y) & LINE_Y_MASK) << LINE_X);
   assign is_there      = valid_q[any_line] && tag_x_q[any_line] == any_x >> LINE_X && tag_y_q[any_line] == any_y >> LINE_Y &&
                          !(is_fill && line_q == any_line);
-  assign is_it         = access_i.tile_x == any_x && access_i.tile_y == any_y;
+  assign is_it         = access_i.key.tile_x == any_x && access_i.key.tile_y == any_y;
   assign walk_is_it    = walk_x_q == any_x && walk_y_q == any_y;
   assign has_passed    = walk_y_q > any_y || (walk_y_q == any_y && walk_x_q > any_x);  // the walk
   assign tile_is_it    = tile_x == any_x && tile_y == any_y;
   assign request_is_it = takes_request && tile_is_it && stamp_q == any_stamp;
   always_comb begin
     assume (any_stamp <= LAST_STAMP);
-    if (token) assume (any_x <= access_i.tile_x && any_y <= access_i.tile_y);
+    if (token) assume (any_x <= access_i.key.tile_x && any_y <= access_i.key.tile_y);
   end
   logic takes_access;
   assign takes_access = access_valid_i && access_ready_o;
@@ -36,7 +36,7 @@
   always_comb if (runs_q) begin
     if (access_taken_q) assert (state_q == SERVE);
     if (write_valid_i)  // its tile is still there
-      assert (valid_q[write_line] && tag_x_q[write_line] == write_i.tile_x >> LINE_X && tag_y_q[write_line] == write_i.tile_y >> LINE_Y);
+      assert (valid_q[write_line] && tag_x_q[write_line] == write_i.key.tile_x >> LINE_X && tag_y_q[write_line] == write_i.key.tile_y >> LINE_Y);
     if (valid_q[any_line])
       assert (TILE_X'(tag_x_q[any_line] << LINE_X) >> LINE_X == tag_x_q[any_line] &&
               TILE_Y'(tag_y_q[any_line] << LINE_Y) >> LINE_Y == tag_y_q[any_line]);
@@ -54,16 +54,16 @@
       localparam int BITS = p == 0 ? CODE : COLOR;
       logic is_masked, is_marked;
       logic [BITS-1:0] cleared, value;
-      assign is_masked = p == 0 ? access_i.depth_write : access_i.color_write;
+      assign is_masked = p == 0 ? access_i.state.depth_write : access_i.state.color_write;
       assign cleared   = p == 0 ? BITS'(clear_depth_q) : BITS'(clear_color_q);
-      assign value     = p == 0 ? BITS'(access_i.depth) : BITS'(access_color_i);
+      assign value     = p == 0 ? BITS'(access_i.code) : BITS'(access_color_i);
       assign is_marked = state_q == MARK && is_masked;
       // The flag of the tile, and what a read of it found: sram_word.
       always_ff @(posedge clk_i) begin
         if (flag_write[p] && tile_is_it) flag_g[p] <= state_q == MARK;
         if (state_q == CHECK || state_q == LOOK) flag_then_q[p] <= flag_g[p];
         if (!rst_ni) known_q[p] <= 1'b0;
-        else if (takes_access && token && !access_i.kind[0] && is_masked) known_q[p] <= 1'b1;
+        else if (takes_access && token && is_clear && is_masked) known_q[p] <= 1'b1;
       end
       always_comb if (runs_q && known_q[p]) begin
         if (flags_read_q && flags_stay_q == 1'b0) assume (flag[p] == flag_then_q[p]);
@@ -73,7 +73,7 @@
       always_comb if (runs_q) begin
         if (state_q == MARK && is_masked && has_passed) assert (flag_g[p]);
         if (state_q == MARK && is_masked && (walk_x_q != '0 || walk_y_q != '0)) assert (cleared == value);
-        if (known_q[p] && walks_tiles && access_i.kind[0] && has_passed) assert (!flag_g[p]);
+        if (known_q[p] && walks_tiles && !is_clear && has_passed) assert (!flag_g[p]);
         if (state_q == LOOK || state_q == TEST || state_q == CLEAR || (state_q == MARK && !clears_all)) assert (!dirty[p]);
         if ((state_q == CHECK || state_q == EVICT) && token && line_q > any_line) assert (!dirty[p]);
       end
@@ -91,9 +91,9 @@
         assign asks        = request_is_it && !request_o.is_write && request_o.is_color == p;
         always_ff @(posedge clk_i) begin
           // Without a cache.
-          if (writes && write_i.tile_x == any_x && write_i.tile_y == any_y && write_i.stamp == any_stamp)
+          if (writes && write_i.key.tile_x == any_x && write_i.key.tile_y == any_y && write_i.stamp == any_stamp)
             truth_q <= p == 0 ? BITS'(write_i.depth[m*CODE+:CODE]) : BITS'(write_i.color[m*COLOR+:COLOR]);
-          else if (takes_access && token && !access_i.kind[0] && is_masked) truth_q <= value;
+          else if (takes_access && token && is_clear && is_masked) truth_q <= value;
           // The word of the RAM, and of memory.
           if (writes_word) word_q <= new_word;
           if (request_is_it && request_o.is_write && request_o.is_color == p) memory_q <= lane;
@@ -120,7 +120,7 @@
                         (p == 0 ? fill_plane_q || fill_stamp_q > any_stamp : fills_last && fill_stamp_q > any_stamp);
         always_comb if (runs_q && known_q[p]) begin
           if (p == 0 && looked_q && looked_at_it_q) assert (stored_depth_o[m*CODE+:CODE] == truth_then_q);
-          if (takes_access && token && access_i.kind[0]) assert (memory_q == truth_q);
+          if (takes_access && token && !is_clear) assert (memory_q == truth_q);
           // Where it is.
           if (is_there) assert (word_q == truth_q);
           if ((!is_there || !dirty[p]) && !is_marked) assert (truth_q == (flag_g[p] ? cleared : memory_q));
@@ -139,6 +139,6 @@
     end
   endgenerate
   always_comb if (runs_q) begin
-    cover (takes_access && token && access_i.kind[0] && known_q == 2'b11 && gen_plane[0].gen_truth[0].truth_q != clear_depth_q);
+    cover (takes_access && token && !is_clear && known_q == 2'b11 && gen_plane[0].gen_truth[0].truth_q != clear_depth_q);
     cover (looked_q && gen_plane[0].gen_truth[0].looked_at_it_q && stored_depth_o[0+:CODE] != clear_depth_q);
   end

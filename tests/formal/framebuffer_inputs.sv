@@ -6,7 +6,7 @@
   // From memory: an answer is one to a read that was taken in an earlier cycle. Of the RAMs all outputs may be anything but
   // for what sram_word proves: they stay until the next read.
   logic token;  // fast clear, flush
-  assign token = access_i.kind == 3'd2 || access_i.kind == 3'd3;
+  assign token = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
   logic access_waits_q, access_taken_q;
   var raster_pkg::fragment_packet_t       access_before_q;
   logic [COLOR-1:0]                       access_color_before_q;
@@ -24,9 +24,9 @@
     if (token) assume (access_i.mask == '0);
     assume (write_valid_i == access_taken_q);
     if (write_valid_i)
-      assume (write_i.tile_x == access_before_q.tile_x && write_i.tile_y == access_before_q.tile_y &&
+      assume (write_i.key.tile_x == access_before_q.key.tile_x && write_i.key.tile_y == access_before_q.key.tile_y &&
               write_i.stamp == access_before_q.stamp);
-    if (write_valid_i && write_i.tile_x == access_i.tile_x && write_i.tile_y == access_i.tile_y && write_i.stamp == access_i.stamp)
+    if (write_valid_i && write_i.key.tile_x == access_i.key.tile_x && write_i.key.tile_y == access_i.key.tile_y && write_i.stamp == access_i.stamp)
       assume ((write_i.write_depth & access_i.mask) == '0);
     if (response_valid_i) assume (unanswered_q != '0);
   end
@@ -64,10 +64,10 @@
     assert (access_waits_q || state_q == SERVE);
     assert (stamp_q <= LAST_STAMP && fill_stamp_q <= LAST_STAMP);
     if (state_q == CHECK || state_q == LOOK || state_q == TEST) assert (stamp_q == LAST_STAMP);
-    if (walks_tiles) assert (token && walk_x_q <= access_i.tile_x && walk_y_q <= access_i.tile_y);
+    if (walks_tiles) assert (token && walk_x_q <= access_i.key.tile_x && walk_y_q <= access_i.key.tile_y);
     else assert (walk_x_q == '0 && walk_y_q == '0);
-    if (state_q == MARK) assert (!access_i.kind[0]);
-    else if (walks_tiles) assert (access_i.kind[0]);
+    if (state_q == MARK) assert (is_clear);
+    else if (walks_tiles) assert (!is_clear);
     if (state_q == CHECK || state_q == EVICT || is_fill) assert (token || line_q == access_line);
     if (state_q == CHECK || state_q == EVICT) assert (!(token && clears_all));
     if (state_q == EVICT) assert (plane_q ? line_color_dirty : line_depth_dirty);

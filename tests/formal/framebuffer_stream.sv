@@ -50,8 +50,8 @@
       first  = WIDE'(2 * STAMPS) - WIDE'(answered);
       second = WIDE'(2 * STAMPS) - WIDE'(asked);
     end else if (walks_tiles) begin
-      first  = WIDE'(access_i.tile_y) - WIDE'(walk_y_q);
-      second = WIDE'(access_i.tile_x) - WIDE'(walk_x_q);
+      first  = WIDE'(access_i.key.tile_y) - WIDE'(walk_y_q);
+      second = WIDE'(access_i.key.tile_x) - WIDE'(walk_x_q);
       planes = 2'd2 - (2'(reset_q[0]) + 2'(reset_q[1]));
       stamps = state_q == CLEAR ? WIDE'(STAMPS) - WIDE'(stamp_q) : state_q == TEST ? WIDE'(STAMPS + 1) : WIDE'(STAMPS + 2);
     end
@@ -68,6 +68,6 @@
   end
   always_comb if (runs_q) begin
     if (state_q == SERVE && access_valid_i && !access_ready_o) assert (state_d != SERVE);
-    cover (access_valid_i && access_ready_o && token && access_i.kind[0]);
+    cover (access_valid_i && access_ready_o && token && !is_clear);
     cover (access_valid_i && access_ready_o && !token && access_waits_q);
   end

@@ -7,9 +7,10 @@
   genvar k, n;
   generate
     for (k = 0; k < PLANES; k++) begin : gen_proof
-      localparam int N = k == 0 ? LD : LC;
-      localparam int B = k == 0 ? Z : K;
-      localparam int AT = k == 0 ? 0 : k - 1;
+      localparam int N = LOCAL_BITS_OF[32*k+:32];
+      localparam int AT = LOCAL_AT[32*k+:32];
+      localparam int B = CODE_BITS_OF[32*k+:32];
+      localparam int CODE = CODE_AT[32*k+:32];
       function automatic [N-1:0] sum(input [N-1:0] value, input [PIXEL-1:0] offset, input [N-1:0] step);
         sum = value;
         for (int b = PIXEL - 1; b >= 0; b--)
@@ -17,11 +18,11 @@
       endfunction
       logic [N-1:0] anchor, step_x_0, step_y_1, step_x_2, step_y_2;
       logic [PIXEL-1:0] from_middle_x, from_middle_y;
-      assign anchor        = k == 0 ? N'(context_stamp_q.depth_anchor) : context_stamp_q.color_anchor[AT*LC+:N];
-      assign step_x_0      = k == 0 ? N'(context_i.depth_step_x) : context_i.color_step_x[AT*LC+:N];
-      assign step_y_1      = k == 0 ? N'(x_context_q.depth_step_y) : x_context_q.color_step_y[AT*LC+:N];
-      assign step_x_2      = k == 0 ? N'(y_context_q.depth_step_x) : y_context_q.color_step_x[AT*LC+:N];
-      assign step_y_2      = k == 0 ? N'(y_context_q.depth_step_y) : y_context_q.color_step_y[AT*LC+:N];
+      assign anchor        = context_stamp_q.anchor[AT+:N];
+      assign step_x_0      = context_i.step_x[AT+:N];
+      assign step_y_1      = x_context_q.step_y[AT+:N];
+      assign step_x_2      = y_context_q.step_x[AT+:N];
+      assign step_y_2      = y_context_q.step_y[AT+:N];
       assign from_middle_x = (PIXEL'(context_stamp_q.stamp) << STAMP_SHIFT) ^ PIXEL'(MIDDLE);
       assign from_middle_y = (PIXEL'(x_stamp_q.stamp >> PER_ROW_BITS) << STAMP_SHIFT) ^ PIXEL'(MIDDLE);
       always_comb begin
@@ -34,8 +35,8 @@
         assign at_sample = gen_plane[k].y_value_q + (((n / STAMP) & 2) ? step_y_2 << 1 : '0) +
                            (((n / STAMP) & 1) ? step_y_2 : '0) + (((n % STAMP) & 2) ? step_x_2 << 1 : '0) +
                            (((n % STAMP) & 1) ? step_x_2 : '0);
-        assign low  = k == 0 ? B'(samples_context_q.depth_min) : samples_context_q.color_min[AT*K+:B];
-        assign high = k == 0 ? B'(samples_context_q.depth_max) : samples_context_q.color_max[AT*K+:B];
+        assign low  = samples_context_q.range.low[CODE+:B];
+        assign high = samples_context_q.range.high[CODE+:B];
         assign code = gen_plane[k].gen_sample[n].clamped;
         always_comb begin
           assert ($unsigned(gen_plane[k].gen_sample[n].value) == at_sample);

@@ -55,10 +55,8 @@
     if (leaves && inside_q && ahead_q == '0) begin
       assert (at_q[4]);
       assert (fragment_o.kind == g_q.kind && fragment_o.ends_visit == g_q.ends_visit &&
-              fragment_o.ends_primitive == g_q.ends_primitive && fragment_o.primitive_id == g_q.primitive_id &&
-              fragment_o.tile_x == g_q.tile_x && fragment_o.tile_y == g_q.tile_y && fragment_o.stamp == g_q.stamp &&
-              fragment_o.mask == g_q.mask && fragment_o.depth_test == context_q.depth_test &&
-              fragment_o.depth_write == context_q.depth_write && fragment_o.color_write == context_q.color_write);
+              fragment_o.ends_primitive == g_q.ends_primitive && fragment_o.key == g_q.key &&
+              fragment_o.stamp == g_q.stamp && fragment_o.mask == g_q.mask && fragment_o.state == context_q.state);
     end
     if (fragment_ready_i) assert (stamp_ready_o);  // no deadlock
     cover (done_q);

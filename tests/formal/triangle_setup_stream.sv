@@ -7,10 +7,8 @@
     if (at_q[2]) assert (v_q == it_q);
     if (leaves && inside_q && ahead_q == '0) begin
       assert (at_q[2]);
-      assert (setup_o.kind == it_q.kind && setup_o.primitive_id == it_q.primitive_id && setup_o.left == it_q.left &&
-              setup_o.top == it_q.top && setup_o.right == it_q.right && setup_o.bottom == it_q.bottom &&
-              setup_o.depth_test == it_q.depth_test && setup_o.depth_write == it_q.depth_write &&
-              setup_o.color_write == it_q.color_write && setup_o.edge_value == it_q.edge_value);
+      assert (setup_o.kind == it_q.kind && setup_o.primitive_id == it_q.primitive_id && setup_o.box == it_q.box &&
+              setup_o.state == it_q.state && setup_o.edge_value == it_q.edge_value);
     end
     cover (done_q);
     cover (leaves && busy == 3'b111 && enters);

@@ -32,7 +32,7 @@ bool takes(const Scene& scene, const Config& config) {
 
 struct Nobody final : TransferSink {
   std::uint64_t transfers = 0;
-  void transfer(Boundary, Cycle) override { ++transfers; }
+  void transfer(Arrow, Cycle) override { ++transfers; }
 };
 
 TEST(CycleModel, ItsBitsAreThoseOfTheFunctionalEngine) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -15,6 +16,8 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "sim/scene/random_state.hpp"
 
 namespace halfplane {
 namespace {
@@ -264,28 +267,18 @@ Enum random_enum(std::mt19937_64& random, unsigned count) {
   return static_cast<Enum>(random() % count);
 }
 
+/// Any state, and numbers of many digits: what random_value() picks is short.
 State random_state(std::mt19937_64& random) {
-  State state;
-  state.space = random_enum<Space>(random, 2);
-  state.depth_test = random_enum<DepthFunc>(random, 8);
-  state.depth_write = random() % 2 != 0;
-  state.color_write = random() % 2 != 0;
-  state.cull = random_enum<Cull>(random, 4);
-  state.front = random_enum<FrontFace>(random, 2);
-  state.shade = random_enum<Shade>(random, 2);
-  state.color_interp = random_enum<ColorInterp>(random, 2);
-  state.clip_z = random_enum<ClipZ>(random, 2);
-  if (random() % 2 != 0) state.scissor = Rect{-3, static_cast<int>(random() % 100), static_cast<int>(random() % 9), 7};
-  if (random() % 2 != 0)
-    state.viewport = Viewport{random_in(random, -9, 9), random_in(random, -9, 9), random_in(random, 1, 9), 0.125};
-  state.provoking = random_enum<Provoking>(random, 2);
-  state.polygon_mode = random_enum<PolygonMode>(random, 3);
-  state.line_rule = random_enum<LineRule>(random, 3);
-  if (random() % 2 != 0) state.line_last = random() % 2 != 0;
-  if (random() % 2 != 0) state.point_size = random_in(random, 1, 100);
-  state.point_clip = random_enum<PointClip>(random, 2);
-  if (random() % 2 != 0) state.polygon_offset = {random_in(random, -4, 4), random_in(random, -4, 4)};
-  if (random() % 2 != 0) state.depth_range = {random_in(random, 0, 1), random_in(random, 0, 1)};
+  State state = random_state({}, states_but({}), chooser(random), Refused::kept);
+  for (const DrawState& row : draw_states()) {
+    StateValue value{row.words.size(), {}};
+    bool is_whole = row.numbers.empty();
+    for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+      is_whole |= row.numbers[i].is_whole;
+      value.numbers[i] = random_in(random, std::max(row.numbers[i].low, -9.0), std::min(row.numbers[i].high, 100.0));
+    }
+    if (!is_whole && random() % 4 == 0) row.set(state, value);
+  }
   return state;
 }
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "model/raster_pkg.hpp"
+#include "model/raster_taps.hpp"
 #include "model/stages/triangle_setup.hpp"
 #include "model/widths.hpp"
 
@@ -91,10 +92,10 @@ TEST(Widths, FollowTheTableOfTheNumericsPage) {
     EXPECT_EQ(w.delta.bits, V + 1);
     EXPECT_LE(w.edge_product.bits, 2 * V + 2);
     EXPECT_EQ(w.edge_value.bits, 2 * V + 1 - s);
-    EXPECT_LE(w.depth_numerator.bits, B + V + 2);
-    EXPECT_EQ(w.depth_plane.bits, B + 1 + w.plane_fraction);
+    EXPECT_LE(w.depth().numerator.bits, B + V + 2);
+    EXPECT_EQ(w.depth().plane.bits, B + 1 + w.plane_fraction);
     EXPECT_LE(w.sample_edge.bits, 32);
-    EXPECT_LE(w.local_depth.bits, 32);
+    EXPECT_LE(w.depth().local.bits, 32);
     EXPECT_LE(depth_error_bound(config), 0.75);
   }
 }
@@ -132,7 +133,7 @@ TEST(Widths, TilesNarrowPlanesByAtLeastOneBitInEveryLegalConfiguration) {
         const int drop = w.plane_fraction - local;
         const std::uint64_t half = std::uint64_t{1} << (drop - 1), place = std::uint64_t{1} << (w.plane_fraction - 1),
                             offset = std::uint64_t{1} << (7 + w.plane_fraction);
-        EXPECT_EQ(plane_bias(8, w), half + place + offset) << label(config);
+        EXPECT_EQ(plane_bias(w.color(), w), half + place + offset) << label(config);
       }
   EXPECT_GT(checked, 100);
 }
@@ -143,6 +144,8 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   EXPECT_EQ(file_text("presets/small/raster_pkg.sv"), raster_pkg(preset("small")));
   EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
 }
+
+TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("cosim/taps.svh"), raster_taps()); }
 
 TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
   for (const Setting& setting : settings()) {

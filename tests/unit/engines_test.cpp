@@ -19,20 +19,9 @@ Scene random_scene(std::uint32_t seed, int width, int height) {
   SceneBuilder builder(width, height);
   const double band = width < 16 ? 31.0 : 100.0;  // tiny's guard band is 32
   for (int n = 0; n < 60; ++n) {
-    if (n % 6 == 0) {
-      State state = SceneBuilder::window_state();
-      state.depth_test = static_cast<DepthFunc>(static_cast<int>(random.between(0, 8)));
-      state.depth_write = random.unit() < 0.7;
-      state.color_write = random.unit() < 0.7;
-      state.cull = static_cast<Cull>(static_cast<int>(random.between(0, 3)));
-      state.shade = random.unit() < 0.3 ? Shade::flat : Shade::smooth;
-      if (random.unit() < 0.4) {
-        const int x = static_cast<int>(random.between(-5, width)), y = static_cast<int>(random.between(-5, height));
-        state.scissor =
-            Rect{x, y, static_cast<int>(random.between(0, width)), static_cast<int>(random.between(0, height))};
-      }
-      builder.with_state(state);
-    }
+    if (n % 6 == 0)
+      builder.with_state(
+          random_state(SceneBuilder::window_state(), states_but({"space", "pixel_center", "origin"}), chooser(random)));
     const double reach = std::exp2(random.between(-3, 6));
     const double x = random.between(0, width), y = random.between(0, height);
     std::array<Vertex, 3> v;

@@ -14,7 +14,7 @@ Triangle triangle(std::array<std::array<std::int32_t, 2>, 3> xy, std::array<std:
   for (std::size_t i = 0; i < 3; ++i) {
     t.v[i].x = xy[i][0];
     t.v[i].y = xy[i][1];
-    t.v[i].z = z[i];
+    t.v[i].depth() = z[i];
   }
   return t;
 }
@@ -86,9 +86,9 @@ TEST(Exact, LargestCoordinatesAndCodesDoNotOverflow) {
 
 TEST(Exact, ColorPlaneReadsItsOwnChannel) {
   Triangle t = triangle({{{0, 0}, {8, 0}, {0, 8}}});
-  t.v[0].rgba = {0, 10, 20, 30};
-  t.v[1].rgba = {80, 10, 20, 30};
-  t.v[2].rgba = {0, 10, 100, 30};
+  t.v[0].code = {0, 0, 10, 20, 30};
+  t.v[1].code = {0, 80, 10, 20, 30};
+  t.v[2].code = {0, 0, 10, 100, 30};
   // Centre (0, 0) is an eighth of the way along both legs.
   for (const auto& [channel, value] : {std::pair{0, 10}, {1, 10}, {2, 30}, {3, 30}})
     EXPECT_EQ(exact::on_grid(exact::color_at(t, 0, 0, 1, channel)), std::int64_t{value} << 20);

@@ -27,7 +27,7 @@ void expect_same(const Rendering& fast, const Rendering& scalar) {
   EXPECT_EQ(fast.counters.primitives_in, fast.counters.culled + fast.counters.drawn);
 }
 
-/// Every kernel that this machine has, one and three threads, everything skipped and nothing.
+/// Every kernel that this machine has, one and three threads, everything skipped and nothing; and fragments one by one.
 void expect_all_same(const Scene& scene, const Config& config) {
   const Rendering scalar = render_scalar(scene, config);
   const PreparedScene prepared(scene);
@@ -47,6 +47,15 @@ void expect_all_same(const Scene& scene, const Config& config) {
           EXPECT_EQ(fast.counters.covered, scalar.counters.covered);
         }
       }
+  for (const functional::Kernels* kernels : functional::available_kernels()) {
+    SCOPED_TRACE(std::string(kernels->name) + ", general fragments");
+    RenderOptions options;
+    options.instruction_set = kernels->name;
+    options.general_fragments = true;
+    const Rendering& fast = engine.render(prepared, options);
+    expect_same(fast, scalar);
+    EXPECT_EQ(fast.counters.covered, scalar.counters.covered);
+  }
 }
 
 Config config_of(const char* name, int depth_bits) {
@@ -73,6 +82,47 @@ TEST(Functional, WorkScenesAreTheSameOnEveryPath) {
     expect_all_same(scene, config_of("embedded", 16));
     expect_all_same(scene, config_of("embedded", 24));
   }
+}
+
+/// Triangles, lines and points of one random scene, all of which take this test and these masks.
+Scene with_fragments(const Config& config, std::uint64_t seed, DepthFunc func, bool depth_write, bool color_write) {
+  Scene scene = random_scene(config, seed, 120);
+  for (State& state : scene.states) {
+    state.depth_test = func;
+    state.depth_write = depth_write;
+    state.color_write = color_write;
+  }
+  return scene;
+}
+
+TEST(Functional, EveryDepthTestAndMaskIsTheSameWithOpaqueAndWithGeneralFragments) {
+  std::uint64_t seed = 1;
+  for (const char* name : {"embedded", "full"})
+    for (const DepthFunc func : {DepthFunc::never, DepthFunc::less, DepthFunc::lequal, DepthFunc::equal,
+                                 DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always})
+      for (const bool depth_write : {false, true})
+        for (const bool color_write : {false, true}) {
+          SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed) + ", test " +
+                       std::to_string(static_cast<int>(func)) + (depth_write ? ", depth" : "") +
+                       (color_write ? ", colour" : ""));
+          const Config config = preset(name);
+          expect_all_same(with_fragments(config, seed++, func, depth_write, color_write), config);
+        }
+}
+
+TEST(Functional, GeneralFragmentsLeaveNothingOutAndTakeNoTileWhole) {
+  const Scene scene = make_builtin("layers:24", 192, 130, {}, 1);
+  FunctionalEngine engine(preset("embedded"));
+  RenderOptions options;
+  const Counters opaque = engine.render(scene, options).counters;
+  options.general_fragments = true;
+  const Counters general = engine.render(scene, options).counters;
+  EXPECT_GT(opaque.skipped.trivially_accepted, 0U);
+  EXPECT_GT(opaque.skipped.attributes, 0U);
+  EXPECT_EQ(general.skipped.trivially_accepted, 0U);
+  EXPECT_EQ(general.skipped.attributes, 0U);
+  EXPECT_EQ(general.skipped.tiles_hiz, 0U);
+  EXPECT_EQ(general.depth_passed, opaque.depth_passed);
 }
 
 TEST(Functional, ReversedDepthIsTheSameOnEveryPath) {

@@ -82,7 +82,8 @@ TEST(GoldenLine, EveryShortLineOnTheGridEqualsTheOracleInEveryRule) {
       for (int x = -2 * pixel; x < 3 * pixel; ++x)
         for (int y = -2 * pixel; y < 3 * pixel; ++y)
           for (const auto& [rule, drops_last] : all_rules()) {
-            const exact::Line line{vertex(start % pixel, start / pixel), vertex(x, y), rule, drops_last, bits};
+            const exact::Line line{snapped_vertex(start % pixel, start / pixel), snapped_vertex(x, y), rule, drops_last,
+                                   bits};
             ASSERT_EQ(golden_positions(to_golden(line)), oracle_positions(line)) << text(line);
           }
   }
@@ -133,9 +134,9 @@ Scene random_scene(Random& random, const State& state) {
 }
 
 SnappedVertex on_grid(const Vertex& v) {
-  SnappedVertex s = vertex(static_cast<int>(v.x * 16), static_cast<int>(v.y * 16),
-                           static_cast<std::uint32_t>(std::lround(v.z * 65535)));
-  for (std::size_t c = 0; c < 4; ++c) s.rgba[c] = static_cast<std::uint8_t>(v.rgba[c]);
+  SnappedVertex s = snapped_vertex(static_cast<int>(v.x * 16), static_cast<int>(v.y * 16),
+                                   static_cast<std::uint32_t>(std::lround(v.z * 65535)));
+  for (std::size_t c = 0; c < 4; ++c) s.code[kColorPlane + c] = static_cast<std::uint8_t>(v.rgba[c]);
   return s;
 }
 
@@ -204,7 +205,7 @@ TEST(GoldenLine, ScenesOfLinesAndPointsOnTheGridEqualTheOracleInCoverageDepthAnd
     ASSERT_EQ(image.count, expected.count);
     for (std::size_t p = 0; p < expected.count.size(); ++p) {
       ASSERT_NEAR(image.depth[p], expected.depth[p], 1e-6) << p;
-      ASSERT_NEAR(image.affine[p][0], expected.red[p], 1e-9) << p;
+      ASSERT_NEAR(image.color[p][0], expected.red[p], 1e-9) << p;
     }
     covered += image.counters.covered;
   }
@@ -242,16 +243,19 @@ TEST(GoldenLine, LineThroughTheNearPlaneIsCutThereAndKeepsItsPixelsAndDepth) {
   state.line_rule = LineRule::midpoint;
   const Vertex behind = clip_at(-1.5, 0, -3, -1, {0, 0, 0, 255}), ahead = clip_at(1.5, 0, 1, 3, {200, 0, 0, 255});
   for (const bool is_reversed : {false, true}) {
-    const Image image = golden::render(
-        one_draw(16, 16, state, Topology::lines, is_reversed ? std::vector{ahead, behind} : std::vector{behind, ahead}),
-        preset("full"));
+    const Scene scene =
+        one_draw(16, 16, state, Topology::lines, is_reversed ? std::vector{ahead, behind} : std::vector{behind, ahead});
+    const Image image = golden::render(scene, preset("full"));
+    golden::Options options;
+    options.color_interp = ColorInterp::perspective;
+    const Image perspective = golden::render(scene, preset("full"), options);
     // x from 8 (w = 1) to 12 (x / w = 1/2), both ends drawn: pixels 8 to 12 of row 8.
     EXPECT_EQ(total_count(image), 5u);
     for (int x = 8; x <= 12; ++x) EXPECT_EQ(image.count[pixel(image, x, 8)], 1u) << x;
     EXPECT_NEAR(image.depth[pixel(image, 8, 8)], 0, 1e-6);
     EXPECT_NEAR(image.depth[pixel(image, 12, 8)], 2.0 / 3 * 16777215, 1e-6);  // z / w = 1/3
-    EXPECT_NEAR(image.affine[pixel(image, 10, 8)][0], 150, 1e-9);
-    EXPECT_NEAR(image.perspective[pixel(image, 10, 8)][0], 125, 1e-9);  // 1/w = 2/3: the far end's share is 1/4
+    EXPECT_NEAR(image.color[pixel(image, 10, 8)][0], 150, 1e-9);
+    EXPECT_NEAR(perspective.color[pixel(image, 10, 8)][0], 125, 1e-9);  // 1/w = 2/3: the far end's share is 1/4
     EXPECT_EQ(image.counters.clipped, 1u);
   }
 }
@@ -272,7 +276,7 @@ TEST(GoldenLine, FlatLineTakesTheColorOfTheProvokingEnd) {
         golden::render(one_draw(8, 2, state, Topology::lines,
                                 {at(0.5, 0.5, 0.5, {10, 0, 0, 255}), at(7.5, 0.5, 0.5, {90, 0, 0, 255})}),
                        preset("embedded"));
-    for (int x = 0; x < 7; ++x) EXPECT_EQ(image.affine[pixel(image, x, 0)][0], provoking == Provoking::first ? 10 : 90);
+    for (int x = 0; x < 7; ++x) EXPECT_EQ(image.color[pixel(image, x, 0)][0], provoking == Provoking::first ? 10 : 90);
     EXPECT_EQ(image.count[7], 0u) << "diamond exit drops the last pixel";
   }
 }
@@ -340,7 +344,7 @@ TEST(GoldenModes, LineModeDrawsTheThreeEdgesFromTheProvokingVertexOn) {
       const Image loop = golden::render(one_draw(16, 16, state, Topology::line_loop, lines), preset("embedded"));
       EXPECT_EQ(image.count, loop.count);
       EXPECT_EQ(image.depth, loop.depth);
-      EXPECT_EQ(image.affine, loop.affine);
+      EXPECT_EQ(image.color, loop.color);
       EXPECT_GT(total_count(image), 30u);
       EXPECT_EQ(image.counters.primitives_in, 1u);
       EXPECT_EQ(loop.counters.primitives_in, 3u);
@@ -358,7 +362,7 @@ TEST(GoldenModes, PointModeDrawsTheThreeVerticesAndFlatColorsThemAlike) {
   EXPECT_EQ(total_count(image), 3u * 4);
   for (const auto& [x, y] : {std::pair{2, 3}, std::pair{14, 3}, std::pair{5, 13}}) {
     EXPECT_EQ(image.count[pixel(image, x, y)], 1u);
-    EXPECT_EQ(image.affine[pixel(image, x, y)][0], 5.5);
+    EXPECT_EQ(image.color[pixel(image, x, y)][0], 5.5);
   }
 }
 

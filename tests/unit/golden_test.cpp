@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "../scene_builder.hpp"
+#include "model/golden/fragment_buffer.hpp"
 
 namespace halfplane {
 namespace {
@@ -127,8 +128,14 @@ TEST(Golden, PerspectiveColorAtHalfTheScreenWeighsTheNearEndMore) {
       .triangle(clip_at(-1, -1, 0, 1, black), clip_at(3, 3, 0, 3, red), clip_at(-1, 1, 0, 1, black));
   const Image image = golden::render(builder.scene, embedded());
   // Pixel 1 has its centre at 3/4 of the width: 1/w = 1/2, so the share of red is (3/4 * 1/3) / (1/2) = 1/2.
-  EXPECT_NEAR(image.affine[1][0], 0.75 * 240, 1e-9);
-  EXPECT_NEAR(image.perspective[1][0], 0.5 * 240, 1e-9);
+  EXPECT_NEAR(image.color[1][0], 0.75 * 240, 1e-9);
+  golden::Options options;
+  options.color_interp = ColorInterp::perspective;
+  EXPECT_NEAR(golden::render(builder.scene, embedded(), options).color[1][0], 0.5 * 240, 1e-9);
+  builder.scene.states[0].color_interp = ColorInterp::perspective;
+  EXPECT_NEAR(golden::render(builder.scene, embedded()).color[1][0], 0.5 * 240, 1e-9);
+  options.color_interp = ColorInterp::affine;
+  EXPECT_NEAR(golden::render(builder.scene, embedded(), options).color[1][0], 0.75 * 240, 1e-9);
 }
 
 TEST(Golden, FlatShadingTakesTheProvokingVertexOfListStripAndFan) {
@@ -143,7 +150,7 @@ TEST(Golden, FlatShadingTakesTheProvokingVertexOfListStripAndFan) {
     const Image image = golden::render(scene, embedded());
     EXPECT_EQ(image.counters.primitives_in, 2u);
     EXPECT_EQ(image.ids[pixel(image, 7, 7)], 1);
-    return image.affine[pixel(image, 7, 7)][0];
+    return image.color[pixel(image, 7, 7)][0];
   };
   EXPECT_EQ(red_of_second(Topology::triangles, {0, 1, 2, 3, 2, 1}), 40);
   EXPECT_EQ(red_of_second(Topology::triangle_strip, {0, 1, 2, 3}), 20);
@@ -234,6 +241,30 @@ TEST(Golden, ZeroWidthTriangleAndNumbersBeyondFloatDrawNothing) {
   builder.triangle(at(0, 0), at(2, 2), at(4, 4)).triangle(at(-1e200, 0), at(1e200, -1e200), at(0, 1e200));
   EXPECT_EQ(golden::render(builder.scene, embedded()).counters.covered, 0u);
   EXPECT_EQ(golden::render(builder.scene, embedded(), Precision::binary32).counters.covered, 0u);
+}
+
+TEST(GoldenFragmentBuffer, RunsTheOperationsOfTheStateAndRoundsNothing) {
+  golden::FragmentBuffer<double, int> pixels(2, 1.0, 0);
+  State state;
+  EXPECT_TRUE(pixels.apply(0, state, 0.5, 7, 3).written);
+  EXPECT_FALSE(pixels.apply(0, state, 0.5, 8, 4).passed) << "less";
+  EXPECT_TRUE(pixels.apply(0, state, 0.5 - 1e-15, 9, 5).written);
+  EXPECT_EQ(pixels.value(0), 9);
+  EXPECT_EQ(pixels.owners()[0], 5);
+  EXPECT_EQ(pixels.owners()[1], -1);
+  state.depth_test = DepthFunc::always;
+  state.color_write = false;
+  EXPECT_TRUE(pixels.apply(0, state, 0.75, 1, 6).written);
+  EXPECT_EQ(pixels.depth(0), 0.75);
+  EXPECT_EQ(pixels.value(0), 9) << "colour is masked";
+  EXPECT_EQ(pixels.owners()[0], 6);
+  state.depth_write = false;
+  const golden::Fate fate = pixels.apply(0, state, 0.25, 1, 7);
+  EXPECT_TRUE(fate.passed);
+  EXPECT_FALSE(fate.written);
+  EXPECT_EQ(pixels.owners()[0], 6) << "what writes nothing owns nothing";
+  pixels.disown(0);
+  EXPECT_EQ(pixels.owners()[0], -1);
 }
 
 }  // namespace

@@ -14,19 +14,18 @@ using test::with;
 /// Everything that came to depth_test, in order.
 struct Fragments : PacketSink {
   using PacketSink::take;
-  void take(const FragmentPacket& packet) override { fragments.push_back(packet); }
-  void take(const RetirePacket&) override { ++retired; }
+  void take(On<Arrow::fragment>, const FragmentPacket& packet) override { fragments.push_back(packet); }
+  void take(On<Arrow::retire>, const RetirePacket&) override { ++retired; }
   std::vector<FragmentPacket> fragments;
   int retired = 0;
 };
 
 PrimitivePacket primitive(PrimitiveKind kind, DepthFunc func, PixelBounds box, std::uint32_t depth) {
   PrimitivePacket packet;
-  packet.kind = static_cast<std::uint8_t>(kind);
-  packet.depth_test = static_cast<std::uint8_t>(func);
-  packet.depth_write = packet.color_write = 1;
-  set_box(packet, box);
-  packet.z.fill(depth);
+  packet.kind = kind;
+  packet.state = {func, true, true};
+  packet.box = to_box(box);
+  for (auto& code : packet.vertex.code) code[kDepthPlane] = depth;
   return packet;
 }
 
@@ -43,15 +42,15 @@ LinePackets level_line(int x, int y, std::uint32_t count, std::uint32_t depth, D
   line.setup.is_x_major = 1;
   line.setup.remaining = count - 1;
   line.setup.error = line.setup.step_move = -1;
-  line.setup.depth = std::uint64_t{depth} << widths.line_guard_bits;
+  line.setup.value[kDepthPlane] = std::uint64_t{depth} << widths.line_guard_bits;
   return line;
 }
 
 /// A triangle that covers the target's 4 x 4 tiles.
 PrimitivePacket large_triangle(DepthFunc func, std::uint32_t depth) {
   PrimitivePacket packet = primitive(PrimitiveKind::triangle, func, {0, 0, 31, 31}, depth);
-  packet.x = {0, 64 << 4, 0};
-  packet.y = {0, 0, 64 << 4};
+  packet.vertex.x = {0, 64 << 4, 0};
+  packet.vertex.y = {0, 0, 64 << 4};
   return packet;
 }
 
@@ -68,15 +67,15 @@ TEST(HardwareLines, EveryPixelOfALineIsAStampWithOneSampleAndTheStateOfItsPlace)
     ASSERT_EQ(sink.fragments.size(), 9u);
     for (int n = 0; n < 9; ++n) {
       const FragmentPacket& f = sink.fragments[static_cast<std::size_t>(n)];
-      const int x = f.tile_x * 8 + f.stamp % widths.stamps_per_row * config.stamp_size;
-      const int y = f.tile_y * 8 + f.stamp / widths.stamps_per_row * config.stamp_size;
+      const int x = f.key.tile_x * 8 + f.stamp % widths.stamps.stamps_per_row * config.stamp_size;
+      const int y = f.key.tile_y * 8 + f.stamp / widths.stamps.stamps_per_row * config.stamp_size;
       const int sample = (11 - y) * config.stamp_size + 5 + n - x;
-      EXPECT_EQ(f.mask, std::uint64_t{1} << sample) << n;
-      EXPECT_EQ(f.depth[static_cast<std::size_t>(sample)], 1234u);
-      EXPECT_EQ(f.depth_test, static_cast<std::uint8_t>(DepthFunc::lequal));
-      EXPECT_EQ(f.primitive_id, 7u);
-      EXPECT_EQ(f.ends_visit, 0);
-      EXPECT_EQ(f.ends_primitive, n == 8 ? 1 : 0);
+      EXPECT_EQ(f.mask.bits(), std::uint64_t{1} << sample) << n;
+      EXPECT_EQ(f.code[static_cast<std::size_t>(sample)][kDepthPlane], 1234u);
+      EXPECT_EQ(f.state.depth_test, DepthFunc::lequal);
+      EXPECT_EQ(f.key.primitive_id, 7u);
+      EXPECT_FALSE(f.ends_visit);
+      EXPECT_EQ(f.ends_primitive, n == 8);
     }
     EXPECT_EQ(sink.retired, 0) << "a line belongs to no tile visit";
     EXPECT_EQ(hardware.counters().primitives_in, 1u);

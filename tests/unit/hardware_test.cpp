@@ -11,8 +11,16 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/host_stream.hpp"
-#include "model/packet_bits.hpp"
-#include "model/pipeline.hpp"
+#include "model/packet_words.hpp"
+#include "model/stages/coarse_raster.hpp"
+#include "model/stages/cull.hpp"
+#include "model/stages/depth_test.hpp"
+#include "model/stages/fine_raster.hpp"
+#include "model/stages/interpolate.hpp"
+#include "model/stages/rop.hpp"
+#include "model/stages/triangle_setup.hpp"
+#include "sim/study/vertices.hpp"
+#include "tests/packet_values.hpp"
 
 namespace halfplane {
 namespace {
@@ -37,28 +45,6 @@ const std::vector<Config>& configurations() {
   return all;
 }
 
-Rect random_rect(Random& random, int width, int height) {
-  Rect rect;
-  rect.x = random.index(width + 10) - 5;
-  rect.y = random.index(height + 10) - 5;
-  rect.width = random.index(width + 5);
-  rect.height = random.index(height + 5);
-  return rect;
-}
-
-State random_state(Random& random, int width, int height) {
-  State state = SceneBuilder::window_state();
-  state.space = random.unit() < 0.3 ? Space::clip : Space::window;
-  state.depth_test = random.unit() < 0.5 ? DepthFunc::less : static_cast<DepthFunc>(random.index(8));
-  state.depth_write = random.unit() < 0.8;
-  state.color_write = random.unit() < 0.8;
-  state.cull = static_cast<Cull>(random.unit() < 0.6 ? 0 : random.index(4));
-  state.front = static_cast<FrontFace>(random.index(2));
-  state.shade = random.unit() < 0.3 ? Shade::flat : Shade::smooth;
-  if (random.unit() < 0.25) state.scissor = random_rect(random, width, height);
-  return state;
-}
-
 Clear random_clear(Random& random, std::uint32_t state) {
   Clear clear;
   clear.state = state;
@@ -79,7 +65,8 @@ Scene random_scene(std::uint32_t seed, int width, int height, double band, int t
   State state;
   for (int n = 0; n < triangles; ++n) {
     if (n % 5 == 0) {
-      state = random_state(random, width, height);
+      state = random_state(SceneBuilder::window_state(), states_but({"polygon_mode", "pixel_center", "origin"}),
+                           chooser(random));
       builder.with_state(state);
       if (random.unit() < 0.25)
         builder.scene.commands.push_back(
@@ -154,26 +141,17 @@ TEST(Hardware, ImageAndCountersAreThoseOfTheFunctionalEngineOnRandomScenes) {
 }
 
 /// Packs and unpacks every packet: one that comes back changed has a value that its field does not hold.
-class RoundTrip : public PacketSink {
+class RoundTrip : public EveryPacket<RoundTrip> {
  public:
   explicit RoundTrip(const Widths& widths) : widths_(widths) {}
-  void take(const TrianglePacket& packet) override { check(packet); }
-  void take(const SetupPacket& packet) override { check(packet); }
-  void take(const ContextPacket& packet) override { check(packet); }
-  void take(const TilePacket& packet) override { check(packet); }
-  void take(const EdgeContext& packet) override { check(packet); }
-  void take(const StampPacket& packet) override { check(packet); }
-  void take(const LinePixel& packet) override { check(packet); }
-  void take(const FragmentPacket& packet) override { check(packet); }
-  void take(const WritePacket& packet) override { check(packet); }
-  void take(const RetirePacket& packet) override { check(packet); }
-  void take(const MemoryRequest& packet) override { check(packet); }
-  void take(const MemoryResponse& packet) override { check(packet); }
+  template <Arrow A>
+  void take_any(const PacketOf<A>& packet) {
+    check(packet);
+  }
 
   template <class Packet>
   void check(const Packet& packet) {
-    const auto changed = differing_fields(unpack<Packet>(pack(packet, widths_), widths_), packet, widths_);
-    ASSERT_TRUE(changed.empty()) << changed.front() << ": " << to_string(packet, widths_);
+    test::expect_survives_packing(packet, widths_);
   }
 
  private:
@@ -198,18 +176,9 @@ TEST(Hardware, EveryPacketFitsItsFields) {
   }
 }
 
-/// Every field of the packet fits the member that holds it in C++.
 template <class... Packets>
-void expect_members_wide_enough(const Widths& widths) {
-  const auto one = [&widths]<class Packet>(const Packet&) {
-    for_each_element<Packet>(widths, [](const auto& field, const Width& width, std::size_t i, int) {
-      Packet packet;
-      using Member = std::decay_t<decltype(element(packet, field.member, i))>;
-      EXPECT_LE(width.bits, static_cast<int>(8 * sizeof(Member))) << Packet::name << '.' << field.name;
-      EXPECT_EQ(width.is_signed, std::is_signed_v<Member>) << Packet::name << '.' << field.name;
-    });
-  };
-  (one(Packets{}), ...);
+void expect_all_wide_enough(const Widths& widths) {
+  (test::expect_members_wide_enough<Packets>(widths), ...);
 }
 
 TEST(Hardware, EveryMemberHoldsItsFieldInTheWidestConfiguration) {
@@ -224,8 +193,8 @@ TEST(Hardware, EveryMemberHoldsItsFieldInTheWidestConfiguration) {
     config.stamp_size = stamp;
     config.tile_size = std::max(4, stamp);
     validate(config);
-    expect_members_wide_enough<PrimitivePacket, TrianglePacket, SetupPacket, ContextPacket, FragmentPacket, WritePacket,
-                               RetirePacket, MemoryRequest, MemoryResponse, CounterPacket>(derive_widths(config));
+    expect_all_wide_enough<PrimitivePacket, TrianglePacket, SetupPacket, ContextPacket, FragmentPacket, WritePacket,
+                           RetirePacket, MemoryRequest, MemoryResponse, CounterPacket>(derive_widths(config));
   }
 }
 
@@ -241,8 +210,8 @@ TEST(Hardware, StampInterpolatedFromItsTileEqualsTheClosedFormAtEveryPixel) {
       for (auto& v : triangle.v) {
         v.x = random.index(2 * reach) - reach;
         v.y = random.index(2 * reach) - reach;
-        v.z = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth_code.range.hi)));
-        for (auto& channel : v.rgba) channel = static_cast<std::uint8_t>(random.index(256));
+        v.depth() = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth().code.range.hi)));
+        set_colors(v, widths, [&] { return random.index(256); });
       }
       const TriangleSetup setup =
           setup_triangle(triangle, config, widths, {0, 0, config.target_width, config.target_height});
@@ -250,15 +219,19 @@ TEST(Hardware, StampInterpolatedFromItsTileEqualsTheClosedFormAtEveryPixel) {
       const SetupPacket packet = to_setup_packet(setup, widths);
       const int tile_x = setup.right >> widths.tile_shift, tile_y = setup.bottom >> widths.tile_shift;
       StampPacket stamp = empty_stamp(make_tile_packet(packet, tile_x, tile_y, 0, widths));
-      stamp.stamp = static_cast<std::uint16_t>(random.index(widths.stamps_per_row * widths.stamps_per_row));
-      const FragmentPacket fragment = interpolate(stamp, make_context(packet, widths), config, widths);
-      const int x = tile_x * config.tile_size + stamp.stamp % widths.stamps_per_row * size;
-      const int y = tile_y * config.tile_size + stamp.stamp / widths.stamps_per_row * size;
+      stamp.stamp = static_cast<std::uint16_t>(random.index(widths.stamps.stamps()));
+      const FragmentPacket fragment = interpolate(stamp, make_context(packet, widths), widths);
+      const int x = tile_x * config.tile_size + stamp.stamp % widths.stamps.stamps_per_row * size;
+      const int y = tile_y * config.tile_size + stamp.stamp / widths.stamps.stamps_per_row * size;
       for (int s = 0; s < size * size; ++s) {
         const auto sample = static_cast<std::size_t>(s);
         const Interpolated expected = interpolate_at(setup, widths, x + s % size, y + s / size);
-        ASSERT_EQ(fragment.depth[sample], expected.depth_code);
-        ASSERT_EQ(fragment.rgba[sample], packet_color(expected.color_code, widths));
+        ASSERT_EQ(fragment.code[sample], expected.code);
+        for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+          const PlaneSample alone = plane_at(setup, p, widths, x + s % size, y + s / size);
+          ASSERT_EQ(alone.code, expected.code[p]);
+          ASSERT_EQ(alone.unrounded, expected.unrounded[p]);
+        }
       }
     }
   }
@@ -277,20 +250,19 @@ TEST(Hardware, SetupOfAPacketIsTheSetupOfItsTriangle) {
     for (auto& v : triangle.v) {
       v.x = random.index(2000) - 500;
       v.y = random.index(2000) - 500;
-      v.z = static_cast<std::uint32_t>(random.index(65536));
-      for (std::size_t c = 0; c < 3; ++c) v.rgba[c] = static_cast<std::uint8_t>(random.index(256));
+      v.depth() = static_cast<std::uint32_t>(random.index(65536));
+      for (std::size_t c = 0; c < 3; ++c) v.code[kColorPlane + c] = static_cast<std::uint32_t>(random.index(256));
     }
-    set_vertices(packet, triangle.v, widths);
-    set_box(static_cast<PixelBox&>(packet), {3, 5, 60, 50});
+    set_vertices(packet.vertex, triangle.v);
+    packet.box = to_box({3, 5, 60, 50});
     const TriangleSetup expected = setup_triangle(triangle, config, widths, {3, 5, 58, 46});
     CounterPacket counters;
     const auto kept = cull(packet, widths, counters);
     ASSERT_EQ(kept.has_value(), !expected.is_empty());
     if (!kept) continue;
     ++compared;
-    const auto fields =
-        differing_fields(to_setup_packet(expected, widths), setup_packet(*kept, config, widths), widths);
-    ASSERT_TRUE(fields.empty()) << fields.front();
+    ASSERT_EQ(test::values_of(to_setup_packet(expected, widths), widths),
+              test::values_of(setup_packet(*kept, config, widths), widths));
   }
   EXPECT_GT(compared, 300u);
 }
@@ -305,26 +277,26 @@ TEST(Hardware, EveryVisitEndsOnceWithItsLastStampAndRetiresOnce) {
       for (bool is_last = false; !is_last; ++stamp) {
         ASSERT_LT(stamp, sink.stamps.size());
         const StampPacket& s = sink.stamps[stamp];
-        is_last = tile.is_visit == 0 || s.ends_visit != 0;
-        EXPECT_EQ(s.tile_x, tile.tile_x);
-        EXPECT_EQ(s.tile_y, tile.tile_y);
+        is_last = !tile.is_visit || s.ends_visit;
+        EXPECT_EQ(s.key.tile_x, tile.key.tile_x);
+        EXPECT_EQ(s.key.tile_y, tile.key.tile_y);
         EXPECT_EQ(s.slot, tile.slot);
-        EXPECT_EQ(s.ends_primitive, is_last ? tile.ends_primitive : 0);
-        EXPECT_EQ(s.ends_visit, is_last ? tile.is_visit : 0);
+        EXPECT_EQ(s.ends_primitive, is_last && tile.ends_primitive);
+        EXPECT_EQ(s.ends_visit, is_last && tile.is_visit);
         if (!is_last) {
-          EXPECT_NE(s.mask, 0u);
-        } else if (s.mask == 0) {
+          EXPECT_TRUE(s.mask.any());
+        } else if (!s.mask.any()) {
           ++empty_ends;
-          const int row = tile.is_visit != 0 ? tile.bottom / config.stamp_size : 0;
-          EXPECT_EQ(s.stamp, row * derive_widths(config).stamps_per_row);
+          const int row = tile.is_visit ? tile.box.bottom / config.stamp_size : 0;
+          EXPECT_EQ(s.stamp, row * derive_widths(config).stamps.stamps_per_row);
         }
       }
-      if (tile.is_visit == 0) continue;
+      if (!tile.is_visit) continue;
       ASSERT_LT(visits, sink.retired.size());
       const RetirePacket& retired = sink.retired[visits++];
-      EXPECT_EQ(retired.tile_x, tile.tile_x);
-      EXPECT_EQ(retired.tile_y, tile.tile_y);
-      EXPECT_EQ(retired.primitive_id, tile.primitive_id);
+      EXPECT_EQ(retired.key.tile_x, tile.key.tile_x);
+      EXPECT_EQ(retired.key.tile_y, tile.key.tile_y);
+      EXPECT_EQ(retired.key.primitive_id, tile.key.primitive_id);
     }
     EXPECT_EQ(stamp, sink.stamps.size());
     EXPECT_EQ(visits, sink.retired.size());

@@ -32,24 +32,18 @@ Vertex project(double x, double y, double z, const State& state, std::array<doub
   return clip_at(x, y, state.clip_z == ClipZ::zero_one ? depth : 2 * depth - z, z, rgba);
 }
 
-/// A state of every kind: ranges, conventions, viewport, scissor.
-State random_state(Random& random, int width, int height) {
+/// Ranges, conventions, viewport, scissor.
+State random_state(Random& random) {
   State state;
   state.depth_test = DepthFunc::always;
-  state.clip_z = random.index(2) == 0 ? ClipZ::zero_one : ClipZ::minus_one_one;
-  if (random.index(3) == 0) state.depth_range = {0.75, 0.25};
-  if (random.index(3) == 0) state.scissor = Rect{3, 2, width - 9, height - 5};
-  if (random.index(3) == 0) state.viewport = Viewport{1.25, -2.5, width * 0.75, height + 4.0};
-  if (random.index(3) == 0) state.cull = random.index(2) == 0 ? Cull::back : Cull::front;
-  if (random.index(3) == 0) state.polygon_offset = {0.5, 3};
-  if (random.index(3) == 0) state.shade = Shade::flat;
-  return state;
+  return random_state(state, states_but({"space", "depth_test", "depth_write", "color_write", "polygon_mode"}),
+                      chooser(random));
 }
 
 /// One triangle with a vertex on each side of the eye plane.
 Scene crossing_triangle(std::uint32_t seed, int width, int height) {
   Random random(seed);
-  const State state = random_state(random, width, height);
+  const State state = random_state(random);
   SceneBuilder builder(width, height, state);
   std::array<Vertex, 3> v;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -64,8 +58,10 @@ Scene crossing_triangle(std::uint32_t seed, int width, int height) {
   return builder.scene;
 }
 
-golden::Image golden_by(const Scene& scene, const Config& config, Clipping clipping) {
+golden::Image golden_by(const Scene& scene, const Config& config, Clipping clipping,
+                        std::optional<ColorInterp> color_interp = {}) {
   golden::Options options;
+  options.color_interp = color_interp;
   options.clipping = clipping;
   return golden::render(scene, config, options);
 }
@@ -127,8 +123,8 @@ TEST(HomogeneousGolden, TwoThousandTrianglesAcrossTheEyePlaneGiveThePixelsOfTheC
   double worst_depth = 0, worst_color = 0;
   for (std::uint32_t seed = 1; seed <= 2000; ++seed) {
     const Scene scene = crossing_triangle(seed, 64, 48);
-    const golden::Image polygon = golden_by(scene, config, Clipping::polygon),
-                        whole = golden_by(scene, config, Clipping::homogeneous);
+    const auto by = [&](Clipping clipping) { return golden_by(scene, config, clipping, ColorInterp::perspective); };
+    const golden::Image polygon = by(Clipping::polygon), whole = by(Clipping::homogeneous);
     const BoundLines lines(scene, 0);
     crossing += whole.counters.covered > 0 ? 1 : 0;
     for_each_pixel(scene, [&](int x, int y, std::size_t p) {
@@ -139,7 +135,7 @@ TEST(HomogeneousGolden, TwoThousandTrianglesAcrossTheEyePlaneGiveThePixelsOfTheC
       } else if (whole.count[p] == 1) {
         worst_depth = std::max(worst_depth, std::abs(polygon.depth[p] - whole.depth[p]));
         for (std::size_t c = 0; c < 4; ++c)
-          worst_color = std::max(worst_color, std::abs(polygon.perspective[p][c] - whole.perspective[p][c]));
+          worst_color = std::max(worst_color, std::abs(polygon.color[p][c] - whole.color[p][c]));
       }
     });
   }
@@ -331,7 +327,7 @@ TEST(Homogeneous, EveryValueFitsItsWidth) {
       for (const int x : {0, columns})
         for (const int y : {0, rows}) {
           EXPECT_TRUE(fits(w.weight, setup.weight.at(x, y)));
-          for (const LinearFunction& color : setup.color_weight) {
+          for (const LinearFunction& color : setup.code_weight) {
             EXPECT_TRUE(fits(w.color_step, color.a) && fits(w.color_step, color.b));
             EXPECT_TRUE(fits(w.color_weight, color.at(x, y)));
           }

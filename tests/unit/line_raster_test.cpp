@@ -2,8 +2,9 @@
 #include <map>
 
 #include "../line_builder.hpp"
-#include "model/packet_bits.hpp"
+#include "model/packet_words.hpp"
 #include "model/stages/point_raster.hpp"
+#include "tests/packet_values.hpp"
 
 namespace halfplane {
 namespace {
@@ -61,7 +62,7 @@ TEST(Line, EveryShortSubpixelLineEqualsTheOracleInEveryRule) {
       for (int x = -2 * pixel; x < 3 * pixel; ++x)
         for (int y = -2 * pixel; y < 3 * pixel; ++y)
           for (const auto& [rule, drops_last] : all_rules()) {
-            const exact::Line line{vertex(start % pixel, start / pixel), vertex(x, y), rule, drops_last,
+            const exact::Line line{snapped_vertex(start % pixel, start / pixel), snapped_vertex(x, y), rule, drops_last,
                                    space.widths.grid_bits};
             ASSERT_EQ(positions(pixels_of(line, space)), oracle_positions(line)) << text(line);
           }
@@ -156,7 +157,7 @@ TEST(Line, DiamondCornersAndBordersGoWhereThePerturbationPutsThem) {
   config.subpixel_bits = 1;
   const LineSpace space(config);
   const auto covered = [&](int x0, int y0, int x1, int y1) {
-    return positions(pixels_of({vertex(x0, y0), vertex(x1, y1), LineRule::diamond, true, 1}, space));
+    return positions(pixels_of({snapped_vertex(x0, y0), snapped_vertex(x1, y1), LineRule::diamond, true, 1}, space));
   };
   EXPECT_EQ(covered(2, 1, 4, 1), (Positions{{0, 0}})) << "both right corners move left, into their pixels";
   EXPECT_EQ(covered(0, 1, 2, 1), (Positions{{-1, 0}})) << "a line that ends there does not leave the pixel";
@@ -196,14 +197,15 @@ TEST(Line, LinesAtFortyFiveDegreesStepOnEveryPixel) {
 
 TEST(Line, LineWithoutLengthIsOnePixelUnlessTheLastIsDropped) {
   const LineSpace space(preset("embedded"));
-  const SnappedVertex start = vertex(100, -50, 1234, {1, 2, 3, 4}), end = vertex(100, -50, 60000, {9, 9, 9, 9});
+  const SnappedVertex start = snapped_vertex(100, -50, 1234, {1, 2, 3, 4}),
+                      end = snapped_vertex(100, -50, 60000, {9, 9, 9, 9});
   for (const auto& [rule, drops_last] : all_rules()) {
     const auto pixels = pixels_of({start, end, rule, drops_last, 4}, space);
     if (drops_last) {
       EXPECT_TRUE(pixels.empty());
     } else {
       ASSERT_EQ(pixels.size(), 1u);
-      EXPECT_EQ(pixels[0], (LinePixel{0, 6, -4, 1, 1234, 0x030201}));
+      EXPECT_EQ(pixels[0], (LinePixel{0, 6, -4, true, {1234, 1, 2, 3}}));
     }
   }
 }
@@ -213,14 +215,16 @@ TEST(Line, StraightPolylineCutAnywhereCoversEveryPixelOfTheWholeLineOnce) {
   const LineSpace space(preset("embedded"));
   for (int n = 0; n < 1000; ++n) {
     const int dx = random.index(21) - 10, dy = random.index(21) - 10, pieces = 2 + random.index(30);
-    const SnappedVertex start = vertex(random.index(64), random.index(64));
+    const SnappedVertex start = snapped_vertex(random.index(64), random.index(64));
     Positions together;
     for (int i = 0; i < pieces; ++i) {
-      const SnappedVertex a = vertex(start.x + i * dx, start.y + i * dy), b = vertex(a.x + dx, a.y + dy);
+      const SnappedVertex a = snapped_vertex(start.x + i * dx, start.y + i * dy),
+                          b = snapped_vertex(a.x + dx, a.y + dy);
       for (const auto& p : positions(pixels_of({a, b, LineRule::diamond, true, 4}, space))) together.push_back(p);
     }
     std::sort(together.begin(), together.end());
-    const exact::Line whole{start, vertex(start.x + pieces * dx, start.y + pieces * dy), LineRule::diamond, true, 4};
+    const exact::Line whole{start, snapped_vertex(start.x + pieces * dx, start.y + pieces * dy), LineRule::diamond,
+                            true, 4};
     ASSERT_EQ(together, positions(pixels_of(whole, space))) << text(whole) << " in " << pieces;
   }
 }
@@ -238,7 +242,7 @@ TEST(Line, BentPolylineInOneOctantCoversEveryColumnOnce) {
         const auto turned = [&](int u, int v) {
           if ((octant & 2) != 0) u = -u;
           if ((octant & 4) != 0) v = -v;
-          return (octant & 1) != 0 ? vertex(v, u) : vertex(u, v);
+          return (octant & 1) != 0 ? snapped_vertex(v, u) : snapped_vertex(u, v);
         };
         const bool is_swapped = (octant & 1) != 0 && da == db;  // 45 degrees count as x-major: leave them out
         const int run = is_swapped ? da + 1 : da;
@@ -311,7 +315,7 @@ TEST(Line, ClippedLineKeepsItsPixelsDepthsAndColoursBitForBit) {
 
 TEST(Line, EmptyScissorCoversNothing) {
   const LineSpace space(preset("embedded"));
-  const exact::Line line{vertex(0, 0), vertex(1600, 900), LineRule::diamond, true, 4};
+  const exact::Line line{snapped_vertex(0, 0), snapped_vertex(1600, 900), LineRule::diamond, true, 4};
   EXPECT_TRUE(pixels_of(line, space, {5, 0, 4, 100}).empty());
   EXPECT_TRUE(pixels_of(line, space, {0, 5, 100, 4}).empty());
 }
@@ -346,11 +350,9 @@ TEST(Line, BothEndPixelsShowTheirVerticesExactlyBetweenPixelCentres) {
       const SnappedVertex start = random_vertex(random, space, 0.1), end = random_vertex(random, space, 0.1);
       const auto pixels = pixels_of({start, end, LineRule::bresenham, false, space.widths.grid_bits}, space);
       ASSERT_FALSE(pixels.empty());
-      EXPECT_EQ(pixels.front().depth, start.z);
-      EXPECT_EQ(pixels.front().color, packet_color(start.rgba, space.widths));
+      EXPECT_EQ(pixels.front().code, start.code);
       if (pixels.size() == 1) continue;
-      EXPECT_EQ(pixels.back().depth, end.z);
-      EXPECT_EQ(pixels.back().color, packet_color(end.rgba, space.widths));
+      EXPECT_EQ(pixels.back().code, end.code);
     }
   }
 }
@@ -360,8 +362,9 @@ TEST(Line, ConstantDepthStaysConstant) {
   const LineSpace space(preset("full"));
   for (const std::uint32_t z : {0u, 1u, 8388608u, 16777215u}) {
     SnappedVertex start = random_vertex(random, space, 0.5), end = random_vertex(random, space, 0.5);
-    start.z = end.z = z;
-    for (const LinePixel& pixel : pixels_of({start, end, LineRule::diamond, true, 8}, space)) EXPECT_EQ(pixel.depth, z);
+    start.depth() = end.depth() = z;
+    for (const LinePixel& pixel : pixels_of({start, end, LineRule::diamond, true, 8}, space))
+      EXPECT_EQ(pixel.code[kDepthPlane], z);
   }
 }
 
@@ -381,19 +384,20 @@ TEST(Line, EveryRegisterFitsItsWidthAndEveryPacketItsBits) {
       const SnappedVertex end = random_vertex(random, space, n % 2 == 0 ? 1 : 0.01);
       const auto line = setup_line(start, end, rule.first, rule.second, space.target(), space.config, w);
       if (!line) continue;
-      EXPECT_TRUE(differing_fields(unpack<LineSetup>(pack(*line, w), w), *line, w).empty()) << to_string(*line, w);
+      test::expect_survives_packing(*line, w);
       expect_fits(w.line_stay, line->step_stay);
       expect_fits(w.line_move, line->step_move);
-      expect_fits(w.line_depth, line->depth_step);
+      expect_fits(w.depth().line, line->step[kDepthPlane]);
       LineState state = first_state(*line);
-      for (;; state = next_state(state, *line, w)) {
+      for (;; advance(state, *line, w)) {
         expect_fits(w.pixel_x, state.x);
         expect_fits(w.pixel_y, state.y);
         expect_fits(w.line_count, state.remaining);
         expect_fits(w.line_error, state.error);
-        expect_fits(w.line_depth, state.depth);
-        for (const auto color : state.color) expect_fits(w.line_color, color);
-        expect_fits(w.depth_code, pixel_of(state, *line, w).depth);
+        for (std::size_t p = 0; p < static_cast<std::size_t>(w.planes); ++p) {
+          expect_fits(w.of_plane(p).line, state.value[p]);
+          expect_fits(w.of_plane(p).code, pixel_of(state, *line, w).code[p]);
+        }
         if (state.remaining == 0) break;
       }
     }
@@ -417,7 +421,7 @@ TEST(Point, CoversThePixelsWhoseCentresLieInItsSquare) {
   for (const int s : {1, 2, 4})
     for (int size = 1 << s; size <= 5 << s; ++size)
       for (int x = -2 << s; x <= 2 << s; ++x) {
-        const PixelBounds box = point_bounds(vertex(x, -x), size, everything, s);
+        const PixelBounds box = point_bounds(snapped_vertex(x, -x), size, everything, s);
         for (int i = -8; i <= 8; ++i) {  // in halves of a subpixel
           const int centre = (2 * i + 1) << s;
           EXPECT_EQ(i >= box.left && i <= box.right, centre >= 2 * x - size && centre < 2 * x + size) << x << ' ' << i;
@@ -430,19 +434,19 @@ TEST(Point, CoversThePixelsWhoseCentresLieInItsSquare) {
 TEST(Point, WholeSizeCoversAsManyPixelsWhereverItLies) {
   for (int x = -40; x <= 40; ++x)
     for (int size = 1; size <= 64; ++size) {
-      const PixelBounds box = point_bounds(vertex(x, 3 * x), size << 4, {-200, -200, 200, 200}, 4);
+      const PixelBounds box = point_bounds(snapped_vertex(x, 3 * x), size << 4, {-200, -200, 200, 200}, 4);
       EXPECT_EQ(box.right - box.left + 1, size);
       EXPECT_EQ(box.bottom - box.top + 1, size);
     }
 }
 
 TEST(Point, IsCutByTheScissorPixelByPixel) {
-  const PixelBounds box = point_bounds(vertex(8, 8), 5 << 4, {0, 1, 1, 50}, 4);
+  const PixelBounds box = point_bounds(snapped_vertex(8, 8), 5 << 4, {0, 1, 1, 50}, 4);
   EXPECT_EQ(box.left, 0);
   EXPECT_EQ(box.right, 1);
   EXPECT_EQ(box.top, 1);
   EXPECT_EQ(box.bottom, 2);
-  EXPECT_TRUE(point_bounds(vertex(8, 8), 16, {1, 0, 9, 9}, 4).is_empty());
+  EXPECT_TRUE(point_bounds(snapped_vertex(8, 8), 16, {1, 0, 9, 9}, 4).is_empty());
 }
 
 }  // namespace

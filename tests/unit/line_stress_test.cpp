@@ -10,7 +10,7 @@ using namespace test;
 SnappedVertex in_octant(int u, int v, int octant) {
   if ((octant & 2) != 0) u = -u;
   if ((octant & 4) != 0) v = -v;
-  return (octant & 1) != 0 ? vertex(v, u) : vertex(u, v);
+  return (octant & 1) != 0 ? snapped_vertex(v, u) : snapped_vertex(u, v);
 }
 
 /// The whole line against the oracle, clipped pieces of it against the whole, depth and colour against their bounds.
@@ -49,10 +49,8 @@ TEST(StressLine, LinesOf16384PixelsEqualTheOracleInAllOctants) {
             exact::Line line{in_octant((-8192 << s) + half + shift, (-8192 << s) + half, octant),
                              in_octant(((du - 8192) << s) + half + shift, ((dv - 8192) << s) + half, octant), rule,
                              drops_last, s};
-            line.start.z = 3;
-            line.end.z = 16777215;
-            line.start.rgba = {255, 0, 7, 128};
-            line.end.rgba = {0, 255, 8, 128};
+            line.start.code = {3, 255, 0, 7, 128};
+            line.end.code = {16777215, 0, 255, 8, 128};
             ASSERT_NO_FATAL_FAILURE(check_line(line, space, random, worst));
             if (rule != LineRule::diamond) {
               EXPECT_EQ(pixels_of(line, space).size(), static_cast<std::size_t>(du + (drops_last ? 0 : 1)));
@@ -76,8 +74,9 @@ TEST(StressLine, LinesOverTheWholeGuardBandEqualTheOracle) {
         for (const int x1 : {lo, -1, hi})
           for (const int y1 : {lo, lo + 1, 1, hi - 1, hi})
             for (const auto& [rule, drops_last] : all_rules()) {
-              exact::Line line{vertex(x0, y0), vertex(x1, y1), rule, drops_last, space.widths.grid_bits};
-              line.end.z = static_cast<std::uint32_t>(space.widths.depth_code.range.hi);
+              exact::Line line{snapped_vertex(x0, y0), snapped_vertex(x1, y1), rule, drops_last,
+                               space.widths.grid_bits};
+              line.end.depth() = static_cast<std::uint32_t>(space.widths.depth().code.range.hi);
               ASSERT_NO_FATAL_FAILURE(check_line(line, space, random, worst));
             }
     EXPECT_LE(worst.depth, line_depth_error_bound(space.config)) << name;
@@ -95,7 +94,8 @@ TEST(StressLine, EverySubpixelLineOfThreePixelsEqualsTheOracleAtTwoAndThreeBits)
         for (int y = -reach * pixel; y < (reach + 1) * pixel; ++y)
           for (const auto& [rule, drops_last] : all_rules()) {
             if (rule != LineRule::diamond && start != 0) continue;  // only the pixels of their ends matter
-            const exact::Line line{vertex(start % pixel, start / pixel), vertex(x, y), rule, drops_last, bits};
+            const exact::Line line{snapped_vertex(start % pixel, start / pixel), snapped_vertex(x, y), rule, drops_last,
+                                   bits};
             ASSERT_EQ(positions(pixels_of(line, space)), oracle_positions(line)) << text(line);
           }
   }

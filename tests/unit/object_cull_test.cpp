@@ -10,7 +10,7 @@
 #include "model/engines/functional.hpp"
 #include "model/golden/golden.hpp"
 #include "model/host_stream.hpp"
-#include "model/packet_bits.hpp"
+#include "model/packet_words.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/builtin_meshes.hpp"
 #include "sim/scene/capture.hpp"
@@ -101,7 +101,7 @@ TEST(ObjectCull, TheHostOfTheHardwareNumbersWhatItLeavesOut) {
     ASSERT_EQ(from_a.has_value(), from_b.has_value());
     if (!from_a) break;
     ASSERT_EQ(from_a->primitive, from_b->primitive);
-    ASSERT_EQ(pack(from_a->packet, widths), pack(from_b->packet, widths));
+    ASSERT_EQ(packed(from_a->packet, widths), packed(from_b->packet, widths));
   }
   EXPECT_EQ(a.counters().primitives_in, b.counters().primitives_in);
   EXPECT_EQ(a.counters().culled, b.counters().culled);

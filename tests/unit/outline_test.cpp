@@ -66,38 +66,13 @@ TEST(Assembly, RestartBeginsEveryTopologyAnew) {
   EXPECT_EQ(assembled(Topology::points, {0, R, 1}), (Indices{0, 1}));
 }
 
-State random_state(Random& random, int width, int height) {
-  State state = SceneBuilder::window_state();
-  if (random.unit() < 0.5) state.space = Space::clip;
-  state.depth_test = static_cast<DepthFunc>(random.index(8));
-  state.depth_write = random.unit() < 0.7;
-  state.color_write = random.unit() < 0.7;
-  state.cull = static_cast<Cull>(random.index(3));
-  state.shade = static_cast<Shade>(random.index(2));
-  state.provoking = static_cast<Provoking>(random.index(2));
-  state.polygon_mode = static_cast<PolygonMode>(random.index(3));
-  state.line_rule = static_cast<LineRule>(random.index(3));
-  if (random.unit() < 0.5) state.line_last = random.unit() < 0.5;
-  state.point_size = 1 + random.index(24) / 4.0;
-  state.point_clip = static_cast<PointClip>(random.index(2));
-  if (random.unit() < 0.3) {
-    state.polygon_offset[0] = random.between(-2, 2);
-    state.polygon_offset[1] = random.between(-9, 9);
-  }
-  if (random.unit() < 0.4) {
-    const int x = random.index(width) - 5, y = random.index(height) - 5;
-    state.scissor = Rect{x, y, random.index(width), random.index(height)};
-  }
-  return state;
-}
-
 /// Every topology and state, in window space and across all clip planes.
 Scene random_scene(std::uint32_t seed, int width, int height) {
   Random random(seed);
   SceneBuilder builder(width, height);
   Scene& scene = builder.scene;
   for (int n = 0; n < 12; ++n) {
-    scene.states.push_back(random_state(random, width, height));
+    scene.states.push_back(random_state(SceneBuilder::window_state(), states_but({}), chooser(random)));
     const bool is_window = scene.states.back().space == Space::window;
     const std::size_t first_vertex = scene.vertices.size();
     for (int i = 0; i < 24; ++i) {

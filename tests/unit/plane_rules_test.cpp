@@ -73,7 +73,7 @@ double depth_error(const Triangle& triangle, const TriangleSetup& setup, const S
                    const Widths& widths, int x, int y) {
   const exact::Rational z = exact::depth_at(triangle, x, y, widths.grid_bits);
   const Interpolated value = interpolate_by_rules(setup, rules, widths, x, y);
-  return std::ldexp(static_cast<double>(value.depth), -config.local_guard_bits) -
+  return std::ldexp(static_cast<double>(value.unrounded[kDepthPlane]), -config.local_guard_bits) -
          static_cast<double>(z.numerator) / static_cast<double>(z.denominator);
 }
 
@@ -104,16 +104,15 @@ TEST(PlaneRules, UsualOnesGiveThePlanesAndValuesOfTheStagesBitForBit) {
         const double scale = std::ldexp(1.0, widths.grid_bits), top = std::ldexp(1.0, config.depth_bits) - 1;
         t.v[i] = {static_cast<std::int32_t>(snap(v[i].x, scale)),
                   static_cast<std::int32_t>(snap(v[i].y, scale)),
-                  static_cast<std::uint32_t>(snap(v[i].z, top)),
-                  {}};
-        for (std::size_t c = 0; c < 4; ++c) t.v[i].rgba[c] = static_cast<std::uint8_t>(v[i].rgba[c]);
+                  {static_cast<std::uint32_t>(snap(v[i].z, top))}};
+        for (std::size_t c = 0; c < 4; ++c) t.v[i].code[kColorPlane + c] = static_cast<std::uint8_t>(v[i].rgba[c]);
       }
       const TriangleSetup usual = setup_triangle(t, config, widths, {0, 0, config.target_width, config.target_height});
       if (usual.is_empty()) continue;
       const TriangleSetup made = setup_by(t, kUsual, config, widths);
-      ASSERT_TRUE(same_plane(usual.depth, made.depth)) << name << " " << k;
-      for (std::size_t c = 0; c < 4; ++c) ASSERT_TRUE(same_plane(usual.color[c], made.color[c])) << name << " " << k;
-      EXPECT_EQ(interpolate_by_rules(made, kUsual, widths, 5, 9).depth_code, depth_at(usual, widths, 5, 9).code);
+      for (std::size_t p = 0; p < kMaxPlanes; ++p)
+        ASSERT_TRUE(same_plane(usual.plane[p], made.plane[p])) << name << " " << k;
+      EXPECT_EQ(interpolate_by_rules(made, kUsual, widths, 5, 9).code, interpolate_at(usual, widths, 5, 9).code);
       ++compared;
     }
     EXPECT_GT(compared, 300) << name;
@@ -124,16 +123,15 @@ TEST(PlaneRules, SaturateChangesNothingWhereNoPlaneLeavesItsRegister) {
   const Config config = preset("embedded");
   const Widths widths = derive_widths(config);
   Triangle t;  // its vertex of the right angle is the first tile's: every anchor of its box lies between its depths
-  t.v = {{{16, 16, 3000, {9, 200, 80, 0}}, {1600, 16, 40000, {200, 9, 80, 0}}, {16, 1400, 20000, {99, 99, 0, 255}}}};
+  t.v = {{{16, 16, {3000, 9, 200, 80, 0}}, {1600, 16, {40000, 200, 9, 80, 0}}, {16, 1400, {20000, 99, 99, 0, 255}}}};
   const TriangleSetup wrap = setup_by(t, kUsual, config, widths), saturate = setup_by(t, kSaturate, config, widths);
-  ASSERT_TRUE(same_plane(wrap.depth, saturate.depth));
+  ASSERT_TRUE(same_plane(wrap.plane[kDepthPlane], saturate.plane[kDepthPlane]));
   for (int y = 1; y < 40; ++y)
     for (int x = 1; x < 50; ++x) {
       const Interpolated a = interpolate_at(wrap, widths, x, y),
                          b = interpolate_by_rules(saturate, kSaturate, widths, x, y);
-      ASSERT_EQ(a.depth, b.depth) << x << ", " << y;
-      ASSERT_EQ(a.depth_code, b.depth_code);
-      ASSERT_EQ(a.color_code, b.color_code);
+      ASSERT_EQ(a.unrounded[kDepthPlane], b.unrounded[kDepthPlane]) << x << ", " << y;
+      ASSERT_EQ(a.code, b.code);
     }
 }
 
@@ -192,13 +190,13 @@ TEST(PlaneRules, NothingIsTruncatedWhereAProductHasFewerFractionBitsThanAreKept)
   ASSERT_NO_THROW(validate(config));
   const Widths widths = derive_widths(config);
   Triangle t;  // its area is 1, and its reciprocal exact
-  t.v[0] = {130, 130, 3, {}};
-  t.v[1] = {131, 130, 90, {}};
-  t.v[2] = {130, 131, 7, {}};
+  t.v[0] = {130, 130, {3}};
+  t.v[1] = {131, 130, {90}};
+  t.v[2] = {130, 131, {7}};
   const TriangleSetup usual = setup_by(t, kUsual, config, widths), truncated = setup_by(t, kTruncated, config, widths);
-  EXPECT_EQ(truncated.depth.step_x, usual.depth.step_x);
-  EXPECT_EQ(truncated.depth.step_y, usual.depth.step_y);
-  EXPECT_EQ(usual.depth.step_x, std::int64_t{87} << widths.plane_fraction);
+  EXPECT_EQ(truncated.plane[kDepthPlane].step_x, usual.plane[kDepthPlane].step_x);
+  EXPECT_EQ(truncated.plane[kDepthPlane].step_y, usual.plane[kDepthPlane].step_y);
+  EXPECT_EQ(usual.plane[kDepthPlane].step_x, std::int64_t{87} << widths.plane_fraction);
 }
 
 /// A scene of the page by some rules; it is never the coverage or the storage that is at fault.

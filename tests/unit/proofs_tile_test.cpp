@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "../enumeration.hpp"
+#include "model/fragment_ops.hpp"
 #include "model/stages/coarse_raster.hpp"
-#include "model/stages/depth_test.hpp"
 #include "model/stages/fine_raster.hpp"
 
 namespace halfplane {
@@ -87,16 +87,17 @@ Coverage stepped_coverage(const SetupPacket& setup, bool is_broken, TileTally& t
   Coverage covered;
   std::array<bool, 4> is_visited{};
   coarse_raster(setup, 0, hiz, widths, counters, [&](const TilePacket& packet) {
-    if (packet.is_visit == 0) return;
-    is_visited[static_cast<std::size_t>(packet.tile_y * widths.tiles_x + packet.tile_x)] = true;
-    fine_raster(packet, edges, tiny(), widths, [&](const StampPacket& stamp) {
-      const int x = (packet.tile_x << shift) + stamp.stamp % tile, y = (packet.tile_y << shift) + stamp.stamp / tile;
-      if (stamp.mask != 0) covered.set(static_cast<std::size_t>(y * tiny().target_width + x));
+    if (!packet.is_visit) return;
+    is_visited[static_cast<std::size_t>(packet.key.tile_y * widths.tiles_x + packet.key.tile_x)] = true;
+    fine_raster(packet, edges, widths, [&](const StampPacket& stamp) {
+      const int x = (packet.key.tile_x << shift) + stamp.stamp % tile,
+                y = (packet.key.tile_y << shift) + stamp.stamp / tile;
+      if (stamp.mask.any()) covered.set(static_cast<std::size_t>(y * tiny().target_width + x));
     });
-    for (int y = packet.top; packet.is_inside != 0 && y <= packet.bottom; ++y)
-      for (int x = packet.left; x <= packet.right; ++x)
+    for (int y = packet.box.top; packet.is_inside && y <= packet.box.bottom; ++y)
+      for (int x = packet.box.left; x <= packet.box.right; ++x)
         tally.wrongly_accepted += !expected.test(static_cast<std::size_t>(
-            ((packet.tile_y << shift) + y) * tiny().target_width + (packet.tile_x << shift) + x));
+            ((packet.key.tile_y << shift) + y) * tiny().target_width + (packet.key.tile_x << shift) + x));
   });
   for (int y = 0; y < tiny().target_height; ++y)
     for (int x = 0; x < tiny().target_width; ++x)
@@ -124,14 +125,13 @@ TriangleTally every_triangle(const std::vector<int>& places, bool is_broken) {
       for (int c = 0; c < points; ++c) {
         ++tally.triangles;
         PrimitivePacket primitive;
-        set_vertices(primitive, {at(a), at(b), at(c)}, widths);
-        primitive.right = static_cast<std::uint16_t>(tiny().target_width - 1);
-        primitive.bottom = static_cast<std::uint16_t>(tiny().target_height - 1);
+        set_vertices(primitive.vertex, {at(a), at(b), at(c)});
+        primitive.box = to_box({0, 0, tiny().target_width - 1, tiny().target_height - 1});
         CounterPacket counters;
         const auto kept = cull(primitive, widths, counters);
         if (!kept) continue;
         ++tally.drawn;
-        const auto v = vertices_of(*kept);
+        const auto v = to_snapped(kept->vertex);
         Coverage expected;
         for (int y = 0; y < tiny().target_height; ++y)
           for (int x = 0; x < tiny().target_width; ++x) {
@@ -181,14 +181,14 @@ TileTally every_bound(int hiz_bits, DepthFunc func, DepthFunc asked) {
   TileTally tally;
   for (std::uint32_t code = 0; code < 1U << hiz_bits; ++code) {
     RetirePacket retired;
-    retired.update = static_cast<std::uint8_t>(HizUpdate::set);
+    retired.update = HizUpdate::set;
     retired.hiz_code = code;
     hiz.update(retired);
     const std::uint32_t farthest = ((code + 1) << dropped) - 1;  // the largest depth whose high bits are the code
     for (std::uint32_t nearest = 0; nearest < static_cast<std::uint32_t>(codes); ++nearest) {
       SetupPacket setup;
-      setup.depth_min = nearest;
-      setup.depth_test = static_cast<std::uint8_t>(asked);
+      setup.range.low[kDepthPlane] = nearest;
+      setup.state.depth_test = asked;
       ++tally.cases;
       const bool can_pass = passes[nearest][farthest];
       tally.wrongly_rejected += hiz.rejects(setup, 0, 0) && can_pass;

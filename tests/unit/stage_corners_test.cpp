@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "../scene_builder.hpp"
+#include "model/packet_words.hpp"
 #include "model/stages/clip.hpp"
 #include "model/stages/cull.hpp"
 #include "model/stages/fill_rule.hpp"
@@ -50,7 +51,7 @@ TEST(Viewport, AVertexThatSnapsToNoCodeIsRefusedOnEverySideAndTheOneBesideItIsTa
   EXPECT_EQ((std::array{low.x, low.y}), (std::array{-128, -128}));
   const SnappedVertex high = snap_vertex({31.75, 31.75, 1}, kWhite, config, {});
   EXPECT_EQ((std::array{high.x, high.y}), (std::array{127, 127}));
-  EXPECT_EQ(high.z, 255u);
+  EXPECT_EQ(high.depth(), 255u);
 }
 
 TEST(Viewport, ADrawOfNoFilesLineIsNamedWithoutOne) {
@@ -111,12 +112,10 @@ TEST(Cull, EachReasonToDropIsCountedOnce) {
   const Widths widths = derive_widths(config);
   const auto counters_of = [&](PrimitiveKind kind, std::array<std::int32_t, 6> xy, int left, Cull mode, int top = 0) {
     PrimitivePacket in;
-    in.kind = static_cast<std::uint8_t>(kind);
-    in.cull = static_cast<std::uint8_t>(mode);
-    for (std::size_t i = 0; i < 3; ++i) in.x[i] = xy[2 * i], in.y[i] = xy[2 * i + 1];
-    in.left = static_cast<std::uint16_t>(left);
-    in.top = static_cast<std::uint16_t>(top);
-    in.right = in.bottom = 15;
+    in.kind = kind;
+    in.cull = mode;
+    for (std::size_t i = 0; i < 3; ++i) in.vertex.x[i] = xy[2 * i], in.vertex.y[i] = xy[2 * i + 1];
+    in.box = to_box({left, top, 15, 15});
     CounterPacket counters;
     const bool is_kept = cull(in, widths, counters).has_value();
     return std::array<std::uint64_t, 5>{is_kept, counters.primitives_in, counters.zero_area, counters.backface,
@@ -182,8 +181,8 @@ TEST(Homogeneous, FlatTrianglesHaveTheirProvokingVertexColorAndOffsetMovesDepthB
     const HomogeneousFrame frame{config, widths, state, {0, 0, 32, 32}, {0, 0, 32, 32}};
     for_each_homogeneous(builder.scene, draw, frame, [&](const HomogeneousSetup& setup) {
       const Interpolated middle = interpolate_at(setup, widths, 16, 18);
-      EXPECT_EQ(middle.color_code[2] == 0, is_flat);
-      EXPECT_EQ(middle.depth_code, is_flat ? 0x8005u : 0x8000u);
+      EXPECT_EQ(middle.code[kColorPlane + 2] == 0, is_flat);
+      EXPECT_EQ(middle.code[kDepthPlane], is_flat ? 0x8005u : 0x8000u);
     });
   }
 }
@@ -205,12 +204,11 @@ TEST(Hiz, ALineThatMayRaiseDepthsTakesTheBoundsAwayUntilAClear) {
   Hiz hiz(config, widths, 0);
   hiz.clear(widths.tiles_x - 1, widths.tiles_y - 1, 0);
   SetupPacket triangle;
-  triangle.depth_test = static_cast<std::uint8_t>(DepthFunc::less);
+  triangle.state.depth_test = DepthFunc::less;
   const auto line = [](DepthFunc test, bool writes) {
     SetupPacket packet;
-    packet.kind = static_cast<std::uint8_t>(PrimitiveKind::line);
-    packet.depth_test = static_cast<std::uint8_t>(test);
-    packet.depth_write = writes ? 1 : 0;
+    packet.kind = PrimitiveKind::line;
+    packet.state = {test, writes, false};
     return packet;
   };
   EXPECT_TRUE(hiz.is_eligible(triangle, widths));
@@ -226,10 +224,15 @@ TEST(Hiz, ALineThatMayRaiseDepthsTakesTheBoundsAwayUntilAClear) {
 TEST(LineRaster, EveryFieldOfAPixelHasTheWidthOfWhatItHolds) {
   const Widths widths = derive_widths(preset("tiny"));
   std::vector<std::pair<std::string, int>> fields;
-  for_each_field<LinePixel>(
-      widths, [&](const auto& field, const Width& width, std::size_t) { fields.emplace_back(field.name, width.bits); });
-  const std::vector<std::pair<std::string, int>> expected{
-      {"primitive_id", widths.primitive_id.bits}, {"x", 4}, {"y", 4}, {"is_last", 1}, {"depth", 8}, {"color", 24}};
+  for (const auto& [field, width] : element_names<LinePixel>(widths)) fields.emplace_back(field, width.bits);
+  const std::vector<std::pair<std::string, int>> expected{{"primitive_id", widths.primitive_id.bits},
+                                                          {"x", 4},
+                                                          {"y", 4},
+                                                          {"is_last", 1},
+                                                          {"code[depth]", 8},
+                                                          {"code[red]", 8},
+                                                          {"code[green]", 8},
+                                                          {"code[blue]", 8}};
   EXPECT_EQ(fields, expected);
 }
 

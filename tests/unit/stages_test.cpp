@@ -3,10 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "../scene_builder.hpp"
-#include "model/packet_bits.hpp"
+#include "model/packet_words.hpp"
 #include "model/pipeline.hpp"
+#include "model/stages/coarse_raster.hpp"
+#include "model/stages/cull.hpp"
+#include "model/stages/depth_test.hpp"
+#include "model/stages/fine_raster.hpp"
+#include "model/stages/interpolate.hpp"
+#include "model/stages/rop.hpp"
+#include "model/stages/triangle_setup.hpp"
+#include "sim/cosim/arrows.hpp"
+#include "tests/packet_values.hpp"
 
 namespace halfplane {
 namespace {
@@ -20,7 +30,7 @@ Triangle random_triangle(Random& random, const Widths& widths, double reach) {
                                                            static_cast<double>(widths.coordinate.range.hi)));
     v.y = static_cast<std::int32_t>(reach * random.between(static_cast<double>(widths.coordinate.range.lo),
                                                            static_cast<double>(widths.coordinate.range.hi)));
-    v.z = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth_code.range.hi)));
+    v.depth() = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth().code.range.hi)));
   }
   return triangle;
 }
@@ -48,13 +58,93 @@ TEST(Rop, PackedChannelIsTheNearestCodeForEveryInput) {
   }
 }
 
+constexpr std::array kDepthFuncs{DepthFunc::never,   DepthFunc::less,   DepthFunc::lequal,   DepthFunc::equal,
+                                 DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always};
+
 TEST(DepthTest, EveryFunctionIsTheUnionOfItsOutcomes) {
-  for (const auto func : {DepthFunc::never, DepthFunc::less, DepthFunc::lequal, DepthFunc::equal, DepthFunc::greater,
-                          DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always}) {
+  for (const auto func : kDepthFuncs) {
     const bool less = depth_passes(func, 1, 2), equal = depth_passes(func, 2, 2), greater = depth_passes(func, 3, 2);
     const int outcomes = less * 4 + equal * 2 + greater;
     const std::array<int, 8> expected{0, 4, 6, 2, 1, 3, 5, 7};
     EXPECT_EQ(outcomes, expected[static_cast<std::size_t>(func)]);
+  }
+}
+
+TEST(FragmentOps, LanesDoWhatTheScalarInstanceDoes) {
+  typedef std::uint32_t Four __attribute__((vector_size(16)));
+  Random random(12);
+  std::mt19937 words(12);
+  for (const auto func : kDepthFuncs) {
+    const DepthOutcomes outcomes(func);
+    EXPECT_EQ(can_raise_depth(func), func >= DepthFunc::greater);
+    for (int n = 0; n < 100; ++n) {
+      Four fragment, stored;
+      for (int i = 0; i < 4; ++i) {
+        stored[i] = static_cast<std::uint32_t>(words());
+        fragment[i] = random.index(3) == 0 ? stored[i] : static_cast<std::uint32_t>(words());
+      }
+      const Four mask = outcomes(fragment, stored), written = write_where(mask, fragment, stored);
+      for (int i = 0; i < 4; ++i) {
+        const std::uint32_t f = fragment[i], s = stored[i], expected = depth_passes(func, f, s) ? ~0U : 0U;
+        EXPECT_EQ(mask[i], expected);
+        EXPECT_EQ(outcomes(f, s), expected);
+        EXPECT_EQ(written[i], depth_passes(func, f, s) ? f : s);
+      }
+    }
+  }
+  for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888})
+    for (int n = 0; n < 200; ++n) {
+      std::array<Four, 4> channel;
+      for (Four& lanes : channel)
+        for (int i = 0; i < 4; ++i) lanes[i] = static_cast<std::uint32_t>(random.index(256));
+      const Four packed = pack_color(format, channel);
+      const std::array<Four, 4> stored = unpack_color(format, packed);
+      for (int i = 0; i < 4; ++i) {
+        std::array<std::uint8_t, 4> code;
+        for (std::size_t c = 0; c < 4; ++c) code[c] = static_cast<std::uint8_t>(channel[c][i]);
+        EXPECT_EQ(packed[i], pack_color(format, code));
+        for (std::size_t c = 0; c < 4; ++c) {
+          EXPECT_EQ(stored[c][i], unpack_color(format, std::uint32_t{packed[i]})[c]);
+          if (format == ColorFormat::rgba8888) {
+            EXPECT_EQ(stored[c][i], code[c]);
+          }
+        }
+      }
+    }
+}
+
+TEST(FragmentOps, APacketThroughDepthTestAndRopIsEachOfItsFragmentsThroughTheOperations) {
+  Random random(13);
+  std::mt19937_64 words(13);
+  for (const auto name : {"tiny", "embedded", "full"}) {
+    const Config config = preset(name);
+    const Widths widths = derive_widths(config);
+    for (int n = 0; n < 400; ++n) {
+      FragmentPacket fragment;
+      fragment.state.depth_test = static_cast<DepthFunc>(random.index(8));
+      fragment.state.depth_write = random.index(2) != 0;
+      fragment.state.color_write = random.index(2) != 0;
+      fragment.mask = SampleMask(words() & ((std::uint64_t{1} << widths.samples) - 1));
+      std::array<std::uint32_t, 64> depth, color;
+      for (std::size_t s = 0; s < 64; ++s) {
+        fragment.code[s][kDepthPlane] = static_cast<std::uint32_t>(random.index(4));  // equal codes meet often
+        depth[s] = static_cast<std::uint32_t>(random.index(4));
+        const std::uint64_t rgba = words();
+        for (std::size_t c = 0; c < 4; ++c) fragment.code[s][kColorPlane + c] = rgba >> 8 * c & 255;
+        color[s] = static_cast<std::uint32_t>(words());
+      }
+      const WritePacket written = rop(fragment, depth_test(fragment, depth, widths), config, widths);
+      for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
+        std::uint32_t expected_depth = depth[s], expected_color = color[s];
+        const bool passes = fragment.mask.has(s) &&
+                            apply_fragment(
+                                fragment.state, config.color_format, fragment.code[s][kDepthPlane],
+                                [&] { return color_channels(fragment.code[s]); }, expected_depth, expected_color);
+        EXPECT_EQ(written.passed.has(s), passes);
+        EXPECT_EQ(written.write_depth.has(s) ? written.depth[s] : depth[s], expected_depth);
+        EXPECT_EQ(written.write_color.has(s) ? written.color[s] : color[s], expected_color);
+      }
+    }
   }
 }
 
@@ -178,10 +268,10 @@ TEST(Interpolate, FlatDepthHasNoGradientAtAll) {
   const Widths widths = derive_widths(config);
   for (int n = 0; n < 1000; ++n) {
     Triangle triangle = random_triangle(random, widths, 1);
-    triangle.v[0].z = triangle.v[1].z = triangle.v[2].z;
+    triangle.v[0].depth() = triangle.v[1].depth() = triangle.v[2].depth();
     const TriangleSetup setup = setup_triangle(triangle, config, widths);
-    EXPECT_EQ(setup.depth.step_x, 0);
-    EXPECT_EQ(setup.depth.step_y, 0);
+    EXPECT_EQ(setup.plane[kDepthPlane].step_x, 0);
+    EXPECT_EQ(setup.plane[kDepthPlane].step_y, 0);
   }
 }
 
@@ -190,34 +280,11 @@ TEST(Interpolate, ValueFarOutsideTheTriangleWrapsWithoutHarmInside) {
   const Config config = preset("embedded");
   const Widths widths = derive_widths(config);
   Triangle triangle;
-  triangle.v[0] = {160, 160, 0, {}};
-  triangle.v[1] = {176, 160, 65535, {}};
-  triangle.v[2] = {160, 30000, 0, {}};
+  triangle.v[0] = {160, 160, {0}};
+  triangle.v[1] = {176, 160, {65535}};
+  triangle.v[2] = {160, 30000, {0}};
   const TriangleSetup setup = setup_triangle(triangle, config, widths);
-  EXPECT_EQ(interpolate_at(setup, widths, 10, 10).depth_code, 32768u);  // 65535 * 8/16, rounded
-}
-
-TEST(Packets, BitsAndBackAreTheSamePacket) {
-  Random random(16);
-  for (const auto name : preset_names()) {
-    const Widths widths = derive_widths(preset(name));
-    for (int n = 0; n < 200; ++n) {
-      PacketBits bits(packet_bits<TilePacket>(widths));
-      for (int b = 0; b < bits.size; ++b) bits.put(b, 1, random.unit() < 0.5 ? 1 : 0);
-      EXPECT_EQ(pack(unpack<TilePacket>(bits, widths), widths), bits);
-    }
-  }
-}
-
-/// Every field of the packet fits the member that holds it in C++.
-template <class Packet>
-void expect_members_wide_enough(const Widths& widths) {
-  for_each_element<Packet>(widths, [](const auto& field, const Width& width, std::size_t i, int) {
-    Packet packet;
-    using Member = std::decay_t<decltype(element(packet, field.member, i))>;
-    EXPECT_LE(width.bits, static_cast<int>(8 * sizeof(Member))) << Packet::name << '.' << field.name;
-    EXPECT_EQ(width.is_signed, std::is_signed_v<Member>) << Packet::name << '.' << field.name;
-  });
+  EXPECT_EQ(interpolate_at(setup, widths, 10, 10).code[kDepthPlane], 32768u);  // 65535 * 8/16, rounded
 }
 
 TEST(Packets, EveryMemberHoldsItsFieldInEveryLegalTileAndStamp) {
@@ -233,9 +300,9 @@ TEST(Packets, EveryMemberHoldsItsFieldInEveryLegalTileAndStamp) {
       config.guard_band = config.target_width = config.target_height = 16384;
       validate(config);
       const Widths widths = derive_widths(config);
-      expect_members_wide_enough<TilePacket>(widths);
-      expect_members_wide_enough<EdgeContext>(widths);
-      expect_members_wide_enough<StampPacket>(widths);
+      test::expect_members_wide_enough<TilePacket>(widths);
+      test::expect_members_wide_enough<EdgeContext>(widths);
+      test::expect_members_wide_enough<StampPacket>(widths);
     }
 }
 
@@ -244,9 +311,17 @@ TEST(Packets, DifferenceNamesTheFieldAndTheElement) {
   TilePacket a, b;
   b.edge_value[1] = -5;
   b.slot = 2;
-  EXPECT_EQ(differing_fields(a, b, widths), (std::vector<std::string>{"slot", "edge_value[1]"}));
-  EXPECT_TRUE(differing_fields(a, a, widths).empty());
-  EXPECT_NE(to_string(b, widths).find("edge_value[1]=-5"), std::string::npos);
+  b.anchor[kColorPlane] = 3;
+  const auto words_a = packed(a, widths), words_b = packed(b, widths);
+  std::vector<std::string> names;
+  for (const FieldPair& pair : field_pairs(Arrow::tile, widths, words_a.data(), words_b.data())) {
+    if (!pair.differs()) continue;
+    names.push_back(pair.name);
+    if (pair.name == "edge_value[1]") {
+      EXPECT_EQ(pair.rtl_text(), "-5");
+    }
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"slot", "edge_value[1]", "anchor[red]"}));
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <set>
 
-#include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
+#include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"
 #include "sim/study/stress/independent.hpp"
 #include "sim/study/stress/run.hpp"
@@ -16,10 +16,6 @@
 
 namespace halfplane::stress {
 namespace {
-
-Rendering draw(const Scene& scene, const Config& config, const RenderOptions& options) {
-  return render_functional(scene, config, options);
-}
 
 std::vector<CaseResult> run_one(std::string_view name, const Engine& engine, std::uint64_t unit) {
   RunOptions options;
@@ -232,6 +228,20 @@ Engine lost_line_pixel() {
   };
 }
 
+/// Fragments whose planes are one LSB too large before the operations, of an engine that stores the right ones.
+Engine fragments_one_more(std::size_t plane) {
+  return [plane](const Scene& scene, const Config& config, const RenderOptions& options) {
+    RenderOptions other = options;
+    if (options.fragment_tap)
+      other.fragment_tap = [&](const TappedFragment& fragment) {
+        TappedFragment copy = fragment;
+        copy.plane[plane].unrounded += std::int64_t{1} << fragment.guard_bits;
+        options.fragment_tap(copy);
+      };
+    return draw(scene, config, other);
+  };
+}
+
 /// Whether one of a few units of the case fails with the engine; without it none may.
 bool is_caught(std::string_view name, const Engine& engine) {
   for (std::uint64_t unit = 0; unit < 8; ++unit)
@@ -275,6 +285,16 @@ TEST(SuiteMustFail, DepthAndColourThatAreOffAreSeenAndTheSearchNoticesThatItRepo
     EXPECT_TRUE(is_caught(name, every_depth_one_more())) << name;
   for (const auto name : {"random_families", "adversarial_color"})
     EXPECT_TRUE(is_caught(name, colors_turned())) << name;
+}
+
+TEST(SuiteMustFail, AFragmentThatIsOffBeforeTheOperationsIsSeen) {
+  for (const std::size_t plane : {0, 2})
+    for (const auto name : {"fans", "steep_planes", "closed_meshes"}) {
+      EXPECT_TRUE(is_caught(name, fragments_one_more(plane))) << name;
+      const Tally tally = run_one(name, fragments_one_more(plane), 0).front().tally;
+      ASSERT_TRUE(tally.first) << name;
+      EXPECT_EQ(tally.first->property, "fragments");
+    }
 }
 
 TEST(SuiteMustFail, AnExceptionIsAFailureThatNamesItsUnit) {

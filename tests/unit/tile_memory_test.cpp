@@ -44,20 +44,20 @@ TEST(Hiz, BoundOfATileFollowsTheDepthsInIt) {
   EXPECT_EQ(hiz.bound(3, 2), 65535u);
   hiz.clear(5, 5, 0x1234);
   EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
-  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::none), 0});
+  hiz.update({{0, 3, 2}, HizUpdate::none, 0});
   EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
-  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::set), 0x05});
+  hiz.update({{0, 3, 2}, HizUpdate::set, 0x05});
   EXPECT_EQ(hiz.bound(3, 2), 0x05FFu);
   EXPECT_EQ(hiz.bound(2, 3), 0x12FFu);
   SetupPacket setup;
-  setup.depth_min = 0x05FF;
-  setup.depth_test = static_cast<std::uint8_t>(DepthFunc::less);
+  setup.range.low[kDepthPlane] = 0x05FF;
+  setup.state.depth_test = DepthFunc::less;
   EXPECT_TRUE(hiz.rejects(setup, 3, 2));
-  setup.depth_test = static_cast<std::uint8_t>(DepthFunc::lequal);
+  setup.state.depth_test = DepthFunc::lequal;
   EXPECT_FALSE(hiz.rejects(setup, 3, 2));
-  setup.depth_min = 0x0600;
+  setup.range.low[kDepthPlane] = 0x0600;
   EXPECT_TRUE(hiz.rejects(setup, 3, 2));
-  hiz.update({0, 3, 2, static_cast<std::uint8_t>(HizUpdate::clear), 0xFF});
+  hiz.update({{0, 3, 2}, HizUpdate::clear, 0xFF});
   EXPECT_FALSE(hiz.rejects(setup, 3, 2));
 }
 
@@ -181,34 +181,33 @@ TEST(HostStream, BeginsWithAClearOfBothPlanesAndEndsWithAFlush) {
   builder.scene.commands.push_back(Clear{0, std::nullopt, std::nullopt});
   builder.triangle(at(1, 1), at(1, 1), at(1, 1));  // of no area: the hardware's to drop
   HostStream host(builder.scene, preset("embedded"));
-  const auto kind = [](PrimitiveKind k) { return static_cast<std::uint8_t>(k); };
   auto p = host.next();
   ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::fast_clear));
-  EXPECT_EQ(p->packet.z[2], 65535u);
-  EXPECT_EQ(p->packet.rgba[0], 0u);
-  EXPECT_EQ(p->packet.right, 19);
-  EXPECT_EQ(p->packet.depth_write + p->packet.color_write, 2);
+  EXPECT_EQ(p->packet.kind, PrimitiveKind::fast_clear);
+  EXPECT_EQ(p->packet.vertex.code[2][kDepthPlane], 65535u);
+  EXPECT_EQ(color_channels(p->packet.vertex.code[0]), (std::array<std::uint32_t, 4>{0, 0, 0, 0}));
+  EXPECT_EQ(p->packet.box.right, 19);
+  EXPECT_TRUE(p->packet.state.depth_write && p->packet.state.color_write);
   p = host.next();
   ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::rectangle));
-  EXPECT_EQ(p->packet.left, 5);
-  EXPECT_EQ(p->packet.right, 19);
-  EXPECT_EQ(p->packet.bottom, 4);
-  EXPECT_EQ(p->packet.color_write, 0);
+  EXPECT_EQ(p->packet.kind, PrimitiveKind::rectangle);
+  EXPECT_EQ(p->packet.box.left, 5);
+  EXPECT_EQ(p->packet.box.right, 19);
+  EXPECT_EQ(p->packet.box.bottom, 4);
+  EXPECT_FALSE(p->packet.state.color_write);
   EXPECT_EQ(p->command, 1u);
   p = host.next();
   ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::fast_clear));
-  EXPECT_EQ(p->packet.rgba[1], 0x0201FFu);
-  EXPECT_EQ(p->packet.depth_write, 0);
+  EXPECT_EQ(p->packet.kind, PrimitiveKind::fast_clear);
+  EXPECT_EQ(color_channels(p->packet.vertex.code[1]), (std::array<std::uint32_t, 4>{255, 1, 2, 0}));
+  EXPECT_FALSE(p->packet.state.depth_write);
   p = host.next();
   ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::triangle));
-  EXPECT_EQ(p->packet.left, 5) << "the scissor rides along";
+  EXPECT_EQ(p->packet.kind, PrimitiveKind::triangle);
+  EXPECT_EQ(p->packet.box.left, 5) << "the scissor rides along";
   p = host.next();
   ASSERT_TRUE(p);
-  EXPECT_EQ(p->packet.kind, kind(PrimitiveKind::flush));
+  EXPECT_EQ(p->packet.kind, PrimitiveKind::flush);
   EXPECT_EQ(p->command, HostPrimitive::kNoCommand);
   EXPECT_FALSE(host.next());
   EXPECT_FALSE(host.next());
@@ -221,7 +220,7 @@ TEST(HostStream, DrawIntoAnEmptyRectangleSendsNothing) {
   builder.triangle(at(1, 1), at(9, 1), at(1, 9));
   HostStream host(builder.scene, preset("embedded"));
   std::size_t triangles = 0;
-  while (const auto p = host.next()) triangles += p->packet.kind == 0 ? 1 : 0;
+  while (const auto p = host.next()) triangles += p->packet.kind == PrimitiveKind::triangle ? 1 : 0;
   EXPECT_EQ(triangles, 0u);
   EXPECT_EQ(host.counters().culled, 1u);
 }
@@ -233,7 +232,7 @@ TEST(HostStream, NumberOfATriangleDoesNotWrapWhereItsKeyDoes) {
   HostStream host(builder.scene, config);
   std::uint32_t expected = 0;
   while (const auto p = host.next()) {
-    if (p->packet.kind != 0) continue;
+    if (p->packet.kind != PrimitiveKind::triangle) continue;
     EXPECT_EQ(p->primitive, expected);
     EXPECT_EQ(p->packet.primitive_id, expected % 16);
     ++expected;

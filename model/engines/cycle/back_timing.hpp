@@ -19,7 +19,7 @@ namespace halfplane {
 /// The samples that a fragment reads and writes, for the hazard of the next one.
 struct FragmentPlace {
   int tile_x = 0, tile_y = 0, stamp = 0;
-  std::uint64_t mask = 0;  ///< covered samples; 0: looks nothing up
+  SampleMask mask;  ///< covered samples; none: looks nothing up
   bool depth_write = false;
 };
 
@@ -36,7 +36,7 @@ struct TimingTotals {
   std::uint64_t visit_cycles = 0;   ///< likewise because too many visits were under way
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
   /// In which each stage was at work: its narrowest part, waits for others left out.
-  std::array<std::uint64_t, kTimedStages> works{};
+  std::array<std::uint64_t, kStages> works{};
   std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> planes{};  ///< moved, by MoveCause and plane
   bool has_primitive = false;                                             ///< first_primitive has been seen
 
@@ -51,40 +51,18 @@ class BackTiming {
   /// `memory` and `sink`, which may be null, must outlive this.
   BackTiming(const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
       : stalls_(stalls),
-        primitive_(stalls, 1U << stall_primitive),
-        triangle_(stalls, 1U << stall_triangle),
-        setup_(stalls, 1U << stall_setup),
-        tile_(stalls, 1U << stall_tile),
-        stamp_(stalls, 1U << stall_stamp),
+        streams_(streams_of(stalls)),
         memory_(memory),
         sink_(sink),
-        stamps_(static_cast<Cycle>(widths.stamps_per_row) * static_cast<Cycle>(widths.stamps_per_row)),
+        stamps_(static_cast<Cycle>(widths.stamps.stamps())),
         moves_in_bursts_(sink == nullptr && stalls.threshold == 0 && memory.fixed_latency() != 0),
-        line_raster_(1, 1, 0),
-        line_(stalls, 1U << stall_line),
-        line_pixel_(stalls, 1U << stall_line_pixel),
-        fragment_(stalls, 1U << stall_fragment),
-        request_(stalls, 1U << stall_request | 1U << stall_memory),
-        response_(stalls, 1U << stall_response) {}
+        line_raster_(1, 1, 0) {}
 
   [[nodiscard]] const TimingTotals& totals() const { return totals_; }
   /// When the last fragment moved.
   [[nodiscard]] Cycle last_fragment() const { return last_fragment_; }
-  /// Of the boundaries that can wait.
-  [[nodiscard]] const Stream& stream(Boundary boundary) const {
-    switch (boundary) {
-      case Boundary::primitive: return primitive_;
-      case Boundary::line: return line_;
-      case Boundary::triangle: return triangle_;
-      case Boundary::setup: return setup_;
-      case Boundary::tile: return tile_;
-      case Boundary::stamp: return stamp_;
-      case Boundary::line_pixel: return line_pixel_;
-      case Boundary::request: return request_;
-      case Boundary::response: return response_;
-      default: return fragment_;
-    }
-  }
+  /// Of an elastic arrow.
+  [[nodiscard]] const Stream& stream(Arrow arrow) const { return streams_[index(arrow)]; }
 
   /// Another scene: primitives, writes and tile moves count from here.
   void begin_scene() {
@@ -112,16 +90,16 @@ class BackTiming {
 
   /// The setup of the line whose place is offered from `offered` on goes into line_raster.
   void take_line(Cycle offered) {
-    const Cycle taken = line_.transfer(std::max(offered, next_line_), line_raster_.room());
+    const Cycle taken = stream(Arrow::line).transfer(std::max(offered, next_line_), line_raster_.room());
     next_line_ = taken + 1;
     first_pixel_ = line_raster_.ready(taken);
-    note(Boundary::line, taken);
+    note(Arrow::line, taken);
   }
 
   /// A stamp without a covered sample, on offer to depth_test from `offered` on. Returns when it moves.
   Cycle pass(Cycle offered) {
-    const Cycle moved = fragment_.transfer(offered, 0);
-    note(Boundary::fragment, moved);
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, 0);
+    note(Arrow::fragment, moved);
     last_fragment_ = moved;
     last_place_ = {};
     return moved;
@@ -140,10 +118,10 @@ class BackTiming {
     Cycle pixel = first_pixel_, moved = 0;
     for (bool more = true; more; pixel = moved + 1, offered = std::max(offered, pixel)) {
       more = step();
-      moved = access(std::max(offered, pixel), place, look_up, line_pixel_.streams());
-      line_pixel_.count(pixel, moved);
-      work(TimedStage::line_raster, 1);
-      note(Boundary::line_pixel, moved);
+      moved = access(std::max(offered, pixel), place, look_up, stream(Arrow::line_pixel).streams());
+      stream(Arrow::line_pixel).count(pixel, moved);
+      work(Stage::line_raster, 1);
+      note(Arrow::line_pixel, moved);
     }
     line_raster_.leave(moved);
     return moved;
@@ -152,13 +130,13 @@ class BackTiming {
   /// A fast clear or a flush on its way through the framebuffer. walk(mover) visits lines and tiles.
   template <class Walk>
   Cycle pass_token(Cycle offered, Walk&& walk) {
-    const Cycle begins = stalls_.next_free(fragment_.streams(), offered);
+    const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams(), offered);
     Mover mover{*this, begins + 1};
     walk(mover);
     // The last tile of the walk stays until the token may move.
-    const Cycle moved = fragment_.transfer(offered, mover.cycle - 1);
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, mover.cycle - 1);
     count_moves(begins, moved + 1);
-    note(Boundary::fragment, moved);
+    note(Arrow::fragment, moved);
     last_fragment_ = moved;
     last_place_ = {};
     return moved;
@@ -167,22 +145,23 @@ class BackTiming {
  protected:
   ~BackTiming() = default;
 
-  void note(Boundary boundary, Cycle cycle) {
+  void note(Arrow boundary, Cycle cycle) {
     totals_.last = std::max(totals_.last, cycle);
     if (sink_ != nullptr) sink_->transfer(boundary, cycle);
   }
 
-  void work(TimedStage stage, std::uint64_t cycles) { totals_.works[static_cast<std::size_t>(stage)] += cycles; }
+  void work(Stage stage, std::uint64_t cycles) { totals_.works[index(stage)] += cycles; }
 
   /// The visit of the last fragment has ended.
   void retire() {
     last_retire_ = last_fragment_ + 2;
-    note(Boundary::retire, last_retire_);
+    note(Arrow::retire, last_retire_);
   }
 
+  [[nodiscard]] Stream& stream(Arrow arrow) { return streams_[index(arrow)]; }
+
   const Stalls stalls_;
-  Stream primitive_, triangle_, setup_, tile_, stamp_;  ///< of the stages in front, whichever they are
-  Cycle last_fragment_ = 0;                             ///< when the last one moved
+  Cycle last_fragment_ = 0;  ///< when the last one moved
   Cycle last_retire_ = 0;
 
   TimingTotals totals_;
@@ -214,19 +193,19 @@ class BackTiming {
   Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up, unsigned others) {
     Cycle ready = offered;
     if (last_place_.depth_write && last_place_.stamp == place.stamp && last_place_.tile_x == place.tile_x &&
-        last_place_.tile_y == place.tile_y && (last_place_.mask & place.mask) != 0 && offered < last_fragment_ + 2) {
+        last_place_.tile_y == place.tile_y && (last_place_.mask & place.mask).any() && offered < last_fragment_ + 2) {
       ready = last_fragment_ + 2;
       totals_.hazard_cycles += ready - offered;
     }
-    const Cycle begins = stalls_.next_free(fragment_.streams() | others, ready);
+    const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams() | others, ready);
     Mover mover{*this, begins + 1};
     if (!look_up(mover)) {
       ready = mover.cycle;
       count_moves(begins, ready);
     }
-    const Cycle moved = fragment_.transfer(offered, ready, others);
-    note(Boundary::fragment, moved);
-    note(Boundary::write, moved + 1);
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, ready, others);
+    note(Arrow::fragment, moved);
+    note(Arrow::write, moved + 1);
     totals_.last_write = moved + 1;
     if (totals_.has_primitive) totals_.tile_cycles = moving_;
     last_fragment_ = moved;
@@ -241,11 +220,11 @@ class BackTiming {
     ++totals_.planes[static_cast<std::size_t>(cause)][static_cast<std::size_t>(address.plane)];
     if (moves_in_bursts_) {
       const Cycle last = cycle + stamps_ - 1;
-      request_.pass(stamps_);
+      stream(Arrow::request).pass(stamps_);
       cycle = last + 1;
       if (!is_write) {
         last_response_ = last + memory_.fixed_latency();  // the answers before were to earlier requests
-        response_.pass(stamps_);
+        stream(Arrow::response).pass(stamps_);
       }
       totals_.last = std::max(totals_.last, is_write ? last : last_response_);
       return;
@@ -253,14 +232,14 @@ class BackTiming {
     MemoryAccess access{is_write, address.plane == TilePlane::color, address.tile_x, address.tile_y, 0};
     Cycle first = 0;
     for (; access.stamp < static_cast<int>(stamps_); ++access.stamp) {
-      const Cycle asked = request_.transfer(cycle, memory_.room());
+      const Cycle asked = stream(Arrow::request).transfer(cycle, memory_.room());
       if (access.stamp == 0) first = asked;
-      note(Boundary::request, asked);
+      note(Arrow::request, asked);
       totals_.memory_cycles += asked - cycle;
       const Cycle answer = memory_.accept(access, asked);
       if (!is_write) {
-        last_response_ = response_.transfer(std::max(answer, last_response_ + 1), 0);
-        note(Boundary::response, last_response_);
+        last_response_ = stream(Arrow::response).transfer(std::max(answer, last_response_ + 1), 0);
+        note(Arrow::response, last_response_);
       }
       cycle = asked + 1;
     }
@@ -292,12 +271,24 @@ class BackTiming {
     if (totals_.has_primitive && from == totals_.last_write && from >= totals_.first_primitive) ++totals_.tile_cycles;
   }
 
+  using Streams = std::array<Stream, kArrows>;
+  /// One for each arrow, though only elastic ones need theirs.
+  static Streams streams_of(const Stalls& stalls) {
+    const auto stalled_by = [](Arrow arrow) {
+      return stall_bit(arrow) | (info(arrow).to == Stage::memory ? 1U << kMemoryStall : 0);
+    };
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return Streams{Stream(stalls, stalled_by(static_cast<Arrow>(I)))...};
+    }
+    (std::make_index_sequence<kArrows>{});
+  }
+
+  Streams streams_;
   MemoryTiming& memory_;
   TransferSink* sink_;
   Cycle stamps_;          ///< of a tile
   bool moves_in_bursts_;  ///< nobody looks at single requests, and none of them ever waits
   Station line_raster_;
-  Stream line_, line_pixel_, fragment_, request_, response_;
   Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;
   FragmentPlace last_place_;
   std::uint64_t moving_ = 0;                           ///< cycles since the first primitive in which tiles moved

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "../../stages/cull.hpp"
+#include "../../stages/depth_test.hpp"
 #include "../../stages/hiz.hpp"
 #include "../../stages/line_raster.hpp"
 #include "../../stages/viewport.hpp"
@@ -26,13 +27,13 @@ bool is_negative_when_sorted(const std::array<SnappedVertex, 3>& v, std::int64_t
 
 PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   PrimitiveWork work;
-  const auto kind = static_cast<PrimitiveKind>(packet.kind);
+  const PrimitiveKind kind = packet.kind;
   work.is_triangle = kind == PrimitiveKind::triangle;
   work.is_line = kind == PrimitiveKind::line;
-  work.is_counted = is_counted(packet.kind);
+  work.is_counted = is_counted(kind);
   work.is_dropped = is_dropped;
   if (!work.is_triangle) return work;
-  const auto v = vertices_of(packet);
+  const auto v = to_snapped(packet.vertex);
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
   const auto size = static_cast<std::uint64_t>(area < 0 ? -area : area);
   work.is_negative = is_negative_when_sorted(v, area);
@@ -66,36 +67,37 @@ class CycleModelOf final : public CycleModel {
   }
 
   void run(const HostPrimitive& host) override {
-    PrimitivePacket primitive = host.packet;
-    if (primitive.kind == static_cast<std::uint8_t>(PrimitiveKind::fast_clear) && options_.parameters.fast_clear == 0)
-      primitive.kind = static_cast<std::uint8_t>(PrimitiveKind::rectangle);
+    std::optional<PrimitivePacket> drawn_clear;
+    if (host.packet.kind == PrimitiveKind::fast_clear && options_.parameters.fast_clear == 0)
+      drawn_clear.emplace(host.packet).kind = PrimitiveKind::rectangle;
+    const PrimitivePacket& primitive = drawn_clear ? *drawn_clear : host.packet;
     if (options_.sink != nullptr) options_.sink->primitive(host);
     const auto triangle = cull(primitive, widths_, counters_);
     timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
     SetupPacket packet;  // what HiZ looks at
     packet.kind = triangle->kind;
-    static_cast<PixelBox&>(packet) = *triangle;
-    static_cast<PrimitiveState&>(packet) = *triangle;
-    switch (static_cast<PrimitiveKind>(triangle->kind)) {
+    packet.box = triangle->box;
+    packet.state = triangle->state;
+    switch (triangle->kind) {
       case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
       case PrimitiveKind::flush: flush(packet); return;
       case PrimitiveKind::line:
         hiz_.pass_line(packet);
-        draw_line(packet, *host.line, host.primitive);
+        draw_line(packet.state, *host.line, host.primitive);
         return;
       case PrimitiveKind::triangle:
       case PrimitiveKind::rectangle:
       case PrimitiveKind::point: break;
     }
     const TriangleSetup setup = setup_primitive(*triangle, config_, widths_);
-    packet.depth_min = setup.depth_min;
+    packet.range = setup.range;
     walk(setup, packet, host.primitive);
   }
 
   [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
   [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
-  [[nodiscard]] const Stream& stream(Boundary boundary) const override { return timing_.stream(boundary); }
+  [[nodiscard]] const Stream& stream(Arrow boundary) const override { return timing_.stream(boundary); }
   [[nodiscard]] Rendering& rendering() override { return rendering_; }
   [[nodiscard]] std::vector<float>& cost() override { return cost_; }
 
@@ -104,15 +106,16 @@ class CycleModelOf final : public CycleModel {
   using Mask = typename Kernel::Mask;
 
   void fast_clear(const TrianglePacket& clear) {
-    const int last_x = clear.right >> widths_.tile_shift, last_y = clear.bottom >> widths_.tile_shift;
-    const std::array<bool, 2> planes{clear.depth_write != 0, clear.color_write != 0};
+    const int last_x = clear.box.right >> widths_.tile_shift, last_y = clear.box.bottom >> widths_.tile_shift;
+    const PerPlane<std::uint32_t>& code = clear.vertex.code[0];
+    const std::array<bool, 2> planes{clear.state.depth_write, clear.state.color_write};
     if (planes[0]) {
-      hiz_.clear(last_x, last_y, clear.z[0]);
+      hiz_.clear(last_x, last_y, code[kDepthPlane]);
       if (config_.hiz_bits != 0)
         timing_.clear_bounds(static_cast<std::uint64_t>(last_x + 1) * static_cast<std::uint64_t>(last_y + 1));
-      fill_target(rendering_.frame.depth, clear.z[0]);
+      fill_target(rendering_.frame.depth, code[kDepthPlane]);
     }
-    if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, vertices_of(clear)[0].rgba));
+    if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
       return timing_.pass_token(offered,
@@ -138,31 +141,32 @@ class CycleModelOf final : public CycleModel {
   void flush(const SetupPacket& packet) {
     timing_.end_token([&](Cycle offered) {
       return timing_.pass_token(offered, [&](auto& mover) {
-        directory_.flush(packet.right >> widths_.tile_shift, packet.bottom >> widths_.tile_shift, mover, counters_);
+        directory_.flush(packet.box.right >> widths_.tile_shift, packet.box.bottom >> widths_.tile_shift, mover,
+                         counters_);
       });
     });
   }
 
   void draw_line(const PrimitiveState& state, const LineSetup& line, std::uint32_t primitive) {
-    const int size = config_.stamp_size;
+    const StampGrid& stamps = widths_.stamps;
     LineState next = first_state(line);
     FragmentPlace place;
-    place.depth_write = state.depth_write != 0;
+    place.depth_write = state.depth_write;
     bool passed = false;
     const auto step = [&] {
       const LinePixel pixel = pixel_of(next, line, widths_);
       const int x = pixel.x & (T - 1), y = pixel.y & (T - 1);
       place.tile_x = pixel.x / T;
       place.tile_y = pixel.y / T;
-      place.stamp = y / size * widths_.stamps_per_row + x / size;
-      place.mask = std::uint64_t{1} << (y % size * size + x % size);
+      place.stamp = stamps.stamp_at(x, y);
+      place.mask = SampleMask::only(stamps.sample_at(x % stamps.size, y % stamps.size));
       passed = shade_pixel(state, pixel, primitive);
-      if (pixel.is_last == 0) next = next_state(next, line, widths_);
-      return pixel.is_last == 0;
+      if (!pixel.is_last) advance(next, line, widths_);
+      return !pixel.is_last;
     };
     const auto look_up = [&](auto& mover) {
       const bool hits = directory_.access(place.tile_x, place.tile_y, mover, counters_);
-      if (passed) directory_.wrote(place.tile_x, place.tile_y, state.depth_write != 0, state.color_write != 0);
+      if (passed) directory_.wrote(place.tile_x, place.tile_y, state.depth_write, state.color_write);
       return hits;
     };
     const Cycle before = timing_.last_fragment();
@@ -179,16 +183,13 @@ class CycleModelOf final : public CycleModel {
     ++counters_.covered;
     const std::size_t plain = plain_index(pixel.x, pixel.y);
     if (!rendering_.count.empty()) ++rendering_.count[plain];
-    if (!depth_passes(static_cast<DepthFunc>(state.depth_test), pixel.depth, frame.depth[at])) return false;
+    if (!apply_fragment(
+            state, config_.color_format, pixel.code[kDepthPlane], [&pixel] { return color_channels(pixel.code); },
+            frame.depth[at], frame.color[at]))
+      return false;
     ++counters_.depth_passed;
-    if (state.depth_write == 0 && state.color_write == 0) return true;
+    if (!state.writes()) return true;
     ++counters_.written;
-    if (state.depth_write != 0) frame.depth[at] = pixel.depth;
-    if (state.color_write != 0) {
-      std::array<std::uint8_t, 4> color;
-      for (std::size_t c = 0; c < 4; ++c) color[c] = static_cast<std::uint8_t>(pixel.color >> 8 * c);
-      frame.color[at] = pack_color(config_.color_format, color);
-    }
     if (!rendering_.ids.empty()) rendering_.ids[plain] = static_cast<std::int32_t>(primitive);
     return true;
   }
@@ -199,11 +200,10 @@ class CycleModelOf final : public CycleModel {
 
   /// coarse_raster, and for each visit the rest of the pipeline.
   void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
-    const Kernel kernel(static_cast<DepthFunc>(packet.depth_test), packet.depth_write != 0, packet.color_write != 0,
-                        config_, widths_);
+    const Kernel kernel(packet.state, config_, widths_);
     const TriangleLanes<T, Lane> lanes(setup, config_, widths_);
     CounterPacket uncounted;
-    CounterPacket& count = packet.kind == static_cast<std::uint8_t>(PrimitiveKind::triangle) ? counters_ : uncounted;
+    CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
     const bool asks_hiz = hiz_.is_eligible(packet, widths_);
     const int last_x = setup.right / T, last_y = setup.bottom / T;
     bool has_ended = false;
@@ -270,23 +270,25 @@ class CycleModelOf final : public CycleModel {
     if (is_counted(packet.kind)) {
       counters_.covered += covered;
       counters_.depth_passed += passed;
-      if (packet.depth_write != 0 || packet.color_write != 0) counters_.written += passed;
+      if (packet.state.writes()) counters_.written += passed;
     }
     bool is_resident = false;
     const Cycle before = timing_.last_fragment();
     if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
     timing_.visit(work, [&](Cycle offered, int row, int column) {
       if (column < 0) return timing_.pass(offered);
-      FragmentPlace place{tile_x, tile_y, row * widths_.stamps_per_row + column, 0, packet.depth_write != 0};
+      FragmentPlace place{tile_x, tile_y, row * widths_.stamps.stamps_per_row + column, {}, packet.state.depth_write};
+      std::uint64_t bits = 0;
       for (int j = 0; j < size; ++j)
-        place.mask |=
+        bits |=
             std::uint64_t{covered_rows[static_cast<std::size_t>(row * size + j)] >> column * size & ((1U << size) - 1)}
             << j * size;
+      place.mask = SampleMask(bits);
       return timing_.access(offered, place, [&](auto& mover) {
         return is_resident || ((is_resident = true), directory_.access(tile_x, tile_y, mover, counters_));
       });
     });
-    if (passed != 0) directory_.wrote(tile_x, tile_y, packet.depth_write != 0, packet.color_write != 0);
+    if (passed != 0) directory_.wrote(tile_x, tile_y, packet.state.depth_write, packet.state.color_write);
     retire(packet, tile_x, tile_y, passed);
     if (!options_.want_cost) return;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before);
@@ -300,17 +302,17 @@ class CycleModelOf final : public CycleModel {
 
   /// The news of a visit for HiZ.
   void retire(const SetupPacket& packet, int tile_x, int tile_y, std::uint32_t passed) {
-    if (config_.hiz_bits == 0 || packet.depth_write == 0) return;
+    if (config_.hiz_bits == 0 || !packet.state.depth_write) return;
     RetirePacket retired;
-    retired.tile_x = static_cast<std::uint16_t>(tile_x);
-    retired.tile_y = static_cast<std::uint16_t>(tile_y);
+    retired.key.tile_x = static_cast<std::uint16_t>(tile_x);
+    retired.key.tile_y = static_cast<std::uint16_t>(tile_y);
     const bool is_full = passed == T * T;
     std::uint32_t largest = 0;
     if (is_full)  // the codes of a covered tile are a plane, rounded and clamped: the largest is at a corner
       for (const int y : {0, T - 1})
         for (const int x : {0, T - 1})
           largest = std::max(largest, rendering_.frame.depth[rendering_.frame.at(tile_x * T + x, tile_y * T + y)]);
-    set_hiz_update(retired, packet, is_full, passed != 0, largest, config_, widths_);
+    set_hiz_update(retired, packet.state, is_full, passed != 0, largest, config_, widths_);
     hiz_.update(retired);
   }
 
@@ -326,7 +328,7 @@ class CycleModelOf final : public CycleModel {
       return;
     }
     if (!rendering_.count.empty()) for_each(covered, [&](std::size_t pixel) { ++rendering_.count[pixel]; });
-    if (!rendering_.ids.empty() && (packet.depth_write != 0 || packet.color_write != 0))
+    if (!rendering_.ids.empty() && packet.state.writes())
       for_each(passed, [&](std::size_t pixel) { rendering_.ids[pixel] = static_cast<std::int32_t>(primitive); });
   }
 
@@ -351,7 +353,7 @@ std::unique_ptr<CycleModel> make(const Config& config, MemoryTiming& memory, con
     default: return std::make_unique<CycleModelOf<Timing, 32, std::uint64_t>>(config, memory, options);
   }
   if constexpr (std::is_same_v<Timing, PipelinedTiming>)
-    if (derive_widths(config).local_depth.bits <= 32)
+    if (derive_widths(config).depth().local.bits <= 32)
       return std::make_unique<CycleModelOf<Timing, 8, std::uint32_t>>(config, memory, options);
   return std::make_unique<CycleModelOf<Timing, 8, std::uint64_t>>(config, memory, options);
 }
@@ -391,13 +393,9 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
   run.cycles = run.totals.last + 1;
   run.raster_cycles = run.totals.raster_cycles();
   run.tile_cycles = run.totals.tile_cycles;
-  run.totals.works[static_cast<std::size_t>(TimedStage::framebuffer)] =
+  run.totals.works[index(Stage::framebuffer)] =
       run.totals.move_cycles - std::min(run.totals.move_cycles, run.totals.memory_cycles);
-  for (std::size_t i = 0; i < kBoundaries; ++i) {
-    const auto boundary = static_cast<Boundary>(i);
-    if (boundary == Boundary::write || boundary == Boundary::retire) continue;
-    run.use[i] = model->stream(boundary).use(run.cycles);
-  }
+  for (const Arrow arrow : kElastic) run.use[index(arrow)] = model->stream(arrow).use(run.cycles);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include "../../host_stream.hpp"
 #include "../../timing/memory.hpp"
 #include "../../timing/stream.hpp"
+#include "../render.hpp"
 #include "back_timing.hpp"
 #include "parameters.hpp"
 #include "work.hpp"
@@ -32,7 +33,7 @@ class CycleModel {
   virtual void run(const HostPrimitive& primitive) = 0;
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset
   [[nodiscard]] virtual const TimingTotals& totals() const = 0;
-  [[nodiscard]] virtual const Stream& stream(Boundary boundary) const = 0;
+  [[nodiscard]] virtual const Stream& stream(Arrow boundary) const = 0;
   /// Frame, count and ids since begin().
   [[nodiscard]] virtual Rendering& rendering() = 0;
   /// Cycles of each pixel since begin(), width * height of them; empty unless wanted.
@@ -49,7 +50,7 @@ struct CycleRun {
   std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
   TimingTotals totals;
-  std::array<StreamUse, kBoundaries> use{};  ///< of the boundaries that can wait: all but write and retire
+  std::array<StreamUse, kArrows> use{};  ///< of the elastic arrows
 };
 
 struct CycleRendering {

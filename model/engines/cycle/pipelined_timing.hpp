@@ -37,35 +37,35 @@ class PipelinedTiming : public BackTiming {
 
   /// The next primitive, through cull and triangle_setup to coarse_raster; or, if it is dropped, only into cull.
   void take(const PrimitiveWork& primitive) {
-    const Cycle taken = primitive_.transfer(offer_, cull_.room());
-    note(Boundary::primitive, taken);
+    const Cycle taken = stream(Arrow::primitive).transfer(offer_, cull_.room());
+    note(Arrow::primitive, taken);
     if (primitive.is_counted) count_primitive(taken);
     if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
     // Turned until the first vertex leads, once at least; then three edges, one behind the other, of three cycles each.
     const Cycle culled =
         taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? PipelinedCycles::cull_edges : 0);
-    work(TimedStage::cull, culled - taken);
+    work(Stage::cull, culled - taken);
     if (primitive.is_dropped) {
       cull_.leave(culled);
       return;
     }
-    const Passage triangle = triangle_queue_.pass(triangle_, culled, divide_.room());
+    const Passage triangle = triangle_queue_.pass(stream(Arrow::triangle), culled, divide_.room());
     cull_.leave(triangle.left);
-    note(Boundary::triangle, triangle.taken);
-    work(TimedStage::triangle_setup, divide_.ready(triangle.taken) - triangle.taken);
+    note(Arrow::triangle, triangle.taken);
+    work(Stage::triangle_setup, divide_.ready(triangle.taken) - triangle.taken);
     const Cycle gradients = std::max(divide_.ready(triangle.taken), gradients_.room());
     divide_.leave(gradients);
     const Cycle values = std::max(gradients_.ready(gradients), values_.room());
     gradients_.leave(values);
     const Cycle ready = values_.ready(values);
-    const Passage setup = setup_queue_.pass(setup_, ready, std::max(coarse_.room(), slots_.room()));
+    const Passage setup = setup_queue_.pass(stream(Arrow::setup), ready, std::max(coarse_.room(), slots_.room()));
     values_.leave(setup.left);
-    note(Boundary::setup, setup.taken);
+    note(Arrow::setup, setup.taken);
     if (slots_.room() > std::max(ready, coarse_.room()))
       totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
     walk_ = setup.taken + PipelinedCycles::walk_begins;
-    work(TimedStage::coarse_raster, PipelinedCycles::walk_begins);
+    work(Stage::coarse_raster, PipelinedCycles::walk_begins);
   }
 
   /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
@@ -73,13 +73,13 @@ class PipelinedTiming : public BackTiming {
     const Cycle clears = std::max(walk_ - 1, last_retire_ + 1);
     totals_.bound_cycles += clears - (walk_ - 1);
     walk_ = clears + 1 + tiles;
-    work(TimedStage::coarse_raster, tiles);
+    work(Stage::coarse_raster, tiles);
   }
 
   /// The next tile of the walk is outside, and passed over.
   void skip_outside() {
     ++walk_;
-    work(TimedStage::coarse_raster, 1);
+    work(Stage::coarse_raster, 1);
   }
 
   /// The bound of the next tile is read, when no earlier visit of it is under way.
@@ -89,21 +89,21 @@ class PipelinedTiming : public BackTiming {
       if (visit.tile_x == tile_x && visit.tile_y == tile_y) read = std::max(read, visit.retired + 1);
     totals_.bound_cycles += read - walk_;
     walk_ = read + 1;
-    work(TimedStage::coarse_raster, 1);
+    work(Stage::coarse_raster, 1);
   }
 
   /// The primitive lies behind that bound, and the tile is passed over.
   void skip_behind() {
     ++walk_;
-    work(TimedStage::coarse_raster, 1);
+    work(Stage::coarse_raster, 1);
   }
 
   /// The end of a primitive whose last tile was passed over: an empty stamp without a visit. shade(offered) is what
   /// depth_test does with it.
   template <class Shade>
   void end_walk(Shade&& shade) {
-    const auto [left, taken] = tile_queue_.pass(tile_, walk_, rows_.room());
-    note(Boundary::tile, taken);
+    const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), walk_, rows_.room());
+    note(Arrow::tile, taken);
     coarse_.leave(left);
     const Cycle row = std::max(taken + 1, stamps_.room());
     rows_.leave(row);
@@ -121,16 +121,16 @@ class PipelinedTiming : public BackTiming {
   void visit(const TileVisitWork& tile, Shade&& shade) {
     const Cycle offered = std::max(walk_, visits_.room());
     totals_.visit_cycles += offered - walk_;
-    const auto [left, taken] = tile_queue_.pass(tile_, offered, rows_.room());
-    note(Boundary::tile, taken);
+    const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
+    note(Arrow::tile, taken);
     walk_ = left + 1;
     if (tile.ends_primitive) coarse_.leave(left);
-    work(TimedStage::coarse_raster, 1);
+    work(Stage::coarse_raster, 1);
     Cycle row_at = taken + 1;
     for (int row = tile.first_row;; ++row, ++row_at) {
       const bool is_last = row == tile.last_row;
       std::uint32_t columns = tile.columns[static_cast<std::size_t>(row)];
-      work(TimedStage::fine_raster, columns == 0 ? 1 : static_cast<std::uint64_t>(std::popcount(columns)));
+      work(Stage::fine_raster, columns == 0 ? 1 : static_cast<std::uint64_t>(std::popcount(columns)));
       if (columns == 0 && !is_last) continue;
       row_at = std::max(row_at, stamps_.room());
       Cycle at = row_at + 1;
@@ -162,11 +162,12 @@ class PipelinedTiming : public BackTiming {
   template <class Shade>
   Cycle send(Cycle offered, bool ends_primitive, Shade&& shade) {
     const Cycle enters = std::max(offered, skid_.room());
-    const Cycle taken = stamp_.transfer(std::max(skid_.ready(enters), last_stamp_ + 1), interpolate_.room());
+    const Cycle taken =
+        stream(Arrow::stamp).transfer(std::max(skid_.ready(enters), last_stamp_ + 1), interpolate_.room());
     skid_.leave(taken);
     last_stamp_ = taken;
-    note(Boundary::stamp, taken);
-    work(TimedStage::interpolate, 1);
+    note(Arrow::stamp, taken);
+    work(Stage::interpolate, 1);
     if (ends_primitive) slots_.leave(std::max(taken + 1, context_.room()));  // leaves the first step
     const Cycle leaves =
         fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);

@@ -39,27 +39,27 @@ class SerialTiming : public BackTiming {
     if (primitive.is_triangle && !primitive.is_dropped)
       culled = judged + 1 + (primitive.is_negative ? 2 + product : 0) + 3 * product;
     if (primitive.is_dropped && primitive.is_triangle) culled = judged;
-    work(TimedStage::cull, culled - sorts);
+    work(Stage::cull, culled - sorts);
     if (primitive.is_dropped) {
-      const Cycle dropped = primitive_.transfer(offered, culled);
+      const Cycle dropped = stream(Arrow::primitive).transfer(offered, culled);
       take_primitive(primitive, dropped);
       return;
     }
     // triangle_setup works while the triangle is on offer, and takes it when its own result has gone.
     const Cycle begins = stalls_.next_free(kPrimitive | kTriangle, std::max(culled, triangle_setup_.room()));
     const Cycle ready = begins + 1 + cycles_.setup(primitive.log2_area);
-    const Cycle walks = setup_.transfer(ready, std::max(coarse_.room(), slots_.room()));
-    work(TimedStage::triangle_setup, ready - begins);
+    const Cycle walks = stream(Arrow::setup).transfer(ready, std::max(coarse_.room(), slots_.room()));
+    work(Stage::triangle_setup, ready - begins);
     const Cycle walker = std::max(ready, coarse_.room());
     if (slots_.room() > walker) totals_.slot_cycles += slots_.room() - walker;
-    const Cycle taken = primitive_.transfer(offered, walks + 1, kTriangle);
-    triangle_.count(culled, taken);
+    const Cycle taken = stream(Arrow::primitive).transfer(offered, walks + 1, kTriangle);
+    stream(Arrow::triangle).count(culled, taken);
     take_primitive(primitive, taken);
-    note(Boundary::triangle, taken);
-    note(Boundary::setup, walks);
+    note(Arrow::triangle, taken);
+    note(Arrow::setup, walks);
     triangle_setup_.leave(taken);
     walk_ = walks + 1 + SerialCycles::turn;
-    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
+    work(Stage::coarse_raster, 1 + SerialCycles::turn);
     primitive_starts_ = true;
   }
 
@@ -67,23 +67,23 @@ class SerialTiming : public BackTiming {
     const Cycle clears = std::max(walk_, last_retire_ + 1);
     totals_.bound_cycles += clears - walk_;
     walk_ = clears + tiles - 1;
-    work(TimedStage::coarse_raster, tiles);
+    work(Stage::coarse_raster, tiles);
   }
 
   void skip_outside() {
     walk_ += 1 + SerialCycles::turn;
-    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
+    work(Stage::coarse_raster, 1 + SerialCycles::turn);
   }
   void read_bound(int, int) {
     const Cycle read = std::max(walk_, last_retire_ + 1);
     totals_.bound_cycles += read - walk_;
     walk_ = read + 1;
-    work(TimedStage::coarse_raster, 1);
+    work(Stage::coarse_raster, 1);
     has_bound_ = true;
   }
   void skip_behind() {
     walk_ += 1 + SerialCycles::turn;
-    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
+    work(Stage::coarse_raster, 1 + SerialCycles::turn);
     has_bound_ = false;
   }
 
@@ -117,27 +117,27 @@ class SerialTiming : public BackTiming {
     }
     --at;
     const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, tile.last_row, held); });
-    tile_.count(offered, taken);
-    note(Boundary::tile, taken);
+    stream(Arrow::tile).count(offered, taken);
+    note(Arrow::tile, taken);
     fine_.leave(taken);
     walk_ = taken + 1 + SerialCycles::turn;
-    work(TimedStage::coarse_raster, 1 + SerialCycles::turn);
+    work(Stage::coarse_raster, 1 + SerialCycles::turn);
     const int positions = (tile.last_row - tile.first_row + 1) * (tile.last_column - tile.first_column + 1);
-    work(TimedStage::fine_raster, static_cast<std::uint64_t>(1 + tile.first_column + tile.first_row + positions));
+    work(Stage::fine_raster, static_cast<std::uint64_t>(1 + tile.first_column + tile.first_row + positions));
     if (tile.ends_primitive) coarse_.leave(taken);
     retire();
     visits_.leave(last_retire_);
   }
 
  private:
-  static constexpr unsigned kPrimitive = 1U << stall_primitive, kTriangle = 1U << stall_triangle,
-                            kTile = 1U << stall_tile, kStamp = 1U << stall_stamp;
+  static constexpr unsigned kPrimitive = stall_bit(Arrow::primitive), kTriangle = stall_bit(Arrow::triangle),
+                            kTile = stall_bit(Arrow::tile), kStamp = stall_bit(Arrow::stamp);
 
   template <class Shade>
   void end(Cycle offered, Shade&& shade) {
     const Cycle taken = send(offered, kTile, fine_.room(), shade);
-    tile_.count(offered, taken);
-    note(Boundary::tile, taken);
+    stream(Arrow::tile).count(offered, taken);
+    note(Arrow::tile, taken);
     fine_.leave(taken);
     coarse_.leave(taken);
   }
@@ -148,7 +148,7 @@ class SerialTiming : public BackTiming {
 
   void take_primitive(const PrimitiveWork& work, Cycle taken) {
     cull_.leave(taken);
-    note(Boundary::primitive, taken);
+    note(Arrow::primitive, taken);
     if (work.is_counted) count_primitive(taken);
     offer_ = taken + 1;
   }
@@ -164,9 +164,9 @@ class SerialTiming : public BackTiming {
       ready = std::max(ready, read + 1);
     }
     primitive_starts_ = false;
-    const Cycle taken = stamp_.transfer(offered, ready, others);
-    note(Boundary::stamp, taken);
-    work(TimedStage::interpolate, 1);
+    const Cycle taken = stream(Arrow::stamp).transfer(offered, ready, others);
+    note(Arrow::stamp, taken);
+    work(Stage::interpolate, 1);
     const Cycle made = std::max({interpolate_.ready(taken), last_made_ + 1, skid_.room()});
     interpolate_.leave(made);
     last_made_ = made;

@@ -12,30 +12,30 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
     const SetupCycles setup(widths, parameters.divide_bits);
     const std::string least = text(2 + PipelinedCycles::cull_edges), most = text(3 + PipelinedCycles::cull_edges);
     const std::string steps = number(PipelinedCycles::interpolate_steps);
-    return {{"cull", least + " or " + most + "; 2 for what is no triangle", "the same", "1"},
-            {"triangle_setup", number(setup.divide + setup.gradients + setup.values),
+    return {{Stage::cull, least + " or " + most + "; 2 for what is no triangle", "the same", "1"},
+            {Stage::triangle_setup, number(setup.divide + setup.gradients + setup.values),
              number(std::max({setup.divide, setup.gradients, setup.values})), "3"},
-            {"coarse_raster", text(PipelinedCycles::walk_begins) + " to the first tile",
+            {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
              "1 a tile, one more where a HiZ bound is read",
              number(config.context_slots) + " primitives up to interpolate, " + number(parameters.visits) + " visits"},
-            {"fine_raster", "2, then 1 in the buffer", "1 a stamp or row of stamps without one",
+            {Stage::fine_raster, "2, then 1 in the buffer", "1 a stamp or row of stamps without one",
              "2 rows, and " + stamps + " stamps in the buffer"},
-            {"interpolate", steps, "1", steps}};
+            {Stage::interpolate, steps, "1", steps}};
   }
   const SerialCycles serial(widths);
   const Cycle start = SerialCycles::sort + SerialCycles::box + 1, product = static_cast<Cycle>(serial.product);
   const std::string kept = text(start + 4 * product + 1) + " or " + text(start + 5 * product + 3) + "; " +
                            text(start + product) + " where it is dropped, " + text(start) + " for what is no triangle";
   return {
-      {"cull", kept, "the same", "1"},
-      {"triangle_setup",
+      {Stage::cull, kept, "the same", "1"},
+      {Stage::triangle_setup,
        text(1 + serial.setup(0)) + " and " + text(serial.setup(1) - serial.setup(0)) + " for each bit of the area",
        "2 more", "1"},
-      {"coarse_raster", text(1 + SerialCycles::turn) + " to the first tile",
+      {Stage::coarse_raster, text(1 + SerialCycles::turn) + " to the first tile",
        text(1 + SerialCycles::turn) + " a tile, one more for a visit, one more where a HiZ bound is read",
        number(config.context_slots) + " primitives up to interpolate, " + number(parameters.visits - 1) + " visits"},
-      {"fine_raster", "1 and the way to the first stamp of the box", "1 a stamp of the box", "1 tile"},
-      {"interpolate", number(SerialCycles::interpolate_steps) + ", then 1 in the buffer", "1",
+      {Stage::fine_raster, "1 and the way to the first stamp of the box", "1 a stamp of the box", "1 tile"},
+      {Stage::interpolate, number(SerialCycles::interpolate_steps) + ", then 1 in the buffer", "1",
        number(SerialCycles::interpolate_steps) + ", and " + stamps + " in the buffer"}};
 }
 
@@ -44,14 +44,13 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
 std::vector<StageRow> stage_table(const Config& config) {
   const Widths widths = derive_widths(config);
   std::vector<StageRow> rows = front_of(config, widths, {});
-  const auto stamps =
-      static_cast<std::uint64_t>(widths.stamps_per_row) * static_cast<std::uint64_t>(widths.stamps_per_row);
-  if (config.line_units != 0) rows.push_back({"line_raster", "1", "1 a pixel", "1 line"});
-  if (config.line_units != 0) rows.push_back({"primitive_join", "0", "1", "0"});
-  rows.push_back({"depth_test", "1 to the write, 2 to the retired visit",
+  const auto stamps = static_cast<std::uint64_t>(widths.stamps.stamps());
+  if (config.line_units != 0) rows.push_back({Stage::line_raster, "1", "1 a pixel", "1 line"});
+  if (config.line_units != 0) rows.push_back({Stage::primitive_join, "0", "1", "0"});
+  rows.push_back({Stage::depth_test, "1 to the write, 2 to the retired visit",
                   "1; 2 where a fragment needs the depth of the one before", "2"});
-  rows.push_back({"rop", "0", "1", "0"});
-  rows.push_back({"framebuffer", "1 where the tile is on the chip",
+  rows.push_back({Stage::rop, "0", "1", "0"});
+  rows.push_back({Stage::framebuffer, "1 where the tile is on the chip",
                   "1; a miss 2, for a dirty plane " + text(stamps + 1) + ", for a tile that was cleared " +
                       text(stamps) + ", for a plane from memory " + text(stamps) + " and once the memory's latency",
                   text(static_cast<std::uint64_t>(config.cache_lines)) + " tiles"});
@@ -61,7 +60,8 @@ std::vector<StageRow> stage_table(const Config& config) {
 std::string stage_table_markdown(const Config& config) {
   std::string table = "| stage | latency | one every | holds |\n| --- | --- | --- | --- |\n";
   for (const StageRow& row : stage_table(config))
-    table += "| " + row.stage + " | " + row.latency + " | " + row.interval + " | " + row.holds + " |\n";
+    table += "| " + std::string(info(row.stage).name) + " | " + row.latency + " | " + row.interval + " | " + row.holds +
+             " |\n";
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../../pipeline_graph.hpp"
 #include "parameters.hpp"
 #include "work.hpp"
 
@@ -12,7 +13,7 @@ namespace halfplane {
 
 /// In cycles. Texts, because some depend on the item.
 struct StageRow {
-  std::string stage;     ///< stem of its files
+  Stage stage;
   std::string latency;   ///< from an item in to what comes of it out
   std::string interval;  ///< one item every so many cycles
   std::string holds;     ///< items under way at most

@@ -39,7 +39,7 @@ struct TileVisitWork {
 struct SetupCycles {
   int divide, gradients, values;
   SetupCycles(const Widths& widths, int divide_bits) {
-    const int planes = 1 + widths.color_channels;
+    const int planes = widths.planes;
     const int quotient = (widths.reciprocal.bits + divide_bits - 1) / divide_bits;
     divide = 1 + std::max(quotient, planes + 3);
     gradients = planes + 3;
@@ -63,8 +63,8 @@ struct SerialCycles {
     const int lead = std::max(fraction + 3 - kept, 0);
     const int dropped = lead - fraction - 2 + log2_area + kept;  // bits of a product below the gradient's
     int chain = 0, gradient = 0;                                 // cycles of one pass over all planes
-    for (int plane = 0; plane <= widths_.color_channels; ++plane) {
-      const int bits = plane == 0 ? widths_.depth_plane.bits : widths_.color_plane.bits;
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+      const int bits = widths_.of_plane(p).plane.bits;
       chain += bits;
       gradient += lead < 2 ? dropped + bits : std::max(dropped + bits, bits + lead + 1);
     }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../../pipeline.hpp"
+#include "../render.hpp"
 #include "prepared_scene.hpp"
 
 namespace halfplane::functional {
@@ -34,11 +35,31 @@ inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
 inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 
 /// What a draw's state asks of its fragments.
-struct FragmentState {
+struct DrawState {
   DepthFunc depth_test = DepthFunc::less;
   bool depth_write = true, color_write = true;
-  bool is_flat = false;  ///< the colour is that of the first vertex
+  bool is_flat = false;   ///< the colour is that of the first vertex
+  bool is_opaque = true;  ///< what passes replaces what is stored, what fails leaves no trace
 };
+
+/// A vertex as this engine stores it, whatever a SnappedVertex looks like: what every draw needs of it is a row of four
+/// words, of which lanes take sixteen at a time, a column each. A further attribute becomes an array of its own in Slice.
+struct VertexRow {
+  std::int32_t x = 0, y = 0;  ///< subpixels, y down
+  std::uint32_t z = 0;        ///< depth code
+  std::uint32_t rgba = 0;     ///< colour codes, 8 bits a channel, R lowest
+};
+static_assert(sizeof(VertexRow) == 16 && offsetof(VertexRow, y) == 4 && offsetof(VertexRow, z) == 8 &&
+              offsetof(VertexRow, rgba) == 12);
+
+/// The colour planes as a word of this engine: 8 bits a channel, R lowest.
+[[nodiscard]] inline std::uint32_t packed_channels(const PerPlane<std::uint32_t>& code) {
+  const auto channel = color_channels(code);
+  return channel[0] | channel[1] << 8 | channel[2] << 16 | channel[3] << 24;
+}
+
+/// The one place where what the host side snapped becomes a row.
+[[nodiscard]] inline VertexRow row_of(const SnappedVertex& v) { return {v.x, v.y, v.depth(), packed_channels(v.code)}; }
 
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
 
@@ -79,7 +100,7 @@ struct Slice {
     std::uint32_t primitive = 0;       ///< number of the first, over the whole scene
   };
   const DrawContext* context = nullptr;  ///< of its first part; the others have the same state
-  FragmentState state;
+  DrawState state;
   std::vector<Part> parts;
   std::size_t triangles = 0;                 ///< of all parts
   bool is_lines = false;                     ///< the triangles are lines
@@ -89,7 +110,7 @@ struct Slice {
   /// vertex of its own: three in a row for each triangle.
   std::uint32_t low_index = 0, high_index = 0;
   bool is_wide = false;
-  std::vector<SnappedVertex> vertices;
+  std::vector<VertexRow> vertices;
   std::vector<std::uint32_t> codes;  ///< kVolume and kSlow bits of each vertex
   std::uint32_t any_code = 0;        ///< their union
   std::vector<Record> records;

@@ -11,6 +11,8 @@
 #include <limits>
 #include <utility>
 
+#include "../../stages/rop.hpp"
+
 namespace halfplane::functional {
 namespace {
 
@@ -85,8 +87,8 @@ bool is_supported(const Scene& scene, const Config& config, const RenderOptions&
   if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
   const Widths widths = derive_widths(config);
   // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
-  return widths.local_depth.bits <= 32 && widths.local_color.bits <= 16 && config.depth_bits <= 30 &&
-         widths.delta.bits <= 24 && widths.color_product.bits <= 64 && widths.line_color.bits <= 31 &&
+  return widths.depth().local.bits <= 32 && widths.color().local.bits <= 16 && config.depth_bits <= 30 &&
+         widths.delta.bits <= 24 && widths.color().product.bits <= 64 && widths.color().line.bits <= 31 &&
          widths.reciprocal.bits <= 30 && DepthEncode(config, scene.planes).is_identity();
 }
 
@@ -119,6 +121,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   prepared_ = &prepared;
   scene_ = &scene;
   skip_ = options.skip;
+  is_opaque_ = !options.general_fragments;
   if (options.threads != threads_) {
     threads_ = options.threads;
     const int most = tbb::info::default_concurrency();  // of more it would warn
@@ -292,7 +295,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   Slice& slice = slices_[slice_count_++];
   const State& state = context.state;
   slice.context = &context;
-  slice.state = {state.depth_test, state.depth_write, state.color_write, state.shade == Shade::flat};
+  slice.state = {state.depth_test, state.depth_write, state.color_write, state.shade == Shade::flat, is_opaque_};
   slice.parts.clear();
   slice.outlines.clear();
   slice.triangles = 0;
@@ -310,7 +313,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
 bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
   const State& state = context.state;
   const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal;
-  if (context.rect.width <= 0 || context.rect.height <= 0) return false;
+  if (!is_opaque_ || context.rect.width <= 0 || context.rect.height <= 0) return false;
   if (!draw.has_box || !falls || pending_rises_ || state.polygon_offset != std::array<double, 2>{0.0, 0.0})
     return false;
   const auto corner = [&](const std::array<double, 3>& p) {

@@ -22,6 +22,7 @@ namespace {
 #include "kernels/small.inl"        // small triangles: blocks and samples
 #include "kernels/tiles.inl"        // large triangles: tiles
 #include "kernels/lines.inl"        // pixels of lines
+#include "kernels/general.inl"      // fragments one by one
 #include "kernels/finish.inl"       // the end of a bin
 #include "kernels/raster.inl"       // a bin's records in their order
 // clang-format on

@@ -45,8 +45,8 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
     const PixelBounds box = pixel_bounds(piece.v, limit, frame.widths.grid_bits);
     if (box.is_empty()) continue;
     const auto first = static_cast<std::uint32_t>(slice.vertices.size());
-    slice.vertices.insert(slice.vertices.end(), piece.v.begin(), piece.v.end());
-    const auto [low, high] = std::minmax({piece.v[0].z, piece.v[1].z, piece.v[2].z});
+    for (const SnappedVertex& v : piece.v) slice.vertices.push_back(row_of(v));
+    const auto [low, high] = std::minmax({piece.v[0].depth(), piece.v[1].depth(), piece.v[2].depth()});
     add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), slice.triangles);
   }
 }
@@ -65,15 +65,15 @@ PixelBounds line_box(const LineSetup& line) {
 /// Appends what the host side has made of a line or point.
 void add_outline(Slice& slice, const Outline& outline, std::size_t room) {
   for (const LinePrimitive& line : outline.lines) {
-    const auto [low, high] = std::minmax(line.drawn.start.z, line.drawn.end.z);
+    const auto [low, high] = std::minmax({line.drawn.start.depth(), line.drawn.end.depth()});
     const auto at = static_cast<std::uint32_t>(slice.lines.size());
     add_record(slice, record_of({at, 0, 0}, low, high, line_box(line.setup), RecordKind::cut_line), room);
     slice.lines.push_back(line.setup);
   }
   for (const PointPrimitive& point : outline.points) {
     const auto at = static_cast<std::uint32_t>(slice.vertices.size());
-    slice.vertices.push_back(point.drawn.at);
-    const std::uint32_t z = point.drawn.at.z;
+    slice.vertices.push_back(row_of(point.drawn.at));
+    const std::uint32_t z = point.drawn.at.depth();
     add_record(slice, record_of({at, at, at}, z, z, point.box, RecordKind::rectangle), room);
   }
 }

@@ -16,7 +16,7 @@ class TileRaster {
         widths_(widths),
         options_(options),
         out_(rendering),
-        kernel_(context.state.depth_test, context.state.depth_write, context.state.color_write, context.config, widths,
+        kernel_(fragment_state(context.state), context.config, widths,
                 context.depth_encode.is_identity() ? nullptr : &context.depth_encode),
         writes_(context.state.depth_write || context.state.color_write),
         wants_bits_(options.want_count || options.want_ids || options.coverage_tap) {}
@@ -108,7 +108,7 @@ Rendering render(const Scene& scene, const Config& config, const RenderOptions& 
 
 template <int T>
 Rendering render(const Scene& scene, const Config& config, const RenderOptions& options) {
-  const bool fits_32_bits = derive_widths(config).local_depth.bits <= 32;
+  const bool fits_32_bits = derive_widths(config).depth().local.bits <= 32;
   return fits_32_bits ? render<T, std::uint32_t>(scene, config, options)
                       : render<T, std::uint64_t>(scene, config, options);
 }

@@ -26,14 +26,28 @@ package raster_pkg;
   localparam int GUARD_BITS = 15;  // G: fraction bits of a gradient per pixel
   localparam int PLANE_FRACTION = 19;  // F = G + s
   localparam int TILE_SHIFT = 3;  // log2 of the tile size
-  localparam int LINE_GUARD_BITS = 12;  // G': fraction bits of depth and colour along a line
+  localparam int LINE_GUARD_BITS = 12;  // G': fraction bits of the planes along a line
   localparam int STAMPS_PER_ROW = 8;  // stamps along the side of a tile
-  localparam int COLOR_CHANNELS = 3;  // channels that the colour format stores
+  localparam int PLANES = 4;  // that are interpolated: depth, the colours and what follows them
+  localparam int COLOR_PLANES = 3;  // of the stored colour: plane 1 and the next ones
   localparam int SAMPLES = 1;  // samples of a stamp
   localparam int TILES_X = 40;  // tiles along the top of the widest target
   localparam int TILES_Y = 30;  // tiles along the side of the highest target
   localparam int LINE_X_BITS = 1;  // low bits of tile x in a cache line's number
   localparam int LINE_Y_BITS = 1;  // low bits of tile y in a cache line's number, above those
+
+  // Bits of raster_top's stall_i.
+  localparam int STALL_PRIMITIVE = 0;
+  localparam int STALL_LINE = 8;
+  localparam int STALL_TRIANGLE = 1;
+  localparam int STALL_SETUP = 2;
+  localparam int STALL_TILE = 3;
+  localparam int STALL_STAMP = 4;
+  localparam int STALL_LINE_PIXEL = 9;
+  localparam int STALL_FRAGMENT = 5;
+  localparam int STALL_REQUEST = 6;
+  localparam int STALL_RESPONSE = 7;
+  localparam int STALL_BITS = 10;
 
   // Derived widths, each with its bound.
   localparam int COORDINATE_BITS = 14;  // guard band g * 2^s
@@ -45,9 +59,10 @@ package raster_pkg;
   localparam int TILE_EDGE_BITS = 19;  // saturated beyond (T-1)(|dx|+|dy|) at the tile's first pixel
   localparam int SAMPLE_EDGE_BITS = 20;  // tile edge + (T-1)(|dx|+|dy|)
   localparam int DEPTH_CODE_BITS = 16;  // 2^B - 1
-  localparam int DEPTH_DELTA_BITS = 17;  // Z - Z
+  localparam int DEPTH_DELTA_BITS = 17;  // code - code
   localparam int DEPTH_NUMERATOR_BITS = 31;  // L * (2^B - 1)
   localparam int COLOR_CODE_BITS = 8;  // 2^8 - 1
+  localparam int COLOR_DELTA_BITS = 9;  // code - code
   localparam int COLOR_NUMERATOR_BITS = 23;  // L * (2^8 - 1)
   localparam int RECIPROCAL_BITS = 21;  // 2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra
   localparam int RECIPROCAL_SHIFT_BITS = 6;  // k = m + r, m <= 2 log2 L
@@ -86,125 +101,109 @@ package raster_pkg;
   localparam int LINE_DEPTH_BITS = 28;  // modulo 2^(B + G'), G' = log2(2 g) + 2
   localparam int LINE_COLOR_BITS = 20;  // modulo 2^(8 + G')
 
-  // Packets. Array fields are flat, element 0 lowest.
+  // The planes: depth, then the colours. Each table has 32 bits for a plane, plane 0 lowest.
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd16};  // codes
+  localparam logic [32*PLANES-1:0] CODE_AT = {32'd32, 32'd24, 32'd16, 32'd0};
+  localparam int ALL_CODE_BITS = 40;  // of one for each plane
+  localparam int MAX_CODE_BITS = 16;  // of the widest
+  localparam logic [32*PLANES-1:0] PLANE_BITS_OF = {32'd28, 32'd28, 32'd28, 32'd36};  // values and gradients
+  localparam logic [32*PLANES-1:0] PLANE_AT = {32'd92, 32'd64, 32'd36, 32'd0};
+  localparam int ALL_PLANE_BITS = 120;  // of one for each plane
+  localparam int MAX_PLANE_BITS = 36;  // of the widest
+  localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = {32'd15, 32'd15, 32'd15, 32'd23};  // values and gradients inside a tile
+  localparam logic [32*PLANES-1:0] LOCAL_AT = {32'd53, 32'd38, 32'd23, 32'd0};
+  localparam int ALL_LOCAL_BITS = 68;  // of one for each plane
+  localparam int MAX_LOCAL_BITS = 23;  // of the widest
+  localparam logic [32*PLANES-1:0] LINE_BITS_OF = {32'd20, 32'd20, 32'd20, 32'd28};  // values along a line
+  localparam logic [32*PLANES-1:0] LINE_AT = {32'd68, 32'd48, 32'd28, 32'd0};
+  localparam int ALL_LINE_BITS = 88;  // of one for each plane
+  localparam int MAX_LINE_BITS = 28;  // of the widest
+  localparam int MAX_DELTA_BITS = 17;  // of the widest plane
+  localparam int MAX_NUMERATOR_BITS = 31;  // likewise
+
+  // What a field can say.
+  typedef enum logic [KIND_BITS-1:0] {
+    PRIMITIVE_KIND_TRIANGLE = 3'd0,
+    PRIMITIVE_KIND_RECTANGLE = 3'd1,
+    PRIMITIVE_KIND_FAST_CLEAR = 3'd2,
+    PRIMITIVE_KIND_FLUSH = 3'd3,
+    PRIMITIVE_KIND_POINT = 3'd4,
+    PRIMITIVE_KIND_LINE = 3'd6
+  } primitive_kind_t;
+
+  typedef enum logic [DEPTH_FUNC_BITS-1:0] {
+    DEPTH_FUNC_NEVER = 3'd0,
+    DEPTH_FUNC_LESS = 3'd1,
+    DEPTH_FUNC_LEQUAL = 3'd2,
+    DEPTH_FUNC_EQUAL = 3'd3,
+    DEPTH_FUNC_GREATER = 3'd4,
+    DEPTH_FUNC_GEQUAL = 3'd5,
+    DEPTH_FUNC_NOTEQUAL = 3'd6,
+    DEPTH_FUNC_ALWAYS = 3'd7
+  } depth_func_t;
+
+  typedef enum logic [CULL_MODE_BITS-1:0] {
+    CULL_MODE_NONE = 2'd0,
+    CULL_MODE_BACK = 2'd1,
+    CULL_MODE_FRONT = 2'd2,
+    CULL_MODE_BOTH = 2'd3
+  } cull_mode_t;
+
+  typedef enum logic [HIZ_UPDATE_BITS-1:0] {
+    HIZ_UPDATE_NONE = 2'd0,
+    HIZ_UPDATE_SET = 2'd1,
+    HIZ_UPDATE_CLEAR = 2'd2
+  } hiz_update_t;
+
+  // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.
   typedef struct packed {
-    logic [KIND_BITS-1:0] kind;
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
     logic [PIXEL_X_BITS-1:0] left;
     logic [PIXEL_Y_BITS-1:0] top;
     logic [PIXEL_X_BITS-1:0] right;
     logic [PIXEL_Y_BITS-1:0] bottom;
-    logic [DEPTH_FUNC_BITS-1:0] depth_test;
-    logic [FLAG_BITS-1:0] depth_write;
-    logic [FLAG_BITS-1:0] color_write;
-    logic [CULL_MODE_BITS-1:0] cull;
-    logic [FLAG_BITS-1:0] front_cw;
-    logic [3*COORDINATE_BITS-1:0] x;
-    logic [3*COORDINATE_BITS-1:0] y;
-    logic [3*DEPTH_CODE_BITS-1:0] z;
-    logic [3*VERTEX_COLOR_BITS-1:0] rgba;
-  } primitive_packet_t;
-  localparam int PRIMITIVE_PACKET_BITS = 257;  // of the struct above
+  } pixel_box_t;
 
   typedef struct packed {
-    logic [KIND_BITS-1:0] kind;
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [PIXEL_X_BITS-1:0] left;
-    logic [PIXEL_Y_BITS-1:0] top;
-    logic [PIXEL_X_BITS-1:0] right;
-    logic [PIXEL_Y_BITS-1:0] bottom;
-    logic [DEPTH_FUNC_BITS-1:0] depth_test;
-    logic [FLAG_BITS-1:0] depth_write;
-    logic [FLAG_BITS-1:0] color_write;
-    logic [3*COORDINATE_BITS-1:0] x;
-    logic [3*COORDINATE_BITS-1:0] y;
-    logic [3*DEPTH_CODE_BITS-1:0] z;
-    logic [3*VERTEX_COLOR_BITS-1:0] rgba;
-    logic [AREA_BITS-1:0] area;
-    logic [3*EDGE_VALUE_BITS-1:0] edge_value;
-  } triangle_packet_t;
-  localparam int TRIANGLE_PACKET_BITS = 357;  // of the struct above
-
-  typedef struct packed {
-    logic [KIND_BITS-1:0] kind;
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [PIXEL_X_BITS-1:0] left;
-    logic [PIXEL_Y_BITS-1:0] top;
-    logic [PIXEL_X_BITS-1:0] right;
-    logic [PIXEL_Y_BITS-1:0] bottom;
-    logic [DEPTH_FUNC_BITS-1:0] depth_test;
-    logic [FLAG_BITS-1:0] depth_write;
-    logic [FLAG_BITS-1:0] color_write;
-    logic [3*DELTA_BITS-1:0] dx;
-    logic [3*DELTA_BITS-1:0] dy;
-    logic [3*EDGE_VALUE_BITS-1:0] edge_value;
-    logic signed [DEPTH_PLANE_BITS-1:0] depth_value;
-    logic signed [DEPTH_PLANE_BITS-1:0] depth_step_x;
-    logic signed [DEPTH_PLANE_BITS-1:0] depth_step_y;
-    logic [3*COLOR_PLANE_BITS-1:0] color_value;
-    logic [3*COLOR_PLANE_BITS-1:0] color_step_x;
-    logic [3*COLOR_PLANE_BITS-1:0] color_step_y;
-    logic [DEPTH_CODE_BITS-1:0] depth_min;
-    logic [DEPTH_CODE_BITS-1:0] depth_max;
-    logic [3*COLOR_CODE_BITS-1:0] color_min;
-    logic [3*COLOR_CODE_BITS-1:0] color_max;
-  } setup_packet_t;
-  localparam int SETUP_PACKET_BITS = 655;  // of the struct above
-
-  typedef struct packed {
-    logic [DEPTH_FUNC_BITS-1:0] depth_test;
-    logic [FLAG_BITS-1:0] depth_write;
-    logic [FLAG_BITS-1:0] color_write;
-    logic signed [LOCAL_DEPTH_BITS-1:0] depth_step_x;
-    logic signed [LOCAL_DEPTH_BITS-1:0] depth_step_y;
-    logic [3*LOCAL_COLOR_BITS-1:0] color_step_x;
-    logic [3*LOCAL_COLOR_BITS-1:0] color_step_y;
-    logic [DEPTH_CODE_BITS-1:0] depth_min;
-    logic [DEPTH_CODE_BITS-1:0] depth_max;
-    logic [3*COLOR_CODE_BITS-1:0] color_min;
-    logic [3*COLOR_CODE_BITS-1:0] color_max;
-  } context_packet_t;
-  localparam int CONTEXT_PACKET_BITS = 221;  // of the struct above
-
-  typedef struct packed {
-    logic [KIND_BITS-1:0] kind;
-    logic [FLAG_BITS-1:0] is_visit;
-    logic [FLAG_BITS-1:0] ends_primitive;
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [SLOT_BITS-1:0] slot;
-    logic [TILE_X_BITS-1:0] tile_x;
-    logic [TILE_Y_BITS-1:0] tile_y;
     logic [TILE_PIXEL_BITS-1:0] left;
     logic [TILE_PIXEL_BITS-1:0] top;
     logic [TILE_PIXEL_BITS-1:0] right;
     logic [TILE_PIXEL_BITS-1:0] bottom;
-    logic [FLAG_BITS-1:0] is_inside;
-    logic [3*TILE_EDGE_BITS-1:0] edge_value;
-    logic signed [LOCAL_DEPTH_BITS-1:0] depth_anchor;
-    logic [3*LOCAL_COLOR_BITS-1:0] color_anchor;
-  } tile_packet_t;
-  localparam int TILE_PACKET_BITS = 163;  // of the struct above
+  } tile_box_t;
 
   typedef struct packed {
-    logic [3*EDGE_STEP_BITS-1:0] step_x;
-    logic [3*EDGE_STEP_BITS-1:0] step_y;
-  } edge_context_t;
-  localparam int EDGE_CONTEXT_BITS = 90;  // of the struct above
+    depth_func_t depth_test;
+    logic [FLAG_BITS-1:0] depth_write;
+    logic [FLAG_BITS-1:0] color_write;
+  } primitive_state_t;
 
   typedef struct packed {
-    logic [KIND_BITS-1:0] kind;
-    logic [FLAG_BITS-1:0] ends_visit;
-    logic [FLAG_BITS-1:0] ends_primitive;
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [SLOT_BITS-1:0] slot;
     logic [TILE_X_BITS-1:0] tile_x;
     logic [TILE_Y_BITS-1:0] tile_y;
-    logic [STAMP_INDEX_BITS-1:0] stamp;
-    logic [SAMPLE_MASK_BITS-1:0] mask;
-    logic signed [LOCAL_DEPTH_BITS-1:0] depth_anchor;
-    logic [3*LOCAL_COLOR_BITS-1:0] color_anchor;
-  } stamp_packet_t;
-  localparam int STAMP_PACKET_BITS = 100;  // of the struct above
+  } tile_key_t;
+
+  typedef struct packed {
+    logic [3*COORDINATE_BITS-1:0] x;
+    logic [3*COORDINATE_BITS-1:0] y;
+    logic [3*ALL_CODE_BITS-1:0] code;
+  } triangle_vertices_t;
+
+  typedef struct packed {
+    logic [ALL_CODE_BITS-1:0] low;
+    logic [ALL_CODE_BITS-1:0] high;
+  } code_range_t;
+
+  // Packets.
+  typedef struct packed {
+    primitive_kind_t kind;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    pixel_box_t box;
+    primitive_state_t state;
+    cull_mode_t cull;
+    logic [FLAG_BITS-1:0] front_cw;
+    triangle_vertices_t vertex;
+  } primitive_packet_t;
+  localparam int PRIMITIVE_PACKET_BITS = 257;  // of the struct above
 
   typedef struct packed {
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
@@ -218,46 +217,100 @@ package raster_pkg;
     logic signed [LINE_ERROR_BITS-1:0] error;
     logic [LINE_STAY_BITS-1:0] step_stay;
     logic signed [LINE_MOVE_BITS-1:0] step_move;
-    logic [LINE_DEPTH_BITS-1:0] depth;
-    logic [LINE_DEPTH_BITS-1:0] depth_step;
-    logic [DEPTH_CODE_BITS-1:0] depth_start;
-    logic [3*LINE_COLOR_BITS-1:0] color;
-    logic [3*LINE_COLOR_BITS-1:0] color_step;
-    logic [VERTEX_COLOR_BITS-1:0] color_start;
+    logic [ALL_LINE_BITS-1:0] value;
+    logic [ALL_LINE_BITS-1:0] step;
+    logic [ALL_CODE_BITS-1:0] start;
   } line_setup_t;
   localparam int LINE_SETUP_BITS = 298;  // of the struct above
+
+  typedef struct packed {
+    primitive_kind_t kind;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    pixel_box_t box;
+    primitive_state_t state;
+    triangle_vertices_t vertex;
+    logic [AREA_BITS-1:0] area;
+    logic [3*EDGE_VALUE_BITS-1:0] edge_value;
+  } triangle_packet_t;
+  localparam int TRIANGLE_PACKET_BITS = 357;  // of the struct above
+
+  typedef struct packed {
+    primitive_kind_t kind;
+    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
+    pixel_box_t box;
+    primitive_state_t state;
+    logic [3*DELTA_BITS-1:0] dx;
+    logic [3*DELTA_BITS-1:0] dy;
+    logic [3*EDGE_VALUE_BITS-1:0] edge_value;
+    logic [ALL_PLANE_BITS-1:0] value;
+    logic [ALL_PLANE_BITS-1:0] step_x;
+    logic [ALL_PLANE_BITS-1:0] step_y;
+    code_range_t range;
+  } setup_packet_t;
+  localparam int SETUP_PACKET_BITS = 655;  // of the struct above
+
+  typedef struct packed {
+    primitive_state_t state;
+    logic [ALL_LOCAL_BITS-1:0] step_x;
+    logic [ALL_LOCAL_BITS-1:0] step_y;
+    code_range_t range;
+  } context_packet_t;
+  localparam int CONTEXT_PACKET_BITS = 221;  // of the struct above
+
+  typedef struct packed {
+    primitive_kind_t kind;
+    logic [FLAG_BITS-1:0] is_visit;
+    logic [FLAG_BITS-1:0] ends_primitive;
+    tile_key_t key;
+    logic [SLOT_BITS-1:0] slot;
+    tile_box_t box;
+    logic [FLAG_BITS-1:0] is_inside;
+    logic [3*TILE_EDGE_BITS-1:0] edge_value;
+    logic [ALL_LOCAL_BITS-1:0] anchor;
+  } tile_packet_t;
+  localparam int TILE_PACKET_BITS = 163;  // of the struct above
+
+  typedef struct packed {
+    logic [3*EDGE_STEP_BITS-1:0] step_x;
+    logic [3*EDGE_STEP_BITS-1:0] step_y;
+  } edge_context_t;
+  localparam int EDGE_CONTEXT_BITS = 90;  // of the struct above
+
+  typedef struct packed {
+    primitive_kind_t kind;
+    logic [FLAG_BITS-1:0] ends_visit;
+    logic [FLAG_BITS-1:0] ends_primitive;
+    tile_key_t key;
+    logic [SLOT_BITS-1:0] slot;
+    logic [STAMP_INDEX_BITS-1:0] stamp;
+    logic [SAMPLE_MASK_BITS-1:0] mask;
+    logic [ALL_LOCAL_BITS-1:0] anchor;
+  } stamp_packet_t;
+  localparam int STAMP_PACKET_BITS = 100;  // of the struct above
 
   typedef struct packed {
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
     logic [PIXEL_X_BITS-1:0] x;
     logic [PIXEL_Y_BITS-1:0] y;
     logic [FLAG_BITS-1:0] is_last;
-    logic [DEPTH_CODE_BITS-1:0] depth;
-    logic [VERTEX_COLOR_BITS-1:0] color;
+    logic [ALL_CODE_BITS-1:0] code;
   } line_pixel_t;
   localparam int LINE_PIXEL_BITS = 66;  // of the struct above
 
   typedef struct packed {
-    logic [KIND_BITS-1:0] kind;
+    primitive_kind_t kind;
     logic [FLAG_BITS-1:0] ends_visit;
     logic [FLAG_BITS-1:0] ends_primitive;
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [TILE_X_BITS-1:0] tile_x;
-    logic [TILE_Y_BITS-1:0] tile_y;
+    tile_key_t key;
     logic [STAMP_INDEX_BITS-1:0] stamp;
     logic [SAMPLE_MASK_BITS-1:0] mask;
-    logic [DEPTH_FUNC_BITS-1:0] depth_test;
-    logic [FLAG_BITS-1:0] depth_write;
-    logic [FLAG_BITS-1:0] color_write;
-    logic [1*DEPTH_CODE_BITS-1:0] depth;
-    logic [1*VERTEX_COLOR_BITS-1:0] rgba;
+    primitive_state_t state;
+    logic [ALL_CODE_BITS-1:0] code;
   } fragment_packet_t;
   localparam int FRAGMENT_PACKET_BITS = 76;  // of the struct above
 
   typedef struct packed {
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [TILE_X_BITS-1:0] tile_x;
-    logic [TILE_Y_BITS-1:0] tile_y;
+    tile_key_t key;
     logic [STAMP_INDEX_BITS-1:0] stamp;
     logic [SAMPLE_MASK_BITS-1:0] passed;
     logic [SAMPLE_MASK_BITS-1:0] write_depth;
@@ -268,10 +321,8 @@ package raster_pkg;
   localparam int WRITE_PACKET_BITS = 60;  // of the struct above
 
   typedef struct packed {
-    logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
-    logic [TILE_X_BITS-1:0] tile_x;
-    logic [TILE_Y_BITS-1:0] tile_y;
-    logic [HIZ_UPDATE_BITS-1:0] update;
+    tile_key_t key;
+    hiz_update_t update;
     logic [HIZ_CODE_BITS-1:0] hiz_code;
   } retire_packet_t;
   localparam int RETIRE_PACKET_BITS = 29;  // of the struct above

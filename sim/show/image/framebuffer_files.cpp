@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "model/fragment_ops.hpp"
 #include "png.hpp"
 #include "whole_file.hpp"
 
@@ -50,10 +51,9 @@ std::uint8_t replicate(std::uint32_t value, int bits) {
 }
 
 Rgb unpack(std::uint32_t code, ColorFormat format) {
-  if (format == ColorFormat::rgb565)
-    return {replicate((code >> 11) & 31, 5), replicate((code >> 5) & 63, 6), replicate(code & 31, 5)};
-  return {static_cast<std::uint8_t>(code & 0xff), static_cast<std::uint8_t>((code >> 8) & 0xff),
-          static_cast<std::uint8_t>((code >> 16) & 0xff)};
+  const auto c = unpack_color(format, code);
+  if (format == ColorFormat::rgb565) return {replicate(c[0], 5), replicate(c[1], 6), replicate(c[2], 5)};
+  return {static_cast<std::uint8_t>(c[0]), static_cast<std::uint8_t>(c[1]), static_cast<std::uint8_t>(c[2])};
 }
 
 std::string extension(const std::string& path) {

@@ -29,6 +29,25 @@ std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stal
 
 std::uint64_t part(std::uint64_t whole, std::uint64_t taken) { return whole > taken ? whole - taken : 0; }
 
+/// What the sender of `out` waited for: the next stage, and what else the totals know of.
+std::vector<StageTime::Wait> waits_of(Arrow out, const CycleRun& run) {
+  const TimingTotals& t = run.totals;
+  const std::string_view next = info(info(out).to).name;
+  const std::uint64_t stalled = run.use[index(out)].stalled;
+  switch (out) {
+    case Arrow::setup: return {{next, part(stalled, t.slot_cycles)}, {"a context slot", t.slot_cycles}};
+    case Arrow::tile:
+      return {{next, stalled},
+              {"an earlier visit of the tile (HiZ)", t.bound_cycles},
+              {"a place for one more visit", t.visit_cycles}};
+    case Arrow::fragment:  // depth_test itself never waits
+      return {{info(Stage::framebuffer).name, part(stalled, t.hazard_cycles)},
+              {"the fragment before (hazard)", t.hazard_cycles}};
+    case Arrow::request: return {{next, t.memory_cycles}};
+    default: return {{next, stalled}};
+  }
+}
+
 }  // namespace
 
 void change(Hardware& hardware, std::string_view key, std::string_view value) {
@@ -72,35 +91,21 @@ CycleRendering run_cycles(const Scene& scene, const Hardware& hardware, const Re
 
 std::vector<StageTime> stage_times(const CycleRun& run) {
   const TimingTotals& t = run.totals;
-  const auto use = [&run](Boundary boundary) { return run.use[static_cast<std::size_t>(boundary)]; };
   std::vector<StageTime> stages;
-  const auto add = [&](std::string_view name, TimedStage which, Boundary out,
-                       const std::vector<StageTime::Wait>& waits) {
-    StageTime stage{name, use(out), t.works[static_cast<std::size_t>(which)], 0, {}};
-    if (stage.use.busy == 0 && stage.works == 0) return;  // it is not there, or had nothing to do
+  for (const Arrow out : kElastic) {
+    const Stage sender = info(out).from;
+    if (!info(sender).is_timed) continue;
+    StageTime stage{info(sender).name, run.use[index(out)], t.works[index(sender)], 0, {}};
+    if (stage.use.busy == 0 && stage.works == 0) continue;  // it is not there, or had nothing to do
     std::uint64_t waited = 0;
-    for (const StageTime::Wait& wait : waits) {
+    for (const StageTime::Wait& wait : waits_of(out, run)) {
       waited += wait.cycles;
       if (wait.cycles != 0) stage.waits.push_back(wait);
     }
     stage.works = std::min(stage.works, part(run.cycles, waited));  // where parts work while others wait
     stage.no_item = part(run.cycles, stage.works + waited);
     stages.push_back(std::move(stage));
-  };
-  const std::uint64_t setup = use(Boundary::setup).stalled, fragment = use(Boundary::fragment).stalled;
-  add("cull", TimedStage::cull, Boundary::triangle, {{"triangle_setup", use(Boundary::triangle).stalled}});
-  add("triangle_setup", TimedStage::triangle_setup, Boundary::setup,
-      {{"coarse_raster", part(setup, t.slot_cycles)}, {"a context slot", t.slot_cycles}});
-  add("coarse_raster", TimedStage::coarse_raster, Boundary::tile,
-      {{"fine_raster", use(Boundary::tile).stalled},
-       {"an earlier visit of the tile (HiZ)", t.bound_cycles},
-       {"a place for one more visit", t.visit_cycles}});
-  add("fine_raster", TimedStage::fine_raster, Boundary::stamp, {{"interpolate", use(Boundary::stamp).stalled}});
-  add("line_raster", TimedStage::line_raster, Boundary::line_pixel,
-      {{"primitive_join", use(Boundary::line_pixel).stalled}});
-  add("interpolate", TimedStage::interpolate, Boundary::fragment,
-      {{"framebuffer", part(fragment, t.hazard_cycles)}, {"the fragment before (hazard)", t.hazard_cycles}});
-  add("framebuffer", TimedStage::framebuffer, Boundary::request, {{"memory", t.memory_cycles}});
+  }
   return stages;
 }
 
@@ -112,8 +117,7 @@ std::uint64_t Traffic::total() const {
 
 Traffic traffic(const CycleRun& run, const Config& config) {
   const Widths widths = derive_widths(config);
-  const auto stamps =
-      static_cast<std::uint64_t>(widths.stamps_per_row) * static_cast<std::uint64_t>(widths.stamps_per_row);
+  const auto stamps = static_cast<std::uint64_t>(widths.stamps.stamps());
   Traffic traffic;
   for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
     for (const bool is_color : {false, true})

@@ -4,26 +4,19 @@
 
 namespace halfplane {
 
-std::string_view kind_name(std::uint8_t kind) {
-  switch (static_cast<PrimitiveKind>(kind)) {
-    case PrimitiveKind::triangle: return "triangle";
-    case PrimitiveKind::rectangle: return "rectangle";
-    case PrimitiveKind::fast_clear: return "fast_clear";
-    case PrimitiveKind::flush: return "flush";
-    case PrimitiveKind::point: return "point";
-    case PrimitiveKind::line: break;
-  }
-  return "line";
+std::string_view kind_name(PrimitiveKind kind) {
+  const auto& all = WireEnum<PrimitiveKind>::all;
+  return std::ranges::find(all, kind, &Enumerator<PrimitiveKind>::value)->name;
 }
 
 PrimitiveSpans::PrimitiveSpans() : text_("number,kind,primitive,command,first,last") {
-  for (const std::string_view name : kBoundaryNames)
-    for (const char* column : {"_first", "_last", "_items"}) text_ += "," + std::string(name) + column;
+  for (const Arrow boundary : kBoundaries)
+    for (const char* column : {"_first", "_last", "_items"}) text_ += "," + std::string(info(boundary).name) + column;
   text_ += '\n';
 }
 
-void PrimitiveSpans::transfer(Boundary boundary, Cycle cycle) {
-  Span& span = span_[static_cast<std::size_t>(boundary)];
+void PrimitiveSpans::transfer(Arrow boundary, Cycle cycle) {
+  Span& span = span_[index(boundary)];
   if (span.items++ == 0) span.first = cycle;
   span.last = cycle;
 }
@@ -42,7 +35,8 @@ void PrimitiveSpans::write() {
   if (!has_primitive_) return;
   Cycle first = ~Cycle{0}, last = 0;
   std::string columns;
-  for (const Span& span : span_) {
+  for (const Arrow boundary : kBoundaries) {
+    const Span& span = span_[index(boundary)];
     if (span.items == 0) {
       columns += ",,,0";
       continue;

@@ -12,7 +12,7 @@ namespace halfplane {
 class PrimitiveSpans final : public TransferSink {
  public:
   PrimitiveSpans();
-  void transfer(Boundary boundary, Cycle cycle) override;
+  void transfer(Arrow boundary, Cycle cycle) override;
   void primitive(const HostPrimitive& primitive) override;
   /// The whole listing, header first. Call it once, after the run.
   [[nodiscard]] const std::string& finish();
@@ -27,10 +27,10 @@ class PrimitiveSpans final : public TransferSink {
   std::string text_, head_;  ///< head_: of the line at work
   bool has_primitive_ = false;
   std::uint64_t number_ = 0;
-  std::array<Span, kBoundaries> span_{};
+  std::array<Span, kArrows> span_{};
 };
 
 /// "triangle", "rectangle", "fast_clear", "flush", "point", "line".
-[[nodiscard]] std::string_view kind_name(std::uint8_t kind);
+[[nodiscard]] std::string_view kind_name(PrimitiveKind kind);
 
 }  // namespace halfplane

@@ -9,17 +9,22 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array kTracks{"cull",
-                             "triangle_setup",
-                             "triangle_setup, second",
-                             "triangle_setup, third",
-                             "coarse_raster",
-                             "fine_raster",
-                             "line_raster",
-                             "depth_test",
-                             "framebuffer",
-                             "memory, depth",
-                             "memory, colour"};
+/// By Timeline::Track: a stage, and which of its tracks.
+struct TrackName {
+  Stage stage;
+  std::string_view part;
+};
+constexpr std::array kTracks{TrackName{Stage::cull, ""},
+                             TrackName{Stage::triangle_setup, ""},
+                             TrackName{Stage::triangle_setup, ", second"},
+                             TrackName{Stage::triangle_setup, ", third"},
+                             TrackName{Stage::coarse_raster, ""},
+                             TrackName{Stage::fine_raster, ""},
+                             TrackName{Stage::line_raster, ""},
+                             TrackName{Stage::depth_test, ""},
+                             TrackName{Stage::framebuffer, ""},
+                             TrackName{Stage::memory, ", depth"},
+                             TrackName{Stage::memory, ", colour"}};
 
 std::string tile_text(int x, int y) { return "tile (" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
 
@@ -36,7 +41,8 @@ Timeline::Timeline(const std::string& title)
   text_ += metadata("process_name", 0, "name", title);
   for (std::size_t i = 0; i < kTracks.size(); ++i) {
     const int track = static_cast<int>(i);
-    text_ += ",\n" + metadata("thread_name", track, "name", "\"" + std::string(kTracks[i]) + "\"");
+    text_ += ",\n" + metadata("thread_name", track, "name",
+                              "\"" + std::string(info(kTracks[i].stage).name) + std::string(kTracks[i].part) + "\"");
     text_ += ",\n" + metadata("thread_sort_index", track, "sort_index", std::to_string(i));
   }
 }
@@ -55,14 +61,14 @@ void Timeline::primitive(const HostPrimitive& primitive) {
 
 void Timeline::visit(int tile_x, int tile_y) { next_tile_name_ = name_ + ", " + tile_text(tile_x, tile_y); }
 
-void Timeline::transfer(Boundary boundary, Cycle cycle) {
+void Timeline::transfer(Arrow boundary, Cycle cycle) {
   switch (boundary) {
-    case Boundary::primitive: taken_ = cycle; break;
-    case Boundary::triangle:
+    case Arrow::primitive: taken_ = cycle; break;
+    case Arrow::triangle:
       slice(cull, name_, taken_, cycle);
       triangle_ = cycle;
       break;
-    case Boundary::setup: {
+    case Arrow::setup: {
       const Cycle from = std::min(triangle_, cycle);  // serial: the triangle goes when its setup has gone
       const auto lane = std::find_if(setup_ends_.begin(), setup_ends_.end(), [&](Cycle end) { return end <= from; });
       if (lane != setup_ends_.end()) {
@@ -73,7 +79,7 @@ void Timeline::transfer(Boundary boundary, Cycle cycle) {
       setup_ = last_tile_ = cycle;
       break;
     }
-    case Boundary::tile: {
+    case Arrow::tile: {
       const bool is_serial = has_stamps_ && !has_tile_;  // there a tile goes together with its last stamp
       end_tile(cycle);
       tile_name_ = next_tile_name_.empty() ? name_ + ", end" : std::exchange(next_tile_name_, {});
@@ -83,25 +89,23 @@ void Timeline::transfer(Boundary boundary, Cycle cycle) {
       tile_ = last_tile_ = cycle;
       break;
     }
-    case Boundary::stamp:
+    case Arrow::stamp:
       if (!has_stamps_) first_stamp_ = cycle;
       has_stamps_ = true;
       last_stamp_ = cycle;
       break;
-    case Boundary::line:
+    case Arrow::line:
       has_line_ = true;
       line_ = cycle;
       break;
-    case Boundary::line_pixel: last_pixel_ = cycle; break;
-    case Boundary::fragment:
+    case Arrow::line_pixel: last_pixel_ = cycle; break;
+    case Arrow::fragment:
       if (!has_fragments_) first_fragment_ = cycle;
       has_fragments_ = true;
       last_fragment_ = cycle;
       break;
-    case Boundary::retire: end_visit(); break;
-    case Boundary::write:
-    case Boundary::request:
-    case Boundary::response: break;
+    case Arrow::retire: end_visit(); break;
+    default: break;
   }
 }
 

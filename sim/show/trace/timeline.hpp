@@ -14,7 +14,7 @@ class Timeline final : public TransferSink {
  public:
   /// `title`, a JSON string with its quotes, names the process: scene and configuration.
   explicit Timeline(const std::string& title);
-  void transfer(Boundary boundary, Cycle cycle) override;
+  void transfer(Arrow boundary, Cycle cycle) override;
   void primitive(const HostPrimitive& primitive) override;
   void visit(int tile_x, int tile_y) override;
   void move(MoveCause cause, bool is_color, int tile_x, int tile_y, Cycle from, Cycle to) override;

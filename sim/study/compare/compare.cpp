@@ -9,16 +9,12 @@
 #include <utility>
 
 #include "eye_depth.hpp"
+#include "fragment_frame.hpp"
 #include "line_coverage.hpp"
-#include "line_pixels.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
-#include "model/golden/exact.hpp"
+#include "model/golden/exact_line.hpp"
 #include "model/stages/depth_encode.hpp"
-#include "model/stages/plane_rules.hpp"
-#include "model/stages/rop.hpp"
-#include "model/stages/triangle_setup.hpp"
-#include "model/stages/viewport.hpp"
 
 namespace halfplane {
 namespace {
@@ -49,48 +45,73 @@ struct PartSets {
   }
 };
 
-/// Pixel numbers grouped by the triangle they show, so that each triangle is set up once.
-struct PixelGroups {
-  std::vector<std::size_t> first;     // of triangle i in `pixels`; one entry more than triangles
-  std::vector<std::uint32_t> pixels;  // a target has at most 2^28
+/// One quantity, in LSB: the exact value S between the snapped vertices, and the hardware's H before storage rounding.
+struct ExactAndHardware {
+  exact::Rational exact, hardware;
+};
 
-  PixelGroups(const std::vector<std::int32_t>& visible, std::size_t triangle_count) : first(triangle_count + 1) {
-    for (const std::int32_t t : visible)
-      if (t >= 0) ++first[static_cast<std::size_t>(t) + 1];
-    for (std::size_t i = 0; i < triangle_count; ++i) first[i + 1] += first[i];
-    pixels.resize(first.back());
-    std::vector<std::size_t> next = first;
-    for (std::size_t p = 0; p < visible.size(); ++p)
-      if (visible[p] >= 0) pixels[next[static_cast<std::size_t>(visible[p])]++] = static_cast<std::uint32_t>(p);
+/// A pixel that the model owns, and what it must hold.
+struct OwnedPixel {
+  std::size_t p = 0;                   ///< y * width + x
+  std::size_t at = 0;                  ///< in a Framebuffer
+  std::uint32_t draw = 0;              ///< index into Scene::commands
+  bool is_line = false;                ///< or a point
+  PerPlane<ExactAndHardware> plane{};  ///< all that are judged
+};
+
+/// The numbers of owned pixels, in the order in which errors are summed: by triangle, then by primitive of the lines,
+/// then by primitive of the points.
+struct OwnedPixels {
+  std::vector<std::uint32_t> pixels;  // a target has at most 2^28
+  std::uint64_t triangles = 0;        // that show
+
+  explicit OwnedPixels(const FragmentFrame& frame) {
+    for (std::size_t p = 0; p < frame.owners().size(); ++p)
+      if (frame.owners()[p] >= 0) pixels.push_back(static_cast<std::uint32_t>(p));
+    const auto key = [&frame](std::uint32_t p) {
+      const TappedFragment& f = frame.shown(p);
+      const bool is_triangle = f.kind == PrimitiveKind::triangle;
+      const int rank = is_triangle ? 0 : f.kind == PrimitiveKind::line ? 1 : 2;
+      return std::pair(rank, is_triangle ? f.item : f.primitive);
+    };
+    std::stable_sort(pixels.begin(), pixels.end(),
+                     [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    std::optional<std::uint32_t> before;
+    for (const std::uint32_t p : pixels) {
+      const TappedFragment& f = frame.shown(p);
+      if (f.kind != PrimitiveKind::triangle) break;
+      triangles += f.item != before ? 1 : 0;
+      before = f.item;
+    }
   }
 };
 
-/// Walks over the pixels that the model owns and gathers every attribute error.
+/// Holds what is stored against what the fragments leave in a target by the golden's operations, over the pixels that
+/// some fragment owns, and gathers every attribute error.
 class AttributeComparison {
  public:
-  AttributeComparison(const Scene& scene, const Config& config, const StudyRules& rules, Comparison& result)
+  /// `made`: what the specification drew while its fragments came to `frame`. `perspective`: the golden's colours when
+  /// all of them are interpolated so; empty: not asked for.
+  AttributeComparison(const Scene& scene, const Config& config, const FragmentFrame& frame, const Rendering& made,
+                      const std::vector<std::array<double, 4>>& perspective, Comparison& result)
       : scene_(scene),
         config_(config),
-        rules_(rules),
+        frame_(frame),
+        made_(made),
+        perspective_(perspective),
         widths_(derive_widths(config)),
+        planes_(judged_planes(config)),
         result_(result),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
         depth_encode_(config, scene.planes),
         eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())) {}
 
   void run() {
-    const PixelGroups groups(result_.rendering.visible, result_.rendering.triangles.size());
-    for (std::size_t i = 0; i + 1 < groups.first.size(); ++i) {
-      if (groups.first[i] == groups.first[i + 1]) continue;
-      ++result_.visible_triangles;
-      const Triangle& triangle = result_.rendering.triangles[i];
-      const TriangleSetup setup = setup_of(triangle);
-      for (std::size_t k = groups.first[i]; k < groups.first[i + 1]; ++k)
-        pixel(triangle_pixel(triangle, setup, groups.pixels[k]));
-    }
-    const std::uint64_t unexplained =
-        for_each_line_pixel(scene_, config_, result_.rendering, [this](const OwnedPixel& p) { pixel(p); });
-    result_.stage_mismatches += unexplained;
+    for (std::size_t p = 0; p < frame_.owners().size(); ++p)
+      result_.stage_mismatches += result_.rendering.ids[p] != frame_.owners()[p] ? 1 : 0;
+    const OwnedPixels owned(frame_);
+    result_.visible_triangles = owned.triangles;
+    for (const std::uint32_t p : owned.pixels) pixel(owned_pixel(p));
     result_.depth_lsb = depth_.stats();
     result_.color_lsb = color_.stats();
     if (const ErrorStats eye = eye_.stats(); eye.count > 0) result_.depth_eye = eye;
@@ -105,57 +126,49 @@ class AttributeComparison {
   }
 
  private:
-  [[nodiscard]] const State& state_of(const Triangle& triangle) const {
-    return scene_.states[std::get<Draw>(scene_.commands[triangle.draw]).state];
+  [[nodiscard]] const State& state_of(std::uint32_t command) const {
+    return scene_.states[std::get<Draw>(scene_.commands[command]).state];
   }
 
-  /// As the engine has it: a saturated plane depends on where its box begins.
-  [[nodiscard]] TriangleSetup setup_of(const Triangle& triangle) const {
-    TriangleSetup setup =
-        setup_triangle(triangle, config_, widths_, raster_rect(state_of(triangle), scene_.width, scene_.height));
-    if (rules_ == StudyRules{}) return setup;
-    const auto area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
-    set_planes(setup, canonical(triangle.v, area), rules_, config_, widths_);
-    return setup;
-  }
-
-  [[nodiscard]] OwnedPixel triangle_pixel(const Triangle& triangle, const TriangleSetup& setup, std::size_t p) const {
-    const auto width = static_cast<std::size_t>(result_.golden.width);
-    const int x = static_cast<int>(p % width), y = static_cast<int>(p / width);
-    const State& state = state_of(triangle);
-    const Interpolated stages = interpolate_by_rules(setup, rules_, widths_, x, y);
-    OwnedPixel pixel{p, triangle.primitive, triangle.draw, false, {}, {}, stages.depth_code, stages.color_code};
-    if (state.depth_write)
-      pixel.depth = {exact::depth_at(triangle, x, y, widths_.grid_bits),
-                     {stages.depth, int128{1} << config_.local_guard_bits}};
-    if (!state.color_write) return pixel;
-    for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
-      const auto c = static_cast<std::size_t>(channel);
-      pixel.color[c] = {exact::color_at(triangle, x, y, widths_.grid_bits, channel),
-                        {stages.color[c], int128{1} << config_.local_guard_bits}};
+  [[nodiscard]] OwnedPixel owned_pixel(std::size_t p) {
+    const TappedFragment& f = frame_.shown(p);
+    OwnedPixel pixel{p, made_.frame.at(f.x, f.y), f.draw, f.kind != PrimitiveKind::triangle, {}};
+    if (!pixel.is_line && (!oracle_ || oracle_item_ != f.item)) {
+      oracle_.emplace(made_.triangles[f.item], widths_.grid_bits);
+      oracle_item_ = f.item;
     }
+    const exact::PlaneWeights weights = pixel.is_line ? exact::PlaneWeights{} : oracle_->weights_at(f.x, f.y);
+    for (std::size_t i = 0; i < planes_.size(); ++i)
+      pixel.plane[i] = {exact_value(f, weights, i), {f.plane[i].unrounded, int128{1} << f.guard_bits}};
     return pixel;
   }
 
+  [[nodiscard]] exact::Rational exact_value(const TappedFragment& f, const exact::PlaneWeights& weights,
+                                            std::size_t plane) const {
+    if (f.kind == PrimitiveKind::triangle) return weights.plane(plane_codes(made_.triangles[f.item], plane));
+    if (f.kind == PrimitiveKind::point) return {made_.points[f.item].at.code[plane], 1};
+    const DrawnLine& drawn = made_.lines[f.item];
+    const exact::Line line{drawn.start, drawn.end, state_of(f.draw).line_rule, drawn.drops_last, widths_.grid_bits};
+    return exact::plane_at(line, f.x, f.y, drawn.start.code[plane], drawn.end.code[plane]);
+  }
+
   void pixel(const OwnedPixel& pixel) {
-    const State& state = scene_.states[std::get<Draw>(scene_.commands[pixel.draw]).state];
+    const State& state = state_of(pixel.draw);
     // The same primitive, not merely some primitive: otherwise U - D would be the distance of two surfaces.
-    const bool same_visible = result_.golden.ids[pixel.p] == static_cast<std::int32_t>(pixel.primitive);
-    const auto width = static_cast<std::size_t>(result_.golden.width);
-    const std::size_t at =
-        result_.rendering.frame.at(static_cast<int>(pixel.p % width), static_cast<int>(pixel.p / width));
+    const std::int32_t owner = frame_.owners()[pixel.p];
+    const bool same_visible = result_.golden.ids[pixel.p] == owner && result_.rendering.ids[pixel.p] == owner;
     result_.compared_pixels += same_visible ? 1 : 0;
-    if (state.depth_write) depth(pixel, result_.rendering.frame.depth[at], same_visible);
-    if (state.color_write) color(pixel, state, result_.rendering.frame.color[at], same_visible);
+    if (state.depth_write) depth(pixel, result_.rendering.frame.depth[pixel.at], same_visible);
+    if (state.color_write) color(pixel, result_.rendering.frame.color[pixel.at], same_visible);
   }
 
   void depth(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     Values v;
-    v.s = exact::on_grid(pixel.depth.exact);
-    v.h = exact::on_grid(pixel.depth.hardware);
+    v.s = exact::on_grid(pixel.plane[kDepthPlane].exact);
+    v.h = exact::on_grid(pixel.plane[kDepthPlane].hardware);
     v.d = depth_encode_.is_identity() ? std::int64_t{stored} << exact::kGridBits
                                       : on_grid(static_cast<double>(depth_encode_.plane_value(stored)) * depth_max_);
-    result_.stage_mismatches += stored != depth_encode_(pixel.depth_code) ? 1 : 0;
+    result_.stage_mismatches += stored != made_.frame.depth[pixel.at] ? 1 : 0;
     // Of a format that is not the plane's, storage is a step after the datapath.
     const std::int64_t datapath = depth_encode_.is_identity() ? v.d : v.h;
     if (pixel.is_line) {
@@ -179,24 +192,23 @@ class AttributeComparison {
     }
   }
 
-  void color(const OwnedPixel& pixel, const State& state, std::uint32_t stored, bool same_visible) {
+  void color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     const auto max = golden::channel_max(config_.color_format);
-    result_.stage_mismatches += stored != pack_color(config_.color_format, pixel.color_code) ? 1 : 0;
+    result_.stage_mismatches += stored != made_.frame.color[pixel.at] ? 1 : 0;
     double worst = 0;
     for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
       const auto c = static_cast<std::size_t>(channel);
       Values v;
-      v.s = exact::on_grid(pixel.color[c].exact, max[c], 255);
-      v.h = exact::on_grid(pixel.color[c].hardware, max[c], 255);
+      v.s = exact::on_grid(pixel.plane[kColorPlane + c].exact, max[c], 255);
+      v.h = exact::on_grid(pixel.plane[kColorPlane + c].hardware, max[c], 255);
       v.d = std::int64_t{golden::stored_channel(stored, config_.color_format, channel)} << exact::kGridBits;
       color_datapath_.add(to_lsb(v.d - v.s));
       color_datapath_bias_.add(to_lsb(v.h - v.s));
       if (!same_visible) continue;
-      v.u = on_grid(result_.golden.affine[pixel.p][c] * max[c] / 255);
-      const std::int64_t perspective = on_grid(result_.golden.perspective[pixel.p][c] * max[c] / 255);
+      v.u = on_grid(result_.golden.color[pixel.p][c] * max[c] / 255);
       color_parts_.add(v);
-      affine_.add(v.u - perspective);
-      const double error = to_lsb(v.d - (state.color_interp == ColorInterp::affine ? v.u : perspective));
+      if (!perspective_.empty()) affine_.add(v.u - on_grid(perspective_[pixel.p][c] * max[c] / 255));
+      const double error = to_lsb(v.d - v.u);
       color_.add(error);
       if (std::abs(error) > std::abs(worst)) worst = error;
     }
@@ -205,12 +217,17 @@ class AttributeComparison {
 
   const Scene& scene_;
   const Config& config_;
-  const StudyRules& rules_;
+  const FragmentFrame& frame_;
+  const Rendering& made_;
+  const std::vector<std::array<double, 4>>& perspective_;
   const Widths widths_;
+  const std::vector<JudgedPlane> planes_;
   Comparison& result_;
   double depth_max_;  // 2^B - 1
   DepthEncode depth_encode_;
   std::vector<std::optional<EyeMapping>> eye_mappings_;
+  std::optional<exact::TriangleOracle> oracle_;  // of the triangle at work
+  std::uint32_t oracle_item_ = 0;                // its number
   ErrorSet depth_, color_, eye_;
   MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_;
   PartSets depth_parts_, color_parts_;
@@ -240,6 +257,22 @@ std::string line(const char* format, double value, double bound) {
   return text.data();
 }
 
+/// Draws by the specification, whose every fragment goes to the judge, and through the golden's operations.
+Rendering draw_fragments(const Scene& scene, const Config& config, const CompareOptions& options, FragmentJudge& judge,
+                         FragmentFrame& frame) {
+  RenderOptions render_options;
+  render_options.skip = options.skip;
+  render_options.rules = options.rules;
+  render_options.fragment_tap = [&](const TappedFragment& fragment) {
+    judge.add(fragment);
+    frame.add(fragment);
+  };
+  const Engine specification = options.specification ? options.specification : render_scalar;
+  Rendering rendering = specification(scene, config, render_options);
+  frame.finish();
+  return rendering;
+}
+
 }  // namespace
 
 Comparison compare(const Scene& scene, const Config& config, const CompareOptions& options) {
@@ -264,7 +297,19 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   const bool is_default = options.rules == StudyRules{};
   const Engine engine = options.engine ? options.engine : is_default ? render_functional : render_scalar;
   result.rendering = engine(scene, config, render_options);
+  FragmentJudge judge(scene, config, options.rules.fill_rule);
+  FragmentFrame frame(scene, config);
+  const Rendering made = draw_fragments(scene, config, options, judge, frame);
+  result.fragments = judge.finish(made);
+  if (!is_default) result.fragments.planes.clear();  // off on purpose; what is stored says by how much
   result.golden = golden::render(scene, config, golden_options);
+  std::vector<std::array<double, 4>> perspective;
+  if (options.wants_affine_cost) {
+    golden_options.color_interp = ColorInterp::perspective;
+    golden_options.want_outlines = false;
+    golden_options.progress = {};
+    perspective = golden::render(scene, config, golden_options).color;
+  }
   // With taps the functional engine draws by the stages: what it draws without them must be the same.
   if (is_default && !options.engine) {
     RenderOptions plain;
@@ -286,12 +331,12 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   }
   result.depth_error_lsb.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   result.color_error_lsb = result.depth_error_lsb;
-  AttributeComparison(scene, config, options.rules, result).run();
+  AttributeComparison(scene, config, frame, made, perspective, result).run();
   return result;
 }
 
 std::vector<std::string> broken_bounds(const Comparison& c, const Config& config) {
-  std::vector<std::string> broken;
+  std::vector<std::string> broken = broken_fragment_bounds(c.fragments, config);
   const auto require = [&broken](bool holds, const char* format, double value, double bound) {
     if (!holds) broken.push_back(line(format, value, bound));
   };

@@ -13,6 +13,7 @@
 
 #include "coverage.hpp"
 #include "coverage_class.hpp"
+#include "fragment_judge.hpp"
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/golden/golden.hpp"
@@ -24,8 +25,10 @@ namespace halfplane {
 using Engine = std::function<Rendering(const Scene&, const Config&, const RenderOptions&)>;
 
 struct CompareOptions {
-  Engine engine;     ///< none: render_functional, or render_scalar for rules that it alone has
-  StudyRules rules;  ///< the oracle follows the fill rule; the golden stays top_left
+  Engine engine;         ///< none: render_functional, or render_scalar for rules that it alone has
+  Engine specification;  ///< whose fragments are judged before the operations, by fragment_tap; none: render_scalar
+  bool wants_affine_cost = true;  ///< fill Comparison::affine, by a second rendering of the golden
+  StudyRules rules;               ///< the oracle follows the fill rule; the golden stays top_left
   golden::Precision precision = golden::Precision::binary64;
   Skip skip;
   std::function<void(double fraction)> progress;  ///< 0...1 over engine and golden; may be empty
@@ -42,13 +45,15 @@ struct Comparison {
   OracleResult oracle;              ///< against S, sample by sample
   std::uint64_t other_visible = 0;  ///< pixels covered equally often by both, with different primitives visible
 
+  FragmentVerdict fragments;  ///< before the operations, against S; planes only by the pipeline's own rules
+
   // Against U, over the pixels where both show the same primitive. LSB of the stored formats.
   std::uint64_t compared_pixels = 0;
   ErrorStats depth_lsb, color_lsb;
   std::optional<ErrorStats> depth_eye;  ///< eye-space units; none where no perspective projection is to be found
   std::uint64_t beyond_eye = 0;         ///< pixels left out of depth_eye: the stored code lies at or beyond infinity
   ErrorParts parts, color_parts;        ///< colour parts refer to affine colour
-  PartStats affine;                     ///< what affine colour costs: affine - perspective, both of U
+  PartStats affine;                     ///< what affine colour costs: U less U with all colours perspective
 
   // Against S, over every pixel that the model owns, whatever U shows there: the datapath alone.
   ErrorMoments datapath, color_datapath;
@@ -56,7 +61,7 @@ struct Comparison {
   ErrorMoments datapath_bias, color_datapath_bias;
   ErrorMoments line_datapath;           ///< the depth of lines and points, whose bound is another; not in `datapath`
   std::uint64_t visible_triangles = 0;  ///< of the model, behind those figures
-  std::uint64_t stage_mismatches = 0;   ///< stored values that differ from what the stages compute
+  std::uint64_t stage_mismatches = 0;   ///< stored values, and owners, that differ from what the fragments leave
 
   // Per pixel, width * height, rows from the top. NaN where not compared. Signed; of a colour, its worst channel.
   std::vector<float> depth_error_lsb, color_error_lsb;

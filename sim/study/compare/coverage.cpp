@@ -13,12 +13,10 @@
 namespace halfplane {
 namespace {
 
-using golden::PixelRange;
-
 std::uint64_t difference(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }
 
 /// The pixels whose centres lie in the closed bounding box of the snapped vertices.
-PixelRange range_of(const Triangle& t, int grid_bits) {
+golden::PixelRange range_of(const Triangle& t, int grid_bits) {
   const auto [x_min, x_max] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
   const auto [y_min, y_max] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
   const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
@@ -34,9 +32,9 @@ class OracleCheck {
       : log_(log), tile_size_(config.tile_size), grid_bits_(derive_widths(config).grid_bits), rule_(rule) {}
 
   /// `visit` runs over the log's visits; those of triangle `index` are consumed.
-  void triangle(const Triangle& t, std::uint32_t index, const PixelRange& region,
+  void triangle(const Triangle& t, std::uint32_t index, const golden::PixelRange& region,
                 std::vector<CoverageLog::Visit>::const_iterator& visit) {
-    const PixelRange range = intersect(region, range_of(t, grid_bits_));
+    const golden::PixelRange range = intersect(region, range_of(t, grid_bits_));
     const exact::TriangleOracle oracle(t, grid_bits_, rule_);
     const auto end = log_.visits().end();
     const auto skip_to = [&](int tile_x, int tile_y) {
@@ -69,7 +67,7 @@ class OracleCheck {
   }
 
   void tile(const Triangle& t, const exact::TriangleOracle& oracle, std::uint32_t index, int tx, int ty,
-            const PixelRange& range, const CoverageLog::Visit* visit) {
+            const golden::PixelRange& range, const CoverageLog::Visit* visit) {
     const int x0 = tx * tile_size_, y0 = ty * tile_size_;
     std::uint64_t drawn_inside = 0;
     for (int y = std::max(range.begin_y, y0); y < std::min(range.end_y, y0 + tile_size_); ++y) {

@@ -89,7 +89,7 @@ class Measurer {
       if (visit.triangle != triangle) {
         triangle = visit.triangle;
         setup = setup_triangle(t, config_, widths_);
-        is_flat = t.v[0].z == t.v[1].z && t.v[1].z == t.v[2].z;
+        is_flat = t.v[0].depth() == t.v[1].depth() && t.v[1].depth() == t.v[2].depth();
         budget = bound_.budget(std::abs(bound_.scale().t_per_inverse_z()) * (std::abs(plane.a) + std::abs(plane.b)),
                                is_flat);
         if (options_.progress && triangle % 256 == 0)
@@ -106,7 +106,7 @@ class Measurer {
 
   void sample(std::uint32_t index, const Triangle& t, const TriangleSetup& setup, const EyePlane& plane,
               const DepthBudget& budget, int x, int y) {
-    const InterpolatedDepth depth = depth_at(setup, widths_, x, y);
+    const PlaneSample depth = plane_at(setup, kDepthPlane, widths_, x, y);
     const std::uint32_t code = encode_(depth.code);
     const double u = plane.eye_depth(x, y);
     if (!(u > 0) || std::isinf(u)) {  // covered by the snapped triangle alone: there the true one is behind the eye
@@ -123,8 +123,8 @@ class Measurer {
     if (options_.wants_errors) errors(t, depth, code, u, budget, x, y, is_visible ? &pixel : nullptr);
   }
 
-  void errors(const Triangle& t, const InterpolatedDepth& depth, std::uint32_t code, double u,
-              const DepthBudget& budget, int x, int y, const std::size_t* visible) {
+  void errors(const Triangle& t, const PlaneSample& depth, std::uint32_t code, double u, const DepthBudget& budget,
+              int x, int y, const std::size_t* visible) {
     const DepthScale& scale = bound_.scale();
     const exact::Rational plane = exact::depth_at(t, x, y, widths_.grid_bits);
     const double s = scale.z_of_t(

@@ -1,6 +1,6 @@
 // Depth quantization as the pipeline does it: every fragment of a scene, its stored code against its exact eye depth.
 //
-// The functional engine draws the scene and says which samples each triangle covers; depth_at and depth_encode, the stages,
+// The functional engine draws the scene and says which samples each triangle covers; plane_at and depth_encode, the stages,
 // give each sample's depth before rounding and its code. U is the exact eye depth of the unsnapped triangle, S that of the
 // plane through the snapped vertices, H the interpolated depth before rounding, D the stored code: as in compare.
 #pragma once

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
 
 namespace halfplane::stress {
 namespace {
@@ -18,7 +20,13 @@ double code_distance(std::uint32_t code, const exact::Rational& exact, int scale
   return static_cast<double>(distance < 0 ? -distance : distance) / static_cast<double>(denominator);
 }
 
+constexpr std::uint64_t kUnitsPerFragmentCheck = 8;  // the scalar engine is slow
+
 }  // namespace
+
+Rendering draw(const Scene& scene, const Config& config, const RenderOptions& options) {
+  return options.fragment_tap ? render_scalar(scene, config, options) : render_functional(scene, config, options);
+}
 
 RenderOptions render_options() {
   RenderOptions options;
@@ -30,7 +38,7 @@ AttributeErrors attribute_errors(const Scene& scene, const Config& config, const
   AttributeErrors errors;
   const int grid_bits = derive_widths(config).grid_bits;
   const auto color_max = golden::channel_max(config.color_format);
-  const int channels = golden::channel_count(config.color_format);
+  const auto planes = judged_planes(config);
   std::int32_t known = -1;
   std::optional<exact::TriangleOracle> oracle;
   std::size_t p = 0;
@@ -38,19 +46,36 @@ AttributeErrors attribute_errors(const Scene& scene, const Config& config, const
     for (int x = 0; x < scene.width; ++x, ++p) {
       const std::int32_t visible = rendering.visible[p];
       if (visible < 0) continue;
-      if (visible != known) oracle.emplace(rendering.triangles[static_cast<std::size_t>(visible)], grid_bits);
+      const Triangle& triangle = rendering.triangles[static_cast<std::size_t>(visible)];
+      if (visible != known) oracle.emplace(triangle, grid_bits);
       known = visible;
       const std::size_t at = rendering.frame.at(x, y);
+      const exact::PlaneWeights weights = oracle->weights_at(x, y);
       ++errors.fragments;
-      errors.depth = std::max(errors.depth, code_distance(rendering.frame.depth[at], oracle->depth_at(x, y)));
-      for (int c = 0; c < channels; ++c)
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        const exact::Rational exact = weights.plane(plane_codes(triangle, i));
+        if (planes[i].is_depth) {
+          errors.depth = std::max(errors.depth, code_distance(rendering.frame.depth[at], exact));
+          continue;
+        }
+        if (!planes[i].is_color) continue;  // nothing of it is stored
+        const int code =
+            golden::stored_channel(rendering.frame.color[at], config.color_format, static_cast<int>(i - kColorPlane));
         errors.color = std::max(
-            errors.color,
-            code_distance(
-                static_cast<std::uint32_t>(golden::stored_channel(rendering.frame.color[at], config.color_format, c)),
-                oracle->color_at(x, y, c), static_cast<int>(color_max[static_cast<std::size_t>(c)]), 255));
+            errors.color, code_distance(static_cast<std::uint32_t>(code), exact, color_max[i - kColorPlane], 255));
+      }
     }
   return errors;
+}
+
+/// Every fragment of the scene before the operations. Adds no figure: it fails or it does not.
+static void check_fragments(Unit& unit, const Scene& scene, const Engine& engine, FillRule rule) {
+  FragmentJudge judge(scene, unit.config, rule);
+  RenderOptions options;
+  options.rules.fill_rule = rule;
+  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
+  const auto broken = broken_fragment_bounds(judge.finish(engine(scene, unit.config, options)), unit.config);
+  if (!broken.empty()) unit.require(false, "fragments", scene, broken.front());
 }
 
 Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
@@ -61,8 +86,9 @@ Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
     log.add(triangle, tile_x, tile_y, mask);
   };
   // Only the scalar engine has the study rules.
-  Rendering rendering = rule == FillRule::top_left ? unit.engine(scene, unit.config, options)
-                                                   : render_scalar(scene, unit.config, options);
+  const Engine engine = rule == FillRule::top_left ? unit.engine : Engine(render_scalar);
+  Rendering rendering = engine(scene, unit.config, options);
+  if (unit.number % kUnitsPerFragmentCheck == 0) check_fragments(unit, scene, engine, rule);
   // With taps the functional engine draws by the stages.
   if (rule == FillRule::top_left) expect_same_image(unit, scene, rendering, unit.engine(scene, unit.config, {}));
   log.sort();

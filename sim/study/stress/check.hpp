@@ -15,9 +15,13 @@ struct Point {
   auto operator<=>(const Point&) const = default;
 };
 
+/// The engine of a run that has none of its own: render_functional, or, when fragments are asked for, render_scalar.
+[[nodiscard]] Rendering draw(const Scene& scene, const Config& config, const RenderOptions& options);
+
 /// Draws the scene by the unit's engine and holds it against the exact oracle: every sample of every triangle's box, and
 /// depth and colour of every pixel that shows a triangle, as stored. Measures "coverage" (samples that differ), "depth"
 /// and "color" (LSB from the exact plane). Depth must be of the format `plane`. Bound of a colour: 1 LSB.
+/// In every so manieth unit the fragments are judged as well, before the operations (FragmentJudge), which adds no figure.
 Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule = FillRule::top_left);
 
 /// The largest |stored depth - exact plane| over the pixels that show a triangle, in LSB. Counts nothing.

@@ -121,9 +121,9 @@ void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
         const double away = std::max(std::abs(std::ldexp(p.x, -shift) - c.x), std::abs(std::ldexp(p.y, -shift) - c.y));
         if (away < nearest) {
           nearest = away;
-          code = std::abs(static_cast<double>(p.z) - c.z);
+          code = std::abs(static_cast<double>(p.depth()) - c.z);
         } else if (away == nearest) {
-          code = std::min(code, std::abs(static_cast<double>(p.z) - c.z));
+          code = std::min(code, std::abs(static_cast<double>(p.depth()) - c.z));
         }
       }
       farthest = std::max(farthest, nearest);
@@ -131,7 +131,7 @@ void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
       if (nearest <= 1) {
         for (const ExactCorner& c : corners)
           if (std::max(std::abs(std::ldexp(p.x, -shift) - c.x), std::abs(std::ldexp(p.y, -shift) - c.y)) <= 1)
-            code = std::min(code, std::abs(static_cast<double>(p.z) - c.z));
+            code = std::min(code, std::abs(static_cast<double>(p.depth()) - c.z));
         depth = std::max(depth, code);
       }
     }

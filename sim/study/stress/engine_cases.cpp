@@ -127,7 +127,8 @@ void full_guard_band(Unit& unit) {
         wrong += is_covered != expected ? 1 : 0;
         if (!expected) continue;
         const exact::Rational plane = oracle.depth_at(x, y);
-        const int128 distance = int128{depth_at(setup, widths, x, y).code} * plane.denominator - plane.numerator;
+        const int128 distance =
+            int128{plane_at(setup, kDepthPlane, widths, x, y).code} * plane.denominator - plane.numerator;
         ++fragments;
         worst = std::max(
             worst, static_cast<double>(distance < 0 ? -distance : distance) / static_cast<double>(plane.denominator));

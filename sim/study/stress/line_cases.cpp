@@ -20,8 +20,9 @@ Scene line_scene(const exact::Line& line, const LineSpace& space) {
   Scene scene =
       SceneBuilder(std::min(640, space.config.target_width), std::min(480, space.config.target_height), state).scene;
   for (const SnappedVertex& v : {line.start, line.end}) {
-    Vertex vertex = at(std::ldexp(v.x, -line.grid_bits), std::ldexp(v.y, -line.grid_bits), depth_of(space.config, v.z));
-    for (std::size_t c = 0; c < 4; ++c) vertex.rgba[c] = v.rgba[c];
+    Vertex vertex =
+        at(std::ldexp(v.x, -line.grid_bits), std::ldexp(v.y, -line.grid_bits), depth_of(space.config, v.depth()));
+    vertex.rgba = colors_of(v);
     scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
     scene.vertices.push_back(vertex);
   }
@@ -72,7 +73,7 @@ void check_symmetry(Unit& unit, exact::Line line, const LineSpace& space) {
 SnappedVertex in_octant(std::int32_t u, std::int32_t v, int octant) {
   if ((octant & 2) != 0) u = -u;
   if ((octant & 4) != 0) v = -v;
-  return (octant & 1) != 0 ? vertex(v, u) : vertex(u, v);
+  return (octant & 1) != 0 ? snapped_vertex(v, u) : snapped_vertex(u, v);
 }
 
 }  // namespace
@@ -108,8 +109,8 @@ void lines_octants(Unit& unit) {
       exact::Line line{in_octant(from_u, from_v, octant), in_octant(from_u + du * pixel, from_v + dv * pixel, octant),
                        rule, rule == LineRule::diamond || random.coin(), s};
       if (kind == 4) line.end = line.start;  // no length
-      line.start.z = random_depth(unit);
-      line.end.z = random_depth(unit);
+      line.start.depth() = random_depth(unit);
+      line.end.depth() = random_depth(unit);
       (void)check_line(unit, line, space);
       check_symmetry(unit, line, space);
     }
@@ -135,8 +136,8 @@ void lines_long(Unit& unit) {
   exact::Line line{in_octant((-8192 << s) + half + shift, (-8192 << s) + half, octant),
                    in_octant(((du - 8192) << s) + half + shift, ((dv - 8192) << s) + half, octant), rule,
                    rule == LineRule::diamond || random.coin(), s};
-  line.start.z = random_depth(unit);
-  line.end.z = random_depth(unit);
+  line.start.depth() = random_depth(unit);
+  line.end.depth() = random_depth(unit);
   (void)check_line(unit, line, space);
   check_symmetry(unit, line, space);
 }

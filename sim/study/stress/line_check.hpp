@@ -10,6 +10,7 @@
 
 #include "model/golden/exact_line.hpp"
 #include "model/stages/line_raster.hpp"
+#include "sim/study/vertices.hpp"
 
 namespace halfplane::stress {
 
@@ -25,14 +26,10 @@ struct LineSpace {
   Widths widths;
 };
 
-inline SnappedVertex vertex(int x, int y, std::uint32_t z = 0, std::array<std::uint8_t, 4> rgba = {}) {
-  return {x, y, z, rgba};
-}
-
 /// The vertex at the centre of pixel (x, y).
 inline SnappedVertex centre_of(int x, int y, const LineSpace& space) {
   const int s = space.widths.grid_bits, half = 1 << (s - 1);
-  return vertex((x << s) + half, (y << s) + half);
+  return snapped_vertex((x << s) + half, (y << s) + half);
 }
 
 inline std::vector<LinePixel> pixels_of(const exact::Line& line, const LineSpace& space, const PixelBounds& limit) {
@@ -121,8 +118,9 @@ SnappedVertex random_vertex(Random& random, const LineSpace& space, double reach
   SnappedVertex v;
   v.x = coordinate();
   v.y = coordinate();
-  v.z = static_cast<std::uint32_t>(random.between(0, static_cast<double>(space.widths.depth_code.range.hi) + 1));
-  for (auto& channel : v.rgba) channel = static_cast<std::uint8_t>(random.index(256));
+  v.depth() =
+      static_cast<std::uint32_t>(random.between(0, static_cast<double>(space.widths.depth().code.range.hi) + 1));
+  set_colors(v, space.widths, [&] { return random.index(256); });
   return v;
 }
 
@@ -140,10 +138,10 @@ struct LineErrors {
 inline void add_errors(LineErrors& worst, const exact::Line& line, const std::vector<LinePixel>& pixels,
                        const LineSpace& space) {
   for (const LinePixel& pixel : pixels) {
-    worst.depth = std::max(worst.depth, code_error(pixel.depth, exact::depth_at(line, pixel.x, pixel.y)));
-    for (int c = 0; c < space.widths.color_channels; ++c)
-      worst.color =
-          std::max(worst.color, code_error(pixel.color >> 8 * c & 255, exact::color_at(line, pixel.x, pixel.y, c)));
+    worst.depth = std::max(worst.depth, code_error(pixel.code[kDepthPlane], exact::depth_at(line, pixel.x, pixel.y)));
+    for (int c = 0; c < space.widths.color_planes; ++c)
+      worst.color = std::max(worst.color, code_error(pixel.code[kColorPlane + static_cast<std::size_t>(c)],
+                                                     exact::color_at(line, pixel.x, pixel.y, c)));
   }
 }
 

@@ -104,7 +104,7 @@ void cancellation(Unit& unit) {
     const int shift = unit.widths.grid_bits - unit.config.subpixel_bits;
     v.x = static_cast<std::int32_t>(p.x << shift);
     v.y = static_cast<std::int32_t>(p.y << shift);
-    v.z = z;
+    v.depth() = z;
   }
   if (!is_constant) {
     const std::int64_t slope = 1 + random.index(3), base = random.integer(0, max / 2), reach = (max - base) / slope;
@@ -113,14 +113,15 @@ void cancellation(Unit& unit) {
       along = static_cast<std::int32_t>(along % (reach + 1));
       along -= along % (1 << (unit.widths.grid_bits - unit.config.subpixel_bits));
       along = along < 0 ? -along : along;
-      v.z = static_cast<std::uint32_t>(base + slope * along);
+      v.depth() = static_cast<std::uint32_t>(base + slope * along);
     }
   }
   const TriangleSetup setup = setup_triangle(triangle, unit.config, unit.widths);
   unit.count_triangles(1);
   const bool x_is_zero = is_constant || !along_x, y_is_zero = is_constant || along_x;
-  unit.require((!x_is_zero || setup.depth.step_x == 0) && (!y_is_zero || setup.depth.step_y == 0), "gradient", {},
-               "a gradient that cancels is not 0");
+  unit.require(
+      (!x_is_zero || setup.plane[kDepthPlane].step_x == 0) && (!y_is_zero || setup.plane[kDepthPlane].step_y == 0),
+      "gradient", {}, "a gradient that cancels is not 0");
   if (!is_constant || setup.area == 0) return;
   const exact::TriangleOracle oracle(triangle, unit.widths.grid_bits);
   for (int n = 0; n < 64; ++n) {
@@ -129,9 +130,10 @@ void cancellation(Unit& unit) {
               y = static_cast<int>(random.integer(-band, band - 1));
     if (!oracle.covers(x, y)) continue;
     unit.count_samples(1);
-    unit.measure("depth", "LSB",
-                 std::abs(static_cast<double>(depth_at(setup, unit.widths, x, y).code) - static_cast<double>(z)), 0,
-                 {});
+    unit.measure(
+        "depth", "LSB",
+        std::abs(static_cast<double>(plane_at(setup, kDepthPlane, unit.widths, x, y).code) - static_cast<double>(z)), 0,
+        {});
   }
 }
 
@@ -267,7 +269,7 @@ void polygon_offset(Unit& unit) {
   const Scene sloped = single(width, height, v, state);
   for (const Triangle& t : check_scene(unit, sloped).triangles)
     for (std::size_t i = 0; i < 3; ++i)
-      unit.require(t.v[i].z == sum_depth(unit.config, z[i] + static_cast<std::int64_t>(std::floor(offset + 0.5))),
+      unit.require(t.v[i].depth() == sum_depth(unit.config, z[i] + static_cast<std::int64_t>(std::floor(offset + 0.5))),
                    "slope offset", sloped, "the vertices were not moved by floor(f m + c + 1/2) codes");
 }
 
@@ -308,12 +310,14 @@ void subpixel_sweep(Unit& unit) {
     };
     builder.triangle(vertex(t[0]), vertex(t[1]), vertex(t[2]));
   }
+  CompareOptions options;
+  options.wants_affine_cost = false;
   double first = 0, last = 0;
   for (int bits = 0; bits <= 8; ++bits) {
     config.subpixel_bits = bits;
     unit.count_config(static_cast<std::uint64_t>(bits));
     Unit swept(unit, config);
-    const Comparison c = compare(builder.scene, config);
+    const Comparison c = compare(builder.scene, config, options);
     unit.count_triangles(c.rendering.triangles.size());
     unit.count_samples(c.oracle.samples + c.datapath.count);
     swept.measure("coverage", "samples", static_cast<double>(c.oracle.mismatches), 0, builder.scene);
@@ -337,12 +341,14 @@ void depth_sweep(Unit& unit) {
     const Vertex a = vertex(t[0]), b = vertex(t[1]), c = vertex(t[2]);
     builder.triangle(a, b, c);
   }
+  CompareOptions options;
+  options.wants_affine_cost = false;
   double last = 0;
   for (int bits = 8; bits <= 32; ++bits) {
     config.depth_bits = bits;
     unit.count_config(static_cast<std::uint64_t>(bits));
     Unit swept(unit, config);
-    const Comparison c = compare(builder.scene, config);
+    const Comparison c = compare(builder.scene, config, options);
     unit.count_triangles(c.rendering.triangles.size());
     unit.count_samples(c.oracle.samples + c.datapath.count);
     swept.measure("coverage", "samples", static_cast<double>(c.oracle.mismatches), 0, builder.scene);

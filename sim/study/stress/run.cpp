@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "model/engines/functional.hpp"
+#include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"
 #include "sim/study/stress/independent.hpp"
 
@@ -56,10 +56,6 @@ class Driver {
   }
 
  private:
-  static Rendering draw(const Scene& scene, const Config& config, const RenderOptions& options) {
-    return render_functional(scene, config, options);
-  }
-
   /// 0...1, and 1 when nothing more is to be begun.
   [[nodiscard]] double fraction(std::uint64_t task) const {
     const auto all = static_cast<double>((options_.unit ? 1 : quick_rounds()) * cases_.size());

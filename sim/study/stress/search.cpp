@@ -1,11 +1,12 @@
 #include "sim/study/stress/search.hpp"
+#include "sim/study/vertices.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "model/fragment_ops.hpp"
 #include "model/golden/exact.hpp"
 #include "model/stages/interpolate.hpp"
-#include "model/stages/rop.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/independent.hpp"
 #include "sim/study/stress/shapes.hpp"
@@ -19,7 +20,7 @@ double ratio(int128 numerator, int128 denominator) {
 
 double color_error(const Interpolated& value, const exact::TriangleOracle& oracle, const Config& config, int x, int y) {
   const auto max = golden::channel_max(config.color_format);
-  const std::uint32_t stored = pack_color(config.color_format, value.color_code);
+  const std::uint32_t stored = pack_color(config.color_format, color_channels(value.code));
   double worst = 0;
   for (int c = 0; c < golden::channel_count(config.color_format); ++c) {
     const exact::Rational plane = oracle.color_at(x, y, c);
@@ -44,12 +45,12 @@ bool move(Triangle& t, int coordinate, std::int64_t step, const Unit& unit) {
     if (!within(c, static_cast<std::int64_t>(range.lo), static_cast<std::int64_t>(range.hi))) return false;
     c += static_cast<std::int32_t>(step);
   } else if (kind == 2) {
-    if (!within(v.z, 0, max_depth(unit.config))) return false;
-    v.z = static_cast<std::uint32_t>(v.z + step);
+    if (!within(v.depth(), 0, max_depth(unit.config))) return false;
+    v.depth() = static_cast<std::uint32_t>(v.depth() + step);
   } else {
-    std::uint8_t& c = v.rgba[static_cast<std::size_t>(kind - 3)];
-    if (!within(c, 0, 255)) return false;
-    c = static_cast<std::uint8_t>(c + step);
+    std::uint32_t& c = v.code[kColorPlane + static_cast<std::size_t>(kind - 3)];
+    if (!within(c, 0, static_cast<std::int64_t>(unit.widths.color().code.range.hi))) return false;
+    c = static_cast<std::uint32_t>(c + step);
   }
   return true;
 }
@@ -68,8 +69,8 @@ Triangle random_start(Unit& unit) {
   for (std::size_t i = 0; i < 3; ++i) {
     t.v[i].x = static_cast<std::int32_t>(std::clamp(p[i].x, lowest(unit), highest(unit)) * (1 << shift));
     t.v[i].y = static_cast<std::int32_t>(std::clamp(p[i].y, lowest(unit), highest(unit)) * (1 << shift));
-    t.v[i].z = random_depth(unit);
-    for (std::uint8_t& c : t.v[i].rgba) c = static_cast<std::uint8_t>(random.index(256));
+    t.v[i].depth() = random_depth(unit);
+    set_colors(t.v[i], unit.widths, [&] { return random.index(256); });
   }
   return t;
 }
@@ -79,8 +80,8 @@ Scene scene_of(Unit& unit, const Triangle& t) {
   const int shift = unit.widths.grid_bits - unit.config.subpixel_bits;
   std::array<Vertex, 3> v;
   for (std::size_t i = 0; i < 3; ++i) {
-    v[i] = vertex_at(unit, {t.v[i].x >> shift, t.v[i].y >> shift}, t.v[i].z);
-    for (std::size_t c = 0; c < 4; ++c) v[i].rgba[c] = t.v[i].rgba[c];
+    v[i] = vertex_at(unit, {t.v[i].x >> shift, t.v[i].y >> shift}, t.v[i].depth());
+    v[i].rgba = colors_of(t.v[i]);
   }
   return single(unit.width(kSearchWindow), unit.height(kSearchWindow), v);
 }
@@ -105,7 +106,7 @@ double search_error(const Triangle& triangle, Objective objective, const Config&
         continue;
       }
       const exact::Rational plane = oracle.depth_at(x, y);
-      const InterpolatedDepth depth = depth_at(setup, widths, x, y);
+      const PlaneSample depth = plane_at(setup, kDepthPlane, widths, x, y);
       const double error =
           objective == Objective::depth
               ? ratio(plane.denominator * std::int64_t{depth.code} - plane.numerator, plane.denominator)

@@ -1,7 +1,6 @@
 #include "sim/study/widths/observer.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -42,8 +41,8 @@ Interval value_range(const Width& width, const Widths& widths, const Config& con
     const auto error = static_cast<int128>(std::ceil(std::ldexp(depth_error_bound(config) - 0.5, fraction)));
     return Interval{-error, (((int128{1} << code_bits) - 1) << fraction) + error};
   };
-  if (&width == &widths.depth_plane || &width == &widths.local_depth) return codes(config.depth_bits);
-  if (&width == &widths.color_plane || &width == &widths.local_color) return codes(widths.color_code.bits);
+  for (const AttributeWidths& attribute : widths.attribute)
+    if (&width == &attribute.plane || &width == &attribute.local) return codes(attribute.code.bits);
   return width.range;
 }
 
@@ -54,27 +53,25 @@ WidthObserver::WidthObserver(const Config& config)
       all_(widths_.all()),
       is_observed_(all_.size(), true),
       seen_(all_.size()) {
-  // place_of() searches: the members are declared in the order of all().
-  require(std::is_sorted(all_.begin(), all_.end(), std::less<>()), "the order of Widths::all()");
+  for (std::size_t i = 0; i < all_.size(); ++i) place_.emplace_back(all_[i], i);
+  std::sort(place_.begin(), place_.end());
   for (const auto member : kByConstruction) is_observed_[place_of(widths_.*member)] = false;
 }
 
 std::size_t WidthObserver::place_of(const Width& width) const {
-  return static_cast<std::size_t>(std::lower_bound(all_.begin(), all_.end(), &width, std::less<>()) - all_.begin());
+  return std::lower_bound(place_.begin(), place_.end(), std::pair<const Width*, std::size_t>(&width, 0))->second;
 }
 
 void WidthObserver::see(const Width& width, int128 value) { seen_[place_of(width)].add(value); }
 
 template <class Packet>
 void WidthObserver::see_packet(const Packet& packet) {
-  for_each_field<Packet>(widths_, [&](const auto& field, const Width& width, std::size_t count) {
+  for_each_value(packet, widths_, [&](const auto& value, const Width& width) {
+    if (width.is_modular) return;
     const std::size_t place = place_of(width);
-    if (width.is_modular || !is_observed_[place]) return;
-    const auto& member = packet.*field.member;
-    if constexpr (kArraySize<std::remove_cvref_t<decltype(member)>> != 0)
-      for (std::size_t i = 0; i < count; ++i) seen_[place].add(static_cast<int128>(member[i]));
-    else
-      seen_[place].add(static_cast<int128>(member));
+    if (!is_observed_[place]) return;
+    const std::uint64_t bits = to_bits(value);
+    seen_[place].add(width.is_signed ? int128{static_cast<std::int64_t>(bits)} : static_cast<int128>(bits));
   });
 }
 
@@ -99,8 +96,8 @@ struct WidthObserver::TriangleStages {
 
 void WidthObserver::observe_triangle(const std::array<SnappedVertex, 3>& v) {
   PrimitivePacket primitive;
-  set_vertices(primitive, v, widths_);
-  set_box(primitive, target_);
+  set_vertices(primitive.vertex, v);
+  primitive.box = to_box(target_);
   see_packet(primitive);
   observe_area(v);
   CounterPacket counters;
@@ -117,7 +114,7 @@ void WidthObserver::observe_triangle(const std::array<SnappedVertex, 3>& v) {
   observe_planes(stages);
 
   // The tiles of the corners and vertices, and those in which an edge crosses a border or a middle line of the box.
-  const auto& box = stages.packet;
+  const auto& box = stages.packet.box;
   const int to_pixel = widths_.grid_bits, to_tile = widths_.tile_shift;
   const std::array<int, 3> columns{box.left, (box.left + box.right) / 2, box.right},
       rows{box.top, (box.top + box.bottom) / 2, box.bottom};
@@ -155,13 +152,13 @@ void WidthObserver::observe_area(const std::array<SnappedVertex, 3>& v) {
 
 /// cull: the edge functions at the first pixel of the first tile.
 void WidthObserver::observe_edges(const TrianglePacket& packet) {
-  const auto v = vertices_of(packet);
+  const auto v = to_snapped(packet.vertex);
   const int s = widths_.grid_bits, shift = widths_.tile_shift;
   const auto centre = [&](int pixel) { return (int128{pixel >> shift << shift} << s) + (int128{1} << (s - 1)); };
   for (std::size_t i = 0; i < 3; ++i) {
     const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
     const int128 dx = int128{to.x} - from.x, dy = int128{to.y} - from.y;
-    const int128 px = centre(packet.left) - from.x, py = centre(packet.top) - from.y;
+    const int128 px = centre(packet.box.left) - from.x, py = centre(packet.box.top) - from.y;
     for (const int128 delta : {px, py}) see(widths_.delta, delta);
     for (const int128 product : {dx * py, dy * px}) see(widths_.edge_product, product);
     const int bias = is_top_left(from, to) ? 0 : 1;
@@ -171,31 +168,27 @@ void WidthObserver::observe_edges(const TrianglePacket& packet) {
 
 /// triangle_setup: numerators and their products with the reciprocal.
 void WidthObserver::observe_planes(const TriangleStages& stages) {
-  const auto v = vertices_of(stages.packet);
+  const auto v = to_snapped(stages.packet.vertex);
   const int128 ax = int128{v[1].x} - v[0].x, ay = int128{v[1].y} - v[0].y;
   const int128 bx = int128{v[2].x} - v[0].x, by = int128{v[2].y} - v[0].y;
   const Reciprocal r = reciprocal(stages.setup.area, config_.depth_bits + config_.reciprocal_extra_bits);
   see(widths_.reciprocal, static_cast<int128>(r.value));
   see(widths_.reciprocal_shift, r.shift);
-  const auto plane = [&](std::int64_t c0, std::int64_t c1, std::int64_t c2, const Plane& result, const Width& numerator,
-                         const Width& product, int bits) {
-    const int128 ac = c1 - c0, bc = c2 - c0;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+    const AttributeWidths& widths = widths_.of_plane(p);
+    const Plane& result = stages.setup.plane[p];
+    const int128 ac = int128{v[1].code[p]} - v[0].code[p], bc = int128{v[2].code[p]} - v[0].code[p];
+    for (const int128 delta : {ac, bc}) see(widths.delta, delta);
     const std::array<int128, 2> numerators{ac * by - bc * ay, ax * bc - bx * ac};
     const std::array<std::int64_t, 2> steps{result.step_x, result.step_y};
     for (std::size_t i = 0; i < 2; ++i) {
       const int128 value = numerators[i] * static_cast<int128>(r.value);
-      see(numerator, numerators[i]);
-      see(product, value);
+      see(widths.numerator, numerators[i]);
+      see(widths.product, value);
       const auto step = static_cast<std::int64_t>(round_shift(value, r.shift - widths_.plane_fraction));
-      require(wrap_signed(step, bits) == steps[i], "gradient");
+      require(wrap_signed(step, widths.plane.bits) == steps[i], "gradient");
     }
-  };
-  for (const std::size_t i : {1, 2}) see(widths_.depth_delta, int128{v[i].z} - v[0].z);
-  plane(v[0].z, v[1].z, v[2].z, stages.setup.depth, widths_.depth_numerator, widths_.depth_product,
-        widths_.depth_plane.bits);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c)
-    plane(v[0].rgba[c], v[1].rgba[c], v[2].rgba[c], stages.setup.color[c], widths_.color_numerator,
-          widths_.color_product, widths_.color_plane.bits);
+  }
 }
 
 /// coarse_raster and fine_raster.
@@ -212,12 +205,12 @@ void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int t
         see(widths_.sample_edge,
             int128{tile.edge_value[i]} + int128{x} * stages.edges.step_x[i] + int128{y} * stages.edges.step_y[i]);
   StampPacket first, newest;  // that cover something: among them the extremes of every field
-  fine_raster(tile, stages.edges, config_, widths_, [&](const StampPacket& stamp) {
-    if (stamp.mask == 0) return;
-    if (first.mask == 0) first = stamp;
+  fine_raster(tile, stages.edges, widths_, [&](const StampPacket& stamp) {
+    if (!stamp.mask.any()) return;
+    if (!first.mask.any()) first = stamp;
     newest = stamp;
   });
-  if (first.mask == 0) return;
+  if (!first.mask.any()) return;
   observe_stamp(stages, first);
   if (newest.stamp != first.stamp) observe_stamp(stages, newest);
 }
@@ -225,21 +218,23 @@ void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int t
 /// interpolate.
 void WidthObserver::observe_stamp(const TriangleStages& stages, const StampPacket& stamp) {
   see_packet(stamp);
-  const FragmentPacket fragment = interpolate(stamp, stages.context, config_, widths_);
+  const FragmentPacket fragment = interpolate(stamp, stages.context, widths_);
   see_packet(fragment);
-  const int first = std::countr_zero(stamp.mask), last = 63 - std::countl_zero(stamp.mask);
+  const int first = stamp.mask.first(), last = stamp.mask.last();
   observe_sample(stages, fragment, static_cast<std::size_t>(first));
   if (last != first) observe_sample(stages, fragment, static_cast<std::size_t>(last));
 }
 
 /// The planes at a covered sample, before rounding and clamp.
 void WidthObserver::observe_sample(const TriangleStages& stages, const FragmentPacket& fragment, std::size_t sample) {
-  const int number = static_cast<int>(sample), size = config_.stamp_size, shift = widths_.tile_shift;
-  const int x = (fragment.tile_x << shift) + fragment.stamp % widths_.stamps_per_row * size + number % size;
-  const int y = (fragment.tile_y << shift) + fragment.stamp / widths_.stamps_per_row * size + number / size;
+  const int shift = widths_.tile_shift;
+  const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp),
+                    pixel_offset = widths_.stamps.pixel_of(static_cast<int>(sample));
+  const int x = (fragment.key.tile_x << shift) + origin.x + pixel_offset.x;
+  const int y = (fragment.key.tile_y << shift) + origin.y + pixel_offset.y;
   const TriangleSetup& setup = stages.setup;
   const Interpolated at = interpolate_at(setup, widths_, x, y);
-  require(at.depth_code == fragment.depth[sample], "depth at a sample");
+  require(at.code == fragment.code[sample], "codes at a sample");
   const auto subpixels = [&](int pixel, int box) {  // from the anchor of the first tile
     const int anchor = (box >> shift << shift) + config_.tile_size / 2;
     return static_cast<std::uint64_t>(std::int64_t{pixel - anchor} << widths_.grid_bits);
@@ -250,12 +245,15 @@ void WidthObserver::observe_sample(const TriangleStages& stages, const FragmentP
                        static_cast<std::uint64_t>(plane.step_y) * dy,
                    bits);
   };
-  see(widths_.depth_plane, wide(setup.depth, widths_.depth_plane.bits));
-  see(widths_.local_depth, at.depth);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c) {
-    see(widths_.color_plane, wide(setup.color[c], widths_.color_plane.bits));
-    see(widths_.local_color, at.color[c]);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+    const AttributeWidths& widths = widths_.of_plane(p);
+    see(widths.plane, wide(setup.plane[p], widths.plane.bits));
+    see(widths.local, at.unrounded[p]);
   }
+  int128 color = 0;  // rop's input: the codes side by side
+  for (int c = widths_.color_planes - 1; c >= 0; --c)
+    color = color << widths_.color().code.bits | at.code[kColorPlane + static_cast<std::size_t>(c)];
+  see(widths_.vertex_color, color);
 }
 
 // --------------------------------------------------------------------------------------------------------------- lines
@@ -263,8 +261,8 @@ void WidthObserver::observe_sample(const TriangleStages& stages, const FragmentP
 void WidthObserver::observe_line(const Probe& probe) {
   for (std::size_t i = 0; i < 2; ++i) {
     for (const std::int32_t v : {probe.v[i].x, probe.v[i].y}) see(widths_.coordinate, v);
-    see(widths_.depth_code, probe.v[i].z);
-    for (const std::uint8_t code : probe.v[i].rgba) see(widths_.color_code, code);
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p)
+      see(widths_.of_plane(p).code, probe.v[i].code[p]);
   }
   // Nothing is cut away here: the pixels that a line in the guard band covers lie at most one outside of it.
   const int edge = config_.guard_band + 2;
@@ -301,7 +299,7 @@ Ends ends_of(std::int32_t from, std::int32_t to, bool is_negative, LineRule rule
 /// The position along the minor axis at the first and the last pixel; of a whole line, what it was made from.
 void WidthObserver::observe_positions(const Probe& probe, const LineSetup& line, bool is_whole) {
   const int s = widths_.grid_bits;
-  const bool x_major = line.is_x_major != 0, x_negative = line.is_x_negative != 0, y_negative = line.is_y_negative != 0;
+  const bool x_major = line.is_x_major, x_negative = line.is_x_negative, y_negative = line.is_y_negative;
   const Ends x = ends_of(probe.v[0].x, probe.v[1].x, x_negative, probe.rule, s),
              y = ends_of(probe.v[0].y, probe.v[1].y, y_negative, probe.rule, s);
   const Ends &a = x_major ? x : y, &b = x_major ? y : x;
@@ -322,17 +320,21 @@ void WidthObserver::observe_positions(const Probe& probe, const LineSetup& line,
 }
 
 void WidthObserver::observe_attributes(const Probe& probe, const LineSetup& line) {
-  const bool x_major = line.is_x_major != 0, is_negative = (x_major ? line.is_x_negative : line.is_y_negative) != 0;
+  const bool x_major = line.is_x_major, is_negative = x_major ? line.is_x_negative : line.is_y_negative;
   const auto along = [x_major](const SnappedVertex& v) { return x_major ? v.x : v.y; };
   const Ends a = ends_of(along(probe.v[0]), along(probe.v[1]), is_negative, probe.rule, widths_.grid_bits);
   const Reciprocal r = reciprocal(a.to - a.from, config_.depth_bits + config_.reciprocal_extra_bits);
-  const int128 delta = int128{probe.v[1].z} - probe.v[0].z, product = delta * static_cast<int128>(r.value);
   see(widths_.reciprocal, static_cast<int128>(r.value));
   see(widths_.reciprocal_shift, r.shift);
-  see(widths_.depth_delta, delta);
-  see(widths_.line_product, product);
-  const int128 step = round_shift(product, r.shift - widths_.grid_bits - widths_.line_guard_bits);
-  require(wrap_unsigned(static_cast<std::uint64_t>(step), widths_.line_depth.bits) == line.depth_step, "line step");
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+    const int128 delta = int128{probe.v[1].code[p]} - probe.v[0].code[p],
+                 product = delta * static_cast<int128>(r.value);
+    see(widths_.of_plane(p).delta, delta);
+    see(widths_.line_product, product);
+    const int128 step = round_shift(product, r.shift - widths_.grid_bits - widths_.line_guard_bits);
+    require(wrap_unsigned(static_cast<std::uint64_t>(step), widths_.of_plane(p).line.bits) == line.step[p],
+            "line step");
+  }
 }
 
 void WidthObserver::observe_pixels(const LineSetup& line) {
@@ -340,20 +342,21 @@ void WidthObserver::observe_pixels(const LineSetup& line) {
     see(widths_.line_error, state.error);
     see(widths_.line_count, state.remaining);
     see_packet(pixel_of(state, line, widths_));
-    if (state.is_before_start != 0) return;  // it shows the start's codes
-    see(widths_.line_depth, static_cast<int128>(state.depth));
-    for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c)
-      see(widths_.line_color, static_cast<int128>(state.color[c]));
+    if (state.is_before_start) return;  // it shows the start's codes
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p)
+      see(widths_.of_plane(p).line, static_cast<int128>(state.value[p]));
   };
   LineState state = first_state(line);
   pixel(state);
-  for (int i = 1; i < kWalkedPixels && state.remaining != 0; ++i) pixel(state = next_state(state, line, widths_));
+  for (int i = 1; i < kWalkedPixels && state.remaining != 0; ++i) {
+    advance(state, line, widths_);
+    pixel(state);
+  }
   if (state.remaining == 0) return;
-  see(widths_.line_depth,
-      static_cast<int128>(wrap_unsigned(state.depth + state.remaining * line.depth_step, widths_.line_depth.bits)));
-  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_channels); ++c)
-    see(widths_.line_color, static_cast<int128>(wrap_unsigned(state.color[c] + state.remaining * line.color_step[c],
-                                                              widths_.line_color.bits)));
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+    const Width& width = widths_.of_plane(p).line;
+    see(width, static_cast<int128>(wrap_unsigned(state.value[p] + state.remaining * line.step[p], width.bits)));
+  }
 }
 
 }  // namespace halfplane

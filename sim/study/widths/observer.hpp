@@ -8,9 +8,10 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "model/packets.hpp"
+#include "model/packet_words.hpp"
 #include "model/scene.hpp"
 #include "model/stages/line_setup.hpp"
 #include "model/widths.hpp"
@@ -59,7 +60,8 @@ class WidthObserver {
   [[nodiscard]] const Widths& widths() const { return widths_; }
   /// In the order of Widths::all().
   [[nodiscard]] std::span<const Seen> seen() const { return seen_; }
-  [[nodiscard]] const Seen& seen(Width Widths::*member) const { return seen_[place_of(widths_.*member)]; }
+  /// Of a member of widths().
+  [[nodiscard]] const Seen& seen(const Width& width) const { return seen_[place_of(width)]; }
   /// Whether it looks at that width of all(). It does not where the range counts states, slots or numbers that wrap: such
   /// a width is exact by construction.
   [[nodiscard]] bool is_observed(std::size_t place) const { return is_observed_[place]; }
@@ -87,6 +89,7 @@ class WidthObserver {
   Widths widths_;
   PixelBounds target_;
   std::vector<const Width*> all_;
+  std::vector<std::pair<const Width*, std::size_t>> place_;  ///< in all_, by address
   std::vector<bool> is_observed_;
   std::vector<Seen> seen_;
 };

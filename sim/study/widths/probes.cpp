@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/study/vertices.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -18,7 +20,8 @@ ProbeMaker::ProbeMaker(const Config& config, std::uint64_t seed)
       low_(-(config.guard_band << grid_bits_)),
       high_((config.guard_band << grid_bits_) - 1),
       odd_mask_(config.subpixel_bits == 0 ? ~1 : ~0),
-      depth_max_(depth_max_of(config)) {}
+      depth_max_(depth_max_of(config)),
+      widths_(derive_widths(config)) {}
 
 std::int32_t ProbeMaker::legal(std::int64_t subpixels) const {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(subpixels, low_, high_)) & odd_mask_;
@@ -51,8 +54,8 @@ Probe ProbeMaker::random() {
   for (SnappedVertex& v : probe.v) {
     v.x = coordinate();
     v.y = coordinate();
-    v.z = depth();
-    for (std::uint8_t& code : v.rgba) code = static_cast<std::uint8_t>(below(3) == 0 ? 255 * below(2) : below(256));
+    v.depth() = depth();
+    set_colors(v, widths_, [this] { return below(3) == 0 ? 255 * below(2) : below(256); });
   }
   if (below(3) != 0) return probe;
   // A sliver, or a small one: the third vertex close to the first, or to the line through the others.
@@ -79,10 +82,11 @@ Probe ProbeMaker::changed(Probe probe) {
         default: c = legal(c + (below(2) == 0 ? 1 : -1) * (std::int64_t{1} << below(grid_bits_ + 12))); break;
       }
     } else if (what == 4) {
-      v.z = depth();
+      v.depth() = depth();
     } else {
-      v.rgba[static_cast<std::size_t>(below(4))] =
-          static_cast<std::uint8_t>(below(2) == 0 ? 255 * below(2) : below(256));
+      const int channel = below(4);
+      const auto code = static_cast<std::uint32_t>(below(2) == 0 ? 255 * below(2) : below(256));
+      if (channel < widths_.color_planes) v.code[kColorPlane + static_cast<std::size_t>(channel)] = code;
     }
   }
   return probe;
@@ -92,9 +96,12 @@ std::vector<Probe> extreme_probes(const Config& config) {
   const int s = std::max(config.subpixel_bits, 1), step = config.subpixel_bits == 0 ? 2 : 1;
   const std::int32_t low = -(config.guard_band << s), high = (config.guard_band << s) - step, middle = 1 << (s - 1);
   const std::uint32_t top = depth_max_of(config);
-  const auto vertex = [](std::int32_t x, std::int32_t y, std::uint32_t z) {
-    const auto code = static_cast<std::uint8_t>(z == 0 ? 0 : 255);
-    return SnappedVertex{x, y, z, {code, code, code, code}};
+  const Widths widths = derive_widths(config);
+  const auto vertex = [&widths](std::int32_t x, std::int32_t y, std::uint32_t z) {
+    SnappedVertex v{x, y, {z}};
+    for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.planes); ++p)
+      v.code[p] = z == 0 ? 0 : static_cast<std::uint32_t>(widths.of_plane(p).code.range.hi);
+    return v;
   };
   std::vector<Probe> probes;
   const std::array<std::int32_t, 3> places{low, middle, high};
@@ -105,7 +112,7 @@ std::vector<Probe> extreme_probes(const Config& config) {
     for (int b = 0; b < 9; ++b) {
       for (const std::uint32_t z : {0U, top})
         for (const LineRule rule : {LineRule::diamond, LineRule::midpoint})
-          probes.push_back({true, rule, {place(a, z), place(b, top - z), {}}});
+          probes.push_back({true, rule, {place(a, z), place(b, top - z), SnappedVertex{}}});
       for (int c = a + 1; c < 9 && b != a; ++c)
         if (c != b)
           for (const unsigned depths : {1U, 3U})
@@ -143,8 +150,8 @@ Scene probe_scene(const Probe& probe, const Config& config) {
     Vertex v;
     v.x = std::ldexp(snapped.x, -std::max(config.subpixel_bits, 1));
     v.y = std::ldexp(snapped.y, -std::max(config.subpixel_bits, 1));
-    v.z = snapped.z / static_cast<double>(depth_max_of(config));
-    for (std::size_t c = 0; c < 4; ++c) v.rgba[c] = snapped.rgba[c];
+    v.z = snapped.depth() / static_cast<double>(depth_max_of(config));
+    v.rgba = colors_of(snapped);
     scene.indices.push_back(static_cast<std::uint32_t>(i));
     scene.vertices.push_back(v);
   }

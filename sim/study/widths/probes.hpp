@@ -30,6 +30,7 @@ class ProbeMaker {
   std::int32_t low_, high_;  // of a coordinate, subpixels
   std::int32_t odd_mask_;    // clears what a coordinate cannot have: at S = 0 all are even
   std::uint32_t depth_max_;
+  Widths widths_;
 };
 
 /// The corners of the guard band in every combination, full depth across them, area 1 across the whole band, lines from

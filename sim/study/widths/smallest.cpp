@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "model/packets.hpp"
-#include "model/stages/line_raster.hpp"
+#include "model/packet_words.hpp"
 #include "model/widths.hpp"
 #include "sim/study/compare/compare.hpp"
 
@@ -206,9 +205,10 @@ HardwareBits hardware_bits(const Config& config) {
                  packet_bits<WritePacket>(w);
   if (config.line_units != 0) bits.packets += packet_bits<LineSetup>(w) + packet_bits<LinePixel>(w);
   bits.context = config.context_slots * (packet_bits<ContextPacket>(w) + packet_bits<EdgeContext>(w));
-  bits.products = 2 * (w.edge_product.bits + w.depth_numerator.bits + w.depth_product.bits);
+  bits.products = 2 * (w.edge_product.bits + widest(w, &AttributeWidths::numerator).bits +
+                       widest(w, &AttributeWidths::product).bits);
   bits.tiles =
-      long{config.cache_lines} * config.tile_size * config.tile_size * (w.depth_code.bits + w.stored_color.bits);
+      long{config.cache_lines} * config.tile_size * config.tile_size * (w.depth().code.bits + w.stored_color.bits);
   return bits;
 }
 

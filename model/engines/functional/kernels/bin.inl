@@ -42,14 +42,14 @@ struct ColorSteps {
 };
 
 /// Inclusive.
-struct Box {
+struct BinBounds {
   std::int32_t left, top, right, bottom;
 };
 
 /// One triangle, as one bin sees it. Positions are pixels of the bin, tiles those of the bin.
 struct BinTriangle {
   std::array<std::int32_t, 3> edge, dx, dy;  ///< at the bin's first pixel, held within +-2^30; steps as in Edge
-  Box box;
+  BinBounds box;
   std::int32_t z_low, z_high;                 ///< codes of the vertices
   std::int64_t z_anchor, z_tile_x, z_tile_y;  ///< plane at the first tile's anchor; steps from tile to tile
   std::int32_t z_step_x, z_step_y;            ///< of a pixel, in a lane
@@ -89,8 +89,8 @@ struct Bin {
         config(job.frame.config),
         widths(job.frame.widths),
         skip(job.frame.skip),
-        depth_format(config.depth_bits, widths.local_depth, 32, widths),
-        color_format(8, widths.local_color, 16, widths),
+        depth_format(widths.depth(), 32, widths),
+        color_format(widths.color(), 16, widths),
         first_x(job.bin % job.frame.bins_x * kBinSize),
         first_y(job.bin / job.frame.bins_x * kBinSize),
         are_lines(job.target.has_whole_lines()),
@@ -113,7 +113,7 @@ struct Bin {
   bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
   std::int32_t *tile_low, *tile_high;
   BinMemory& memory;
-  FragmentState state;
+  DrawState state;
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
   const LanePositions& position = lane_positions();
@@ -129,3 +129,9 @@ struct Bin {
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int32_t, kTiles> depth_owner, color_owner;
 };
+
+/// The part of a record's box that lies in the bin.
+HALFPLANE_INLINE BinBounds box_of(const Bin& bin, const Record& record) {
+  return {std::max(record.left() - bin.first_x, 0), std::max(record.top() - bin.first_y, 0),
+          std::min(record.right() - bin.first_x, kBinSize - 1), std::min(record.bottom() - bin.first_y, kBinSize - 1)};
+}

@@ -4,14 +4,13 @@ struct SnappedLanes {
 };
 
 /// Those that `index` names.
-HALFPLANE_INLINE SnappedLanes load_vertices(const SnappedVertex* vertices, const std::int32_t* index) {
-  static_assert(sizeof(SnappedVertex) == 16);
+HALFPLANE_INLINE SnappedLanes load_vertices(const VertexRow* vertices, const std::int32_t* index) {
   const auto [x, y, z, rgba] = turned_rows([&](int i) HALFPLANE_LAMBDA { return vertices + index[i]; });
   return {x, y, z, rgba};
 }
 
 /// Sixteen triangles while they are culled.
-struct TriangleLanes {
+struct CullTriangles {
   std::array<I16, 3> v, x, y, z;
   I16 left, top, right, bottom;
 };
@@ -27,7 +26,7 @@ struct SampleLanes {
   I16 samples;   ///< bits: upper left, upper right, lower left, lower right
 };
 
-HALFPLANE_INLINE SampleLanes covered_samples(const TriangleLanes& t, const I16& is_turned, int grid_bits) {
+HALFPLANE_INLINE SampleLanes covered_samples(const CullTriangles& t, const I16& is_turned, int grid_bits) {
   const I16 is_wide = t.right > t.left, is_high = t.bottom > t.top;
   // By its own extent, not by what the scissor leaves of it: the products below must fit.
   const I16 is_small = (t.right - t.left <= 1) & (t.bottom - t.top <= 1) & (extent(t.x) < 4 << grid_bits) &
@@ -39,11 +38,11 @@ HALFPLANE_INLINE SampleLanes covered_samples(const TriangleLanes& t, const I16& 
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
     I16 dx = t.x[j] - t.x[i], dy = t.y[j] - t.y[i];
-    I16 e = dx * (py - t.y[i]) - dy * (px - t.x[i]);
-    dx = (dx ^ is_turned) - is_turned;
-    dy = (dy ^ is_turned) - is_turned;
-    e = (e ^ is_turned) - is_turned;
-    e += ~((dy < 0) | ((dy == 0) & (dx > 0)));  // -1 unless it is a top or left edge
+    I16 e = cross(dx, dy, px - t.x[i], py - t.y[i]);
+    dx = turned(dx, is_turned);
+    dy = turned(dy, is_turned);
+    e = turned(e, is_turned);
+    e += ~is_top_left(dx, dy);  // -1 unless it is a top or left edge
     const I16 right = e - (dy << grid_bits), down = dx << grid_bits;
     outside[0] |= e;
     outside[1] |= right;
@@ -93,22 +92,17 @@ struct CullLanes {
   bool is_front_cw;
   LaneLimits small, medium;
 
-  /// The triangles of `part` from `first` on, `count` or sixteen of them. `number`: of the first, in the slice.
-  HALFPLANE_INLINE void operator()(const Slice::Part& part, std::size_t first, std::size_t count, std::size_t number) {
+  /// Sets of triangles, a bit each.
+  struct Sets {
+    std::uint32_t lanes, slow = 0,
+                         frustum = 0;   ///< those there; those the slow way; outside a plane of the view volume
+    std::uint32_t zero, culled, empty;  ///< of the others, each the first reason that holds
+    std::uint32_t drawn, sampleless;    ///< of those left, without a sample all the same
+  };
+
+  /// The corners and boxes of triangles whose t.v is known.
+  HALFPLANE_INLINE void load_corners(CullTriangles& t) const {
     const int grid_bits = frame.widths.grid_bits, half = 1 << (grid_bits - 1);
-    const Skip& skip = frame.skip;
-    Counters& counters = slice.counters;
-    TriangleLanes t;
-    t.v = corner_lanes(frame, slice, part.first + first, count, number);
-    const std::uint32_t lanes = (1U << count) - 1;
-    std::uint32_t slow_bits = 0, frustum_bits = 0;
-    if (slice.any_code != 0) {
-      const I16 a = gather(slice.codes.data(), t.v[0]), b = gather(slice.codes.data(), t.v[1]),
-                c = gather(slice.codes.data(), t.v[2]);
-      slow_bits = bits_of(((a | b | c) & static_cast<int>(Slice::kSlow)) != 0) & lanes;
-      if (skip.frustum)
-        frustum_bits = bits_of((a & b & c & static_cast<int>(Slice::kVolume)) != 0) & lanes & ~slow_bits;
-    }
     for (std::size_t k = 0; k < 3; ++k) {
       std::array<std::int32_t, 16> at;
       t.v[k].store(at.data());
@@ -121,38 +115,58 @@ struct CullLanes {
     t.top = max(I16(limit.top), (min(min(t.y[0], t.y[1]), t.y[2]) + (half - 1)) >> grid_bits);
     t.right = min(I16(limit.right), (max(max(t.x[0], t.x[1]), t.x[2]) - half) >> grid_bits);
     t.bottom = min(I16(limit.bottom), (max(max(t.y[0], t.y[1]), t.y[2]) - half) >> grid_bits);
+  }
+
+  /// By the codes of their vertices.
+  HALFPLANE_INLINE void find_clipped(const CullTriangles& t, Sets& sets) const {
+    if (slice.any_code == 0) return;
+    const I16 a = gather(slice.codes.data(), t.v[0]), b = gather(slice.codes.data(), t.v[1]),
+              c = gather(slice.codes.data(), t.v[2]);
+    sets.slow = bits_of(((a | b | c) & static_cast<int>(Slice::kSlow)) != 0) & sets.lanes;
+    if (frame.skip.frustum)
+      sets.frustum = bits_of((a & b & c & static_cast<int>(Slice::kVolume)) != 0) & sets.lanes & ~sets.slow;
+  }
+
+  /// By area, side and box. Returns what the small ones cover.
+  HALFPLANE_INLINE SampleLanes find_drawn(const CullTriangles& t, Sets& sets) const {
     // Twice the area: products of differences of 23 bits, exact in binary64.
     const I16 ax = t.x[1] - t.x[0], ay = t.y[1] - t.y[0], bx = t.x[2] - t.x[0], by = t.y[2] - t.y[0];
-    const D16 area = convert<double>(ax) * convert<double>(by) - convert<double>(ay) * convert<double>(bx);
+    const D16 area = cross(convert<double>(ax), convert<double>(ay), convert<double>(bx), convert<double>(by));
     const I16 is_turned = convert<std::int32_t>(area < 0.0);
-    const std::uint32_t zero_bits = bits_of(convert<std::int32_t>(area == 0.0)) & lanes;
-    const std::uint32_t turned_bits = bits_of(is_turned);
-    const std::uint32_t front_bits = is_front_cw ? ~turned_bits : turned_bits;
-    const std::uint32_t live = lanes & ~slow_bits & ~frustum_bits & ~zero_bits;
-    const std::uint32_t culled_bits = mode == Cull::none    ? 0
-                                      : mode == Cull::both  ? live
-                                      : mode == Cull::front ? live & front_bits
-                                                            : live & ~front_bits;
-    const std::uint32_t empty_bits = bits_of((t.left > t.right) | (t.top > t.bottom)) & live & ~culled_bits;
-    const std::uint32_t drawn = live & ~culled_bits & ~empty_bits;
+    const std::uint32_t turned_bits = bits_of(is_turned), front = is_front_cw ? ~turned_bits : turned_bits;
+    const std::uint32_t fast = sets.lanes & ~sets.slow & ~sets.frustum;
+    sets.zero = bits_of(convert<std::int32_t>(area == 0.0)) & fast;
+    const std::uint32_t live = fast & ~sets.zero;
+    sets.culled = mode == Cull::none    ? 0
+                  : mode == Cull::both  ? live
+                  : mode == Cull::front ? live & front
+                                        : live & ~front;
+    sets.empty = bits_of((t.left > t.right) | (t.top > t.bottom)) & live & ~sets.culled;
+    sets.drawn = live & ~sets.culled & ~sets.empty;
     SampleLanes few{I16(0), I16(0)};
-    if (skip.no_sample && drawn != 0) few = covered_samples(t, is_turned, grid_bits);
-    const std::uint32_t sampleless = bits_of(few.is_known & (few.samples == 0)) & drawn;
+    if (frame.skip.no_sample && sets.drawn != 0) few = covered_samples(t, is_turned, frame.widths.grid_bits);
+    sets.sampleless = bits_of(few.is_known & (few.samples == 0)) & sets.drawn;
+    return few;
+  }
+
+  HALFPLANE_INLINE void count(const Sets& sets) const {
     const auto count_of = [](std::uint32_t bits)
                               HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(bits)); };
-    const std::uint32_t zero = zero_bits & ~slow_bits & ~frustum_bits;
-    counters.primitives_in += count_of(lanes & ~slow_bits);
-    counters.culled += count_of(frustum_bits | zero | culled_bits | empty_bits);
-    counters.drawn += count_of(drawn);
-    counters.skipped.frustum += count_of(frustum_bits);
-    counters.skipped.zero_area += count_of(zero);
-    counters.skipped.backface += count_of(culled_bits);
-    counters.skipped.empty += skip.empty ? count_of(empty_bits) : 0;
-    counters.skipped.no_sample += count_of(sampleless);
-    // Culled, but nobody may leave it out: it is taken along as far as there is a pixel to look at.
-    const std::uint32_t dropped = ((skip.zero_area ? 0 : zero) | (skip.backface ? 0 : culled_bits)) &
-                                  ~bits_of((t.left > t.right) | (t.top > t.bottom));
-    const std::uint32_t kept = (drawn & ~sampleless) | dropped;
+    Counters& counters = slice.counters;
+    counters.primitives_in += count_of(sets.lanes & ~sets.slow);
+    counters.culled += count_of(sets.frustum | sets.zero | sets.culled | sets.empty);
+    counters.drawn += count_of(sets.drawn);
+    counters.skipped.frustum += count_of(sets.frustum);
+    counters.skipped.zero_area += count_of(sets.zero);
+    counters.skipped.backface += count_of(sets.culled);
+    counters.skipped.empty += frame.skip.empty ? count_of(sets.empty) : 0;
+    counters.skipped.no_sample += count_of(sets.sampleless);
+  }
+
+  using Records = std::array<Record, 16>;
+  /// `dropped`: a bit for each that draws nothing.
+  HALFPLANE_INLINE void make_records(const CullTriangles& t, const SampleLanes& few, std::uint32_t dropped,
+                                     Records& records) const {
     const I16 z_low = min(min(t.z[0], t.z[1]), t.z[2]), z_high = max(max(t.z[0], t.z[1]), t.z[2]);
     const std::uint32_t whole =
         bits_of((t.left > limit.left) & (t.top > limit.top) & (t.right < limit.right) & (t.bottom < limit.bottom));
@@ -167,24 +181,40 @@ struct CullLanes {
     };
     const I16 is_whole = bits_to_lanes(whole), is_dropped = bits_to_lanes(dropped);
     const I16 is_small = is_whole & fits(small), is_medium = is_small | (is_whole & fits(medium));
-    alignas(64) std::array<Record, 16> lane;
-    std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
+    std::int32_t* const words = reinterpret_cast<std::int32_t*>(records.data());
     static_assert(static_cast<int>(RecordKind::triangle) == 0);
     store_rows({t.v[0], t.v[1], t.v[2], z_low}, words, sizeof(Record));
     store_rows({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
                 ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) | (is_whole & Record::kWhole) |
                     (is_small & Record::kSmall) | (is_medium & Record::kMedium) | (is_dropped & Record::kDrawsNothing)},
                words + 4, sizeof(Record));
+  }
+
+  /// The triangles of `part` from `first` on, `many` or sixteen of them. `number`: of the first, in the slice.
+  HALFPLANE_INLINE void operator()(const Slice::Part& part, std::size_t first, std::size_t many, std::size_t number) {
+    CullTriangles t;
+    t.v = corner_lanes(frame, slice, part.first + first, many, number);
+    Sets sets;
+    sets.lanes = (1U << many) - 1;
+    find_clipped(t, sets);
+    load_corners(t);
+    const SampleLanes few = find_drawn(t, sets);
+    count(sets);
+    // Culled, but nobody may leave it out: it is taken along as far as there is a pixel to look at.
+    const std::uint32_t dropped = ((frame.skip.zero_area ? 0 : sets.zero) | (frame.skip.backface ? 0 : sets.culled)) &
+                                  ~bits_of((t.left > t.right) | (t.top > t.bottom));
+    alignas(64) Records records;
+    make_records(t, few, dropped, records);
     Record* out = slice.records.data() + slice.record_count;
-    for (std::uint32_t rest = kept | slow_bits; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = (sets.drawn & ~sets.sampleless) | dropped | sets.slow; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      if ((slow_bits >> i & 1) != 0) {
+      if ((sets.slow >> i & 1) != 0) {
         slice.record_count = static_cast<std::size_t>(out - slice.records.data());
         slow(frame, slice, part, first + static_cast<std::size_t>(i));
         out = slice.records.data() + slice.record_count;
         continue;
       }
-      *out++ = lane[static_cast<std::size_t>(i)];
+      *out++ = records[static_cast<std::size_t>(i)];
     }
     slice.record_count = static_cast<std::size_t>(out - slice.records.data());
   }

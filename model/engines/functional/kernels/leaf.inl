@@ -32,14 +32,14 @@ struct LaneFormat {
   std::uint64_t anchor_bias;
 
   /// `lane_bits`: of the lane.
-  LaneFormat(int bits, const Width& local, int lane_bits, const Widths& widths) {
-    const int guard_bits = local.bits - bits - 1;
+  LaneFormat(const AttributeWidths& attribute, int lane_bits, const Widths& widths) {
+    const int guard_bits = attribute.guard_bits();
     drop = widths.plane_fraction - guard_bits;
-    up = lane_bits - local.bits;
+    up = lane_bits - attribute.local.bits;
     down = up + guard_bits;
     step_drop = drop - widths.grid_bits;
-    bias = std::int32_t{1} << (bits - 1);
-    anchor_bias = plane_bias(bits, widths);
+    bias = std::int32_t{1} << (attribute.code.bits - 1);
+    anchor_bias = plane_bias(attribute, widths);
   }
 };
 
@@ -138,6 +138,11 @@ HALFPLANE_INLINE Channels load(const std::array<std::int64_t, 4>& from) {
 HALFPLANE_INLINE void store(std::array<std::int64_t, 4>& to, const Channels& value) {
   typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
   *reinterpret_cast<InMemory*>(to.data()) = value;
+}
+/// Those of a colour, R lowest.
+HALFPLANE_INLINE Channels channels_of(std::uint32_t rgba) {
+  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+  return (Channels)((Unsigned{} + rgba) >> Unsigned{0, 8, 16, 24}) & 255;
 }
 /// Of the lower halves: red with blue, green with alpha.
 HALFPLANE_INLINE ChannelPairs channel_pairs(const Channels& value) {

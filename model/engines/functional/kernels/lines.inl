@@ -15,20 +15,31 @@ HALFPLANE_NOINLINE void touch_line_tiles(Bin& bin, std::uint64_t tiles) {
   if (!Fragments::kIsLess) find_bin_range(bin);
 }
 
+/// Colours of the pixels `n` of a line.
+HALFPLANE_INLINE I16 line_colors(const LineBatch& line, std::size_t i, const I16& n, ColorFormat format) {
+  const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA { return n * line.color_step[c][i] + line.color[c][i]; };
+  const auto byte = [](const I16& value, int down) HALFPLANE_LAMBDA {
+    return shift_right_logical(value, down) & static_cast<std::int32_t>(0xff000000U >> down);
+  };
+  const I16 rgba =
+      shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0);
+  return packed(rgba, format);
+}
+
 /// `Depth`: an integer as wide as the depth register, or wider.
 template <class Fragments, class Depth>
 HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t i) {
   constexpr int kDepthBits = 8 * static_cast<int>(sizeof(Depth)), kGroup = 16;
-  std::int32_t* const depths = bin.memory.depth.data();
-  std::uint32_t* const pixels = bin.memory.color.data();
   const int depth_down = kDepthBits - bin.config.depth_bits;
-  const bool has_depth = bin.state.depth_write, has_color = bin.state.color_write;
+  const bool has_color = bin.state.color_write;
   const auto depth_of = [](std::int64_t value)
                             HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
   const Depth first_depth = depth_of(line.depth[i]), depth_step = depth_of(line.depth_step[i]);
   const I16 is_x_major(line.is_x_major[i]), x_sign(line.x_sign[i]), y_sign(line.y_sign[i]);
   const I16 first_x(line.x[i] - line.x_sign[i]), first_y(line.y[i] - line.y_sign[i]);
-  alignas(64) std::array<std::int32_t, kGroup> place, code, color;
+  const ColorFormat format = Fragments::format(bin.config);
+  const typename Fragments::Writer write(bin);
+  FragmentLanes group;
   std::uint64_t tiles = 0, passed_pixels = 0;
   const int pixels_left = line.pixels[i];
   for (int first = 0; first < pixels_left; first += kGroup) {
@@ -38,35 +49,18 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t
     const I16 x = (select(is_x_major, n, moved) ^ x_sign) + first_x,
               y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
     const I16 at = place_of(x, y);  // of lanes behind the last pixel: somewhere in the bin
-    at.store(place.data());
+    at.store(group.place.data());
     const std::uint64_t touched = or_of_bits(at >> 6, (1U << count) - 1);
     tiles |= touched;
     if ((touched & ~bin.line_tiles) != 0) touch_line_tiles<Fragments>(bin, touched & ~bin.line_tiles);
     const Pack<Depth, 16> depth = convert<Depth>(n) * depth_step + first_depth;
-    convert<std::int32_t>(shift_right_logical(depth, depth_down)).store(code.data());
-    if (has_color) {
-      const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA { return n * line.color_step[c][i] + line.color[c][i]; };
-      const auto byte = [](const I16& value, int down) HALFPLANE_LAMBDA {
-        return shift_right_logical(value, down) & static_cast<std::int32_t>(0xff000000U >> down);
-      };
-      const I16 rgba =
-          shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0);
-      packed(rgba, bin.config.color_format).store(color.data());
-    }
+    convert<std::int32_t>(shift_right_logical(depth, depth_down)).store(group.depth.data());
+    if (has_color) line_colors(line, i, n, format).store(group.color.data());
     if (first == 0 && line.shows_start[i] != 0) {
-      code[0] = line.depth_start[i];
-      if (has_color) color[0] = packed(I16(line.color_start[i]), bin.config.color_format).part[0][0];
+      group.depth[0] = line.depth_start[i];
+      if (has_color) group.color[0] = packed(I16(line.color_start[i]), format).part[0][0];
     }
-    // What fails is stored as it was: which pixels those are, nobody can foresee.
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      const auto to = static_cast<std::size_t>(place[k]);
-      const std::int32_t stored = depths[to];
-      const std::uint32_t has_passed = Fragments::passes_one(bin.state, code[k], stored) ? 1U : 0U,
-                          mask = 0U - has_passed;
-      passed_pixels += has_passed;
-      if (has_depth) depths[to] = stored ^ ((stored ^ code[k]) & static_cast<std::int32_t>(mask));
-      if (has_color) pixels[to] ^= (pixels[to] ^ static_cast<std::uint32_t>(color[k])) & mask;
-    }
+    passed_pixels += write(group, count);
   }
   bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
   count_fragments(bin, static_cast<std::uint64_t>(line.pixels[i]), passed_pixels);
@@ -75,8 +69,11 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t
 /// Line `i` of a batch.
 template <class Fragments>
 HALFPLANE_INLINE void draw_line(Bin& bin, const LineBatch& lines, std::size_t i) {
-  bin.widths.line_depth.bits <= 32 ? draw_pixels<Fragments, std::int32_t>(bin, lines, i)
-                                   : draw_pixels<Fragments, std::int64_t>(bin, lines, i);
+  using Narrow = std::conditional_t<Fragments::kIsOpaque, std::int32_t, std::int64_t>;  // one is enough out of line
+  if (bin.widths.depth().line.bits <= 32)
+    draw_pixels<Fragments, Narrow>(bin, lines, i);
+  else
+    draw_pixels<Fragments, std::int64_t>(bin, lines, i);
 }
 
 /// Steps [first, last] of a line, counted from its first pixel, in which one coordinate is inside the bin.
@@ -102,15 +99,15 @@ HALFPLANE_INLINE void clip_steps(Steps& steps, std::int32_t start, bool is_negat
 }
 
 /// A line that was set up alone: one that the scissor or the clipper has cut.
-template <class Fragments>
-HALFPLANE_NOINLINE void draw_cut_line(Bin& bin, const LineSetup& line) {
+/// Its part in the bin becomes bin.cut_line; false where there is none.
+HALFPLANE_NOINLINE bool set_up_cut_line(Bin& bin, const LineSetup& line) {
   const std::int64_t d = line.step_stay, D = line.step_stay - line.step_move;
   const bool is_x_major = line.is_x_major != 0;
   Steps steps{0, line.remaining};
   const int x = line.x - bin.first_x, y = line.y - bin.first_y;
   clip_steps(steps, x, line.is_x_negative != 0, line.error, d, is_x_major ? 0 : D);
   clip_steps(steps, y, line.is_y_negative != 0, line.error, d, is_x_major ? D : 0);
-  if (steps.first > steps.last) return;
+  if (steps.first > steps.last) return false;
   const std::int64_t n = steps.first, remainder = line.error + (n - 1) * d + D;
   const auto major = static_cast<int>(n), minor = static_cast<int>(remainder / D);
   const int right = is_x_major ? major : minor, down = is_x_major ? minor : major;
@@ -124,18 +121,24 @@ HALFPLANE_NOINLINE void draw_cut_line(Bin& bin, const LineSetup& line) {
   part.shows_start[0] = n == 0 ? -line.is_before_start : 0;
   part.row[0] = (static_cast<double>(remainder - minor * D) + 0.5) / static_cast<double>(D);
   part.slope[0] = static_cast<double>(d) / static_cast<double>(D);
-  const int depth_up = 64 - bin.widths.line_depth.bits, color_up = 32 - bin.widths.line_color.bits;
+  const int depth_up = 64 - bin.widths.depth().line.bits, color_up = 32 - bin.widths.color().line.bits;
   const auto steps_on = static_cast<std::uint64_t>(n);
-  part.depth[0] = static_cast<std::int64_t>((line.depth + steps_on * line.depth_step) << depth_up);
-  part.depth_step[0] = static_cast<std::int64_t>(line.depth_step << depth_up);
+  part.depth[0] = static_cast<std::int64_t>((line.value[kDepthPlane] + steps_on * line.step[kDepthPlane]) << depth_up);
+  part.depth_step[0] = static_cast<std::int64_t>(line.step[kDepthPlane] << depth_up);
   for (std::size_t c = 0; c < 4; ++c) {
     part.color[c][0] = static_cast<std::int32_t>(
-        static_cast<std::uint32_t>(line.color[c] + steps_on * line.color_step[c]) << color_up);
-    part.color_step[c][0] = static_cast<std::int32_t>(static_cast<std::uint32_t>(line.color_step[c]) << color_up);
+        static_cast<std::uint32_t>(line.value[kColorPlane + c] + steps_on * line.step[kColorPlane + c]) << color_up);
+    part.color_step[c][0] =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(line.step[kColorPlane + c]) << color_up);
   }
-  part.depth_start[0] = static_cast<std::int32_t>(line.depth_start);
-  part.color_start[0] = static_cast<std::int32_t>(line.color_start);
-  draw_line<Fragments>(bin, part, 0);
+  part.depth_start[0] = static_cast<std::int32_t>(line.start[kDepthPlane]);
+  part.color_start[0] = static_cast<std::int32_t>(packed_channels(line.start));
+  return true;
+}
+
+template <class Fragments>
+HALFPLANE_INLINE void draw_cut_line(Bin& bin, const LineSetup& line) {
+  if (set_up_cut_line(bin, line)) draw_line<Fragments>(bin, bin.cut_line, 0);
 }
 
 /// Draws the lines that wait.

@@ -74,7 +74,7 @@ HALFPLANE_INLINE I16 clip_codes(const VertexLanes& v, const Projection& p) {
 }
 
 /// Projects and snaps sixteen vertices; returns their codes.
-HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, int target_height, SnappedVertex* out) {
+HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, int target_height, VertexRow* out) {
   D16 x, y, z;
   I16 codes(0);
   if (p.is_clip_space) {
@@ -101,13 +101,12 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
   const I16 sz = snap_lanes(z, p.codes);
   const I16 is_legal = (sx >= -p.limit) & (sx < p.limit) & (sy >= -p.limit) & (sy < p.limit) & (sz >= 0) &
                        (sz <= static_cast<std::int32_t>(p.codes)) & convert<std::int32_t>(fits);
-  store_rows({sx, sy, sz, v.rgba}, out, sizeof *out);
+  store_rows({sx, sy, sz, v.rgba}, out, sizeof(VertexRow));
   return codes | (~is_legal & static_cast<int>(Slice::kSlow));
 }
 
 /// Slice::vertices, codes and any_code; both vectors are large enough for sixteen more than there are vertices.
 static void project(const FrameContext& frame, Slice& slice) {
-  static_assert(sizeof(SnappedVertex) == 16);
   const DrawContext& context = *slice.context;
   const PreparedScene& from = frame.prepared;
   const Projection projection(context, frame.widths);

@@ -12,14 +12,8 @@
 // the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// The part of a record's box that lies in the bin.
-HALFPLANE_INLINE Box box_of(const Bin& bin, const Record& record) {
-  return {std::max(record.left() - bin.first_x, 0), std::max(record.top() - bin.first_y, 0),
-          std::min(record.right() - bin.first_x, kBinSize - 1), std::min(record.bottom() - bin.first_y, kBinSize - 1)};
-}
-
 /// Counts what lies behind its tiles.
-inline void leave_out(Bin& bin, const Box& at) {
+inline void leave_out(Bin& bin, const BinBounds& at) {
   const auto tiles = static_cast<unsigned>(((at.right >> kTileShift) - (at.left >> kTileShift) + 1) *
                                            ((at.bottom >> kTileShift) - (at.top >> kTileShift) + 1));
   bin.job.counters.tiles_visited += tiles;
@@ -28,7 +22,7 @@ inline void leave_out(Bin& bin, const Box& at) {
 
 /// Whether all tiles of a box hide a record.
 template <class Fragments>
-HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const Record& record, const Box& box) {
+HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const Record& record, const BinBounds& box) {
   const int left = box.left >> kTileShift, right = box.right >> kTileShift, top = box.top >> kTileShift,
             bottom = box.bottom >> kTileShift;
   const I16 is_column = (bin.position.pair_x >= left) & (bin.position.pair_x <= right);
@@ -43,7 +37,7 @@ HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const Record& record, cons
 
 /// The same for a small or medium triangle.
 template <class Fragments>
-HALFPLANE_INLINE bool is_small_behind(const Bin& bin, const Record& record, const Box& box) {
+HALFPLANE_INLINE bool is_small_behind(const Bin& bin, const Record& record, const BinBounds& box) {
   const auto tile_of = [](int x, int y) HALFPLANE_LAMBDA { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); };
   const int a = tile_of(box.left, box.top), b = tile_of(box.right, box.top), c = tile_of(box.left, box.bottom),
             d = tile_of(box.right, box.bottom);
@@ -97,7 +91,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
       // Nearer than what every tile may hold: no need to look at its own.
       if (bin.skip.tiles_hiz && (!Fragments::kIsLess || record.z_low >= bin.lowest_high)) {
-        const Box at = box_of(bin, record);
+        const BinBounds at = box_of(bin, record);
         if (is_small_behind<Fragments>(bin, record, at)) {
           leave_out(bin, at);
           continue;
@@ -135,8 +129,10 @@ static void raster(BinJob& job) {
     find_bin_range(bin);
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
-    // Twice: for the test that nearly every scene has, and for any.
-    if (bin.state.depth_test == DepthFunc::less)
+    // Opaque ones twice: for the test that nearly every scene has, and for any.
+    if (!bin.state.is_opaque)
+      draw_records_general(bin, slice, first, last);
+    else if (bin.state.depth_test == DepthFunc::less)
       draw_records<OpaqueFragments<true>>(bin, slice, first, last);
     else
       draw_records<OpaqueFragments<false>>(bin, slice, first, last);

@@ -1,0 +1,108 @@
+// What is interpolated over a primitive: the one list of planes. Plane 0 is depth, colours follow.
+//
+// A plane is authored here and in what snaps its codes (stages/viewport.cpp). From this list follow its widths
+// (widths.hpp), the arrays in the packets (packets.hpp), the tables and generate loops of the RTL (raster_pkg.hpp), and what
+// observer, random scenes and comparison loop over. Planes of one attribute are alike: they share its widths.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "config.hpp"
+
+namespace halfplane {
+
+/// Whether the attribute itself is linear in the window, or its quotient by w.
+enum class Interpolation : std::uint8_t { affine, over_w };
+/// The vertex that a plane starts from: the first of the canonical order, or the one with the smallest 1/w.
+enum class BaseVertex : std::uint8_t { canonical, smallest_q };
+/// Where the codes of an attribute end.
+enum class StoredAs : std::uint8_t { nothing, depth, color };
+
+/// An attribute: one plane, or several that are alike.
+struct Attribute {
+  std::string_view name;                 ///< of its widths: "depth code", "local depth"
+  std::array<std::string_view, 4> part;  ///< what its planes are called
+  int planes;                            ///< 1 to 4
+  int bits;                              ///< of a code
+  std::string_view symbol;               ///< what docs/spec.md calls `bits` in a bound
+  int reciprocal_bits;                   ///< significant bits of the reciprocal that its gradients are made with
+  int guard_bits;                        ///< l: fraction bits inside a tile
+  bool is_signed = false;                ///< the codes have a sign
+  bool is_clamped = true;                ///< to the range of the vertices' codes
+  Interpolation interpolation = Interpolation::affine;
+  BaseVertex base = BaseVertex::canonical;
+  StoredAs stored = StoredAs::nothing;
+};
+
+inline constexpr int kMaxAttributes = 4, kMaxPlanes = 6;
+inline constexpr std::size_t kDepthPlane = 0, kColorPlane = 1;  ///< the first colour: red; green, blue and alpha behind
+
+/// One value for each plane. Elements from plane_count() on are nobody's.
+template <class T>
+using PerPlane = std::array<T, kMaxPlanes>;
+
+/// A plane at one pixel, before and after the final rounding.
+struct PlaneSample {
+  std::int64_t unrounded = 0;  ///< 2^-l LSB, before rounding and clamp
+  std::uint32_t code = 0;
+};
+
+/// The attributes of a configuration, in the order of their planes.
+struct AttributeList {
+  std::array<Attribute, kMaxAttributes> attribute{};
+  int attributes = 0;
+
+  [[nodiscard]] constexpr const Attribute* begin() const { return attribute.data(); }
+  [[nodiscard]] constexpr const Attribute* end() const { return attribute.data() + attributes; }
+  constexpr void add(const Attribute& next) { attribute[static_cast<std::size_t>(attributes++)] = next; }
+};
+
+/// Whether a unit looks at alpha. Today that is rop alone, where the stored format keeps it.
+[[nodiscard]] constexpr bool needs_alpha(const Config& config) { return config.color_format == ColorFormat::rgba8888; }
+
+/// The list.
+[[nodiscard]] constexpr AttributeList attributes_of(const Config& config) {
+  AttributeList list;
+  list.add({.name = "depth",
+            .part = {"depth"},
+            .planes = 1,
+            .bits = config.depth_bits,
+            .symbol = "B",
+            .reciprocal_bits = config.depth_bits + config.reciprocal_extra_bits,
+            .guard_bits = config.local_guard_bits,
+            .stored = StoredAs::depth});
+  list.add({.name = "color",
+            .part = {"red", "green", "blue", "alpha"},
+            .planes = needs_alpha(config) ? 4 : 3,
+            .bits = 8,
+            .symbol = "8",
+            .reciprocal_bits = config.depth_bits + config.reciprocal_extra_bits,
+            .guard_bits = config.local_guard_bits,
+            .stored = StoredAs::color});
+  return list;
+}
+
+/// How many planes there are.
+[[nodiscard]] constexpr int plane_count(const AttributeList& list) {
+  int count = 0;
+  for (const Attribute& attribute : list) count += attribute.planes;
+  return count;
+}
+
+/// The colour planes as channels R, G, B, A. Where there is no alpha the last is no colour, and nobody may look at it.
+[[nodiscard]] constexpr std::array<std::uint32_t, 4> color_channels(const PerPlane<std::uint32_t>& code) {
+  return {code[kColorPlane], code[kColorPlane + 1], code[kColorPlane + 2], code[kColorPlane + 3]};
+}
+
+/// Planes that hold the stored colour; they follow each other from kColorPlane on.
+[[nodiscard]] constexpr int color_planes(const AttributeList& list) {
+  int count = 0;
+  for (const Attribute& attribute : list) count += attribute.stored == StoredAs::color ? attribute.planes : 0;
+  return count;
+}
+
+}  // namespace halfplane

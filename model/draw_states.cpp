@@ -1,0 +1,267 @@
+#include "draw_states.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace halfplane {
+namespace {
+
+// ---- how a member becomes a StateValue and back: one pair of functions for each kind of type
+
+// What is optional has the word for none as the last of its words.
+
+template <class Value>
+requires(std::is_enum_v<Value> || std::is_same_v<Value, bool>) StateValue to_value(Value value, std::size_t) {
+  return {static_cast<std::size_t>(value), {}};
+}
+
+StateValue to_value(double value, std::size_t words) { return {words, {value}}; }
+StateValue to_value(const std::array<double, 2>& v, std::size_t words) { return {words, {v[0], v[1]}}; }
+template <class Box>
+requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) StateValue
+    to_value(const Box& box, std::size_t words) {
+  return {words,
+          {static_cast<double>(box.x), static_cast<double>(box.y), static_cast<double>(box.width),
+           static_cast<double>(box.height)}};
+}
+
+template <class Value>
+StateValue to_value(const std::optional<Value>& value, std::size_t words) {
+  return value ? to_value(*value, words) : StateValue{words - 1, {}};
+}
+
+template <class Value>
+requires(std::is_enum_v<Value> || std::is_same_v<Value, bool>) void from_value(const StateValue& from, Value& to,
+                                                                               std::size_t) {
+  to = static_cast<Value>(from.word);
+}
+
+void from_value(const StateValue& from, double& to, std::size_t) { to = from.numbers[0]; }
+void from_value(const StateValue& from, std::array<double, 2>& to, std::size_t) {
+  to = {from.numbers[0], from.numbers[1]};
+}
+template <class Box>
+requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) void from_value(const StateValue& from, Box& to,
+                                                                                     std::size_t) {
+  using Number = decltype(to.x);
+  const auto [x, y, width, height] = from.numbers;
+  to = {static_cast<Number>(x), static_cast<Number>(y), static_cast<Number>(width), static_cast<Number>(height)};
+}
+
+template <class Value>
+void from_value(const StateValue& from, std::optional<Value>& to, std::size_t words) {
+  if (from.word == words - 1)
+    to.reset();
+  else
+    from_value(from, to.emplace(), words);
+}
+
+// ---- what must hold of every row, as far as the compiler can see it
+
+/// Whether E has the value: compilers write a value without a name as a cast, "(E)7".
+template <auto value>
+consteval bool is_enumerator() {
+  constexpr std::string_view function = __PRETTY_FUNCTION__;
+  return function[function.find("value = ") + 8] != '(';
+}
+
+template <class E, int n = 0>
+consteval std::size_t enumerators() {
+  if constexpr (is_enumerator<static_cast<E>(n)>())
+    return enumerators<E, n + 1>();
+  else
+    return n;
+}
+
+/// A row for a member. Does not compile for an enum of which not every value has a name, or none has.
+template <auto member>
+consteval DrawState row(DrawState state) {
+  using Value = std::remove_cvref_t<decltype(std::declval<State>().*member)>;
+  if constexpr (std::is_enum_v<Value>)
+    if (state.words.size() != enumerators<Value>()) throw "an enumerator without a word, or a word too many";
+  if (state.words.empty() && state.numbers.empty()) throw "a state without values";
+  state.get_value = [](const State& from, std::size_t words) { return to_value(from.*member, words); };
+  state.set_value = [](State& to, const StateValue& value, std::size_t words) { from_value(value, to.*member, words); };
+  return state;
+}
+
+/// Initializes any member, so that members can be counted.
+struct AnyMember {
+  template <class T>
+  constexpr operator T() const {  // NOLINT(google-explicit-constructor)
+    return T{};
+  }
+};
+
+template <class T, class... Members>
+consteval std::size_t count_members() {
+  if constexpr (requires { T{Members()..., AnyMember()}; })
+    return count_members<T, Members..., AnyMember>();
+  else
+    return sizeof...(Members);
+}
+
+// ---- the table
+
+using Words = std::string_view;
+
+// Rectangles stay small enough that sums of their numbers fit an int: far beyond any target (16384 pixels).
+constexpr double far_away = 1 << 20;    // pixels
+constexpr double widest_offset = 1e12;  // more than any slope between two codes of 32 bits
+
+constexpr std::array<Words, 2> space_words{"clip", "window"};
+constexpr std::array<Words, 8> depth_words{"never",   "less",   "lequal",   "equal",
+                                           "greater", "gequal", "notequal", "always"};
+constexpr std::array<Words, 2> switch_words{"off", "on"};
+constexpr std::array<Words, 4> cull_words{"none", "back", "front", "both"};
+constexpr std::array<Words, 2> front_words{"ccw", "cw"};
+constexpr std::array<Words, 2> shade_words{"smooth", "flat"};
+constexpr std::array<Words, 2> interp_words{"affine", "perspective"};
+constexpr std::array<Words, 2> clip_z_words{"minus_one_one", "zero_one"};
+constexpr std::array<Words, 2> pixel_center_words{"half", "integer"};
+constexpr std::array<Words, 2> origin_words{"top_left", "bottom_left"};
+constexpr std::array<Words, 1> scissor_words{"off"};
+constexpr std::array<Words, 1> viewport_words{"full"};
+constexpr std::array<Words, 2> provoking_words{"first", "last"};
+constexpr std::array<Words, 3> polygon_mode_words{"fill", "line", "point"};
+constexpr std::array<Words, 3> line_rule_words{"midpoint", "bresenham", "diamond"};
+constexpr std::array<Words, 3> line_last_words{"off", "on", "rule"};
+constexpr std::array<Words, 2> point_clip_words{"pixel", "center"};
+
+constexpr std::array<StateNumber, 4> scissor_numbers{{
+    {"scissor x", -far_away, far_away, true, false, -5, 1, 26},
+    {"scissor y", -far_away, far_away, true, false, -5, 1, 26},
+    {"scissor width", 0, far_away, true, false, 0, 1, 49},
+    {"scissor height", 0, far_away, true, false, 0, 1, 49},
+}};
+constexpr std::array<StateNumber, 4> viewport_numbers{{
+    {"viewport x", -far_away, far_away, false, false, -4, 0.25, 33},
+    {"viewport y", -far_away, far_away, false, false, -4, 0.25, 33},
+    {"viewport width", 0, far_away, false, true, 1, 0.25, 100},
+    {"viewport height", 0, far_away, false, true, 1, 0.25, 100},
+}};
+constexpr std::array<StateNumber, 2> depth_range_numbers{{
+    {"a bound of depth_range", 0, 1, false, false, 0, 0.125, 9},
+    {"a bound of depth_range", 0, 1, false, false, 0, 0.125, 9},
+}};
+constexpr std::array<StateNumber, 2> polygon_offset_numbers{{
+    {"polygon_offset's slope factor", -widest_offset, widest_offset, false, false, -4, 0.5, 17},
+    {"polygon_offset's constant", -widest_offset, widest_offset, false, false, -4, 1, 9},
+}};
+constexpr std::array<StateNumber, 1> point_size_numbers{{{"point_size", 1, far_away, false, false, 1, 0.0625, 200}}};
+
+constexpr std::array table{
+    row<&State::space>({.name = "space",
+                        .words = space_words,
+                        .purpose = "what the coordinates of vertices mean; written as a line of its own",
+                        .simplest = "window"}),
+    row<&State::depth_test>({.name = "depth_test",
+                             .words = depth_words,
+                             .purpose = "how a fragment's depth must compare with the stored one",
+                             .home = StateHome::primitive}),
+    row<&State::depth_write>({.name = "depth_write",
+                              .words = switch_words,
+                              .purpose = "whether a fragment that passes stores its depth",
+                              .home = StateHome::primitive}),
+    row<&State::color_write>({.name = "color_write",
+                              .words = switch_words,
+                              .purpose = "whether it stores its colour",
+                              .home = StateHome::primitive}),
+    row<&State::cull>({.name = "cull",
+                       .words = cull_words,
+                       .purpose = "which triangles are not drawn",
+                       .home = StateHome::primitive}),
+    row<&State::front>({.name = "front",
+                        .words = front_words,
+                        .purpose = "which triangles are front faces, as seen on the screen",
+                        .home = StateHome::primitive}),
+    row<&State::shade>({.name = "shade",
+                        .words = shade_words,
+                        .purpose = "flat: the colour of the provoking vertex, all over the primitive"}),
+    row<&State::color_interp>({.name = "color_interp",
+                               .words = interp_words,
+                               .purpose = "how colours run over a primitive",
+                               .refused = "perspective"}),
+    row<&State::clip_z>({.name = "clip_z",
+                         .words = clip_z_words,
+                         .purpose = "where the near plane of clip space lies, at z = −w or at z = 0"}),
+    row<&State::pixel_center>({.name = "pixel_center",
+                               .words = pixel_center_words,
+                               .purpose = "where the pixel centres of window-space vertices and of the viewport lie; "
+                                          "the first one at ½ or at 0"}),
+    row<&State::origin>({.name = "origin",
+                         .words = origin_words,
+                         .purpose = "what window-space vertices, viewport and scissor count from, with y down from "
+                                    "the top, y up from the bottom; the y of a rectangle is that of its side at the "
+                                    "origin"}),
+    row<&State::scissor>({.name = "scissor",
+                          .words = scissor_words,
+                          .numbers = scissor_numbers,
+                          .form = "x y width height",
+                          .unit = "pixels",
+                          .purpose = "what may be drawn and cleared: whole pixels, numbered from the `origin`, the "
+                                     "first one 0 under either `pixel_center`"}),
+    row<&State::viewport>({.name = "viewport",
+                           .words = viewport_words,
+                           .numbers = viewport_numbers,
+                           .form = "x y width height",
+                           .unit = "pixels",
+                           .purpose = "where clip space comes to lie: pixels in the window coordinates of "
+                                      "`pixel_center` and `origin`, fractions allowed (the whole target is `0 0 W H`, "
+                                      "or `-0.5 -0.5 W H` under `integer`)"}),
+    row<&State::depth_range>({.name = "depth_range",
+                              .numbers = depth_range_numbers,
+                              .form = "near far",
+                              .purpose = "window z of the near and the far plane, in either order"}),
+    row<&State::provoking>(
+        {.name = "provoking", .words = provoking_words, .purpose = "the vertex whose colour `shade flat` takes"}),
+    row<&State::polygon_mode>(
+        {.name = "polygon_mode", .words = polygon_mode_words, .purpose = "what is drawn of a triangle"}),
+    row<&State::polygon_offset>({.name = "polygon_offset",
+                                 .numbers = polygon_offset_numbers,
+                                 .form = "factor constant",
+                                 .purpose = "added to a triangle's depth, factor times its steeper slope per pixel "
+                                            "plus the constant, in depth codes"}),
+    row<&State::line_rule>({.name = "line_rule", .words = line_rule_words, .purpose = "which pixels a line covers"}),
+    row<&State::line_last>({.name = "line_last",
+                            .words = line_last_words,
+                            .purpose = "whether a line's last pixel is drawn; `rule`: as its rule has it"}),
+    row<&State::point_size>({.name = "point_size",
+                             .numbers = point_size_numbers,
+                             .form = "size",
+                             .unit = "pixels",
+                             .purpose = "side of the square, fractions allowed; the draw refuses points that could "
+                                        "reach the target from outside the guard band"}),
+    row<&State::point_clip>(
+        {.name = "point_clip", .words = point_clip_words, .purpose = "what the view's sides clip of a point"}),
+};
+
+static_assert(table.size() == count_members<State>(), "a member of State has no row, or two");
+
+}  // namespace
+
+StateValue DrawState::simplest_value() const {
+  if (simplest.empty()) return default_value();
+  return {static_cast<std::size_t>(std::ranges::find(words, simplest) - words.begin()), {}};
+}
+
+std::span<const DrawState> draw_states() { return table; }
+
+const DrawState& draw_state(std::string_view name) { return *std::ranges::find(table, name, &DrawState::name); }
+
+std::size_t StateHash::operator()(const State& state) const {
+  std::uint64_t hash = 0;
+  const auto mix = [&hash](std::uint64_t value) { hash = (hash ^ value) * 0x9e3779b97f4a7c15U + (hash >> 29); };
+  for (const DrawState& row : table) {
+    const StateValue value = row.value(state);
+    mix(value.word);
+    for (const double number : std::span(value.numbers).first(row.numbers.size())) mix(std::hash<double>{}(number));
+  }
+  return static_cast<std::size_t>(hash);
+}
+
+}  // namespace halfplane

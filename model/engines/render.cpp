@@ -1,0 +1,41 @@
+#include "render.hpp"
+
+#include <algorithm>
+
+#include "../pipeline.hpp"
+#include "../stages/rop.hpp"
+
+namespace halfplane {
+
+void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config) {
+  Framebuffer& frame = rendering.frame;
+  const Rect rect = clear_rect(scene, command);
+  const auto fill = [&rect](auto& image, int stride, auto value) {
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(y) * stride + rect.x, rect.width, value);
+  };
+  if (command.depth) fill(frame.depth, frame.stride, DepthEncode(config, scene.planes).of_window(*command.depth));
+  if (command.color) {
+    std::array<std::uint8_t, 4> code;
+    for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color((*command.color)[c]);
+    fill(frame.color, frame.stride, pack_color(config.color_format, code));
+  }
+  if (!rendering.ids.empty()) fill(rendering.ids, frame.width, -1);
+  if (!rendering.visible.empty()) fill(rendering.visible, frame.width, -1);
+}
+
+Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options) {
+  Rendering rendering;
+  rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
+  std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(),
+            DepthEncode(config, scene.planes).of_window(1.0));
+  std::fill(rendering.frame.color.begin(), rendering.frame.color.end(),
+            pack_color(config.color_format, {0, 0, 0, 255}));
+  const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+  if (options.want_count) rendering.count.assign(pixels, 0);
+  if (options.want_ids) rendering.ids.assign(pixels, -1);
+  if (options.want_ids && options.keeps_triangles()) rendering.visible.assign(pixels, -1);
+  return rendering;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,72 @@
+// The samples of a stamp: how many there are, which number each has, and which of them a mask holds.
+//
+// A stamp is a square of pixels. Its samples are numbered pixel by pixel, row by row; a pixel has one sample, at its centre.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace halfplane {
+
+/// The most samples that a stamp can have: those of a mask.
+inline constexpr std::size_t kMaxSamples = 64;
+
+/// A set of samples of one stamp: bit n is sample n.
+class SampleMask {
+ public:
+  constexpr SampleMask() = default;
+  constexpr explicit SampleMask(std::uint64_t bits) : bits_(bits) {}
+  /// Sample n alone.
+  [[nodiscard]] static constexpr SampleMask only(int n) { return SampleMask(std::uint64_t{1} << n); }
+
+  [[nodiscard]] constexpr std::uint64_t bits() const { return bits_; }
+  [[nodiscard]] constexpr bool any() const { return bits_ != 0; }
+  [[nodiscard]] constexpr bool has(std::size_t n) const { return (bits_ >> n & 1) != 0; }
+  [[nodiscard]] constexpr int count() const { return std::popcount(bits_); }
+  /// Numbers of the lowest and the highest one. Precondition: any().
+  [[nodiscard]] constexpr int first() const { return std::countr_zero(bits_); }
+  [[nodiscard]] constexpr int last() const { return 63 - std::countl_zero(bits_); }
+  constexpr void set(int n, bool value = true) { bits_ |= std::uint64_t{value} << n; }
+
+  /// Calls visit(number) for each, lowest first.
+  template <class Visit>
+  constexpr void for_each(Visit&& visit) const {
+    for (std::uint64_t left = bits_; left != 0; left &= left - 1)
+      visit(static_cast<std::size_t>(std::countr_zero(left)));
+  }
+
+  constexpr bool operator==(const SampleMask&) const = default;
+  [[nodiscard]] friend constexpr SampleMask operator&(SampleMask a, SampleMask b) {
+    return SampleMask(a.bits_ & b.bits_);
+  }
+
+ private:
+  std::uint64_t bits_ = 0;
+};
+
+/// A place: pixels from the first one of a stamp or of a tile.
+struct PixelOffset {
+  int x = 0, y = 0;
+};
+
+/// The stamps of a tile and the samples of a stamp.
+struct StampGrid {
+  int size = 1;            ///< pixels along the side of a stamp
+  int stamps_per_row = 1;  ///< stamps along the side of a tile
+
+  [[nodiscard]] constexpr int stamps() const { return stamps_per_row * stamps_per_row; }
+  [[nodiscard]] constexpr int samples() const { return size * size; }
+  /// The pixel of a sample, in its stamp.
+  [[nodiscard]] constexpr PixelOffset pixel_of(int sample) const { return {sample % size, sample / size}; }
+  /// The sample of a pixel of the stamp.
+  [[nodiscard]] constexpr int sample_at(int x, int y) const { return y * size + x; }
+  /// The first pixel of a stamp, in its tile.
+  [[nodiscard]] constexpr PixelOffset origin_of(int stamp) const {
+    return {stamp % stamps_per_row * size, stamp / stamps_per_row * size};
+  }
+  /// The stamp that holds a pixel of the tile.
+  [[nodiscard]] constexpr int stamp_at(int x, int y) const { return y / size * stamps_per_row + x / size; }
+};
+
+}  // namespace halfplane

@@ -1,0 +1,68 @@
+#include "fragment_frame.hpp"
+
+#include "model/fragment_ops.hpp"
+#include "model/golden/viewport.hpp"
+
+namespace halfplane {
+namespace {
+
+std::size_t pixels_of(const Scene& scene) {
+  return static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+}
+
+std::size_t pixel_of(const Scene& scene, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x);
+}
+
+std::array<std::uint8_t, 4> color_of(const TappedFragment& fragment) {
+  std::array<std::uint8_t, 4> code;
+  for (std::size_t c = 0; c < 4; ++c) code[c] = static_cast<std::uint8_t>(fragment.plane[kColorPlane + c].code);
+  return code;
+}
+
+}  // namespace
+
+FragmentFrame::FragmentFrame(const Scene& scene, const Config& config)
+    : scene_(scene),
+      config_(config),
+      depth_encode_(config, scene.planes),
+      pixels_(pixels_of(scene), depth_encode_.of_window(1.0), {}),
+      shown_(pixels_of(scene)) {}
+
+void FragmentFrame::add(const TappedFragment& fragment) {
+  clear_until(fragment.draw);
+  const bool is_in_target =
+      fragment.x >= 0 && fragment.x < scene_.width && fragment.y >= 0 && fragment.y < scene_.height;
+  if (!is_in_target) return;  // the judge of coverage has counted it
+  const State& state = scene_.states[std::get<Draw>(scene_.commands[fragment.draw]).state];
+  const std::size_t p = pixel_of(scene_, fragment.x, fragment.y);
+  const auto owner = static_cast<std::int32_t>(fragment.primitive);
+  const golden::Fate fate = pixels_.apply(p, state, depth_encode_(fragment.plane[kDepthPlane].code), {}, owner);
+  // Of several lines or points of one primitive that store the same there, the last stands for all.
+  const bool is_another = !fate.written && fragment.kind != PrimitiveKind::triangle && pixels_.owners()[p] == owner &&
+                          is_equal(fragment, shown_[p], state);
+  if (fate.written || is_another) shown_[p] = fragment;
+}
+
+/// Does the one leave in the target what the other does?
+bool FragmentFrame::is_equal(const TappedFragment& a, const TappedFragment& b, const State& state) const {
+  if (state.depth_write && a.plane[kDepthPlane].code != b.plane[kDepthPlane].code) return false;
+  return !state.color_write ||
+         pack_color(config_.color_format, color_of(a)) == pack_color(config_.color_format, color_of(b));
+}
+
+void FragmentFrame::clear_until(std::size_t command) {
+  for (; next_command_ < command; ++next_command_) {
+    const auto* clear = std::get_if<Clear>(&scene_.commands[next_command_]);
+    if (clear == nullptr) continue;
+    const golden::PixelRange range = golden::clear_region(scene_, scene_.states[clear->state]);
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) {
+        const std::size_t p = pixel_of(scene_, x, y);
+        if (clear->depth) pixels_.clear_depth(p, depth_encode_.of_window(*clear->depth));
+        pixels_.disown(p);
+      }
+  }
+}
+
+}  // namespace halfplane

@@ -1,0 +1,44 @@
+// What the fragments of a tap leave in a target by the golden's own operations: for each pixel, whose fragment it shows.
+//
+// Every operation that there is stores a fragment as it came or not at all, so that the exact and the unrounded values of
+// a pixel are those of the fragment it shows and can wait until somebody asks. The depth test compares stored codes, as
+// real numbers.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/engines/render.hpp"
+#include "model/golden/fragment_buffer.hpp"
+#include "model/stages/depth_encode.hpp"
+
+namespace halfplane {
+
+class FragmentFrame {
+ public:
+  FragmentFrame(const Scene& scene, const Config& config);
+
+  /// The next fragment in program order.
+  void add(const TappedFragment& fragment);
+  /// After the last one.
+  void finish() { clear_until(scene_.commands.size()); }
+
+  /// By pixel, y * width + x: the primitive that owns it, -1 none; and the fragment it shows, where it is owned.
+  [[nodiscard]] const std::vector<std::int32_t>& owners() const { return pixels_.owners(); }
+  [[nodiscard]] const TappedFragment& shown(std::size_t pixel) const { return shown_[pixel]; }
+
+ private:
+  struct Nothing {};
+
+  void clear_until(std::size_t command);
+  [[nodiscard]] bool is_equal(const TappedFragment& a, const TappedFragment& b, const State& state) const;
+
+  const Scene& scene_;
+  const Config& config_;
+  DepthEncode depth_encode_;
+  golden::FragmentBuffer<double, Nothing> pixels_;  // stored depth codes
+  std::vector<TappedFragment> shown_;
+  std::size_t next_command_ = 0;
+};
+
+}  // namespace halfplane

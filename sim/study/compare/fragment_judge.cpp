@@ -1,0 +1,112 @@
+#include "fragment_judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "model/golden/exact_line.hpp"
+#include "model/widths.hpp"
+
+namespace halfplane {
+namespace {
+
+/// |value / 2^guard_bits - exact|, LSB.
+double distance(std::int64_t value, int guard_bits, const exact::Rational& exact) {
+  const int128 unit = int128{1} << guard_bits;
+  const int128 difference = exact.denominator * value - exact.numerator * unit;
+  return static_cast<double>(difference < 0 ? -difference : difference) / static_cast<double>(exact.denominator * unit);
+}
+
+void raise(double& worst, double value) { worst = std::max(worst, value); }
+
+std::string line(std::string_view plane, const char* what, double value, double bound) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "fragments: %.*s %s by %.3f LSB (bound %.2f)", static_cast<int>(plane.size()),
+                plane.data(), what, value, bound);
+  return text.data();
+}
+
+}  // namespace
+
+FragmentJudge::FragmentJudge(const Scene& scene, const Config& config, FillRule rule)
+    : scene_(scene), config_(config), widths_(derive_widths(config)), rule_(rule), log_(config.tile_size) {
+  for (const JudgedPlane& plane : judged_planes(config)) verdict_.planes.push_back({plane});
+}
+
+void FragmentJudge::add(const TappedFragment& fragment) {
+  ++verdict_.fragments;
+  if (fragment.triangle != nullptr)
+    add_to_triangle(fragment);
+  else
+    add_to_line(fragment);
+}
+
+void FragmentJudge::add_to_triangle(const TappedFragment& fragment) {
+  if (!oracle_ || item_ != fragment.item) {
+    finish_triangle();
+    oracle_.emplace(*fragment.triangle, widths_.grid_bits, rule_);
+    item_ = fragment.item;
+  }
+  const int shift = widths_.tile_shift, last = (1 << shift) - 1;
+  std::uint32_t& row = tiles_[{fragment.y >> shift, fragment.x >> shift}][static_cast<std::size_t>(fragment.y & last)];
+  const std::uint32_t bit = 1U << (fragment.x & last);
+  repeated_ += (row & bit) != 0 ? 1 : 0;
+  row |= bit;
+  const exact::PlaneWeights weights = oracle_->weights_at(fragment.x, fragment.y);
+  for (std::size_t i = 0; i < verdict_.planes.size(); ++i) {
+    const exact::Rational exact = weights.plane(plane_codes(*fragment.triangle, i));
+    const PlaneSample& sample = fragment.plane[i];
+    raise(verdict_.planes[i].worst, distance(sample.code, 0, exact));
+    raise(verdict_.planes[i].worst_unrounded, distance(sample.unrounded, fragment.guard_bits, exact));
+  }
+}
+
+void FragmentJudge::add_to_line(const TappedFragment& fragment) {
+  pixels_.add(fragment.primitive, fragment.x, fragment.y);
+  const State& state = scene_.states[std::get<Draw>(scene_.commands[fragment.draw]).state];
+  for (std::size_t i = 0; i < verdict_.planes.size(); ++i) {
+    exact::Rational exact;
+    if (fragment.point != nullptr) {
+      exact = {fragment.point->at.code[i], 1};
+    } else {
+      const DrawnLine& drawn = *fragment.line;
+      const exact::Line line{drawn.start, drawn.end, state.line_rule, drawn.drops_last, widths_.grid_bits};
+      exact = exact::plane_at(line, fragment.x, fragment.y, drawn.start.code[i], drawn.end.code[i]);
+    }
+    raise(verdict_.planes[i].worst_of_lines, distance(fragment.plane[i].code, 0, exact));
+  }
+}
+
+void FragmentJudge::finish_triangle() {
+  for (const auto& [place, mask] : tiles_) log_.add(item_, place.second, place.first, mask);
+  tiles_.clear();
+}
+
+FragmentVerdict FragmentJudge::finish(const Rendering& rendering) {
+  finish_triangle();
+  log_.sort();
+  pixels_.sort();
+  verdict_.coverage = check_coverage(scene_, config_, rendering.triangles, log_, rule_);
+  verdict_.coverage.mismatches += repeated_;
+  check_line_coverage(scene_, config_, rendering, pixels_, verdict_.coverage);
+  return verdict_;
+}
+
+std::vector<std::string> broken_fragment_bounds(const FragmentVerdict& verdict, const Config& config) {
+  std::vector<std::string> broken;
+  if (verdict.coverage.mismatches != 0)
+    broken.push_back("fragments: " + std::to_string(verdict.coverage.mismatches) +
+                     " samples differ from the exact oracle (bound 0)");
+  for (const PlaneVerdict& v : verdict.planes) {
+    const double bound = v.plane.is_depth ? depth_error_bound(config) : 1;
+    const double line_bound = v.plane.is_depth ? line_depth_error_bound(config) : 1;
+    if (!(v.worst <= bound)) broken.push_back(line(v.plane.name, "is off the exact plane", v.worst, bound));
+    if (!(v.worst_unrounded <= bound - 0.5))
+      broken.push_back(line(v.plane.name, "before rounding is off the exact plane", v.worst_unrounded, bound - 0.5));
+    if (!(v.worst_of_lines <= line_bound))
+      broken.push_back(line(v.plane.name, "of lines is off the exact value", v.worst_of_lines, line_bound));
+  }
+  return broken;
+}
+
+}  // namespace halfplane

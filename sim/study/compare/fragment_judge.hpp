@@ -1,0 +1,63 @@
+// Fragments before the operations: coverage and planes of each against the exact oracle. Whatever happens to a fragment
+// afterwards, what is wrong here is wrong in the setup, the raster or the interpolation.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coverage.hpp"
+#include "line_coverage.hpp"
+#include "model/golden/exact.hpp"
+#include "planes.hpp"
+
+namespace halfplane {
+
+/// The largest distances of one plane from the exact value, LSB.
+struct PlaneVerdict {
+  JudgedPlane plane;
+  double worst = 0, worst_of_lines = 0;  ///< codes; of lines and points apart, whose bound may be another
+  double worst_unrounded = 0;            ///< of triangles, before the final rounding
+};
+
+struct FragmentVerdict {
+  std::uint64_t fragments = 0;
+  OracleResult coverage;  ///< every sample of every primitive; a fragment that comes twice is a mismatch
+  std::vector<PlaneVerdict> planes;
+};
+
+class FragmentJudge {
+ public:
+  FragmentJudge(const Scene& scene, const Config& config, FillRule rule = FillRule::top_left);
+
+  /// The next fragment in program order.
+  void add(const TappedFragment& fragment);
+
+  /// After the last one; `rendering`: what the engine that made them has kept.
+  [[nodiscard]] FragmentVerdict finish(const Rendering& rendering);
+
+ private:
+  void add_to_triangle(const TappedFragment& fragment);
+  void add_to_line(const TappedFragment& fragment);
+  void finish_triangle();
+
+  const Scene& scene_;
+  const Config& config_;
+  const Widths widths_;
+  const FillRule rule_;
+  FragmentVerdict verdict_;
+  CoverageLog log_;
+  PixelLog pixels_;
+  std::uint64_t repeated_ = 0;
+  std::optional<exact::TriangleOracle> oracle_;    // of the triangle at work
+  std::uint32_t item_ = 0;                         // its number
+  std::map<std::pair<int, int>, TileMask> tiles_;  // its samples: by tile row, column
+};
+
+/// One line for every bound that a fragment breaks; empty when all hold.
+[[nodiscard]] std::vector<std::string> broken_fragment_bounds(const FragmentVerdict& verdict, const Config& config);
+
+}  // namespace halfplane
