@@ -36,9 +36,10 @@ Width residue(std::string name, std::string bound, int bits) {
 std::string with_symbol(std::string text, std::string_view symbol) { return text.replace(text.find('#'), 1, symbol); }
 
 /// The planes of one attribute. The numerator is twice an area in a box of `side` subpixels by 2^bits - 1 codes.
-AttributeWidths derive_attribute(const Attribute& a, int128 side, const Width& reciprocal, const Widths& w) {
+AttributeWidths derive_attribute(const Attribute& a, int128 side, const Width& reciprocal, const Widths& w,
+                                 const Config& config) {
   if (a.is_signed || !a.is_clamped || a.interpolation != Interpolation::affine || a.base != BaseVertex::canonical ||
-      a.guard_bits != w.attributes.begin()->guard_bits || a.reciprocal_bits != w.attributes.begin()->reciprocal_bits)
+      a.guard_bits != config.local_guard_bits || a.reciprocal_bits != config.depth_bits + config.reciprocal_extra_bits)
     throw std::logic_error("no stage interpolates an attribute like " + std::string(a.name) + " yet");
   const std::string name(a.name);
   const int128 max = (int128{1} << a.bits) - 1;
@@ -67,7 +68,7 @@ void derive_attributes(Widths& w, const Config& config, int128 side) {
       exact("reciprocal shift", "k = m + r, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(side * side)) + r});
   std::size_t plane = 0, index = 0;
   for (const Attribute& a : w.attributes) {
-    w.attribute[index] = derive_attribute(a, side, w.reciprocal, w);
+    w.attribute[index] = derive_attribute(a, side, w.reciprocal, w, config);
     for (int i = 0; i < a.planes; ++i, ++plane) {
       w.attribute_of[plane] = static_cast<std::uint8_t>(index);
       w.line_mask[plane] = ~0ULL >> (64 - w.attribute[index].line.bits);

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "../fragment_ops.hpp"
 #include "../pipeline.hpp"
-#include "../stages/depth_test.hpp"
 #include "../stages/line_raster.hpp"
-#include "../stages/rop.hpp"
 #include "render.hpp"
 
 namespace halfplane {

@@ -10,7 +10,6 @@
 #include "../pipeline_graph.hpp"
 #include "../stages/depth_test.hpp"
 #include "../stages/hiz.hpp"
-#include "../stages/line_raster.hpp"
 #include "../stages/tile_cache.hpp"
 #include "render.hpp"
 

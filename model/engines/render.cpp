@@ -2,10 +2,16 @@
 
 #include <algorithm>
 
+#include "../fragment_ops.hpp"
 #include "../pipeline.hpp"
-#include "../stages/rop.hpp"
 
 namespace halfplane {
+
+std::uint32_t clear_color(const std::array<double, 4>& color, ColorFormat format) {
+  std::array<std::uint8_t, 4> code;
+  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(color[c]);
+  return pack_color(format, code);
+}
 
 void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config) {
   Framebuffer& frame = rendering.frame;
@@ -15,11 +21,7 @@ void clear(Rendering& rendering, const Scene& scene, const Clear& command, const
       std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(y) * stride + rect.x, rect.width, value);
   };
   if (command.depth) fill(frame.depth, frame.stride, DepthEncode(config, scene.planes).of_window(*command.depth));
-  if (command.color) {
-    std::array<std::uint8_t, 4> code;
-    for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color((*command.color)[c]);
-    fill(frame.color, frame.stride, pack_color(config.color_format, code));
-  }
+  if (command.color) fill(frame.color, frame.stride, clear_color(*command.color, config.color_format));
   if (!rendering.ids.empty()) fill(rendering.ids, frame.width, -1);
   if (!rendering.visible.empty()) fill(rendering.visible, frame.width, -1);
 }

@@ -76,6 +76,9 @@ struct Rendering {
 /// An empty target: the farthest depth, opaque black, and the buffers that the options ask for.
 [[nodiscard]] Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options);
 
+/// A clear's colour, channels 0 to 255, as it is stored.
+[[nodiscard]] std::uint32_t clear_color(const std::array<double, 4>& color, ColorFormat format);
+
 /// Clears depth and colour inside the scissor; nobody owns the cleared pixels any more.
 void clear(Rendering& rendering, const Scene& scene, const Clear& command, const Config& config);
 

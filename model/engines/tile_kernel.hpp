@@ -40,8 +40,8 @@ struct TriangleLanes {
   LocalPlane<Lane> depth;
   std::array<LocalPlane<std::uint32_t>, 4> color;
 
-  TriangleLanes(const TriangleSetup& setup, const Config& config, const Widths& widths)
-      : depth_format(config.depth_bits, config.local_guard_bits), color_format(8, config.local_guard_bits) {
+  TriangleLanes(const TriangleSetup& setup, const Widths& widths)
+      : depth_format(widths.depth()), color_format(widths.color()) {
     Lanes<std::int32_t, T> column;
     Lanes<Lane, T> depth_column;
     for (int i = 0; i < T; ++i) {

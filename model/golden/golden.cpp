@@ -108,7 +108,7 @@ class Renderer {
   }
 
   /// One draw, and the primitive of it that is at work.
-  struct DrawState {
+  struct DrawAtWork {
     const State& state;
     const Viewport vp;
     const std::array<Plane<Real>, 6> planes;
@@ -123,9 +123,9 @@ class Renderer {
     const State& state = scene_.states[draw.state];
     if (state.space == Space::clip) refuse_huge(draw);
     const Viewport vp = viewport_of(scene_, state);
-    DrawState d{state, vp,
-                clip_planes<Real>(state.clip_z, vp, config_.guard_band - std::ldexp(1.0, -config_.subpixel_bits)),
-                draw_region(scene_, state), command};
+    DrawAtWork d{state, vp,
+                 clip_planes<Real>(state.clip_z, vp, config_.guard_band - std::ldexp(1.0, -config_.subpixel_bits)),
+                 draw_region(scene_, state), command};
     std::size_t done = 0;
     for_each_primitive(scene_, draw, state.provoking, [&](const Primitive& p) {
       d.primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);
@@ -166,11 +166,11 @@ class Renderer {
   }
 
   /// From clip or window space to pixels.
-  ScreenVertex<Real> screen(const ClipVertex<Real>& v, const DrawState& d) const {
+  ScreenVertex<Real> screen(const ClipVertex<Real>& v, const DrawAtWork& d) const {
     return d.state.space == Space::clip ? to_screen(v, d.state, d.vp) : from_window(v, d.state, scene_);
   }
 
-  void draw_triangle(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {
+  void draw_triangle(const std::array<ClipVertex<Real>, 3>& v, DrawAtWork& d) {
     if (options_.clipping == Clipping::homogeneous && d.state.space == Space::clip &&
         d.state.polygon_mode == PolygonMode::fill)
       return draw_homogeneous(v, d);
@@ -189,7 +189,7 @@ class Renderer {
       d.state.polygon_mode == PolygonMode::line ? draw_line(v[i], v[(i + 1) % 3], d) : draw_point(v[i], d);
   }
 
-  void draw_fan(std::span<const ScreenVertex<Real>> polygon, DrawState& d) {
+  void draw_fan(std::span<const ScreenVertex<Real>> polygon, DrawAtWork& d) {
     const std::size_t start = polygon.size() > 3 ? fan_start(polygon) : 0;
     const auto corner = [&](std::size_t k) { return polygon[(start + k) % polygon.size()]; };
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
@@ -202,7 +202,7 @@ class Renderer {
     }
   }
 
-  void draw_homogeneous(const std::array<ClipVertex<Real>, 3>& v, DrawState& d) {
+  void draw_homogeneous(const std::array<ClipVertex<Real>, 3>& v, DrawAtWork& d) {
     const HomogeneousSetup<Real> t = setup_homogeneous(v, d.state, d.vp);
     if (is_culled(t.determinant, d.state)) return;
     const PixelRange range = homogeneous_range(t, d.region, scene_);
@@ -223,7 +223,7 @@ class Renderer {
     }
   }
 
-  void draw_line(ClipVertex<Real> a, ClipVertex<Real> b, DrawState& d) {
+  void draw_line(ClipVertex<Real> a, ClipVertex<Real> b, DrawAtWork& d) {
     if (d.state.space == Space::clip && !clip_segment<Real>(a, b, d.planes, d.was_cut)) return;
     std::array<ScreenVertex<Real>, 2> v{screen(a, d), screen(b, d)};
     add_outline(v, d);
@@ -235,7 +235,7 @@ class Renderer {
     });
   }
 
-  void draw_point(const ClipVertex<Real>& v, DrawState& d) {
+  void draw_point(const ClipVertex<Real>& v, DrawAtWork& d) {
     if (d.state.space == Space::clip && is_outside(v, d.state.clip_z, d.state.point_clip == PointClip::center)) return;
     ScreenVertex<Real> at = screen(v, d);
     add_outline(std::span(&at, 1), d);
@@ -246,7 +246,7 @@ class Renderer {
       for (int x = range.begin_x; x < range.end_x; ++x) shade(x, y, fragment, d);
   }
 
-  void add_outline(std::span<const ScreenVertex<Real>> v, const DrawState& d) {
+  void add_outline(std::span<const ScreenVertex<Real>> v, const DrawAtWork& d) {
     if (!options_.want_outlines) return;
     Outline outline{v.size(), d.primitive, d.command, {}, {}, {}, {}};
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -274,7 +274,7 @@ class Renderer {
         std::min_element(key.begin(), key.begin() + static_cast<std::ptrdiff_t>(polygon.size())) - key.begin());
   }
 
-  void rasterize(const Setup<Real>& t, const DrawState& d) {
+  void rasterize(const Setup<Real>& t, const DrawAtWork& d) {
     const auto [left, right] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
     const auto [top, bottom] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
     // One pixel wider on the far sides: a sample on the very border is decided by the edges, not by the range.
@@ -290,11 +290,11 @@ class Renderer {
     }
   }
 
-  [[nodiscard]] ColorInterp rule_of(const DrawState& d) const {
+  [[nodiscard]] ColorInterp rule_of(const DrawAtWork& d) const {
     return options_.color_interp.value_or(d.state.color_interp);
   }
 
-  void shade(int x, int y, Fragment<Real> fragment, const DrawState& d) {
+  void shade(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
     if (d.offset != 0) fragment.z = std::clamp(fragment.z, Real(0), Real(1));
     const std::size_t p = pixel(x, y);
     ++image_.counters.covered;

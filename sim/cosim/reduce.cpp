@@ -7,6 +7,7 @@
 
 #include "model/draw_states.hpp"
 #include "model/host_stream.hpp"
+#include "model/stages/line_raster.hpp"
 
 namespace halfplane {
 namespace {

@@ -201,7 +201,7 @@ class CycleModelOf final : public CycleModel {
   /// coarse_raster, and for each visit the rest of the pipeline.
   void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
     const Kernel kernel(packet.state, config_, widths_);
-    const TriangleLanes<T, Lane> lanes(setup, config_, widths_);
+    const TriangleLanes<T, Lane> lanes(setup, widths_);
     CounterPacket uncounted;
     CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
     const bool asks_hiz = hiz_.is_eligible(packet, widths_);

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "../../fragment_ops.hpp"
 #include "../../pipeline.hpp"
 #include "../render.hpp"
 #include "prepared_scene.hpp"
@@ -34,10 +35,8 @@ inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
 }
 inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 
-/// What a draw's state asks of its fragments.
-struct DrawState {
-  DepthFunc depth_test = DepthFunc::less;
-  bool depth_write = true, color_write = true;
+/// What a draw asks of its fragments, and how they are shaded.
+struct SliceState : FragmentState {
   bool is_flat = false;   ///< the colour is that of the first vertex
   bool is_opaque = true;  ///< what passes replaces what is stored, what fails leaves no trace
 };
@@ -100,7 +99,7 @@ struct Slice {
     std::uint32_t primitive = 0;       ///< number of the first, over the whole scene
   };
   const DrawContext* context = nullptr;  ///< of its first part; the others have the same state
-  DrawState state;
+  SliceState state;
   std::vector<Part> parts;
   std::size_t triangles = 0;                 ///< of all parts
   bool is_lines = false;                     ///< the triangles are lines

@@ -11,8 +11,6 @@
 #include <limits>
 #include <utility>
 
-#include "../../stages/rop.hpp"
-
 namespace halfplane::functional {
 namespace {
 
@@ -72,12 +70,6 @@ void add(Counters& sum, const Counters& c) {
   s.fragments_early_z += t.fragments_early_z;
   s.attributes += t.attributes;
   s.clear += t.clear;
-}
-
-std::uint32_t color_code(const std::array<double, 4>& color, ColorFormat format) {
-  std::array<std::uint8_t, 4> code;
-  for (std::size_t c = 0; c < 4; ++c) code[c] = snap_color(color[c]);
-  return pack_color(format, code);
 }
 
 }  // namespace
@@ -178,7 +170,7 @@ void FrameRenderer::clear_whole(const Clear& command) {
   }
   if (command.color) {
     bits |= TileStates::kColorCleared;
-    clear_color_ = color_code(*command.color, config_.color_format);
+    clear_color_ = clear_color(*command.color, config_.color_format);
   }
   // Loops that the compiler takes in lanes: nothing that they store can be one of their pointers.
   const std::size_t tiles = is_in_target_.size();
@@ -260,7 +252,7 @@ void FrameRenderer::finish() {
   Framebuffer& frame = rendering_.frame;
   if (pending != 0) settle({0, 0, frame.width, frame.height});
   const std::uint32_t far = DepthEncode(config_, scene_->planes).of_window(1.0);
-  const std::uint32_t black = color_code({0, 0, 0, 255}, config_.color_format);
+  const std::uint32_t black = clear_color({0, 0, 0, 255}, config_.color_format);
   const auto stride = static_cast<std::size_t>(frame.stride);
   const std::size_t rows = frame.depth.size() / stride;
   for (std::size_t y = 0; y < rows; ++y) {
@@ -295,7 +287,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   Slice& slice = slices_[slice_count_++];
   const State& state = context.state;
   slice.context = &context;
-  slice.state = {state.depth_test, state.depth_write, state.color_write, state.shade == Shade::flat, is_opaque_};
+  slice.state = {fragment_state(state), state.shade == Shade::flat, is_opaque_};
   slice.parts.clear();
   slice.outlines.clear();
   slice.triangles = 0;

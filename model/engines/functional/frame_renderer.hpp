@@ -49,7 +49,7 @@ class FrameRenderer {
   const PreparedScene* prepared_ = nullptr;
   const Scene* scene_ = nullptr;
   Skip skip_;
-  bool is_opaque_ = true;  ///< DrawState::is_opaque of every draw
+  bool is_opaque_ = true;  ///< SliceState::is_opaque of every draw
   int threads_ = 1;
   std::unique_ptr<tbb::task_arena>
       arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it

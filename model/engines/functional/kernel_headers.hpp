@@ -17,8 +17,6 @@
 #include <vector>
 
 #include "../../fragment_ops.hpp"
-#include "../../stages/depth_test.hpp"
-#include "../../stages/rop.hpp"
 #include "../../stages/triangle_setup.hpp"
 #include "frame.hpp"
 #include "kernels.hpp"

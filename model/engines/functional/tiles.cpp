@@ -24,7 +24,7 @@ class TileRaster {
   void draw(const Triangle& triangle, std::uint32_t index) {
     const TriangleSetup setup = setup_triangle(triangle, config_, widths_, context_.rect);
     if (setup.is_empty()) return;
-    const TriangleLanes<T, Lane> lanes(setup, config_, widths_);
+    const TriangleLanes<T, Lane> lanes(setup, widths_);
     const int shift = widths_.tile_shift;
     for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y)
       for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x)

@@ -113,7 +113,7 @@ struct Bin {
   bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
   std::int32_t *tile_low, *tile_high;
   BinMemory& memory;
-  DrawState state;
+  SliceState state;
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
   const LanePositions& position = lane_positions();

@@ -20,9 +20,11 @@ template <bool IsLess>
 struct OpaqueFragments {
   static constexpr bool kIsOpaque = true, kIsLess = IsLess;
 
-  HALFPLANE_INLINE static DepthFunc func(const DrawState& state) { return IsLess ? DepthFunc::less : state.depth_test; }
+  HALFPLANE_INLINE static DepthFunc func(const SliceState& state) {
+    return IsLess ? DepthFunc::less : state.depth_test;
+  }
 
-  HALFPLANE_INLINE static I16 passes(const DrawState& state, const I16& depth, const I16& stored) {
+  HALFPLANE_INLINE static I16 passes(const SliceState& state, const I16& depth, const I16& stored) {
     switch (func(state)) {
       case DepthFunc::less: return depth < stored;
       case DepthFunc::lequal: return depth <= stored;
@@ -36,12 +38,12 @@ struct OpaqueFragments {
   }
 
   /// The same for one fragment.
-  HALFPLANE_INLINE static bool passes_one(const DrawState& state, std::int32_t depth, std::int32_t stored) {
+  HALFPLANE_INLINE static bool passes_one(const SliceState& state, std::int32_t depth, std::int32_t stored) {
     return depth_passes(func(state), static_cast<std::uint32_t>(depth), static_cast<std::uint32_t>(stored));
   }
 
   /// Whether no depth in [record.z_low, record.z_high] passes against one in [low, high].
-  HALFPLANE_INLINE static bool is_behind(const DrawState& state, const Record& record, std::int32_t low,
+  HALFPLANE_INLINE static bool is_behind(const SliceState& state, const Record& record, std::int32_t low,
                                          std::int32_t high) {
     switch (func(state)) {
       case DepthFunc::less: return record.z_low >= high;
@@ -55,7 +57,7 @@ struct OpaqueFragments {
   }
 
   /// Tiles with depths in [low, high] where no fragment in [z_low, z_high] passes, and tiles where all do.
-  HALFPLANE_INLINE static void compare_ranges(const DrawState& state, const I16& z_low, const I16& z_high,
+  HALFPLANE_INLINE static void compare_ranges(const SliceState& state, const I16& z_low, const I16& z_high,
                                               const I16& low, const I16& high, I16& behind, I16& front) {
     behind = front = I16(0);
     switch (func(state)) {
@@ -76,7 +78,7 @@ struct OpaqueFragments {
   /// Writes fragments that follow each other. What is stored to memory might change the bin, for all that the compiler
   /// knows: hence copies.
   struct Writer {
-    DrawState state;
+    SliceState state;
     std::int32_t* depths;
     std::uint32_t* pixels;
 
