@@ -174,7 +174,7 @@ class CaptureFromBytes {
 
 /// A preset with some settings changed, if it may be changed so.
 inline Config config_from(ByteSource& bytes) {
-  const Config base = preset(preset_names()[bytes.byte() % preset_names().size()]);
+  Config base = preset(preset_names()[bytes.byte() % preset_names().size()]);
   Config config = base;
   if (bytes.byte() % 2 != 0) config.subpixel_bits = bytes.between(0, 8);
   if (bytes.byte() % 2 != 0) config.depth_bits = bytes.between(8, 24);

@@ -15,7 +15,7 @@ namespace halfplane {
 /// N lanes of a T. The compiler maps them to whatever vector registers it may use.
 template <class T, int N>
 struct LanesOf {
-  typedef T type __attribute__((vector_size(sizeof(T) * N)));
+  typedef T type __attribute__((vector_size(sizeof(T) * N)));  // NOLINT(modernize-use-using): GCC drops it there
 };
 template <class T, int N>
 using Lanes = typename LanesOf<T, N>::type;

@@ -27,7 +27,7 @@ void check_line(const exact::Line& line, const LineSpace& space, Random& random,
     std::vector<LinePixel> expected;
     for (const LinePixel& p : pixels)
       if (p.x >= box.left && p.x <= box.right && p.y >= box.top && p.y <= box.bottom) expected.push_back(p);
-    if (!expected.empty()) expected.back().is_last = 1;
+    if (!expected.empty()) expected.back().is_last = true;
     ASSERT_EQ(pixels_of(line, space, box), expected) << label(space.config) << ' ' << text(line);
   }
 }

@@ -24,7 +24,7 @@ class MesaPeerTest : public testing::Test {
  protected:
   void SetUp() override {
     try {
-      peer = std::make_unique<MesaPeer>(kWidth, kHeight, 16, 1);
+      peer_ = std::make_unique<MesaPeer>(kWidth, kHeight, 16, 1);
     } catch (const std::runtime_error& error) {
       ASSERT_NE(std::string(error.what()).find("install"), std::string::npos);
       GTEST_SKIP() << error.what();
@@ -33,9 +33,9 @@ class MesaPeerTest : public testing::Test {
 
   // Pixels that differ by more than rounding in any channel.
   int differing(const Scene& scene) {
-    peer->upload(scene);
-    EXPECT_GT(peer->render(), 0);
-    const std::vector<std::uint32_t> there = peer->color();
+    peer_->upload(scene);
+    EXPECT_GT(peer_->render(), 0);
+    const std::vector<std::uint32_t> there = peer_->color();
     Config config = preset("full");
     config.depth_bits = 16;  // the unit of polygon_offset
     const Picture here = color_picture(render_functional(scene, config).frame, config.color_format);
@@ -50,11 +50,11 @@ class MesaPeerTest : public testing::Test {
     return count;
   }
 
-  std::unique_ptr<MesaPeer> peer;
+  std::unique_ptr<MesaPeer> peer_;
 };
 
 TEST_F(MesaPeerTest, ItDrawsTheBuiltinScenesAsWeDo) {
-  EXPECT_NE(peer->name().find("llvmpipe"), std::string::npos);
+  EXPECT_NE(peer_->name().find("llvmpipe"), std::string::npos);
   for (const char* name :
        {"triangle", "teapot:4", "city:20", "layers:8", "ball:12", "objects:80", "shell:8", "dust:500"})
     EXPECT_LE(differing(make_builtin(name, kWidth, kHeight, {}, 1)), kWidth * kHeight / 200) << name;
@@ -86,22 +86,22 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
 
 TEST_F(MesaPeerTest, WhatItDoesNotHaveIsRefusedByName) {
   try {
-    peer->upload(make_builtin("star", kWidth, kHeight, {}, 1));
+    peer_->upload(make_builtin("star", kWidth, kHeight, {}, 1));
     FAIL() << "drawn";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("line_rule midpoint"), std::string::npos) << error.what();
   }
-  EXPECT_THROW((void)peer->render(), std::runtime_error);  // there is no scene now
+  EXPECT_THROW((void)peer_->render(), std::runtime_error);  // there is no scene now
 }
 
 TEST_F(MesaPeerTest, PeersOfDifferentThreadCountsLiveSideBySide) {
   const Scene scene = make_builtin("layers:8", kWidth, kHeight, {}, 1);
   MesaPeer other(kWidth, kHeight, 24, 2);
-  peer->upload(scene);
+  peer_->upload(scene);
   other.upload(scene);
-  EXPECT_GT(peer->render(), 0);
+  EXPECT_GT(peer_->render(), 0);
   EXPECT_GT(other.render(), 0);
-  EXPECT_EQ(peer->color(), other.color());
+  EXPECT_EQ(peer_->color(), other.color());
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(DepthTest, EveryFunctionIsTheUnionOfItsOutcomes) {
 }
 
 TEST(FragmentOps, LanesDoWhatTheScalarInstanceDoes) {
-  typedef std::uint32_t Four __attribute__((vector_size(16)));
+  typedef std::uint32_t Four __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
   Random random(12);
   std::mt19937 words(12);
   for (const auto func : kDepthFuncs) {
@@ -249,7 +249,8 @@ TEST(CoarseRaster, ClassOfATileIsWhatItsSamplesSay) {
     bool is_outside_one = false;
     for (std::size_t e = 0; e < 3; ++e) {
       int of_edge = 0;
-      for (int s = 0; s < 64; ++s) of_edge += edges[e] + (s / 8) * setup.edge[e].dx - (s % 8) * setup.edge[e].dy >= 0;
+      for (int s = 0; s < 64; ++s)
+        of_edge += edges[e] + std::int64_t{s / 8} * setup.edge[e].dx - std::int64_t{s % 8} * setup.edge[e].dy >= 0;
       inside += of_edge;
       is_outside_one |= of_edge == 0;
     }

@@ -12,7 +12,7 @@ namespace halfplane::stress {
 /// A point of the grid on which snapped vertices lie, in units of 2^-S pixel.
 struct Point {
   std::int64_t x = 0, y = 0;
-  auto operator<=>(const Point&) const = default;
+  auto operator<=>(const Point&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 and <=>
 };
 
 /// The engine of a run that has none of its own: render_functional, or, when fragments are asked for, render_scalar.
