@@ -42,7 +42,7 @@ struct DepthFormat {
   bool operator==(const DepthFormat&) const = default;
 };
 
-/// Reads `plane`, `u<b>` and `bins<b>` of 2...32 bits, `f16`, `f32`, `uf<e>.<m>` of at most 32 bits with e in 1...8 and m
+/// Reads `plane`, `uB` and `binsB` for B of 2...32 bits, `f16`, `f32`, `ufE.M` of at most 32 bits with E in 1...8 and M
 /// in 1...24. Throws InputError that says what there is.
 [[nodiscard]] DepthFormat parse_depth_format(std::string_view text);
 [[nodiscard]] std::string to_string(const DepthFormat& format);

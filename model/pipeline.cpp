@@ -361,6 +361,11 @@ bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::
 }
 
 void check_scene(const Scene& scene, const Config& config) {
+  validate(scene);
+  check_fits(scene, config);
+}
+
+void check_fits(const Scene& scene, const Config& config) {
   if (scene.width < 1 || scene.height < 1 || scene.width > config.target_width || scene.height > config.target_height)
     throw InputError(scene.name + ": the target is " + std::to_string(scene.width) + "x" +
                      std::to_string(scene.height) + ", but this configuration takes 1x1 to " +

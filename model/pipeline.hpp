@@ -94,8 +94,11 @@ struct Outline {
 void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
               std::uint32_t number, Counters& counters, Outline& out);
 
-/// Throws InputError when `scene` asks for what this configuration or version does not have.
+/// validate(scene), then check_fits().
 void check_scene(const Scene& scene, const Config& config);
+
+/// Throws InputError when `scene`, which is valid, asks for what this configuration or version does not have.
+void check_fits(const Scene& scene, const Config& config);
 
 /// The pixels that a clear fills: it obeys the scissor alone, not the viewport.
 [[nodiscard]] Rect clear_rect(const Scene& scene, const Clear& command);

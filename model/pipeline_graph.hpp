@@ -257,7 +257,8 @@ decltype(auto) with_packet_type(Arrow arrow, Visit&& visit) {
   return visit(std::type_identity<MemoryResponse>{});  // no such arrow
 }
 
-/// take(on<arrow>, packet) for the arrows from the I-th on, each of which does nothing.
+/// \cond inheritance that Doxygen takes for endless
+// take(on<arrow>, packet) for the arrows from the I-th on, each of which does nothing.
 template <std::size_t I = 0>
 struct PacketSinkFrom : PacketSinkFrom<I + 1> {
   using PacketSinkFrom<I + 1>::take;
@@ -268,12 +269,13 @@ struct PacketSinkFrom<kArrows> {
   virtual ~PacketSinkFrom() = default;
   void take() = delete;  // something for the first `using`
 };
+/// \endcond
 
 /// Who wants to see packets overrides the overloads it needs: take(On<Arrow::tile>, const TilePacket&). Each arrow's
 /// packets come in the order of that arrow; packets of different arrows come interleaved as the work happens.
 using PacketSink = PacketSinkFrom<>;
 
-/// Who wants all of them: Derived has template <Arrow A> void take_any(const PacketOf<A>&), public.
+/// \cond
 template <class Derived, std::size_t I = 0>
 struct EveryPacketFrom : EveryPacketFrom<Derived, I + 1> {
   using EveryPacketFrom<Derived, I + 1>::take;
@@ -283,6 +285,9 @@ struct EveryPacketFrom : EveryPacketFrom<Derived, I + 1> {
 };
 template <class Derived>
 struct EveryPacketFrom<Derived, kArrows> : PacketSink {};
+/// \endcond
+
+/// Who wants all of them: Derived has `template <Arrow A> void take_any(const PacketOf<A>&)`, public.
 template <class Derived>
 using EveryPacket = EveryPacketFrom<Derived>;
 

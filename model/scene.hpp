@@ -83,9 +83,9 @@ inline constexpr std::uint32_t kRestart = ~0U;
 
 /// Fills colour and depth inside the scissor of `state`.
 struct Clear {
-  std::uint32_t state = 0;                     ///< index into Scene::states
-  std::optional<std::array<double, 4>> color;  ///< 0...255
-  std::optional<double> depth;                 ///< window z in [0, 1]: ignores depth_range
+  std::uint32_t state = 0;                       ///< index into Scene::states
+  std::optional<std::array<double, 4>> color{};  ///< 0...255
+  std::optional<double> depth{};                 ///< window z in [0, 1]: ignores depth_range
 };
 
 /// A run of indices that share topology, state and object.
@@ -105,8 +105,9 @@ struct EndFrame {};
 
 using Command = std::variant<Clear, Draw, EndFrame>;
 
-/// A whole input. Invariants (kept by every reader): indices < vertices.size() or kRestart, all numbers finite, sizes
-/// positive.
+inline constexpr int kLargestSide = 16384;  ///< pixels along a side of any target
+
+/// A whole input. Its invariants are what validate() checks; every reader keeps them.
 struct Scene {
   std::string name;
   int width = 640, height = 480;  ///< target, pixels
@@ -118,5 +119,11 @@ struct Scene {
   std::vector<std::string> objects{""};
   std::vector<Command> commands;
 };
+
+/// Checks what no reader would make and whoever fills in the struct may: numbers that are finite and in their range
+/// (colours 0...255, depths 0...1, states as their table has them), draws inside the indices, indices < vertices.size()
+/// or kRestart, states and objects that exist, sides of 1 to kLargestSide pixels. Linear in the scene. Every function of
+/// the library that takes a scene calls it. Throws InputError, one line that names what and where.
+void validate(const Scene& scene);
 
 }  // namespace halfplane

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   add_scenes_command(app, selected);
   add_widths_command(app, selected);
   add_config_command(app, selected);
+  add_convert_command(app, selected);
   check_command(app, argc, argv);
   try {
     app.parse(argc, argv);

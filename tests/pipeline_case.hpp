@@ -13,14 +13,14 @@
 #include <string>
 #include <string_view>
 
+#include "model/capture/capture.hpp"
+#include "model/capture/capture_states.hpp"
 #include "model/config.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/functional/kernels.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/widths.hpp"
-#include "sim/scene/capture.hpp"
-#include "sim/scene/capture_states.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/compare.hpp"
 

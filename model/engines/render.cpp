@@ -1,6 +1,7 @@
 #include "render.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "../fragment_ops.hpp"
 #include "../pipeline.hpp"
@@ -26,13 +27,26 @@ void clear(Rendering& rendering, const Scene& scene, const Clear& command, const
   if (!rendering.visible.empty()) fill(rendering.visible, frame.width, -1);
 }
 
+void check_onto(const Scene& scene, const RenderOptions& options) {
+  const Framebuffer* onto = options.onto;
+  if (onto != nullptr && (onto->width != scene.width || onto->height != scene.height))
+    throw InputError(scene.name + ": made for " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
+                     ", but the frame that it is drawn on has " + std::to_string(onto->width) + "x" +
+                     std::to_string(onto->height));
+}
+
 Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options) {
+  check_onto(scene, options);
   Rendering rendering;
-  rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
-  std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(),
-            DepthEncode(config, scene.planes).of_window(1.0));
-  std::fill(rendering.frame.color.begin(), rendering.frame.color.end(),
-            pack_color(config.color_format, {0, 0, 0, 255}));
+  if (options.onto != nullptr) {
+    rendering.frame = *options.onto;
+  } else {
+    rendering.frame = Framebuffer(scene.width, scene.height, config.tile_size);
+    std::fill(rendering.frame.depth.begin(), rendering.frame.depth.end(),
+              DepthEncode(config, scene.planes).of_window(1.0));
+    std::fill(rendering.frame.color.begin(), rendering.frame.color.end(),
+              pack_color(config.color_format, {0, 0, 0, 255}));
+  }
   const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
   if (options.want_count) rendering.count.assign(pixels, 0);
   if (options.want_ids) rendering.ids.assign(pixels, -1);

@@ -46,16 +46,17 @@ using FragmentTap = std::function<void(const TappedFragment& fragment)>;
 
 struct RenderOptions {
   Skip skip;
-  int threads = 1;                                ///< of the functional engine; the image does not depend on it
-  std::string_view instruction_set;               ///< likewise: portable, avx2, avx512; otherwise the machine's best
-  bool general_fragments = false;                 ///< likewise: fragments one by one, as tests ask of it
-  StudyRules rules;                               ///< anything but the default: render_scalar alone has it
-  bool want_count = false;                        ///< fill Rendering::count
-  bool want_ids = false;                          ///< fill Rendering::ids
-  bool want_triangles = false;                    ///< keep Rendering::triangles (and fill `visible` beside `ids`)
-  CoverageTap coverage_tap;                       ///< implies want_triangles
-  PixelTap pixel_tap;                             ///< may be empty
-  FragmentTap fragment_tap;                       ///< of render_scalar alone; implies want_triangles
+  int threads = 1;                    ///< of the functional engine; the image does not depend on it
+  std::string_view instruction_set;   ///< likewise: portable, avx2, avx512; otherwise the machine's best
+  bool general_fragments = false;     ///< likewise: fragments one by one, as tests ask of it
+  StudyRules rules;                   ///< anything but the default: render_scalar alone has it
+  const Framebuffer* onto = nullptr;  ///< the frame that is drawn on, as this engine made it; null: an empty one
+  bool want_count = false;            ///< fill Rendering::count
+  bool want_ids = false;              ///< fill Rendering::ids
+  bool want_triangles = false;        ///< keep Rendering::triangles (and fill `visible` beside `ids`)
+  CoverageTap coverage_tap;           ///< implies want_triangles
+  PixelTap pixel_tap;                 ///< may be empty
+  FragmentTap fragment_tap;           ///< of render_scalar alone; implies want_triangles
   std::function<void(double fraction)> progress;  ///< 0...1, called a few times a second at most; may be empty
 
   [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap || fragment_tap; }
@@ -73,8 +74,11 @@ struct Rendering {
   double geometry_s = 0, raster_s = 0;
 };
 
-/// An empty target: the farthest depth, opaque black, and the buffers that the options ask for.
+/// The frame that the options name, or an empty target: the farthest depth, opaque black. With the buffers that they ask for.
 [[nodiscard]] Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options);
+
+/// Throws InputError when the frame that the options name has another size.
+void check_onto(const Scene& scene, const RenderOptions& options);
 
 /// A clear's colour, channels 0 to 255, as it is stored.
 [[nodiscard]] std::uint32_t clear_color(const std::array<double, 4>& color, ColorFormat format);

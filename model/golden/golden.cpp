@@ -326,6 +326,8 @@ int stored_channel(std::uint32_t color, ColorFormat format, int channel) {
 }
 
 Image render(const Scene& scene, const Config& config, const Options& options) {
+  validate(config);
+  validate(scene);
   if (scene.width < 1 || scene.height < 1 || scene.width > config.target_width || scene.height > config.target_height)
     throw InputError(scene.name + ": the target of " + std::to_string(scene.width) + "x" +
                      std::to_string(scene.height) + " does not fit " + std::to_string(config.target_width) + "x" +

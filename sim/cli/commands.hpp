@@ -20,5 +20,6 @@ void add_scenes_command(CLI::App& app, Action& selected);
 void add_stress_command(CLI::App& app, Action& selected);
 void add_widths_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
+void add_convert_command(CLI::App& app, Action& selected);
 
 }  // namespace halfplane

@@ -5,8 +5,8 @@
 #include <ostream>
 #include <sstream>
 
+#include "model/capture/capture.hpp"
 #include "sim/cosim/report.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {

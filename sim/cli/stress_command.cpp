@@ -4,10 +4,10 @@
 #include <memory>
 #include <sstream>
 
+#include "model/capture/capture.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/junit.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/stress/run.hpp"
 

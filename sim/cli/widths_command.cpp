@@ -6,9 +6,9 @@
 #include <memory>
 #include <sstream>
 
+#include "model/capture/capture.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/widths/study.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "model/capture/capture_text.hpp"
 #include "model/config.hpp"
 #include "sim/scene/text_cursor.hpp"
 

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <string_view>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/camera.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/gltf.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/obj.hpp"

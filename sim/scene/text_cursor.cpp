@@ -32,12 +32,6 @@ std::string printable(std::string_view word) {
 
 std::string in_quotes(std::string_view word) { return std::string(1, '\'').append(printable(word)).append(1, '\''); }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
 std::optional<double> parse_number(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   double value = 0;

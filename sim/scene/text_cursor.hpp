@@ -57,9 +57,6 @@ class TextCursor {
 /// The same in quotes.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
-/// The value of a hexadecimal digit of either case, -1 for any other character.
-[[nodiscard]] int hex_digit(char c);
-
 /// A finite decimal number that takes the whole word; a leading + is allowed. Too small to hold is zero.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 

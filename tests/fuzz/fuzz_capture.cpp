@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
-#include "sim/scene/capture.hpp"
 
 namespace {
 

@@ -10,11 +10,11 @@
 #include <sstream>
 #include <string>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
 #include "model/stages/primitive_assembly.hpp"
 #include "sim/scene/builtin.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/object_cull.hpp"
 
 namespace halfplane {

@@ -11,9 +11,9 @@
 #include <set>
 #include <sstream>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
 #include "sim/scene/builtin_meshes.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/random.hpp"
 

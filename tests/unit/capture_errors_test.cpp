@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
-#include "sim/scene/capture.hpp"
 
 namespace halfplane {
 namespace {

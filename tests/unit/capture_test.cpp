@@ -1,5 +1,5 @@
 // The capture format: what is read and what is written. docs/capture.md is its reference.
-#include "sim/scene/capture.hpp"
+#include "model/capture/capture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
 #include "model/stages/viewport.hpp"
 #include "sim/scene/builtin.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/random_state.hpp"
 

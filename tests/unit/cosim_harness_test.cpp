@@ -6,10 +6,10 @@
 #include <deque>
 #include <memory>
 
+#include "model/capture/capture.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/session.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/random.hpp"
 #include "tests/scene_builder.hpp"
 

@@ -12,11 +12,11 @@
 #include <tuple>
 #include <vector>
 
+#include "model/capture/capture.hpp"
+#include "model/capture/capture_states.hpp"
 #include "model/packet_words.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/reduce.hpp"
-#include "sim/scene/capture.hpp"
-#include "sim/scene/capture_states.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/random_state.hpp"
 #include "tests/pipeline_case.hpp"

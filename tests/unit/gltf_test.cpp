@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/obj.hpp"

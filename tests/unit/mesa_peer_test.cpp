@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "model/capture/capture.hpp"
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
 #include "sim/scene/builtin.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 
 namespace halfplane {

@@ -7,13 +7,13 @@
 #include <cstdio>
 #include <string>
 
+#include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
 #include "model/golden/golden.hpp"
 #include "model/host_stream.hpp"
 #include "model/packet_words.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/builtin_meshes.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/random.hpp"
 

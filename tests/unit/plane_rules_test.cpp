@@ -8,9 +8,9 @@
 #include <ostream>
 
 #include "../triangle_families.hpp"
+#include "model/capture/capture.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/study/compare/compare.hpp"
 
 namespace halfplane {

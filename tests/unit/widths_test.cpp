@@ -3,9 +3,9 @@
 
 #include <sstream>
 
+#include "model/capture/capture.hpp"
 #include "model/engines/scalar.hpp"
 #include "sim/scene/builtin.hpp"
-#include "sim/scene/capture.hpp"
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/widths/smallest.hpp"
 #include "sim/study/widths/study.hpp"

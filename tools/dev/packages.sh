@@ -3,7 +3,7 @@
 
 # The one list of packages: name (Debian 12, Ubuntu 24.04), what needs it, how we know that it is there (a command or
 # a header). build: anything at all; sim: the program; speed: only time; report: HTML reports; test, rtl, coverage, prove, lint,
-# soak: those commands.
+# soak, docs: those commands.
 readonly packages='
 build-essential      build c++
 cmake                build cmake
@@ -29,7 +29,8 @@ yosys                prove yosys
 python3              prove python3
 nextpnr-ice40        area  nextpnr-ice40
 python3              area  python3
-clang                soak  clang++'
+clang                soak  clang++
+doxygen              docs  doxygen'
 readonly everyday=(build sim speed report test rtl coverage)
 
 # present PROBE: a header is looked for where compilers and CMake look, a command in the path, a file at its path.

@@ -87,8 +87,20 @@ bool is_supported(const Scene& scene, const Config& config, const RenderOptions&
 FrameRenderer::FrameRenderer(const Config& config) : config_(config), widths_(derive_widths(config)) {}
 
 const Rendering& FrameRenderer::render(const PreparedScene& prepared, const RenderOptions& options) {
-  const Scene& scene = prepared.scene();
   start(prepared, options);
+  try {
+    run_commands(options);
+  } catch (...) {  // the frame is whole in any case: it may be drawn on
+    slice_count_ = 0;
+    finish();
+    throw;
+  }
+  finish();
+  return rendering_;
+}
+
+void FrameRenderer::run_commands(const RenderOptions& options) {
+  const Scene& scene = *scene_;
   auto last_report = Clock::now();
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     if (const auto* command = std::get_if<Clear>(&scene.commands[i])) clear(*command);
@@ -101,15 +113,14 @@ const Rendering& FrameRenderer::render(const PreparedScene& prepared, const Rend
     }
   }
   flush();
-  finish();
-  return rendering_;
 }
 
 Rendering FrameRenderer::take() { return std::exchange(rendering_, {}); }
 
 void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& options) {
   const Scene& scene = prepared.scene();
-  check_scene(scene, config_);
+  check_fits(scene, config_);
+  check_onto(scene, options);
   prepared_ = &prepared;
   scene_ = &scene;
   skip_ = options.skip;
@@ -132,7 +143,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   const auto tiles = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_) * kBinTiles * kBinTiles;
   tiles_.z_low.resize(tiles);
   tiles_.z_high.resize(tiles);
-  tiles_.pending.assign(tiles, 0);
+  if (is_new || options.onto == nullptr) tiles_.pending.assign(tiles, 0);
   if (is_new || !skip_.clear) tiles_.held.assign(tiles, 0);
   if (is_new) find_tiles();
   contexts_.clear();
@@ -141,7 +152,23 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   open_ = nullptr;
   primitive_ = 0;
   entries_done_ = 0;
-  clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
+  if (options.onto == nullptr) {
+    clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
+  } else if (options.onto != &frame) {
+    frame = *options.onto;
+    forget_tiles();
+  }
+}
+
+/// Nothing is known of what the frame holds: any depth.
+void FrameRenderer::forget_tiles() {
+  const auto largest = static_cast<std::int32_t>((std::uint32_t{1} << config_.depth_bits) - 1);
+  std::ranges::fill(tiles_.pending, std::uint8_t{0});
+  std::ranges::fill(tiles_.held, std::uint8_t{0});
+  for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
+    tiles_.z_low[i] = is_in_target_[i] != 0 ? 0 : kNoDepth.low;
+    tiles_.z_high[i] = is_in_target_[i] != 0 ? largest : kNoDepth.high;
+  }
 }
 
 /// Which tiles of the bins lie in the target. Those that do not hold no depth: no range of theirs is in the way.

@@ -27,7 +27,9 @@ class FrameRenderer {
 
  private:
   void start(const PreparedScene& prepared, const RenderOptions& options);
+  void run_commands(const RenderOptions& options);
   void find_tiles();
+  void forget_tiles();
   void clear(const Clear& command);
   void clear_whole(const Clear& command);
   void draw(std::uint32_t command);

@@ -35,6 +35,7 @@ void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, st
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()), scene_(&scene) {
+  validate(scene);
   constexpr std::size_t kSpare = 16;
   const std::size_t vertices = scene.vertices.size();
   for (auto* attribute : {&x, &y, &z, &w}) attribute->resize(vertices + kSpare);

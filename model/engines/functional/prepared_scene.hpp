@@ -14,6 +14,7 @@ namespace halfplane {
 /// Holds on to the scene, which must not change. Its colours are snapped; nothing else is computed.
 class PreparedScene {
  public:
+  /// Throws InputError for a scene that is not valid.
   explicit PreparedScene(const Scene& scene);
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "../draw_states.hpp"
+#include "../scene.hpp"
 #include "capture_text.hpp"
-#include "model/draw_states.hpp"
-#include "model/scene.hpp"
 
 namespace halfplane {
 

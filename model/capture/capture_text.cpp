@@ -4,14 +4,13 @@
 #include <charconv>
 #include <cstring>
 
-#include "model/config.hpp"
+#include "../config.hpp"
 
 namespace halfplane {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_hex_digit(char c) { return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 
 constexpr std::ptrdiff_t max_digits = 18;  // 10^18 < 2^64: the digits do not wrap
 
@@ -35,7 +34,7 @@ std::errc parse_number(std::string_view word, double& value) {
   const bool is_hex = word.starts_with("0x") || word.starts_with("0X");
   if (is_hex) word.remove_prefix(2);
   // from_chars takes a sign, "inf" and "nan" too: a number begins with a digit or a point here.
-  if (word.empty() || !(word[0] == '.' || (is_hex ? is_hex_digit(word[0]) : is_digit(word[0]))))
+  if (word.empty() || !(word[0] == '.' || (is_hex ? hex_digit(word[0]) >= 0 : is_digit(word[0]))))
     return std::errc::invalid_argument;
   const char* end = word.data() + word.size();
   const auto result =
@@ -75,6 +74,12 @@ void append_number(std::string& out, double value) {
   std::array<char, 32> buffer{};  // the longest shortest decimal has 24 characters: -2.2250738585072014e-308
   const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   out.append(buffer.data(), result.ptr);
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
 std::string quoted_word(std::string_view text) {

@@ -6,10 +6,10 @@
 #include <ostream>
 #include <span>
 
+#include "../stages/primitive_assembly.hpp"
 #include "capture.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
-#include "model/stages/primitive_assembly.hpp"
 
 namespace halfplane {
 namespace {
@@ -140,6 +140,7 @@ void CaptureWriter::write_state(const State& wanted) {
 }
 
 void CaptureWriter::write_clear(const Clear& clear) {
+  if (!clear.color && !clear.depth) return;  // clears nothing, and has no line
   write_state(scene_.states[clear.state]);
   buffer_ += "clear";
   const auto write = [this](const char* what, std::span<const double> numbers) {
@@ -218,7 +219,10 @@ bool same_command(const Scene& a, const Command& command_a, const Scene& b, cons
 
 }  // namespace
 
-void write_capture(const Scene& scene, std::ostream& out) { CaptureWriter(scene, out).write(); }
+void write_capture(const Scene& scene, std::ostream& out) {
+  validate(scene);
+  CaptureWriter(scene, out).write();
+}
 
 bool same_scene(const Scene& a, const Scene& b) {
   return a.width == b.width && a.height == b.height && a.planes == b.planes && a.states == b.states &&

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/scene.hpp"
+#include "../scene.hpp"
 
 namespace halfplane {
 
@@ -20,7 +20,7 @@ namespace halfplane {
 /// objects[0] is unnamed and no two objects share a name, states are distinct and in the order of their first use, the
 /// indices of the draws follow each other without gaps, two neighbouring lists of triangles differ in state or object.
 /// Another scene reads back in that form, with the same picture. Draws of less than one triangle are left out. The
-/// caller checks the stream.
+/// caller checks the stream. Throws InputError for a scene that is not valid.
 void write_capture(const Scene& scene, std::ostream& out);
 
 /// Whether two scenes are the same input, every number bit for bit. Scene::name and Draw::line do not count: they serve

@@ -11,15 +11,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "../config.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
-#include "model/config.hpp"
-#include "text_cursor.hpp"
 
 namespace halfplane {
 namespace {
-
-constexpr int max_side = 16384;  // pixels along a side of the target
 
 /// Builds the scene, one line at a time.
 class CaptureReader {
@@ -114,8 +111,8 @@ void CaptureReader::read_target() {
   if (target_line_ != 0)
     text_.fail("a second target, the first is on line " + std::to_string(target_line_) + "; remove one of them");
   target_line_ = text_.line();
-  scene_.width = text_.integer("the target's width", 1, max_side);
-  scene_.height = text_.integer("the target's height", 1, max_side);
+  scene_.width = text_.integer("the target's width", 1, kLargestSide);
+  scene_.height = text_.integer("the target's height", 1, kLargestSide);
 }
 
 void CaptureReader::read_planes() {

@@ -10,8 +10,11 @@
 
 namespace halfplane {
 
-/// `text` between quotes, fit for a one-line message: at most 40 bytes of it, the unprintable ones as \xNN.
+/// `text` between quotes, fit for a one-line message: at most 40 bytes of it, the unprintable ones by their number.
 [[nodiscard]] std::string quoted_word(std::string_view text);
+
+/// The value of a hexadecimal digit of either case, -1 for any other character.
+[[nodiscard]] int hex_digit(char c);
 
 /// "none, back, front, both"
 [[nodiscard]] std::string comma_list(std::span<const std::string_view> names);

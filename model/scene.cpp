@@ -1,0 +1,126 @@
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "config.hpp"
+#include "draw_states.hpp"
+#include "stages/viewport.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::size_t kMostPrimitives = std::numeric_limits<std::int32_t>::max();  // ids are signed
+
+/// Where a message says that something is: the scene, and what in it.
+class Place {
+ public:
+  explicit Place(const Scene& scene) : scene_(scene) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError((scene_.name.empty() ? "scene" : scene_.name) + ": " + what);
+  }
+  [[noreturn]] void fail_at(std::size_t command, const Draw& draw, const std::string& what) const {
+    if (draw.line != 0) throw InputError(place_of_draw(scene_.name, draw.line) + ": " + what);
+    fail("draw " + std::to_string(command) + ": " + what);
+  }
+
+ private:
+  const Scene& scene_;
+};
+
+bool is_between(double value, double low, double high) { return value >= low && value <= high; }  // no NaN is
+
+bool is_color(const std::array<double, 4>& rgba) {
+  return std::ranges::all_of(rgba, [](double c) { return is_between(c, 0, 255); });
+}
+
+bool is_finite(const Vertex& v) {
+  // 0 times what is not finite is no number.
+  return (v.x + v.y + v.z + v.w) * 0 == 0
+             ? (v.u * 0 == 0 && v.v * 0 == 0)
+             : std::ranges::all_of(std::array{v.x, v.y, v.z, v.w, v.u, v.v}, [](double c) { return std::isfinite(c); });
+}
+
+void check_vertices(const Scene& scene, const Place& place) {
+  if (scene.vertices.size() >= kRestart) place.fail("more vertices than indices can name; give fewer than 4294967295");
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
+    const Vertex& v = scene.vertices[i];
+    if (!is_finite(v)) place.fail("vertex " + std::to_string(i) + " has a coordinate that is no finite number");
+    if (!is_color(v.rgba)) place.fail("vertex " + std::to_string(i) + " has a colour component outside 0...255");
+  }
+}
+
+/// A member holds what its row of the table allows.
+void check_state(const Scene& scene, std::size_t index, const Place& place) {
+  for (const DrawState& row : draw_states()) {
+    const StateValue value = row.value(scene.states[index]);
+    const auto fail = [&](const std::string& what) {
+      place.fail("state " + std::to_string(index) + ": " + std::string(row.name) + " " + what);
+    };
+    if (value.word < row.words.size()) continue;
+    if (value.word > row.words.size() || row.numbers.empty()) fail("has a value that is none of its enumerators");
+    for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+      const StateNumber& number = row.numbers[i];
+      const double n = value.numbers[i];
+      if (!is_between(n, number.low, number.high) || (number.is_positive && n == 0))
+        fail("of " + std::to_string(n) + " is outside " + std::to_string(number.low) + "..." +
+             std::to_string(number.high));
+    }
+  }
+}
+
+void check_clear(const Scene& scene, std::size_t command, const Clear& clear, const Place& place) {
+  const auto fail = [&](const std::string& what) { place.fail("clear " + std::to_string(command) + ": " + what); };
+  if (clear.state >= scene.states.size())
+    fail("state " + std::to_string(clear.state) + " of " + std::to_string(scene.states.size()));
+  if (clear.color && !is_color(*clear.color)) fail("a colour component outside 0...255");
+  if (clear.depth && !is_between(*clear.depth, 0, 1)) fail("a depth outside 0...1");
+}
+
+void check_draw(const Scene& scene, std::size_t command, const Draw& draw, const Place& place) {
+  const auto fail = [&](const std::string& what) { place.fail_at(command, draw, what); };
+  const auto of = [](std::size_t number, std::size_t size) {
+    return std::to_string(number) + " of " + std::to_string(size);
+  };
+  if (draw.state >= scene.states.size()) fail("state " + of(draw.state, scene.states.size()));
+  if (draw.object >= scene.objects.size()) fail("object " + of(draw.object, scene.objects.size()));
+  if (static_cast<unsigned>(draw.topology) > static_cast<unsigned>(Topology::points)) fail("an unknown topology");
+  const std::size_t indices = scene.indices.size();
+  if (draw.first > indices || draw.count > indices - draw.first)
+    fail("indices " + std::to_string(draw.first) + " and " + std::to_string(draw.count) + " more, but there are " +
+         std::to_string(indices));
+  for (const std::uint32_t index : std::span(scene.indices).subspan(draw.first, draw.count))
+    if (index >= scene.vertices.size() && index != kRestart)
+      fail("index " + std::to_string(index) + ", but there are " + std::to_string(scene.vertices.size()) + " vertices");
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+  const Place place(scene);
+  if (!is_between(scene.width, 1, kLargestSide) || !is_between(scene.height, 1, kLargestSide))
+    place.fail("a target of " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
+               "; give 1x1 to 16384x16384 pixels");
+  if (scene.planes) {
+    const auto [near, far] = *scene.planes;
+    if (!(near > 0 && near < far) || std::isinf(near)) place.fail("planes must be 0 < near < far; far may be infinite");
+  }
+  check_vertices(scene, place);
+  for (std::size_t i = 0; i < scene.states.size(); ++i) check_state(scene, i, place);
+  std::size_t primitives = 0;  // at most: an index makes no more than one
+  for (std::size_t i = 0; i < scene.commands.size(); ++i) {
+    if (const auto* clear = std::get_if<Clear>(&scene.commands[i])) check_clear(scene, i, *clear, place);
+    const auto* draw = std::get_if<Draw>(&scene.commands[i]);
+    if (draw == nullptr) continue;
+    check_draw(scene, i, *draw, place);
+    primitives += draw->count;
+    if (primitives > kMostPrimitives)
+      place.fail_at(i, *draw, "more than 2147483647 indices up to here; split the frame");
+  }
+}
+
+}  // namespace halfplane

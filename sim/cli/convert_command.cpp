@@ -1,0 +1,110 @@
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "model/capture/capture.hpp"
+#include "sim/cli/commands.hpp"
+#include "sim/cli/options.hpp"
+#include "sim/cosim/session.hpp"
+#include "sim/show/image/whole_file.hpp"
+
+namespace halfplane {
+namespace {
+
+struct ConvertOptions : CommonOptions {
+  std::uint64_t random = 0;  ///< primitives; 0: a scene
+  std::string output;
+};
+
+/// FILE.hpt as FILE-1.hpt, when there are several.
+std::string numbered(const std::string& path, std::size_t number) {
+  const std::size_t stem = path.size() - std::string_view(".hpt").size();
+  return path.substr(0, stem) + "-" + std::to_string(number) + path.substr(stem);
+}
+
+std::string capture_text(const Scene& scene) {
+  std::ostringstream text;
+  write_capture(scene, text);
+  return text.str();
+}
+
+/// One scene, or those that `cosim --random` runs one after the other.
+SceneSource scenes_of(const ConvertOptions& options, const Config& config) {
+  double load_s = 0;
+  return options.random == 0 ? single_scene(load_scene(options, config, load_s))
+                             : random_scenes(config, options.seed, options.random);
+}
+
+Json scene_json(const std::string& path, const Scene& scene, std::size_t bytes) {
+  return {{"path", path},
+          {"width", scene.width},
+          {"height", scene.height},
+          {"vertices", scene.vertices.size()},
+          {"indices", scene.indices.size()},
+          {"states", scene.states.size()},
+          {"commands", scene.commands.size()},
+          {"bytes", bytes}};
+}
+
+int run(const ConvertOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  if (options.scene.empty() == (options.random == 0))
+    throw InputError(options.scene.empty() ? "nothing to convert; give a SCENE or --random N"
+                                           : "a scene and --random together; give one of them");
+  const bool is_stdout = options.output == "-";
+  if (is_stdout && options.json == "-")
+    throw InputError("-o - and --json both write to stdout; give one of them a file");
+  if (!is_stdout) check_output(options.output, ".hpt");
+  check_distinct({options.scene, options.output, options.json});
+  const Config config = effective_config(options);
+  const SceneSource next = scenes_of(options, config);
+  std::optional<Scene> scene = next(), following = next();
+  const bool is_several = following.has_value();
+  if (is_stdout && is_several)
+    throw InputError("--random " + std::to_string(options.random) +
+                     " makes several scenes, and stdout takes one capture; give fewer primitives, or -o FILE.hpt");
+  Json result = result_head("convert", options, config);
+  result["seed"] = options.seed;
+  result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
+  result["captures"] = Json::array();
+  std::ostream& out = is_stdout ? std::cerr : human(options);
+  for (std::size_t number = 1; scene; ++number, scene = std::move(following), following = next()) {
+    const std::string text = capture_text(*scene);
+    const std::string path = is_several ? numbered(options.output, number) : options.output;
+    if (is_stdout)
+      std::cout << text;
+    else
+      write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    result["captures"].push_back(scene_json(path, *scene, text.size()));
+    if (!options.quiet && !is_stdout)
+      out << path << "  " << scene->width << "x" << scene->height << ", " << with_commas(scene->vertices.size())
+          << " vertices, " << with_commas(scene->commands.size()) << " commands, " << with_commas(text.size())
+          << " bytes\n";
+  }
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("convert", "any scene as a capture, exact to the bit");
+  auto options = std::make_shared<ConvertOptions>();
+  add_scene_options(*command, *options);
+  command->get_option("SCENE")->required(false);
+  command
+      ->add_option("--random", options->random,
+                   "the scenes of `cosim --random N` with this --config and --seed: FILE-1.hpt and on where they are "
+                   "several")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->type_name("N");
+  add_file_option(*command, "-o", options->output, "the capture, .hpt, or - for stdout");
+  command->get_option("-o")->required();
+  command->footer(
+      "\nA mesh is written as its camera sees it, in clip space; so is what --convention and --set depth.mapping do.\n"
+      "\nExample:\n  halfplane convert model.glb --camera name=main --size 320x240 -o model.hpt");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane

@@ -1,0 +1,113 @@
+// `halfplane convert`: any scene as a capture that draws the same picture.
+#include <set>
+
+#include "model/capture/capture.hpp"
+#include "model/engines/functional.hpp"
+#include "program.hpp"
+#include "sim/cosim/session.hpp"
+#include "sim/scene/builtin.hpp"
+#include "sim/scene/load.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class ConvertCommand : public Cli {
+ protected:
+  /// The hashes of the picture and its depths.
+  [[nodiscard]] std::pair<std::string, std::string> hashes(const Arguments& scene) const {
+    Arguments words{"render"};
+    words.insert(words.end(), scene.begin(), scene.end());
+    const Json json = result(words);
+    return {json["color_hash"], json["depth_hash"]};
+  }
+
+  void expect_same(const std::string& scene, const std::string& options) const {
+    const Arguments words = split_words(scene + " " + options);
+    Arguments convert{"convert"};
+    convert.insert(convert.end(), words.begin(), words.end());
+    convert.insert(convert.end(), {"-o", "out.hpt"});
+    const Outcome outcome = run(convert);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(hashes(words), hashes({"out.hpt"})) << scene << " " << options;
+  }
+};
+
+TEST_F(ConvertCommand, AFileOfEveryKindDrawsTheSame) {
+  write("mesh.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n");
+  write(
+      "in.hpt",
+      "halfplane 1\ntarget 40 30\nclear color 9 9 9 255 depth 0.5\nspace window\nobject a b\nv 1 1 0.25\nv 39 2 0.5 1 "
+      "255 0 0 255\nv 20 29 0.1\nt 0 1 2\nstate depth_test greater\nl 0 1\nframe\np 2\n");
+  expect_same("mesh.obj", "--size 60x50 --camera eye=1,2,3");
+  expect_same("in.hpt", "");
+  expect_same("teapot:4", "--size 64x48 --convention d3d");
+  expect_same("dust:300", "--size 64x48 --seed 5");
+  expect_same("objects:20", "--size 64x48 --cull-objects both");
+}
+
+/// Every built-in scene, in several sizes, with several seeds, and the random stimulus of cosim: 200 and more.
+TEST_F(ConvertCommand, TwoHundredCapturesOfEverySceneRenderToTheSameHashes) {
+  int captures = 0;
+  const auto expect_equal = [&captures](const Scene& scene, const Config& config) {
+    std::ostringstream text;
+    write_capture(scene, text);
+    const Scene again = read_capture(text.str(), "again.hpt");
+    const Rendering a = render_functional(scene, config), b = render_functional(again, config);
+    EXPECT_EQ(a.frame.color, b.frame.color) << scene.name << ", " << scene.width;
+    EXPECT_EQ(a.frame.depth, b.frame.depth) << scene.name << ", " << scene.width;
+    ++captures;
+  };
+  for (const Builtin& builtin : all_builtin_scenes()) {
+    std::string name(builtin.name);
+    if (!builtin.size.empty())
+      name += ":" + std::to_string(std::min(builtin.default_size, std::max(builtin.min_size, 40)));
+    for (const int width : {33, 64, 100})
+      for (const std::uint64_t seed : {1, 2})
+        expect_equal(make_builtin(name, width, width / 2, {}, seed), preset(width == 64 ? "full" : "embedded"));
+  }
+  for (const char* name : {"tiny", "small", "embedded", "full"}) {
+    const Config config = preset(name);
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      const SceneSource next = random_scenes(config, seed, 150);
+      while (const auto scene = next()) expect_equal(*scene, config);
+    }
+  }
+  EXPECT_GE(captures, 200);
+}
+
+TEST_F(ConvertCommand, RandomIsTheStimulusOfCosim) {
+  ASSERT_EQ(run(split_words("convert --random 120 --seed 9 --config tiny -o r.hpt")).status, 0);
+  EXPECT_TRUE(exists("r-1.hpt") && exists("r-2.hpt"));
+  EXPECT_FALSE(exists("r.hpt"));
+  const SceneSource next = random_scenes(preset("tiny"), 9, 120);
+  for (const char* name : {"r-1.hpt", "r-2.hpt"}) {
+    std::ostringstream text;
+    write_capture(*next(), text);
+    const Bytes bytes = read(name);
+    EXPECT_EQ(text.str(), std::string(bytes.begin(), bytes.end()));
+  }
+  ASSERT_EQ(run(split_words("convert --random 20 -o one.hpt")).status, 0);
+  EXPECT_TRUE(exists("one.hpt"));
+}
+
+TEST_F(ConvertCommand, StdoutTakesTheCaptureAndNothingElse) {
+  const Outcome to_stdout = run(split_words("convert triangle --size 20x20 -o -"));
+  ASSERT_EQ(to_stdout.status, 0) << to_stdout.err;
+  EXPECT_EQ(to_stdout.err, "");
+  ASSERT_EQ(run(split_words("convert triangle --size 20x20 -o t.hpt")).status, 0);
+  const Bytes bytes = read("t.hpt");
+  EXPECT_EQ(to_stdout.out, std::string(bytes.begin(), bytes.end()));
+  EXPECT_EQ(listing(), std::vector<std::string>{"t.hpt"});
+}
+
+TEST_F(ConvertCommand, BadRequestsGetOneLine) {
+  expect_refused({"convert", "triangle"}, "-o");
+  expect_refused({"convert", "-o", "a.hpt"}, "nothing to convert");
+  expect_refused({"convert", "triangle", "--random", "5", "-o", "a.hpt"}, "give one of them");
+  expect_refused({"convert", "triangle", "-o", "a.png"}, ".hpt");
+  expect_refused({"convert", "--random", "500", "-o", "-"}, "several scenes");
+  expect_refused({"convert", "triangle", "-o", "-", "--json"}, "stdout");
+}
+
+}  // namespace
+}  // namespace halfplane::cli
