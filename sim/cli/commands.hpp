@@ -21,4 +21,8 @@ void add_stress_command(CLI::App& app, Action& selected);
 void add_widths_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
 
+/// These walk the whole of `app` when they run.
+void add_completions_command(CLI::App& app, Action& selected);
+void add_man_command(CLI::App& app, Action& selected);
+
 }  // namespace halfplane
