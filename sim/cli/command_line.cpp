@@ -166,6 +166,12 @@ std::vector<CommandText> command_texts(const CLI::App& program) {
   std::vector<CommandText> commands{command_text(program, true)};
   for (const CLI::App* app : program.get_subcommands({}))
     if (!app->get_name().empty()) commands.push_back(command_text(*app, false));
+  Words names;
+  for (const CommandText& command : commands)
+    if (!command.name.empty()) names.push_back(command.name);
+  for (CommandText& command : commands)
+    for (OptionText& positional : command.positionals)
+      if (positional.value == "COMMAND") positional.completion = {Kind::words, names, {}};
   return commands;
 }
 

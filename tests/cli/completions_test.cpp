@@ -73,6 +73,7 @@ TEST_F(CommandLine, BashOffersTheCommands) {
   const Words all = bash_offers({"halfplane", ""});
   for (const std::string& command : commands()) EXPECT_TRUE(has(all, command)) << command;
   EXPECT_EQ(bash_offers({"halfplane", "rend"}), Words{"render"});
+  EXPECT_EQ(bash_offers({"halfplane", "man", "rend"}), Words{"render"});
   EXPECT_EQ(bash_offers({"halfplane", "--ver"}), Words{"--version"});
 }
 
