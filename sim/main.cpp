@@ -1,8 +1,10 @@
 // halfplane COMMAND [SCENE] [options]
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 
 #include "sim/cli/build_info.hpp"
+#include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/dut.hpp"
@@ -34,6 +36,22 @@ void check_command(const CLI::App& app, int argc, char** argv) {
   }
   for (const CLI::App* command : commands) words.push_back(command->get_name());
   throw InputError("no command '" + word + "' in this version;" + did_you_mean(word, words) + " give one of " + names);
+}
+
+/// CLI11 says that a word is unexpected, but not which option it may have been; empty when there is none near.
+std::string option_hint(const CLI::App& app, int argc, char** argv) {
+  for (const CommandText& command : command_texts(app)) {
+    if (command.name != argv[1]) continue;
+    std::vector<std::string_view> names;
+    for (const OptionText& option : command.options)
+      names.insert(names.end(), option.names.begin(), option.names.end());
+    for (int i = 2; i < argc; ++i) {
+      const std::string_view typed(argv[i]), word = typed.substr(0, typed.find('='));
+      if (word.starts_with("--") && std::find(names.begin(), names.end(), word) == names.end())
+        return did_you_mean(word, names);
+    }
+  }
+  return "";
 }
 
 /// "halfplane 0.1.0 (commit 1a2b3c4, Release, GNU 12.2.0, RTL: embedded, tiny)"
@@ -72,7 +90,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const std::string command = argv[1][0] == '-' ? "" : std::string(argv[1]) + " ";
-    throw InputError(std::string(error.what()) + "; see `halfplane " + command + "--help`");
+    throw InputError(std::string(error.what()) + ";" + option_hint(app, argc, argv) + " see `halfplane " + command +
+                     "--help`");
   }
   return selected();
 }

@@ -116,6 +116,31 @@ std::string value_name(const CLI::Option& option, const std::string& type) {
   return word.empty() ? "VALUE" : word;
 }
 
+/// CLI11 names the type in C++; what a reader wants to know is what goes there.
+std::string placeholder(const std::string& word, Kind kind) {
+  if (word == "INT" || word == "UINT" || word == "FLOAT") return "N";
+  if (word != "TEXT" && word != "VALUE") return word;
+  switch (kind) {
+    case Kind::words: return "NAME";
+    case Kind::list:
+    case Kind::scenes: return "LIST";
+    case Kind::setting: return "KEY=VALUE";
+    case Kind::key: return "KEY=LIST";
+    case Kind::preset: return "PRESET|FILE";
+    case Kind::scene: return "SCENE";
+    default: return word;
+  }
+}
+
+/// "1 to 1024" of "INT in [1 - 1024]", as CLI::Range says it; empty without one.
+std::string range_text(const std::string& type) {
+  const auto open = type.find(" in ["), close = type.find(']', open);
+  if (open == std::string::npos || close == std::string::npos) return "";
+  std::string range = type.substr(open + 5, close - open - 5);
+  if (const auto dash = range.find(" - "); dash != std::string::npos) range.replace(dash, 3, " to ");
+  return range;
+}
+
 OptionText option_text(const CLI::Option& source) {
   OptionText option;
   for (const std::string& name : source.get_snames()) option.names.push_back("-" + name);
@@ -130,6 +155,8 @@ OptionText option_text(const CLI::Option& source) {
   if (option.is_attached) option.value = "FILE";
   option.is_repeatable = source.get_items_expected_max() > 1;
   option.completion = completion_of(option, source, type);
+  if (!option.names.empty()) option.value = placeholder(option.value, option.completion.kind);
+  option.range = range_text(type);
   return option;
 }
 

@@ -34,6 +34,7 @@ struct OptionText {
   std::string value;               ///< "FILE", "SCENE..."; empty for a flag
   std::string meaning;
   std::string standard;  ///< the default; may be empty
+  std::string range;     ///< "1 to 1024"; may be empty
   std::string group;     ///< heading; empty for the usual one
   Completion completion;
   bool is_required = false;

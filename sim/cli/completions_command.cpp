@@ -134,7 +134,7 @@ std::string bash_call(const Completion& completion) {
 }
 
 std::string bash_setting() {
-  std::string text = "\n_halfplane_setting() {\n  local key=${value%%=*}\n  case $value in\n";
+  std::string text = "\n_halfplane_setting() {\n  case $value in\n";
   std::vector<std::string> keys;
   for (const Setting& setting : settings()) {
     const std::string key(setting.key);

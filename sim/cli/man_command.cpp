@@ -37,7 +37,9 @@ std::string option_entry(const OptionText& option) {
   }
   if (option.names.empty()) names = italic(option.value);
   std::string text = ".TP\n" + names + "\n" + roff(option.meaning) + "\n";
-  if (!option.standard.empty()) text += "(default: " + roff(option.standard) + ")\n";
+  const std::string both = option.range.empty() || option.standard.empty() ? "" : "; ";
+  const std::string standard = option.standard.empty() ? "" : "default: " + option.standard;
+  if (const std::string limits = option.range + both + standard; !limits.empty()) text += "(" + roff(limits) + ")\n";
   using Kind = Completion::Kind;
   const bool is_choice = option.completion.kind == Kind::words || option.completion.kind == Kind::list;
   if (is_choice && !option.names.empty()) {
@@ -87,13 +89,21 @@ interrupted
 set and not empty: no escapes for colours, anywhere
 )";
 
+/// What stands behind the name: without the program's own name and a full stop.
+std::string purpose(const CommandText& command) {
+  std::string text = command.meaning;
+  if (const auto colon = text.find(": "); command.name.empty() && colon != std::string::npos) text.erase(0, colon + 2);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
 std::string man_page(const CommandText& command, const std::vector<CommandText>& all) {
   std::string title = page_name(command);
   for (char& c : title) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   // No date: the same program makes the same page.
   std::string text =
       ".TH \"" + roff(title) + "\" 1 \"\" \"halfplane " HALFPLANE_VERSION "\" \"Halfplane\"\n.SH NAME\n" +
-      roff(page_name(command)) + " \\- " + roff(command.meaning) + "\n.SH SYNOPSIS\n" + synopsis(command);
+      roff(page_name(command)) + " \\- " + roff(purpose(command)) + "\n.SH SYNOPSIS\n" + synopsis(command);
   if (!command.positionals.empty() || !command.notes.empty()) text += ".SH DESCRIPTION\n";
   for (const std::string& note : command.notes) text += roff(note) + "\n.br\n";
   for (const OptionText& positional : command.positionals) text += option_entry(positional);

@@ -80,9 +80,14 @@ TEST_F(Interface, MisspeltWordsAreAnsweredWithTheNearestOne) {
   expect_refused({"render", "triangle", "--set", "depth.bit=20"}, "did you mean depth.bits?");
   expect_refused({"bench", "triangle", "--vary", "subpixl.bits=1,2"}, "did you mean subpixel.bits?");
   expect_refused({"render", "triangle", "--engine", "cycle", "--what-if", "cache.line=4"}, "did you mean cache.lines?");
+  expect_refused({"render", "triangle", "--sise", "8x8"}, "did you mean --size?");
+  expect_refused({"compare", "triangle", "--cofnig=full"}, "did you mean --config?");
   write("c.toml", "preset = \"tinny\"\n");
   expect_refused({"config", "--config", "c.toml"}, "did you mean tiny?");
-  for (const Arguments& far : {Arguments{"sweep"}, {"render", "spaceship"}, {"config", "--set", "blah=1"}}) {
+  for (const Arguments& far : {Arguments{"sweep"},
+                               {"render", "spaceship"},
+                               {"config", "--set", "blah=1"},
+                               {"render", "triangle", "--nonsense"}}) {
     const Outcome outcome = run(far);
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.err.find("did you mean"), std::string::npos) << outcome.err;
