@@ -8,8 +8,9 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <vector>
+
+#include "sim/nearest_word.hpp"
 
 namespace halfplane {
 namespace {
@@ -102,35 +103,10 @@ void refuse_hostile_text(std::string_view text, std::string_view file) {
   }
 }
 
-// Insertions, deletions and substitutions between two words (Levenshtein).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-std::string unknown_key_message(std::string_view key) {
-  constexpr std::size_t kNear = 5;  // edits: more of them are another word
-  std::string_view nearest = "preset";
-  std::size_t best = edit_distance(key.substr(0, 64), nearest);
-  for (const Setting& setting : settings()) {
-    const std::size_t distance = edit_distance(key.substr(0, 64), setting.key);
-    if (distance >= best) continue;
-    best = distance;
-    nearest = setting.key;
-  }
-  std::string message = "no setting " + shown(key);
-  if (best <= kNear) message += "; did you mean " + std::string(nearest) + "?";
-  return message + " (`halfplane config --list` shows them all)";
+// `keys` begins with what is a key in this place beside the settings.
+std::string unknown_key_message(std::string_view key, std::vector<std::string_view> keys = {"preset"}) {
+  for (const Setting& setting : settings()) keys.push_back(setting.key);
+  return "no setting " + shown(key) + ";" + did_you_mean(key, keys) + " `halfplane config --list` shows them all";
 }
 
 /// One `key = value` of the file.
@@ -204,7 +180,8 @@ Config config_of(const std::vector<Entry>& entries, std::string_view file) {
     const auto* name = entry.value->as_string();
     if (name == nullptr) fail(place, "preset: give a name in quotes, as in preset = \"embedded\"");
     if (std::ranges::find(preset_names(), name->get()) == preset_names().end())
-      fail(place, "no preset " + shown(name->get()) + "; the presets are tiny, small, embedded and full");
+      fail(place, "no preset " + shown(name->get()) + ";" + did_you_mean(name->get(), preset_names()) +
+                      " the presets are tiny, small, embedded and full");
     config = preset(name->get());
   }
   for (const Entry& entry : entries) {
@@ -244,13 +221,41 @@ Config read_config_toml(std::string_view text, std::string_view file_name) {
   return config;
 }
 
+std::string config_toml(const Config& config) {
+  std::string text = "preset = \"" + config.preset + "\"  # what the values started from\n";
+  std::vector<std::string_view> tables;  // in the order of their first setting
+  for (const Setting& setting : settings())
+    if (const auto table = setting.key.substr(0, setting.key.find('.'));
+        std::ranges::find(tables, table) == tables.end())
+      tables.push_back(table);
+  for (const std::string_view table : tables) {
+    text += "\n[" + std::string(table) + "]\n";
+    for (const Setting& setting : settings()) {
+      const auto dot = setting.key.find('.');
+      if (setting.key.substr(0, dot) != table) continue;
+      const std::string value = get(config, setting);
+      const bool is_number = std::holds_alternative<int Config::*>(setting.member);
+      text += std::string(setting.key.substr(dot + 1)) + " = " + (is_number ? value : '"' + value + '"') + "  # " +
+              (is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " " : std::string()) +
+              std::string(setting.unit) + ": " + std::string(setting.meaning) + '\n';
+    }
+  }
+  return text;
+}
+
+void set_by_key(Config& config, std::string_view key, std::string_view value) {
+  if (find_setting(key) == nullptr) throw InputError(unknown_key_message(key, {}));
+  set(config, key, value);
+}
+
 Config read_config_file(const std::string& path) { return read_config_toml(read_text(path), path); }
 
 Config config_from_option(const std::string& option) {
   if (std::ranges::find(preset_names(), option) != preset_names().end()) return preset(option);
   const bool is_file = std::filesystem::path(option).extension() == ".toml" || option.find('/') != std::string::npos;
   if (is_file) return read_config_file(option);
-  throw InputError("--config: no preset " + shown(option) + "; give tiny, small, embedded, full or a .toml file");
+  throw InputError("--config: no preset " + shown(option) + ";" + did_you_mean(option, preset_names()) +
+                   " give tiny, small, embedded, full or a .toml file");
 }
 
 }  // namespace halfplane

@@ -20,6 +20,12 @@ namespace halfplane {
 /// The same for a file. Throws InputError when it cannot be read.
 [[nodiscard]] Config read_config_file(const std::string& path);
 
+/// What read_config_toml() reads back as the same configuration: the preset and every value, each with its meaning.
+[[nodiscard]] std::string config_toml(const Config& config);
+
+/// set(), and for an unknown key an InputError that names the nearest one.
+void set_by_key(Config& config, std::string_view key, std::string_view value);
+
 /// What `--config` takes: the name of a preset, or a file ending in .toml.
 [[nodiscard]] Config config_from_option(const std::string& option);
 

@@ -1,9 +1,14 @@
 // halfplane COMMAND [SCENE] [options]
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 
+#include "sim/cli/build_info.hpp"
+#include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cosim/dut.hpp"
+#include "sim/nearest_word.hpp"
 
 namespace {
 
@@ -22,17 +27,45 @@ void check_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) throw InputError("no command; try `halfplane render teapot -o teapot.png` or `halfplane --help`");
   const std::string word = argv[1];
   if (word.starts_with("-")) return;
+  const auto commands = app.get_subcommands({});
+  std::vector<std::string_view> words;
   std::string names;
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const CLI::App* command : commands) {
     if (command->get_name() == word) return;
     names += (names.empty() ? "" : ", ") + command->get_name();
   }
-  throw InputError("no command '" + word + "' in this version; give one of " + names);
+  for (const CLI::App* command : commands) words.push_back(command->get_name());
+  throw InputError("no command '" + word + "' in this version;" + did_you_mean(word, words) + " give one of " + names);
+}
+
+/// CLI11 says that a word is unexpected, but not which option it may have been; empty when there is none near.
+std::string option_hint(const CLI::App& app, int argc, char** argv) {
+  for (const CommandText& command : command_texts(app)) {
+    if (command.name != argv[1]) continue;
+    std::vector<std::string_view> names;
+    for (const OptionText& option : command.options)
+      names.insert(names.end(), option.names.begin(), option.names.end());
+    for (int i = 2; i < argc; ++i) {
+      const std::string_view typed(argv[i]), word = typed.substr(0, typed.find('='));
+      if (word.starts_with("--") && std::find(names.begin(), names.end(), word) == names.end())
+        return did_you_mean(word, names);
+    }
+  }
+  return "";
+}
+
+/// "halfplane 0.1.0 (commit 1a2b3c4, Release, GNU 12.2.0, RTL: embedded, tiny)"
+std::string version_text() {
+  const BuildInfo& info = build_info();
+  std::string rtl;
+  for (const DutFactory& dut : verilated_duts()) rtl += (rtl.empty() ? "" : ", ") + dut.name;
+  return "halfplane " HALFPLANE_VERSION " (commit " + std::string(info.commit) + ", " + std::string(info.type) + ", " +
+         std::string(info.compiler) + ", RTL: " + (rtl.empty() ? "none" : rtl) + ")";
 }
 
 int run(int argc, char** argv) {
   CLI::App app{"Halfplane: a fixed-point raster pipeline as C++ model, RTL and golden.", "halfplane"};
-  app.set_version_flag("--version", "halfplane " HALFPLANE_VERSION);
+  app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   app.footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n`halfplane COMMAND --help` shows a "
@@ -50,13 +83,16 @@ int run(int argc, char** argv) {
   add_widths_command(app, selected);
   add_config_command(app, selected);
   add_convert_command(app, selected);
+  add_completions_command(app, selected);
+  add_man_command(app, selected);
   check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const std::string command = argv[1][0] == '-' ? "" : std::string(argv[1]) + " ";
-    throw InputError(std::string(error.what()) + "; see `halfplane " + command + "--help`");
+    throw InputError(std::string(error.what()) + ";" + option_hint(app, argc, argv) + " see `halfplane " + command +
+                     "--help`");
   }
   return selected();
 }

@@ -10,6 +10,7 @@
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/config_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
 
@@ -58,7 +59,7 @@ std::vector<Variation> parse_variations(const std::vector<std::string>& texts, c
       if (std::count(variation.values.begin(), variation.values.end(), value) > 1)
         throw InputError(shown + " names a value twice: " + value);
       Config trial = config;
-      set(trial, variation.key, value);  // throws for what no configuration has
+      set_by_key(trial, variation.key, value);  // throws for what no configuration has
     }
     for (const Variation& other : variations)
       if (other.key == variation.key)

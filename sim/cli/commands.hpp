@@ -22,4 +22,8 @@ void add_widths_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
 void add_convert_command(CLI::App& app, Action& selected);
 
+/// These walk the whole of `app` when they run.
+void add_completions_command(CLI::App& app, Action& selected);
+void add_man_command(CLI::App& app, Action& selected);
+
 }  // namespace halfplane

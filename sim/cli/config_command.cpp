@@ -9,6 +9,8 @@
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/config_file.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {
@@ -74,13 +76,24 @@ Json widths_json(const std::vector<const Width*>& widths) {
 }
 
 struct ConfigOptions : CommonOptions {
-  bool list = false, widths = false, stages = false, sv = false, taps = false;
+  bool list = false, widths = false, stages = false, sv = false, taps = false, toml = false;
+  std::string path;
 };
 
 int run(const ConfigOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
+  check_output(options.path, options.path.empty() ? "" : ".toml");
+  check_distinct({options.config, options.json, options.path});
   std::ostream& out = human(options);
+  if (!options.path.empty()) {
+    const std::string text = config_toml(config);
+    write_whole_file(options.path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
+  if (options.toml) {
+    std::cout << config_toml(config);
+    return exit_ok;
+  }
   if (options.sv) {
     std::cout << raster_pkg(config);
     return exit_ok;
@@ -143,8 +156,14 @@ void add_config_command(CLI::App& app, Action& selected) {
   command->add_flag("--taps", options->taps, "prints cosim/taps.svh, the taps of the co-simulation")
       ->excludes("--json")
       ->excludes("--sv");
+  command->add_flag("--toml", options->toml, "prints this configuration as --config reads it")
+      ->excludes("--json")
+      ->excludes("--sv")
+      ->excludes("--taps");
+  add_file_option(*command, "-o", options->path, "writes this configuration as --config reads it, .toml");
   command->footer(
-      "\nExample:\n  halfplane config --list\n  halfplane config --config full --set depth.bits=20 --widths");
+      "\nExample:\n  halfplane config --set depth.bits=20 -o mine.toml\n  halfplane config --list\n  halfplane config "
+      "--config full --set depth.bits=20 --widths");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 

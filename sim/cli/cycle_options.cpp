@@ -6,6 +6,7 @@
 #include <ostream>
 #include <utility>
 
+#include "sim/nearest_word.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
@@ -173,9 +174,12 @@ Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
   Hardware hardware{config, {}, options.memory};
   for (const std::string& text : options.timing) {
     const auto [key, value] = split("--timing", text);
-    if (find_timing_setting(key) == nullptr)
-      throw InputError("--timing: no setting '" + key +
-                       "'; 'halfplane config --list' has them, --set takes the others");
+    if (find_timing_setting(key) == nullptr) {
+      std::vector<std::string_view> keys;
+      for (const TimingSetting& setting : timing_settings()) keys.push_back(setting.key);
+      throw InputError("--timing: no setting '" + key + "';" + did_you_mean(key, keys) +
+                       " 'halfplane config --list' has them, --set takes the others");
+    }
     change_for("--timing", hardware, key, value);
   }
   return hardware;

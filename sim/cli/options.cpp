@@ -105,7 +105,7 @@ Config effective_config(const CommonOptions& options) {
     const auto equals = setting.find('=');
     if (equals == std::string::npos)
       throw InputError("--set: '" + setting + "' has no '='; give key=value, as in depth.bits=20");
-    set(config, setting.substr(0, equals), setting.substr(equals + 1));
+    set_by_key(config, setting.substr(0, equals), setting.substr(equals + 1));
   }
   validate(config);
   return config;

@@ -214,7 +214,7 @@ int run(const RenderCommand& options) {
   result["engine"] = options.engine;
   result["width"] = scene.width;
   result["height"] = scene.height;
-  result["threads"] = 1;
+  result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
   result["objects"] = {{"in", objects.in},
                        {"culled_sphere", objects.culled_sphere},
                        {"culled_box", objects.culled_box},

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 #include <string_view>
+#include <vector>
 
 #include "model/capture/capture.hpp"
 #include "model/config.hpp"
+#include "sim/nearest_word.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/gltf.hpp"
@@ -18,32 +19,15 @@
 namespace halfplane {
 namespace {
 
-// How many letters must be put in, left out or changed to make `a` of `b` (Levenshtein).
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (const char letter : a) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (letter == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 [[noreturn]] void fail_unknown(const std::string& name) {
   const std::string_view word = std::string_view(name).substr(0, name.find(':'));
-  std::string_view nearest;
+  std::vector<std::string_view> words;
   std::string names;
   for (const Builtin& builtin : all_builtin_scenes()) {
     names += (names.empty() ? "" : ", ") + std::string(builtin.name);
-    const bool close = word.size() < 32 && distance(word, builtin.name) <= 2;
-    if (close && (nearest.empty() || distance(word, builtin.name) < distance(word, nearest))) nearest = builtin.name;
+    words.push_back(builtin.name);
   }
-  const std::string hint = nearest.empty() ? "" : " did you mean " + std::string(nearest) + "?";
-  throw InputError("unknown scene " + in_quotes(name) + ";" + hint + " built in are " + names +
+  throw InputError("unknown scene " + in_quotes(name) + ";" + did_you_mean(word, words) + " built in are " + names +
                    "; a file ends in .obj, .gltf, .glb or .hpt");
 }
 

@@ -18,8 +18,16 @@ std::vector<std::string> examples(const std::string& help) {
 }
 
 TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
-  for (const Arguments& command :
-       {Arguments{}, {"render"}, {"compare"}, {"depth"}, {"scenes"}, {"stress"}, {"widths"}, {"config"}}) {
+  for (const Arguments& command : {Arguments{},
+                                   {"render"},
+                                   {"compare"},
+                                   {"depth"},
+                                   {"scenes"},
+                                   {"stress"},
+                                   {"widths"},
+                                   {"config"},
+                                   {"completions"},
+                                   {"man"}}) {
     Arguments arguments = command;
     arguments.push_back("--help");
     const Outcome help = run(arguments);

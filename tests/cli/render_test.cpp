@@ -205,6 +205,8 @@ TEST_F(RenderCommand, SkippingWorkChangesNoImageAndIsCounted) {
 TEST_F(RenderCommand, ThreadsChangeNoImage) {
   const Json one = result({"render", "teapot", "--threads", "1"}),
              four = result({"render", "teapot", "--threads", "4"});
+  EXPECT_EQ(one["threads"], 1);
+  EXPECT_EQ(four["threads"], 4);
   for (const char* key : {"color_hash", "depth_hash", "fragments"}) EXPECT_EQ(one[key], four[key]);
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <vector>
+
+#include "sim/nearest_word.hpp"
 
 namespace halfplane {
 namespace {
@@ -62,8 +65,11 @@ void change(Hardware& hardware, std::string_view key, std::string_view value) {
   } else if (find_setting(key) != nullptr) {
     set(hardware.config, key, value);
   } else {
-    throw InputError("no setting '" + std::string(key) +
-                     "'; give one of 'halfplane config --list', memory, memory.latency or mhz");
+    std::vector<std::string_view> keys{"memory", "memory.latency", "mhz"};
+    for (const TimingSetting& known : timing_settings()) keys.push_back(known.key);
+    for (const Setting& known : settings()) keys.push_back(known.key);
+    throw InputError("no setting '" + std::string(key) + "';" + did_you_mean(key, keys) +
+                     " give one of 'halfplane config --list', memory, memory.latency or mhz");
   }
 }
 

@@ -1,0 +1,199 @@
+// Every result of --json against its schema in docs/json, by tests/cli/check_json.py.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "program.hpp"
+#include "sim/cosim/dut.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class JsonSchema : public Cli {
+ protected:
+  [[nodiscard]] static std::string schema_path(const std::string& command) {
+    return HALFPLANE_SOURCE_DIR "/docs/json/halfplane." + command + ".schema.json";
+  }
+
+  /// What the checker finds wrong with files in the folder, a line each; `words` go before the schema.
+  [[nodiscard]] std::vector<std::string> faults(const std::string& words, const std::string& command,
+                                                const std::string& files) const {
+    const std::string line = "cd '" + folder_.string() +
+                             "' && python3 '" HALFPLANE_SOURCE_DIR "/tests/cli/check_json.py' " + words + " '" +
+                             schema_path(command) + "' " + files + " 2>&1";
+    std::FILE* pipe = popen(line.c_str(), "r");
+    if (pipe == nullptr) return {"no shell"};
+    std::string text;
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
+    const int status = WEXITSTATUS(pclose(pipe));
+    auto lines = lines_of(text);
+    EXPECT_EQ(status, lines.empty() ? 0 : 1) << text;
+    return lines;
+  }
+
+  /// Runs each and expects results in which the schema requires nothing more and describes everything.
+  void expect_results(const std::string& command, const std::vector<std::string>& runs, int status = 0) const {
+    std::string files;
+    for (const std::string& words : runs) {
+      Arguments arguments = split_words(command + " " + words);
+      const std::string file = "result" + std::to_string(&words - runs.data()) + ".json";
+      arguments.insert(arguments.end(), {"--quiet", "--json=" + file});
+      const Outcome outcome = run(arguments);
+      ASSERT_EQ(outcome.status, status) << testing::PrintToString(arguments) << outcome.err;
+      files += " " + file;
+    }
+    for (const std::string& fault : faults("--described", command, files)) ADD_FAILURE() << fault;
+  }
+};
+
+TEST_F(JsonSchema, RenderIsDescribed) {
+  expect_results("render", {"triangle --size 16x16", "triangle --size 16x16 --engine scalar",
+                            "teapot:2 --size 16x16 --engine golden --config full",
+                            "triangle --size 16x16 --engine cycle --what-if cache.lines=1,4 --repeat 2",
+                            "triangle --size 16x16 --engine cycle --memory sdram --stalls 0.2"});
+}
+
+TEST_F(JsonSchema, CompareIsDescribed) {
+  expect_results("compare", {"triangle --size 32x32", "teapot:2 --size 32x32", "wires --size 32x32",
+                             "triangle --size 32x32 --traversal bbox"});
+}
+
+TEST_F(JsonSchema, DepthIsDescribed) {
+  expect_results("depth",
+                 {"--near 1 --far 100", "--near 1 --far 10 --mapping stdinf,revinf,log --format uf4.12 --error 0.1",
+                  "--scene coplanar --size 32x24 --bits 16 --sweep --slope 1"});
+}
+
+TEST_F(JsonSchema, StressIsDescribed) {
+  expect_results("stress",
+                 {"--case fans --config tiny --seconds 0.05 --captures worst", "--case fans,mean_bias --seconds 0.05"});
+}
+
+TEST_F(JsonSchema, WidthsAreDescribed) {
+  expect_results("widths",
+                 {"--config tiny --samples 100", "--smallest --scene triangle --size 32x32 --depth-error 1lsb"});
+}
+
+TEST_F(JsonSchema, BenchIsDescribed) {
+  expect_results("bench", {"triangle --size 16x16 --repeat 1 --engines functional,golden,cycle",
+                           "triangle --size 16x16 --repeat 1 --skips --growth --growth-max 100"});
+}
+
+TEST_F(JsonSchema, ConfigAndScenesAreDescribed) {
+  expect_results("config", {"", "--list --widths --stages --config full"});
+  expect_results("scenes", {""});
+}
+
+TEST_F(JsonSchema, CosimIsDescribed) {
+  if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
+  expect_results("cosim", {"triangle --size 16x16", "--random 20 --memory sdram"});
+  expect_results("render", {"triangle --size 16x16 --engine rtl"});
+}
+
+TEST_F(JsonSchema, MismatchesAreDescribed) {
+  if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
+  expect_results("cosim", {"triangle --size 32x32 --mutant 8"}, 1);
+  expect_results("reduce", {"triangle --size 32x32 --mutant 8"});
+  expect_results("mutants", {"--random 20"}, 1);
+}
+
+TEST_F(JsonSchema, EveryCommandWithAResultHasASchema) {
+  bool is_list = false;
+  int count = 0;
+  for (const std::string& line : lines_of(run({"--help"}).out)) {
+    if (is_list && line.starts_with("  ") && line[2] != ' ') {
+      const std::string command = line.substr(2, line.find(' ', 2) - 2);
+      if (run({command, "--help"}).out.find("--json") == std::string::npos) continue;
+      ++count;
+      std::ifstream file(schema_path(command));
+      const Json schema = Json::parse(file, nullptr, false);
+      ASSERT_FALSE(schema.is_discarded()) << command;
+      EXPECT_EQ(schema["properties"]["schema"]["const"], "halfplane." + command + "/1");
+      EXPECT_EQ(schema["additionalProperties"], true) << command << ": keys may be added";
+      for (const char* key : {"schema", "config", "scene", "seed", "wall_s"})
+        EXPECT_NE(std::find(schema["required"].begin(), schema["required"].end(), key), schema["required"].end())
+            << command << " " << key;
+    }
+    is_list = line == "Subcommands:" || (is_list && !line.empty());
+  }
+  EXPECT_GE(count, 11);
+}
+
+/// Whether every object of the schema says what each of its keys is.
+void expect_described(const Json& schema, const std::string& where) {
+  if (schema.contains("properties"))
+    for (const auto& [key, value] : schema["properties"].items()) {
+      if (!schema.contains("type")) continue;  // a condition
+      EXPECT_TRUE(value.contains("description") || value.contains("$ref")) << where << "/" << key;
+      expect_described(value, where + "/" + key);
+    }
+  for (const char* inner : {"items", "additionalProperties"})
+    if (schema.contains(inner) && schema[inner].is_object()) expect_described(schema[inner], where + "/*");
+}
+
+TEST_F(JsonSchema, EveryKeyHasADescription) {
+  for (const auto& entry : std::filesystem::directory_iterator(HALFPLANE_SOURCE_DIR "/docs/json")) {
+    std::ifstream file(entry.path());
+    const Json schema = Json::parse(file);
+    expect_described(schema, entry.path().stem());
+    if (schema.contains("$defs"))
+      for (const auto& [name, value] : schema["$defs"].items()) {
+        EXPECT_TRUE(value.contains("description")) << name;
+        expect_described(value, name);
+      }
+  }
+}
+
+TEST_F(JsonSchema, ResultsWithKeysMissingOrMistypedAreRefused) {
+  const Json good = result({"render", "triangle", "--size", "16x16", "--engine", "cycle"});
+  std::ifstream file(schema_path("render"));
+  std::vector<Json> bad;
+  for (const auto& key : Json::parse(file)["required"]) {
+    bad.push_back(good);
+    bad.back().erase(key.get<std::string>());
+  }
+  for (const auto& [pointer, value] : std::vector<std::pair<const char*, Json>>{{"/width", "16"},
+                                                                                {"/primitives/in", 1.5},
+                                                                                {"/fragments/covered", -1},
+                                                                                {"/color_hash", "xyz"},
+                                                                                {"/schema", "halfplane.render/2"},
+                                                                                {"/engine", "software"},
+                                                                                {"/config/depth.bits", "16"},
+                                                                                {"/stages/cull/busy", nullptr},
+                                                                                {"/wall_s", nullptr}}) {
+    bad.push_back(good);
+    bad.back()[Json::json_pointer(pointer)] = value;
+  }
+  for (const char* pointer : {"/primitives", "/fragments", "/time_s", "/skipped", "/config"}) {
+    bad.push_back(good);  // an empty object in place of a full one
+    bad.back()[Json::json_pointer(pointer)] = Json::object();
+  }
+  bad.push_back(good);
+  bad.back().erase("cycles");  // of this engine alone
+  std::string files;
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    const std::string name = "bad" + std::to_string(i) + ".json";
+    write(name, bad[i].dump());
+    files += " " + name;
+  }
+  const auto lines = faults("", "render", files);
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    const std::string start = "bad" + std::to_string(i) + ".json: ";
+    EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [&](const std::string& l) { return l.starts_with(start); }))
+        << bad[i].dump();
+  }
+}
+
+TEST_F(JsonSchema, KeysThatAreAddedAreNoFaultButAreNotDescribed) {
+  Json more = result({"render", "triangle", "--size", "16x16"});
+  more["new_key"] = 1;
+  more["fragments"]["new_key"] = 1;
+  more["partial"] = true;
+  write("more.json", more.dump());
+  EXPECT_TRUE(faults("", "render", "more.json").empty());
+  EXPECT_EQ(faults("--described", "render", "more.json").size(), 2u);
+}
+
+}  // namespace
+}  // namespace halfplane::cli
