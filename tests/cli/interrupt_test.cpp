@@ -1,4 +1,5 @@
 // Long work that a signal ends: what is written by then, and what the program says of it.
+#include <algorithm>
 #include <csignal>
 
 #include "program.hpp"
@@ -144,6 +145,18 @@ TEST_F(RtlInterrupt, CosimReportsWhatWasEqualSoFar) {
   EXPECT_TRUE(json["cycles"]["model"].is_null());
   EXPECT_NE(text("cosim.xml").find("<property name=\"partial\" value=\"true\"/>"), std::string::npos);
   EXPECT_EQ(text("cosim.xml").find("<failure"), std::string::npos);
+}
+
+TEST_F(RtlInterrupt, ReduceWritesTheBestSoFarOrSaysThatThereIsNothing) {
+  // A million triangles: its first run alone takes seconds, and each step with many of them as long.
+  const Outcome outcome = interrupt(
+      {"reduce", "dust", "--size", "640x480", "--mutant", "5", "-o", "small.hpt", "--json=small.json"}, SIGINT);
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_EQ(exists("small.hpt"), exists("small.json"));
+  if (!exists("small.json")) return;
+  const Json json = Json::parse(text("small.json"), nullptr, false);
+  EXPECT_EQ(json["partial"], true);
+  EXPECT_EQ(json["capture"], "small.hpt");
 }
 
 TEST_F(RtlInterrupt, MutantsKeepTheirVerdicts) {
