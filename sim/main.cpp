@@ -8,6 +8,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/dut.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/nearest_word.hpp"
 
 namespace {
@@ -104,10 +105,13 @@ int main(int argc, char** argv) {
   // write reports them, and no half-written file stays behind.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  catch_signals();
   try {
     const int status = run(argc, argv);
     if (!std::cout.flush()) throw InputError("writing to stdout failed; give a place that takes it, or --quiet");
     return status;
+  } catch (const Interrupted&) {
+    return fail(exit_interrupted, "interrupted: this work is whole or nothing, so nothing was written");
   } catch (const InputError& error) {
     return fail(exit_bad_input, error.what());
   } catch (const std::bad_alloc&) {

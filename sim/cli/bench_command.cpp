@@ -10,6 +10,7 @@
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/config_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
@@ -157,6 +158,7 @@ void measure_bench_rows(const BenchCommand& options, const std::vector<VariedCon
   plan.repeat = options.repeat;
   plan.wants_errors = !options.has_no_errors;
   plan.progress = [&progress](double fraction) { progress(fraction); };
+  plan.poll = stop_if_interrupted;
   plan.left_out = [&options](const std::string& engine, const std::string& line) {
     if (engine == "cycle" && options.engines.empty()) return;
     std::cerr << "halfplane: left out: " << line << '\n';
@@ -254,8 +256,9 @@ int run_bench(const BenchCommand& options) {
   const auto configs = varied_configs(config, parse_variations(options.variations, config));
   BenchStudy study;
   if (options.wants_rows()) measure_bench_rows(options, configs, study);
-  if (options.wants_skips || options.wants_all) measure_bench_skips(options, config, study);
-  if (options.wants_growth || options.wants_all) measure_bench_growth(options, config, study);
+  if ((options.wants_skips || options.wants_all) && !is_interrupted()) measure_bench_skips(options, config, study);
+  if ((options.wants_growth || options.wants_all) && !is_interrupted()) measure_bench_growth(options, config, study);
+  const bool is_partial = is_interrupted();
 
   Json result = result_head("bench", options, config);
   result["seed"] = options.seed;
@@ -263,6 +266,7 @@ int run_bench(const BenchCommand& options) {
   result["label"] = label(config);
   add_bench_json(result, study);
   result["wall_s"] = seconds_since(start);
+  if (is_partial) mark_partial(result);
   write_bench_page(options.page, result, bench_command_line(options));
   write_json(options, result);
   std::ostream& out = human(options);
@@ -270,7 +274,8 @@ int run_bench(const BenchCommand& options) {
   if (!study.cases.empty()) out << ", " << study.cases[0].scene->width << "x" << study.cases[0].scene->height;
   out << ", median of " << options.repeat << (options.repeat == 1 ? " frame" : " frames") << ", in turns\n";
   print_bench(out, study);
-  return exit_ok;
+  if (is_partial) print_partial(out);
+  return is_partial ? exit_interrupted : exit_ok;
 }
 
 }  // namespace

@@ -117,8 +117,9 @@ std::string times_as_fast(const BenchStudy& study, const BenchRow& row, const st
 
 /// Whether it was too slow to be measured as often as others.
 bool is_single(const BenchStudy& study, const BenchRow& row) {
-  return std::any_of(study.rows.begin(), study.rows.end(),
-                     [&](const BenchRow& other) { return other.times.seconds.size() > row.times.seconds.size(); });
+  return row.times.seconds.size() == 1 && std::any_of(study.rows.begin(), study.rows.end(), [](const BenchRow& other) {
+           return other.times.seconds.size() > 1;
+         });
 }
 
 std::vector<std::string> row_cells(const BenchStudy& study, const BenchRow& row) {

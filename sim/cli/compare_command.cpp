@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "sim/cli/commands.hpp"
-#include "sim/cli/options.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"

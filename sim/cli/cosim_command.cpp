@@ -1,8 +1,10 @@
 #include <iostream>
 #include <memory>
 
+#include "model/stages/primitive_assembly.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -13,19 +15,21 @@ constexpr double kReduceSeconds = 20;
 
 /// Runs the whole stimulus, with progress over all of it.
 Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut, SceneSource source) {
-  Progress progress(options, "co-simulating");
+  Progress progress(options, "co-simulating", "primitives");
   LockstepOptions lockstep = lockstep_options(options);
-  std::uint64_t triangles = 0, before = 0;  // given out, and of those before the scene at work
+  std::uint64_t primitives = 0, before = 0;  // given out, and of those before the scene at work
   const auto counted = [&]() -> std::optional<Scene> {
     auto scene = source();
-    before = triangles;
-    if (scene) triangles += scene->indices.size() / 3;
+    before = primitives;
+    if (!scene) return scene;
+    for (const Command& command : scene->commands)
+      if (const auto* draw = std::get_if<Draw>(&command)) primitives += primitive_count(*scene, *draw);
     return scene;
   };
   lockstep.progress = [&](double fraction) {
-    const double total = static_cast<double>(options.random != 0 ? options.random : triangles);
-    progress((static_cast<double>(before) + fraction * static_cast<double>(triangles - before)) / total);
-    return true;
+    const double total = static_cast<double>(options.random != 0 ? options.random : primitives);
+    const double done = static_cast<double>(before) + fraction * static_cast<double>(primitives - before);
+    return progress.goes_on(done / total, static_cast<std::uint64_t>(done));
   };
   return run_session(dut, config, lockstep, counted);
 }
@@ -60,12 +64,13 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   for (const Arrow boundary : kBoundaries)
     crossings[std::string(info(boundary).name)] = r.cycles_compared[index(boundary)];
   result["crossings"] = crossings;
+  const bool is_whole = !r.mismatch && !r.is_stopped;
   const bool is_late = r.mismatch && r.mismatch->kind == Mismatch::Kind::cycle && !r.mismatch->fields.empty();
   const auto error = [&r] {
     const FieldPair& cycle = r.mismatch->fields.front();
     return cycle.model > cycle.rtl ? cycle.model - cycle.rtl : cycle.rtl - cycle.model;
   };
-  result["cycles"] = {{"model", r.mismatch ? Json(nullptr) : Json(r.model_cycles)},
+  result["cycles"] = {{"model", is_whole ? Json(r.model_cycles) : Json(nullptr)},
                       {"rtl", r.cycles},
                       {"raster", r.raster_cycles},
                       {"tiles", r.tile_cycles},
@@ -123,7 +128,7 @@ int run(const CosimOptions& options) {
   const Session session =
       run_stimulus(options, config, *dut,
                    scene ? single_scene(std::move(*scene)) : random_scenes(config, options.seed, options.random));
-  const bool is_empty = session.result.total() == 0;
+  const bool is_empty = session.result.total() == 0 && !session.result.is_stopped;
 
   Json result = session_json(options, config, factory, session);
   std::optional<SavedFinding> saved;
@@ -137,6 +142,7 @@ int run(const CosimOptions& options) {
     result["reduced"]["triangles"] =
         saved->finding.reduced ? Json(saved->finding.reduced->primitives_after) : Json(nullptr);
   }
+  const bool is_partial = is_interrupted();
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
   if (saved) {
@@ -144,15 +150,22 @@ int run(const CosimOptions& options) {
     print_finding(out, *saved);
   } else {
     out << (is_empty ? std::string("FAILED: nothing was compared\n")
-                     : "equal       every bit of every packet, of memory and counters; the cycle of each of " +
+                     : std::string(is_partial ? "equal so far" : "equal      ") +
+                           " every bit of every packet, of memory and counters; the cycle of each of " +
                            with_commas(session.result.total_cycles_compared()) + " crossings\n");
   }
   if (!options.junit_path.empty()) {
-    const std::string xml = junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds);
+    const std::string xml =
+        junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds, is_partial);
     write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
   }
   result["wall_s"] = seconds_since(start);
+  if (is_partial) mark_partial(result);
   write_json(options, result);
+  if (is_partial) {
+    print_partial(out);
+    return exit_interrupted;
+  }
   return session.failed || is_empty ? exit_mismatch : exit_ok;
 }
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "model/capture/capture.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -135,12 +136,18 @@ void print_finding(std::ostream& out, const SavedFinding& saved) {
   out << mismatch_report(f.mismatch) << "  saved     " << (saved.failure.empty() ? saved.capture : saved.failure);
   if (f.reduced)
     out << ", " << f.reduced->primitives_after << " of " << f.reduced->primitives_before << " primitives ("
-        << f.reduced->runs << " runs" << (f.reduced->is_minimal ? "" : "; out of time, it may get smaller") << ")\n";
+        << f.reduced->runs << " runs"
+        << (f.reduced->is_minimal ? ""
+            : is_interrupted()    ? "; interrupted, it may get smaller"
+                                  : "; out of time, it may get smaller")
+        << ")\n";
   else
-    out << ", the whole scene: after a reset it does not fail alone\n";
+    out << (f.is_stopped ? ", the whole scene: interrupted before it was reduced\n"
+                         : ", the whole scene: after a reset it does not fail alone\n");
   out << "  waveform  "
-      << (saved.trace.empty() ? "none: this design is built without tracing, or the file cannot be written"
-                              : saved.trace + ", mismatch at time " + std::to_string(2 * f.mismatch.cycle))
+      << (saved.trace.empty() && is_interrupted() ? "none: interrupted"
+          : saved.trace.empty() ? "none: this design is built without tracing, or the file cannot be written"
+                                : saved.trace + ", mismatch at time " + std::to_string(2 * f.mismatch.cycle))
       << '\n'
       << "  repeat    " << saved.repeat << '\n';
 }

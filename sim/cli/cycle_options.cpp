@@ -6,6 +6,7 @@
 #include <ostream>
 #include <utility>
 
+#include "sim/cli/progress.hpp"
 #include "sim/nearest_word.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
@@ -130,6 +131,34 @@ std::string bottleneck(const CycleResult& cycle) {
   return text;
 }
 
+/// A row for each value of --what-if. Throws Interrupted.
+void vary(const CommonOptions& common, const CycleCommandOptions& options, const Scene& scene, const Stalls& stalls,
+          CycleResult& result) {
+  const Hardware& hardware = result.hardware;
+  const Framebuffer& frame = result.frame.rendering.frame;
+  const std::string color = color_hash(frame, hardware.config.color_format), depth = depth_hash(frame);
+  const auto all = variations(options);
+  if (all.empty()) return;
+  Progress progress(common, "varying");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto part = [&, i](double fraction) {
+      progress((static_cast<double>(i) + fraction) / static_cast<double>(all.size()));
+    };
+    part(0);
+    Hardware changed = hardware;
+    change(changed, all[i].first, all[i].second);
+    CycleOptions cycle;
+    cycle.stalls = stalls;
+    RenderOptions render;
+    render.progress = part;
+    const CycleRendering other = run_cycles(scene, changed, render, cycle);
+    const bool same = color_hash(other.rendering.frame, changed.config.color_format) == color &&
+                      depth_hash(other.rendering.frame) == depth;
+    result.rows.push_back({all[i].first, all[i].second, other.run, milliseconds(other.run.cycles, changed),
+                           traffic(other.run, changed.config).total(), same});
+  }
+}
+
 }  // namespace
 
 bool CycleCommandOptions::is_default() const {
@@ -214,24 +243,18 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
   result.is_explained = options.explain || run.cycles <= kFewCycles;
   if (result.is_explained) {
     Progress progress(common, "trying what would relieve it");
-    result.reliefs =
-        try_reliefs(scene, hardware, cycle.stalls, run.cycles, [&](double fraction) { progress(fraction); });
-    result.savings = measure_savings(scene, hardware, cycle.stalls, run.cycles);
+    try {
+      result.reliefs =
+          try_reliefs(scene, hardware, cycle.stalls, run.cycles, [&](double fraction) { progress(0.8 * fraction); });
+      result.savings = measure_savings(scene, hardware, cycle.stalls, run.cycles,
+                                       [&](double fraction) { progress(0.8 + 0.2 * fraction); });
+    } catch (const Interrupted&) {  // half an explanation would mislead
+      result.is_explained = false;
+    }
   }
-  const auto all = variations(options);
-  Progress progress(common, "varying");
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    progress(static_cast<double>(i) / static_cast<double>(all.size()));
-    Hardware changed = hardware;
-    change(changed, all[i].first, all[i].second);
-    CycleOptions stalls;
-    stalls.stalls = cycle.stalls;
-    const CycleRendering other = run_cycles(scene, changed, {}, stalls);
-    const bool same =
-        color_hash(other.rendering.frame, changed.config.color_format) == color_hash(frame, config.color_format) &&
-        depth_hash(other.rendering.frame) == depth_hash(frame);
-    result.rows.push_back({all[i].first, all[i].second, other.run, milliseconds(other.run.cycles, changed),
-                           traffic(other.run, changed.config).total(), same});
+  try {
+    vary(common, options, scene, cycle.stalls, result);
+  } catch (const Interrupted&) {  // the rows so far stand
   }
   return result;
 }

@@ -13,6 +13,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/depth_study.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
 
@@ -151,8 +152,18 @@ int thread_count(const DepthCommand& options) {
                              : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
 }
 
+/// Of a study that a signal ended, what is whole: the variants with their measurements, or the theory alone.
+void keep_whole(std::vector<DepthVariant>& variants, std::vector<DepthMeasurement>& measured) {
+  std::vector<DepthVariant> whole;
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    if (measured[i].is_whole) whole.push_back(variants[i]);
+  std::erase_if(measured, [](const DepthMeasurement& m) { return !m.is_whole; });
+  if (!whole.empty()) variants = std::move(whole);
+}
+
+/// Leaves those variants that were measured, if any were.
 SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& question, const Scene& scene,
-                       const std::vector<DepthVariant>& variants) {
+                       std::vector<DepthVariant>& variants) {
   SceneStudy study;
   const int threads = thread_count(options);
   const bool has_report = !options.paths.page.empty(), has_sweeps = has_report || options.sweeps;
@@ -164,12 +175,18 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
   measure.wants_maps = has_report || !options.paths.heat.empty() || !options.paths.fights.empty();
   measure.progress = part(0, 0.4);
   study.measured = measure_depths(scene, variants, measure, threads);
+  keep_whole(variants, study.measured);
+  if (study.measured.empty()) return study;
   if (study.measured[0].fragments == 0)
     throw InputError(options.scene +
                      ": no filled triangle covers a sample between the planes: there is nothing to measure");
+  if (is_interrupted()) {
+    study.answers = depth_answers(variants[0], study.measured[0], {});
+    return study;
+  }
   study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.4, 0.8));
   study.answers = depth_answers(variants[0], study.measured[0], study.trials);
-  if (has_sweeps) {
+  if (has_sweeps && !is_interrupted()) {
     Scene small = scene;  // clip space has no size of its own
     const bool is_scalable = std::all_of(scene.states.begin(), scene.states.end(),
                                          [](const State& state) { return !state.viewport && !state.scissor; });
@@ -246,6 +263,26 @@ std::string depth_title(const DepthCommand& options, const DepthQuestion& questi
          label(question.config) + ", seed " + std::to_string(options.seed);
 }
 
+/// The theory of every mapping and format, as far as a signal lets it come.
+void add_theory(const DepthCommand& options, const DepthQuestion& question, std::vector<DepthRow>& rows,
+                std::vector<DepthVariant>& variants) {
+  Progress progress(options, "working out the theory");
+  const auto all = static_cast<double>(question.mappings.size() * question.formats.size());
+  for (const DepthMapping mapping : question.mappings)
+    for (const DepthFormat& format : question.formats) {
+      const std::size_t before = rows.size();
+      const auto part = [&](double fraction) { progress((static_cast<double>(variants.size()) + fraction) / all); };
+      try {
+        part(0);
+        add_theory_rows(question, mapping, format, part, rows);
+      } catch (const Interrupted&) {
+        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(before), rows.end());
+        return;
+      }
+      variants.push_back(make_variant(question.config, mapping, format, question.planes));
+    }
+}
+
 int run_depth(const DepthCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
@@ -255,34 +292,33 @@ int run_depth(const DepthCommand& options) {
 
   std::vector<DepthRow> rows;
   std::vector<DepthVariant> variants;
-  for (const DepthMapping mapping : question.mappings)
-    for (const DepthFormat& format : question.formats) {
-      add_theory_rows(question, mapping, format, rows);
-      variants.push_back(make_variant(config, mapping, format, question.planes));
-    }
+  add_theory(options, question, rows, variants);
   const std::vector<DepthRow> theory_rows = rows;
   SceneStudy study;
-  if (scene) study = study_scene(options, question, *scene, variants);
+  if (scene && !is_interrupted()) study = study_scene(options, question, *scene, variants);
+  const bool is_partial = is_interrupted(), is_measured = !study.measured.empty();
   for (std::size_t i = 0; i < study.measured.size(); ++i)
     add_measured_rows(question, variants[i], study.measured[i], rows);
   if (question.length)
     for (const std::string& answer : length_answers(question)) study.answers.push_back(answer);
 
-  const std::string title = depth_title(options, question, scene);
+  const std::string title = depth_title(options, question, scene) + (is_partial ? ", interrupted: partial" : "");
   Json result = result_head("depth", options, config);
   result["near"] = question.planes[0];
   result["far"] = question.planes[1];
   result["command"] = command_line(options, question);
   result.update(study_json(question, rows, variants, study));
   result["wall_s"] = seconds_since(start);
-  write_depth_files(options.paths, title, question, result, scene ? &*scene : nullptr, variants, study);
+  if (is_partial) mark_partial(result);
+  write_depth_files(options.paths, title, question, result, is_measured ? &*scene : nullptr, variants, study);
+  if (is_partial) rows.push_back({"", "", question.near_text, question.far_text, "", "partial", 1});
   const std::string csv = depth_csv(rows);
   if (!options.csv_path.empty() && options.csv_path != "-")
     write_whole_file(options.csv_path, {reinterpret_cast<const std::uint8_t*>(csv.data()), csv.size()});
   write_json(options, result);
   const bool is_broken = !holds(rows, study);
   if (is_broken) std::cerr << "halfplane: " << kBroken << '\n';
-  const int status = is_broken ? exit_mismatch : exit_ok;
+  const int status = is_partial ? exit_interrupted : is_broken ? exit_mismatch : exit_ok;
   if (options.csv_path == "-") {
     std::cout << csv;
     return status;
@@ -290,9 +326,10 @@ int run_depth(const DepthCommand& options) {
   std::ostream& out = human(options);
   out << title << '\n';
   print_theory(out, theory_rows);
-  if (scene) print_measured(out, variants, study);
+  if (is_measured) print_measured(out, variants, study);
   if (!study.answers.empty()) out << '\n';
   for (const std::string& answer : study.answers) out << answer << '\n';
+  if (is_partial) print_partial(out);
   return status;
 }
 

@@ -31,7 +31,7 @@ std::string mapping_name(DepthMapping mapping) {
 }
 
 void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const DepthFormat& format,
-                     std::vector<DepthRow>& rows) {
+                     const std::function<void(double)>& progress, std::vector<DepthRow>& rows) {
   const ExactDepth theory(mapping, format, question.near, question.far);
   const DepthRow head{mapping_name(mapping), to_string(format), question.near_text, question.far_text, "", "", 0};
   const auto add = [&](const std::string& z, const char* metric, double value) {
@@ -40,7 +40,10 @@ void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const 
     rows.back().metric = metric;
     rows.back().value = value;
   };
-  for (const std::string& z : question.z) {
+  for (std::size_t i = 0; i < question.z.size(); ++i) {
+    const std::string& z = question.z[i];
+    const double done = static_cast<double>(i) / static_cast<double>(question.z.size());
+    progress(done);
     const DepthFigures figures = theory.at(parse_decimal(z, "--z"));
     add(z, "code", figures.code);
     add(z, "bin_width", figures.bin_width);
@@ -58,6 +61,7 @@ void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const 
     // Tried: the part of overlapping fragments that fight.
     MeasureOptions order_alone;
     order_alone.wants_errors = false;
+    order_alone.progress = [&](double) { progress(done); };
     for (const auto& [metric, part] : {std::pair{"fights_at_separation", 1.0}, {"fights_at_half", 0.5}}) {
       const DepthOrder order =
           measure_depth(two_planes(bound, depth, *question.view, part, question.seed), variant, order_alone).order;

@@ -6,6 +6,7 @@
 #include "model/engines/functional.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/scene/builtin.hpp"
@@ -54,14 +55,21 @@ bool shows(Dut& dut, const Config& config, const ModelPicture& picture, std::uin
   return frame && color_hash(*frame, config.color_format) == picture.color && depth_hash(*frame) == picture.depth;
 }
 
+/// Throws Interrupted.
 Verdict judge(const MutantsCommand& options, const Config& config, Dut& dut, const Mutant& mutant,
               const std::vector<ModelPicture>& pictures) {
   LockstepOptions lockstep = lockstep_options(options);
+  lockstep.progress = [](double) {
+    stop_if_interrupted();
+    return true;
+  };
   lockstep.mutant = static_cast<std::uint16_t>(mutant.id);
   const Session session = run_session(dut, config, lockstep, random_scenes(config, options.seed, options.random));
   Verdict verdict{mutant, session.result.mismatch, {}};
-  for (const ModelPicture& picture : pictures)
+  for (const ModelPicture& picture : pictures) {
+    stop_if_interrupted();
     if (!shows(dut, config, picture, lockstep.mutant)) verdict.pictures.push_back(picture.scene.name);
+  }
   return verdict;
 }
 
@@ -136,11 +144,15 @@ int run(const MutantsCommand& options) {
   std::vector<Verdict> verdicts;
   {
     Progress progress(options, "running mutants");
-    for (const Mutant& mutant : mutants()) {
-      progress(static_cast<double>(verdicts.size()) / static_cast<double>(mutants().size()));
-      verdicts.push_back(judge(options, config, *dut, mutant, pictures));
+    try {
+      for (const Mutant& mutant : mutants()) {
+        progress(static_cast<double>(verdicts.size()) / static_cast<double>(mutants().size()));
+        verdicts.push_back(judge(options, config, *dut, mutant, pictures));
+      }
+    } catch (const Interrupted&) {  // the verdicts so far stand
     }
   }
+  const bool is_partial = is_interrupted();
   const auto caught = std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.mismatch; });
   const auto unseen =
       std::count_if(verdicts.begin(), verdicts.end(), [](const Verdict& v) { return v.pictures.empty(); });
@@ -155,6 +167,7 @@ int run(const MutantsCommand& options) {
   result["mutants"] = Json::array();
   for (const Verdict& verdict : verdicts) result["mutants"].push_back(verdict_json(verdict, options.scenes));
   result["wall_s"] = seconds_since(start);
+  if (is_partial) mark_partial(result);
   write_json(options, result);
 
   std::ostream& out = human(options);
@@ -165,6 +178,10 @@ int run(const MutantsCommand& options) {
   if (options.scenes)
     out << unseen << " of them change no picture of the " << pictures.size() << " built-in scenes at " << options.size
         << ": only the comparison of packets and counters shows them\n";
+  if (is_partial) {
+    print_partial(out);
+    return exit_interrupted;
+  }
   return all_caught ? exit_ok : exit_mismatch;
 }
 

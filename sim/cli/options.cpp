@@ -1,7 +1,5 @@
 #include "sim/cli/options.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -191,22 +189,6 @@ void write_json(const CommonOptions& options, const Json& result) {
     return;
   }
   write_whole_file(options.json, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
-Progress::Progress(const CommonOptions& options, std::string what)
-    : what_(std::move(what)),
-      start_(std::chrono::steady_clock::now()),
-      is_enabled_(!options.quiet && isatty(STDERR_FILENO) != 0) {}
-
-Progress::~Progress() {
-  if (is_shown_) std::cerr << "\r\033[K" << std::flush;
-}
-
-void Progress::operator()(double fraction) {
-  if (!is_enabled_ || std::chrono::steady_clock::now() - start_ < std::chrono::seconds(2)) return;
-  is_shown_ = true;
-  std::cerr << '\r' << what_ << ' ' << static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0)) << " %\033[K"
-            << std::flush;
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {

@@ -19,7 +19,7 @@ namespace halfplane {
 using Json = nlohmann::ordered_json;
 
 /// Exit status: the same for every command.
-enum ExitStatus : int { exit_ok = 0, exit_mismatch = 1, exit_bad_input = 2, exit_missing = 3 };
+enum ExitStatus : int { exit_ok = 0, exit_mismatch = 1, exit_bad_input = 2, exit_missing = 3, exit_interrupted = 130 };
 
 /// The common options as typed.
 struct CommonOptions {
@@ -82,21 +82,6 @@ struct Size {
 
 /// Writes the result where --json says. Call it before the human text: if it fails, its one line stands alone.
 void write_json(const CommonOptions& options, const Json& result);
-
-/// A progress line on stderr for work longer than two seconds; nothing in a pipe or with --quiet.
-class Progress {
- public:
-  Progress(const CommonOptions& options, std::string what);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  void operator()(double fraction);
-
- private:
-  std::string what_;
-  std::chrono::steady_clock::time_point start_;
-  bool is_enabled_, is_shown_ = false;
-};
 
 /// Seconds since `start`.
 [[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);

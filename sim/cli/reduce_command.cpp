@@ -3,6 +3,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
+#include "sim/cli/progress.hpp"
 
 namespace halfplane {
 namespace {
@@ -10,6 +11,18 @@ namespace {
 struct ReduceCommand : CosimOptions {
   double seconds = 60;
 };
+
+/// The mismatch that the scene fails with. Throws Interrupted.
+std::optional<Mismatch> first_mismatch(const ReduceCommand& options, const Config& config, Dut& dut,
+                                       const Scene& scene) {
+  Progress progress(options, "running the scene");
+  LockstepOptions lockstep = lockstep_options(options);
+  lockstep.progress = [&progress](double fraction) {
+    progress(fraction);
+    return true;
+  };
+  return lockstep_test(dut, config)(scene, lockstep);
+}
 
 int run(const ReduceCommand& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -20,7 +33,7 @@ int run(const ReduceCommand& options) {
   const Scene scene = load_scene(options, config, load_s);
   check_hardware_scene(scene, config);
   const std::unique_ptr<Dut> dut = make_dut(factory);
-  const auto mismatch = lockstep_test(*dut, config)(scene, lockstep_options(options));
+  const auto mismatch = first_mismatch(options, config, *dut, scene);
   if (!mismatch)
     throw InputError("'" + options.scene +
                      "' does not fail with these options, so there is nothing to reduce; give the --seed, --stalls, "
@@ -38,9 +51,12 @@ int run(const ReduceCommand& options) {
     result["minimal"] = saved.finding.reduced->is_minimal;
   }
   result["wall_s"] = seconds_since(start);
+  const bool is_partial = is_interrupted();
+  if (is_partial) mark_partial(result);
   write_json(options, result);
   print_finding(human(options), saved);
-  return exit_ok;
+  if (is_partial) print_partial(human(options));
+  return is_partial ? exit_interrupted : exit_ok;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "model/golden/golden.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cycle_options.hpp"
-#include "sim/cli/options.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -54,16 +54,16 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
   return rendering;
 }
 
-/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted.
-Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts) {
-  Progress progress(options, "rendering");
+/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted. `progress` may throw Interrupted.
+Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
+                     const std::function<void(double)>& progress) {
   RenderOptions render;
   render.skip = parse_skip(options.skip);
   render.threads = options.threads;
   render.rules = study_rules(options.study);
   render.want_count = !options.count_path.empty() || !options.draws_path.empty();
   render.want_ids = !options.ids_path.empty();
-  render.progress = [&progress](double fraction) { progress(fraction); };
+  render.progress = progress;
   if (options.engine == "functional") return render_functional(scene, config, render);
   if (options.engine == "scalar") return render_scalar(scene, config, render);
   if (options.engine == "rtl") {
@@ -146,15 +146,26 @@ Json stages_json(const LockstepResult& run) {
   return stages;
 }
 
-/// Renders again N times after the first and adds {min, median} of the engine's own time.
+/// Renders again N times after the first, or until a signal comes. {min, median} of the engine's own time.
 Json measure(const RenderCommand& options, const Scene& scene, const Config& config) {
   std::vector<double> times;
-  for (int i = 0; i < options.repeat; ++i) {
-    const Rendering rendering = run_engine(options, scene, config, nullptr);
-    times.push_back(rendering.geometry_s + rendering.raster_s);
+  Progress progress(options, "repeating", "frames");
+  const auto part = [&](double fraction) {
+    progress((static_cast<double>(times.size()) + fraction) / options.repeat, times.size());
+  };
+  try {
+    while (times.size() < static_cast<std::size_t>(options.repeat)) {
+      part(0);
+      const Rendering rendering = run_engine(options, scene, config, nullptr, part);
+      times.push_back(rendering.geometry_s + rendering.raster_s);
+    }
+  } catch (const Interrupted&) {  // the frames so far count
+    if (times.empty()) return nullptr;
   }
   std::sort(times.begin(), times.end());
-  return {{"min", times.front()}, {"median", times[times.size() / 2]}};
+  Json json{{"min", times.front()}, {"median", times[times.size() / 2]}};
+  if (is_interrupted()) json["frames"] = times.size();
+  return json;
 }
 
 void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config,
@@ -194,9 +205,10 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
         << " from the first primitive to the last write, " << with_commas(facts.rtl.tile_cycles)
         << " of them moving tiles\n";
   if (facts.cycle) print_cycles(out, *facts.cycle);
-  if (options.repeat > 0)
+  if (options.repeat > 0 && !result["frame_s"].is_null())
     out << "frame       min " << fixed(1e3 * result["frame_s"]["min"].get<double>(), 2) << " ms, median "
-        << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of " << options.repeat << '\n';
+        << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of "
+        << result["frame_s"].value("frames", options.repeat) << '\n';
   out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
       << result["depth_hash"].get<std::string>() << '\n';
 }
@@ -209,7 +221,10 @@ int run(const RenderCommand& options) {
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
   CycleFacts facts;
-  const Rendering rendering = run_engine(options, scene, config, &facts);
+  const Rendering rendering = [&] {
+    Progress progress(options, "rendering");
+    return run_engine(options, scene, config, &facts, [&progress](double fraction) { progress(fraction); });
+  }();
   Json result = result_head("render", options, config);
   result["engine"] = options.engine;
   result["width"] = scene.width;
@@ -241,9 +256,12 @@ int run(const RenderCommand& options) {
                               : "engine " + options.engine;
   write_files(options, rendering, config, title);
   result["wall_s"] = seconds_since(start);
+  const bool is_partial = is_interrupted();
+  if (is_partial) mark_partial(result);
   write_json(options, result);
   print_result(options, config, rendering, facts, result);
-  return exit_ok;
+  if (is_partial) print_partial(human(options));
+  return is_partial ? exit_interrupted : exit_ok;
 }
 
 }  // namespace

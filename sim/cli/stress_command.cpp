@@ -6,7 +6,7 @@
 
 #include "model/capture/capture.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/cli/options.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/stress/run.hpp"
@@ -130,17 +130,19 @@ void print_failure(std::ostream& out, const Json& row, const stress::Failure& fa
         << label(failure.place.config, " --set ") << '\n';
 }
 
-std::string junit(const std::vector<stress::CaseResult>& results, double seconds) {
+std::string junit(const std::vector<stress::CaseResult>& results, double seconds, bool is_partial) {
   std::vector<JunitCase> rows;
   for (const stress::CaseResult& r : results) {
     JunitCase row{std::string(r.about->name), "", "", ""};
-    if (r.tally.first)
+    if (is_partial && r.tally.units == 0)
+      row.skipped = "interrupted before its first unit";
+    else if (r.tally.first)
       row.failure = r.tally.first->property + ": " + r.tally.first->what;
     else
       row.output = with_commas(r.tally.checks) + " checks; " + worst_text(r);
     rows.push_back(std::move(row));
   }
-  return junit_xml("stress", rows, seconds);
+  return junit_xml("stress", rows, seconds, is_partial);
 }
 
 struct Totals {
@@ -196,7 +198,6 @@ int run(const StressCommand& options) {
   const Config config = effective_config(options);
   if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
     throw InputError("stress: its cases are of planes; leave depth.format and depth.mapping as they are");
-  Progress progress(options, "stress");
   stress::RunOptions run;
   run.seed = options.seed;
   run.threads = options.threads;
@@ -204,8 +205,13 @@ int run(const StressCommand& options) {
   run.names = options.names;
   if (options.unit >= 0) run.unit = static_cast<std::uint64_t>(options.unit);
   if (options.has_config) run.config = config;
-  run.progress = [&progress](double fraction) { progress(fraction); };
-  const auto results = stress::run_cases(run);
+  std::vector<stress::CaseResult> results;
+  {
+    Progress progress(options, "stress", "checks");
+    run.progress = [&progress](double fraction, std::uint64_t checks) { progress(fraction, checks); };
+    results = stress::run_cases(run);
+  }
+  const bool is_partial = is_interrupted();
   const Totals sum = totals_of(results);
 
   Json result{{"schema", "halfplane.stress/1"},
@@ -221,8 +227,9 @@ int run(const StressCommand& options) {
   for (const stress::CaseResult& r : results) result["cases"].push_back(case_json(options, r));
   const double wall_s = seconds_since(start);
   result["wall_s"] = wall_s;
+  if (is_partial) mark_partial(result);
   if (!options.junit_path.empty()) {
-    const std::string xml = junit(results, wall_s);
+    const std::string xml = junit(results, wall_s, is_partial);
     write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
   }
   write_json(options, result);
@@ -231,6 +238,10 @@ int run(const StressCommand& options) {
   for (std::size_t i = 0; i < results.size(); ++i)
     if (results[i].tally.first) print_failure(out, result["cases"][i], *results[i].tally.first);
   out << (sum.failures == 0 ? "every bound holds\n" : "");
+  if (is_partial) {
+    print_partial(out);
+    return exit_interrupted;
+  }
   return sum.failures == 0 ? exit_ok : exit_mismatch;
 }
 

@@ -9,6 +9,7 @@
 #include "model/capture/capture.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/widths/study.hpp"
 
@@ -212,19 +213,21 @@ int run_table(const WidthsCommand& options) {
   }
   WidthStudy study;
   {
-    Progress progress(options, "trying widths");
+    Progress progress(options, "trying widths", "probes");
     WidthStudyOptions study_options;
     study_options.seed = options.seed;
     study_options.samples = options.samples;
-    study_options.progress = [&progress](double fraction) { progress(fraction); };
+    study_options.progress = [&progress](double fraction, std::uint64_t probes) { progress(fraction, probes); };
     study = study_widths(config, study_options);
   }
+  const bool is_partial = is_interrupted();
   if (!options.captures.empty()) write_captures(options.captures, study, config);
   Json result = result_head("widths", options, config);
   result["seed"] = options.seed;
   result["samples"] = options.samples;
   result.update(study_json(study, config));
   result["wall_s"] = seconds_since(start);
+  if (is_partial) mark_partial(result);
   write_json(options, result);
 
   std::ostream& out = human(options);
@@ -240,7 +243,8 @@ int run_table(const WidthsCommand& options) {
       out << "BROKEN: " << row.width.name << " leaves its derived range\n";
       status = exit_mismatch;
     }
-  return status;
+  if (is_partial) print_partial(out);
+  return is_partial ? exit_interrupted : status;
 }
 
 }  // namespace

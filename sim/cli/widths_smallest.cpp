@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "model/widths.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/cli/widths_command.hpp"
 #include "sim/study/widths/smallest.hpp"
 
@@ -134,7 +135,8 @@ void print_found(std::ostream& out, const Smallest& smallest, const Config& star
   out << line;
   std::snprintf(line, sizeof line, "colour          %10.3f %12s   LSB\n", worst.color,
                 bounds.color ? fixed(*bounds.color, 3).c_str() : "-");
-  out << line << "\nOne bit less of              what breaks\n";
+  out << line;
+  if (!smallest.one_less.empty()) out << "\nOne bit less of              what breaks\n";
   for (const OneLess& less : smallest.one_less)
     out << left_aligned(std::string(less.key) + " = " + std::to_string(less.value), 29)
         << (less.is_fixed         ? "not searched: no given bound speaks of it"
@@ -164,9 +166,12 @@ int run_smallest(const WidthsCommand& options) {
   }
   Smallest smallest;
   {
-    Progress progress(options, "measuring");
-    smallest = find_smallest(scenes, start, bounds, [&progress](double fraction) { progress(fraction); });
+    Progress progress(options, "measuring", "configurations");
+    const double unknown = std::nan("");  // nobody knows how many will be needed
+    smallest = find_smallest(scenes, start, bounds,
+                             [&](int trials) { progress(unknown, static_cast<std::uint64_t>(trials)); });
   }
+  const bool is_partial = is_interrupted();
   Json result = result_head("widths", options, start);
   result["seed"] = options.seed;
   result["scenes"] = options.scenes;
@@ -176,7 +181,7 @@ int run_smallest(const WidthsCommand& options) {
                       {"color_lsb", bounds.color ? Json(*bounds.color) : Json(nullptr)}};
   result["trials"] = smallest.trials;
   result["start_bits"] = bits_json(hardware_bits(start));
-  result["widest"] = trial_json(smallest.widest, options.scenes);
+  result["widest"] = smallest.trials > 0 ? trial_json(smallest.widest, options.scenes) : Json(nullptr);
   result["smallest"] = smallest.found ? trial_json(*smallest.found, options.scenes) : Json(nullptr);
   if (smallest.found) result["smallest"]["set"] = start_options(options) + set_options(smallest.found->config, start);
   Json one_less = Json::array();
@@ -187,6 +192,7 @@ int run_smallest(const WidthsCommand& options) {
                         {"broken", less.broken.empty() ? Json(nullptr) : Json(less.broken)}});
   result["one_less"] = one_less;
   result["wall_s"] = seconds_since(begin);
+  if (is_partial) mark_partial(result);
   write_json(options, result);
 
   std::ostream& out = human(options);
@@ -196,6 +202,11 @@ int run_smallest(const WidthsCommand& options) {
              std::to_string(scenes[i].height);
   out << "the smallest configuration for " << names << ", measured and not proven: another scene may need more\n"
       << smallest.trials << " configurations measured, from " << label(start) << "; seed " << options.seed << '\n';
+  if (is_partial) {
+    if (smallest.found) print_found(out, smallest, start, bounds, options);
+    print_partial(out);
+    return exit_interrupted;
+  }
   if (!smallest.found) {
     out << "none keeps the bounds; the widest (" << label(smallest.widest.config) << ") breaks "
         << smallest.widest.broken << '\n';

@@ -23,22 +23,26 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds) {
+std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds, bool is_partial) {
   const auto failures =
       std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.failure.empty(); });
+  const auto skipped = std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.skipped.empty(); });
   char time[32];
   std::snprintf(time, sizeof time, "%.3f", seconds);
   const std::string name = escaped(suite);
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" + name +
                     "\" tests=\"" + std::to_string(cases.size()) + "\" failures=\"" + std::to_string(failures) +
-                    "\" errors=\"0\" time=\"" + time + "\">\n";
+                    "\" errors=\"0\"" + (skipped > 0 ? " skipped=\"" + std::to_string(skipped) + "\"" : std::string()) +
+                    " time=\"" + time + "\">\n";
+  if (is_partial) xml += "    <properties><property name=\"partial\" value=\"true\"/></properties>\n";
   for (const JunitCase& c : cases) {
     xml += "    <testcase classname=\"" + name + "\" name=\"" + escaped(c.name) + "\"";
-    if (c.failure.empty() && c.output.empty()) {
+    if (c.failure.empty() && c.output.empty() && c.skipped.empty()) {
       xml += "/>\n";
       continue;
     }
     xml += ">\n";
+    if (!c.skipped.empty()) xml += "      <skipped message=\"" + escaped(c.skipped) + "\"/>\n";
     if (!c.failure.empty())
       xml += "      <failure message=\"" + escaped(c.failure) + "\">" + escaped(c.details) + "</failure>\n";
     if (!c.output.empty()) xml += "      <system-out>" + escaped(c.output) + "</system-out>\n";

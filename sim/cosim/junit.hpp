@@ -8,12 +8,14 @@ namespace halfplane {
 
 struct JunitCase {
   std::string name;
-  std::string failure;  ///< one line; empty: passed
-  std::string details;  ///< of the failure
-  std::string output;   ///< what a passed case has to say
+  std::string failure;    ///< one line; empty: passed
+  std::string details;    ///< of the failure
+  std::string output;     ///< what a passed case has to say
+  std::string skipped{};  ///< why it was not run; empty: it was
 };
 
-/// One test suite as XML. Bytes that XML cannot hold are replaced.
-[[nodiscard]] std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds);
+/// One test suite as XML; `is_partial`: it was ended early, which a property says. Bytes that XML cannot hold are replaced.
+[[nodiscard]] std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
+                                    bool is_partial = false);
 
 }  // namespace halfplane

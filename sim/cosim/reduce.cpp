@@ -8,6 +8,7 @@
 #include "model/draw_states.hpp"
 #include "model/host_stream.hpp"
 #include "model/stages/line_raster.hpp"
+#include "sim/interrupt.hpp"
 
 namespace halfplane {
 namespace {
@@ -107,20 +108,16 @@ class Reducer {
   }
 
   std::optional<Reduced> run() {
-    LockstepOptions calm = best_.lockstep;
-    calm.stall_probability = 0;
-    if (best_.lockstep.stall_probability == 0 || !try_scene(scene_, calm))
-      if (!try_scene(scene_, best_.lockstep)) return {};
-    to_window_space();
-    cut_after_failure();
-    crop();
-    remove();
-    simplify_states();
-    simplify_vertices();
-    crop();
-    remove();
+    bool is_whole = true;
+    try {
+      if (!is_failing()) return {};
+      simplify_all();
+    } catch (const Interrupted&) {
+      if (!has_failed()) throw;
+      is_whole = false;
+    }
     best_.primitives_after = primitives_in(items_);
-    best_.is_minimal = !is_late();
+    best_.is_minimal = is_whole && !is_late();
     return best_;
   }
 
@@ -130,12 +127,41 @@ class Reducer {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
+  /// Whether some run has failed: from then on there is something to return.
+  [[nodiscard]] bool has_failed() const { return !best_.scene.commands.empty(); }
+
+  void report() const {
+    if (options_.progress) options_.progress(elapsed() / options_.seconds);
+  }
+
+  /// The whole scene, without stalls if it fails without.
+  bool is_failing() {
+    LockstepOptions calm = best_.lockstep;
+    calm.stall_probability = 0;
+    if (best_.lockstep.stall_probability != 0 && try_scene(scene_, calm)) return true;
+    return try_scene(scene_, best_.lockstep);
+  }
+
+  void simplify_all() {
+    to_window_space();
+    cut_after_failure();
+    crop();
+    remove();
+    simplify_states();
+    simplify_vertices();
+    crop();
+    remove();
+  }
+
   bool try_scene(const Scene& scene, const LockstepOptions& lockstep) {
     ++best_.runs;
-    if (options_.progress) options_.progress(elapsed() / options_.seconds);
+    report();
     LockstepOptions limited = lockstep;
     limited.trace.clear();
-    if (!best_.scene.commands.empty()) limited.progress = [this](double) { return !is_late(); };
+    limited.progress = [this](double) {
+      report();
+      return !has_failed() || !is_late();
+    };
     auto mismatch = test_(scene, limited);
     if (!mismatch) return false;
     best_.scene = scene;

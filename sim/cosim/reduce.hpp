@@ -18,8 +18,9 @@ using FailTest = std::function<std::optional<Mismatch>(const Scene&, const Locks
 [[nodiscard]] FailTest lockstep_test(Dut& dut, const Config& config);
 
 struct ReduceOptions {
-  double seconds = 20;                            ///< stops after that and returns what it has
-  std::function<void(double fraction)> progress;  ///< of the time; may be empty
+  double seconds = 20;  ///< stops after that and returns what it has
+  /// Gets the part of the time; may be empty. Interrupted, thrown there, ends the search like the end of the time.
+  std::function<void(double fraction)> progress;
 };
 
 struct Reduced {
@@ -31,7 +32,8 @@ struct Reduced {
   bool is_minimal = false;  ///< the time was enough: nothing more can be taken away singly
 };
 
-/// Reduces a scene that fails; none when it does not fail (from reset, with these options).
+/// Reduces a scene that fails; none when it does not fail (from reset, with these options). Throws Interrupted when it was
+/// ended before that was known.
 [[nodiscard]] std::optional<Reduced> reduce(const Scene& scene, const Config& config, const LockstepOptions& lockstep,
                                             const FailTest& test, const ReduceOptions& options = {});
 

@@ -126,6 +126,7 @@ std::vector<JunitCase> junit_cases(const LockstepResult& result) {
       c.failure = mismatch_line(*result.mismatch);
       c.details = mismatch_report(*result.mismatch);
     }
+    if (result.is_stopped && count == "0") c.skipped = "interrupted before the first";
     cases.push_back(std::move(c));
   };
   for (const Arrow arrow : kCompared) add(std::string(info(arrow).name), std::to_string(result.compared[index(arrow)]));
@@ -133,7 +134,7 @@ std::vector<JunitCase> junit_cases(const LockstepResult& result) {
   add("counters", std::to_string(result.counters_compared));
   if (result.mismatch && result.mismatch->kind == Mismatch::Kind::protocol)
     cases.push_back({"protocol", mismatch_line(*result.mismatch), "", ""});
-  if (result.total() == 0) cases.push_back({"anything", "nothing was compared", "", ""});
+  if (result.total() == 0 && !result.is_stopped) cases.push_back({"anything", "nothing was compared", "", ""});
   return cases;
 }
 

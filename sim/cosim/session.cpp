@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include "sim/cosim/random_scene.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/scene/random.hpp"
 
 namespace halfplane {
@@ -13,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t kLargestChunk = 2000;                  // primitives
 constexpr std::uint64_t kTraceBefore = 200, kTraceAfter = 20;  // cycles around the mismatch
+constexpr std::uint64_t kQuickTrace = 200'000;                 // cycles that a user who has pressed Ctrl-C waits for
 
 }  // namespace
 
@@ -47,7 +50,12 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
 
 Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
                     const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing) {
-  Finding finding{failed, options, mismatch, reduce(failed, config, options, lockstep_test(dut, config), reducing), {}};
+  Finding finding{failed, options, mismatch, {}};
+  try {
+    finding.reduced = reduce(failed, config, options, lockstep_test(dut, config), reducing);
+  } catch (const Interrupted&) {
+    finding.is_stopped = true;
+  }
   if (!finding.reduced) return finding;
   finding.scene = finding.reduced->scene;
   finding.lockstep = finding.reduced->lockstep;
@@ -55,12 +63,16 @@ Finding investigate(Dut& dut, const Config& config, const LockstepOptions& optio
   if (trace.empty() || !dut.can_trace()) return finding;
   LockstepOptions traced = finding.lockstep;
   traced.progress = {};
-  traced.trace = trace;
+  traced.trace = trace + ".part";
   traced.trace_first = finding.mismatch.cycle - std::min(finding.mismatch.cycle, kTraceBefore);
   traced.trace_last = finding.mismatch.cycle + kTraceAfter;
-  Lockstep rerun(dut, config, traced);
-  (void)rerun.run(finding.scene);
-  finding.has_trace = true;
+  if (is_interrupted() && traced.trace_last > kQuickTrace) return finding;
+  const HalfWrittenFile half_written(traced.trace);
+  {
+    Lockstep rerun(dut, config, traced);
+    (void)rerun.run(finding.scene);
+  }
+  finding.has_trace = std::rename(traced.trace.c_str(), trace.c_str()) == 0;
   return finding;
 }
 

@@ -36,11 +36,12 @@ struct Finding {
   Scene scene;                     ///< reduced; as it failed if it does not fail alone
   LockstepOptions lockstep;        ///< with which it fails
   Mismatch mismatch;               ///< of `scene`
-  std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail
+  std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail, or nobody had the time to see
+  bool is_stopped = false;         ///< by reducing.progress, before that was known
   bool has_trace = false;          ///< `trace` has been written
 };
 
-/// Reduces, and writes the waveform around the mismatch to `trace` (empty: none, likewise when the design has none).
+/// Reduces, and writes, whole or not at all, the waveform around the mismatch to `trace` (empty: none, likewise when the design has none).
 [[nodiscard]] Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
                                   const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing);
 

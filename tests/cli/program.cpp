@@ -6,10 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <thread>
 
 namespace halfplane::cli {
 namespace {
@@ -63,9 +66,10 @@ Cli::Cli() : folder_(own_folder() / "run") {
 
 Cli::~Cli() { fs::remove_all(folder_.parent_path()); }
 
-Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) const {
-  const std::string out = folder_.parent_path() / "stdout", err = folder_.parent_path() / "stderr";
+pid_t Cli::start(const Arguments& arguments, const Surroundings& surroundings) const {
+  const std::string out = out_path(), err = err_path();
   fs::remove(out);
+  fs::remove(err);
   std::vector<char*> argv;
   std::string program = HALFPLANE_PROGRAM;
   std::vector<std::string> words = arguments;  // execv wants them writable
@@ -74,19 +78,51 @@ Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) c
   argv.push_back(nullptr);
 
   const pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder_.c_str()) != 0) _exit(126);
-    redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
-    redirect(STDERR_FILENO, err.c_str(), O_CREAT | O_WRONLY | O_TRUNC);
-    redirect_stdout(surroundings.out, out.c_str());
-    limit(RLIMIT_FSIZE, surroundings.file_bytes);
-    limit(RLIMIT_AS, surroundings.memory_bytes);
-    execv(program.c_str(), argv.data());
-    _exit(127);
-  }
+  if (child != 0) return child;
+  if (chdir(folder_.c_str()) != 0) _exit(126);
+  redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+  redirect(STDERR_FILENO, err.c_str(), O_CREAT | O_WRONLY | O_TRUNC);
+  redirect_stdout(surroundings.out, out.c_str());
+  limit(RLIMIT_FSIZE, surroundings.file_bytes);
+  limit(RLIMIT_AS, surroundings.memory_bytes);
+  if (surroundings.progress_s > 0) setenv("HALFPLANE_PROGRESS", std::to_string(surroundings.progress_s).c_str(), 1);
+  execv(program.c_str(), argv.data());
+  _exit(127);
+}
+
+Outcome Cli::outcome_of(pid_t child) const {
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) != child) return {};
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), text_of(out), text_of(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), text_of(out_path()), text_of(err_path())};
+}
+
+Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) const {
+  return outcome_of(start(arguments, surroundings));
+}
+
+Outcome Cli::interrupt(const Arguments& arguments, int signal, double again) const {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto is_running = [](pid_t child) {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0;
+  };
+  const pid_t child = start(arguments, {.progress_s = 0.01});
+  if (child < 0) return {};
+  while (is_running(child) && text_of(err_path()).find('\n') == std::string::npos)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  auto sent = Clock::now();
+  kill(child, signal);
+  if (again > 0) {
+    while (is_running(child) && seconds_since(sent) < again) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    sent = Clock::now();
+    kill(child, signal);  // to a process that has ended but was not waited for it does nothing
+  }
+  Outcome outcome = outcome_of(child);
+  outcome.ended_after = seconds_since(sent);
+  return outcome;
 }
 
 Json Cli::result(Arguments arguments) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -24,12 +25,14 @@ struct Surroundings {
   Stdout out = Stdout::captured;
   std::size_t file_bytes = 0;    ///< no file may grow beyond
   std::size_t memory_bytes = 0;  ///< address space
+  double progress_s = 0;         ///< seconds between lines of progress; 0: as usual
 };
 
 /// What one run left behind.
 struct Outcome {
   int status = -1;  ///< exit status, or 1000 + the signal that killed it
   std::string out, err;
+  double ended_after = 0;  ///< seconds since the last signal that was sent
 };
 
 /// A test with an empty folder, in which the program runs. The folder is gone when the test ends.
@@ -39,6 +42,10 @@ class Cli : public testing::Test {
   ~Cli() override;
 
   [[nodiscard]] Outcome run(const Arguments& arguments, const Surroundings& surroundings = {}) const;
+
+  /// Starts the program and sends it `signal` once it shows progress, which it does every hundredth of a second; then, as
+  /// soon as `again` seconds have gone by and if it still runs, once more. 0: never.
+  [[nodiscard]] Outcome interrupt(const Arguments& arguments, int signal, double again = 0) const;
 
   /// Runs with `--quiet --json` added, expects success and an empty stderr, and parses the whole of stdout.
   [[nodiscard]] Json result(Arguments arguments) const;
@@ -56,6 +63,14 @@ class Cli : public testing::Test {
   [[nodiscard]] std::vector<std::string> listing() const;
 
   std::filesystem::path folder_;
+
+ private:
+  /// Starts it in its folder. The process, below 0 if there is none.
+  [[nodiscard]] pid_t start(const Arguments& arguments, const Surroundings& surroundings) const;
+  [[nodiscard]] std::string out_path() const { return folder_.parent_path() / "stdout"; }
+  [[nodiscard]] std::string err_path() const { return folder_.parent_path() / "stderr"; }
+  /// Waits for its end.
+  [[nodiscard]] Outcome outcome_of(pid_t child) const;
 };
 
 /// Words between blanks; ' quotes as in a shell.

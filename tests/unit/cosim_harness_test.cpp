@@ -10,6 +10,7 @@
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/session.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/scene/random.hpp"
 #include "tests/scene_builder.hpp"
 
@@ -389,6 +390,21 @@ TEST(CosimReduce, ASceneThatDoesNotFailIsNotReduced) {
   const Config config = preset("tiny");
   FakeDut dut(config, {});
   EXPECT_FALSE(reduce(random_scene(config, 1, 20), config, {}, lockstep_test(dut, config)).has_value());
+}
+
+TEST(CosimReduce, KeepsWhatItHasWhenItIsInterrupted) {
+  const Config config = preset("tiny");
+  const FailTest always = [](const Scene&, const LockstepOptions&) { return std::optional(Mismatch{}); };
+  ReduceOptions options;
+  options.progress = [left = 3](double) mutable {
+    if (left-- == 0) throw Interrupted{};
+  };
+  const auto reduced = reduce(random_scene(config, 1, 400), config, {}, always, options);
+  ASSERT_TRUE(reduced.has_value());
+  EXPECT_FALSE(reduced->is_minimal);
+  EXPECT_FALSE(reduced->scene.commands.empty());
+  options.progress = [](double) { throw Interrupted{}; };
+  EXPECT_THROW((void)reduce(random_scene(config, 1, 400), config, {}, always, options), Interrupted);
 }
 
 TEST(CosimReduce, AFaultInTheDesignLeavesOneTriangle) {

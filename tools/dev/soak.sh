@@ -35,13 +35,18 @@ soak() {
   done
 }
 
-# soak_run CONFIG COUNT SEED STALLS: one line when all is equal, else the whole report.
+# soak_run CONFIG COUNT SEED STALLS: one line when all is equal, else the whole report. 255 when it is interrupted: xargs
+# then begins no other.
 soak_run() {
-  local settings text began=$SECONDS
+  local settings text status=0 began=$SECONDS
   read -ra settings <<<"--config ${1// / --set }"
-  if text=$(build/soak/halfplane cosim "${settings[@]}" --random "$2" --seed "$3" --stalls "$4" 2>&1); then
+  text=$(build/soak/halfplane cosim "${settings[@]}" --random "$2" --seed "$3" --stalls "$4" 2>&1) || status=$?
+  if ((status == 0)); then
     printf '%s, seed %s, stalls %s: %s primitives equal, %s, %s s\n' "$1" "$3" "$4" "$2" \
       "$(sed -n 's/^cycles *\([0-9,]*\) in all.*/\1 cycles/p' <<<"$text")" $((SECONDS - began))
+  elif ((status == 130)) && [[ $text != *MISMATCH* ]]; then
+    printf '%s, seed %s, stalls %s: interrupted after %s s, equal so far\n' "$1" "$3" "$4" $((SECONDS - began))
+    return 255
   else
     printf '%s, seed %s, stalls %s: FAILED\n%s\n' "$1" "$3" "$4" "$text"
     return 1
@@ -51,7 +56,7 @@ soak_run() {
 # In pieces of 100,000 primitives, each with its own seed, half of them with stalls. `full`, whose stamp of 4x4 is wide,
 # gets a twentieth.
 soak_cosim() {
-  local primitives=${1:-1150000} config words folders=() left piece seed
+  local primitives=${1:-1150000} config words folders=() left piece seed status=0
   local sizes=('embedded stamp.size=1' 'embedded stamp.size=4' 'full stamp.size=2')
   # Each of the sizes that the RTL takes at a second value, for the cycles as well as for the bits.
   local corners=('embedded tile.size=16 stamp.size=4 cache.lines=4 context.slots=2 hiz.bits=6 depth.bits=24'
@@ -77,5 +82,7 @@ soak_cosim() {
       ((seed > 1 || piece == 1)) || piece=$(((piece + 1) / 2))  # so that there are two at least
       printf '%s\0%s\0%s\0%s\0' "$config" "$piece" "$seed" "0.$((seed % 2 == 0 ? 3 : 0))"
     done
-  done | xargs -0 -n 4 -P "$(jobs)" ./dev soak-run || exit 1
+  done | xargs -0 -n 4 -P "$(jobs)" ./dev soak-run || status=$?
+  ((status != 124 && status != 130)) || { say 'interrupted'; exit 130; }
+  ((status == 0)) || exit 1
 }

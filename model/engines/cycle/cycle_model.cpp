@@ -382,7 +382,7 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
     const std::uint32_t dropped_before = drawn.dropped(model->counters());
     model->run(*primitive);
     drawn.add(*primitive, drawn.dropped(model->counters()) == dropped_before);
-    if (render.progress && ++sent % 4096 == 0) render.progress(host.progress());
+    if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }
   CycleRendering result{std::move(model->rendering()), {}, std::move(model->cost())};
   result.rendering.counters = host.counters();

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "model/config.hpp"
+#include "sim/interrupt.hpp"
 
 namespace halfplane {
 namespace {
@@ -63,6 +64,7 @@ void write_whole_file(const std::string& path, std::span<const std::uint8_t> byt
   fs::path temporary;
   std::FILE* file = open_temporary(target.parent_path(), temporary);
   if (file == nullptr) fail(path, errno);
+  const HalfWrittenFile half_written(temporary.string());
   int reason = write_all(file, bytes);
   if (reason == 0 && fs::exists(status)) fs::permissions(temporary, status.permissions(), error);  // as they were
   if (reason == 0 && std::rename(temporary.c_str(), target.c_str()) != 0) reason = errno;

@@ -1,6 +1,7 @@
 #include "sim/show/report/hardware.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <vector>
 
@@ -24,10 +25,15 @@ const Setting* find_setting(std::string_view key) {
   return nullptr;
 }
 
-std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls) {
+/// `progress` gets the part `index` of `count`.
+std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                        const std::function<void(double)>& progress, std::size_t index, std::size_t count) {
   CycleOptions options;
   options.stalls = stalls;
-  return run_cycles(scene, hardware, {}, options).run.cycles;
+  RenderOptions render;
+  if (progress)
+    render.progress = [&](double part) { progress((static_cast<double>(index) + part) / static_cast<double>(count)); };
+  return run_cycles(scene, hardware, render, options).run.cycles;
 }
 
 std::uint64_t part(std::uint64_t whole, std::uint64_t taken) { return whole > taken ? whole - taken : 0; }
@@ -158,7 +164,7 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
     Hardware changed = hardware;
     try {
       change(changed, trials[i].key, trials[i].value);
-      trials[i].cycles = cycles_of(scene, changed, stalls);
+      trials[i].cycles = cycles_of(scene, changed, stalls, progress, i, trials.size());
     } catch (const InputError&) {
       continue;  // there is no such hardware
     }
@@ -169,15 +175,18 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
 }
 
 std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
-                                    std::uint64_t cycles) {
+                                    std::uint64_t cycles, const std::function<void(double)>& progress) {
+  constexpr std::array kSwitches{std::pair{"hiz.bits", "tiles_hiz"}, std::pair{"walk.reject", "tiles_outside"},
+                                 std::pair{"clear.fast", "fast_clear"}};
   std::vector<Saving> savings;
-  for (const auto& [key, name] :
-       {std::pair{"hiz.bits", "tiles_hiz"}, {"walk.reject", "tiles_outside"}, {"clear.fast", "fast_clear"}}) {
+  for (std::size_t i = 0; i < kSwitches.size(); ++i) {
+    const auto& [key, name] = kSwitches[i];
     Hardware changed = hardware;
     if (value_of(changed, key) == "0") continue;
     change(changed, key, "0");
     savings.push_back(
-        {name, static_cast<std::int64_t>(cycles_of(scene, changed, stalls)) - static_cast<std::int64_t>(cycles)});
+        {name, static_cast<std::int64_t>(cycles_of(scene, changed, stalls, progress, i, kSwitches.size())) -
+                   static_cast<std::int64_t>(cycles)});
   }
   return savings;
 }

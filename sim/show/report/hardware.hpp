@@ -62,7 +62,8 @@ struct Trial {
   std::uint64_t cycles = 0;
 };
 
-/// Tries what might relieve the hardware, best first; those that change nothing are left out.
+/// Tries what might relieve the hardware, best first; those that change nothing are left out. Here and below `progress` may
+/// be empty, and may end the work by throwing.
 [[nodiscard]] std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
                                              std::uint64_t cycles, const std::function<void(double)>& progress);
 
@@ -72,6 +73,6 @@ struct Saving {
   std::int64_t cycles;
 };
 [[nodiscard]] std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
-                                                  std::uint64_t cycles);
+                                                  std::uint64_t cycles, const std::function<void(double)>& progress);
 
 }  // namespace halfplane

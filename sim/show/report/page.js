@@ -110,6 +110,7 @@ const tips = (label, title = t => t.label) =>
 // ---- the parts of the page in their order, then the charts ----
 function show(parts) {
   main.replaceChildren();
+  if (D.partial) main.append(note('Interrupted: this page is partial, as far as the work came.'));
   parts.forEach(f => f());
   drawAll();
 }

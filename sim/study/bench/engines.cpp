@@ -39,9 +39,9 @@ Frame functional_frame(std::shared_ptr<const Scene> scene, const Config& config,
   };
 }
 
-Frame rtl_frame(std::shared_ptr<const Scene> scene, const Config& config) {
-  return [dut = std::shared_ptr<Dut>(make_dut(find_dut(config))), scene = std::move(scene), config] {
-    return timed_frame([&] { return render_rtl(*dut, *scene, config, {}).run.cycles; });
+Frame rtl_frame(std::shared_ptr<const Scene> scene, const Config& config, const RenderOptions& options) {
+  return [dut = std::shared_ptr<Dut>(make_dut(find_dut(config))), scene = std::move(scene), config, options] {
+    return timed_frame([&] { return render_rtl(*dut, *scene, config, options).run.cycles; });
   };
 }
 
@@ -57,19 +57,29 @@ bool has_threads(std::string_view engine) { return engine == "functional" || eng
 
 bool is_bit_exact(std::string_view engine) { return engine != "golden" && engine != "llvmpipe"; }
 
-Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, const Config& config, int threads) {
+Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, const Config& config, int threads,
+                 const std::function<void()>& poll) {
+  RenderOptions options;
+  if (poll) options.progress = [poll](double) { poll(); };
   if (engine == "functional") return functional_frame(std::move(scene), config, threads);
   if (engine == "llvmpipe") return llvmpipe_frame(*scene, config, threads);
   if (engine == "cycle" || engine == "rtl") check_hardware_scene(*scene, config);
-  if (engine == "rtl") return rtl_frame(std::move(scene), config);
+  if (engine == "rtl") return rtl_frame(std::move(scene), config, options);
   if (engine == "cycle")
-    return [scene = std::move(scene), config] {
-      return timed_frame([&] { return run_cycles(*scene, {config, {}, {}}).run.cycles; });
+    return [scene = std::move(scene), config, options] {
+      return timed_frame([&] { return run_cycles(*scene, {config, {}, {}}, options).run.cycles; });
     };
   if (engine == "scalar")
-    return [scene = std::move(scene), config] { return timed_frame([&] { (void)render_scalar(*scene, config); }); };
-  if (engine == "golden")
-    return [scene = std::move(scene), config] { return timed_frame([&] { (void)golden::render(*scene, config); }); };
+    return [scene = std::move(scene), config, options] {
+      return timed_frame([&] { (void)render_scalar(*scene, config, options); });
+    };
+  if (engine == "golden") {
+    golden::Options golden;
+    golden.progress = options.progress;
+    return [scene = std::move(scene), config, golden] {
+      return timed_frame([&] { (void)golden::render(*scene, config, golden); });
+    };
+  }
   throw InputError("no engine '" + std::string(engine) + "'");
 }
 

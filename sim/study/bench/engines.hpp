@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -23,8 +24,9 @@ inline constexpr std::array<std::string_view, 6> kBenchEngines{"functional", "sc
 
 /// The frame that the engine renders of `scene`, whatever else it needs made and kept: buffers from one frame to the
 /// next, a Verilated design, what llvmpipe uploads. Throws InputError for what the engine does not have, here or by its first
-/// frame, and std::runtime_error for what this build or machine lacks.
+/// frame, and std::runtime_error for what this build or machine lacks. `poll` is called now and then inside a frame of
+/// the slower engines, which it may leave by throwing; may be empty.
 [[nodiscard]] Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, const Config& config,
-                               int threads);
+                               int threads, const std::function<void()>& poll = {});
 
 }  // namespace halfplane

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/engines/functional.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/study/bench/engines.hpp"
 
@@ -121,6 +122,7 @@ void measure_series(const std::string& name, const std::vector<GrowthPoint>& poi
   RenderOptions nothing_skipped;
   nothing_skipped.skip = skip_none();
   for (const GrowthPoint& point : points) {
+    progress(0);
     const auto scene = std::make_shared<const Scene>(make_layered_grid(point.grid));
     const Counters counters = render_functional(*scene, plan.config, nothing_skipped).counters;
     series.push_back({name, point.x, counters.primitives_in, counters.covered, {}});
@@ -129,6 +131,7 @@ void measure_series(const std::string& name, const std::vector<GrowthPoint>& poi
   auto times = measure_in_turns(frames, plan.repeat, progress);
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (times[i].refusal) std::rethrow_exception(times[i].refusal);
+    if (times[i].seconds.empty()) continue;  // the study was ended early
     series[i].times = std::move(times[i]);
     rows.push_back(std::move(series[i]));
   }
@@ -192,13 +195,16 @@ std::vector<GrowthRow> measure_growth(const GrowthPlan& plan) {
       {"resolution", [&] { return resolution_points(plan); }},
       {"threads", [&] { return thread_points(plan); }}};
   std::vector<GrowthRow> rows;
-  for (std::size_t i = 0; i < makers.size(); ++i)
-    measure_series(
-        makers[i].first, makers[i].second(), plan,
-        [&, i](double fraction) {
-          if (plan.progress) plan.progress((static_cast<double>(i) + fraction) / static_cast<double>(makers.size()));
-        },
-        rows);
+  try {
+    for (std::size_t i = 0; i < makers.size(); ++i)
+      measure_series(
+          makers[i].first, makers[i].second(), plan,
+          [&, i](double fraction) {
+            if (plan.progress) plan.progress((static_cast<double>(i) + fraction) / static_cast<double>(makers.size()));
+          },
+          rows);
+  } catch (const Interrupted&) {  // the points so far stand
+  }
   return rows;
 }
 

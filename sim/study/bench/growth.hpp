@@ -50,11 +50,11 @@ struct GrowthPlan {
   int threads = 1, repeat = 5;
   int most_threads = 1;                                   ///< the last of the series `threads`
   std::size_t most_triangles = 1'000'000;                 ///< in a frame; fewer make the other series smaller too
-  std::function<void(double)> progress;                   ///< 0...1; may be empty
+  std::function<void(double)> progress;                   ///< 0...1; may be empty. Interrupted there ends the study
   std::function<void(const std::string& line)> left_out;  ///< points that do not fit the target; may be empty
 };
 
-/// Measures every series, the points of each in turns.
+/// Measures every series, the points of each in turns. Of a study that was ended early, the points that were measured.
 [[nodiscard]] std::vector<GrowthRow> measure_growth(const GrowthPlan& plan);
 
 }  // namespace halfplane

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/engines/functional.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/study/bench/engines.hpp"
 #include "sim/study/compare/compare.hpp"
 
@@ -73,12 +74,13 @@ void set_errors(BenchRow& row, bool wants_errors) {
 }
 
 /// Adds the rows of one case and the frames that measure them.
-void add_case(std::span<const BenchCase> cases, std::size_t index, const BenchPlan& plan, LeftOut& left_out,
-              std::vector<BenchRow>& rows, std::vector<Frame>& frames) {
+void add_case(std::span<const BenchCase> cases, std::size_t index, const BenchPlan& plan,
+              const std::function<void(double)>& progress, LeftOut& left_out, std::vector<BenchRow>& rows,
+              std::vector<Frame>& frames) {
   const BenchCase& at = cases[index];
   BenchFacts facts;
   try {
-    facts = find_facts(*at.scene, at.config, plan.wants_errors);
+    facts = find_facts(*at.scene, at.config, plan.wants_errors, progress);
   } catch (const InputError&) {
     for (const std::string& engine : plan.engines) left_out.add(engine, at, std::current_exception());
     return;
@@ -88,7 +90,7 @@ void add_case(std::span<const BenchCase> cases, std::size_t index, const BenchPl
     for (std::size_t t = 0; t < (has_threads(engine) ? plan.threads.size() : 1); ++t) {
       const int threads = has_threads(engine) ? plan.threads[t] : 1;
       try {
-        frames.push_back(make_frame(engine, at.scene, at.config, threads));
+        frames.push_back(make_frame(engine, at.scene, at.config, threads, plan.poll));
         rows.push_back({engine, threads, index, {}, facts});
         set_errors(rows.back(), plan.wants_errors);
       } catch (const InputError&) {
@@ -107,18 +109,21 @@ double BenchRow::mtri_s() const { return static_cast<double>(facts.counters.prim
 double BenchRow::mpix_s() const { return static_cast<double>(facts.counters.covered) / 1e6 / times.median(); }
 double BenchRow::cycles_per_s() const { return static_cast<double>(times.cycles) / times.median(); }
 
-BenchFacts find_facts(const Scene& scene, const Config& config, bool wants_errors) {
+BenchFacts find_facts(const Scene& scene, const Config& config, bool wants_errors,
+                      const std::function<void(double)>& progress) {
   BenchFacts facts;
   Rendering rendering;
   if (wants_errors) {
     CompareOptions options;
     options.skip = skip_none();
+    options.progress = progress;
     Comparison comparison = compare(scene, config, options);
     facts.errors = errors_of(comparison);
     rendering = std::move(comparison.rendering);
   } else {
     RenderOptions options;
     options.skip = skip_none();
+    options.progress = progress;
     options.want_count = true;
     rendering = render_functional(scene, config, options);
   }
@@ -135,9 +140,17 @@ std::vector<BenchRow> measure_rows(std::span<const BenchCase> cases, const Bench
   std::vector<Frame> frames;
   LeftOut left_out;
   constexpr double kFactsShare = 0.3;  // of the progress: what comes before the frames
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (plan.progress) plan.progress(kFactsShare * static_cast<double>(i) / static_cast<double>(cases.size()));
-    add_case(cases, i, plan, left_out, rows, frames);
+  try {
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const auto progress = [&, i](double fraction) {
+        if (plan.progress)
+          plan.progress(kFactsShare * (static_cast<double>(i) + fraction) / static_cast<double>(cases.size()));
+      };
+      progress(0);
+      add_case(cases, i, plan, progress, left_out, rows, frames);
+    }
+  } catch (const Interrupted&) {  // nothing is measured yet
+    return {};
   }
   const auto times = measure_in_turns(frames, plan.repeat, [&](double fraction) {
     if (plan.progress) plan.progress(kFactsShare + (1 - kFactsShare) * fraction);
@@ -147,7 +160,7 @@ std::vector<BenchRow> measure_rows(std::span<const BenchCase> cases, const Bench
     rows[i].times = times[i];
     if (times[i].refusal)
       left_out.add(rows[i].engine, cases[rows[i].case_index], times[i].refusal);
-    else
+    else if (!times[i].seconds.empty())  // it is when the study was ended early
       measured.push_back(std::move(rows[i]));
   }
   if (measured.empty() && left_out.first()) std::rethrow_exception(left_out.first());

@@ -56,17 +56,19 @@ struct BenchPlan {
   std::vector<int> threads{1};  ///< of the engines that have them
   int repeat = 5;
   bool wants_errors = true;
-  std::function<void(double)> progress;  ///< 0...1; may be empty
+  std::function<void(double)> progress;  ///< 0...1; may be empty. Interrupted, thrown there, ends the study
+  std::function<void()> poll;            ///< called inside long frames; what it throws ends the study; may be empty
   /// Called for what an engine cannot do: the engine, and one line with the reason. May be empty.
   std::function<void(const std::string& engine, const std::string& line)> left_out;
 };
 
 /// Measures every engine on every case; llvmpipe, which has no configuration, on the first case of each scene. What
 /// cannot be done is left out. Throws the first reason when nothing is left, and std::runtime_error when llvmpipe is
-/// asked for and missing.
+/// asked for and missing. Of a study that was ended early, the rows with a measured frame.
 [[nodiscard]] std::vector<BenchRow> measure_rows(std::span<const BenchCase> cases, const BenchPlan& plan);
 
 /// Counters, coverage and, if wanted, errors. Throws InputError as render_functional().
-[[nodiscard]] BenchFacts find_facts(const Scene& scene, const Config& config, bool wants_errors);
+[[nodiscard]] BenchFacts find_facts(const Scene& scene, const Config& config, bool wants_errors,
+                                    const std::function<void(double)>& progress = {});
 
 }  // namespace halfplane

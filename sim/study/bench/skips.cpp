@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "model/engines/functional.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/study/bench/growth.hpp"
 
 namespace halfplane {
@@ -98,7 +99,7 @@ class SceneShelf {
   std::map<std::pair<std::string, bool>, SkipScene> scenes_;
 };
 
-void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan) {
+void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan, const std::function<void(double)>& progress) {
   const bool is_objects = row.skip == kObjects;
   // Objects that were culled have no triangles left for the frustum test to drop.
   const SkipScene with = shelf.get(row.scene, row.skip != "frustum");
@@ -106,7 +107,7 @@ void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan) {
   Counters counters;
   const std::array<Frame, 2> frames{skip_frame(with.scene, plan, row.skip, true, &counters),
                                     skip_frame(without.scene, plan, row.skip, false, nullptr)};
-  auto times = measure_in_turns(frames, plan.repeat);
+  auto times = measure_in_turns(frames, plan.repeat, progress);
   for (const FrameTimes& one : times)
     if (one.refusal) std::rethrow_exception(one.refusal);
   row.with = std::move(times[0]);
@@ -135,10 +136,18 @@ std::vector<SkipRow> measure_skips(const SkipPlan& plan) {
     }
   }
   SceneShelf shelf(plan);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (plan.progress) plan.progress(static_cast<double>(i) / static_cast<double>(rows.size()));
-    measure_skip(rows[i], shelf, plan);
+  try {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto progress = [&, i](double fraction) {
+        if (plan.progress) plan.progress((static_cast<double>(i) + fraction) / static_cast<double>(rows.size()));
+      };
+      progress(0);
+      measure_skip(rows[i], shelf, plan, progress);
+    }
+  } catch (const Interrupted&) {  // the rows so far stand
   }
+  // They are when the study was ended early.
+  std::erase_if(rows, [](const SkipRow& row) { return row.with.seconds.empty() || row.without.seconds.empty(); });
   return rows;
 }
 

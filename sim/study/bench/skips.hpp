@@ -45,10 +45,11 @@ struct SkipPlan {
   int threads = 1, repeat = 5;
   std::vector<std::string> scenes;  ///< every skip on each of them; empty: by the table of pairs
   SkipSceneLoader load;
-  std::function<void(double)> progress;  ///< 0...1; may be empty
+  std::function<void(double)> progress;  ///< 0...1; may be empty. Interrupted, thrown there, ends the study
 };
 
 /// Measures on the functional engine, with and without in turns. Throws InputError as loader and engine do.
+/// Of a study that was ended early, the rows that were measured.
 [[nodiscard]] std::vector<SkipRow> measure_skips(const SkipPlan& plan);
 
 }  // namespace halfplane

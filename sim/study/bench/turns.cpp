@@ -4,6 +4,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "sim/interrupt.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -37,24 +39,28 @@ std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repe
   std::vector<bool> is_done(frames.size());
   std::vector<double> last(frames.size());  // seconds
   const double all = static_cast<double>(frames.size()) * (repeat + 1);
-  for (int turn = 0; turn <= repeat; ++turn)
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (progress)
-        progress((static_cast<double>(turn) * static_cast<double>(frames.size()) + static_cast<double>(i)) / all);
-      if (is_done[i]) continue;
-      try {
-        if (turn > 0 && last[i] < kShortFrame) warm_up(frames[i]);
-        const FrameCost cost = frames[i]();
-        last[i] = cost.seconds;
-        times[i].cycles = cost.cycles;
-        is_done[i] = turn == 0 && cost.seconds > kSlowFrame;
-        if (turn > 0 || is_done[i]) times[i].seconds.push_back(cost.seconds);
-      } catch (const std::runtime_error&) {
-        if (turn > 0) throw;
-        times[i].refusal = std::current_exception();
-        is_done[i] = true;
-      }
+  const auto measure = [&](int turn, std::size_t i) {
+    if (progress)
+      progress((static_cast<double>(turn) * static_cast<double>(frames.size()) + static_cast<double>(i)) / all);
+    if (is_done[i]) return;
+    try {
+      if (turn > 0 && last[i] < kShortFrame) warm_up(frames[i]);
+      const FrameCost cost = frames[i]();
+      last[i] = cost.seconds;
+      times[i].cycles = cost.cycles;
+      is_done[i] = turn == 0 && cost.seconds > kSlowFrame;
+      if (turn > 0 || is_done[i]) times[i].seconds.push_back(cost.seconds);
+    } catch (const std::runtime_error&) {
+      if (turn > 0) throw;
+      times[i].refusal = std::current_exception();
+      is_done[i] = true;
     }
+  };
+  try {
+    for (int turn = 0; turn <= repeat; ++turn)
+      for (std::size_t i = 0; i < frames.size(); ++i) measure(turn, i);
+  } catch (const Interrupted&) {  // the frames so far count
+  }
   return times;
 }
 

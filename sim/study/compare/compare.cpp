@@ -106,12 +106,16 @@ class AttributeComparison {
         depth_encode_(config, scene.planes),
         eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())) {}
 
-  void run() {
+  /// `progress` gets the part of the pixels done.
+  void run(const std::function<void(double)>& progress) {
     for (std::size_t p = 0; p < frame_.owners().size(); ++p)
       result_.stage_mismatches += result_.rendering.ids[p] != frame_.owners()[p] ? 1 : 0;
     const OwnedPixels owned(frame_);
     result_.visible_triangles = owned.triangles;
-    for (const std::uint32_t p : owned.pixels) pixel(owned_pixel(p));
+    for (std::size_t i = 0; i < owned.pixels.size(); ++i) {
+      if (i % 4096 == 0) progress(static_cast<double>(i) / static_cast<double>(owned.pixels.size()));
+      pixel(owned_pixel(owned.pixels[i]));
+    }
     result_.depth_lsb = depth_.stats();
     result_.color_lsb = color_.stats();
     if (const ErrorStats eye = eye_.stats(); eye.count > 0) result_.depth_eye = eye;
@@ -259,8 +263,9 @@ std::string line(const char* format, double value, double bound) {
 
 /// Draws by the specification, whose every fragment goes to the judge, and through the golden's operations.
 Rendering draw_fragments(const Scene& scene, const Config& config, const CompareOptions& options, FragmentJudge& judge,
-                         FragmentFrame& frame) {
+                         FragmentFrame& frame, const std::function<void(double)>& progress) {
   RenderOptions render_options;
+  render_options.progress = progress;
   render_options.skip = options.skip;
   render_options.rules = options.rules;
   render_options.fragment_tap = [&](const TappedFragment& fragment) {
@@ -290,16 +295,19 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   golden::Options golden_options;
   golden_options.precision = options.precision;
   golden_options.want_outlines = true;
-  if (options.progress) {
-    render_options.progress = [&options](double fraction) { options.progress(0.5 * fraction); };
-    golden_options.progress = [&options](double fraction) { options.progress(0.5 + 0.5 * fraction); };
-  }
+  const auto part = [&options](double from, double to) {
+    return [&options, from, to](double fraction) {
+      if (options.progress) options.progress(from + (to - from) * fraction);
+    };
+  };
+  render_options.progress = part(0, 0.2);
+  golden_options.progress = part(0.4, 0.6);
   const bool is_default = options.rules == StudyRules{};
   const Engine engine = options.engine ? options.engine : is_default ? render_functional : render_scalar;
   result.rendering = engine(scene, config, render_options);
   FragmentJudge judge(scene, config, options.rules.fill_rule);
   FragmentFrame frame(scene, config);
-  const Rendering made = draw_fragments(scene, config, options, judge, frame);
+  const Rendering made = draw_fragments(scene, config, options, judge, frame, part(0.2, 0.4));
   result.fragments = judge.finish(made);
   if (!is_default) result.fragments.planes.clear();  // off on purpose; what is stored says by how much
   result.golden = golden::render(scene, config, golden_options);
@@ -307,13 +315,14 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   if (options.wants_affine_cost) {
     golden_options.color_interp = ColorInterp::perspective;
     golden_options.want_outlines = false;
-    golden_options.progress = {};
+    golden_options.progress = part(0.6, 0.8);
     perspective = golden::render(scene, config, golden_options).color;
   }
   // With taps the functional engine draws by the stages: what it draws without them must be the same.
   if (is_default && !options.engine) {
     RenderOptions plain;
     plain.skip = options.skip;
+    plain.progress = part(0.8, 0.8);
     result.stage_mismatches += different_pixels(scene, result.rendering, engine(scene, config, plain));
   }
 
@@ -331,7 +340,7 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   }
   result.depth_error_lsb.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   result.color_error_lsb = result.depth_error_lsb;
-  AttributeComparison(scene, config, frame, made, perspective, result).run();
+  AttributeComparison(scene, config, frame, made, perspective, result).run(part(0.8, 1));
   return result;
 }
 

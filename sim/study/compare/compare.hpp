@@ -31,7 +31,7 @@ struct CompareOptions {
   StudyRules rules;               ///< the oracle follows the fill rule; the golden stays top_left
   golden::Precision precision = golden::Precision::binary64;
   Skip skip;
-  std::function<void(double fraction)> progress;  ///< 0...1 over engine and golden; may be empty
+  std::function<void(double fraction)> progress;  ///< 0...1 over the whole; may be empty, may throw to end the work
 };
 
 /// Why a depth or colour is not what real arithmetic makes of the unsnapped scene.

@@ -114,6 +114,7 @@ std::vector<DepthTrial> try_changes(const Scene& scene, const DepthVariant& base
   options.progress = progress;
   auto results = measure_depths(scene, variants, options, threads);
   for (std::size_t i = 0; i < results.size(); ++i) trials.list[i].result = std::move(results[i]);
+  std::erase_if(trials.list, [](const DepthTrial& trial) { return !trial.result.is_whole; });
   std::stable_sort(trials.list.begin(), trials.list.end(),
                    [](const DepthTrial& a, const DepthTrial& b) { return is_better(a.result, b.result); });
   return std::move(trials.list);
@@ -201,11 +202,18 @@ std::vector<DepthSweep> sweep_depth(const Scene& scene, const Config& config, co
   options.wants_errors = false;
   options.progress = progress;
   const auto results = measure_depths(scene, variants, options, threads);
+  bool is_whole = true;
   for (std::size_t i = 0; i < results.size(); ++i) {
+    is_whole = is_whole && results[i].is_whole;
+    if (!results[i].is_whole) continue;
     auto& line = sweeps[places[i].sweep].lines[places[i].line];
     line.x.push_back(places[i].x);
     line.rate.push_back(results[i].order.rate());
   }
+  if (is_whole) return sweeps;
+  for (DepthSweep& sweep : sweeps)
+    std::erase_if(sweep.lines, [](const DepthSweep::Line& line) { return line.x.empty(); });
+  std::erase_if(sweeps, [](const DepthSweep& sweep) { return sweep.lines.empty(); });
   return sweeps;
 }
 

@@ -13,6 +13,7 @@
 #include "model/golden/exact.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/stages/triangle_setup.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/study/compare/coverage.hpp"
 #include "sim/study/depth/error_bound.hpp"
@@ -52,6 +53,7 @@ class Measurer {
     CoverageLog log(config_.tile_size);
     RenderOptions render;
     render.want_ids = true;
+    render.progress = [this](double fraction) { report(0.2 * fraction); };
     render.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
       log.add(triangle, tile_x, tile_y, mask);
     };
@@ -67,6 +69,7 @@ class Measurer {
     rendering_ = {};
     put_in_order();
     finish();
+    result_.is_whole = true;
     return std::move(result_);
   }
 
@@ -74,6 +77,10 @@ class Measurer {
   static Scene mapped(Scene scene, const DepthVariant& variant) {
     scene.planes = variant.planes;
     return in_depth_mapping(std::move(scene), variant.mapping);
+  }
+
+  void report(double fraction) const {
+    if (options_.progress) options_.progress(fraction);
   }
 
   void walk(const CoverageLog& log) {
@@ -92,9 +99,8 @@ class Measurer {
         is_flat = t.v[0].depth() == t.v[1].depth() && t.v[1].depth() == t.v[2].depth();
         budget = bound_.budget(std::abs(bound_.scale().t_per_inverse_z()) * (std::abs(plane.a) + std::abs(plane.b)),
                                is_flat);
-        if (options_.progress && triangle % 256 == 0)
-          options_.progress(0.8 * static_cast<double>(i) / static_cast<double>(visits.size()));
       }
+      if (i % 256 == 0) report(0.2 + 0.6 * static_cast<double>(i) / static_cast<double>(visits.size()));
       if (plane.is_empty()) continue;
       for (int row = 0; row < config_.tile_size; ++row)
         for (int column = 0; column < config_.tile_size; ++column)
@@ -258,6 +264,8 @@ std::vector<DepthMeasurement> measure_depths(const Scene& scene, std::span<const
       try {
         results[i] = measure_depth(scene, variants[i], own);
         own.progress(1);
+      } catch (const Interrupted&) {
+        next = variants.size();
       } catch (...) {
         const std::lock_guard lock(mutex);
         failure = std::current_exception();

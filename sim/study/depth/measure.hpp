@@ -38,6 +38,7 @@ struct DepthOrder {
 };
 
 struct DepthMeasurement {
+  bool is_whole = false;  ///< false: nothing below counts, because the study was ended early
   std::uint64_t fragments = 0, triangles = 0;
   /// Samples left out: covered by the snapped triangle where the true one is behind the eye; and, of the errors alone,
   /// fragments whose code stands for infinity or nothing.
@@ -56,15 +57,17 @@ struct DepthMeasurement {
 struct MeasureOptions {
   bool wants_errors = true;  ///< false: the order alone, in half the time
   bool wants_maps = false;
-  std::function<void(double fraction)> progress;  ///< called from the measuring thread; may be empty
+  /// Called from the measuring thread; may be empty. Interrupted, thrown there, ends the study.
+  std::function<void(double fraction)> progress;
 };
 
 /// `scene` as it is made, without a mapping; the variant's mapping and planes are put on it. Throws InputError as
-/// in_depth_mapping() and eye_planes() do.
+/// in_depth_mapping() and eye_planes() do, and what `progress` throws.
 [[nodiscard]] DepthMeasurement measure_depth(const Scene& scene, const DepthVariant& variant,
                                              const MeasureOptions& options = {});
 
 /// Several variants, each on a thread of its own as far as there are cores. `progress` gets the fraction of the whole.
+/// Of a study that was ended early, those that were done by then are whole.
 [[nodiscard]] std::vector<DepthMeasurement> measure_depths(const Scene& scene, std::span<const DepthVariant> variants,
                                                            const MeasureOptions& options, int threads);
 

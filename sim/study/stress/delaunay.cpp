@@ -105,9 +105,13 @@ class Triangulation {
 
 }  // namespace
 
-Mesh delaunay(Point low, Point high, const std::set<Point>& points) {
+Mesh delaunay(Point low, Point high, const std::set<Point>& points, const std::function<void()>& poll) {
   Triangulation triangulation(low, high);
-  for (const Point& p : points) triangulation.insert(p);
+  std::size_t done = 0;
+  for (const Point& p : points) {
+    if (poll && done++ % 1024 == 0) poll();
+    triangulation.insert(p);
+  }
   return triangulation.mesh();
 }
 

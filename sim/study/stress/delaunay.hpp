@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <set>
 #include <vector>
 
@@ -19,7 +20,9 @@ using Mesh = std::vector<Corner>;
 
 /// The Delaunay triangulation of the points and the rectangle's corners, triangles of positive area. Points must lie
 /// strictly inside the rectangle; |coordinates| < 2^29. Bowyer and Watson's insertion (Computer Journal 24(2), 1981) with
-/// a walk to the triangle at the point: about n^1.5 for sorted points.
-[[nodiscard]] Mesh delaunay(Point low, Point high, const std::set<Point>& points);
+/// a walk to the triangle at the point: about n^1.5 for sorted points. `poll` is called now and then and may end the work
+/// by throwing; may be empty.
+[[nodiscard]] Mesh delaunay(Point low, Point high, const std::set<Point>& points,
+                            const std::function<void()>& poll = {});
 
 }  // namespace halfplane::stress

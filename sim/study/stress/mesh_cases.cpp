@@ -41,7 +41,7 @@ void delaunay_mesh(Unit& unit, int size, int points) {
     const std::int64_t x = random.integer(low.x / step + 1, high.x / step - 1) * step;
     set.insert({x, random.integer(low.y / step + 1, high.y / step - 1) * step});
   }
-  const Mesh mesh = delaunay(low, high, set);
+  const Mesh mesh = delaunay(low, high, set, unit.poll);
   std::int64_t area = 0;
   for (const Corner& t : mesh) area += doubled_area(t[0], t[1], t[2]);
   unit.require(area == 2 * (high.x - low.x) * (high.y - low.y) && mesh.size() == 2 * set.size() + 2, "mesh", {},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "sim/interrupt.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"
 #include "sim/study/stress/independent.hpp"
@@ -65,21 +66,51 @@ class Driver {
   }
 
   void work(std::vector<Tally>& tallies, bool reports) {
-    for (;;) {
-      const std::uint64_t task = next_task_++;
-      const double done = fraction(task);
-      if (done >= 1) return;
-      if (reports && options_.progress) options_.progress(done);
-      const std::size_t c = static_cast<std::size_t>(task % cases_.size());
-      const std::uint64_t round = task / cases_.size(), every = static_cast<std::uint64_t>(cases_[c]->every);
-      if (options_.unit)
-        run_unit(*cases_[c], *options_.unit, tallies[c]);
-      else if (round % every == 0)
-        run_unit(*cases_[c], round / every, tallies[c]);
+    try {
+      work_until_stopped(tallies, reports);
+    } catch (const Interrupted&) {  // what a unit has checked by then counts
     }
   }
 
-  void run_unit(const Case& c, std::uint64_t number, Tally& tally) const {
+  /// Throws Interrupted inside a long unit.
+  void work_until_stopped(std::vector<Tally>& tallies, bool reports) {
+    double done = 0;
+    const auto poll = [this, &done, reports] {
+      if (is_stopped_ || (reports && !goes_on(done))) throw Interrupted{};
+    };
+    const Engine engine = [this, &poll](const Scene& scene, const Config& config, const RenderOptions& options) {
+      poll();
+      RenderOptions polling = options;
+      polling.progress = [&poll](double) { poll(); };
+      return engine_(scene, config, polling);
+    };
+    for (;;) {
+      const std::uint64_t task = next_task_++;
+      done = fraction(task);
+      if (done >= 1) return;
+      poll();
+      const std::size_t c = static_cast<std::size_t>(task % cases_.size());
+      const std::uint64_t round = task / cases_.size(), every = static_cast<std::uint64_t>(cases_[c]->every);
+      if (options_.unit)
+        run_unit(*cases_[c], *options_.unit, engine, poll, tallies[c]);
+      else if (round % every == 0)
+        run_unit(*cases_[c], round / every, engine, poll, tallies[c]);
+    }
+  }
+
+  /// Whether whoever looks at the progress lets it go on; if not, nobody begins another unit.
+  bool goes_on(double done) {
+    if (!options_.progress) return true;
+    try {
+      options_.progress(done, checks_);
+    } catch (const Interrupted&) {
+      is_stopped_ = true;
+    }
+    return !is_stopped_;
+  }
+
+  void run_unit(const Case& c, std::uint64_t number, const Engine& engine, const std::function<void()>& poll,
+                Tally& tally) {
     // The grid twice over, and beyond it new combinations.
     const std::uint64_t grid_size = grid().size();
     const bool is_preset = c.prefers_presets && number % 2 == 0;
@@ -90,12 +121,15 @@ class Driver {
     const Config config = options_.config ? *options_.config : config_of(place);
     if (!c.own_configs) tally.configs.insert(options_.config ? 0 : place);
     ++tally.units;
-    Unit unit(config, number, unit_seed(options_.seed, c.name, number), engine_, tally);
+    const std::uint64_t before = tally.checks;
+    Unit unit(config, number, unit_seed(options_.seed, c.name, number), engine, tally);
+    unit.poll = poll;
     try {
       c.run(unit);
     } catch (const std::exception& error) {
       unit.require(false, "exception", {}, error.what());
     }
+    checks_ += tally.checks - before;
   }
 
   void judge(CaseResult& result) const {
@@ -121,7 +155,7 @@ class Driver {
                           worst.place});
       }
     }
-    if (tally.checks == 0) {
+    if (tally.checks == 0 && !is_stopped_) {
       ++tally.failures;
       tally.keep_first({"empty", "nothing was compared: it needs more units, so more --seconds", {}});
     }
@@ -131,7 +165,8 @@ class Driver {
   const std::vector<const Case*> cases_;
   const Engine engine_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::atomic<std::uint64_t> next_task_{0};
+  std::atomic<std::uint64_t> next_task_{0}, checks_{0};
+  std::atomic<bool> is_stopped_ = false;
 };
 
 }  // namespace

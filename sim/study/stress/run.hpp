@@ -18,7 +18,8 @@ struct RunOptions {
   std::optional<std::uint64_t> unit;  ///< this unit of every chosen case alone: how a failure is repeated
   std::optional<Config> config;       ///< instead of the grid
   Engine engine;                      ///< none: render_functional
-  std::function<void(double fraction)> progress;  ///< called from this thread; may be empty
+  /// Called from this thread with the part done and the checks made; may be empty. Interrupted, thrown there, ends the run.
+  std::function<void(double fraction, std::uint64_t checks)> progress;
 };
 
 struct CaseResult {
@@ -29,7 +30,8 @@ struct CaseResult {
 /// Rounds of the quick set: two units of every case in each configuration of the grid.
 [[nodiscard]] std::uint64_t quick_rounds();
 
-/// Runs them all, judges the mean errors, and has the independent checker measure each case's worst depth error.
+/// Runs them all, judges the mean errors, and has the independent checker measure each case's worst depth error. Of a run
+/// that was ended early, what was done: some cases may have no unit.
 [[nodiscard]] std::vector<CaseResult> run_cases(const RunOptions& options);
 
 }  // namespace halfplane::stress

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -103,7 +104,8 @@ class Unit {
   const Widths widths;
   const std::uint64_t number;
   Random random;
-  const Engine& engine;  ///< draws; a test puts a faulty one here
+  const Engine& engine;        ///< draws; a test puts a faulty one here
+  std::function<void()> poll;  ///< for long work without the engine: throws when the run was ended; may be empty
 
   void count_triangles(std::uint64_t n) { tally_.triangles += n; }
   /// Samples whose coverage, or fragments whose depth and colour, were held against the exact oracle.

@@ -7,6 +7,7 @@
 
 #include "model/packet_words.hpp"
 #include "model/widths.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/study/compare/compare.hpp"
 
 namespace halfplane {
@@ -42,7 +43,7 @@ std::string broken_line(const char* what, double value, const char* unit, double
 class Search {
  public:
   Search(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
-         const std::function<void(double)>& progress)
+         const std::function<void(int)>& progress)
       : scenes_(scenes), start_(start), bounds_(bounds), progress_(progress) {
     for (std::size_t a = 0; a < kAxes.size(); ++a) {
       const int value = value_of(start_, a);
@@ -58,18 +59,36 @@ class Search {
 
   Smallest run() {
     Smallest result;
-    result.widest = trial(high_);
-    if (result.widest.holds()) {
-      raise_lower_ends();
-      const Point found = cheapest();
-      result.found = trial(found);
-      for (std::size_t a = 0; a < kAxes.size(); ++a) result.one_less.push_back(one_less(found, a));
+    try {
+      result.widest = trial(high_);
+      if (result.widest.holds()) {
+        raise_lower_ends();
+        const Point found = cheapest();
+        result.found = trial(found);
+        for (std::size_t a = 0; a < kAxes.size(); ++a) result.one_less.push_back(one_less(found, a));
+      }
+    } catch (const Interrupted&) {
+      if (!result.found) result.found = cheapest_so_far();
     }
     result.trials = static_cast<int>(trials_.size());
     return result;
   }
 
  private:
+  /// None before the widest was measured.
+  [[nodiscard]] std::optional<TriedConfig> cheapest_so_far() const {
+    const TriedConfig* best = nullptr;
+    for (const auto& [point, trial] : trials_)
+      if (trial.holds() &&
+          (best == nullptr || hardware_bits(trial.config).total() < hardware_bits(best->config).total()))
+        best = &trial;
+    return best == nullptr ? std::nullopt : std::optional(*best);
+  }
+
+  void report() const {
+    if (progress_) progress_(static_cast<int>(trials_.size()));
+  }
+
   [[nodiscard]] bool is_fixed(std::size_t a) const {
     if (kAxes[a].member == &Config::subpixel_bits) return !bounds_.coverage;
     if (kAxes[a].member == &Config::depth_bits) return !bounds_.depth;
@@ -98,7 +117,9 @@ class Search {
 
   /// Measures one scene. Returns what is broken.
   [[nodiscard]] std::string measure(const Scene& scene, const Config& config, SceneErrors& errors) const {
-    const Comparison c = compare(scene, config);
+    CompareOptions options;
+    options.progress = [this](double) { report(); };
+    const Comparison c = compare(scene, config, options);
     errors.depth = std::max(c.datapath.max, c.line_datapath.max) / (std::ldexp(1.0, config.depth_bits) - 1);
     errors.color = c.color_datapath.max;
     errors.coverage = c.coverage.missing + c.coverage.extra;
@@ -130,8 +151,7 @@ class Search {
       }
     }
     const TriedConfig& kept = trials_.emplace(point, std::move(trial)).first->second;
-    const auto done = static_cast<double>(trials_.size());
-    if (progress_) progress_(done / (done + 8));  // how many will be needed is not known
+    report();
     return kept;
   }
 
@@ -190,7 +210,7 @@ class Search {
   const std::vector<Scene>& scenes_;
   const Config& start_;
   const ErrorBounds& bounds_;
-  const std::function<void(double)>& progress_;
+  const std::function<void(int)>& progress_;
   Point low_{}, high_{};
   std::map<Point, TriedConfig> trials_;
 };
@@ -223,7 +243,7 @@ SceneErrors TriedConfig::worst() const {
 }
 
 Smallest find_smallest(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
-                       const std::function<void(double fraction)>& progress) {
+                       const std::function<void(int trials)>& progress) {
   validate(start);
   return Search(scenes, start, bounds, progress).run();
 }

@@ -55,7 +55,7 @@ struct OneLess {
 
 struct Smallest {
   std::optional<TriedConfig> found;  ///< none: not even the widest configuration keeps the bounds
-  TriedConfig widest;
+  TriedConfig widest;                ///< without scenes when a search that was ended early did not come to it
   std::vector<OneLess> one_less;
   int trials = 0;  ///< configurations measured
 };
@@ -63,8 +63,9 @@ struct Smallest {
 /// Searches depth.bits, plane.local_guard_bits, reciprocal.extra_bits, guard.band (up to the start's), and subpixel.bits
 /// if coverage is bounded; the rest of `start` stays. Whatever bound says nothing about a setting leaves it as it is.
 /// Takes errors to fall as settings rise: a configuration below one that failed in every setting is not tried.
-/// Throws InputError when a scene cannot be drawn with `start` at all.
+/// Throws InputError when a scene cannot be drawn with `start` at all. `progress` is called with the configurations
+/// measured, also within one. Interrupted, thrown there, ends the search: found is then the cheapest that held so far.
 [[nodiscard]] Smallest find_smallest(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
-                                     const std::function<void(double fraction)>& progress = {});
+                                     const std::function<void(int trials)>& progress = {});
 
 }  // namespace halfplane

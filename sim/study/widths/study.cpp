@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/interrupt.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -24,6 +26,15 @@ class Study {
         witnesses_(all_.size()) {}
 
   WidthStudy run() {
+    try {
+      try_all();
+    } catch (const Interrupted&) {  // what was seen stands
+    }
+    return result();
+  }
+
+ private:
+  void try_all() {
     for (std::uint64_t i = 1; i <= options_.samples; ++i) {
       attempt(maker_.random(), i);
       if (i % 1024 == 0) report(0.4 * static_cast<double>(i) / static_cast<double>(options_.samples));
@@ -38,12 +49,10 @@ class Study {
         climb(place, upwards, fresh_start(place));
       }
     }
-    return result();
   }
 
- private:
   void report(double fraction) const {
-    if (options_.progress) options_.progress(fraction);
+    if (options_.progress) options_.progress(fraction, probes_);
   }
 
   [[nodiscard]] Interval range(std::size_t place) const {

@@ -45,7 +45,9 @@ struct WidthStudyOptions {
   std::uint64_t seed = 1;
   std::uint64_t samples = 20000;  ///< random probes
   int climb_steps = 1500;         ///< for each end of each width, half of them from a fresh start
-  std::function<void(double fraction)> progress;
+  /// Gets the part done and the probes tried; may be empty. Interrupted, thrown there, ends the study: what was seen by
+  /// then is returned.
+  std::function<void(double fraction, std::uint64_t probes)> progress;
 };
 
 struct WidthStudy {

@@ -1,0 +1,47 @@
+// Work that takes a while: how far it is, how fast, how long it will still take; and its end by a signal.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+
+#include "sim/cli/options.hpp"
+#include "sim/interrupt.hpp"
+
+namespace halfplane {
+
+/// The progress of one piece of work, on stderr: on a terminal a line that is redrawn, once the work takes longer than two
+/// seconds; elsewhere, in a log, a line every ten seconds, or as many as HALFPLANE_PROGRESS says. Nothing with --quiet.
+/// From its making on, a signal asks the program to stop, and these calls say so.
+class Progress {
+ public:
+  /// `unit`: what calls count, as "checks"; empty: they count nothing.
+  Progress(const CommonOptions& options, std::string what, std::string unit = "");
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Shows the part done, 0...1, NaN where nobody knows the whole. False: a signal asks to stop.
+  [[nodiscard]] bool goes_on(double fraction, std::uint64_t count = 0);
+  /// The same, but throws Interrupted.
+  void operator()(double fraction, std::uint64_t count = 0);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] std::string line(double fraction, std::uint64_t count, double seconds) const;
+
+  std::string what_, unit_;
+  Clock::time_point start_, next_;
+  Clock::duration every_;
+  bool is_enabled_, is_terminal_, is_shown_ = false;
+};
+
+/// Marks the result of work that a signal cut short: `"partial": true`. Others have no such key.
+void mark_partial(Json& result);
+
+/// Its last line for people.
+void print_partial(std::ostream& out);
+
+}  // namespace halfplane

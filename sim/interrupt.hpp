@@ -1,0 +1,34 @@
+// Work that a signal ends in order: the first SIGINT (Ctrl-C) or SIGTERM asks it to stop, a second ends the program.
+#pragma once
+
+#include <string>
+
+namespace halfplane {
+
+/// Thrown out of the work under way, by whoever reports its progress. Studies catch it and return what they have. No
+/// std::exception: who handles errors lets it pass.
+struct Interrupted {};
+
+/// From now on either signal ends the program at once with exit status 130, and no half-written file stays.
+void catch_signals();
+
+/// From now on the first signal only asks to stop; a second ends the program as above. One within a tenth of a second is
+/// the same one: timeout(1) sends each twice, to the process and to its group.
+void stop_in_order();
+
+/// Whether a signal has asked to stop.
+[[nodiscard]] bool is_interrupted() noexcept;
+
+/// Throws Interrupted if it has.
+void stop_if_interrupted();
+
+/// While it lives, a signal that ends the program removes the file. One at a time.
+class HalfWrittenFile {
+ public:
+  explicit HalfWrittenFile(const std::string& path);
+  ~HalfWrittenFile();
+  HalfWrittenFile(const HalfWrittenFile&) = delete;
+  HalfWrittenFile& operator=(const HalfWrittenFile&) = delete;
+};
+
+}  // namespace halfplane
