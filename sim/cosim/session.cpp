@@ -41,6 +41,7 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
     if (result.mismatch) session.failed = std::move(*scene);
     if (result.mismatch || result.is_stopped) break;
   }
+  session.has_trace = lockstep.has_traced();
   session.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return session;
 }
@@ -60,7 +61,7 @@ Finding investigate(Dut& dut, const Config& config, const LockstepOptions& optio
   traced.trace_last = finding.mismatch.cycle + kTraceAfter;
   Lockstep rerun(dut, config, traced);
   (void)rerun.run(finding.scene);
-  finding.has_trace = true;
+  finding.has_trace = rerun.has_traced();
   return finding;
 }
 

@@ -168,7 +168,7 @@ TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   expect_refused(cycle({"--mhz", "0"}), "--mhz");
   expect_refused(cycle({"--stalls", "nan"}), "'nan' is no number");
   expect_refused(cycle({"--trace", "t.json", "--timing", "queue.tile=4"}), "--trace");
-  expect_refused(cycle({"--heat", "x.png", "-o", "x.png"}), "'x.png' is named twice");
+  expect_refused(cycle({"--heat", "x.png", "-o", "x.png"}), "two options name the file 'x.png'");
   expect_refused(cycle({"--skip", "none"}), "leave out --skip");
   expect_refused(cycle({"--primitives", "p.txt"}), ".csv");
   expect_refused(cycle({"--trace", "nowhere/t.json"}), "nowhere");

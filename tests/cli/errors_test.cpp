@@ -221,7 +221,7 @@ TEST_F(BadInput, CaptureTakesNeitherAnotherSizeNorACamera) {
 }
 
 TEST_F(BadInput, ResultThatNobodyTakesIsAnError) {
-  for (const Stdout out : {Stdout::closed, Stdout::full_disk, Stdout::pipe_without_reader}) {
+  for (const Stdout out : {Stdout::closed, Stdout::full_disk}) {
     for (const Arguments& arguments : {Arguments{"render", "triangle", "--json", "--quiet"},
                                        {"compare", "triangle", "--json"},
                                        {"scenes", "--json"},
@@ -230,9 +230,39 @@ TEST_F(BadInput, ResultThatNobodyTakesIsAnError) {
                                        {"scenes"},
                                        {"config", "--sv"},
                                        {"--help"}})
-      expect_refused(arguments, "stdout", 2, {out, 0, 0});
-    EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0}).status, 0);  // nothing to say, nothing lost
+      expect_refused(arguments, "stdout", 2, {out, 0, 0, ""});
+    EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0, ""}).status, 0);  // nothing to say, nothing lost
   }
+}
+
+TEST_F(BadInput, ReaderThatWentAwayEndsTheProgramSilently) {
+  const Surroundings unread{Stdout::pipe_without_reader, 0, 0, ""};
+  for (const Arguments& arguments : {Arguments{"render", "triangle", "--json", "--quiet"},
+                                     {"compare", "triangle", "--json", "--quiet"},
+                                     {"scenes", "--json", "--quiet"},
+                                     {"config", "--list"},
+                                     {"render", "triangle"},
+                                     {"depth", "--near", "1", "--far", "10", "--csv", "-"},
+                                     {"config", "--sv"},
+                                     {"stress", "--list"},
+                                     {"--help"},
+                                     {"render", "--help"}}) {
+    const Outcome outcome = run(arguments, unread);
+    EXPECT_EQ(outcome.status, 141) << testing::PrintToString(arguments);
+    EXPECT_EQ(outcome.err, "") << testing::PrintToString(arguments);
+  }
+  EXPECT_EQ(run({"render", "triangle", "--quiet"}, unread).status, 0);
+  expect_refused({"render", "nosuch"}, "nosuch", 2, unread);
+}
+
+TEST_F(BadInput, ReaderThatWentAwayLeavesFilesWhole) {
+  EXPECT_EQ(run({"render", "triangle", "-o", "whole.png", "--ids", "whole.npy"}).status, 0);
+  EXPECT_EQ(run({"render", "triangle", "-o", "unread.png", "--ids", "unread.npy", "--json"},
+                {Stdout::pipe_without_reader, 0, 0, ""})
+                .status,
+            141);
+  EXPECT_EQ(read("unread.png"), read("whole.png"));
+  EXPECT_EQ(read("unread.npy"), read("whole.npy"));
 }
 
 TEST_F(BadInput, MissingMemoryIsOneLineAndStatusThree) {
@@ -243,7 +273,7 @@ TEST_F(BadInput, MissingMemoryIsOneLineAndStatusThree) {
   GTEST_SKIP() << "the sanitizer needs the address space itself";
 #endif
 #endif
-  const Surroundings small_machine{Stdout::captured, 0, 512u << 20};
+  const Surroundings small_machine{Stdout::captured, 0, 512u << 20, ""};
   const Arguments huge{"--size", "16384x16384",         "--set", "target.width=16384",
                        "--set",  "target.height=16384", "--set", "guard.band=16384"};  // 2 GB of colour and depth
   for (const Arguments& command : {Arguments{"render", "triangle"},

@@ -64,11 +64,15 @@ Cli::Cli() : folder_(own_folder() / "run") {
 Cli::~Cli() { fs::remove_all(folder_.parent_path()); }
 
 Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) const {
+  return start(HALFPLANE_PROGRAM, arguments, surroundings);
+}
+
+Outcome Cli::paste(const std::string& line) const { return start("/bin/sh", {"-c", line}, {}); }
+
+Outcome Cli::start(std::string program, std::vector<std::string> words, const Surroundings& surroundings) const {
   const std::string out = folder_.parent_path() / "stdout", err = folder_.parent_path() / "stderr";
   fs::remove(out);
   std::vector<char*> argv;
-  std::string program = HALFPLANE_PROGRAM;
-  std::vector<std::string> words = arguments;  // execv wants them writable
   argv.push_back(program.data());
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -76,7 +80,7 @@ Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) c
   const pid_t child = fork();
   if (child == 0) {
     if (chdir(folder_.c_str()) != 0) _exit(126);
-    redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+    redirect(STDIN_FILENO, surroundings.in.empty() ? "/dev/null" : surroundings.in.c_str(), O_RDONLY);
     redirect(STDERR_FILENO, err.c_str(), O_CREAT | O_WRONLY | O_TRUNC);
     redirect_stdout(surroundings.out, out.c_str());
     limit(RLIMIT_FSIZE, surroundings.file_bytes);

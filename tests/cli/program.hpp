@@ -24,6 +24,7 @@ struct Surroundings {
   Stdout out = Stdout::captured;
   std::size_t file_bytes = 0;    ///< no file may grow beyond
   std::size_t memory_bytes = 0;  ///< address space
+  std::string in;                ///< file on stdin, in the folder; none: nothing to read
 };
 
 /// What one run left behind.
@@ -39,6 +40,9 @@ class Cli : public testing::Test {
   ~Cli() override;
 
   [[nodiscard]] Outcome run(const Arguments& arguments, const Surroundings& surroundings = {}) const;
+
+  /// Gives a line to sh, as a person who pastes it into a terminal in the folder.
+  [[nodiscard]] Outcome paste(const std::string& line) const;
 
   /// Runs with `--quiet --json` added, expects success and an empty stderr, and parses the whole of stdout.
   [[nodiscard]] Json result(Arguments arguments) const;
@@ -56,6 +60,9 @@ class Cli : public testing::Test {
   [[nodiscard]] std::vector<std::string> listing() const;
 
   std::filesystem::path folder_;
+
+ private:
+  [[nodiscard]] Outcome start(std::string program, Arguments words, const Surroundings& surroundings) const;
 };
 
 /// Words between blanks; ' quotes as in a shell.
