@@ -38,6 +38,22 @@ TEST_F(BadInput, WrongUsageNamesTheOptionAndWhereItIsExplained) {
   expect_refused({"--json", "render", "triangle"}, "--json");
 }
 
+TEST_F(BadInput, RefusalsSayWhatIsWrongAndThenWhatToDo) {
+  write("a.hpt", "halfplane 1\n");
+  expect_refused({"render", "triangle", "-o", "picture"}, "'picture': this file is a .png; give a name that ends so");
+  expect_refused({"render", "triangle", "--depth", "d.txt"}, "or up to 16 bits a .png; give a name that ends so");
+  expect_refused({"render", "triangle", "-o", "a.png", "--draws", "a.png"},
+                 "two options name the file 'a.png', and one would replace the other; give each its own");
+  expect_refused({"render", "triangle", "--heat", "h.png", "--mhz", "7"},
+                 "--mhz, --heat: the engine functional does not have it; add --engine cycle");
+  expect_refused({"render", "triangle", "--cull-objects", "no"}, "no value 'no'; give none, sphere, box or both");
+  expect_refused({"render", "triangle", "--convention", "dx"}, "no convention 'dx'; give one of gl, ");
+  expect_refused({"compare", "triangle", "--panels", "model"}, "no sheet to choose from; add -o");
+  expect_refused({"depth", "--near", "1", "--far", "9", "--camera", "fov=9"}, "no scene to look at; add --scene");
+  expect_refused({"depth", "--near", "1", "--far", "9", "--error", "0"}, "'0' is not above 0; give more");
+  expect_refused({"depth", "--near", "1", "--far", "9", "--error", "1", "--range", "0,3"}, "A,B with 1 <= A < B <= 9");
+}
+
 TEST_F(BadInput, NumbersOfOptionsAreCheckedWhole) {
   for (const char* size : {"", "0x0", "0x480", "640x0", "-4x4", "640", "640x", "x480", "640x480x", "640*480", "4.5x4",
                            "99999999999x1", "nanxnan"})
