@@ -10,6 +10,7 @@
 #include "sim/cosim/dut.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/nearest_word.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace {
 
@@ -69,8 +70,9 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   app.footer(
-      "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n`halfplane COMMAND --help` shows a "
-      "command's options.");
+      "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n"
+      "`halfplane COMMAND --help` shows a command's options. Exit status: 0 as it should be, 1 a mismatch or\n"
+      "a broken bound, 2 wrong usage or bad input, 3 something is lacking, 141 nobody reads stdout any more.");
   Action selected;
   add_render_command(app, selected);
   add_compare_command(app, selected);
@@ -101,14 +103,16 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A reader that went away and a file size limit are errors of the write, like a full disk: without the signals the
-  // write reports them, and no half-written file stays behind.
+  // A reader that went away and a file size limit show at the write, like a full disk: without the signals no
+  // half-written file stays behind, and every file that was asked for is written though nobody reads stdout.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   catch_signals();
+  set_program_word(argv[0]);
   try {
     const int status = run(argc, argv);
-    if (!std::cout.flush()) throw InputError("writing to stdout failed; give a place that takes it, or --quiet");
+    if (!std::cout.flush() && is_stdout_unread()) return status == exit_ok ? int{exit_unread} : status;
+    if (!std::cout) throw InputError("writing to stdout failed; give a place that takes it, or --quiet");
     return status;
   } catch (const Interrupted&) {
     return fail(exit_interrupted, "interrupted: this work is whole or nothing, so nothing was written");

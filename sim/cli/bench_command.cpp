@@ -58,7 +58,7 @@ std::vector<Variation> parse_variations(const std::vector<std::string>& texts, c
     for (const std::string& value : variation.values) {
       if (value.empty()) throw InputError(shown + " has an empty value; give KEY=VALUE,VALUE...");
       if (std::count(variation.values.begin(), variation.values.end(), value) > 1)
-        throw InputError(shown + " names a value twice: " + value);
+        throw InputError(shown + " names the value " + value + " twice; give every value once");
       Config trial = config;
       set_by_key(trial, variation.key, value);  // throws for what no configuration has
     }

@@ -124,7 +124,7 @@ int run(const CompareCommand& options) {
   for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
     check_output(*path, ".png");
   if (!options.panels.empty() && options.sheet_path.empty())
-    throw InputError("--panels chooses from the sheet that -o writes: add -o FILE.png");
+    throw InputError("--panels: there is no sheet to choose from; add -o FILE.png");
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
   Comparison c;

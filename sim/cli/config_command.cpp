@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -15,28 +16,46 @@
 namespace halfplane {
 namespace {
 
-void print_settings(std::ostream& out, const Config& config, bool with_meaning) {
-  out << "preset = " << config.preset << '\n';
+/// Key, value, range with unit, meaning: the last two are left out without --list.
+using Row = std::array<std::string, 4>;
+
+std::vector<Row> setting_rows(const Config& config) {
+  std::vector<Row> rows;
   for (const Setting& setting : settings()) {
-    out << std::left << std::setw(24) << setting.key << std::right << std::setw(10) << get(config, setting);
-    if (with_meaning) {
-      const bool is_number = std::holds_alternative<int Config::*>(setting.member);
-      const std::string range =
-          is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " " : std::string();
-      out << "   " << std::left << std::setw(26) << range + std::string(setting.unit) << setting.meaning << std::right;
-    }
-    out << '\n';
+    const bool is_number = std::holds_alternative<int Config::*>(setting.member);
+    const std::string range =
+        is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " " : std::string();
+    rows.push_back({std::string(setting.key), get(config, setting), range + std::string(setting.unit),
+                    std::string(setting.meaning)});
   }
+  return rows;
 }
 
 /// Those that only the cycle model can vary.
-void print_timing_settings(std::ostream& out) {
-  out << "\nfor --timing and --what-if of the cycle engine; the RTL has the value shown\n";
+std::vector<Row> timing_rows() {
+  std::vector<Row> rows;
   const TimingParameters rtl;
   for (const TimingSetting& setting : timing_settings())
-    out << std::left << std::setw(24) << setting.key << std::right << std::setw(10) << rtl.*setting.member << "   "
-        << std::left << std::setw(26) << std::to_string(setting.min) + "..." + std::to_string(setting.max)
-        << setting.meaning << std::right << '\n';
+    rows.push_back({std::string(setting.key), std::to_string(rtl.*setting.member),
+                    std::to_string(setting.min) + "..." + std::to_string(setting.max), std::string(setting.meaning)});
+  return rows;
+}
+
+void print_settings(std::ostream& out, const Config& config, bool is_list) {
+  const std::vector<Row> rows = setting_rows(config), timing = is_list ? timing_rows() : std::vector<Row>();
+  std::array<std::size_t, 3> widths{24, 10, 0};  // as wide as the widest row of both tables
+  for (const auto* table : {&rows, &timing})
+    for (const Row& row : *table)
+      for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  const auto print = [&](const Row& row) {
+    out << left_aligned(row[0], widths[0]) << ' ' << right_aligned(row[1], widths[1]);
+    if (is_list) out << "   " << left_aligned(row[2], widths[2]) << "  " << row[3];
+    out << '\n';
+  };
+  out << "preset = " << config.preset << '\n';
+  for (const Row& row : rows) print(row);
+  if (is_list) out << "\nfor --timing and --what-if of the cycle engine; the RTL has the value shown\n";
+  for (const Row& row : timing) print(row);
 }
 
 std::string bound_text(const Width& width) {
@@ -137,7 +156,6 @@ int run(const ConfigOptions& options) {
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
   print_settings(out, config, options.list);
-  if (options.list) print_timing_settings(out);
   if (options.widths) print_widths(out, widths);
   if (options.stages) out << '\n' << stage_table_markdown(config);
   return exit_ok;

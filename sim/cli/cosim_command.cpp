@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <charconv>
 #include <iostream>
 #include <memory>
 
@@ -12,11 +14,36 @@ namespace halfplane {
 namespace {
 
 constexpr double kReduceSeconds = 20;
+constexpr std::uint64_t kTracedCycles = 10'000;  // without --trace-cycles: some megabytes at most
+
+/// The cycles of a run whose waveform --trace takes, counted from reset.
+struct TraceWindow {
+  std::uint64_t first = 0, last = kTracedCycles - 1;
+};
+
+TraceWindow trace_window(const CosimOptions& options) {
+  const std::string& text = options.trace_cycles;
+  if (text.empty()) return {};
+  if (options.trace_path.empty())
+    throw InputError("--trace-cycles: there is no waveform to choose them for; add --trace FILE.fst");
+  TraceWindow window;
+  const char* const end = text.data() + text.size();
+  const auto [colon, first_error] = std::from_chars(text.data(), end, window.first);
+  const bool has_colon = first_error == std::errc() && colon != end && *colon == ':';
+  const auto [rest, last_error] = std::from_chars(has_colon ? colon + 1 : end, end, window.last);
+  if (!has_colon || last_error != std::errc() || rest != end || window.first > window.last)
+    throw InputError("--trace-cycles: '" + text + "' is no window; give FIRST:LAST, both included, as in 0:999");
+  return window;
+}
 
 /// Runs the whole stimulus, with progress over all of it.
 Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut, SceneSource source) {
   Progress progress(options, "co-simulating", "primitives");
   LockstepOptions lockstep = lockstep_options(options);
+  const TraceWindow window = trace_window(options);
+  lockstep.trace = options.trace_path;
+  lockstep.trace_first = window.first;
+  lockstep.trace_last = window.last;
   std::uint64_t primitives = 0, before = 0;  // given out, and of those before the scene at work
   const auto counted = [&]() -> std::optional<Scene> {
     auto scene = source();
@@ -109,14 +136,30 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
       << fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) << " M cycles/s\n";
 }
 
+/// What became of the waveform of the whole run, or why there is none.
+std::string trace_text(const CosimOptions& options, const DutFactory& factory, const Session& session) {
+  const TraceWindow window = trace_window(options);
+  const std::uint64_t clocks = session.result.clocks;
+  if (session.has_trace)
+    return options.trace_path + ", cycles " + with_commas(window.first) + " to " +
+           with_commas(std::min(window.last, clocks - 1)) + " (cycle c begins at time 2 c)" +
+           (options.trace_cycles.empty() && clocks > window.last ? "; --trace-cycles FIRST:LAST takes others" : "");
+  if (!factory.has_trace) return "none: this design is built without tracing";
+  if (window.first >= clocks)
+    return "none: the run has " + with_commas(clocks) + " cycles, and --trace-cycles begins behind them";
+  return "none: " + options.trace_path + " cannot be written";
+}
+
 int run(const CosimOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   if (options.scene.empty() == (options.random == 0))
     throw InputError(options.scene.empty() ? "nothing to run; give a SCENE or --random N"
-                                           : "a scene and --random together; give one of them");
+                                           : "a SCENE and --random exclude each other; leave one of them out");
   const Config config = effective_config(options);
   check_output(options.save_path, ".hpt");
+  check_distinct({options.scene, options.json, options.save_path, options.junit_path, options.trace_path});
   check_output(options.junit_path);
+  (void)trace_window(options);
   const DutFactory& factory = dut_for(options, config);
   double load_s = 0;
   std::optional<Scene> scene;
@@ -134,8 +177,9 @@ int run(const CosimOptions& options) {
   std::optional<SavedFinding> saved;
   if (session.failed) {
     saved = save_finding(options, config, *dut, *session.failed, *session.result.mismatch, kReduceSeconds);
-    result["first_mismatch"] = mismatch_json(*session.result.mismatch,
-                                             repeat_command(options, config, options.scene, lockstep_options(options)));
+    result["first_mismatch"] = mismatch_json(
+        *session.result.mismatch,
+        options.scene == "-" ? saved->repeat : repeat_command(options, config, "", lockstep_options(options)));
     result["reduced"] = mismatch_json(saved->finding.mismatch, saved->repeat);
     result["reduced"]["capture"] = saved->capture;
     result["reduced"]["trace"] = saved->trace.empty() ? Json(nullptr) : Json(saved->trace);
@@ -143,6 +187,13 @@ int run(const CosimOptions& options) {
         saved->finding.reduced ? Json(saved->finding.reduced->primitives_after) : Json(nullptr);
   }
   const bool is_partial = is_interrupted();
+  const bool is_whole_run_traced = !options.trace_path.empty() && (!saved || saved->trace.empty());
+  if (is_whole_run_traced) {
+    const TraceWindow window = trace_window(options);
+    result["trace"] = session.has_trace ? Json(options.trace_path) : Json(nullptr);
+    result["trace_cycles"] =
+        session.has_trace ? Json({window.first, std::min(window.last, session.result.clocks - 1)}) : Json(nullptr);
+  }
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
   if (saved) {
@@ -154,6 +205,7 @@ int run(const CosimOptions& options) {
                            " every bit of every packet, of memory and counters; the cycle of each of " +
                            with_commas(session.result.total_cycles_compared()) + " crossings\n");
   }
+  if (is_whole_run_traced) out << "waveform    " << trace_text(options, factory, session) << '\n';
   if (!options.junit_path.empty()) {
     const std::string xml =
         junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds, is_partial);
@@ -182,6 +234,11 @@ void add_cosim_command(CLI::App& app, Action& selected) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
   add_cosim_options(*command, *options);
+  command
+      ->add_option("--trace-cycles", options->trace_cycles,
+                   "FIRST:LAST: cycles of a run without a mismatch that --trace takes (default 0:9999)")
+      ->check(refuse_empty)
+      ->type_name("WINDOW");
   add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer(

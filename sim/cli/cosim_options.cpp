@@ -1,6 +1,7 @@
 #include "sim/cli/cosim_options.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <ostream>
 #include <sstream>
@@ -15,13 +16,14 @@ namespace {
 
 /// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
 std::string default_save_path(const CosimOptions& options) {
-  std::string name = options.random != 0 ? "random-" + std::to_string(options.seed)
-                                         : std::filesystem::path(options.scene).stem().string();
+  std::string name = options.random != 0    ? "random-" + std::to_string(options.seed)
+                     : options.scene == "-" ? "stdin"
+                                            : std::filesystem::path(options.scene).stem().string();
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_' && c != '.') c = '-';
   if (options.mutant != 0) name += "-mutant-" + std::to_string(options.mutant);
   return "out/" + std::string(name.starts_with("cosim-") ? "" : "cosim-") + name +
-         (options.random == 0 && options.scene.ends_with(".hpt") ? "-reduced.hpt" : ".hpt");
+         (options.random == 0 && (options.scene == "-" || options.scene.ends_with(".hpt")) ? "-reduced.hpt" : ".hpt");
 }
 
 void create_folder_of(const std::string& path) {
@@ -30,10 +32,10 @@ void create_folder_of(const std::string& path) {
   if (!folder.empty()) std::filesystem::create_directories(folder, error);  // writing into it says what is wrong
 }
 
+/// The shortest that reads back as the same number.
 std::string probability_text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 }  // namespace
@@ -51,16 +53,21 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  add_file_option(app, "--trace", options.trace_path,
-                  "waveform around a mismatch, .fst (default beside the saved capture)");
+  add_file_option(
+      app, "--trace", options.trace_path,
+      "waveform, .fst: around a mismatch (default beside the saved capture); cosim: of a run without one, too");
 }
 
 const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
   if (options.skip != "all") throw InputError("--skip: hardware skips by its own rules; leave it out");
   if (options.random != 0 && !options.size.empty())
-    throw InputError("--size: random scenes have sizes of their own; leave it out, or name a scene");
+    throw InputError(
+        "--size: the scenes of --random have sizes of their own; leave --size out, or give a SCENE in place of "
+        "--random");
   if (options.random != 0 && !options.camera.empty())
-    throw InputError("--camera: random scenes have none; leave it out, or name a scene");
+    throw InputError(
+        "--camera: the scenes of --random have no camera; leave --camera out, or give a SCENE in place of --random");
+  if (options.trace_path == "-") throw InputError("--trace: a waveform cannot go to stdout; give a file, .fst");
   check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);
   if (options.mutant != 0 && !factory.has_mutants)
@@ -68,8 +75,8 @@ const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
   const auto all = mutants();
   const bool is_known = std::any_of(all.begin(), all.end(), [&](const Mutant& m) { return m.id == options.mutant; });
   if (options.mutant != 0 && !is_known)
-    throw InputError("--mutant: there is no number " + std::to_string(options.mutant) + "; give one of 1 to " +
-                     std::to_string(all.empty() ? 0 : all.back().id));
+    throw InputError("--mutant: no mutant has the number " + std::to_string(options.mutant) + "; give 1 to " +
+                     std::to_string(all.empty() ? 0 : all.back().id) + ", or 0 for none");
   return factory;
 }
 
@@ -83,20 +90,21 @@ LockstepOptions lockstep_options(const CosimOptions& options) {
   return lockstep;
 }
 
-std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& scene,
+std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& capture,
                            const LockstepOptions& lockstep) {
-  std::string command = "halfplane cosim";
-  if (scene.empty())
-    command += " --random " + std::to_string(options.random);
-  else
-    command += " " + quoted(scene);
-  Config named = config;
-  if (scene != options.scene) named.depth_mapping = DepthMapping::projection;  // a saved capture is mapped already
-  command += " --config " + label(named, " --set ");
-  if (scene == options.scene && !options.size.empty()) command += " --size " + quoted(options.size);
-  if (scene == options.scene && !options.camera.empty()) command += " --camera " + quoted(options.camera);
-  if (scene == options.scene && options.convention != "gl") command += " --convention " + quoted(options.convention);
-  if (scene == options.scene && options.cull_objects != "box") command += " --cull-objects " + options.cull_objects;
+  std::string command = program_word() + " cosim";
+  if (!capture.empty()) {
+    Config mapped = config;
+    mapped.depth_mapping = DepthMapping::projection;  // a saved capture is mapped already, and has a size
+    command += " " + quoted(capture) + config_arguments(mapped);
+  } else {
+    command += options.random != 0 ? " --random " + std::to_string(options.random) : " " + quoted(options.scene);
+    command += config_arguments(config);
+    if (!options.size.empty()) command += " --size " + quoted(options.size);
+    if (!options.camera.empty()) command += " --camera " + quoted(options.camera);
+    if (options.convention != "gl") command += " --convention " + quoted(options.convention);
+    if (options.cull_objects != "box") command += " --cull-objects " + quoted(options.cull_objects);
+  }
   command += " --seed " + std::to_string(lockstep.seed);
   if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);
   command += memory_arguments(lockstep.memory);
@@ -109,8 +117,9 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   SavedFinding saved;
   saved.capture = options.save_path.empty() ? default_save_path(options) : options.save_path;
   if (options.save_path.empty()) create_folder_of(saved.capture);
-  saved.trace = options.trace_path.empty() ? std::filesystem::path(saved.capture).replace_extension(".fst").string()
-                                           : options.trace_path;
+  saved.trace = options.trace_path;
+  if (saved.trace.empty() && saved.capture != "-")
+    saved.trace = std::filesystem::path(saved.capture).replace_extension(".fst").string();
   Progress progress(options, "reducing");
   ReduceOptions reducing;
   reducing.seconds = seconds;
@@ -125,15 +134,19 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   } catch (const std::exception& error) {  // the mismatch is worth more than the file
     saved.failure = error.what();
   }
-  saved.repeat =
-      repeat_command(options, config, saved.finding.reduced || options.random == 0 ? saved.capture : std::string(),
-                     saved.finding.lockstep);
+  // A scene that does not fail alone, or a capture that is not there, repeats nothing.
+  // A capture on stdout can only be repeated from where the caller puts it, the scene on stdin likewise.
+  const bool has_capture = saved.failure.empty() && (saved.finding.reduced || options.random == 0) &&
+                           (saved.capture != "-" || options.scene == "-");
+  saved.repeat = repeat_command(options, config, has_capture ? saved.capture : std::string(),
+                                has_capture ? saved.finding.lockstep : lockstep_options(options));
   return saved;
 }
 
 void print_finding(std::ostream& out, const SavedFinding& saved) {
   const Finding& f = saved.finding;
-  out << mismatch_report(f.mismatch) << "  saved     " << (saved.failure.empty() ? saved.capture : saved.failure);
+  out << mismatch_report(f.mismatch) << "  saved     "
+      << (saved.failure.empty() ? saved.capture : "nothing (" + saved.failure + ")");
   if (f.reduced)
     out << ", " << f.reduced->primitives_after << " of " << f.reduced->primitives_before << " primitives ("
         << f.reduced->runs << " runs"
@@ -145,7 +158,8 @@ void print_finding(std::ostream& out, const SavedFinding& saved) {
     out << (f.is_stopped ? ", the whole scene: interrupted before it was reduced\n"
                          : ", the whole scene: after a reset it does not fail alone\n");
   out << "  waveform  "
-      << (saved.trace.empty() && is_interrupted() ? "none: interrupted"
+      << (saved.trace.empty() && is_interrupted()       ? "none: interrupted"
+          : saved.trace.empty() && saved.capture == "-" ? "none beside a capture on stdout: add --trace FILE.fst"
           : saved.trace.empty() ? "none: this design is built without tracing, or the file cannot be written"
                                 : saved.trace + ", mismatch at time " + std::to_string(2 * f.mismatch.cycle))
       << '\n'

@@ -15,6 +15,7 @@ struct CosimOptions : CommonOptions {
   int mutant = 0;
   MemorySettings memory;
   std::string junit_path, trace_path, save_path;
+  std::string trace_cycles;  ///< FIRST:LAST
 };
 
 /// Adds --stalls.
@@ -29,8 +30,8 @@ void add_cosim_options(CLI::App& app, CosimOptions& options);
 
 [[nodiscard]] LockstepOptions lockstep_options(const CosimOptions& options);
 
-/// The command that repeats a run of `scene` ("" for the same --random).
-[[nodiscard]] std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& scene,
+/// The command that runs a saved capture again; "": what the options ask for, from its scene or --random.
+[[nodiscard]] std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& capture,
                                          const LockstepOptions& lockstep);
 
 /// Reduces the failing scene, saves it to `save_path` (creating its folder) and its waveform beside it.

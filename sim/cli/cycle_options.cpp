@@ -24,7 +24,7 @@ constexpr std::uint64_t kFewCycles = 4'000'000;  // of a frame that is explained
 std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw InputError(option + ": '" + text + "' is not KEY=VALUE");
+    throw InputError(option + ": '" + text + "' is not KEY=VALUE; write it so, as in cache.lines=16");
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -161,9 +161,21 @@ void vary(const CommonOptions& common, const CycleCommandOptions& options, const
 
 }  // namespace
 
-bool CycleCommandOptions::is_default() const {
-  return memory == MemorySettings{} && timing.empty() && what_if.empty() && stalls == 0 && !explain &&
-         primitives_path.empty() && trace_path.empty() && heat_path.empty();
+std::string CycleCommandOptions::given() const {
+  const MemorySettings standard;
+  std::string text;
+  for (const auto& [option, is_given] : {std::pair{"--memory", memory.kind != standard.kind},
+                                         {"--memory-latency", memory.latency != standard.latency},
+                                         {"--mhz", memory.mhz != standard.mhz},
+                                         {"--timing", !timing.empty()},
+                                         {"--what-if", !what_if.empty()},
+                                         {"--stalls", stalls != 0},
+                                         {"--explain", explain},
+                                         {"--primitives", !primitives_path.empty()},
+                                         {"--trace", !trace_path.empty()},
+                                         {"--heat", !heat_path.empty()}})
+    if (is_given) text += (text.empty() ? "" : ", ") + std::string(option);
+  return text;
 }
 
 void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
@@ -193,7 +205,8 @@ void check_cycle_options(const CycleCommandOptions& options, const Config& confi
   }
   const TimingParameters& p = hardware.parameters;
   if (!options.trace_path.empty() && p.triangle_queue + p.setup_queue + p.tile_queue + p.fragment_queue != 0)
-    throw InputError("--trace: a timeline shows stages and not the queues between them; leave out --timing queue...");
+    throw InputError(
+        "--trace: a timeline shows stages and not the queues between them; leave out --trace, or --timing queue...");
   check_output(options.primitives_path, ".csv");
   check_output(options.trace_path, ".json");
   check_output(options.heat_path, options.heat_path.ends_with(".npy") ? ".npy" : ".png");

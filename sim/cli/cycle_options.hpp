@@ -18,8 +18,8 @@ struct CycleCommandOptions {
   bool explain = false;
   std::string primitives_path, trace_path, heat_path;
 
-  /// Whether nothing was asked for that only this engine has.
-  [[nodiscard]] bool is_default() const;
+  /// The options that only this engine has and that were given, for a message; empty: none was.
+  [[nodiscard]] std::string given() const;
 };
 
 /// Adds the options that only this engine has.

@@ -88,7 +88,8 @@ DepthQuestion read_question(const DepthCommand& options, const Config& config,
     throw InputError("--near and --far: far / near is above 1e15; bring them nearer to each other");
   for (const std::string& name : comma_parts("--mapping", options.mappings))
     question.mappings.push_back(parse_mapping(name));
-  if (options.bits != 0 && !options.formats.empty()) throw InputError("--bits is short for --format; give one of them");
+  if (options.bits != 0 && !options.formats.empty())
+    throw InputError("--bits and --format exclude each other, --bits N is --format uN; leave one of them out");
   const std::string formats = !options.formats.empty() ? options.formats
                               : options.bits != 0      ? "u" + std::to_string(options.bits)
                                                        : "u16";
@@ -106,16 +107,19 @@ DepthQuestion read_question(const DepthCommand& options, const Config& config,
   }
   if (!options.range.empty()) {
     const auto ends = comma_parts("--range", options.range);
-    if (ends.size() != 2) throw InputError("--range: give two depths, as in 10,100");
+    if (ends.size() != 2) throw InputError("--range: '" + options.range + "' is not two depths; give A,B as in 10,100");
     question.low = parse_decimal(ends[0], "--range");
     question.high = parse_decimal(ends[1], "--range");
     if (!(question.near <= *question.low && *question.low < *question.high && *question.high <= question.far))
-      throw InputError("--range: give near <= low < high <= far");
+      throw InputError("--range: '" + options.range + "' is not a range between near and far; give A,B with " +
+                       question.near_text + " <= A < B <= " + question.far_text);
   }
   const auto positive = [](const std::string& text, const char* option, bool zero) -> std::optional<double> {
     if (text.empty()) return std::nullopt;
     const double value = parse_decimal(text, option).get_d();
-    if (value < 0 || (value == 0 && !zero)) throw InputError(std::string(option) + ": give a positive number");
+    if (value < 0 || (value == 0 && !zero))
+      throw InputError(std::string(option) + ": '" + text + "' is " +
+                       (zero ? "below 0; give 0 or more" : "not above 0; give more"));
     return value;
   };
   question.length = positive(options.error, "--error", false);
@@ -141,8 +145,8 @@ std::string command_line(const DepthCommand& options, const DepthQuestion& quest
     if (!value.empty()) text += option + value;
   if (options.fov != 45) text += " --fov " + depth_number(options.fov);
   if (!options.camera.empty()) text += " --camera " + quoted(options.camera);
-  if (options.config != "embedded") text += " --config " + options.config;
-  for (const std::string& setting : options.settings) text += " --set " + setting;
+  if (options.config != "embedded") text += " --config " + quoted(options.config);
+  for (const std::string& setting : options.settings) text += " --set " + quoted(setting);
   if (options.seed != 1) text += " --seed " + std::to_string(options.seed);
   return text;
 }
@@ -218,21 +222,22 @@ bool holds(const std::vector<DepthRow>& rows, const SceneStudy& study) {
 /// Refuses options that contradict each other or their files, before any work.
 void check_depth_options(const DepthCommand& options, const Config& config) {
   if (config.depth_mapping != DepthMapping::projection || config.depth_format.kind != DepthFormat::Kind::plane)
-    throw InputError("depth: give mappings and formats by --mapping and --format, not by --set");
+    throw InputError(
+        "depth.mapping and depth.format: here --mapping and --format take them; leave them out of --config and --set");
   for (const std::string& setting : options.settings)
     if (setting.starts_with("depth.bits="))
       throw InputError("depth: the bits that are interpolated follow from the format; leave depth.bits out");
-  if (options.scene.empty() && !options.camera.empty()) throw InputError("--camera looks at a scene; give --scene");
-  if (!options.range.empty() && options.error.empty()) throw InputError("--range is about --error; give both");
+  if (options.scene.empty() && !options.camera.empty())
+    throw InputError("--camera: there is no scene to look at; add --scene, or leave --camera out");
+  if (!options.range.empty() && options.error.empty())
+    throw InputError("--range: there is no --error to hold in it; add --error, or leave --range out");
   check_output(options.paths.page, options.paths.page.empty() ? "" : ".html");
   check_output(options.paths.heat, options.paths.heat.empty() ? "" : ".png");
   check_output(options.paths.fights, options.paths.fights.empty() ? "" : ".png");
-  if (options.csv_path != "-") check_output(options.csv_path);
+  check_output(options.csv_path);
   check_distinct({options.paths.page, options.paths.heat, options.paths.fights, options.csv_path, options.json});
-  if (options.csv_path == "-" && options.json == "-")
-    throw InputError("--csv - and --json both want stdout; name a file");
   if (options.scene.empty() && (!options.paths.heat.empty() || !options.paths.fights.empty()))
-    throw InputError("--heat and --fights are pictures of a scene; give --scene");
+    throw InputError("--heat and --fights: there is no scene to show; add --scene, or leave them out");
   if (!options.paths.page.empty()) require_chart_library();
 }
 
@@ -246,7 +251,8 @@ std::optional<Scene> depth_scene(const DepthCommand& options, const Config& conf
                                    [&](const Vertex& v) { return v.w == scene.vertices[0].w; });
   if (is_flat)
     throw InputError(options.scene +
-                     ": every w is the same: this is no perspective projection, and no eye depth is known");
+                     ": every w is the same: no perspective projection, so no eye depth is known; "
+                     "give a scene seen in perspective");
   if (options.near.empty() || options.far.empty())
     throw InputError(options.scene + ": its near and far plane are not known; give --near and --far");
   return scene;

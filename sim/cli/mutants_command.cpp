@@ -122,13 +122,15 @@ Json verdict_json(const Verdict& v, bool has_pictures) {
 
 /// Every picture of the design as it is must be the model's: otherwise no change could be blamed on a mutant. With one it
 /// gets four times the cycles.
-void check_pictures(const Config& config, Dut& dut, std::vector<ModelPicture>& pictures) {
+void check_pictures(const MutantsCommand& options, const Config& config, Dut& dut,
+                    std::vector<ModelPicture>& pictures) {
   for (ModelPicture& picture : pictures) {
     const auto [frame, cycles] = render_faulty(dut, picture.scene, config, 0, ~0ULL);
     picture.cycles = 4 * cycles;
     if (!frame || color_hash(*frame, config.color_format) != picture.color || depth_hash(*frame) != picture.depth)
       throw std::runtime_error("without a mutant the RTL shows another picture of " + picture.scene.name +
-                               " than the model; run halfplane cosim " + picture.scene.name);
+                               " than the model; run " + program_word() + " cosim " + picture.scene.name +
+                               config_arguments(config) + " --size " + quoted(options.size));
   }
 }
 
@@ -139,7 +141,7 @@ int run(const MutantsCommand& options) {
   if (!factory.has_mutants) throw InputError("the RTL of " + factory.name + " has no mutants; use --config embedded");
   const std::unique_ptr<Dut> dut = make_dut(factory);
   std::vector<ModelPicture> pictures = options.scenes ? model_pictures(options, config) : std::vector<ModelPicture>();
-  check_pictures(config, *dut, pictures);
+  check_pictures(options, config, *dut, pictures);
 
   std::vector<Verdict> verdicts;
   {

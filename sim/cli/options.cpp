@@ -5,7 +5,9 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <iostream>
+#include <span>
 #include <string_view>
 
 #include "sim/config_file.hpp"
@@ -17,6 +19,27 @@
 namespace halfplane {
 namespace {
 
+/// The option whose file is stdout, if one is.
+std::string& on_stdout() {
+  static std::string option;
+  return option;
+}
+
+/// For CLI11: notes that `option` writes to stdout when its value is "-". There is room for one.
+std::function<void(std::string)> claim_stdout(const std::string& option) {
+  return [option](const std::string& path) {
+    if (path != "-") return;
+    if (!on_stdout().empty() && on_stdout() != option)
+      throw InputError(on_stdout() + " and " + option + " both write to stdout; give one of them a file");
+    on_stdout() = option;
+  };
+}
+
+std::string& called_as() {
+  static std::string word = "halfplane";
+  return word;
+}
+
 // Decimal, as it is printed; CLI11 would take -1, 010 and what is too large for another number.
 std::uint64_t parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
@@ -26,7 +49,7 @@ std::uint64_t parse_seed(const std::string& text) {
   return seed;
 }
 
-bool is_capture(const std::string& name) { return name.size() > 4 && name.substr(name.size() - 4) == ".hpt"; }
+bool is_capture(const std::string& name) { return name == "-" || (name.size() > 4 && name.ends_with(".hpt")); }
 
 }  // namespace
 
@@ -35,7 +58,8 @@ void add_output_options(CLI::App& app, CommonOptions& options) {
       ->capture_default_str();
   app.add_option("--set", options.settings, "key=value: one setting, repeatable (halfplane config --list)")
       ->allow_extra_args(false);
-  app.add_flag("--json{-}", options.json, "result as JSON on stdout, human text on stderr; --json=FILE: to a file");
+  app.add_flag("--json{-}", options.json, "result as JSON on stdout, human text on stderr; --json=FILE: to a file")
+      ->each(claim_stdout("--json"));
   app.add_flag("--quiet", options.quiet, "no human text");
 }
 
@@ -45,11 +69,12 @@ void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& m
 }
 
 void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning) {
-  app.add_option(name, path, meaning)->check(refuse_empty)->type_name("FILE");
+  app.add_option(name, path, meaning)->check(refuse_empty)->each(claim_stdout(name))->type_name("FILE");
 }
 
 void add_scene_options(CLI::App& app, CommonOptions& options) {
-  app.add_option("SCENE", options.scene, "built-in name (halfplane scenes), or a file: .obj, .gltf, .glb, .hpt")
+  app.add_option("SCENE", options.scene,
+                 "built-in name (halfplane scenes), a file: .obj, .gltf, .glb, .hpt, or - for a capture on stdin")
       ->required();
   add_output_options(app, options);
   app.add_option("--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)")
@@ -82,12 +107,13 @@ Size parse_size(const std::string& text) {
 }
 
 void check_output(const std::string& path, const std::string& extension) {
-  if (path.empty()) return;
+  if (path.empty() || path == "-") return;
   namespace fs = std::filesystem;
   std::string end = path.substr(path.size() - std::min(path.size(), extension.size()));
   std::transform(end.begin(), end.end(), end.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (end != extension) throw InputError("'" + path + "': this is written as " + extension + "; name the file so");
+  if (end != extension)
+    throw InputError("cannot write '" + path + "': this file is a " + extension + "; give a name that ends so");
   std::error_code error;
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
@@ -97,7 +123,7 @@ void check_output(const std::string& path, const std::string& extension) {
 }
 
 Config effective_config(const CommonOptions& options) {
-  if (options.json != "-") check_output(options.json);
+  check_output(options.json);
   Config config = config_from_option(options.config);
   for (const std::string& setting : options.settings) {
     const auto equals = setting.find('=');
@@ -177,18 +203,18 @@ Json result_head(const std::string& command, const CommonOptions& options, const
 
 std::ostream& human(const CommonOptions& options) {
   static std::ostream null(nullptr);
-  return options.quiet ? null : options.json == "-" ? std::cerr : std::cout;
+  return options.quiet ? null : !on_stdout().empty() ? std::cerr : std::cout;
 }
 
 void write_json(const CommonOptions& options, const Json& result) {
   if (options.json.empty()) return;
   const std::string text = result.dump(2) + "\n";
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   if (options.json == "-") {
-    std::cout << text << std::flush;
-    if (!std::cout) throw InputError("--json: writing to stdout failed; give a place that takes it, or --json=FILE");
+    write_stdout(bytes, "--json", "give a place that takes it, or --json=FILE");
     return;
   }
-  write_whole_file(options.json, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_whole_file(options.json, bytes);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -211,7 +237,8 @@ void check_distinct(const std::vector<std::string>& paths) {
   for (std::size_t i = 0; i < paths.size(); ++i)
     for (std::size_t j = i + 1; j < paths.size(); ++j)
       if (!paths[i].empty() && paths[i] != "-" && paths[i] == paths[j])
-        throw InputError("'" + paths[i] + "' is named twice, and one would replace the other; give two names");
+        throw InputError("two options name the file '" + paths[i] +
+                         "', and one would replace the other; give each its own");
 }
 
 std::string left_aligned(std::string text, std::size_t width) {
@@ -231,6 +258,21 @@ std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
+}
+
+const std::string& program_word() { return called_as(); }
+
+void set_program_word(const char* name) {
+  if (name != nullptr && *name != 0) called_as() = quoted(name);
+}
+
+std::string config_arguments(const Config& config) {
+  std::string text = " --config " + config.preset;
+  const Config base = preset(config.preset);
+  for (const Setting& setting : settings())
+    if (const std::string value = get(config, setting); value != get(base, setting))
+      text += " --set " + quoted(std::string(setting.key) + "=" + value);
+  return text;
 }
 
 std::string fixed(double value, int decimals) {

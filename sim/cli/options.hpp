@@ -19,7 +19,14 @@ namespace halfplane {
 using Json = nlohmann::ordered_json;
 
 /// Exit status: the same for every command.
-enum ExitStatus : int { exit_ok = 0, exit_mismatch = 1, exit_bad_input = 2, exit_missing = 3, exit_interrupted = 130 };
+enum ExitStatus : int {
+  exit_ok = 0,
+  exit_mismatch = 1,
+  exit_bad_input = 2,
+  exit_missing = 3,
+  exit_interrupted = 130,
+  exit_unread = 141  ///< all is well but nobody reads stdout any more: what a shell says of a tool that SIGPIPE ended
+};
 
 /// The common options as typed.
 struct CommonOptions {
@@ -43,14 +50,15 @@ void add_output_options(CLI::App& app, CommonOptions& options);
 /// Adds --seed.
 void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning);
 
-/// Adds an option that takes the name of a file to write; an empty name is refused.
+/// Adds an option that takes the name of a file to write, or - for stdout; an empty name is refused, and a second one on
+/// stdout.
 void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning);
 
 /// Adds SCENE and every common option.
 void add_scene_options(CLI::App& app, CommonOptions& options);
 
 /// Throws InputError when `path` lies in no folder or is one, or does not end in `extension` (lower case, as ".npy"; ""
-/// for any). Called before the work, so that nobody waits for a result that cannot be saved. No path is fine.
+/// for any). Called before the work, so that nobody waits for a result that cannot be saved. No path is fine, and so is -.
 void check_output(const std::string& path, const std::string& extension = "");
 
 /// `--size WxH`, pixels; 0x0 for an empty text. Throws InputError.
@@ -77,7 +85,7 @@ struct Size {
 /// `command` as in "render".
 [[nodiscard]] Json result_head(const std::string& command, const CommonOptions& options, const Config& config);
 
-/// The stream for human text: stdout, or stderr when the result is on stdout; a null stream with --quiet.
+/// The stream for human text: stdout, or stderr when a result or a file is on stdout; a null stream with --quiet.
 [[nodiscard]] std::ostream& human(const CommonOptions& options);
 
 /// Writes the result where --json says. Call it before the human text: if it fails, its one line stands alone.
@@ -104,6 +112,15 @@ void check_distinct(const std::vector<std::string>& paths);
 
 /// A word as a POSIX shell takes it.
 [[nodiscard]] std::string quoted(const std::string& word);
+
+/// The program as it was called, as a shell takes it: the first word of every command that is printed to be repeated.
+[[nodiscard]] const std::string& program_word();
+
+/// To be called once, with argv[0] (null: "halfplane").
+void set_program_word(const char* name);
+
+/// " --config PRESET --set KEY=VALUE ..." for exactly this configuration, as a shell takes it.
+[[nodiscard]] std::string config_arguments(const Config& config);
 
 /// "%.*f" as a string.
 [[nodiscard]] std::string fixed(double value, int decimals);

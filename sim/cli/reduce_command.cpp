@@ -28,6 +28,7 @@ int run(const ReduceCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_output(options.save_path, ".hpt");
+  check_distinct({options.scene, options.json, options.save_path, options.trace_path});
   const DutFactory& factory = dut_for(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);

@@ -88,16 +88,18 @@ void check_options(const RenderCommand& options, const Config& config) {
                      "' in this version; give functional, scalar, cycle, rtl, golden or golden32");
   check_study_rules(study_rules(options.study), options.engine);
   if (options.engine == "rtl" && !(options.count_path.empty() && options.ids_path.empty()))
-    throw InputError("--engine rtl: hardware keeps neither counts nor ids; leave out --count and --ids");
+    throw InputError(
+        "--count and --ids: the engine rtl is hardware, which keeps neither; leave out --count and --ids, or use "
+        "another --engine");
   if (options.engine == "rtl" && !options.draws_path.empty())
-    throw InputError("--engine rtl: hardware keeps no counts; leave out --draws");
+    throw InputError(
+        "--draws: the engine rtl is hardware, which keeps no counts; leave out --draws, or use another --engine");
   if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all")
-    throw InputError("--engine " + options.engine + ": hardware skips by its own rules; leave out --skip");
-  if (options.engine != "cycle" && !options.cycle.is_default())
-    throw InputError("--engine " + options.engine +
-                     ": --memory, --memory-latency, --mhz, --timing, --what-if, --stalls, --explain, --primitives, "
-                     "--trace and --heat are for "
-                     "--engine cycle");
+    throw InputError("--skip: the engine " + options.engine +
+                     " skips by the hardware's rules; leave out --skip, or use another --engine");
+  if (options.engine != "cycle" && !options.cycle.given().empty())
+    throw InputError(options.cycle.given() + ": the engine " + options.engine +
+                     " does not have it; add --engine cycle, or leave it out");
   if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);

@@ -60,10 +60,26 @@ void print_list(std::ostream& out) {
     out << left_aligned(std::string(c.name), 26) << right_aligned(std::string(c.item), 3) << "  " << c.property << '\n';
 }
 
-/// The command that runs one unit again.
-std::string repeat_command(const StressCommand& options, const stress::CaseResult& result, std::uint64_t unit) {
-  std::string command = "halfplane stress --case " + std::string(result.about->name) + " --seed " +
-                        std::to_string(options.seed) + " --unit " + std::to_string(unit);
+int list_cases(const StressCommand& options) {
+  Json result{{"schema", "halfplane.stress/1"}, {"cases", Json::array()}};
+  for (const stress::Case& c : stress::cases())
+    result["cases"].push_back({{"name", c.name}, {"item", c.item}, {"property", c.property}});
+  write_json(options, result);
+  print_list(human(options));
+  return exit_ok;
+}
+
+/// The command that runs one unit again; what is a property of all units together needs them all.
+std::string repeat_command(const StressCommand& options, const stress::CaseResult& result, const std::string& property,
+                           std::uint64_t unit) {
+  std::string command =
+      program_word() + " stress --case " + std::string(result.about->name) + " --seed " + std::to_string(options.seed);
+  if (property != "bias" && property != "empty")
+    command += " --unit " + std::to_string(unit);
+  else if (options.unit >= 0)
+    command += " --unit " + std::to_string(options.unit);
+  else if (options.seconds > 0)
+    command += " --seconds " + Json(options.seconds).dump();
   if (options.has_config) {
     command += " --config " + quoted(options.config);
     for (const std::string& setting : options.settings) command += " --set " + quoted(setting);
@@ -96,7 +112,7 @@ Json worst_json(const StressCommand& options, const stress::CaseResult& result, 
         save_capture(options.captures, std::string(result.about->name) + "-" + property, w.place.scene);
     if (!path.empty()) row["capture"] = path;
   }
-  row["repeat"] = repeat_command(options, result, w.place.unit);
+  row["repeat"] = repeat_command(options, result, property, w.place.unit);
   return row;
 }
 
@@ -116,7 +132,7 @@ Json case_json(const StressCommand& options, const stress::CaseResult& result) {
                             {"what", t.first->what},
                             {"config", label(t.first->place.config)},
                             {"capture", path.empty() ? Json(nullptr) : Json(path)},
-                            {"repeat", repeat_command(options, result, t.first->place.unit)}};
+                            {"repeat", repeat_command(options, result, t.first->property, t.first->place.unit)}};
   }
   return row;
 }
@@ -126,8 +142,8 @@ void print_failure(std::ostream& out, const Json& row, const stress::Failure& fa
   out << "\nFAILED    " << row["name"].get<std::string>() << ": " << failure.property << ": " << failure.what
       << "\n  config  " << label(failure.place.config) << "\n  repeat  " << f["repeat"].get<std::string>() << '\n';
   if (!f["capture"].is_null())
-    out << "  look    halfplane compare " << quoted(f["capture"].get<std::string>()) << " --config "
-        << label(failure.place.config, " --set ") << '\n';
+    out << "  look    " << program_word() << " compare " << quoted(f["capture"].get<std::string>())
+        << config_arguments(failure.place.config) << '\n';
 }
 
 std::string junit(const std::vector<stress::CaseResult>& results, double seconds, bool is_partial) {
@@ -182,13 +198,13 @@ void print_table(std::ostream& out, const StressCommand& options, const std::vec
 
 int run(const StressCommand& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.list) {
-    print_list(std::cout);
-    return exit_ok;
-  }
-  if (options.quick && options.seconds > 0) throw InputError("--quick and --seconds together; give one of them");
-  if (options.unit >= 0 && (options.names.empty() || options.quick || options.seconds > 0))
-    throw InputError("--unit repeats one unit of a --case, without --quick and --seconds");
+  if (options.list) return list_cases(options);
+  if (options.quick && options.seconds > 0)
+    throw InputError("--quick and --seconds exclude each other; leave one of them out");
+  if (options.unit >= 0 && options.names.empty())
+    throw InputError("--unit: units are numbered case by case; add the --case that it belongs to");
+  if (options.unit >= 0 && (options.quick || options.seconds > 0))
+    throw InputError("--unit: one unit is all that runs; leave out --quick and --seconds");
   check_output(options.junit_path);
   if (std::error_code error; !options.captures.empty()) {
     std::filesystem::create_directories(options.captures, error);

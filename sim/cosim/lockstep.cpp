@@ -361,7 +361,7 @@ void Lockstep::count_use(const DutOutputs& out) {
 
 void Lockstep::trace() {
   if (options_.trace.empty()) return;
-  if (cycle_ == options_.trace_first) is_tracing_ = dut_.open_trace(options_.trace);
+  if (cycle_ == options_.trace_first) is_tracing_ = has_traced_ = dut_.open_trace(options_.trace);
   if (is_tracing_ && cycle_ == options_.trace_last + 1) dut_.close_trace();
 }
 

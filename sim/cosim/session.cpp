@@ -44,6 +44,7 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
     if (result.mismatch) session.failed = std::move(*scene);
     if (result.mismatch || result.is_stopped) break;
   }
+  session.has_trace = lockstep.has_traced();
   session.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return session;
 }
@@ -71,8 +72,9 @@ Finding investigate(Dut& dut, const Config& config, const LockstepOptions& optio
   {
     Lockstep rerun(dut, config, traced);
     (void)rerun.run(finding.scene);
+    finding.has_trace = rerun.has_traced();
   }
-  finding.has_trace = std::rename(traced.trace.c_str(), trace.c_str()) == 0;
+  finding.has_trace = finding.has_trace && std::rename(traced.trace.c_str(), trace.c_str()) == 0;
   return finding;
 }
 

@@ -23,7 +23,8 @@ struct Session {
   LockstepResult result;        ///< of all scenes together
   std::optional<Scene> failed;  ///< the scene with the mismatch
   std::uint64_t scenes = 0;
-  double seconds = 0;  ///< the model's work included
+  bool has_trace = false;  ///< `options.trace` has been written
+  double seconds = 0;      ///< the model's work included
 };
 
 /// Runs all scenes without a reset between them, up to the first mismatch. `options.progress` gets the part of the scene

@@ -189,7 +189,7 @@ Convention parse_convention(std::string_view text) {
   }
   std::string names;
   for (const Convention& convention : kConventions) names += (names.empty() ? "" : ", ") + std::string(convention.name);
-  throw InputError("--convention: " + in_quotes(text) + " is none; give one of " + names +
+  throw InputError("--convention: no convention " + in_quotes(text) + "; give one of " + names +
                    ", with :standard or :reversed after it for the order of depth");
 }
 

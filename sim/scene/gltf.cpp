@@ -97,7 +97,8 @@ class GltfMeshBuilder {
     if (const auto extensions = place.find("extensions");
         extensions && extensions->find("KHR_draco_mesh_compression")) {
       if (!file_.follow(attributes.at("POSITION"), "accessors").find("bufferView")) {
-        place.fail("compressed with KHR_draco_mesh_compression, which is not read here", "export it uncompressed");
+        place.fail("compressed with KHR_draco_mesh_compression, which is not read here",
+                   way_without("KHR_draco_mesh_compression"));
       }
     }
     material_ = read_material(place);

@@ -10,8 +10,22 @@
 namespace halfplane {
 namespace {
 
-// Extensions that change nothing here, or that we know: quantization only allows more kinds of number.
-constexpr std::array<std::string_view, 2> kKnownExtensions{"KHR_materials_unlit", "KHR_mesh_quantization"};
+// Quantization only allows more kinds of number. The others are about what is not read, or say nothing of the picture.
+constexpr std::array<std::string_view, 7> kKnownExtensions{
+    "KHR_mesh_quantization",  "KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds",
+    "KHR_node_selectability", "KHR_node_hoverability"};
+// Of materials base colour, sides and `unlit` are read, of textures and lights nothing.
+constexpr std::array<std::string_view, 5> kKnownFamilies{"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                                         "KHR_lights_", "EXT_lights_"};
+// Its base colour stands in the extension alone.
+constexpr std::string_view kOtherBaseColor = "KHR_materials_pbrSpecularGlossiness";
+
+bool concerns_what_is_drawn(std::string_view extension) {
+  if (extension == kOtherBaseColor) return true;
+  if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), extension) != kKnownExtensions.end()) return false;
+  return std::none_of(kKnownFamilies.begin(), kKnownFamilies.end(),
+                      [extension](std::string_view family) { return extension.starts_with(family); });
+}
 
 constexpr std::uint32_t kMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
 
@@ -76,6 +90,14 @@ std::optional<std::string> decode_base64(std::string_view text) {
   return text.size() % 4 == 1 ? std::nullopt : std::optional(result);  // a single letter left holds no byte
 }
 
+std::string way_without(std::string_view extension) {
+  if (extension == "KHR_draco_mesh_compression")
+    return "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export it without compression";
+  if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression")
+    return "unpack it with `gltfpack -noq -i IN.glb -o OUT.glb`, or export it without compression";
+  return "export it without that extension";
+}
+
 GltfFile::GltfFile(std::string bytes, std::string name, BufferSource source)
     : bytes_(std::move(bytes)), name_(std::move(name)), source_(std::move(source)), text_(bytes_) {
   if (bytes_.size() >= 4 && word_at(bytes_, 0) == kMagic) split_glb();
@@ -115,11 +137,9 @@ void GltfFile::check_head() const {
   const std::optional<JsonPlace> required = root().find("extensionsRequired");
   for (std::size_t i = 0; required && i < required->size(); ++i) {
     const std::string extension = (*required)[i].text();
-    if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), extension) != kKnownExtensions.end()) continue;
-    const bool is_packed =
-        extension.find("draco") != std::string::npos || extension.find("meshopt") != std::string::npos;
-    (*required)[i].fail("the file needs " + in_quotes(extension) + ", which is not read here",
-                        is_packed ? "export it without compression" : "export it without that extension");
+    if (concerns_what_is_drawn(extension))
+      (*required)[i].fail("the file needs " + in_quotes(extension) + ", which is not read here",
+                          way_without(extension));
   }
 }
 

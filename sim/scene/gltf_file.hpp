@@ -82,6 +82,10 @@ class GltfFile {
   std::map<std::size_t, GltfAccessor> accessors_;
 };
 
+/// What to do about a file that needs this extension, which is not read here: for compressed ones the tool that unpacks
+/// them.
+[[nodiscard]] std::string way_without(std::string_view extension);
+
 /// The bytes of a base64 text (RFC 4648; the padding may be left out), or nothing when it is none.
 [[nodiscard]] std::optional<std::string> decode_base64(std::string_view text);
 

@@ -1,6 +1,8 @@
 #include "sim/scene/load.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -28,7 +30,7 @@ namespace {
     words.push_back(builtin.name);
   }
   throw InputError("unknown scene " + in_quotes(name) + ";" + did_you_mean(word, words) + " built in are " + names +
-                   "; a file ends in .obj, .gltf, .glb or .hpt");
+                   "; a file ends in .obj, .gltf, .glb or .hpt, and - is a capture on stdin");
 }
 
 std::string lower_extension(const std::string& name) {
@@ -37,11 +39,24 @@ std::string lower_extension(const std::string& name) {
   return extension;
 }
 
+// Read once: some commands ask for a scene more than once.
+const std::string& stdin_text() {
+  static const std::string text = [] {
+    std::string all;
+    std::array<char, 1 << 16> block{};
+    while (const std::size_t size = std::fread(block.data(), 1, block.size(), stdin)) all.append(block.data(), size);
+    if (std::ferror(stdin) != 0)
+      throw InputError("stdin cannot be read; give a capture there, or a file in place of -");
+    return all;
+  }();
+  return text;
+}
+
 Scene load_capture(const SceneRequest& request) {
   if (!request.camera.empty()) {
     throw InputError("--camera: " + request.name + " is a capture, already projected; leave the camera out");
   }
-  Scene scene = read_capture_file(request.name);
+  Scene scene = request.name == "-" ? read_capture(stdin_text(), "stdin") : read_capture_file(request.name);
   mark_outside_objects(scene);
   if (request.width == 0) return scene;
   for (const State& state : scene.states) {
@@ -63,7 +78,7 @@ Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings
                      " has no pixels; write for example --size 640x480");
   }
   const std::string extension = lower_extension(request.name);
-  if (extension == ".hpt") return load_capture(request);
+  if (extension == ".hpt" || request.name == "-") return load_capture(request);
   const bool given = request.width > 0;
   const int width = given ? request.width : 640, height = given ? request.height : 480;
   if (extension == ".gltf" || extension == ".glb") {

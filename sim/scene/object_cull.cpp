@@ -66,7 +66,7 @@ void for_each_draw(Scene& scene, Visit&& visit) {
 CullObjects parse_cull_objects(std::string_view text) {
   for (const auto& [name, tests] : kNames)
     if (name == text) return tests;
-  throw InputError("--cull-objects: " + in_quotes(text) + " is none; give none, sphere, box or both");
+  throw InputError("--cull-objects: no value " + in_quotes(text) + "; give none, sphere, box or both");
 }
 
 std::vector<ObjectBounds> object_bounds(const Mesh& mesh) {

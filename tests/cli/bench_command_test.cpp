@@ -163,7 +163,7 @@ TEST_F(BenchCommandLine, BadInputIsRefusedWithOneLine) {
   refused({"--vary", "depth.bits"}, "give KEY=VALUE,VALUE");
   refused({"--vary", "depth.bits="}, "names no values");
   refused({"--vary", "depth.bits=16,,24"}, "has an empty value");
-  refused({"--vary", "depth.bits=16,16"}, "names a value twice: 16");
+  refused({"--vary", "depth.bits=16,16"}, "names the value 16 twice");
   refused({"--vary", "depth.bits=16", "--vary", "depth.bits=24"}, "varied twice");
   refused({"--vary", "depth.bit=16"}, "depth.bit");
   refused({"--vary", "depth.bits=99"}, "depth.bits");

@@ -106,6 +106,105 @@ TEST_F(RtlCommands, AMutantIsNamedSavedReducedAndRepeated) {
   EXPECT_EQ(run({"cosim", capture}).status, 0) << "without the mutant there is nothing wrong with it";
 }
 
+/// Where a waveform begins and ends, from its header: type, length, first time, last time.
+std::pair<std::uint64_t, std::uint64_t> fst_times(const Bytes& file) {
+  const auto number = [&](std::size_t at) {
+    std::uint64_t value = 0;
+    for (std::size_t i = at; i < at + 8; ++i) value = value << 8 | file[i];
+    return value;
+  };
+  if (file.size() < 25) return {1, 0};
+  return {number(9), number(17)};
+}
+
+TEST_F(RtlCommands, ARunWithoutAMismatchLeavesTheWaveformOfItsWindow) {
+  if (!verilated_duts().front().has_trace) GTEST_SKIP() << "this design is built without tracing";
+  const Outcome first = run({"cosim", "triangle", "--size", "64x48", "--trace", "w.fst", "--json=r.json"});
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_NE(first.out.find("waveform    w.fst, cycles 0 to "), std::string::npos) << first.out;
+  Json json = Json::parse(read("r.json"));
+  EXPECT_EQ(json["trace"], "w.fst");
+  const std::uint64_t last = json["trace_cycles"][1];
+  EXPECT_EQ(fst_times(read("w.fst")).first, 0u);
+  EXPECT_GE(fst_times(read("w.fst")).second, 2 * last);
+  json = result({"cosim", "triangle", "--size", "64x48", "--trace", "w.fst", "--trace-cycles", "100:199"});
+  EXPECT_EQ(json["trace_cycles"], (Json{100, 199}));
+  EXPECT_EQ(fst_times(read("w.fst")), std::pair(std::uint64_t{200}, std::uint64_t{399}));
+  const Outcome late =
+      run({"cosim", "triangle", "--size", "64x48", "--trace", "late.fst", "--trace-cycles", "9000000:9000009"});
+  EXPECT_EQ(late.status, 0) << late.err;
+  EXPECT_NE(late.out.find("waveform    none: the run has "), std::string::npos) << late.out;
+  EXPECT_FALSE(exists("late.fst"));
+}
+
+TEST_F(RtlCommands, TheWindowOfAWaveformIsChecked) {
+  for (const char* window : {"", "5", "5:", ":5", "9:5", "a:b", "-1:5", "1:2:3", "0:99999999999999999999"})
+    expect_refused({"cosim", "triangle", "--trace", "w.fst", "--trace-cycles", window}, "--trace-cycles: ");
+  expect_refused({"cosim", "triangle", "--trace-cycles", "0:9"}, "add --trace FILE.fst");
+  expect_refused({"cosim", "triangle", "--trace", "-"}, "a waveform cannot go to stdout");
+}
+
+TEST_F(RtlCommands, EveryCommandPrintedToRepeatRepeatsWhenPasted) {
+  std::filesystem::create_directory(folder_ / "my scenes");
+  write("my scenes/it's.obj", "v -1 -1 0\nv 1 -1 0.2\nv 0 1 -0.1\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  const std::vector<Arguments> runs{
+      {"cosim", "my scenes/it's.obj", "--size", "96x80", "--camera", "eye=0,0,4;fov=40", "--set", "depth.mapping=rev",
+       "--convention", "d3d", "--stalls", "0.123456789", "--memory", "sdram", "--mutant", "8"},
+      {"cosim", "my scenes/it's.obj", "--mutant", "8", "--save", "a & b.hpt"},
+      {"cosim", "--random", "300", "--seed", "5", "--mutant", "1"},
+      {"reduce", "my scenes/it's.obj", "--mutant", "8", "-o", "my scenes/small; one.hpt"}};
+  for (Arguments words : runs) {
+    words.push_back("--json=r.json");
+    const Outcome first = run(words);
+    const std::string text = testing::PrintToString(words);
+    const Json json = Json::parse(read("r.json"));
+    const std::string repeat = [&] {
+      for (const std::string& line : lines_of(first.out))
+        if (line.starts_with("  repeat    ")) return line.substr(12);
+      return std::string();
+    }();
+    std::vector<std::string> commands{repeat, json["first_mismatch"]["repro"]};
+    for (const std::string& command : commands) {
+      const Outcome again = paste(command + " --json=again.json");
+      EXPECT_EQ(again.status, 1) << text << "\n" << command << "\n" << again.err;
+      const Json now = Json::parse(read("again.json"), nullptr, false);
+      ASSERT_FALSE(now.is_discarded()) << command;
+      EXPECT_EQ(now["first_mismatch"]["stage"], json["first_mismatch"]["stage"]) << command;
+    }
+    if (words[0] == "cosim") {
+      EXPECT_EQ(Json::parse(read("again.json"))["first_mismatch"]["cycle"], json["first_mismatch"]["cycle"])
+          << commands[1];
+    }
+  }
+}
+
+TEST_F(RtlCommands, ASceneFromStdinIsRepeatedFromItsSavedCapture) {
+  write("square.hpt", "halfplane 1\ntarget 32 32\nspace window\nv 1.5 1.5 .5\nv 9.5 1.5 .5\nv 1.5 9.5 .5\nt 0 1 2\n");
+  Surroundings piped;
+  piped.in = "square.hpt";
+  EXPECT_EQ(run({"cosim", "-"}, piped).status, 0);
+  const Outcome outcome = run({"cosim", "-", "--mutant", "23", "--json=r.json"}, piped);
+  ASSERT_EQ(outcome.status, 1) << outcome.out << outcome.err;
+  const Json json = Json::parse(text("r.json"));
+  EXPECT_EQ(json["reduced"]["capture"], "out/cosim-stdin-mutant-23-reduced.hpt");
+  EXPECT_EQ(paste(json["first_mismatch"]["repro"]).status, 1) << json["first_mismatch"]["repro"];
+  const Outcome capture = run({"reduce", "-", "--mutant", "23", "-o", "-"}, piped);
+  EXPECT_EQ(capture.status, 0) << capture.err;
+  EXPECT_TRUE(capture.out.starts_with("halfplane 1\n")) << capture.out;
+  EXPECT_NE(capture.err.find("MISMATCH"), std::string::npos) << capture.err;
+  EXPECT_NE(capture.err.find("none beside a capture on stdout"), std::string::npos) << capture.err;
+}
+
+TEST_F(RtlCommands, ACaptureThatCannotBeWrittenIsNotWhatIsRepeated) {
+  write("out", "where the folder should be");
+  const Outcome outcome = run({"cosim", "--random", "200", "--mutant", "1", "--stalls", "0.2"});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("cannot write 'out/cosim-random-1-mutant-1.hpt'"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("waveform  none"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("--random 200"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run(repeat_command(outcome.out)).status, 1) << outcome.out;
+}
+
 TEST_F(RtlCommands, ReduceOfAFailingSceneStillFailsAndIsSmall) {
   const Json json = result({"reduce", "teapot:3", "--size", "160x120", "--mutant", "23", "-o", "small.hpt"});
   EXPECT_EQ(json["schema"], "halfplane.reduce/1");
@@ -127,8 +226,10 @@ TEST_F(RtlCommands, WhatTheHardwareLacksIsNamed) {
   }
   expect_refused({"cosim", "triangle", "--size", "4000x40"}, "4000x40");
   expect_refused({"cosim"}, "--random");
-  expect_refused({"cosim", "triangle", "--random", "5"}, "one of them");
-  expect_refused({"cosim", "triangle", "--mutant", "1000"}, "no number 1000");
+  expect_refused({"cosim", "triangle", "--random", "5"}, "leave one of them out");
+  expect_refused({"cosim", "--random", "5", "--size", "8x8"}, "leave --size out, or give a SCENE in place of --random");
+  expect_refused({"cosim", "--random", "5", "--camera", "fov=9"}, "leave --camera out, or give a SCENE in place of");
+  expect_refused({"cosim", "triangle", "--mutant", "1000"}, "no mutant has the number 1000; give 1 to ");
   expect_refused({"cosim", "triangle", "--mutant", "1", "--config", "tiny", "--size", "8x8"}, "has no mutants");
   expect_refused({"mutants", "--config", "tiny"}, "has no mutants");
   expect_refused({"render", "triangle", "--engine", "rtl", "--ids", "ids.npy"}, "leave out --count and --ids");

@@ -151,16 +151,17 @@ TEST_F(CycleCommand, TheHeatMapSharesOutTheCyclesOfTheVisits) {
 }
 
 TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
-  expect_refused({"render", "triangle", "--memory", "sdram"}, "--engine functional");
-  expect_refused({"render", "triangle", "--what-if", "visits=2"}, "are for --engine cycle");
+  expect_refused({"render", "triangle", "--memory", "sdram"}, "--memory: the engine functional does not have it");
+  expect_refused({"render", "triangle", "--what-if", "visits=2"},
+                 "--what-if: the engine functional does not have it; add --engine cycle");
   const auto cycle = [](Arguments more) {
     more.insert(more.begin(), {"render", "triangle", "--engine", "cycle"});
     return more;
   };
   expect_refused(cycle({"--memory", "hbm"}), "--memory: no memory 'hbm'; give fixed, sram, sdram, psram or ddr3");
   expect_refused(cycle({"--what-if", "visits"}), "--what-if: 'visits' is not KEY=VALUE");
-  expect_refused(cycle({"--what-if", "visits=2,"}), "--what-if: visits: '' is no number from 2 to 1024");
-  expect_refused(cycle({"--what-if", "visits=1"}), "'1' is no number from 2 to 1024");
+  expect_refused(cycle({"--what-if", "visits=2,"}), "--what-if: visits: '' is no number in its range; give 2...1024");
+  expect_refused(cycle({"--what-if", "visits=1"}), "'1' is no number in its range; give 2...1024");
   expect_refused(cycle({"--what-if", "cash.lines=4"}), "no setting 'cash.lines'");
   expect_refused(cycle({"--what-if", "cache.lines=3"}), "cache.lines");
   expect_refused(cycle({"--timing", "stamp.size=4"}), "--set takes the others");
@@ -168,7 +169,7 @@ TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   expect_refused(cycle({"--mhz", "0"}), "--mhz");
   expect_refused(cycle({"--stalls", "nan"}), "'nan' is no number");
   expect_refused(cycle({"--trace", "t.json", "--timing", "queue.tile=4"}), "--trace");
-  expect_refused(cycle({"--heat", "x.png", "-o", "x.png"}), "'x.png' is named twice");
+  expect_refused(cycle({"--heat", "x.png", "-o", "x.png"}), "two options name the file 'x.png'");
   expect_refused(cycle({"--skip", "none"}), "leave out --skip");
   expect_refused(cycle({"--primitives", "p.txt"}), ".csv");
   expect_refused(cycle({"--trace", "nowhere/t.json"}), "nowhere");

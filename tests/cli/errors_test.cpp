@@ -38,6 +38,22 @@ TEST_F(BadInput, WrongUsageNamesTheOptionAndWhereItIsExplained) {
   expect_refused({"--json", "render", "triangle"}, "--json");
 }
 
+TEST_F(BadInput, RefusalsSayWhatIsWrongAndThenWhatToDo) {
+  write("a.hpt", "halfplane 1\n");
+  expect_refused({"render", "triangle", "-o", "picture"}, "'picture': this file is a .png; give a name that ends so");
+  expect_refused({"render", "triangle", "--depth", "d.txt"}, "or up to 16 bits a .png; give a name that ends so");
+  expect_refused({"render", "triangle", "-o", "a.png", "--draws", "a.png"},
+                 "two options name the file 'a.png', and one would replace the other; give each its own");
+  expect_refused({"render", "triangle", "--heat", "h.png", "--mhz", "7"},
+                 "--mhz, --heat: the engine functional does not have it; add --engine cycle");
+  expect_refused({"render", "triangle", "--cull-objects", "no"}, "no value 'no'; give none, sphere, box or both");
+  expect_refused({"render", "triangle", "--convention", "dx"}, "no convention 'dx'; give one of gl, ");
+  expect_refused({"compare", "triangle", "--panels", "model"}, "no sheet to choose from; add -o");
+  expect_refused({"depth", "--near", "1", "--far", "9", "--camera", "fov=9"}, "no scene to look at; add --scene");
+  expect_refused({"depth", "--near", "1", "--far", "9", "--error", "0"}, "'0' is not above 0; give more");
+  expect_refused({"depth", "--near", "1", "--far", "9", "--error", "1", "--range", "0,3"}, "A,B with 1 <= A < B <= 9");
+}
+
 TEST_F(BadInput, NumbersOfOptionsAreCheckedWhole) {
   for (const char* size : {"", "0x0", "0x480", "640x0", "-4x4", "640", "640x", "x480", "640x480x", "640*480", "4.5x4",
                            "99999999999x1", "nanxnan"})
@@ -221,7 +237,7 @@ TEST_F(BadInput, CaptureTakesNeitherAnotherSizeNorACamera) {
 }
 
 TEST_F(BadInput, ResultThatNobodyTakesIsAnError) {
-  for (const Stdout out : {Stdout::closed, Stdout::full_disk, Stdout::pipe_without_reader}) {
+  for (const Stdout out : {Stdout::closed, Stdout::full_disk}) {
     for (const Arguments& arguments : {Arguments{"render", "triangle", "--json", "--quiet"},
                                        {"compare", "triangle", "--json"},
                                        {"scenes", "--json"},
@@ -230,9 +246,39 @@ TEST_F(BadInput, ResultThatNobodyTakesIsAnError) {
                                        {"scenes"},
                                        {"config", "--sv"},
                                        {"--help"}})
-      expect_refused(arguments, "stdout", 2, {out, 0, 0});
-    EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0}).status, 0);  // nothing to say, nothing lost
+      expect_refused(arguments, "stdout", 2, {out, 0, 0, ""});
+    EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0, ""}).status, 0);  // nothing to say, nothing lost
   }
+}
+
+TEST_F(BadInput, ReaderThatWentAwayEndsTheProgramSilently) {
+  const Surroundings unread{Stdout::pipe_without_reader, 0, 0, ""};
+  for (const Arguments& arguments : {Arguments{"render", "triangle", "--json", "--quiet"},
+                                     {"compare", "triangle", "--json", "--quiet"},
+                                     {"scenes", "--json", "--quiet"},
+                                     {"config", "--list"},
+                                     {"render", "triangle"},
+                                     {"depth", "--near", "1", "--far", "10", "--csv", "-"},
+                                     {"config", "--sv"},
+                                     {"stress", "--list"},
+                                     {"--help"},
+                                     {"render", "--help"}}) {
+    const Outcome outcome = run(arguments, unread);
+    EXPECT_EQ(outcome.status, 141) << testing::PrintToString(arguments);
+    EXPECT_EQ(outcome.err, "") << testing::PrintToString(arguments);
+  }
+  EXPECT_EQ(run({"render", "triangle", "--quiet"}, unread).status, 0);
+  expect_refused({"render", "nosuch"}, "nosuch", 2, unread);
+}
+
+TEST_F(BadInput, ReaderThatWentAwayLeavesFilesWhole) {
+  EXPECT_EQ(run({"render", "triangle", "-o", "whole.png", "--ids", "whole.npy"}).status, 0);
+  EXPECT_EQ(run({"render", "triangle", "-o", "unread.png", "--ids", "unread.npy", "--json"},
+                {Stdout::pipe_without_reader, 0, 0, ""})
+                .status,
+            141);
+  EXPECT_EQ(read("unread.png"), read("whole.png"));
+  EXPECT_EQ(read("unread.npy"), read("whole.npy"));
 }
 
 TEST_F(BadInput, MissingMemoryIsOneLineAndStatusThree) {
@@ -243,7 +289,7 @@ TEST_F(BadInput, MissingMemoryIsOneLineAndStatusThree) {
   GTEST_SKIP() << "the sanitizer needs the address space itself";
 #endif
 #endif
-  const Surroundings small_machine{Stdout::captured, 0, 512u << 20};
+  const Surroundings small_machine{Stdout::captured, 0, 512u << 20, ""};
   const Arguments huge{"--size", "16384x16384",         "--set", "target.width=16384",
                        "--set",  "target.height=16384", "--set", "guard.band=16384"};  // 2 GB of colour and depth
   for (const Arguments& command : {Arguments{"render", "triangle"},

@@ -239,7 +239,7 @@ TEST_F(RenderFiles, FileThatCannotBeWrittenIsRefusedBeforeAnyOtherIsWritten) {
 }
 
 TEST_F(RenderFiles, FullDiskLeavesTheOldFileAndNoHalfOfANewOne) {
-  const Surroundings small_disk{Stdout::captured, 4096, 0};
+  const Surroundings small_disk{Stdout::captured, 4096, 0, ""};
   expect_refused({"render", "teapot", "-o", "new.png"}, "new.png", 2, small_disk);
   expect_refused({"render", "teapot", "--depth", "new.npy"}, "new.npy", 2, small_disk);
   write("old.png", "old");
@@ -255,6 +255,66 @@ TEST_F(RenderFiles, ExistingFileIsReplacedWhole) {
   EXPECT_EQ(png_head(read("picture.png")), (PngHead{8, 8, 8, kRgb}));
   EXPECT_LT(read("picture.png").size(), 1000u);
   EXPECT_EQ(listing(), std::vector<std::string>{"picture.png"});
+}
+
+class Streams : public Cli {};
+
+TEST_F(Streams, ACaptureOnStdinIsTheSceneOfTheFile) {
+  write("two.hpt", kTwoTriangles);
+  Surroundings piped;
+  piped.in = "two.hpt";
+  for (const char* command : {"render", "compare"}) {
+    const Json file = result({command, "two.hpt"});
+    const Outcome outcome = run({command, "-", "--quiet", "--json"}, piped);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json json = Json::parse(outcome.out);
+    EXPECT_EQ(json["scene"], "-");
+    for (const char* key : {"width", "height", "color_hash", "coverage"}) {
+      if (file.contains(key)) {
+        EXPECT_EQ(json[key], file[key]) << key;
+      }
+    }
+  }
+  write("cut.hpt", "halfplane 1\nv 0 0\n");
+  piped.in = "cut.hpt";
+  expect_refused({"render", "-"}, "stdin:2: ", 2, piped);
+  expect_refused({"render", "-"}, "stdin:1: the file is empty");
+  expect_refused({"render", "-", "--camera", "fov=30"}, "--camera: - is a capture");
+}
+
+TEST_F(Streams, AFileOnStdoutIsTheFileAndHumanTextGoesToStderr) {
+  EXPECT_EQ(run({"render", "triangle", "--size", "64x48", "-o", "a.png", "--depth", "d.npy", "--ids", "i.npy"}).status,
+            0);
+  for (const auto& [option, file] : {std::pair{"-o", "a.png"}, {"--depth", "d.npy"}, {"--ids", "i.npy"}}) {
+    const Outcome outcome = run({"render", "triangle", "--size", "64x48", option, "-"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(Bytes(outcome.out.begin(), outcome.out.end()), read(file)) << option;
+    EXPECT_NE(outcome.err.find("primitives  "), std::string::npos) << outcome.err;
+  }
+  const Outcome sheet = run({"compare", "triangle", "--size", "64x48", "-o", "-", "--quiet"});
+  EXPECT_EQ(png_head(Bytes(sheet.out.begin(), sheet.out.end())).depth, 8);
+  EXPECT_EQ(sheet.err, "");
+  const Outcome xml = run({"stress", "--case", "zero_area", "--config", "tiny", "--seconds", "0.1", "--junit", "-"});
+  EXPECT_TRUE(xml.out.starts_with("<?xml")) << xml.out;
+  EXPECT_NE(xml.err.find("every bound holds"), std::string::npos) << xml.err;
+  EXPECT_FALSE(exists("-"));
+}
+
+TEST_F(Streams, TwoResultsOnStdoutAreRefused) {
+  expect_refused({"render", "triangle", "-o", "-", "--depth", "-"}, "-o and --depth both write to stdout");
+  expect_refused({"render", "triangle", "--json", "--ids", "-"}, "both write to stdout; give one of them a file");
+  expect_refused({"stress", "--junit", "-", "--json"}, "both write to stdout");
+  EXPECT_EQ(run({"render", "triangle", "-o", "-", "--json=r.json", "--quiet"}).status, 0);
+}
+
+TEST_F(Streams, AFullDiskOrAReaderThatWentAwayIsToldOfFilesOnStdoutToo) {
+  expect_refused({"render", "triangle", "-o", "-", "--quiet"}, "writing to stdout failed", 2,
+                 {Stdout::full_disk, 0, 0, ""});
+  const Outcome unread =
+      run({"render", "triangle", "-o", "-", "--depth", "d.npy", "--quiet"}, {Stdout::pipe_without_reader, 0, 0, ""});
+  EXPECT_EQ(unread.status, 141);
+  EXPECT_EQ(unread.err, "");
+  EXPECT_TRUE(exists("d.npy"));
 }
 
 }  // namespace

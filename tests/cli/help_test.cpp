@@ -1,4 +1,6 @@
 // What the program says about itself, and that its worked examples work.
+#include <algorithm>
+
 #include "program.hpp"
 
 namespace halfplane::cli {
@@ -70,6 +72,29 @@ TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
                                "--convention", "--json", "--quiet", "-o"})
       EXPECT_NE(help.find(option), std::string::npos) << command << " " << option;
   }
+}
+
+TEST_F(Help, EveryRowOfTheSettingsHasTheSameColumns) {
+  const Arguments list{"config", "--list", "--set", "depth.format=uf8.24"};
+  const auto lines = lines_of(run(list).out);
+  const Json json = result(list);
+  std::size_t begin = 0, end = 0;
+  for (const char* table : {"settings", "timing_settings"})
+    for (const Json& setting : json[table]) {
+      const std::string key = setting["key"], meaning = setting["meaning"];
+      const std::string value =
+          setting["value"].is_string() ? setting["value"].get<std::string>() : setting["value"].dump();
+      const auto line = std::find_if(lines.begin(), lines.end(),
+                                     [&](const std::string& text) { return text.starts_with(key + " "); });
+      ASSERT_NE(line, lines.end()) << key;
+      ASSERT_TRUE(line->ends_with("  " + meaning)) << *line;
+      const std::size_t value_end = line->find(" " + value + " ") + 1 + value.size();
+      if (begin == 0) begin = line->size() - meaning.size();
+      if (end == 0) end = value_end;
+      EXPECT_EQ(line->size() - meaning.size(), begin) << *line;
+      EXPECT_EQ(value_end, end) << *line;
+    }
+  EXPECT_NE(begin, 0u);
 }
 
 TEST_F(Help, VersionIsOneLine) {

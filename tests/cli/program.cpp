@@ -66,13 +66,17 @@ Cli::Cli() : folder_(own_folder() / "run") {
 
 Cli::~Cli() { fs::remove_all(folder_.parent_path()); }
 
-pid_t Cli::start(const Arguments& arguments, const Surroundings& surroundings) const {
+Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) const {
+  return outcome_of(start(HALFPLANE_PROGRAM, arguments, surroundings));
+}
+
+Outcome Cli::paste(const std::string& line) const { return outcome_of(start("/bin/sh", {"-c", line}, {})); }
+
+pid_t Cli::start(std::string program, std::vector<std::string> words, const Surroundings& surroundings) const {
   const std::string out = out_path(), err = err_path();
   fs::remove(out);
   fs::remove(err);
   std::vector<char*> argv;
-  std::string program = HALFPLANE_PROGRAM;
-  std::vector<std::string> words = arguments;  // execv wants them writable
   argv.push_back(program.data());
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -80,7 +84,7 @@ pid_t Cli::start(const Arguments& arguments, const Surroundings& surroundings) c
   const pid_t child = fork();
   if (child != 0) return child;
   if (chdir(folder_.c_str()) != 0) _exit(126);
-  redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
+  redirect(STDIN_FILENO, surroundings.in.empty() ? "/dev/null" : surroundings.in.c_str(), O_RDONLY);
   redirect(STDERR_FILENO, err.c_str(), O_CREAT | O_WRONLY | O_TRUNC);
   redirect_stdout(surroundings.out, out.c_str());
   limit(RLIMIT_FSIZE, surroundings.file_bytes);
@@ -96,10 +100,6 @@ Outcome Cli::outcome_of(pid_t child) const {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), text_of(out_path()), text_of(err_path())};
 }
 
-Outcome Cli::run(const Arguments& arguments, const Surroundings& surroundings) const {
-  return outcome_of(start(arguments, surroundings));
-}
-
 Outcome Cli::interrupt(const Arguments& arguments, int signal, double again) const {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
@@ -109,7 +109,7 @@ Outcome Cli::interrupt(const Arguments& arguments, int signal, double again) con
     siginfo_t info{};
     return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0;
   };
-  const pid_t child = start(arguments, {.progress_s = 0.01});
+  const pid_t child = start(HALFPLANE_PROGRAM, arguments, {.progress_s = 0.01});
   if (child < 0) return {};
   while (is_running(child) && text_of(err_path()).find('\n') == std::string::npos)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -25,6 +25,7 @@ struct Surroundings {
   Stdout out = Stdout::captured;
   std::size_t file_bytes = 0;    ///< no file may grow beyond
   std::size_t memory_bytes = 0;  ///< address space
+  std::string in;                ///< file on stdin, in the folder; none: nothing to read
   double progress_s = 0;         ///< seconds between lines of progress; 0: as usual
 };
 
@@ -46,6 +47,8 @@ class Cli : public testing::Test {
   /// Starts the program and sends it `signal` once it shows progress, which it does every hundredth of a second; then, as
   /// soon as `again` seconds have gone by and if it still runs, once more. 0: never.
   [[nodiscard]] Outcome interrupt(const Arguments& arguments, int signal, double again = 0) const;
+  /// Gives a line to sh, as a person who pastes it into a terminal in the folder.
+  [[nodiscard]] Outcome paste(const std::string& line) const;
 
   /// Runs with `--quiet --json` added, expects success and an empty stderr, and parses the whole of stdout.
   [[nodiscard]] Json result(Arguments arguments) const;
@@ -66,7 +69,7 @@ class Cli : public testing::Test {
 
  private:
   /// Starts it in its folder. The process, below 0 if there is none.
-  [[nodiscard]] pid_t start(const Arguments& arguments, const Surroundings& surroundings) const;
+  [[nodiscard]] pid_t start(std::string program, Arguments words, const Surroundings& surroundings) const;
   [[nodiscard]] std::string out_path() const { return folder_.parent_path() / "stdout"; }
   [[nodiscard]] std::string err_path() const { return folder_.parent_path() / "stderr"; }
   /// Waits for its end.

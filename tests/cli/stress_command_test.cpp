@@ -43,6 +43,23 @@ TEST_F(CliStress, TheCommandThatRepeatsAUnitFindsTheSameWorst) {
   EXPECT_EQ(result(words)["cases"][0]["worst"]["depth"]["value"], worst["value"]);
 }
 
+TEST_F(CliStress, TheCommandThatRepeatsAUnitCanBePasted) {
+  write("my set's.toml", "preset = \"tiny\"\n[depth]\nbits = 12\n");
+  const Json json = result({"stress", "--case", "fans", "--config", "my set's.toml", "--seconds", "0.3"});
+  const Json& worst = json["cases"][0]["worst"]["depth"];
+  const Outcome again = paste(worst["repeat"].get<std::string>() + " --quiet --json");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(Json::parse(again.out)["cases"][0]["worst"]["depth"]["value"], worst["value"]);
+}
+
+TEST_F(CliStress, TheBiasOfAllUnitsIsRepeatedByAllUnits) {
+  const Json json = result({"stress", "--case", "mean_bias", "--config", "tiny", "--seconds", "2"});
+  ASSERT_TRUE(json["cases"][0]["worst"].contains("bias")) << json.dump(1);
+  const std::string repeat = json["cases"][0]["worst"]["bias"]["repeat"];
+  EXPECT_EQ(repeat.find("--unit"), std::string::npos) << repeat;
+  EXPECT_NE(repeat.find("--seconds 2"), std::string::npos) << repeat;
+}
+
 TEST_F(CliStress, TableSaysWhatWasComparedWithWhichSeed) {
   const Outcome outcome = run({"stress", "--case", "zero_area", "--config", "tiny", "--seconds", "0.2", "--seed", "9"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -58,16 +75,26 @@ TEST_F(CliStress, ListNamesEveryCaseWithItsProperty) {
   for (const std::string& line : lines) EXPECT_GT(line.size(), 35U) << line;
 }
 
+TEST_F(CliStress, ListAsJsonHasNameItemAndPropertyOfEveryCase) {
+  const auto lines = lines_of(run({"stress", "--list"}).out);
+  const Json json = result({"stress", "--list"});
+  EXPECT_EQ(json["schema"], "halfplane.stress/1");
+  ASSERT_EQ(json["cases"].size(), lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (const char* key : {"name", "item", "property"})
+      EXPECT_NE(lines[i].find(json["cases"][i][key].get<std::string>()), std::string::npos) << key << ": " << lines[i];
+}
+
 TEST_F(CliStress, WrongUsageIsRefusedInOneLine) {
   expect_refused({"stress", "--case", "fan"}, "no case 'fan'");
-  expect_refused({"stress", "--quick", "--seconds", "3"}, "one of them");
+  expect_refused({"stress", "--quick", "--seconds", "3"}, "leave one of them out");
   expect_refused({"stress", "--seconds", "0"}, "--seconds");
   expect_refused({"stress", "--seconds", "nan"}, "--seconds");
   expect_refused({"stress", "--unit", "-1"}, "--unit");
   expect_refused({"stress", "--config", "tiny", "--set", "depth.bits=99"}, "depth.bits");
   expect_refused({"stress", "--captures", "/dev/null/x"}, "cannot make the folder");
-  expect_refused({"stress", "--unit", "3"}, "one unit of a --case");
-  expect_refused({"stress", "--case", "fans", "--unit", "3", "--seconds", "1"}, "one unit of a --case");
+  expect_refused({"stress", "--unit", "3"}, "add the --case");
+  expect_refused({"stress", "--case", "fans", "--unit", "3", "--seconds", "1"}, "leave out --quick and --seconds");
   expect_refused({"stress", "--set", "depth.format=f16"}, "leave depth.format and depth.mapping as they are");
   expect_refused({"stress", "--junit", "nowhere/x.xml"}, "no such folder");
 }

@@ -332,6 +332,15 @@ TEST(Gltf, UnlitMaterialsKeepTheirColourAtEveryAngle) {
   EXPECT_EQ(mesh_of(builder).vertices[0].normal, Vec3{});
 }
 
+TEST(Gltf, RequiredExtensionsOfWhatIsNotReadAreNoReasonToRefuse) {
+  GltfBuilder builder = test::one_triangle();
+  builder.json["extensionsRequired"] = {"KHR_texture_transform",     "KHR_texture_basisu", "EXT_texture_webp",
+                                        "KHR_materials_clearcoat",   "MSFT_texture_dds",   "KHR_lights_punctual",
+                                        "KHR_materials_variants",    "KHR_xmp_json_ld",    "EXT_lights_image_based",
+                                        "KHR_materials_transmission"};
+  EXPECT_EQ(mesh_of(builder).triangles.size(), 1u);
+}
+
 GltfBuilder with_cameras() {
   GltfBuilder builder = test::one_triangle();
   builder.json["cameras"] = {

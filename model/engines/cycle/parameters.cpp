@@ -29,8 +29,8 @@ void validate(const TimingParameters& parameters, const Config& config) {
   for (const TimingSetting& setting : timing_settings()) {
     const int value = parameters.*setting.member;
     if (value < setting.min || value > setting.max)
-      throw InputError(std::string(setting.key) + ": " + std::to_string(value) + " is not from " +
-                       std::to_string(setting.min) + " to " + std::to_string(setting.max));
+      throw InputError(std::string(setting.key) + ": " + std::to_string(value) + " is outside its range; give " +
+                       std::to_string(setting.min) + "..." + std::to_string(setting.max));
     if (setting.is_pipelined_only && config.setup_kind == SetupKind::serial && value != rtl.*setting.member)
       throw InputError(std::string(setting.key) + ": the serial stages have no such thing; use setup.kind=pipelined");
   }

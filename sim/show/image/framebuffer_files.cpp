@@ -80,7 +80,8 @@ Bytes npy_bytes(int width, int height, std::span<const T> values, std::string_vi
 }
 
 void require_npy(const std::string& path) {
-  if (extension(path) != ".npy") throw InputError("'" + path + "': this array is written as .npy; name the file so");
+  if (path != "-" && extension(path) != ".npy")
+    throw InputError("cannot write '" + path + "': this file is a .npy; give a name that ends so");
 }
 
 }  // namespace
@@ -121,8 +122,9 @@ void write_npy(const std::string& path, int width, int height, std::span<const f
 
 void check_depth_path(const std::string& path, int depth_bits) {
   const std::string kind = extension(path);
+  if (path == "-") return;  // .npy
   if (kind != ".png" && kind != ".npy")
-    throw InputError("'" + path + "': depth is written as .png (up to 16 bits) or .npy; name the file so");
+    throw InputError("cannot write '" + path + "': depth is a .npy, or up to 16 bits a .png; give a name that ends so");
   if (kind == ".png" && depth_bits > kPngDepthBits)
     throw InputError("'" + path + "': " + std::to_string(depth_bits) +
                      " depth bits do not fit a 16-bit PNG; write a .npy instead");
@@ -131,7 +133,7 @@ void check_depth_path(const std::string& path, int depth_bits) {
 void write_depth(const std::string& path, const Framebuffer& frame, int depth_bits) {
   check_depth_path(path, depth_bits);
   const std::vector<std::uint32_t> codes = depth_codes(frame);
-  if (extension(path) == ".npy") return write_npy(path, frame.width, frame.height, std::span(codes));
+  if (extension(path) != ".png") return write_npy(path, frame.width, frame.height, std::span(codes));
   std::vector<std::uint16_t> samples(codes.size());
   std::transform(codes.begin(), codes.end(), samples.begin(),
                  [](std::uint32_t code) { return static_cast<std::uint16_t>(code); });  // < 2^16 by the check above

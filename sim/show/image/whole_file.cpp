@@ -1,11 +1,14 @@
 #include "whole_file.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <system_error>
 
@@ -48,6 +51,9 @@ std::FILE* open_temporary(const fs::path& folder, fs::path& name) {
 
 void write_whole_file(const std::string& path, std::span<const std::uint8_t> bytes) {
   if (path.empty()) throw InputError("cannot write to an empty file name; give a file");
+  if (path == "-" && isatty(STDOUT_FILENO) != 0 && std::find(bytes.begin(), bytes.end(), 0) != bytes.end())
+    throw InputError("-: this file is no text, and stdout is a terminal; give a pipe, or a file in place of -");
+  if (path == "-") return write_stdout(bytes, "-", "give a place that takes it, or a file in place of -");
   fs::path target(path);
   std::error_code error;
   const fs::file_status status = fs::status(target, error);
@@ -72,6 +78,16 @@ void write_whole_file(const std::string& path, std::span<const std::uint8_t> byt
     std::remove(temporary.c_str());
     fail(path, reason);
   }
+}
+
+bool is_stdout_unread() {
+  pollfd out{STDOUT_FILENO, 0, 0};  // POLLERR and POLLHUP are always told
+  return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+void write_stdout(std::span<const std::uint8_t> bytes, const std::string& what, const std::string& mend) {
+  std::cout.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!std::cout.flush() && !is_stdout_unread()) throw InputError(what + ": writing to stdout failed; " + mend);
 }
 
 }  // namespace halfplane

@@ -14,8 +14,8 @@ int number(std::string_view key, std::string_view value, int min, int max) {
   int result = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
   if (error != std::errc() || end != value.data() + value.size() || result < min || result > max)
-    throw InputError(std::string(key) + ": '" + std::string(value) + "' is no number from " + std::to_string(min) +
-                     " to " + std::to_string(max));
+    throw InputError(std::string(key) + ": '" + std::string(value) + "' is no number in its range; give " +
+                     std::to_string(min) + "..." + std::to_string(max));
   return result;
 }
 
