@@ -202,6 +202,7 @@ std::vector<DepthSweep> sweep_depth(const Scene& scene, const Config& config, co
   options.progress = progress;
   const auto results = measure_depths(scene, variants, options, threads);
   for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results[i].order.pairs == 0) continue;  // nothing overlaps: no rate
     auto& line = sweeps[places[i].sweep].lines[places[i].line];
     line.x.push_back(places[i].x);
     line.rate.push_back(results[i].order.rate());
