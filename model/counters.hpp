@@ -53,7 +53,7 @@ inline constexpr SkipName kSkipNames[] = {{"frustum", &Skip::frustum},
 /// Work done and work saved. The JSON keys of `render` have the same names.
 struct Counters {
   std::uint64_t primitives_in = 0, culled = 0, drawn = 0, clipped = 0;
-  std::uint64_t covered = 0;         ///< samples that the fine raster produced
+  std::uint64_t covered = 0;         ///< samples that the fine raster produced; untested ones of accepted tiles too
   std::uint64_t depth_passed = 0;    ///< in program order: equal for every engine and skip setting
   std::uint64_t written = 0;         ///< of those, with depth or colour writes enabled
   std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated; scanline: samples visited

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "sim/cli/bench_study.hpp"
+#include "sim/show/image/color_map.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/bench/report.hpp"
 
@@ -38,10 +39,13 @@ Json bench_row_json(const BenchRow& row, const BenchCase& at) {
             {"coverage", row.facts.coverage}};
   const BenchErrors errors = row.facts.errors.value_or(BenchErrors{});
   const bool has = row.facts.errors.has_value();
-  json["depth_lsb_max"] = null_or(has, errors.depth_lsb_max);
-  json["depth_lsb_rms"] = null_or(has, errors.depth_lsb_rms);
-  json["color_lsb_max"] = null_or(has, errors.color_lsb_max);
-  json["color_lsb_rms"] = null_or(has, errors.color_lsb_rms);
+  json["depth_bits"] = at.config.depth_bits;
+  json["depth_lsb_max"] = null_or(errors.depth_lsb_max);
+  json["depth_lsb_rms"] = null_or(errors.depth_lsb_rms);
+  json["depth_range_max"] = null_or(errors.depth_range_max);
+  json["depth_range_rms"] = null_or(errors.depth_range_rms);
+  json["color_lsb_max"] = null_or(errors.color_lsb_max);
+  json["color_lsb_rms"] = null_or(errors.color_lsb_rms);
   json["depth_eye_max"] = null_or(errors.depth_eye_max);
   json["depth_eye_rms"] = null_or(errors.depth_eye_rms);
   json["coverage_mismatches"] = null_or(has, errors.coverage_mismatches);
@@ -79,14 +83,15 @@ std::string processor_name() {
   return "";
 }
 
-/// A table whose columns are as wide as what stands in them; the first `left` columns begin at the left.
+/// A table whose columns are as wide as what stands in them; the first `left` columns begin at the left. A column of
+/// nothing but blanks and "-" is left out.
 void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
   std::vector<std::size_t> widths(lines.front().size());
   std::vector<bool> is_used(widths.size());
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (std::size_t k = 0; k < widths.size(); ++k) {
       widths[k] = std::max(widths[k], lines[i][k].size());
-      is_used[k] = is_used[k] || (i > 0 && !lines[i][k].empty());
+      is_used[k] = is_used[k] || (i > 0 && !lines[i][k].empty() && lines[i][k] != "-");
     }
   for (const auto& line : lines) {
     std::string text;
@@ -122,6 +127,20 @@ bool is_single(const BenchStudy& study, const BenchRow& row) {
          });
 }
 
+/// Whether an LSB of depth is not the same in all rows.
+bool has_many_lsbs(const BenchStudy& study) {
+  return std::any_of(study.rows.begin(), study.rows.end(), [&](const BenchRow& row) {
+    return study.cases[row.case_index].config.depth_bits != study.cases[study.rows[0].case_index].config.depth_bits;
+  });
+}
+
+/// Whether rows of several LSBs have no eye depth that they could be compared by.
+bool needs_range(const BenchStudy& study) {
+  return has_many_lsbs(study) && std::any_of(study.rows.begin(), study.rows.end(), [](const BenchRow& row) {
+           return row.facts.errors && row.facts.errors->depth_lsb_rms && !row.facts.errors->depth_eye_rms;
+         });
+}
+
 std::vector<std::string> row_cells(const BenchStudy& study, const BenchRow& row) {
   const BenchCase& at = study.cases[row.case_index];
   std::vector<std::string> cells{at.scene_name,
@@ -136,19 +155,28 @@ std::vector<std::string> row_cells(const BenchStudy& study, const BenchRow& row)
   cells.push_back(has_cycles ? fixed(row.cycles_per_s() / 1e6, 2) : "");
   if (row.facts.errors) {
     const BenchErrors& e = *row.facts.errors;
-    cells.insert(cells.end(), {fixed(e.depth_lsb_rms, 3), fixed(e.depth_lsb_max, 2), fixed(e.color_lsb_max, 2),
+    const auto lsb = [](const std::optional<double>& value, int digits) { return value ? fixed(*value, digits) : "-"; };
+    const auto shorter = [](const std::optional<double>& value, double scale) {
+      return value ? short_number(*value * scale) : "-";
+    };
+    const bool has_ppm = needs_range(study);
+    cells.insert(cells.end(), {lsb(e.depth_lsb_rms, 3), lsb(e.depth_lsb_max, 2), shorter(e.depth_eye_rms, 1),
+                               shorter(e.depth_eye_max, 1), has_ppm ? shorter(e.depth_range_rms, 1e6) : "",
+                               has_ppm ? shorter(e.depth_range_max, 1e6) : "", lsb(e.color_lsb_max, 2),
                                with_commas(e.coverage_mismatches), with_commas(e.coverage_missing + e.coverage_extra)});
   } else {
-    cells.insert(cells.end(), 5, "");
+    cells.insert(cells.end(), 9, "-");
   }
   for (const char* engine : {"rtl", "llvmpipe"}) cells.push_back(times_as_fast(study, row, engine));
   return cells;
 }
 
 void print_bench_rows(std::ostream& out, const BenchStudy& study) {
-  std::vector<std::vector<std::string>> lines{{"scene", "engine", "variation", "threads", "ms a frame ", "M prim/s",
-                                               "M pix/s", "cycles", "M cycles/s", "depth rms", "depth max",
-                                               "colour max", "mismatches", "missing+extra", "x rtl", "x llvmpipe"}};
+  std::vector<std::vector<std::string>> lines{{"scene",       "engine",         "variation", "threads",
+                                               "ms a frame ", "M prim/s",       "M pix/s",   "cycles",
+                                               "M cycles/s",  "depth rms, LSB", "max, LSB",  "depth rms, eye",
+                                               "max, eye",    "depth rms, ppm", "max, ppm",  "colour max, LSB",
+                                               "mismatches",  "missing+extra",  "x rtl",     "x llvmpipe"}};
   bool is_any_single = false;
   for (const BenchRow& row : study.rows) {
     lines.push_back(row_cells(study, row));
@@ -156,6 +184,11 @@ void print_bench_rows(std::ostream& out, const BenchStudy& study) {
   }
   print_table(out, lines, 3);
   if (is_any_single) out << "* a single frame\n";
+  if (!has_many_lsbs(study)) return;
+  out << "An LSB is that of each row's own depth.bits; eye depth is in scene units and the same for all rows.\n";
+  if (needs_range(study))
+    out << "Where no eye depth is known: ppm is millionths of the depth range, the same for all rows of one depth "
+           "mapping.\n";
 }
 
 void print_skips(std::ostream& out, const std::vector<SkipRow>& skips) {

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "model/stages/primitive_assembly.hpp"
 #include "sim/cli/commands.hpp"
@@ -97,15 +98,17 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
     const FieldPair& cycle = r.mismatch->fields.front();
     return cycle.model > cycle.rtl ? cycle.model - cycle.rtl : cycle.rtl - cycle.model;
   };
-  result["cycles"] = {{"model", is_whole ? Json(r.model_cycles) : Json(nullptr)},
+  const bool has_cycles = is_whole && r.total_cycles_compared() > 0;
+  result["cycles"] = {{"model", has_cycles ? Json(r.model_cycles) : Json(nullptr)},
                       {"rtl", r.cycles},
                       {"raster", r.raster_cycles},
                       {"tiles", r.tile_cycles},
-                      // The run stops at the first difference; with other bits cycles mean nothing.
+                      // The run stops at the first difference; with other bits, or none, cycles mean nothing.
                       {"max_primitive_error", is_late      ? Json(error())
-                                              : r.mismatch ? Json(nullptr)
-                                                           : Json(0)}};
-  result["rtl_cycles_per_s"] = session.seconds > 0 ? static_cast<double>(r.clocks) / session.seconds : 0.0;
+                                              : has_cycles ? Json(0)
+                                                           : Json(nullptr)}};
+  const bool has_speed = session.seconds > 0 && r.clocks > 0;
+  result["rtl_cycles_per_s"] = has_speed ? Json(static_cast<double>(r.clocks) / session.seconds) : Json(nullptr);
   return result;
 }
 
@@ -133,7 +136,25 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
       << with_commas(r.counters_compared) << '\n'
       << "cycles      " << with_commas(r.cycles) << " in all, " << with_commas(r.raster_cycles)
       << " from the first primitive to the last write, " << with_commas(r.tile_cycles) << " of them moving tiles; "
-      << fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) << " M cycles/s\n";
+      << (session.seconds > 0 ? fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) : "-")
+      << " M cycles/s\n";
+}
+
+/// The result as JUnit: of a failure what the terminal says, paths and the repeat command too.
+void write_junit(const CosimOptions& options, const Config& config, const Session& session, const SavedFinding* saved,
+                 bool is_partial) {
+  std::vector<JunitCase> cases;
+  if (saved != nullptr) {
+    std::ostringstream report;
+    print_finding(report, *saved);
+    report << "  first seen " << mismatch_line(*session.result.mismatch) << '\n';
+    const JunitFinding finding{saved->finding.mismatch, report.str()};
+    cases = junit_cases(session.result, &finding);
+  } else {
+    cases = junit_cases(session.result);
+  }
+  const std::string xml = junit_xml("cosim." + label(config), cases, session.seconds, is_partial);
+  write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
 }
 
 /// What became of the waveform of the whole run, or why there is none.
@@ -206,11 +227,7 @@ int run(const CosimOptions& options) {
                            with_commas(session.result.total_cycles_compared()) + " crossings\n");
   }
   if (is_whole_run_traced) out << "waveform    " << trace_text(options, factory, session) << '\n';
-  if (!options.junit_path.empty()) {
-    const std::string xml =
-        junit_xml("cosim." + label(config), junit_cases(session.result), session.seconds, is_partial);
-    write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
-  }
+  if (!options.junit_path.empty()) write_junit(options, config, session, saved ? &*saved : nullptr, is_partial);
   result["wall_s"] = seconds_since(start);
   if (is_partial) mark_partial(result);
   write_json(options, result);

@@ -91,7 +91,7 @@ void write_text(const std::string& path, const std::string& text) {
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return fixed(whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
+  return whole == 0 ? "-" : fixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
 }
 
 double per_second(std::uint64_t items, const CycleRun& run, const Hardware& hardware) {

@@ -177,7 +177,7 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
   };
   MeasureOptions measure;
   measure.wants_maps = has_report || !options.paths.heat.empty() || !options.paths.fights.empty();
-  measure.progress = part(0, 0.4);
+  measure.progress = part(0, 0.2);
   study.measured = measure_depths(scene, variants, measure, threads);
   keep_whole(variants, study.measured);
   if (study.measured.empty()) return study;
@@ -188,19 +188,12 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
     study.answers = depth_answers(variants[0], study.measured[0], {});
     return study;
   }
-  study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.4, 0.8));
+  study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.2, 0.4));
   study.answers = depth_answers(variants[0], study.measured[0], study.trials);
-  if (has_sweeps && !is_interrupted()) {
-    Scene small = scene;  // clip space has no size of its own
-    const bool is_scalable = std::all_of(scene.states.begin(), scene.states.end(),
-                                         [](const State& state) { return !state.viewport && !state.scissor; });
-    if (is_scalable) {
-      small.width = std::max(1, scene.width / 4);
-      small.height = std::max(1, scene.height / 4);
-    }
-    study.sweeps = sweep_depth(small, question.config, question.mappings, variants[0].format.bits, variants[0].planes,
-                               threads, part(0.8, 1));
-  }
+  // At the size of the scene: at another one the rate where sweep and table meet would be another.
+  if (has_sweeps && !is_interrupted())
+    study.sweeps = sweep_depth(scene, question.config, question.mappings, variants[0].format.bits, variants[0].planes,
+                               threads, part(0.4, 1));
   return study;
 }
 

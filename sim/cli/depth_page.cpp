@@ -26,7 +26,11 @@ Json rows_json(const std::vector<DepthRow>& rows) {
   return list;
 }
 
-Json depth_part_json(const ErrorMoments& m) { return {{"max", m.max}, {"rms", m.rms}}; }
+/// Null where no error was measured.
+Json depth_part_json(const ErrorMoments& m) {
+  const auto known = [&m](double value) { return m.count == 0 ? Json(nullptr) : Json(value); };
+  return {{"max", known(m.max)}, {"rms", known(m.rms)}};
+}
 
 Json measured_json(const DepthMeasurement& m) {
   Json decades = Json::array();
@@ -51,10 +55,10 @@ Json measured_json(const DepthMeasurement& m) {
           {"pairs", m.order.pairs},
           {"ties", m.order.ties},
           {"inversions", m.order.inversions},
-          {"rate", m.order.rate()},
+          {"rate", m.order.pairs == 0 ? Json(nullptr) : Json(m.order.rate())},
           {"fighting_pixels", m.order.fighting_pixels},
           {"nearest_fight", m.order.fights() == 0 ? Json(nullptr) : Json(m.order.nearest_fight)},
-          {"worst_share_of_bound", m.worst_share},
+          {"worst_share_of_bound", m.total.count == 0 ? Json(nullptr) : Json(m.worst_share)},
           {"stage_mismatches", m.stage_mismatches},
           {"parts",
            {{"snap", depth_part_json(m.snap)},
@@ -67,7 +71,9 @@ Json measured_json(const DepthMeasurement& m) {
 /// One series of the report: a mapping and a format, without what is measured.
 Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
   const ExactDepth theory(variant.mapping, variant.format, question.near, question.far);
-  const DepthCurve curve = depth_curve(theory, 181);
+  std::vector<NamedDepth> asked;
+  for (const std::string& z : question.z) asked.push_back({parse_decimal(z, "--z"), std::stod(z)});
+  const DepthCurve curve = depth_curve(theory, 181, asked);
   Json decades = Json::array(), exceeds = Json::array();
   for (const CodeShare& share : codes_by_decade(theory))
     decades.push_back({{"from", share.from}, {"to", share.to}, {"codes", share.codes}, {"share", share.share}});
@@ -114,22 +120,21 @@ std::string data_uri(const Picture& picture) {
   return text;
 }
 
-/// The same scale for the errors of every variant: four decades, up to the largest p99.9.
-std::pair<double, double> map_range(const std::vector<DepthMeasurement>& measured) {
+/// The same scale for the errors of every variant: four whole decades that end above the largest p99.9.
+ScaleLegend map_scale(const std::vector<DepthMeasurement>& measured) {
   double high = 0;
   for (const DepthMeasurement& m : measured) high = std::max(high, m.total.p999);
   if (!(high > 0)) high = 1;
-  return {high / 1e4, high};
+  ScaleLegend scale = log_scale(high / 1e6, high, "in eye depth", "not drawn");
+  scale.is_cut = true;  // an error may be 0
+  return scale;
 }
 
 const std::vector<std::string> kFightLegend{"grey: two surfaces or more, in order", "yellow: two with the same code",
                                             "red: two that are swapped"};
 
-std::vector<std::string> heat_legend(const std::pair<double, double>& range) {
-  return {"error of the visible surface (log)",
-          "dark: " + short_text(range.first) + " or less; bright: " + short_text(range.second),
-          "in eye depth, one scale for all"};
-}
+const std::vector<std::string> kHeatLegend{"error of the visible surface, in eye depth",
+                                           "the scale is logarithmic, and one for all"};
 
 std::string in_one_line(const std::vector<std::string>& lines) {
   std::string text;
@@ -140,11 +145,11 @@ std::string in_one_line(const std::vector<std::string>& lines) {
 /// Pictures of all variants on one sheet, and what their colours mean.
 void write_depth_sheet(const std::string& path, const std::string& title, const std::vector<std::string>& legend,
                        const std::vector<DepthVariant>& variants, const std::vector<Picture>& pictures,
-                       const std::vector<std::string>& notes) {
+                       const std::vector<std::string>& notes, const Legend& scale) {
   if (path.empty()) return;
   std::vector<Panel> panels;
   for (std::size_t i = 0; i < variants.size(); ++i)
-    panels.push_back({variants[i].name(), notes[i], pictures[i], {}, {}});
+    panels.push_back({variants[i].name(), notes[i], pictures[i], scale, {}});
   panels.push_back({"colours", "", {}, {}, legend});
   write_png(path, compose_sheet(title, panels, std::min(3, static_cast<int>(panels.size()))));
 }
@@ -155,15 +160,19 @@ struct DepthPictures {
   std::vector<std::string> heat_notes, fight_notes;
 };
 
-DepthPictures depth_pictures(const Scene& scene, const SceneStudy& study, const std::pair<double, double>& range) {
+DepthPictures depth_pictures(const Scene& scene, const SceneStudy& study, const ScaleLegend& scale) {
   constexpr int kMaxWidth = 640;
   DepthPictures pictures;
   for (const DepthMeasurement& m : study.measured) {
-    pictures.heats.push_back(error_map(scene.width, scene.height, m.error, range.first, range.second, kMaxWidth));
+    pictures.heats.push_back(error_map(scene.width, scene.height, m.error, scale.low, scale.range, kMaxWidth));
     pictures.fights.push_back(fight_map(scene.width, scene.height, m.fights, kMaxWidth));
-    pictures.heat_notes.push_back("max " + short_text(m.total.max) + ", rms " + short_text(m.total.rms));
-    pictures.fight_notes.push_back(std::to_string(m.order.ties) + " ties, " + std::to_string(m.order.inversions) +
-                                   " swaps of " + std::to_string(m.order.pairs) + " pairs");
+    pictures.heat_notes.push_back(m.total.count == 0 ? "no error measured"
+                                                     : "all fragments: max " + short_text(m.total.max) + ", rms " +
+                                                           short_text(m.total.rms));
+    pictures.fight_notes.push_back(m.order.pairs == 0
+                                       ? "no pair of fragments overlaps"
+                                       : std::to_string(m.order.ties) + " ties, " + std::to_string(m.order.inversions) +
+                                             " swaps of " + std::to_string(m.order.pairs) + " pairs");
   }
   return pictures;
 }
@@ -201,15 +210,16 @@ void write_depth_files(const DepthPaths& paths, const std::string& title, const 
   page["version"] = HALFPLANE_VERSION;
   page["config"] = label(question.config);
   if (scene != nullptr && !study.measured[0].error.empty()) {
-    const auto range = map_range(study.measured);
-    const DepthPictures pictures = depth_pictures(*scene, study, range);
-    write_depth_sheet(paths.heat, title, heat_legend(range), variants, pictures.heats, pictures.heat_notes);
-    write_depth_sheet(paths.fights, title, kFightLegend, variants, pictures.fights, pictures.fight_notes);
+    const ScaleLegend scale = map_scale(study.measured);
+    const DepthPictures pictures = depth_pictures(*scene, study, scale);
+    write_depth_sheet(paths.heat, title, kHeatLegend, variants, pictures.heats, pictures.heat_notes, scale);
+    write_depth_sheet(paths.fights, title, kFightLegend, variants, pictures.fights, pictures.fight_notes, {});
     const DepthMeasurement& first = study.measured[0];
     page["scene"] = {{"name", result["scene"]},      {"width", scene->width},        {"height", scene->height},
                      {"fragments", first.fragments}, {"triangles", first.triangles}, {"eye_min", first.eye_min},
                      {"eye_max", first.eye_max}};
-    page["heat_legend"] = in_one_line(heat_legend(range));
+    page["heat_legend"] = in_one_line(kHeatLegend);
+    page["heat_scale"] = data_uri(scale_picture(scale, 640));
     page["fight_legend"] = in_one_line(kFightLegend);
     for (std::size_t i = 0; i < variants.size(); ++i) {
       page["series"][i]["measured"]["heat"] = data_uri(pictures.heats[i]);

@@ -1,4 +1,5 @@
 // The rows of `halfplane depth`: theory and measurement, as CSV and as tables.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -88,9 +89,12 @@ void add_measured_rows(const DepthQuestion& question, const DepthVariant& varian
   add("", "pairs", static_cast<double>(m.order.pairs));
   add("", "ties", static_cast<double>(m.order.ties));
   add("", "inversions", static_cast<double>(m.order.inversions));
-  add("", "fight_rate", m.order.rate());
-  add("", "error_max", m.total.max);
-  add("", "error_rms", m.total.rms);
+  // Of nothing there is neither a rate nor an error: no row.
+  if (m.order.pairs > 0) add("", "fight_rate", m.order.rate());
+  if (m.total.count > 0) {
+    add("", "error_max", m.total.max);
+    add("", "error_rms", m.total.rms);
+  }
   for (const DepthDecade& d : m.decades) {
     const std::string from = depth_number(d.from);
     add(from, "error_max", d.error.max);
@@ -152,6 +156,7 @@ namespace {
 void print_sweep(std::ostream& out, const DepthSweep& sweep) {
   out << "\nfighting by " << sweep.what << '\n';
   for (const auto& line : sweep.lines) {
+    if (line.x.empty()) continue;
     out << left_aligned(line.name, 10);
     for (std::size_t i = 0; i < line.x.size(); ++i)
       out << "  " << line.x[i] << ": " << short_text(100 * line.rate[i]) << " %";
@@ -165,13 +170,22 @@ void print_measured(std::ostream& out, const std::vector<DepthVariant>& variants
   out << "\nvariant         fighting        ties       swaps     rms error     max error  of bound\n";
   for (std::size_t i = 0; i < variants.size(); ++i) {
     const DepthMeasurement& m = study.measured[i];
-    char line[160];
-    std::snprintf(line, sizeof line, "%-13s %8.4f %% %11llu %11llu %13.6g %13.6g %7.0f %%\n",
-                  variants[i].name().c_str(), 100 * m.order.rate(), static_cast<unsigned long long>(m.order.ties),
-                  static_cast<unsigned long long>(m.order.inversions), m.total.rms, m.total.max, 100 * m.worst_share);
-    out << line;
+    const auto with = [](bool is_measured, const char* format, double value) {
+      std::array<char, 32> text{};
+      std::snprintf(text.data(), text.size(), format, value);
+      return is_measured ? std::string(text.data()) : std::string("-");
+    };
+    const bool has_pairs = m.order.pairs > 0, has_errors = m.total.count > 0;
+    out << left_aligned(variants[i].name(), 13) << right_aligned(with(has_pairs, "%.4f %%", 100 * m.order.rate()), 11)
+        << right_aligned(with(has_pairs, "%.0f", static_cast<double>(m.order.ties)), 12)
+        << right_aligned(with(has_pairs, "%.0f", static_cast<double>(m.order.inversions)), 12)
+        << right_aligned(with(has_errors, "%.6g", m.total.rms), 14)
+        << right_aligned(with(has_errors, "%.6g", m.total.max), 14)
+        << right_aligned(with(has_errors, "%.0f %%", 100 * m.worst_share), 10) << '\n';
   }
-  for (const DepthSweep& sweep : study.sweeps) print_sweep(out, sweep);
+  for (const DepthSweep& sweep : study.sweeps)
+    if (std::any_of(sweep.lines.begin(), sweep.lines.end(), [](const auto& line) { return !line.x.empty(); }))
+      print_sweep(out, sweep);
 }
 
 }  // namespace halfplane

@@ -17,6 +17,7 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/terminal.hpp"
+#include "sim/study/compare/compare.hpp"
 
 namespace halfplane {
 namespace {
@@ -181,6 +182,17 @@ void write_files(const RenderCommand& options, const Rendering& rendering, const
     write_png(options.draws_path, draws_sheet(title, color_picture(frame, config.color_format), rendering.count));
 }
 
+/// "1,234 samples tested", and why that may be fewer than are covered.
+std::string tested_text(const Counters& c) {
+  const std::uint64_t tiles = c.skipped.trivially_accepted;
+  std::string text = with_commas(c.samples_tested) + " samples tested";
+  if (tiles > 0)
+    text += " (lines, points and " + with_commas(tiles) + " tiles inside a triangle are covered untested)";
+  else if (c.covered > c.samples_tested)
+    text += " (lines and points are covered untested)";
+  return text;
+}
+
 /// What people read; the figures are those of `result`.
 void print_result(const RenderCommand& options, const Config& config, const Rendering& rendering,
                   const CycleFacts& facts, const Json& result) {
@@ -194,7 +206,7 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
       << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, "
       << with_commas(c.drawn) << " drawn (" << with_commas(c.clipped) << " clipped)\n"
       << "fragments   " << with_commas(c.covered) << " covered, " << with_commas(c.depth_passed) << " passed, "
-      << with_commas(c.written) << " written; " << with_commas(c.samples_tested) << " samples tested\n"
+      << with_commas(c.written) << " written; " << tested_text(c) << '\n'
       << "time        load " << fixed(1e3 * result["time_s"]["load"].get<double>(), 1) << " ms, geometry "
       << fixed(1e3 * rendering.geometry_s, 2) << " ms, raster " << fixed(1e3 * rendering.raster_s, 2) << " ms\n";
   if (const Json& objects = result["objects"]; objects["primitives_skipped"] != 0)
@@ -202,6 +214,7 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
         << ", by box " << objects["culled_box"] << ": "
         << with_commas(objects["primitives_skipped"].get<std::uint64_t>()) << " primitives skipped\n";
   if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
+  for (const std::string& bound : given_up_bounds(study_rules(options.study))) out << "given up    " << bound << '\n';
   if (options.engine == "rtl")
     out << "cycles      " << with_commas(facts.rtl.cycles) << " in all, " << with_commas(facts.rtl.raster_cycles)
         << " from the first primitive to the last write, " << with_commas(facts.rtl.tile_cycles)
@@ -237,6 +250,8 @@ int run(const RenderCommand& options) {
                        {"culled_box", objects.culled_box},
                        {"primitives_skipped", objects.primitives_skipped}};
   if (options.engine == "scalar") add_study_json(result, study_rules(options.study), scene, config);
+  if (options.engine == "scalar" || options.engine == "golden")
+    result["bounds"]["given_up"] = given_up_bounds(study_rules(options.study));
   if (options.engine == "golden") result["clipping"] = options.study.clipping;
   result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};

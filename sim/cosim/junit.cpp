@@ -3,19 +3,26 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sim/utf8.hpp"
+
 namespace halfplane {
 namespace {
 
+/// XML 1.0 has no other control characters, and neither U+FFFE nor U+FFFF.
+bool is_xml(char32_t c) { return c == '\t' || (c >= ' ' && c != 0x7f && c < 0xfffd) || c > 0xffff; }
+
 std::string escaped(const std::string& text) {
   std::string xml;
-  for (const char c : text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t from = at;
+    const char32_t c = next_code_point(text, at);
     switch (c) {
       case '&': xml += "&amp;"; break;
       case '<': xml += "&lt;"; break;
       case '>': xml += "&gt;"; break;
       case '"': xml += "&quot;"; break;
       case '\n': xml += "&#10;"; break;
-      default: xml += static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7f ? '?' : c;
+      default: xml += is_xml(c) ? text.substr(from, at - from) : "?";
     }
   }
   return xml;

@@ -118,22 +118,28 @@ std::string compared_report(const LockstepResult& result) {
          std::to_string(result.counters_compared);
 }
 
-std::vector<JunitCase> junit_cases(const LockstepResult& result) {
+std::vector<JunitCase> junit_cases(const LockstepResult& result, const JunitFinding* finding) {
   std::vector<JunitCase> cases;
-  const auto add = [&](const std::string& name, const std::string& count) {
-    JunitCase c{name, {}, {}, count + " compared"};
-    if (result.mismatch && result.mismatch->arrow == name) {
-      c.failure = mismatch_line(*result.mismatch);
-      c.details = mismatch_report(*result.mismatch);
-    }
-    if (result.is_stopped && count == "0") c.skipped = "interrupted before the first";
-    cases.push_back(std::move(c));
+  const Mismatch* mismatch = finding != nullptr ? &finding->mismatch : result.mismatch ? &*result.mismatch : nullptr;
+  const auto fail = [&](JunitCase& c) {
+    c.failure = mismatch_line(*mismatch);
+    c.details = finding != nullptr ? finding->report : mismatch_report(*mismatch);
   };
-  for (const Arrow arrow : kCompared) add(std::string(info(arrow).name), std::to_string(result.compared[index(arrow)]));
-  add("memory", std::to_string(result.memory_compared));
-  add("counters", std::to_string(result.counters_compared));
-  if (result.mismatch && result.mismatch->kind == Mismatch::Kind::protocol)
-    cases.push_back({"protocol", mismatch_line(*result.mismatch), "", ""});
+  bool has_failed = false;
+  const auto add = [&](const std::string& name, std::uint64_t count) {
+    cases.push_back({name, {}, {}, std::to_string(count) + " compared"});
+    if (result.is_stopped && count == 0) cases.back().skipped = "interrupted before the first";
+    if (mismatch == nullptr || mismatch->arrow != name) return;
+    fail(cases.back());
+    has_failed = true;
+  };
+  for (const Arrow arrow : kCompared) add(std::string(info(arrow).name), result.compared[index(arrow)]);
+  add("memory", result.memory_compared);
+  add("counters", result.counters_compared);
+  if (mismatch != nullptr && !has_failed) {  // the protocol, or a boundary whose packets are compared elsewhere
+    cases.push_back({mismatch->arrow, {}, {}, {}});
+    fail(cases.back());
+  }
   if (result.total() == 0 && !result.is_stopped) cases.push_back({"anything", "nothing was compared", "", ""});
   return cases;
 }

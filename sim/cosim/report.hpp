@@ -18,7 +18,14 @@ namespace halfplane {
 /// "triangle 12 · setup 12 · ...": what was compared, arrow by arrow.
 [[nodiscard]] std::string compared_report(const LockstepResult& result);
 
-/// A test case for each arrow, the memory image and the counters, and one that fails when nothing was compared.
-[[nodiscard]] std::vector<JunitCase> junit_cases(const LockstepResult& result);
+/// What became of a mismatch: that of the reduced scene, and what a person is told about it.
+struct JunitFinding {
+  const Mismatch& mismatch;
+  std::string report;
+};
+
+/// A test case for each arrow, the memory image and the counters, and one that fails when nothing was compared. With a
+/// finding it is this that fails, not the first symptom.
+[[nodiscard]] std::vector<JunitCase> junit_cases(const LockstepResult& result, const JunitFinding* finding = nullptr);
 
 }  // namespace halfplane

@@ -49,8 +49,8 @@ TEST_F(BenchCommandLine, ErrorsAreThoseOfCompareForEachConfiguration) {
   for (const Json& row : bench["rows"]) {
     const Json& expected = compared.at(row["label"]);
     const bool is_reference = row["engine"] == "golden";
-    const auto of = [&](const char* what, const char* moment) {
-      return is_reference ? 0.0 : expected[what][moment].get<double>();
+    const auto of = [&](const char* what, const char* moment) {  // the reference is compared with nothing
+      return is_reference ? Json(nullptr) : expected[what][moment];
     };
     EXPECT_EQ(row["depth_lsb_max"], of("depth_lsb", "max")) << row;
     EXPECT_EQ(row["depth_lsb_rms"], of("depth_lsb", "rms")) << row;
@@ -59,6 +59,36 @@ TEST_F(BenchCommandLine, ErrorsAreThoseOfCompareForEachConfiguration) {
     EXPECT_EQ(row["coverage_missing"], of("coverage", "missing")) << row;
     EXPECT_EQ(row["coverage_mismatches"], of("coverage", "oracle_mismatches")) << row;
   }
+}
+
+TEST_F(BenchCommandLine, RowsOfDifferentDepthBitsAreComparableInEyeSpace) {
+  const Arguments vary{"--engines", "functional,golden", "--vary", "depth.bits=12,24"};
+  const Outcome outcome = run(with({"bench", "knot", "--size", "64x48", "--repeat", "1", "--json"}, vary));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::map<int, Json> rows;
+  const Json json = Json::parse(outcome.out);
+  for (const Json& row : json["rows"])
+    if (row["engine"] == "functional") rows[row["depth_bits"].get<int>()] = row;
+  EXPECT_GT(rows[24]["depth_lsb_rms"], rows[12]["depth_lsb_rms"]) << "what misleads: an LSB is 4,096 times as small";
+  EXPECT_LT(rows[24]["depth_eye_rms"], rows[12]["depth_eye_rms"]);
+  EXPECT_LT(rows[24]["depth_range_rms"], rows[12]["depth_range_rms"]);
+  for (const char* part : {"depth rms, LSB", "depth rms, eye", "each row's own depth.bits"})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("ppm"), std::string::npos) << "eye depth is known";
+  const std::string golden = lines_of(outcome.err)[3];
+  EXPECT_NE(golden.find("golden"), std::string::npos);
+  EXPECT_NE(golden.find(" - "), std::string::npos) << golden;
+}
+
+TEST_F(BenchCommandLine, WithoutEyeDepthTheDepthRangeIsTheUnit) {
+  write("flat.hpt", "halfplane 1\ntarget 64 48\nspace window\nv 0 0 .1\nv 60 0 .3\nv 0 40 .7\nt 0 1 2\n");
+  const Arguments flat{"bench", "flat.hpt", "--repeat", "1", "--engines", "functional"};
+  const Outcome varied = run(with(flat, {"--vary", "depth.bits=12,24", "-o", "page.html"}));
+  EXPECT_EQ(varied.status, 0) << varied.err;
+  EXPECT_NE(varied.out.find("depth rms, ppm"), std::string::npos) << varied.out;
+  EXPECT_EQ(varied.out.find("depth rms, eye"), std::string::npos) << "a column of nothing";
+  EXPECT_NE(varied.out.find("millionths of the depth range"), std::string::npos);
+  EXPECT_EQ(run(flat).out.find("ppm"), std::string::npos) << "one LSB needs no other unit";
 }
 
 TEST_F(BenchCommandLine, EveryCombinationOfWhatIsVariedStandsBesideTheBaseOnce) {

@@ -92,6 +92,46 @@ TEST_F(CompareCommand, SceneWithoutTrianglesComparesNothingWhichIsNoPass) {
   EXPECT_EQ(json["compared_pixels"], 0);
   EXPECT_EQ(json["coverage"]["missing"], 0);
   ASSERT_EQ(json["broken_bounds"].size(), 1u);
+  // What was not measured is no zero.
+  EXPECT_EQ(json["depth_lsb"]["count"], 0);
+  for (const char* key : {"depth_lsb", "color_lsb"})
+    for (const char* moment : {"max", "mean", "rms", "p999"}) EXPECT_TRUE(json[key][moment].is_null()) << key << moment;
+  EXPECT_TRUE(json["parts"]["snap"]["max"].is_null());
+  EXPECT_TRUE(json["datapath"]["depth_bias"].is_null());
+  int rows = 0;
+  for (const std::string& line : lines_of(outcome.err)) {
+    if (!line.starts_with("depth") && !line.starts_with("colour") && !line.starts_with("  s")) continue;
+    if (line.starts_with("  samples")) continue;
+    EXPECT_TRUE(line.ends_with(" -")) << line;
+    ++rows;
+  }
+  EXPECT_GE(rows, 5) << outcome.err;
+}
+
+TEST_F(CompareCommand, MissingAndExtraAreCountedInPixelsAsThePictureDoesAndInSamples) {
+  const Outcome outcome = run({"compare", "knot", "--size", "64x48", "--set", "subpixel.bits=0", "--json"});
+  const Json json = Json::parse(outcome.out);
+  const Json& coverage = json["coverage"];
+  EXPECT_GT(coverage["missing_pixels"], 0u);
+  EXPECT_LE(coverage["missing_pixels"], coverage["missing"]);
+  EXPECT_LE(coverage["extra_pixels"], coverage["extra"]);
+  const auto text = [&](const char* key) { return std::to_string(coverage[key].get<int>()); };
+  EXPECT_NE(outcome.err.find("pixels: " + text("missing_pixels") + " missing, " + text("extra_pixels") + " extra, " +
+                             text("other_visible") + " other primitive"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("samples: " + text("missing") + " missing, " + text("extra") + " extra"),
+            std::string::npos);
+  EXPECT_NE(outcome.err.find("colour, all channels"), std::string::npos);
+}
+
+TEST_F(CompareCommand, ASceneWithLettersThatTheFontLacksHasTheSheetOfOneWithout) {
+  const std::string capture = "halfplane 1\ntarget 24 24\nspace window\nv 2 2 .5\nv 20 20 .5\nv 20 2 .5\nt 0 1 2\n";
+  write("Zähne.hpt", capture);
+  write("Zahne.hpt", capture);
+  for (const char* name : {"Zähne", "Zahne"})
+    EXPECT_EQ(run({"compare", std::string(name) + ".hpt", "-o", std::string(name) + ".png"}).status, 0);
+  EXPECT_EQ(read("Zähne.png"), read("Zahne.png"));
 }
 
 TEST_F(ScenesCommand, EveryListedSceneRendersByItsName) {

@@ -98,6 +98,15 @@ TEST_F(RtlCommands, AMutantIsNamedSavedReducedAndRepeated) {
   EXPECT_TRUE(exists(capture));
   EXPECT_TRUE(exists(trace));
   EXPECT_LE(json["reduced"]["triangles"], 3u);
+  // JUnit has what a person acts on: the reduced scene, where it is, and how to see it again.
+  for (const std::string& part :
+       {capture, trace, json["reduced"]["repro"].get<std::string>(),
+        "cycle " + std::to_string(json["reduced"]["cycle"].get<int>()), std::string("first seen cull: ")})
+    EXPECT_NE(text("failed.xml").find(part), std::string::npos) << part << text("failed.xml");
+  const std::string message = text("failed.xml").substr(text("failed.xml").find("<failure message="));
+  EXPECT_NE(message.substr(0, message.find('>')).find(outcome.out.substr(outcome.out.find("MISMATCH in ") + 12, 40)),
+            std::string::npos)
+      << message;
 
   EXPECT_EQ(run(repeat_command(outcome.out)).status, 1) << "the printed command shows the same again";
   Arguments first = split_words(json["first_mismatch"]["repro"].get<std::string>());

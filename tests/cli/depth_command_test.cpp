@@ -126,8 +126,71 @@ TEST_F(DepthCommandLine, ReportNeedsNothingBesideIt) {
     for (const char* picture : {"heat", "fight"})
       EXPECT_EQ(series["measured"][picture].get<std::string>().rfind("data:image/png;base64,", 0), 0U);
   EXPECT_EQ(data["sweeps"].size(), 2U);
+  EXPECT_EQ(data["heat_scale"].get<std::string>().rfind("data:image/png;base64,", 0), 0U);
+  EXPECT_NE(data["heat_legend"].get<std::string>().find("logarithmic"), std::string::npos);
   EXPECT_TRUE(exists("heat.png") && exists("fights.png") && exists("rows.csv"));
   EXPECT_EQ(run({"depth", "--near", "1", "--far", "9", "-o", "theory.html"}).status, 0);
+}
+
+TEST_F(DepthCommandLine, CurveOfTheReportGoesThroughTheFiguresOfTheTable) {
+  for (const Arguments& depths : {Arguments{}, Arguments{"--z", "0.3,7,55.5,123.456,1000"}}) {
+    Arguments arguments{"depth",     "--near",        "0.1",      "--far",         "1000",
+                        "--mapping", "std,rev,w,log", "--format", "u16,f16,uf4.12"};
+    arguments.insert(arguments.end(), depths.begin(), depths.end());
+    const Json json = result(arguments);
+    std::map<std::string, Json> curves;
+    for (const Json& series : json["series"]) curves[series["name"].get<std::string>()] = series["curve"];
+    int compared = 0;
+    for (const Json& row : json["rows"]) {
+      const std::string metric = row["metric"];
+      if (metric == "code") continue;
+      const Json& curve = curves.at(row["mapping"].get<std::string>() + " " + row["format"].get<std::string>());
+      const std::vector<double> z = curve["z"];
+      EXPECT_TRUE(std::is_sorted(z.begin(), z.end()));
+      const auto at = std::find(z.begin(), z.end(), std::stod(row["z"].get<std::string>())) - z.begin();
+      ASSERT_LT(at, static_cast<std::ptrdiff_t>(z.size())) << row;
+      EXPECT_EQ(std::count(z.begin(), z.end(), z[static_cast<std::size_t>(at)]), 1) << row;
+      EXPECT_EQ(curve[metric][static_cast<std::size_t>(at)], row["value"]) << row;
+      ++compared;
+    }
+    EXPECT_GE(compared, 4 * 3 * 3 * 5);
+    for (const auto& [name, curve] : curves) EXPECT_EQ(curve["z"].back(), 1000.0) << name;
+  }
+}
+
+TEST_F(DepthCommandLine, SweepsMeetTheTableOfFights) {
+  const Json json = result({"depth", "--scene", "coplanar", "--size", "100x75", "--bits", "16", "--sweep"});
+  int met = 0;
+  for (const Json& series : json["series"])
+    for (const Json& sweep : json["sweeps"])
+      for (const Json& line : sweep["lines"]) {
+        const bool is_storage = sweep["what"] == "storage bits";
+        const std::string name = series["mapping"].get<std::string>() + (is_storage ? " u" : " u16");
+        if (line["name"] != name) continue;
+        const int here = is_storage ? 16 : json["config"]["subpixel.bits"].get<int>();
+        for (std::size_t i = 0; i < line["x"].size(); ++i) {
+          if (line["x"][i] != here) continue;
+          EXPECT_EQ(line["rate"][i], series["measured"]["rate"]) << name;
+          ++met;
+        }
+      }
+  EXPECT_EQ(met, 6);
+}
+
+TEST_F(DepthCommandLine, WhatNoPairOfFragmentsShowsHasNoRate) {
+  write("one.hpt",
+        "halfplane 1\ntarget 40 40\nspace clip\nplanes 1 9\nv -2 -2 1.5 2\nv 3 -3 2 3\nv 0 4 3 4\nt 0 1 2\n");
+  const Outcome one = run({"depth", "--scene", "one.hpt", "--mapping", "std", "--sweep", "--json"});
+  EXPECT_EQ(one.status, 0) << one.err;
+  const Json json = Json::parse(one.out);
+  const Json& measured = json["series"][0]["measured"];
+  EXPECT_EQ(measured["pairs"], 0);
+  EXPECT_TRUE(measured["rate"].is_null());
+  EXPECT_TRUE(measured["parts"]["total"]["max"].is_number());
+  for (const Json& row : json["rows"]) EXPECT_NE(row["metric"], "fight_rate");
+  for (const Json& sweep : json["sweeps"])
+    for (const Json& line : sweep["lines"]) EXPECT_TRUE(line["x"].empty()) << line;
+  EXPECT_EQ(one.err.find("0.0000 %"), std::string::npos) << one.err;
 }
 
 TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {

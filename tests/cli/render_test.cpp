@@ -202,6 +202,16 @@ TEST_F(RenderCommand, SkippingWorkChangesNoImageAndIsCounted) {
   }
 }
 
+TEST_F(RenderCommand, TextSaysWhyFewerSamplesAreTestedThanCovered) {
+  const Json all = result({"render", "walk"});
+  ASSERT_LT(all["samples_tested"], all["fragments"]["covered"]);
+  const std::string part = "tiles inside a triangle are covered untested";
+  EXPECT_NE(run({"render", "walk"}).out.find(part), std::string::npos);
+  EXPECT_EQ(run({"render", "walk", "--skip", "none"}).out.find(part), std::string::npos);
+  EXPECT_NE(run({"render", "wires", "--size", "64x48"}).out.find("lines and points are covered untested"),
+            std::string::npos);
+}
+
 TEST_F(RenderCommand, ThreadsChangeNoImage) {
   const Json one = result({"render", "teapot", "--threads", "1"}),
              four = result({"render", "teapot", "--threads", "4"});

@@ -1,4 +1,6 @@
 // `--traversal`, `--fill-rule` and `--clipping`: what they change in results, and who refuses them.
+#include <algorithm>
+
 #include "program.hpp"
 
 namespace halfplane::cli {
@@ -54,6 +56,33 @@ TEST_F(StudyRules, FillRulesShowInTheResultOfRenderAndCompare) {
   EXPECT_EQ(plain["engine"], "functional");
   EXPECT_EQ(plain["fill_rule"], "top_left");
   EXPECT_EQ(plain["coverage"]["missing"], 0u);
+}
+
+TEST_F(StudyRules, BoundsThatARuleGivesUpAreListed) {
+  write("square.hpt", kSquare);
+  const Json plain = result({"compare", "square.hpt"});
+  EXPECT_EQ(plain["bounds"]["given_up"], Json::array());
+  EXPECT_EQ(plain["bounds"]["broken"], plain["broken_bounds"]);
+  const auto given_up = [&](const Arguments& rule) {
+    Arguments arguments{"compare", "square.hpt", "--json"};
+    arguments.insert(arguments.end(), rule.begin(), rule.end());
+    const Outcome outcome = run(arguments);
+    const Json list = Json::parse(outcome.out)["bounds"]["given_up"];
+    for (const Json& bound : list)
+      EXPECT_NE(outcome.err.find("given up: " + bound.get<std::string>()), std::string::npos) << outcome.err;
+    const auto lines = lines_of(outcome.err);
+    const bool says_all = std::find(lines.begin(), lines.end(), "every bound holds") != lines.end();
+    EXPECT_EQ(says_all, list.empty() && outcome.status == 0) << outcome.err;
+    return list.size();
+  };
+  EXPECT_EQ(given_up({"--fill-rule", "inclusive"}), 1u);
+  EXPECT_EQ(given_up({"--fill-rule", "offset_point"}), 1u);
+  EXPECT_EQ(given_up({"--gradients", "two_reciprocals"}), 1u);
+  EXPECT_EQ(given_up({"--accumulator", "saturate", "--gradients", "truncated", "--fill-rule", "inclusive"}), 3u);
+  EXPECT_EQ(given_up({"--traversal", "bbox"}), 0u) << "another order of the same arithmetic";
+  const Outcome whole = run({"render", "walk", "--size", "64x48", "--engine", "scalar", "--clipping", "homogeneous"});
+  EXPECT_NE(whole.out.find("given up    a sample at a shared vertex"), std::string::npos) << whole.out;
+  EXPECT_EQ(run({"render", "walk", "--size", "64x48"}).out.find("given up"), std::string::npos);
 }
 
 TEST_F(StudyRules, DrawsSheetIsWrittenByEveryEngineThatCountsAndShowsTheRule) {

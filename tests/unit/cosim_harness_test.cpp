@@ -263,6 +263,30 @@ TEST(CosimReport, JunitHasACaseForEveryArrowAndEscapesWhatXmlReserves) {
   EXPECT_EQ(junit_cases({}).back().failure, "nothing was compared");
 }
 
+TEST(CosimReport, JunitFailsWithTheFindingAndNotWithTheFirstSymptom) {
+  const Config config = preset("tiny");
+  const LockstepResult result = run(config, {Fault::Kind::lose, Arrow::stamp, 20, 0}, {});
+  ASSERT_TRUE(result.mismatch.has_value());
+  Mismatch reduced = *result.mismatch;
+  reduced.arrow = "memory";
+  reduced.number = 0;
+  const JunitFinding finding{reduced, "saved in out/Zähne.hpt"};
+  int failures = 0;
+  for (const JunitCase& c : junit_cases(result, &finding)) {
+    EXPECT_EQ(c.failure.empty(), c.name != "memory") << c.name;
+    failures += c.failure.empty() ? 0 : 1;
+    if (!c.failure.empty()) {
+      EXPECT_EQ(c.failure, mismatch_line(reduced));
+      EXPECT_EQ(c.details, finding.report);
+    }
+  }
+  EXPECT_EQ(failures, 1);
+  reduced.arrow = "somewhere";  // is no test case of its own: none may pass because of it
+  EXPECT_EQ(junit_cases(result, &finding).back().failure, mismatch_line(reduced));
+  EXPECT_NE(junit_xml("cosim", junit_cases(result, &finding), 1).find("out/Zähne.hpt"), std::string::npos);
+  EXPECT_NE(junit_xml("a\xc3", {}, 1).find("\"a?\""), std::string::npos) << "half a character";
+}
+
 TEST(CosimStalls, AreTheirProbabilityAndNoneAtZero) {
   for (const double probability : {0.0, 0.1, 0.5, 0.9}) {
     std::array<int, kStallStreams> stalled{};

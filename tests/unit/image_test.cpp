@@ -347,12 +347,46 @@ TEST(Text, BytesWithoutAGlyphShowAsQuestionMarks) {
   EXPECT_EQ(with.rgb, without.rgb);
 }
 
-TEST(Text, LongCaptionIsShortenedToItsWidth) {
-  EXPECT_EQ(fit_text("depth error", 500, 2), "depth error");
-  const std::string text = fit_text("a scene with a very long name indeed", 120, 2);
-  EXPECT_LE(text_width(text, 2), 120);
-  EXPECT_TRUE(text.ends_with(".."));
-  EXPECT_TRUE(text.starts_with("a scene"));
+TEST(Text, AccentedLettersShowWithoutTheirAccentsAndOthersAsOneQuestionMark) {
+  const auto drawn = [](std::string_view text) {
+    Picture picture(200, 12);
+    draw_text(picture, 0, 0, text, {255, 255, 255}, 1);
+    return picture.rgb;
+  };
+  EXPECT_EQ(drawn("Zähne-Łódź-ß-Čapek.hpt"), drawn("Zahne-Lodz-s-Capek.hpt"));
+  EXPECT_EQ(drawn("a\xcc\x88 – 3×2 µm"), drawn("a - 3x2 um"));  // the first: a letter and its mark apart
+  EXPECT_EQ(drawn("茶壺 1"), drawn("?? 1"));
+  EXPECT_EQ(drawn("\xf0\x9f\xab\x96."), drawn("?."));
+  EXPECT_EQ(drawn("a\xe8\x8c"), drawn("a?")) << "half a character is none";
+  EXPECT_EQ(text_width("äöü", 2), text_width("aou", 2));
+}
+
+TEST(Text, LongTextIsWrappedBetweenWordsAndNothingIsCut) {
+  EXPECT_EQ(wrap_text("depth error", 500, 2), std::vector<std::string>{"depth error"});
+  EXPECT_EQ(wrap_text("", 500, 2), std::vector<std::string>{""});
+  const std::string bound = "  depth: 3.214 LSB from the exact plane through the snapped vertices (bound 0.67)";
+  for (const int width : {200, 260, 333, 480, 1000}) {
+    std::string words;
+    const auto lines = wrap_text(bound, width, 2);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      EXPECT_LE(text_width(lines[i], 2), width) << lines[i];
+      EXPECT_TRUE(lines[i].starts_with(i == 0 ? "  d" : "    ")) << lines[i];
+      words += (i == 0 ? "" : " ") + lines[i].substr(lines[i].find_first_not_of(' '));
+    }
+    EXPECT_EQ(words, bound.substr(2));
+  }
+}
+
+TEST(Text, AWordWiderThanItsLineIsBrokenBetweenCharacters) {
+  std::string word;
+  for (int i = 0; i < 40; ++i) word += "ä";
+  std::string joined;
+  for (const std::string& line : wrap_text(word, 100, 2)) {
+    EXPECT_LE(text_width(line, 2), 100);
+    joined += line.substr(line.find_first_not_of(' '));
+    EXPECT_EQ(line.substr(line.find_first_not_of(' ')).size() % 2, 0u) << "no half of an ä";
+  }
+  EXPECT_EQ(joined, word);
 }
 
 TEST(Panel, CoverageClassesAreCountedAndTakeTheirLegendsColor) {
@@ -391,6 +425,40 @@ TEST(Panel, NothingComparedIsSaid) {
   EXPECT_EQ(error_panel("depth error", 2, 2, errors, "LSB", true).note, "no pixel compared");
 }
 
+TEST(Panel, FiguresThatAreSaidElsewhereReplaceThePixelsOwn) {
+  const std::vector<float> errors{0.25f, 0.5f};
+  EXPECT_EQ(error_panel("colour error", 2, 1, errors, "LSB", false, "max 0.500  rms 0.3 of all channels").note,
+            "max 0.500  rms 0.3 of all channels");
+}
+
+TEST(Panel, LogarithmicScaleEndsAtDecadesAndItsNumbersStandAtTheirColours) {
+  const std::vector<float> cycles{0, 0.3f, 1, 10, 700};
+  const Panel panel = log_panel("cycles of each pixel", 5, 1, cycles, "cycles", "none");
+  EXPECT_EQ(panel.caption, "cycles of each pixel, logarithmic");
+  const auto& scale = std::get<ScaleLegend>(panel.legend);
+  EXPECT_DOUBLE_EQ(scale.low, 0.1);
+  EXPECT_DOUBLE_EQ(scale.range, 1000);
+  EXPECT_EQ(scale.rest, "none");
+  EXPECT_EQ(panel.picture.get(0, 0), kNotCompared);
+  const auto ticks = scale_ticks(scale, 400);
+  ASSERT_EQ(ticks.size(), 5u);
+  for (const auto& [pixel, tick, label] : {std::tuple{2, 1U, "1"}, {3, 2U, "10"}}) {
+    EXPECT_EQ(ticks[tick].label, label);
+    EXPECT_EQ(panel.picture.get(pixel, 0), sequential_color(ticks[tick].at)) << label;
+  }
+  EXPECT_EQ(ticks.back().label, "1000");
+  EXPECT_EQ(scale_ticks(scale, 30).size(), 2u) << "no room for more than the ends";
+}
+
+TEST(Panel, LogarithmicScaleSaysThatLessIsLeftToItsEnd) {
+  const std::vector<float> values{1e-7f, 5};
+  const auto scale = std::get<ScaleLegend>(log_panel("error", 2, 1, values, "", "none").legend);
+  EXPECT_DOUBLE_EQ(scale.low, 1e-3);
+  EXPECT_EQ(scale_ticks(scale, 400).front().label, "<0.001");
+  const std::vector<float> nothing(3, 0);
+  EXPECT_EQ(log_panel("error", 3, 1, nothing, "", "none").note, "no pixel has any");
+}
+
 TEST(Panel, ReducedPictureKeepsTheOneMissingPixel) {
   const int width = 2 * kMaxPanelSide + 1;
   std::vector<CoverageClass> classes(static_cast<std::size_t>(width) * 2, CoverageClass::both);
@@ -401,6 +469,34 @@ TEST(Panel, ReducedPictureKeepsTheOneMissingPixel) {
   EXPECT_EQ(panel.picture.get(100, 0), legend[2].color);
   EXPECT_EQ(panel.picture.get(99, 0), legend[1].color);
   EXPECT_NE(panel.caption.find("worst of 3x3"), std::string::npos) << panel.caption;
+}
+
+/// The columns of a picture beside its left cell: where text of that cell must not be.
+bool is_clear_between(const Picture& sheet, int from, int to) {
+  for (int y = 0; y < sheet.height; ++y)
+    for (int x = from; x < to; ++x)
+      if (!(sheet.get(x, y) == sheet.get(0, 0))) return false;
+  return true;
+}
+
+TEST(Sheet, TextStaysInItsCellHoweverLongItIs) {
+  std::string words;
+  for (int i = 0; i < 40; ++i) words += "from the exact plane ";
+  Panel text;
+  text.caption = words;
+  text.lines = {words, "name\tmax\trms", words.substr(0, 60) + "\t0.591\t0.2512", "last"};
+  Panel picture;
+  picture.caption = words;
+  picture.note = words;
+  picture.picture = Picture(4, 4, {1, 2, 3});
+  const std::vector<Panel> panels{picture, text};
+  const Picture sheet = compose_sheet(words, panels, 2);
+  const int cell = (sheet.width - 3 * 24) / 2;  // margins of 24
+  const Picture untitled = compose_sheet("", panels, 2);
+  EXPECT_TRUE(is_clear_between(untitled, 24 + cell, 24 + cell + 24));
+  EXPECT_TRUE(is_clear_between(untitled, untitled.width - 24, untitled.width));
+  EXPECT_TRUE(is_clear_between(sheet, sheet.width - 24, sheet.width));
+  EXPECT_GT(sheet.height, untitled.height + 60) << "a title of several lines";
 }
 
 TEST(Sheet, SmallPixelsBecomeWholeBlocksOfAllPanels) {

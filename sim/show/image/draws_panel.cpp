@@ -41,7 +41,7 @@ Picture draws_sheet(std::string_view title, const Picture& color, std::span<cons
 Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> cycles,
                    std::span<const std::uint32_t> counts) {
   std::array<Panel, 3> panels{Panel{},
-                              error_panel("cycles of each pixel", color.width, color.height, cycles, "cycles", false),
+                              log_panel("cycles of each pixel", color.width, color.height, cycles, "cycles", "none"),
                               draws_panel(color.width, color.height, counts)};
   panels[0].caption = "model";
   panels[0].picture = color;

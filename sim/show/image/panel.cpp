@@ -82,10 +82,13 @@ ErrorStatistics measure(std::span<const float> errors) {
   return result;
 }
 
-std::string error_note(const ErrorStatistics& statistics, bool diverging) {
+std::string error_note(const ErrorStatistics& statistics, bool diverging, std::string_view figures) {
   if (statistics.compared == 0) return "no pixel compared";
-  std::string text = "max " + short_number(statistics.max) + "  rms " + short_number(statistics.rms);
-  if (diverging) text += "  mean " + short_number(statistics.mean);
+  std::string text(figures);
+  if (figures.empty()) {
+    text = "max " + short_number(statistics.max) + "  rms " + short_number(statistics.rms);
+    if (diverging) text += "  mean " + short_number(statistics.mean);
+  }
   if (statistics.beyond > 0) text += "  beyond scale: " + std::to_string(statistics.beyond);
   return text;
 }
@@ -95,7 +98,7 @@ std::string error_note(const ErrorStatistics& statistics, bool diverging) {
 Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes) {
   const int factor = reduction(width, height);
   Panel panel;
-  panel.caption = "coverage difference" + reduction_note(factor);
+  panel.caption = "coverage difference, pixels" + reduction_note(factor);
   panel.picture = reduced_canvas(width, height, factor);
   std::array<std::size_t, kClasses.size()> counts{};
   std::vector<int> ranks(panel.picture.rgb.size() / 3, -1);
@@ -114,12 +117,12 @@ Panel coverage_panel(int width, int height, std::span<const CoverageClass> class
 }
 
 Panel error_panel(std::string_view caption, int width, int height, std::span<const float> errors, std::string_view unit,
-                  bool diverging) {
+                  bool diverging, std::string_view figures) {
   const int factor = reduction(width, height);
   const ErrorStatistics statistics = measure(errors);
   Panel panel;
   panel.caption = std::string(caption) + ", " + std::string(unit) + reduction_note(factor);
-  panel.note = error_note(statistics, diverging);
+  panel.note = error_note(statistics, diverging, figures);
   panel.picture = reduced_canvas(width, height, factor);
   panel.legend = ScaleLegend{diverging, statistics.range, std::string(unit)};
   std::vector<float> largest(panel.picture.rgb.size() / 3, -1.0f);
@@ -133,6 +136,47 @@ Panel error_panel(std::string_view caption, int width, int height, std::span<con
   return panel;
 }
 
+ScaleLegend log_scale(double least, double high, std::string_view unit, std::string_view rest) {
+  ScaleLegend scale{false, 1, std::string(unit), std::string(rest), 0.1};
+  if (!(high > 0) || !std::isfinite(high)) return scale;
+  // 1e-9: a power of ten is its own end
+  const double last = std::ceil(std::log10(high) - 1e-9), first = std::floor(std::log10(least) + 1e-9);
+  scale.range = std::pow(10.0, last);
+  scale.low = std::pow(10.0, std::clamp(first, last - 4, last - 1));
+  scale.is_cut = first < last - 4;
+  return scale;
+}
+
+Panel log_panel(std::string_view caption, int width, int height, std::span<const float> values, std::string_view unit,
+                std::string_view rest) {
+  const int factor = reduction(width, height);
+  double least = INFINITY, most = 0, sum = 0;
+  std::size_t count = 0;
+  for (const float value : values) {
+    if (!(value > 0)) continue;
+    least = std::min<double>(least, value);
+    most = std::max<double>(most, value);
+    sum += value;
+    ++count;
+  }
+  const ScaleLegend scale = log_scale(least, most, unit, rest);
+  Panel panel;
+  panel.caption = std::string(caption) + ", logarithmic" + reduction_note(factor);
+  panel.note = count == 0 ? "no pixel has any"
+                          : "max " + short_number(most) + "  mean " + short_number(sum / static_cast<double>(count)) +
+                                " of " + std::to_string(count) + " pixels";
+  panel.picture = reduced_canvas(width, height, factor);
+  std::vector<float> largest(panel.picture.rgb.size() / 3, 0.0f);
+  for_each_in_blocks(width, height, factor, [&](std::size_t target, std::size_t source) {
+    const float value = values[source];
+    if (!(value > largest[target])) return;
+    largest[target] = value;
+    store(panel.picture, target, sequential_color(std::log(value / scale.low) / std::log(scale.range / scale.low)));
+  });
+  panel.legend = scale;
+  return panel;
+}
+
 Picture comparison_sheet(const ComparisonSheet& sheet) {
   const int width = sheet.width, height = sheet.height;
   const int factor = reduction(width, height);
@@ -143,10 +187,10 @@ Picture comparison_sheet(const ComparisonSheet& sheet) {
     panel.picture = factor > 1 ? shrink(picture, factor) : picture;
     return panel;
   };
-  std::vector<Panel> panels{view("model", sheet.model), view("golden", sheet.golden),
-                            coverage_panel(width, height, sheet.coverage),
-                            error_panel("depth error", width, height, sheet.depth_error, "LSB", true),
-                            error_panel("colour error", width, height, sheet.color_error, "LSB", false)};
+  std::vector<Panel> panels{
+      view("model", sheet.model), view("golden", sheet.golden), coverage_panel(width, height, sheet.coverage),
+      error_panel("depth error", width, height, sheet.depth_error, "LSB", true, sheet.depth_figures),
+      error_panel("colour error, worst channel", width, height, sheet.color_error, "LSB", false, sheet.color_figures)};
   if (!sheet.summary.empty()) {
     Panel text;
     text.caption = "summary";

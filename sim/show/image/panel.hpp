@@ -31,14 +31,30 @@ struct ScaleLegend {
   bool diverging = true;  ///< -range...range, otherwise 0...range
   double range = 1;
   std::string unit;
+  std::string rest = "not compared";  ///< what pixels off the scale are
+  double low = 0;                     ///< > 0: low...range by the logarithm; what is less has the colour of `low`
+  bool is_cut = false;                ///< something is less than `low`
 };
+
+/// A number beside a scale; `at` is its place, 0...1.
+struct ScaleTick {
+  double at = 0;
+  std::string label;
+};
+
+/// The numbers that have room beside a bar of so many pixels; the unit stands with the last.
+[[nodiscard]] std::vector<ScaleTick> scale_ticks(const ScaleLegend& scale, int bar);
+
+/// A scale alone, for pages that bring their own pictures.
+[[nodiscard]] Picture scale_picture(const ScaleLegend& scale, int width);
 
 using Legend = std::variant<std::monostate, std::vector<LegendEntry>, ScaleLegend>;
 
-/// One cell of a sheet. Without a picture it shows its lines as text; lines with tabs form a table.
+/// One cell of a sheet. Without a picture it shows its lines as text; lines with tabs form a table. Text that is wider
+/// than its cell is wrapped.
 struct Panel {
   std::string caption;
-  std::string note;  ///< one line below the picture: statistics
+  std::string note;  ///< below the picture: statistics
   Picture picture;
   Legend legend;
   std::vector<std::string> lines;
@@ -49,9 +65,17 @@ struct Panel {
 
 /// Signed errors on the diverging map, or with `diverging` false magnitudes on the sequential one. NaN: not compared,
 /// shown dark. The scale ends at a round number that holds all values; if a few outliers would flatten the rest, one
-/// that holds 99.5 % of them, and the note counts those beyond.
+/// that holds 99.5 % of them, and the note counts those beyond. `figures` begins the note in place of the pixels' own max,
+/// rms and mean: what is said elsewhere of the same errors.
 [[nodiscard]] Panel error_panel(std::string_view caption, int width, int height, std::span<const float> errors,
-                                std::string_view unit, bool diverging);
+                                std::string_view unit, bool diverging, std::string_view figures = {});
+
+/// Magnitudes on the sequential map by the logarithm, in whole decades and at most four of them. 0 is `rest`.
+[[nodiscard]] Panel log_panel(std::string_view caption, int width, int height, std::span<const float> values,
+                              std::string_view unit, std::string_view rest);
+
+/// The scale of log_panel() for values up to `high`, of which `least` is the smallest that counts.
+[[nodiscard]] ScaleLegend log_scale(double least, double high, std::string_view unit, std::string_view rest);
 
 /// How often each sample was drawn: cracks and double draws at a glance. `counts` holds width * height values.
 [[nodiscard]] Panel draws_panel(int width, int height, std::span<const std::uint32_t> counts);
@@ -65,10 +89,11 @@ struct ComparisonSheet {
   int width = 0, height = 0;
   Picture model, golden;
   std::vector<CoverageClass> coverage;
-  std::vector<float> depth_error;    ///< signed, LSB; NaN where not compared
-  std::vector<float> color_error;    ///< largest absolute error of the channels, LSB; NaN where not compared
-  std::vector<std::string> summary;  ///< the sixth cell: figures and bounds, one per line; left out when empty
-  std::vector<std::string> panels;   ///< of kPanelNames, those to show, in this order; empty: all
+  std::vector<float> depth_error;            ///< signed, LSB; NaN where not compared
+  std::vector<float> color_error;            ///< largest absolute error of the channels, LSB; NaN where not compared
+  std::string depth_figures, color_figures;  ///< what `summary` says of the errors; empty: the pixels' own
+  std::vector<std::string> summary;          ///< the sixth cell: figures and bounds, one per line; left out when empty
+  std::vector<std::string> panels;           ///< of kPanelNames, those to show, in this order; empty: all
 };
 
 /// The panels of a comparison sheet.

@@ -8,17 +8,40 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "sim/utf8.hpp"
+
 namespace halfplane {
 namespace {
 
 constexpr std::size_t kVertexBytes = 16;  // stb_easy_font: x, y, z as float and four bytes of colour
 constexpr std::size_t kQuadBytes = 4 * kVertexBytes;
 
+// What the font lacks, as the letter that it is made of: U+00C0 to U+00FF, and U+0100 to U+017F.
+constexpr std::string_view kLatin1 = "AAAAAAACEEEEIIIIDNOOOOOxOUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty";
+constexpr std::string_view kLatinExtendedA =
+    "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTt"
+    "UuUuUuUuUuUuWwYyYZzZzZzs";
+static_assert(kLatin1.size() == 0x40 && kLatinExtendedA.size() == 0x80);
+
+/// The glyph for a code point; 0 for a mark that combines with the letter before it.
+char glyph_of(char32_t c) {
+  if (c >= ' ' && c <= '~') return static_cast<char>(c);
+  if (c >= 0xc0 && c < 0x100) return kLatin1[c - 0xc0];
+  if (c >= 0x100 && c < 0x180) return kLatinExtendedA[c - 0x100];
+  if (c >= 0x300 && c < 0x370) return 0;
+  if (c == 0xa0 || (c >= 0x2000 && c <= 0x200a) || c == 0x202f) return ' ';
+  if ((c >= 0x2010 && c <= 0x2015) || c == 0x2212) return '-';
+  if (c == 0x2018 || c == 0x2019) return '\'';
+  if (c == 0x201c || c == 0x201d) return '"';
+  if (c == 0xb5 || c == 0x3bc) return 'u';
+  return '?';
+}
+
 // The font's table ends at '~'; anything else would be read from outside it.
 std::string printable(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c < ' ' || c > '~') c = '?';
+  std::string result;
+  for (std::size_t at = 0; at < text.size();)
+    if (const char glyph = glyph_of(next_code_point(text, at)); glyph != 0) result += glyph;
   return result;
 }
 
@@ -99,10 +122,36 @@ void draw_text(Picture& picture, int x, int y, std::string_view text, Rgb color,
   }
 }
 
-std::string fit_text(std::string_view text, int width, int scale) {
-  if (text_width(text, scale) <= width) return std::string(text);
-  while (!text.empty() && text_width(std::string(text) + "..", scale) > width) text.remove_suffix(1);
-  return std::string(text) + "..";
+std::vector<std::string> wrap_text(std::string_view text, int width, int scale) {
+  const std::size_t indent = std::min(text.find_first_not_of(' '), text.size());
+  const std::string hanging(indent + 2, ' ');
+  std::vector<std::string> lines{std::string(text.substr(0, indent))};
+  const auto fits = [&](const std::string& line) { return text_width(line, scale) <= width; };
+  bool is_empty = true;  // the line at work has no word yet
+  for (std::size_t at = indent; at < text.size();) {
+    const std::size_t blank_end = std::min(text.find_first_not_of(' ', at), text.size());
+    const std::size_t end = std::min(text.find(' ', blank_end), text.size());
+    std::string_view word = text.substr(blank_end, end - blank_end);
+    if (const std::string longer = lines.back() + std::string(text.substr(at, end - at)); is_empty || fits(longer)) {
+      lines.back() = longer;
+    } else {
+      lines.push_back(hanging + std::string(word));
+    }
+    at = end;
+    is_empty = false;
+    while (!fits(lines.back())) {  // one word, wider than a line: as much of it as there is room for, and on
+      std::string& line = lines.back();
+      std::size_t kept = line.size();
+      const std::size_t least = line.find_first_not_of(' ');
+      while (kept > least && !fits(line.substr(0, kept)))
+        kept = without_last_code_point(std::string_view(line).substr(0, kept));
+      if (kept <= least) break;  // not even one letter
+      const std::string rest = line.substr(kept);
+      line.resize(kept);
+      lines.push_back(hanging + rest);
+    }
+  }
+  return lines;
 }
 
 Picture shrink(const Picture& picture, int factor) {

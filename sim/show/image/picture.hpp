@@ -1,7 +1,7 @@
 // A picture in memory and what draws into it: rectangles, lines, other pictures, text.
 //
-// Drawing clips to the picture, so callers need no bounds checks. Text is ASCII in a 7-pixel bitmap font; other bytes
-// show as '?'.
+// Drawing clips to the picture, so callers need no bounds checks. Text is UTF-8 in a 7-pixel bitmap font of ASCII: accented
+// Latin letters show without their accents, other characters as one '?' each.
 #pragma once
 
 #include <cstddef>
@@ -54,8 +54,9 @@ void draw_picture(Picture& picture, const Picture& source, int x, int y, int sca
 /// Draws one line of text with its top left at (x, y); scale 1...3 times the font's 7-pixel capitals.
 void draw_text(Picture& picture, int x, int y, std::string_view text, Rgb color, int scale);
 
-/// `text`, shortened with ".." at its end until it is at most `width` pixels wide.
-[[nodiscard]] std::string fit_text(std::string_view text, int width, int scale);
+/// `text` in lines of at most `width` pixels, broken between words; those behind the first are indented by two blanks
+/// more. A word wider than a line is broken between characters.
+[[nodiscard]] std::vector<std::string> wrap_text(std::string_view text, int width, int scale);
 
 /// The picture with every factor x factor block averaged into one pixel; blocks at the right and bottom may be smaller.
 [[nodiscard]] Picture shrink(const Picture& picture, int factor);

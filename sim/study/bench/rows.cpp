@@ -1,6 +1,7 @@
 #include "sim/study/bench/rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -39,12 +40,19 @@ class LeftOut {
   std::exception_ptr first_;
 };
 
-BenchErrors errors_of(const Comparison& c) {
+BenchErrors errors_of(const Comparison& c, const Config& config) {
   BenchErrors errors;
-  errors.depth_lsb_max = c.depth_lsb.max;
-  errors.depth_lsb_rms = c.depth_lsb.rms;
-  errors.color_lsb_max = c.color_lsb.max;
-  errors.color_lsb_rms = c.color_lsb.rms;
+  if (c.depth_lsb.count > 0) {
+    const double range = std::ldexp(1.0, config.depth_bits) - 1;
+    errors.depth_lsb_max = c.depth_lsb.max;
+    errors.depth_lsb_rms = c.depth_lsb.rms;
+    errors.depth_range_max = c.depth_lsb.max / range;
+    errors.depth_range_rms = c.depth_lsb.rms / range;
+  }
+  if (c.color_lsb.count > 0) {
+    errors.color_lsb_max = c.color_lsb.max;
+    errors.color_lsb_rms = c.color_lsb.rms;
+  }
   if (c.depth_eye) {
     errors.depth_eye_max = c.depth_eye->max;
     errors.depth_eye_rms = c.depth_eye->rms;
@@ -59,18 +67,6 @@ BenchErrors errors_of(const Comparison& c) {
 bool is_first_of_scene(std::span<const BenchCase> cases, std::size_t index) {
   return std::none_of(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(index),
                       [&](const BenchCase& other) { return other.scene_name == cases[index].scene_name; });
-}
-
-/// The errors that a row shows: those of the bit-exact engines are one comparison, the golden is what they refer to,
-/// and nobody compares llvmpipe.
-void set_errors(BenchRow& row, bool wants_errors) {
-  if (row.engine == "golden" && wants_errors) {
-    const bool has_eye = row.facts.errors && row.facts.errors->depth_eye_max;
-    row.facts.errors = BenchErrors{};
-    if (has_eye) row.facts.errors->depth_eye_max = row.facts.errors->depth_eye_rms = 0;
-  } else if (!is_bit_exact(row.engine)) {
-    row.facts.errors.reset();
-  }
 }
 
 /// Adds the rows of one case and the frames that measure them.
@@ -92,7 +88,8 @@ void add_case(std::span<const BenchCase> cases, std::size_t index, const BenchPl
       try {
         frames.push_back(make_frame(engine, at.scene, at.config, threads, plan.poll));
         rows.push_back({engine, threads, index, {}, facts});
-        set_errors(rows.back(), plan.wants_errors);
+        // Those of the bit-exact engines are one comparison; the golden is what it refers to, and nobody compares llvmpipe.
+        if (!is_bit_exact(engine)) rows.back().facts.errors.reset();
       } catch (const InputError&) {
         left_out.add(engine, at, std::current_exception());
       } catch (const std::runtime_error&) {  // the build lacks it
@@ -118,7 +115,7 @@ BenchFacts find_facts(const Scene& scene, const Config& config, bool wants_error
     options.skip = skip_none();
     options.progress = progress;
     Comparison comparison = compare(scene, config, options);
-    facts.errors = errors_of(comparison);
+    facts.errors = errors_of(comparison, config);
     rendering = std::move(comparison.rendering);
   } else {
     RenderOptions options;

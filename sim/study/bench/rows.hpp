@@ -26,8 +26,12 @@ struct BenchCase {
 
 /// What a case costs in accuracy: a part of Comparison, whose units it keeps.
 struct BenchErrors {
-  double depth_lsb_max = 0, depth_lsb_rms = 0, color_lsb_max = 0, color_lsb_rms = 0;
-  std::optional<double> depth_eye_max, depth_eye_rms;      ///< eye-space units: comparable between depth formats
+  // None where no pixel was compared.
+  std::optional<double> depth_lsb_max,
+      depth_lsb_rms;  ///< LSB of depth.bits: another length in every row that varies it
+  std::optional<double> depth_range_max, depth_range_rms;  ///< the same as parts of the depth range
+  std::optional<double> depth_eye_max, depth_eye_rms;      ///< eye-space units: comparable between mappings too
+  std::optional<double> color_lsb_max, color_lsb_rms;
   std::uint64_t coverage_mismatches = 0;                   ///< samples, against the exact oracle on snapped vertices
   std::uint64_t coverage_missing = 0, coverage_extra = 0;  ///< samples, against the golden on unsnapped ones
 };
@@ -44,7 +48,7 @@ struct BenchRow {
   int threads = 1;
   std::size_t case_index = 0;
   FrameTimes times;
-  BenchFacts facts;  ///< no errors when there is nothing to compare, or nobody wants it
+  BenchFacts facts;  ///< no errors for the golden, which has none, for what nobody compares, or when nobody wants them
 
   [[nodiscard]] double mtri_s() const;        ///< millions of input primitives
   [[nodiscard]] double mpix_s() const;        ///< millions of covered samples

@@ -255,6 +255,11 @@ std::uint64_t different_pixels(const Scene& scene, const Rendering& a, const Ren
   return different;
 }
 
+/// Whether the planes are made as the pipeline makes them.
+bool has_own_planes(const StudyRules& rules) {
+  return rules.gradients == Gradients::one_reciprocal && rules.accumulator == Accumulator::wrap;
+}
+
 std::string line(const char* format, double value, double bound) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), format, value, bound);
@@ -309,7 +314,8 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   FragmentFrame frame(scene, config);
   const Rendering made = draw_fragments(scene, config, options, judge, frame, part(0.2, 0.4));
   result.fragments = judge.finish(made);
-  if (!is_default) result.fragments.planes.clear();  // off on purpose; what is stored says by how much
+  if (!has_own_planes(options.rules))
+    result.fragments.planes.clear();  // off on purpose; what is stored says by how much
   result.golden = golden::render(scene, config, golden_options);
   std::vector<std::array<double, 4>> perspective;
   if (options.wants_affine_cost) {
@@ -336,6 +342,8 @@ Comparison compare(const Scene& scene, const Config& config, const CompareOption
   for (std::size_t p = 0; p < pixels; ++p) {
     result.coverage_class[p] =
         classify(result.golden.count[p], result.rendering.count[p], result.golden.ids[p] == result.rendering.ids[p]);
+    result.missing_pixels += result.coverage_class[p] == CoverageClass::missing ? 1 : 0;
+    result.extra_pixels += result.coverage_class[p] == CoverageClass::extra ? 1 : 0;
     result.other_visible += result.coverage_class[p] == CoverageClass::other ? 1 : 0;
   }
   result.depth_error_lsb.assign(pixels, std::numeric_limits<float>::quiet_NaN());
@@ -369,6 +377,27 @@ std::vector<std::string> broken_bounds(const Comparison& c, const Config& config
   require(c.color_datapath.max <= 1, "colour: %.3f LSB from the exact plane through the snapped vertices (bound %.0f)",
           c.color_datapath.max, 1);
   return broken;
+}
+
+std::vector<std::string> given_up_bounds(const StudyRules& rules) {
+  std::vector<std::string> bounds;
+  if (rules.fill_rule == FillRule::inclusive)
+    bounds.emplace_back(
+        "a sample of a closed mesh or on a shared edge is drawn once: fill rule inclusive draws it twice");
+  if (rules.fill_rule == FillRule::offset_point)
+    bounds.emplace_back(
+        "a sample of a closed mesh or on a shared edge is drawn once: fill rule offset_point may leave it out");
+  if (rules.clipping == Clipping::homogeneous)
+    bounds.emplace_back(
+        "a sample at a shared vertex is drawn once: clipping homogeneous may draw it twice or leave it out");
+  const auto planes = [&](bool is_unusual, std::string_view what, std::string_view name) {
+    if (!is_unusual) return;
+    bounds.push_back("planes of each fragment before depth test and packing: " + std::string(what) + " " +
+                     std::string(name) + " is a fault, judged by what is stored");
+  };
+  planes(rules.gradients != Gradients::one_reciprocal, "gradients", name_of(rules.gradients));
+  planes(rules.accumulator != Accumulator::wrap, "accumulator", name_of(rules.accumulator));
+  return bounds;
 }
 
 }  // namespace halfplane

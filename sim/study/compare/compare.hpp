@@ -41,11 +41,12 @@ struct ErrorParts {
 
 struct Comparison {
   // Coverage.
-  PixelCoverage coverage;           ///< against U
-  OracleResult oracle;              ///< against S, sample by sample
+  PixelCoverage coverage;                              ///< against U
+  OracleResult oracle;                                 ///< against S, sample by sample
+  std::uint64_t missing_pixels = 0, extra_pixels = 0;  ///< pixels with at least one such sample of `coverage`
   std::uint64_t other_visible = 0;  ///< pixels covered equally often by both, with different primitives visible
 
-  FragmentVerdict fragments;  ///< before the operations, against S; planes only by the pipeline's own rules
+  FragmentVerdict fragments;  ///< before the operations, against S; planes unless the rules make them otherwise
 
   // Against U, over the pixels where both show the same primitive. LSB of the stored formats.
   std::uint64_t compared_pixels = 0;
@@ -76,5 +77,8 @@ struct Comparison {
 
 /// One line for every bound of docs/spec.md that the comparison breaks; empty when all hold.
 [[nodiscard]] std::vector<std::string> broken_bounds(const Comparison& comparison, const Config& config);
+
+/// What docs/spec.md promises and these rules do not: nobody holds them to it. Empty for the pipeline's own.
+[[nodiscard]] std::vector<std::string> given_up_bounds(const StudyRules& rules);
 
 }  // namespace halfplane

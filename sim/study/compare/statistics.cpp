@@ -49,7 +49,7 @@ void PartSet::add(std::int64_t error) {
 
 PartStats PartSet::stats() const {
   if (count_ == 0) return {};
-  return {static_cast<double>(max_) / kStepsPerLsb, std::sqrt(squares_ / static_cast<double>(count_)), sum_};
+  return {static_cast<double>(max_) / kStepsPerLsb, std::sqrt(squares_ / static_cast<double>(count_)), sum_, count_};
 }
 
 }  // namespace halfplane

@@ -45,6 +45,7 @@ class ErrorSet {
 struct PartStats {
   double max = 0, rms = 0;
   int128 sum = 0;
+  std::uint64_t count = 0;
 };
 
 /// Collects one part of an error, held in integers of 2^-20 LSB.

@@ -206,6 +206,7 @@ std::vector<DepthSweep> sweep_depth(const Scene& scene, const Config& config, co
   for (std::size_t i = 0; i < results.size(); ++i) {
     is_whole = is_whole && results[i].is_whole;
     if (!results[i].is_whole) continue;
+    if (results[i].order.pairs == 0) continue;  // nothing overlaps: no rate
     auto& line = sweeps[places[i].sweep].lines[places[i].line];
     line.x.push_back(places[i].x);
     line.rate.push_back(results[i].order.rate());

@@ -6,14 +6,23 @@
 
 namespace halfplane {
 
-DepthCurve depth_curve(const ExactDepth& theory, int points) {
+DepthCurve depth_curve(const ExactDepth& theory, int points, std::span<const NamedDepth> also) {
   DepthCurve curve;
   const double near = theory.near().get_d(), far = theory.far().get_d();
+  std::vector<NamedDepth> depths(also.begin(), also.end());
   for (int i = 0; i < points; ++i) {
     const double z = near * std::pow(far / near, static_cast<double>(i) / (points - 1));
-    const Rational exact = std::clamp(Rational(z), theory.near(), theory.far());
-    const DepthFigures figures = theory.at(exact);
-    curve.z.push_back(exact.get_d());
+    // The power may end a little before far, in another bin.
+    const Rational exact = i == points - 1 ? theory.far() : std::clamp(Rational(z), theory.near(), theory.far());
+    const bool is_named = std::any_of(also.begin(), also.end(), [&](const NamedDepth& named) {
+      return named.exact == exact || named.z == exact.get_d();
+    });
+    if (!is_named) depths.push_back({exact, exact.get_d()});
+  }
+  std::sort(depths.begin(), depths.end(), [](const NamedDepth& a, const NamedDepth& b) { return a.exact < b.exact; });
+  for (const NamedDepth& depth : depths) {
+    const DepthFigures figures = theory.at(depth.exact);
+    curve.z.push_back(depth.z);
     curve.bin_width.push_back(figures.bin_width);
     curve.max_recon_err.push_back(figures.max_recon_err);
     curve.first_order.push_back(figures.first_order);

@@ -2,17 +2,25 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sim/study/depth/exact_depth.hpp"
 
 namespace halfplane {
 
-/// The figures at eye depths evenly spaced by the logarithm, from near to far. Eye-space units.
+/// An eye depth, and the binary64 that names it.
+struct NamedDepth {
+  Rational exact;
+  double z = 0;
+};
+
+/// The figures at eye depths evenly spaced by the logarithm, from near to far, and at those that `also` names, so that a
+/// table of these says the same as the curve. Eye-space units.
 struct DepthCurve {
   std::vector<double> z, bin_width, max_recon_err, first_order;
 };
-[[nodiscard]] DepthCurve depth_curve(const ExactDepth& theory, int points);
+[[nodiscard]] DepthCurve depth_curve(const ExactDepth& theory, int points, std::span<const NamedDepth> also = {});
 
 /// Codes that serve the eye depths between two powers of ten, cut to [near, far].
 struct CodeShare {
