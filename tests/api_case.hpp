@@ -149,6 +149,8 @@ struct ApiCase {
 inline ApiCase api_case(std::span<const std::uint8_t> data) {
   ByteSource bytes(data);
   Config config = config_from(bytes);
+  config.target_width = 64;  // the hardware's memories are of this size: a large one would take all the time
+  config.target_height = 48;
   return {config, SceneFromBytes(bytes, config).scene()};
 }
 

@@ -120,11 +120,11 @@ TEST_F(Interface, ConfigurationsSurviveTheirFile) {
 }
 
 TEST_F(Interface, ConfigurationFilesAreNamedSo) {
-  expect_refused({"config", "-o", "mine.json"}, "written as .toml");
+  expect_refused({"config", "-o", "mine.json"}, "this file is a .toml");
   expect_refused({"config", "-o", "nowhere/mine.toml"}, "no such folder");
   expect_refused({"config", "--toml", "--json"}, "--toml");
   ASSERT_EQ(run({"config", "-o", "mine.toml"}).status, 0);
-  expect_refused({"config", "--config", "mine.toml", "-o", "mine.toml"}, "named twice");
+  expect_refused({"config", "--config", "mine.toml", "-o", "mine.toml"}, "two options name");
 }
 
 }  // namespace

@@ -83,6 +83,7 @@ TEST_F(JsonSchema, BenchIsDescribed) {
 TEST_F(JsonSchema, ConfigAndScenesAreDescribed) {
   expect_results("config", {"", "--list --widths --stages --config full"});
   expect_results("scenes", {""});
+  expect_results("convert", {"triangle -o t.hpt", "--random 60 --config tiny -o r.hpt"});
 }
 
 TEST_F(JsonSchema, CosimIsDescribed) {

@@ -25,7 +25,7 @@ struct Surroundings {
   Stdout out = Stdout::captured;
   std::size_t file_bytes = 0;    ///< no file may grow beyond
   std::size_t memory_bytes = 0;  ///< address space
-  std::string in;                ///< file on stdin, in the folder; none: nothing to read
+  std::string in{};              ///< file on stdin, in the folder; none: nothing to read
   double progress_s = 0;         ///< seconds between lines of progress; 0: as usual
 };
 
