@@ -39,6 +39,10 @@ void on_signal(int) {
     return;
   }
   if (expected == Answer::asked && milliseconds() - asked_at < kSameSignal) return;
+  if (expected == Answer::end) {
+    constexpr char kLine[] = "halfplane: interrupted before the work began, so nothing was written\n";
+    (void)!write(STDERR_FILENO, kLine, sizeof kLine - 1);
+  }
   if (has_half_written) unlink(half_written.data());
   _exit(kStatus);
 }

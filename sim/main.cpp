@@ -72,7 +72,8 @@ int run(int argc, char** argv) {
   app.footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n"
       "`halfplane COMMAND --help` shows a command's options. Exit status: 0 as it should be, 1 a mismatch or\n"
-      "a broken bound, 2 wrong usage or bad input, 3 something is lacking, 141 nobody reads stdout any more.");
+      "a broken bound, 2 wrong usage or bad input, 3 something is lacking, 130 interrupted,\n141 nobody reads stdout "
+      "any more.");
   Action selected;
   add_render_command(app, selected);
   add_compare_command(app, selected);

@@ -30,9 +30,9 @@ void clear(Rendering& rendering, const Scene& scene, const Clear& command, const
 void check_onto(const Scene& scene, const RenderOptions& options) {
   const Framebuffer* onto = options.onto;
   if (onto != nullptr && (onto->width != scene.width || onto->height != scene.height))
-    throw InputError(scene.name + ": made for " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
-                     ", but the frame that it is drawn on has " + std::to_string(onto->width) + "x" +
-                     std::to_string(onto->height));
+    throw InputError((scene.name.empty() ? "scene" : scene.name) + ": made for " + std::to_string(scene.width) + "x" +
+                     std::to_string(scene.height) + ", but the frame that it is drawn on has " +
+                     std::to_string(onto->width) + "x" + std::to_string(onto->height));
 }
 
 Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options) {

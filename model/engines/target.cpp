@@ -68,7 +68,8 @@ Counters Target::draw(const State& state, Topology topology, std::span<const Ver
 
 Counters Target::draw(const Scene& scene) {
   if (scene.planes != memory_->empty.planes)
-    throw InputError(scene.name + ": its planes are not those of the target; give both the same, or none");
+    throw InputError((scene.name.empty() ? "scene" : scene.name) +
+                     ": its planes are not those of the target; give both the same, or none");
   return memory_->render(scene);
 }
 

@@ -28,10 +28,12 @@ class Target {
   Target(Target&&) noexcept;
   Target& operator=(Target&&) noexcept;
 
-  /// Throws InputError for numbers outside their range; the frame is then what it was.
+  /// Clears inside the scissor of `state`; Clear::state means nothing here. Throws InputError for numbers outside their
+  /// range; the frame is then what it was.
   void clear(const Clear& what, const State& state = {});
 
-  /// Draws at once; counts this draw alone. Without indices the vertices are taken in their order. Throws InputError as
+  /// Draws at once; counts this draw alone. Without indices the vertices are taken in their order; what makes no whole
+  /// primitive at their end is left out, as in a scene. Throws InputError as
   /// FunctionalEngine::render(); the frame is then what it was.
   Counters draw(const State& state, Topology topology, std::span<const Vertex> vertices,
                 std::span<const std::uint32_t> indices);

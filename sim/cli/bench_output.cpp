@@ -230,7 +230,7 @@ void write_bench_page(const std::string& path, const Json& result, const std::st
   page["growth_series"] = Json::array();
   for (const GrowthSeries& series : growth_series())
     page["growth_series"].push_back({{"name", series.name}, {"x", series.x}, {"meaning", series.meaning}});
-  const std::string html = bench_report(page.dump());
+  const std::string html = bench_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
   write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
 }
 

@@ -104,6 +104,8 @@ int run(const ConfigOptions& options) {
   const Config config = effective_config(options);
   check_output(options.path, options.path.empty() ? "" : ".toml");
   check_distinct({options.config, options.json, options.path});
+  if (options.path == "-" && (options.toml || options.sv || options.taps))
+    throw InputError("-o - and another output both write to stdout; leave one of them out");
   std::ostream& out = human(options);
   if (!options.path.empty()) {
     const std::string text = config_toml(config);

@@ -30,9 +30,11 @@ std::string capture_text(const Scene& scene) {
 
 /// One scene, or those that `cosim --random` runs one after the other.
 SceneSource scenes_of(const ConvertOptions& options, const Config& config) {
+  if (options.random != 0) return random_scenes(config, options.seed, options.random);
   double load_s = 0;
-  return options.random == 0 ? single_scene(load_scene(options, config, load_s))
-                             : random_scenes(config, options.seed, options.random);
+  Config plain = config;  // what draws the capture maps its depth, and would map it twice
+  plain.depth_mapping = DepthMapping::projection;
+  return single_scene(load_scene(options, plain, load_s));
 }
 
 Json scene_json(const std::string& path, const Scene& scene, std::size_t bytes) {
@@ -102,7 +104,8 @@ void add_convert_command(CLI::App& app, Action& selected) {
   add_file_option(*command, "-o", options->output, "the capture, .hpt, or - for stdout");
   command->get_option("-o")->required();
   command->footer(
-      "\nA mesh is written as its camera sees it, in clip space; so is what --convention and --set depth.mapping do.\n"
+      "\nA mesh is written as its camera sees it, in clip space, in the convention gl. --set depth.mapping is not\n"
+      "written: give it to the command that draws the capture.\n"
       "\nExample:\n  halfplane convert model.glb --camera name=main --size 320x240 -o model.hpt");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

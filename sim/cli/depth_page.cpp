@@ -227,7 +227,7 @@ void write_depth_files(const DepthPaths& paths, const std::string& title, const 
     }
   }
   if (paths.page.empty()) return;
-  const std::string html = depth_report(page.dump());
+  const std::string html = depth_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
   write_whole_file(paths.page, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
 }
 

@@ -6,6 +6,7 @@
 #include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/nearest_word.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
@@ -146,7 +147,10 @@ int run_man(const CLI::App& program, const ManOptions& options) {
       std::cout << man_page(command, commands);
       return exit_ok;
     }
-  throw InputError("no command '" + options.command + "', so it has no page; see `halfplane --help`");
+  std::vector<std::string_view> names;
+  for (const CommandText& command : commands) names.push_back(command.name);
+  throw InputError("no command '" + options.command + "', so it has no page;" + did_you_mean(options.command, names) +
+                   " see `halfplane --help`");
 }
 
 }  // namespace

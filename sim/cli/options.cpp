@@ -208,7 +208,8 @@ std::ostream& human(const CommonOptions& options) {
 
 void write_json(const CommonOptions& options, const Json& result) {
   if (options.json.empty()) return;
-  const std::string text = result.dump(2) + "\n";
+  // Names of files may be any bytes, JSON is UTF-8.
+  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   if (options.json == "-") {
     write_stdout(bytes, "--json", "give a place that takes it, or --json=FILE");

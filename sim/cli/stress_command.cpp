@@ -61,7 +61,7 @@ void print_list(std::ostream& out) {
 }
 
 int list_cases(const StressCommand& options) {
-  Json result{{"schema", "halfplane.stress/1"}, {"cases", Json::array()}};
+  Json result{{"schema", "halfplane.stress.list/1"}, {"cases", Json::array()}};
   for (const stress::Case& c : stress::cases())
     result["cases"].push_back({{"name", c.name}, {"item", c.item}, {"property", c.property}});
   write_json(options, result);

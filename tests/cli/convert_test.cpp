@@ -45,6 +45,21 @@ TEST_F(ConvertCommand, AFileOfEveryKindDrawsTheSame) {
   expect_same("objects:20", "--size 64x48 --cull-objects both");
 }
 
+TEST_F(ConvertCommand, ADepthMappingIsLeftToWhoDrawsTheCapture) {
+  for (const char* mapping : {"rev", "w"}) {
+    const std::string set = std::string("--set depth.mapping=") + mapping;
+    ASSERT_EQ(run(split_words("convert teapot:3 --size 64x48 -o m.hpt " + set)).status, 0);
+    EXPECT_EQ(hashes(split_words("teapot:3 --size 64x48 " + set)), hashes(split_words("m.hpt " + set))) << mapping;
+  }
+}
+
+TEST_F(ConvertCommand, ANameThatIsNotUtf8IsNoReasonToFail) {
+  const Outcome outcome = run({"convert", "triangle", "--size", "20x20", "-o", "o\xff.hpt", "--json=r.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Bytes bytes = read("r.json");
+  EXPECT_FALSE(Json::parse(bytes.begin(), bytes.end(), nullptr, false).is_discarded());
+}
+
 /// Every built-in scene, in several sizes, with several seeds, and the random stimulus of cosim: 200 and more.
 TEST_F(ConvertCommand, TwoHundredCapturesOfEverySceneRenderToTheSameHashes) {
   int captures = 0;

@@ -119,10 +119,13 @@ TEST_F(Interface, ConfigurationsSurviveTheirFile) {
     }
 }
 
+TEST_F(Interface, AMisspeltPageIsGuessed) { expect_refused({"man", "rendr"}, "did you mean render?"); }
+
 TEST_F(Interface, ConfigurationFilesAreNamedSo) {
   expect_refused({"config", "-o", "mine.json"}, "this file is a .toml");
   expect_refused({"config", "-o", "nowhere/mine.toml"}, "no such folder");
   expect_refused({"config", "--toml", "--json"}, "--toml");
+  expect_refused({"config", "-o", "-", "--toml"}, "both write to stdout");
   ASSERT_EQ(run({"config", "-o", "mine.toml"}).status, 0);
   expect_refused({"config", "--config", "mine.toml", "-o", "mine.toml"}, "two options name");
 }

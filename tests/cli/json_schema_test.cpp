@@ -70,6 +70,11 @@ TEST_F(JsonSchema, StressIsDescribed) {
                  {"--case fans --config tiny --seconds 0.05 --captures worst", "--case fans,mean_bias --seconds 0.05"});
 }
 
+TEST_F(JsonSchema, TheListOfStressCasesIsDescribed) {
+  ASSERT_EQ(run({"stress", "--list", "--quiet", "--json=list.json"}).status, 0);
+  for (const std::string& fault : faults("--described", "stress.list", "list.json")) ADD_FAILURE() << fault;
+}
+
 TEST_F(JsonSchema, WidthsAreDescribed) {
   expect_results("widths",
                  {"--config tiny --samples 100", "--smallest --scene triangle --size 32x32 --depth-error 1lsb"});

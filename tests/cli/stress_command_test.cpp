@@ -78,7 +78,7 @@ TEST_F(CliStress, ListNamesEveryCaseWithItsProperty) {
 TEST_F(CliStress, ListAsJsonHasNameItemAndPropertyOfEveryCase) {
   const auto lines = lines_of(run({"stress", "--list"}).out);
   const Json json = result({"stress", "--list"});
-  EXPECT_EQ(json["schema"], "halfplane.stress/1");
+  EXPECT_EQ(json["schema"], "halfplane.stress.list/1");
   ASSERT_EQ(json["cases"].size(), lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (const char* key : {"name", "item", "property"})
