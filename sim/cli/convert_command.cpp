@@ -1,5 +1,6 @@
-#include <iostream>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <sstream>
 
 #include "model/capture/capture.hpp"
@@ -54,9 +55,7 @@ int run(const ConvertOptions& options) {
     throw InputError(options.scene.empty() ? "nothing to convert; give a SCENE or --random N"
                                            : "a scene and --random together; give one of them");
   const bool is_stdout = options.output == "-";
-  if (is_stdout && options.json == "-")
-    throw InputError("-o - and --json both write to stdout; give one of them a file");
-  if (!is_stdout) check_output(options.output, ".hpt");
+  check_output(options.output, ".hpt");
   check_distinct({options.scene, options.output, options.json});
   const Config config = effective_config(options);
   const SceneSource next = scenes_of(options, config);
@@ -69,19 +68,15 @@ int run(const ConvertOptions& options) {
   result["seed"] = options.seed;
   result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
   result["captures"] = Json::array();
-  std::ostream& out = is_stdout ? std::cerr : human(options);
+  std::ostream& out = human(options);
   for (std::size_t number = 1; scene; ++number, scene = std::move(following), following = next()) {
     const std::string text = capture_text(*scene);
     const std::string path = is_several ? numbered(options.output, number) : options.output;
-    if (is_stdout)
-      std::cout << text;
-    else
-      write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     result["captures"].push_back(scene_json(path, *scene, text.size()));
-    if (!options.quiet && !is_stdout)
-      out << path << "  " << scene->width << "x" << scene->height << ", " << with_commas(scene->vertices.size())
-          << " vertices, " << with_commas(scene->commands.size()) << " commands, " << with_commas(text.size())
-          << " bytes\n";
+    out << (path == "-" ? "stdout" : path) << "  " << scene->width << "x" << scene->height << ", "
+        << with_commas(scene->vertices.size()) << " vertices, " << with_commas(scene->commands.size()) << " commands, "
+        << with_commas(text.size()) << " bytes\n";
   }
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
