@@ -101,8 +101,8 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   const bool has_cycles = is_whole && r.total_cycles_compared() > 0;
   result["cycles"] = {{"model", has_cycles ? Json(r.model_cycles) : Json(nullptr)},
                       {"rtl", r.cycles},
-                      {"raster", r.raster_cycles},
-                      {"tiles", r.tile_cycles},
+                      {"raster", is_whole ? Json(r.raster_cycles) : Json(nullptr)},
+                      {"tiles", is_whole ? Json(r.tile_cycles) : Json(nullptr)},
                       // The run stops at the first difference; with other bits, or none, cycles mean nothing.
                       {"max_primitive_error", is_late      ? Json(error())
                                               : has_cycles ? Json(0)
@@ -134,9 +134,13 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
   }
   out << line << " memory " << with_commas(r.memory_compared) << " stamps, counters "
       << with_commas(r.counters_compared) << '\n'
-      << "cycles      " << with_commas(r.cycles) << " in all, " << with_commas(r.raster_cycles)
-      << " from the first primitive to the last write, " << with_commas(r.tile_cycles) << " of them moving tiles; "
-      << (session.seconds > 0 ? fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) : "-")
+      << "cycles      " << with_commas(r.cycles);
+  if (r.mismatch || r.is_stopped)
+    out << " to where the run stopped; ";
+  else
+    out << " in all, " << with_commas(r.raster_cycles) << " from the first primitive to the last write, "
+        << with_commas(r.tile_cycles) << " of them moving tiles; ";
+  out << (session.seconds > 0 ? fixed(static_cast<double>(r.clocks) / 1e6 / session.seconds, 2) : "-")
       << " M cycles/s\n";
 }
 

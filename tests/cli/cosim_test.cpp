@@ -90,6 +90,8 @@ TEST_F(RtlCommands, AMutantIsNamedSavedReducedAndRepeated) {
 
   const Json json = Json::parse(text("r.json"));
   EXPECT_EQ(json["mismatches"], 1);
+  EXPECT_TRUE(json["cycles"]["raster"].is_null()) << "the run stopped before it was known";
+  EXPECT_NE(outcome.out.find(" to where the run stopped"), std::string::npos) << outcome.out;
   for (const char* key : {"stage", "key", "cycle", "fields", "repro"})
     EXPECT_TRUE(json["first_mismatch"].contains(key)) << key;
   EXPECT_EQ(json["first_mismatch"]["stage"], "cull");
