@@ -119,7 +119,7 @@ std::string bash_call(const Completion& completion) {
   const std::string words = spaced(completion.words);
   switch (completion.kind) {
     case CompletionKind::words: return "_halfplane_words" + words;
-    case CompletionKind::list: return "_halfplane_list" + words;
+    case CompletionKind::list:
     case CompletionKind::scenes: return "_halfplane_list" + words;
     case CompletionKind::setting: return "_halfplane_setting";
     case CompletionKind::key: return "_halfplane_keys" + words;
@@ -156,7 +156,7 @@ std::string bash_script(const std::vector<CommandText>& commands) {
       if (call.empty()) continue;
       std::string pattern;
       for (const std::string& name : option.names)
-        pattern += (pattern.empty() ? "" : " | ") + command.name + "." + name;
+        pattern.append(pattern.empty() ? "" : " | ").append(command.name).append(".").append(name);
       // What needs its '=' has no value behind a blank.
       values += "    " + pattern + ") " + (option.is_attached ? "[[ $attached ]] || return 1; " : "") + call + " ;;\n";
     }
@@ -188,7 +188,7 @@ std::string zsh_action(const Completion& completion) {
   };
   switch (completion.kind) {
     case CompletionKind::words: return "(" + words + ")";
-    case CompletionKind::list: return "_sequence compadd -" + words;
+    case CompletionKind::list:
     case CompletionKind::scenes: return "_sequence compadd -" + words;
     case CompletionKind::setting: return "_halfplane_setting";
     case CompletionKind::key: return "_halfplane_keys" + words;

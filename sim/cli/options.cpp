@@ -142,7 +142,7 @@ Skip parse_skip(const std::string& text) {
   std::string names;
   for (const auto& entry : kSkipNames) {
     if (!names.empty()) names += ", ";
-    names += entry.name;
+    names.append(entry.name);
   }
   for (std::size_t start = 0; start <= text.size();) {
     const std::size_t end = std::min(text.find(',', start), text.size());

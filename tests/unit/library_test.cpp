@@ -124,7 +124,7 @@ TEST(Library, ATargetGoesOnInTheCallersMemory) {
     const std::size_t bytes = config.color_format == ColorFormat::rgb565 ? 2 : 4, pitch = bytes * 60;
     std::vector<std::uint8_t> color(pitch * static_cast<std::size_t>(height), 0xa5);
     std::vector<std::uint32_t> depth(53 * static_cast<std::size_t>(height), 77);
-    const PixelMemory memory{color.data(), pitch, depth.data(), 53 * 4};
+    const PixelMemory memory{color.data(), pitch, depth.data(), std::size_t{53} * 4};
     whole.copy_to(memory);
     EXPECT_EQ(color[bytes * static_cast<std::size_t>(width)], 0xa5);
     EXPECT_EQ(depth[static_cast<std::size_t>(width)], 77u);
