@@ -56,7 +56,7 @@ soak_run() {
 # In pieces of 100,000 primitives, each with its own seed, half of them with stalls. `full`, whose stamp of 4x4 is wide,
 # gets a twentieth.
 soak_cosim() {
-  local primitives=${1:-1150000} config words folders=() left piece seed status=0
+  local primitives=${1:-1150000} config i words folders=() left piece seed status=0
   local sizes=('embedded stamp.size=1' 'embedded stamp.size=4' 'full stamp.size=2')
   # Each of the sizes that the RTL takes at a second value, for the cycles as well as for the bits.
   local corners=('embedded tile.size=16 stamp.size=4 cache.lines=4 context.slots=2 hiz.bits=6 depth.bits=24'
@@ -74,9 +74,11 @@ soak_cosim() {
     "-DHALFPLANE_RTL_CONFIGS=$rtl_presets" "-DHALFPLANE_RTL_EXTRA=$(IFS=';' && echo "${folders[*]}")"
   step 'build them' cmake --build build/soak --parallel "$(jobs)" --target halfplane_program
   say "== $primitives random primitives per configuration; a twentieth of it for full with its stamp of 4, and for corners"
-  for config in small tiny embedded "${sizes[@]}" full "${corners[@]}"; do
-    left=$primitives
-    [[ $config != full && " ${corners[*]} " != *" $config "* ]] || left=$(((primitives + 19) / 20))
+  local whole=(small tiny embedded "${sizes[@]}") all
+  all=("${whole[@]}" full "${corners[@]}")
+  for i in "${!all[@]}"; do
+    config=${all[i]} left=$primitives
+    ((i < ${#whole[@]})) || left=$(((primitives + 19) / 20))
     for ((seed = 1; left > 0; ++seed, left -= piece)); do
       piece=$((left < 100000 ? left : 100000))
       ((seed > 1 || piece == 1)) || piece=$(((piece + 1) / 2))  # so that there are two at least
