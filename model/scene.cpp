@@ -39,10 +39,7 @@ bool is_color(const std::array<double, 4>& rgba) {
 }
 
 bool is_finite(const Vertex& v) {
-  // 0 times what is not finite is no number.
-  return (v.x + v.y + v.z + v.w) * 0 == 0
-             ? (v.u * 0 == 0 && v.v * 0 == 0)
-             : std::ranges::all_of(std::array{v.x, v.y, v.z, v.w, v.u, v.v}, [](double c) { return std::isfinite(c); });
+  return std::ranges::all_of(std::array{v.x, v.y, v.z, v.w, v.u, v.v}, [](double c) { return std::isfinite(c); });
 }
 
 void check_vertices(const Scene& scene, const Place& place) {

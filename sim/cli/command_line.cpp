@@ -117,7 +117,7 @@ std::string value_name(const CLI::Option& option, const std::string& type) {
 }
 
 /// CLI11 names the type in C++; what a reader wants to know is what goes there.
-std::string placeholder(const std::string& word, Kind kind) {
+std::string readable(const std::string& word, Kind kind) {
   if (word == "INT" || word == "UINT" || word == "FLOAT") return "N";
   if (word != "TEXT" && word != "VALUE") return word;
   switch (kind) {
@@ -155,7 +155,7 @@ OptionText option_text(const CLI::Option& source) {
   if (option.is_attached) option.value = "FILE";
   option.is_repeatable = source.get_items_expected_max() > 1;
   option.completion = completion_of(option, source, type);
-  if (!option.names.empty()) option.value = placeholder(option.value, option.completion.kind);
+  if (!option.names.empty()) option.value = readable(option.value, option.completion.kind);
   option.range = range_text(type);
   return option;
 }

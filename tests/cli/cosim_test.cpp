@@ -10,9 +10,7 @@ namespace {
 
 class RtlCommands : public Cli {
  protected:
-  void SetUp() override {
-    if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
-  }
+  void SetUp() override { skip_without_rtl(); }
   /// The words after "halfplane" of the last line that begins with "  repeat".
   [[nodiscard]] static Arguments repeat_command(const std::string& report) {
     Arguments words;
@@ -129,7 +127,7 @@ std::pair<std::uint64_t, std::uint64_t> fst_times(const Bytes& file) {
 }
 
 TEST_F(RtlCommands, ARunWithoutAMismatchLeavesTheWaveformOfItsWindow) {
-  if (!verilated_duts().front().has_trace) GTEST_SKIP() << "this design is built without tracing";
+  ASSERT_TRUE(verilated_duts().front().has_trace) << "designs of builds with tests are traced";
   const Outcome first = run({"cosim", "triangle", "--size", "64x48", "--trace", "w.fst", "--json=r.json"});
   EXPECT_EQ(first.status, 0) << first.err;
   EXPECT_NE(first.out.find("waveform    w.fst, cycles 0 to "), std::string::npos) << first.out;

@@ -3,7 +3,6 @@
 #include <csignal>
 
 #include "program.hpp"
-#include "sim/cosim/dut.hpp"
 
 namespace halfplane::cli {
 namespace {
@@ -34,9 +33,7 @@ class CliInterrupt : public Cli {
 /// Those that run the RTL.
 class RtlInterrupt : public CliInterrupt {
  protected:
-  void SetUp() override {
-    if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
-  }
+  void SetUp() override { skip_without_rtl(); }
 };
 
 TEST_F(CliInterrupt, StressReportsTheUnitsSoFar) {

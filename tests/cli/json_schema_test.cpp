@@ -4,7 +4,6 @@
 #include <fstream>
 
 #include "program.hpp"
-#include "sim/cosim/dut.hpp"
 
 namespace halfplane::cli {
 namespace {
@@ -91,14 +90,18 @@ TEST_F(JsonSchema, ConfigAndScenesAreDescribed) {
   expect_results("convert", {"triangle -o t.hpt", "--random 60 --config tiny -o r.hpt"});
 }
 
-TEST_F(JsonSchema, CosimIsDescribed) {
-  if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
+/// Those that run the RTL.
+class RtlJsonSchema : public JsonSchema {
+ protected:
+  void SetUp() override { skip_without_rtl(); }
+};
+
+TEST_F(RtlJsonSchema, CosimIsDescribed) {
   expect_results("cosim", {"triangle --size 16x16", "--random 20 --memory sdram"});
   expect_results("render", {"triangle --size 16x16 --engine rtl"});
 }
 
-TEST_F(JsonSchema, MismatchesAreDescribed) {
-  if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
+TEST_F(RtlJsonSchema, MismatchesAreDescribed) {
   expect_results("cosim", {"triangle --size 32x32 --mutant 8"}, 1);
   expect_results("reduce", {"triangle --size 32x32 --mutant 8"});
   expect_results("mutants", {"--random 20"}, 1);

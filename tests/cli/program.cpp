@@ -14,6 +14,8 @@
 #include <sstream>
 #include <thread>
 
+#include "sim/cosim/dut.hpp"
+
 namespace halfplane::cli {
 namespace {
 
@@ -165,6 +167,10 @@ std::vector<std::string> Cli::listing() const {
   for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+void skip_without_rtl() {
+  if (verilated_duts().empty()) GTEST_SKIP() << "this build has no RTL";
 }
 
 Arguments split_words(const std::string& line) {

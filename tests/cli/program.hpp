@@ -76,6 +76,9 @@ class Cli : public testing::Test {
   [[nodiscard]] Outcome outcome_of(pid_t child) const;
 };
 
+/// For SetUp() of tests that run the RTL. The presets of `./dev test` and of CI have it: HALFPLANE_RTL is REQUIRED there.
+void skip_without_rtl();
+
 /// Words between blanks; ' quotes as in a shell.
 [[nodiscard]] Arguments split_words(const std::string& line);
 
