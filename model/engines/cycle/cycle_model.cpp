@@ -37,7 +37,6 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
   const auto size = static_cast<std::uint64_t>(area < 0 ? -area : area);
   work.is_negative = is_negative_when_sorted(v, area);
-  work.turns = std::min_element(v.begin(), v.end(), canonically_before) == v.begin() + 2 ? 2 : 1;
   work.log2_area = size == 0 ? 0 : static_cast<int>(std::bit_width(size - 1));
   return work;
 }
