@@ -1,4 +1,5 @@
-// Cull: decides by the signed area whether a triangle faces the right way, and by its box whether it can touch a sample.
+// Cull: decides by the signed area whether a triangle faces the right way, by its box whether it can touch a sample, and
+// by the samples themselves, where there are only a few, whether it does.
 //
 // In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its box
 // and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
@@ -28,6 +29,7 @@ module cull (
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
+    output logic is_no_sample_o,
     output logic is_dropped_o  // whatever the kind
 );
 
@@ -43,6 +45,8 @@ module cull (
   localparam int A = raster_pkg::AREA_BITS;
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
   localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
+  localparam int N = S + 3;        // a side of less than 4 pixels, subpixels
+  localparam int NV = S + 7;       // edge_function of such a triangle, at a sample of its box
 
   // ------------------------------------------------------------------------------------------------------------- sort
   /* verilator lint_off UNUSEDSIGNAL */  // the box ends in box_q
@@ -137,6 +141,12 @@ module cull (
   assign to_px = D'(px) - D'(from_x);
   assign to_py = D'(py) - D'(from_y);
 
+  // The box's own first pixel, as a small triangle sees it.
+  localparam logic [S-1:0] CENTRE = S'(1) << (S - 1);
+  logic signed [N:0] to_cx, to_cy, to_cx_q, to_cy_q;
+  assign to_cx = {box_q.left[N-S:0], CENTRE} - from_x[N:0];
+  assign to_cy = {box_q.top[N-S:0], CENTRE} - from_y[N:0];
+
   always_ff @(posedge clk_i) begin
     if (primitive_ready_o) p_q <= primitive_i;
     if (sort_moves && sort_step_q == 2'd0) begin
@@ -152,6 +162,8 @@ module cull (
       dy_q    <= dy;
       to_px_q <= to_px;
       to_py_q <= to_py;
+      to_cx_q <= to_cx;
+      to_cy_q <= to_cy;
       chain_q <= {from_x, from_y, from_code, chain_q[2*C+CODES+:2*C+CODES]};
     end
   end
@@ -167,7 +179,7 @@ module cull (
   logic                               front_cw_q, d_is_empty_q;
   var raster_pkg::pixel_box_t         d_box_q;
   logic [3*(2*C+CODES)-1:0]           vertex_q;
-  logic                               d_is_triangle, is_counted, is_zero, is_back, is_dropped;
+  logic                               d_is_triangle, is_counted, is_zero, is_back, is_sampleless, is_dropped;
 
   assign decide_moves = decide_busy_q && decide_step_q != 2'd3;
   assign leaves       = decide_busy_q && decide_step_q == 2'd3 && (triangle_ready_i || is_dropped);
@@ -205,6 +217,37 @@ module cull (
       .result_o(edge_value)
   );
 
+  // The same in fewer bits at the box's first pixel, for a triangle whose sides are shorter than 4 pixels.
+  /* verilator lint_off UNUSEDSIGNAL */  // its low bits are those of the fill rule
+  logic signed [S+NV-1:0] corner;
+  /* verilator lint_on UNUSEDSIGNAL */
+  cross_product #(
+      .A_BITS  (N),
+      .D_BITS  (N + 1),
+      .OUT_BITS(S + NV)
+  ) u_corner (
+      .clk_i,
+      .enable_i(sort_moves || decide_moves),
+      .a_i     (dx_q[N-1:0]),
+      .b_i     (dy_q[N-1:0]),
+      .c_i     (to_cx_q),
+      .d_i     (to_cy_q),
+      .bias_i  (is_biased),
+      .result_o(corner)
+  );
+
+  // The signs at that pixel and its neighbours to the right and below; those that the box has not got are overlooked later.
+  logic                 is_short, is_short_q, edge_is_short_q;
+  logic signed [N-1:0]  side_x_q, side_y_q, edge_x_q, edge_y_q;
+  logic signed [NV-1:0] here, right_of, below, across;
+  logic [3:0]           signs;
+  assign is_short = dx_q[D-1:N-1] == {(D - N + 1) {dx_q[D-1]}} && dy_q[D-1:N-1] == {(D - N + 1) {dy_q[D-1]}};
+  assign here     = corner[S+:NV];
+  assign right_of = here - NV'(edge_y_q);
+  assign below    = here + NV'(edge_x_q);
+  assign across   = below - NV'(edge_y_q);
+  assign signs    = {across < 0, below < 0, right_of < 0, here < 0};
+
   // Twice the area is the sum of the exact edge functions; the bias comes back as a carry.
   logic [3*V-1:0]      edge_q;  // before orientation; the newest is the highest
   logic signed [E-1:0] area_q;
@@ -213,24 +256,39 @@ module cull (
   /* verilator lint_on UNUSEDSIGNAL */
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
+  logic       is_small_q;                // all sides are short
+  logic [3:0] has_inside_q, has_outside_q;  // for each of the four samples: of some edge that is not turned
+
   always_ff @(posedge clk_i) begin
     if (sort_moves || decide_moves) begin
-      bias_q      <= is_biased;
-      edge_bias_q <= bias_q;
+      bias_q          <= is_biased;
+      edge_bias_q     <= bias_q;
+      is_short_q      <= is_short;
+      edge_is_short_q <= is_short_q;
+      side_x_q        <= dx_q[N-1:0];
+      side_y_q        <= dy_q[N-1:0];
+      edge_x_q        <= side_x_q;
+      edge_y_q        <= side_y_q;
     end
     if (decide_ready) begin
-      kind_q       <= p_q.kind;
-      id_q         <= p_q.primitive_id;
-      state_q      <= p_q.state;
-      mode_q       <= p_q.cull;
-      front_cw_q   <= p_q.front_cw;
-      d_box_q      <= box_q;
-      d_is_empty_q <= is_empty_q;
-      vertex_q     <= {from_x, from_y, from_code, chain_q};
-      area_q       <= '0;
+      kind_q        <= p_q.kind;
+      id_q          <= p_q.primitive_id;
+      state_q       <= p_q.state;
+      mode_q        <= p_q.cull;
+      front_cw_q    <= p_q.front_cw;
+      d_box_q       <= box_q;
+      d_is_empty_q  <= is_empty_q;
+      vertex_q      <= {from_x, from_y, from_code, chain_q};
+      area_q        <= '0;
+      is_small_q    <= 1'b1;
+      has_inside_q  <= '0;
+      has_outside_q <= '0;
     end else if (decide_moves && d_is_triangle) begin
-      area_q <= area[E:1];
-      edge_q <= {edge_value[S+:V], edge_q[V+:2*V]};
+      area_q        <= area[E:1];
+      edge_q        <= {edge_value[S+:V], edge_q[V+:2*V]};
+      is_small_q    <= is_small_q && edge_is_short_q;
+      has_inside_q  <= has_inside_q | ~signs;
+      has_outside_q <= has_outside_q | signs;
     end
   end
 
@@ -242,12 +300,23 @@ module cull (
   assign is_zero       = d_is_triangle && area_q == 0;
   assign is_front      = is_negative != front_cw_q;  // positive area: clockwise as seen
   assign is_back       = d_is_triangle && !is_zero && (is_front ? mode_q[1] : mode_q[0]);  // bit 1: front faces
-  assign is_dropped    = is_zero || is_back || d_is_empty_q;
+  assign is_dropped    = is_zero || is_back || d_is_empty_q || is_sampleless;
+
+  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
+  // left to fine_raster.
+  logic [2:0] columns, rows;  // less one
+  logic [3:0] is_missed;
+  assign columns       = d_box_q.right[2:0] - d_box_q.left[2:0];
+  assign rows          = d_box_q.bottom[2:0] - d_box_q.top[2:0];
+  assign is_missed     = (has_inside_q & has_outside_q) |
+                         {columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b0};
+  assign is_sampleless = d_is_triangle && is_small_q && columns <= 3'd1 && rows <= 3'd1 && is_missed == '1;
 
   assign is_primitive_o = leaves && is_counted;
   assign is_zero_area_o = leaves && is_zero;
   assign is_backface_o  = leaves && is_back;
   assign is_empty_o     = leaves && is_counted && !is_zero && !is_back && d_is_empty_q;
+  assign is_no_sample_o = leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless;
   assign is_dropped_o   = leaves && is_dropped;
 
   assign triangle_valid_o        = decide_busy_q && decide_step_q == 2'd3 && !is_dropped;

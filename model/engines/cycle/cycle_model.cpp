@@ -71,7 +71,7 @@ class CycleModelOf final : public CycleModel {
       drawn_clear.emplace(host.packet).kind = PrimitiveKind::rectangle;
     const PrimitivePacket& primitive = drawn_clear ? *drawn_clear : host.packet;
     if (options_.sink != nullptr) options_.sink->primitive(host);
-    const auto triangle = cull(primitive, widths_, counters_);
+    const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
     timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
     SetupPacket packet;  // what HiZ looks at
