@@ -125,5 +125,5 @@ PROOFS = [
           cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2,
           cover_depth=30, twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, in its turn', cover_depth=14, k=2,
-          cuts=MULTIPLIERS, quick=TINY, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
+          cuts=MULTIPLIERS, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
 ]

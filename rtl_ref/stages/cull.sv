@@ -6,7 +6,7 @@
 // multiplication is spent on deciding alone.
 //
 // Two parts, each holding one primitive for four steps; they take the three edges in turn through one cross product:
-//   sort    which vertex leads, the box; then the operands of an edge a step
+//   sort    which vertex leads; then the box, and from there on an edge a step
 //   decide  an edge function a step; in the last one the triangle is on offer, or dropped
 // Occupancy 4 cycles, latency 8. A part hands over when the next one is free.
 // Specification: model/stages/cull.hpp, edge_function() in model/stages/edge_function.hpp.
@@ -89,10 +89,10 @@ module cull (
   assign is_0_first = key0 <= key1 && key0 <= key2;
   assign is_1_first = key1 <= key2;
 
-  // --- Meanwhile the box: pixel centres within the vertices' bounds, cut by the scissor.
+  // --- Meanwhile and in step 1 the box: pixel centres within the vertices' bounds, cut by the scissor.
   localparam int B = C + 1;  // a coordinate plus half a pixel
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
-  logic signed [C-1:0] x_min, x_max, y_min, y_max;
+  logic signed [C-1:0] x_min, x_max, y_min, y_max, x_min_q, x_max_q, y_min_q, y_max_q;
   logic signed [B-1:0] first_x, first_y, last_x, last_y;  // pixels
   logic signed [B-1:0] left, top, right, bottom;
   var raster_pkg::pixel_box_t box_q;
@@ -107,10 +107,10 @@ module cull (
     y_max = y0 < y1 ? y1 : y0;
     y_max = y_max < y2 ? y2 : y_max;
   end
-  assign first_x = (B'(x_min) + HALF - B'(1)) >>> S;
-  assign first_y = (B'(y_min) + HALF - B'(1)) >>> S;
-  assign last_x  = (B'(x_max) - HALF) >>> S;
-  assign last_y  = (B'(y_max) - HALF) >>> S;
+  assign first_x = (B'(x_min_q) + HALF - B'(1)) >>> S;
+  assign first_y = (B'(y_min_q) + HALF - B'(1)) >>> S;
+  assign last_x  = (B'(x_max_q) - HALF) >>> S;
+  assign last_y  = (B'(y_max_q) - HALF) >>> S;
   assign left    = is_triangle && first_x > $signed(B'(p_q.box.left)) ? first_x : $signed(B'(p_q.box.left));
   assign top     = is_triangle && first_y > $signed(B'(p_q.box.top)) ? first_y : $signed(B'(p_q.box.top));
   assign right   = is_triangle && last_x < $signed(B'(p_q.box.right)) ? last_x : $signed(B'(p_q.box.right));
@@ -133,38 +133,43 @@ module cull (
   end
 
   logic signed [C:0]   px, py;  // subpixels; the box is inside the target
-  logic signed [D-1:0] dx, dy, to_px, to_py, dx_q, dy_q, to_px_q, to_py_q;
+  logic signed [C-1:0] from_x_q, from_y_q;
+  logic signed [D-1:0] dx, dy, dx_q, dy_q, to_px, to_py;
   assign px    = $signed((C + 1)'({box_q.left[PX-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
   assign py    = $signed((C + 1)'({box_q.top[PY-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
   assign dx    = D'(to_x) - D'(from_x);
   assign dy    = D'(to_y) - D'(from_y);
-  assign to_px = D'(px) - D'(from_x);
-  assign to_py = D'(py) - D'(from_y);
+  assign to_px = D'(px) - D'(from_x_q);
+  assign to_py = D'(py) - D'(from_y_q);
 
   // The box's own first pixel, as a small triangle sees it.
   localparam logic [S-1:0] CENTRE = S'(1) << (S - 1);
-  logic signed [N:0] to_cx, to_cy, to_cx_q, to_cy_q;
-  assign to_cx = {box_q.left[N-S:0], CENTRE} - from_x[N:0];
-  assign to_cy = {box_q.top[N-S:0], CENTRE} - from_y[N:0];
+  logic signed [N:0] to_cx, to_cy;
+  assign to_cx = {box_q.left[N-S:0], CENTRE} - from_x_q[N:0];
+  assign to_cy = {box_q.top[N-S:0], CENTRE} - from_y_q[N:0];
 
   always_ff @(posedge clk_i) begin
     if (primitive_ready_o) p_q <= primitive_i;
     if (sort_moves && sort_step_q == 2'd0) begin
-      from_q       <= is_0_first ? 2'd0 : is_1_first ? 2'd1 : 2'd2;
+      from_q  <= is_0_first ? 2'd0 : is_1_first ? 2'd1 : 2'd2;
+      x_min_q <= x_min;
+      x_max_q <= x_max;
+      y_min_q <= y_min;
+      y_max_q <= y_max;
+    end else if (sort_moves) from_q <= to;
+    if (sort_moves && sort_step_q == 2'd1) begin
       box_q.left   <= PX'(left);
       box_q.top    <= PY'(top);
       box_q.right  <= PX'(right);
       box_q.bottom <= PY'(bottom);
       is_empty_q   <= left > right || top > bottom;
-    end else if (sort_moves) from_q <= to;
+    end
     if (sort_moves) begin
-      dx_q    <= dx;
-      dy_q    <= dy;
-      to_px_q <= to_px;
-      to_py_q <= to_py;
-      to_cx_q <= to_cx;
-      to_cy_q <= to_cy;
-      chain_q <= {from_x, from_y, from_code, chain_q[2*C+CODES+:2*C+CODES]};
+      from_x_q <= from_x;
+      from_y_q <= from_y;
+      dx_q     <= dx;
+      dy_q     <= dy;
+      chain_q  <= {from_x, from_y, from_code, chain_q[2*C+CODES+:2*C+CODES]};
     end
   end
 
@@ -211,8 +216,8 @@ module cull (
       .enable_i(sort_moves || decide_moves),
       .a_i     (dx_q),
       .b_i     (dy_q),
-      .c_i     (to_px_q),
-      .d_i     (to_py_q),
+      .c_i     (to_px),
+      .d_i     (to_py),
       .bias_i  (is_biased),
       .result_o(edge_value)
   );
@@ -230,8 +235,8 @@ module cull (
       .enable_i(sort_moves || decide_moves),
       .a_i     (dx_q[N-1:0]),
       .b_i     (dy_q[N-1:0]),
-      .c_i     (to_cx_q),
-      .d_i     (to_cy_q),
+      .c_i     (to_cx),
+      .d_i     (to_cy),
       .bias_i  (is_biased),
       .result_o(corner)
   );

@@ -25,20 +25,25 @@
     assert (scissor_is_inside);
     assert (WIDE'(dx) == WIDE'(to_x) - WIDE'(from_x) && WIDE'(dy) == WIDE'(to_y) - WIDE'(from_y));
     assert (WIDE'(px) == wide_px && WIDE'(py) == wide_py);
-    assert (WIDE'(to_px) == wide_px - WIDE'(from_x) && WIDE'(to_py) == wide_py - WIDE'(from_y));
-    assert (WIDE'(first_x) == (WIDE'(x_min) + WIDE'(HALF) - 1) >>> S && WIDE'(last_x) == (WIDE'(x_max) - WIDE'(HALF)) >>> S);
-    assert (WIDE'(first_y) == (WIDE'(y_min) + WIDE'(HALF) - 1) >>> S && WIDE'(last_y) == (WIDE'(y_max) - WIDE'(HALF)) >>> S);
+    assert (WIDE'(to_px) == wide_px - WIDE'(from_x_q) && WIDE'(to_py) == wide_py - WIDE'(from_y_q));
+    assert (WIDE'(first_x) == (WIDE'(x_min_q) + WIDE'(HALF) - 1) >>> S && WIDE'(last_x) == (WIDE'(x_max_q) - WIDE'(HALF)) >>> S);
+    assert (WIDE'(first_y) == (WIDE'(y_min_q) + WIDE'(HALF) - 1) >>> S && WIDE'(last_y) == (WIDE'(y_max_q) - WIDE'(HALF)) >>> S);
     // The box is inside the scissor, if it is not empty.
     if (left <= right && top <= bottom)
       assert (left >= 0 && 32'(right) < raster_pkg::TARGET_WIDTH && top >= 0 && 32'(bottom) < raster_pkg::TARGET_HEIGHT);
   end
-  always_comb if (runs_q && sort_busy_q && sort_step_q != 2'd0 && !is_empty_q) begin
+  always_comb if (runs_q && sort_busy_q && sort_step_q != 2'd0) assert (x_min_q == x_min && x_max_q == x_max &&
+                                                                        y_min_q == y_min && y_max_q == y_max);
+  // Behind step 1 the edge's first vertex is one of the three.
+  always_comb if (runs_q && sort_busy_q && sort_step_q[1])
+    assert ((from_x_q == x0 && from_y_q == y0) || (from_x_q == x1 && from_y_q == y1) || (from_x_q == x2 && from_y_q == y2));
+  always_comb if (runs_q && sort_busy_q && sort_step_q[1] && !is_empty_q) begin
     assert (left <= right && top <= bottom);
     assert (32'(box_q.left) == 32'(left) && 32'(box_q.right) == 32'(right) && 32'(box_q.top) == 32'(top) &&
             32'(box_q.bottom) == 32'(bottom));
     // A small triangle sees the first pixel of its box in few bits, and its columns and rows in three.
     if (is_triangle && all_short) begin
-      assert (WIDE'(to_cx) == wide_cx - WIDE'(from_x) && WIDE'(to_cy) == wide_cy - WIDE'(from_y));
+      assert (WIDE'(to_cx) == wide_cx - WIDE'(from_x_q) && WIDE'(to_cy) == wide_cy - WIDE'(from_y_q));
       assert (box_q.right - box_q.left < PX'(8) && box_q.bottom - box_q.top < PY'(8));
     end
   end
