@@ -118,9 +118,9 @@ module cull (
 
   // --- Steps 1 to 3, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from
   // the leading vertex to the next one, and so on round.
-  logic [1:0]             from_q, to;  // vertices
-  logic signed [C-1:0]    from_x, from_y, to_x, to_y;
-  logic [CODES-1:0]       from_code;
+  logic [1:0]               from_q, to;  // vertices
+  logic signed [C-1:0]      from_x, from_y, to_x, to_y;
+  logic [CODES-1:0]         from_code;
   logic [2*(2*C+CODES)-1:0] chain_q;  // vertices that have had their turn, the newest is the highest
   assign to = from_q[1] ? 2'd0 : from_q + 2'd1;
   always_comb begin
@@ -145,8 +145,8 @@ module cull (
   // The box's own first pixel, as a small triangle sees it.
   localparam logic [S-1:0] CENTRE = S'(1) << (S - 1);
   logic signed [N:0] to_cx, to_cy;
-  assign to_cx = {box_q.left[N-S:0], CENTRE} - from_x_q[N:0];
-  assign to_cy = {box_q.top[N-S:0], CENTRE} - from_y_q[N:0];
+  assign to_cx = (N + 1)'({box_q.left, CENTRE}) - from_x_q[N:0];
+  assign to_cy = (N + 1)'({box_q.top, CENTRE}) - from_y_q[N:0];
 
   always_ff @(posedge clk_i) begin
     if (primitive_ready_o) p_q <= primitive_i;
@@ -177,14 +177,14 @@ module cull (
   logic       decide_busy_q;
   logic [1:0] decide_step_q;
   logic       decide_moves, leaves;
-  var raster_pkg::primitive_kind_t    kind_q;
+  var raster_pkg::primitive_kind_t          kind_q;
   logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] id_q;
-  var raster_pkg::primitive_state_t   state_q;
-  var raster_pkg::cull_mode_t         mode_q;
-  logic                               front_cw_q, d_is_empty_q;
-  var raster_pkg::pixel_box_t         d_box_q;
-  logic [3*(2*C+CODES)-1:0]           vertex_q;
-  logic                               d_is_triangle, is_counted, is_zero, is_back, is_sampleless, is_dropped;
+  var raster_pkg::primitive_state_t         state_q;
+  var raster_pkg::cull_mode_t               mode_q;
+  logic                                     front_cw_q, d_is_empty_q;
+  var raster_pkg::pixel_box_t               d_box_q;
+  logic [3*(2*C+CODES)-1:0]                 vertex_q;
+  logic                                     d_is_triangle, is_counted, is_zero, is_back, is_sampleless, is_dropped;
 
   assign decide_moves = decide_busy_q && decide_step_q != 2'd3;
   assign leaves       = decide_busy_q && decide_step_q == 2'd3 && (triangle_ready_i || is_dropped);
@@ -261,8 +261,8 @@ module cull (
   /* verilator lint_on UNUSEDSIGNAL */
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
-  logic       is_small_q;                // all sides are short
-  logic [3:0] has_inside_q, has_outside_q;  // for each of the four samples: of some edge that is not turned
+  logic       is_small_q;                   // all sides are short
+  logic [3:0] has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
 
   always_ff @(posedge clk_i) begin
     if (sort_moves || decide_moves) begin

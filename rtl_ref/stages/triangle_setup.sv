@@ -1,17 +1,18 @@
 // Triangle setup: everything that stays constant over the triangle, from its three vertices: the reciprocal of its area,
 // and for each plane two gradients and the value at the anchor of its first tile.
 //
-// A triangle is in one phase after the other, as many of them as the work is deep; each part of PLANES phases holds one
-// triangle, waits in its last phase until the next part is free, and works on plane p in its step p. So planes come one a
-// cycle, of one triangle behind the other:
-//   the highest bit of the area, then R = floor(2^k / A + 1/2), three quotient bits a cycle; a divider for each part
-//   differences of codes, and the ranges of codes
-//   numerators N_x, N_y
-//   gradients  round(N * R * 2^(F-k))
-//   values     c_0 + g_x (x - x_0) + g_y (y - y_0)
-// What a plane leaves behind in a phase stands in one register until the next phase: the registers of a depth move while
-// any plane is there, and so does not depend on which parts its triangles are in.
-// Occupancy: a cycle a plane; latency (embedded): 18. Up to five triangles are under way.
+// A triangle goes from phase to phase, a cycle each. PLANES phases are a part; a part holds one triangle, which waits in its
+// last phase until the next part is free. Whatever is done for each plane is done p phases later for plane p than for plane
+// 0, so that planes come one a cycle, those of one triangle behind those of the other:
+//   divide       the highest bit of the area; R = floor(2^k / A + 1/2), three quotient bits a cycle
+//   differences  of the codes, and their ranges
+//   numerators   N_x, N_y
+//   gradients    round(N * R * 2^(F-k))
+//   values       c_0 + g_x (x - x_0) + g_y (y - y_0)
+// What a plane leaves behind in a phase stands in one register until the next one. Such a register moves while any plane is
+// in the phases around it, in whichever part: nobody is overwritten, because a triangle is never a step behind the one in
+// the part before.
+// Occupancy: a cycle a plane. Latency (embedded): 18. As many triangles are under way as there are parts, five.
 // Specification: model/stages/triangle_setup.hpp.
 module triangle_setup (
     input logic clk_i,
@@ -61,7 +62,7 @@ module triangle_setup (
   localparam int DIVIDERS = (DIVIDE_CYCLES + STEPS - 1) / STEPS;
   localparam int QUOTIENT = BITS_PER_CYCLE * DIVIDE_CYCLES;
   localparam int ROUND = 1 + DIVIDE_CYCLES;
-  // The first plane's; plane p comes p phases later.
+  // For plane 0:
   localparam int PRODUCT = ROUND + 1;  // N * R
   localparam int SHIFT = PRODUCT + 1;  // the gradient
   localparam int MOVE = SHIFT + 1;     // to the anchor
@@ -76,7 +77,7 @@ module triangle_setup (
   logic [OFFER:0]     at_q;   // a triangle is in the phase
   logic [OFFER-1:0]   moves;  // and goes on
   logic [PARTS-1:0]   ready;
-  logic [SUM:DELTA]   flows;  // some plane goes on from the phase of plane 0
+  logic [SUM:DELTA]   flows;  // some plane goes on: from this phase if it is plane 0
   logic               leaves;
 
   // The last part is free a cycle after its setup was taken: so no path goes from setup_ready_i through the parts.

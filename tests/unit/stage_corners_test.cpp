@@ -131,9 +131,9 @@ TEST(Cull, ASmallTriangleIsDroppedIfAndOnlyIfItCoversNoSample) {
     ASSERT_EQ(counters.no_sample, is_kept ? 0u : 1u);
     const SetupPacket setup = setup_packet(*all, config, widths);
     const int first_x = all->box.left & ~7, first_y = all->box.top & ~7;
-    int covered = 0, samples = 0;
+    int covered = 0;
     for (int j = all->box.top; j <= all->box.bottom; ++j)
-      for (int i = all->box.left; i <= all->box.right; ++i, ++samples) {
+      for (int i = all->box.left; i <= all->box.right; ++i) {
         bool is_covered = true;
         for (std::size_t e = 0; e < 3; ++e)
           is_covered = is_covered && setup.edge_value[e] + std::int64_t{setup.dx[e]} * (j - first_y) -
@@ -141,12 +141,16 @@ TEST(Cull, ASmallTriangleIsDroppedIfAndOnlyIfItCoversNoSample) {
                                          0;
         covered += is_covered ? 1 : 0;
       }
-    if (!is_kept) ASSERT_EQ(covered, 0);
+    if (!is_kept) {
+      ASSERT_EQ(covered, 0);
+    }
     const auto [x_min, x_max] = std::minmax({in.vertex.x[0], in.vertex.x[1], in.vertex.x[2]});
     const auto [y_min, y_max] = std::minmax({in.vertex.y[0], in.vertex.y[1], in.vertex.y[2]});
     const bool is_small = x_max - x_min < 64 && y_max - y_min < 64 && all->box.right - all->box.left <= 1 &&
                           all->box.bottom - all->box.top <= 1;
-    if (is_small) ASSERT_EQ(is_kept, covered != 0);
+    if (is_small) {
+      ASSERT_EQ(is_kept, covered != 0);
+    }
     (is_small ? is_kept ? drawn : dropped : large) += 1;
   }
   EXPECT_GT(dropped, 10000u);

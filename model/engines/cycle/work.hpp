@@ -41,8 +41,9 @@ struct SetupCycles {
   int last;     ///< from entering the last one to the offer
   int latency;  ///< from the triangle in to the offer
   SetupCycles(const Widths& widths, int divide_bits) : part(widths.planes) {
-    const int divide = (widths.reciprocal.bits + divide_bits) / divide_bits;  // a bit more is divided, for the rounding
-    const int offer = 1 + divide + 4 + widths.planes;  // highest bit; rounding, product, shift, move; a sum for each plane
+    const int divide = (widths.reciprocal.bits + divide_bits) / divide_bits;  // a bit more, for the rounding
+    // The highest bit, the quotient; rounding, product, shift, move; then a plane's value in each.
+    const int offer = 1 + divide + 4 + widths.planes;
     parts = offer / part;
     last = offer % part + 1;
     latency = offer + 1;
