@@ -425,6 +425,7 @@ struct CounterPacket {
   FIELD(std::uint32_t, zero_area, &Widths::counter)
   FIELD(std::uint32_t, backface, &Widths::counter)
   FIELD(std::uint32_t, empty, &Widths::counter)
+  FIELD(std::uint32_t, no_sample, &Widths::counter)  ///< small triangles, by the pipelined cull
   FIELD(std::uint32_t, tiles_visited, &Widths::counter)
   FIELD(std::uint32_t, tiles_outside, &Widths::counter)
   FIELD(std::uint32_t, trivially_accepted, &Widths::counter)

@@ -80,7 +80,7 @@ module raster_top (
   assign request_valid_o   = request_offered && !stall_i[raster_pkg::STALL_REQUEST];
   assign response_ready_o  = response_ready && !stall_i[raster_pkg::STALL_RESPONSE];
 
-  logic is_primitive, is_zero_area, is_backface, is_empty, is_dropped;
+  logic is_primitive, is_zero_area, is_backface, is_empty, is_no_sample, is_dropped;
   logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
   logic                             slot_free;
   logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
@@ -111,6 +111,7 @@ module raster_top (
         .is_zero_area_o   (is_zero_area),                                               \
         .is_backface_o    (is_backface),                                                \
         .is_empty_o       (is_empty),                                                   \
+        .is_no_sample_o   (is_no_sample),                                               \
         .is_dropped_o     (is_dropped)                                                  \
     );                                                                                  \
     TRIANGLE_SETUP u_triangle_setup (                                                   \
@@ -345,6 +346,7 @@ module raster_top (
       counters_q.zero_area          <= counters_q.zero_area + COUNTER'(is_zero_area);
       counters_q.backface           <= counters_q.backface + COUNTER'(is_backface);
       counters_q.empty              <= counters_q.empty + COUNTER'(is_empty);
+      if (raster_pkg::SETUP_KIND == 0) counters_q.no_sample <= counters_q.no_sample + COUNTER'(is_no_sample);
       counters_q.tiles_visited      <= counters_q.tiles_visited + COUNTER'(is_visited);
       counters_q.tiles_outside      <= counters_q.tiles_outside + COUNTER'(is_outside);
       counters_q.trivially_accepted <= counters_q.trivially_accepted + COUNTER'(is_accepted);

@@ -83,7 +83,7 @@ HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
       memory_(config) {}
 
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
-  const auto triangle = cull(primitive, widths_, counters_);
+  const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
   if (!triangle) return;
   sink_.take(on<Arrow::triangle>, *triangle);
   const SetupPacket setup = setup_packet(*triangle, config_, widths_);
@@ -169,6 +169,7 @@ void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters
   counters.skipped.empty += counters.culled - culled_before_box;
   counters.skipped.zero_area += hardware.zero_area;
   counters.skipped.backface += hardware.backface;
+  counters.skipped.no_sample = hardware.no_sample;
   counters.skipped.tiles_outside = hardware.tiles_outside;
   counters.skipped.trivially_accepted = hardware.trivially_accepted;
   counters.skipped.tiles_hiz = hardware.tiles_hiz;

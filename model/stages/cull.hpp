@@ -1,4 +1,5 @@
-// Cull: drops triangles of no area, those that face the wrong way, and those without a pixel centre in the scissor.
+// Cull: drops triangles of no area, those that face the wrong way, those without a pixel centre in the scissor, and
+// small ones that cover none.
 //
 // In: a PrimitivePacket. Out: a TrianglePacket in canonical order with its area and box, or nothing. Positive area =
 // clockwise as seen on the screen (y down). Other kinds than triangles pass as they are, unless their box is empty.
@@ -95,9 +96,33 @@ template <class Box>
   return {box.left, box.top, box.right, box.bottom};
 }
 
-/// The stage. Each dropped triangle is counted once, by the first reason that holds.
+/// Whether a triangle covers no sample and is small enough for the pipelined cull to see that: its box has at most 2x2 of
+/// them, and each of its sides, in the order in which `v` came to cull, is in [-4, 4) pixels long in x and in y.
+[[nodiscard]] inline bool is_seen_sampleless(const TrianglePacket& triangle, const std::array<SnappedVertex, 3>& v,
+                                             const Widths& widths) {
+  const PixelBox& box = triangle.box;
+  if (box.right - box.left > 1 || box.bottom - box.top > 1) return false;
+  const std::int32_t limit = std::int32_t{4} << widths.grid_bits;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
+    const std::int32_t dx = to.x - from.x, dy = to.y - from.y;
+    if (dx < -limit || dx >= limit || dy < -limit || dy >= limit) return false;
+  }
+  const auto corner = to_snapped(triangle.vertex);
+  for (int y = box.top; y <= box.bottom; ++y)
+    for (int x = box.left; x <= box.right; ++x) {
+      bool is_covered = true;
+      for (std::size_t i = 0; i < 3; ++i)
+        is_covered = is_covered && edge_function(corner[i], corner[(i + 1) % 3], x, y, widths.grid_bits) >= 0;
+      if (is_covered) return false;
+    }
+  return true;
+}
+
+/// The stage. Each dropped triangle is counted once, by the first reason that holds. `looks_at_samples`: as the pipelined
+/// hardware does, the serial one does not.
 [[nodiscard]] inline std::optional<TrianglePacket> cull(const PrimitivePacket& in, const Widths& widths,
-                                                        CounterPacket& counters) {
+                                                        CounterPacket& counters, bool looks_at_samples = false) {
   std::optional<TrianglePacket> kept;  // the one that is returned: a packet is much to copy
   const auto keep = [&](const PixelBox& box) -> TrianglePacket& {
     TrianglePacket& out = kept.emplace();
@@ -139,6 +164,10 @@ template <class Box>
     out.edge_value[i] = edge_function(v[from], v[to], first_x, first_y, widths.grid_bits);
   }
   out.area = static_cast<std::uint64_t>(area < 0 ? -area : area);
+  if (looks_at_samples && is_seen_sampleless(out, v, widths)) {
+    ++counters.no_sample;
+    kept.reset();
+  }
   return kept;
 }
 

@@ -2,30 +2,30 @@
 
 # cull
 mutant(1 stages/cull.sv "tie rule: bottom edges take the samples on them, top edges leave them"
-  [=[(edge_dx < 0) == is_negative]=] [=[(edge_dx < 0) != is_negative]=])
+  [=[dx_q > 0]=] [=[dx_q < 0]=])
 mutant(2 stages/cull.sv "sign: the front face is the other one"
-  [=[is_negative != p_q.front_cw]=] [=[is_negative == p_q.front_cw]=])
+  [=[is_negative != front_cw_q]=] [=[is_negative == front_cw_q]=])
 mutant(3 stages/cull.sv "off by one: the box loses a first column whose centre is on the leftmost vertex"
-  [=[(B'(x_min) + HALF - B'(1)) >>> S]=] [=[(B'(x_min) + HALF) >>> S]=])
+  [=[(B'(x_min_q) + HALF - B'(1)) >>> S]=] [=[(B'(x_min_q) + HALF) >>> S]=])
 mutant(4 stages/cull.sv "order: of vertices 1 and 2 the larger one comes first"
   [=[key1 <= key2]=] [=[key1 >= key2]=])
-mutant(5 stages/cull.sv "carry: turned edges lose the +1 of their negation"
-  [=[(~exact + E'(is_top_left ? 1 : 0))]=] [=[(~exact)]=])
+mutant(5 stages/cull.sv "carry: turned edges gain the +1 of a negation"
+  [=[~edge_q[(2-i)*V+:V]]=] [=[-edge_q[(2-i)*V+:V]]=])
 mutant(6 stages/cull.sv "counter: empty triangles count when they face away, too"
-  [=[is_counted && !is_zero && !is_back && is_empty_q]=] [=[is_counted && !is_zero && is_empty_q]=])
+  [=[is_counted && !is_zero && !is_back && d_is_empty_q]=] [=[is_counted && !is_zero && d_is_empty_q]=])
 
 # triangle_setup
 mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
-  [=[R'(g_quotient_q[QUOTIENT-R-1])]=] [=[R'(0)]=])
+  [=[R'(quotient_q[QUOTIENT-R-1])]=] [=[R'(0)]=])
 mutant(8 stages/triangle_setup.sv "rounding: the x gradient is truncated"
   [=[P'(shifted_x[0])]=] [=[P'(0)]=])
 mutant(9 stages/triangle_setup.sv "divider: an area that is a power of two has no quotient"
-  [=[QUOTIENT'(t_q.area == highest)]=] [=[QUOTIENT'(0)]=])
+  [=[{1'b0, highest}]=] [=[first_area == highest ? '0 : {1'b0, highest}]=])
 mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third vertex"
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
 mutant(11 stages/triangle_setup.sv "carry: planes start half a local unit low"
-  [=[start_q + move_x_q + move_y_q]=] [=[start_q + move_x_q + move_y_q - (P'(1) << (F - L - 1))]=])
+  [=[start_value + move_x_q + move_y_q]=] [=[start_value + move_x_q + move_y_q - (P'(1) << (F - L - 1))]=])
 
 # coarse_raster
 mutant(12 stages/coarse_raster.sv "trivial reject: a tile whose best sample is on the edge is skipped"
@@ -138,7 +138,22 @@ mutant(53 stages/depth_test.sv "counter: samples of points and lines are left ou
   [=[(fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || fragment_q.kind[2])]=]
   [=[fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=])
 mutant(54 stages/cull.sv "counter: points and lines do not count as primitives"
-  [=[is_triangle || p_q.kind[2]]=] [=[is_triangle]=])
+  [=[d_is_triangle || kind_q[2]]=] [=[d_is_triangle]=])
 mutant(55 stages/framebuffer.sv "token: pixels of a line are taken for a fast clear"
   [=[access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR]=]
   [=[access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_LINE]=])
+
+# triangles without a sample, and the phases of triangle_setup
+mutant(56 stages/cull.sv "no sample: the first pixel of the box counts as missed"
+  [=[{columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b0}]=]
+  [=[{columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b1}]=])
+mutant(57 stages/cull.sv "no sample: the length of the sides does not matter"
+  [=[is_small_q && edge_is_short_q]=] [=[is_small_q]=])
+mutant(58 stages/cull.sv "no sample: a third row of samples is overlooked"
+  [=[rows <= 3'd1]=] [=[rows <= 3'd2]=])
+mutant(59 stages/cull.sv "no sample: the fourth sample is looked for in the first column"
+  [=[below - NV'(edge_y_q)]=] [=[below]=])
+mutant(60 stages/triangle_setup.sv "dropped stall: a part hands over to one that is not free"
+  [=[at_q[i*STEPS+STEPS-1] && ready[i+1]]=] [=[at_q[i*STEPS+STEPS-1]]=])
+mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes a phase late"
+  [=[flows[NUMERATOR] || flows[NUMERATOR+1]]=] [=[flows[NUMERATOR+1]]=])

@@ -1,38 +1,36 @@
-// Cross product: a * d - b * c, the one multiplication of the pipeline: edge functions and plane numerators. Two
-// multipliers; result two cycles after start, one start per cycle.
+// Cross product: a * d - b * c - bias, the one multiplication of edge functions and plane numerators. Two multipliers;
+// the result is there two enabled cycles after its operands, one result per cycle.
 module cross_product #(
     parameter int A_BITS = 2,  // of a and b, signed
     parameter int D_BITS = 2,  // of c and d, signed
     parameter int OUT_BITS = 4  // of the result, signed: the caller has proven that it fits, or wants a residue
 ) (
     input  logic                       clk_i,
-    input  logic                       rst_ni,
-    input  logic                       start_i,
+    input  logic                       enable_i,
     input  logic signed [A_BITS-1:0]   a_i,
     input  logic signed [A_BITS-1:0]   b_i,
     input  logic signed [D_BITS-1:0]   c_i,
     input  logic signed [D_BITS-1:0]   d_i,
-    output logic                       done_o,   // for one cycle, with the result
+    input  logic                       bias_i,
     output logic signed [OUT_BITS-1:0] result_o
 );
 
   logic signed [A_BITS+D_BITS-1:0] ad_q, bc_q;
-  logic                            product_valid_q;
+  logic                            bias_q;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      product_valid_q <= 1'b0;
-      done_o          <= 1'b0;
-    end else begin
-      product_valid_q <= start_i;
-      done_o          <= product_valid_q;
-    end
-  end
+  // x - y - bias = x + ~y + (1 - bias): the bias is a carry that comes in from one bit below.
+  /* verilator lint_off UNUSEDSIGNAL */  // that bit; and a residue has no high bits
+  logic signed [A_BITS+D_BITS+1:0] sum;
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign sum = {ad_q[A_BITS+D_BITS-1], ad_q, 1'b1} + {~bc_q[A_BITS+D_BITS-1], ~bc_q, !bias_q};
 
   always_ff @(posedge clk_i) begin
-    ad_q     <= a_i * d_i;
-    bc_q     <= b_i * c_i;
-    result_o <= OUT_BITS'(ad_q - bc_q);
+    if (enable_i) begin
+      ad_q     <= a_i * d_i;
+      bc_q     <= b_i * c_i;
+      bias_q   <= bias_i;
+      result_o <= OUT_BITS'(sum >>> 1);
+    end
   end
 
 endmodule

@@ -1,9 +1,14 @@
-// Cull: decides by the signed area whether a triangle faces the right way, and by its box whether it can touch a sample.
+// Cull: decides by the signed area whether a triangle faces the right way, by its box whether it can touch a sample, and
+// by the samples themselves, where there are only a few, whether it does.
 //
 // In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its box
 // and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
-// multiplication is spent on deciding alone. One cross product in turn for the three edges.
-// Occupancy and latency: 7 or 8 cycles.
+// multiplication is spent on deciding alone.
+//
+// Two parts, each holding one primitive for four steps; they take the three edges in turn through one cross product:
+//   sort    which vertex leads; then the box, and from there on an edge a step
+//   decide  an edge function a step; in the last one the triangle is on offer, or dropped
+// Occupancy 4 cycles, latency 8. A part hands over when the next one is free.
 // Specification: model/stages/cull.hpp, edge_function() in model/stages/edge_function.hpp.
 module cull (
     input logic clk_i,
@@ -24,6 +29,7 @@ module cull (
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
+    output logic is_no_sample_o,
     output logic is_dropped_o  // whatever the kind
 );
 
@@ -35,56 +41,62 @@ module cull (
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
-  localparam int E = raster_pkg::EDGE_PRODUCT_BITS + 1;  // an exact edge function, before its sign is turned
+  localparam int E = raster_pkg::EDGE_PRODUCT_BITS + 1;  // an exact edge function, its sign whatever the order
   localparam int A = raster_pkg::AREA_BITS;
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
   localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
+  localparam int N = S + 3;        // a side of less than 4 pixels, subpixels
+  localparam int NV = S + 7;       // edge_function of such a triangle, at a sample of its box
 
-  // One step per cycle, but for the edges.
-  localparam logic [1:0] IDLE = 2'd0, ROTATE = 2'd1, EDGES = 2'd2, OFFER = 2'd3;
-  logic [1:0] step_q;
-
-  /* verilator lint_off UNUSEDSIGNAL */  // box and vertices are in the registers below
+  // ------------------------------------------------------------------------------------------------------------- sort
+  /* verilator lint_off UNUSEDSIGNAL */  // the box ends in box_q
   var raster_pkg::primitive_packet_t p_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  var raster_pkg::triangle_vertices_t vertex_q;
-  var raster_pkg::pixel_box_t         box_q;
-  logic           is_empty_q;
-  logic [3*E-1:0] edge_q;  // before orientation; the newest is the highest
-  logic [3*D-1:0] dx_q, dy_q;  // of the three edges, for the fill rule; likewise
-  logic [1:0]     edge_count_q, issued_q;
-  logic signed [E-1:0] area_q;
+  logic       sort_busy_q;
+  logic [1:0] sort_step_q;
+  logic       sort_moves, hands_over, decide_ready;
+  logic       is_triangle;
 
-  logic is_triangle, is_counted, takes, is_zero, is_back, is_dropped;
+  assign hands_over        = sort_busy_q && sort_step_q == 2'd3 && decide_ready;
+  assign sort_moves        = sort_busy_q && (sort_step_q != 2'd3 || decide_ready);
+  assign primitive_ready_o = !sort_busy_q || hands_over;
   assign is_triangle       = p_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
-  assign is_counted        = is_triangle || p_q.kind[2];  // point, line
-  assign primitive_ready_o = step_q == IDLE || (step_q == OFFER && (triangle_ready_i || is_dropped));
-  assign takes             = primitive_valid_i && primitive_ready_o;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      sort_busy_q <= 1'b0;
+      sort_step_q <= '0;
+    end else if (primitive_ready_o) begin
+      sort_busy_q <= primitive_valid_i;
+      sort_step_q <= '0;
+    end else if (sort_moves) sort_step_q <= sort_step_q + 2'd1;
+  end
 
   logic signed [C-1:0] x0, x1, x2, y0, y1, y2;
-  assign x0 = vertex_q.x[0+:C];
-  assign x1 = vertex_q.x[C+:C];
-  assign x2 = vertex_q.x[2*C+:C];
-  assign y0 = vertex_q.y[0+:C];
-  assign y1 = vertex_q.y[C+:C];
-  assign y2 = vertex_q.y[2*C+:C];
+  assign x0 = p_q.vertex.x[0+:C];
+  assign x1 = p_q.vertex.x[C+:C];
+  assign x2 = p_q.vertex.x[2*C+:C];
+  assign y0 = p_q.vertex.y[0+:C];
+  assign y1 = p_q.vertex.y[C+:C];
+  assign y2 = p_q.vertex.y[2*C+:C];
 
-  // --- ROTATE, once or twice: the smallest (Y, X, Z) first. Flipping the sign bits makes signed numbers comparable as
-  // unsigned ones.
+  // --- Step 0: the smallest (Y, X, Z) leads. Flipping the sign bits makes signed numbers comparable as unsigned ones.
   logic [KEY-1:0] key0, key1, key2;
   logic           is_0_first, is_1_first;
-  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], vertex_q.code[0+:Z]};
-  assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1], vertex_q.code[CODES+:Z]};
-  assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1], vertex_q.code[2*CODES+:Z]};
+  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], p_q.vertex.code[0+:Z]};
+  assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1], p_q.vertex.code[CODES+:Z]};
+  assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1], p_q.vertex.code[2*CODES+:Z]};
   assign is_0_first = key0 <= key1 && key0 <= key2;
   assign is_1_first = key1 <= key2;
 
-  // --- Meanwhile the box: pixel centres within the vertices' bounds, cut by the scissor.
+  // --- Meanwhile and in step 1 the box: pixel centres within the vertices' bounds, cut by the scissor.
   localparam int B = C + 1;  // a coordinate plus half a pixel
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
-  logic signed [C-1:0] x_min, x_max, y_min, y_max;
+  logic signed [C-1:0] x_min, x_max, y_min, y_max, x_min_q, x_max_q, y_min_q, y_max_q;
   logic signed [B-1:0] first_x, first_y, last_x, last_y;  // pixels
   logic signed [B-1:0] left, top, right, bottom;
+  var raster_pkg::pixel_box_t box_q;
+  logic                       is_empty_q;
   always_comb begin
     x_min = x0 < x1 ? x0 : x1;
     x_min = x_min < x2 ? x_min : x2;
@@ -95,28 +107,105 @@ module cull (
     y_max = y0 < y1 ? y1 : y0;
     y_max = y_max < y2 ? y2 : y_max;
   end
-  assign first_x = (B'(x_min) + HALF - B'(1)) >>> S;
-  assign first_y = (B'(y_min) + HALF - B'(1)) >>> S;
-  assign last_x  = (B'(x_max) - HALF) >>> S;
-  assign last_y  = (B'(y_max) - HALF) >>> S;
+  assign first_x = (B'(x_min_q) + HALF - B'(1)) >>> S;
+  assign first_y = (B'(y_min_q) + HALF - B'(1)) >>> S;
+  assign last_x  = (B'(x_max_q) - HALF) >>> S;
+  assign last_y  = (B'(y_max_q) - HALF) >>> S;
   assign left    = is_triangle && first_x > $signed(B'(p_q.box.left)) ? first_x : $signed(B'(p_q.box.left));
   assign top     = is_triangle && first_y > $signed(B'(p_q.box.top)) ? first_y : $signed(B'(p_q.box.top));
   assign right   = is_triangle && last_x < $signed(B'(p_q.box.right)) ? last_x : $signed(B'(p_q.box.right));
   assign bottom  = is_triangle && last_y < $signed(B'(p_q.box.bottom)) ? last_y : $signed(B'(p_q.box.bottom));
 
-  // --- EDGES, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from vertex
-  // 0 to 1, 1 to 2, 2 to 0. The vertices turn round once, so that the operands are always those of the lowest two.
+  // --- Steps 1 to 3, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from
+  // the leading vertex to the next one, and so on round.
+  logic [1:0]               from_q, to;  // vertices
+  logic signed [C-1:0]      from_x, from_y, to_x, to_y;
+  logic [CODES-1:0]         from_code;
+  logic [2*(2*C+CODES)-1:0] chain_q;  // vertices that have had their turn, the newest is the highest
+  assign to = from_q[1] ? 2'd0 : from_q + 2'd1;
+  always_comb begin
+    from_x    = from_q[1] ? x2 : from_q[0] ? x1 : x0;
+    from_y    = from_q[1] ? y2 : from_q[0] ? y1 : y0;
+    from_code = from_q[1] ? p_q.vertex.code[2*CODES+:CODES] : from_q[0] ? p_q.vertex.code[CODES+:CODES] :
+                            p_q.vertex.code[0+:CODES];
+    to_x      = to[1] ? x2 : to[0] ? x1 : x0;
+    to_y      = to[1] ? y2 : to[0] ? y1 : y0;
+  end
+
   logic signed [C:0]   px, py;  // subpixels; the box is inside the target
-  logic signed [D-1:0] dx, dy, to_px, to_py;
-  logic                edge_start, edge_done;
-  logic signed [E-1:0] edge_value;
+  logic signed [C-1:0] from_x_q, from_y_q;
+  logic signed [D-1:0] dx, dy, dx_q, dy_q, to_px, to_py;
   assign px    = $signed((C + 1)'({box_q.left[PX-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
   assign py    = $signed((C + 1)'({box_q.top[PY-1:TS], {TS{1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
-  assign dx    = D'(x1) - D'(x0);
-  assign dy    = D'(y1) - D'(y0);
-  assign to_px = D'(px) - D'(x0);
-  assign to_py = D'(py) - D'(y0);
-  assign edge_start = step_q == EDGES && issued_q != 2'd3;
+  assign dx    = D'(to_x) - D'(from_x);
+  assign dy    = D'(to_y) - D'(from_y);
+  assign to_px = D'(px) - D'(from_x_q);
+  assign to_py = D'(py) - D'(from_y_q);
+
+  // The box's own first pixel, as a small triangle sees it.
+  localparam logic [S-1:0] CENTRE = S'(1) << (S - 1);
+  logic signed [N:0] to_cx, to_cy;
+  assign to_cx = (N + 1)'({box_q.left, CENTRE}) - from_x_q[N:0];
+  assign to_cy = (N + 1)'({box_q.top, CENTRE}) - from_y_q[N:0];
+
+  always_ff @(posedge clk_i) begin
+    if (primitive_ready_o) p_q <= primitive_i;
+    if (sort_moves && sort_step_q == 2'd0) begin
+      from_q  <= is_0_first ? 2'd0 : is_1_first ? 2'd1 : 2'd2;
+      x_min_q <= x_min;
+      x_max_q <= x_max;
+      y_min_q <= y_min;
+      y_max_q <= y_max;
+    end else if (sort_moves) from_q <= to;
+    if (sort_moves && sort_step_q == 2'd1) begin
+      box_q.left   <= PX'(left);
+      box_q.top    <= PY'(top);
+      box_q.right  <= PX'(right);
+      box_q.bottom <= PY'(bottom);
+      is_empty_q   <= left > right || top > bottom;
+    end
+    if (sort_moves) begin
+      from_x_q <= from_x;
+      from_y_q <= from_y;
+      dx_q     <= dx;
+      dy_q     <= dy;
+      chain_q  <= {from_x, from_y, from_code, chain_q[2*C+CODES+:2*C+CODES]};
+    end
+  end
+
+  // ----------------------------------------------------------------------------------------------------------- decide
+  logic       decide_busy_q;
+  logic [1:0] decide_step_q;
+  logic       decide_moves, leaves;
+  var raster_pkg::primitive_kind_t          kind_q;
+  logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] id_q;
+  var raster_pkg::primitive_state_t         state_q;
+  var raster_pkg::cull_mode_t               mode_q;
+  logic                                     front_cw_q, d_is_empty_q;
+  var raster_pkg::pixel_box_t               d_box_q;
+  logic [3*(2*C+CODES)-1:0]                 vertex_q;
+  logic                                     d_is_triangle, is_counted, is_zero, is_back, is_sampleless, is_dropped;
+
+  assign decide_moves = decide_busy_q && decide_step_q != 2'd3;
+  assign leaves       = decide_busy_q && decide_step_q == 2'd3 && (triangle_ready_i || is_dropped);
+  assign decide_ready = !decide_busy_q || leaves;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      decide_busy_q <= 1'b0;
+      decide_step_q <= '0;
+    end else if (decide_ready) begin
+      decide_busy_q <= hands_over;
+      decide_step_q <= '0;
+    end else if (decide_moves) decide_step_q <= decide_step_q + 2'd1;
+  end
+
+  // The fill rule goes into the edge function, E - [not top or left]. Seen from the other side, where the edge runs
+  // backwards, it is -E - [top or left] = ~(E - [not top or left]): of one number all bits are turned.
+  logic                is_top_left, is_biased, bias_q, edge_bias_q;
+  logic signed [E-1:0] edge_value;
+  assign is_top_left = dy_q < 0 || (dy_q == 0 && dx_q > 0);
+  assign is_biased   = !is_top_left;
 
   cross_product #(
       .A_BITS  (D),
@@ -124,114 +213,140 @@ module cull (
       .OUT_BITS(E)
   ) u_edge_function (
       .clk_i,
-      .rst_ni,
-      .start_i (edge_start),
-      .a_i     (dx),
-      .b_i     (dy),
+      .enable_i(sort_moves || decide_moves),
+      .a_i     (dx_q),
+      .b_i     (dy_q),
       .c_i     (to_px),
       .d_i     (to_py),
-      .done_o  (edge_done),
+      .bias_i  (is_biased),
       .result_o(edge_value)
   );
 
-  // --- OFFER, or drop
-  logic is_negative, is_front;
-  assign is_negative = area_q < 0;
-  assign is_zero     = is_triangle && area_q == 0;
-  assign is_front    = is_negative != p_q.front_cw;  // positive area: clockwise as seen
-  assign is_back     = is_triangle && !is_zero && (is_front ? p_q.cull[1] : p_q.cull[0]);  // bit 1: front faces
-  assign is_dropped  = is_zero || is_back || is_empty_q;
+  // The same in fewer bits at the box's first pixel, for a triangle whose sides are shorter than 4 pixels.
+  /* verilator lint_off UNUSEDSIGNAL */  // its low bits are those of the fill rule
+  logic signed [S+NV-1:0] corner;
+  /* verilator lint_on UNUSEDSIGNAL */
+  cross_product #(
+      .A_BITS  (N),
+      .D_BITS  (N + 1),
+      .OUT_BITS(S + NV)
+  ) u_corner (
+      .clk_i,
+      .enable_i(sort_moves || decide_moves),
+      .a_i     (dx_q[N-1:0]),
+      .b_i     (dy_q[N-1:0]),
+      .c_i     (to_cx),
+      .d_i     (to_cy),
+      .bias_i  (is_biased),
+      .result_o(corner)
+  );
 
-  logic leaves;
-  assign leaves      = step_q == OFFER && primitive_ready_o;
+  // The signs at that pixel and its neighbours to the right and below; those that the box has not got are overlooked later.
+  logic                 is_short, is_short_q, edge_is_short_q;
+  logic signed [N-1:0]  side_x_q, side_y_q, edge_x_q, edge_y_q;
+  logic signed [NV-1:0] here, right_of, below, across;
+  logic [3:0]           signs;
+  assign is_short = dx_q[D-1:N-1] == {(D - N + 1) {dx_q[D-1]}} && dy_q[D-1:N-1] == {(D - N + 1) {dy_q[D-1]}};
+  assign here     = corner[S+:NV];
+  assign right_of = here - NV'(edge_y_q);
+  assign below    = here + NV'(edge_x_q);
+  assign across   = below - NV'(edge_y_q);
+  assign signs    = {across < 0, below < 0, right_of < 0, here < 0};
+
+  // Twice the area is the sum of the exact edge functions; the bias comes back as a carry.
+  logic [3*V-1:0]      edge_q;  // before orientation; the newest is the highest
+  logic signed [E-1:0] area_q;
+  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
+  logic signed [E:0]   area;
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
+
+  logic       is_small_q;                   // all sides are short
+  logic [3:0] has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
+
+  always_ff @(posedge clk_i) begin
+    if (sort_moves || decide_moves) begin
+      bias_q          <= is_biased;
+      edge_bias_q     <= bias_q;
+      is_short_q      <= is_short;
+      edge_is_short_q <= is_short_q;
+      side_x_q        <= dx_q[N-1:0];
+      side_y_q        <= dy_q[N-1:0];
+      edge_x_q        <= side_x_q;
+      edge_y_q        <= side_y_q;
+    end
+    if (decide_ready) begin
+      kind_q        <= p_q.kind;
+      id_q          <= p_q.primitive_id;
+      state_q       <= p_q.state;
+      mode_q        <= p_q.cull;
+      front_cw_q    <= p_q.front_cw;
+      d_box_q       <= box_q;
+      d_is_empty_q  <= is_empty_q;
+      vertex_q      <= {from_x, from_y, from_code, chain_q};
+      area_q        <= '0;
+      is_small_q    <= 1'b1;
+      has_inside_q  <= '0;
+      has_outside_q <= '0;
+    end else if (decide_moves && d_is_triangle) begin
+      area_q        <= area[E:1];
+      edge_q        <= {edge_value[S+:V], edge_q[V+:2*V]};
+      is_small_q    <= is_small_q && edge_is_short_q;
+      has_inside_q  <= has_inside_q | ~signs;
+      has_outside_q <= has_outside_q | signs;
+    end
+  end
+
+  // --- The last step: on offer, or dropped.
+  logic is_negative, is_front;
+  assign d_is_triangle = kind_q == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+  assign is_counted    = d_is_triangle || kind_q[2];  // point, line
+  assign is_negative   = area_q < 0;
+  assign is_zero       = d_is_triangle && area_q == 0;
+  assign is_front      = is_negative != front_cw_q;  // positive area: clockwise as seen
+  assign is_back       = d_is_triangle && !is_zero && (is_front ? mode_q[1] : mode_q[0]);  // bit 1: front faces
+  assign is_dropped    = is_zero || is_back || d_is_empty_q || is_sampleless;
+
+  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
+  // left to fine_raster.
+  logic [2:0] columns, rows;  // less one
+  logic [3:0] is_missed;
+  assign columns       = d_box_q.right[2:0] - d_box_q.left[2:0];
+  assign rows          = d_box_q.bottom[2:0] - d_box_q.top[2:0];
+  assign is_missed     = (has_inside_q & has_outside_q) |
+                         {columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b0};
+  assign is_sampleless = d_is_triangle && is_small_q && columns <= 3'd1 && rows <= 3'd1 && is_missed == '1;
+
   assign is_primitive_o = leaves && is_counted;
   assign is_zero_area_o = leaves && is_zero;
   assign is_backface_o  = leaves && is_back;
-  assign is_empty_o     = leaves && is_counted && !is_zero && !is_back && is_empty_q;
-
+  assign is_empty_o     = leaves && is_counted && !is_zero && !is_back && d_is_empty_q;
+  assign is_no_sample_o = leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless;
   assign is_dropped_o   = leaves && is_dropped;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) step_q <= IDLE;
-    else if (takes) step_q <= ROTATE;
-    else begin
-      case (step_q)
-        ROTATE: if (is_0_first || is_1_first) step_q <= is_triangle ? EDGES : OFFER;  // otherwise once more
-        EDGES: if (edge_done && edge_count_q == 2'd2) step_q <= OFFER;
-        OFFER: if (leaves) step_q <= IDLE;
-        default: step_q <= IDLE;
-      endcase
-    end
-  end
+  assign triangle_valid_o        = decide_busy_q && decide_step_q == 2'd3 && !is_dropped;
+  assign triangle_o.kind         = kind_q;
+  assign triangle_o.primitive_id = id_q;
+  assign triangle_o.box          = d_box_q;
+  assign triangle_o.state        = state_q;
+  assign triangle_o.area         = A'(is_negative ? -area_q : area_q);
 
-  always_ff @(posedge clk_i) begin
-    if (takes) begin
-      p_q          <= primitive_i;
-      vertex_q     <= primitive_i.vertex;
-      edge_count_q <= 2'd0;
-      issued_q     <= 2'd0;
-      edge_q       <= '0;
-      area_q       <= '0;
-    end else if ((step_q == ROTATE && !is_0_first) || edge_start) begin
-      vertex_q.x    <= {vertex_q.x[0+:C], vertex_q.x[C+:2*C]};
-      vertex_q.y    <= {vertex_q.y[0+:C], vertex_q.y[C+:2*C]};
-      vertex_q.code <= {vertex_q.code[0+:CODES], vertex_q.code[CODES+:2*CODES]};
-    end
-    if (step_q == ROTATE) begin
-      box_q.left   <= PX'(left);
-      box_q.top    <= PY'(top);
-      box_q.right  <= PX'(right);
-      box_q.bottom <= PY'(bottom);
-      is_empty_q   <= left > right || top > bottom;
-    end
-    if (edge_start) begin
-      issued_q <= issued_q + 2'd1;
-      dx_q <= {dx, dx_q[D+:2*D]};
-      dy_q <= {dy, dy_q[D+:2*D]};
-    end
-    if (step_q == EDGES && edge_done) begin
-      edge_q       <= {edge_value, edge_q[E+:2*E]};
-      area_q       <= area_q + edge_value;
-      edge_count_q <= edge_count_q + 2'd1;
-    end
-  end
-
-  // Of a triangle of negative area vertices 1 and 2 change places: its edges run the other way round.
-  var raster_pkg::triangle_vertices_t turned_vertex;
-  always_comb begin
-    turned_vertex = vertex_q;
-    if (is_negative) begin
-      turned_vertex.x    = {vertex_q.x[C+:C], vertex_q.x[2*C+:C], vertex_q.x[0+:C]};
-      turned_vertex.y    = {vertex_q.y[C+:C], vertex_q.y[2*C+:C], vertex_q.y[0+:C]};
-      turned_vertex.code = {vertex_q.code[CODES+:CODES], vertex_q.code[2*CODES+:CODES], vertex_q.code[0+:CODES]};
-    end
-  end
-
-  logic [3*V-1:0] value;
+  // Of a triangle of negative area vertices 1 and 2 change places: its edges run the other way round, edge i is edge
+  // 2 - i, backwards.
   genvar i;
   generate
-    for (i = 0; i < 3; i++) begin : gen_edge
-      // Edge i of the turned triangle is edge 2 - i, backwards.
-      logic signed [E-1:0] exact, turned;
-      logic signed [D-1:0] edge_dx, edge_dy;
-      logic                is_top_left;
-      assign exact       = is_negative ? edge_q[(2-i)*E+:E] : edge_q[i*E+:E];
-      assign edge_dx     = is_negative ? dx_q[(2-i)*D+:D] : dx_q[i*D+:D];
-      assign edge_dy     = is_negative ? dy_q[(2-i)*D+:D] : dy_q[i*D+:D];
-      assign is_top_left = edge_dy == 0 ? (edge_dx < 0) == is_negative : (edge_dy < 0) != is_negative;
-      // -x = ~x + 1 and x - 1 are one adder: the fill rule takes 1 away unless the edge is a top or left one.
-      assign turned      = is_negative ? (~exact + E'(is_top_left ? 1 : 0)) : (exact - E'(is_top_left ? 0 : 1));
-      assign value[i*V+:V] = is_triangle ? V'(turned >>> S) : '0;
+    for (i = 0; i < 3; i++) begin : gen_vertex
+      localparam int W = 2 * C + CODES;
+      localparam int TURNED = (3 - i) % 3;
+      logic [W-1:0] vertex;
+      logic [V-1:0] value;
+      assign vertex = is_negative ? vertex_q[TURNED*W+:W] : vertex_q[i*W+:W];
+      assign value  = is_negative ? ~edge_q[(2-i)*V+:V] : edge_q[i*V+:V];
+      assign triangle_o.vertex.x[i*C+:C]            = vertex[W-1-:C];
+      assign triangle_o.vertex.y[i*C+:C]            = vertex[CODES+:C];
+      assign triangle_o.vertex.code[i*CODES+:CODES] = vertex[0+:CODES];
+      assign triangle_o.edge_value[i*V+:V]          = d_is_triangle ? value : '0;
     end
   endgenerate
-
-  assign triangle_valid_o        = step_q == OFFER && !is_dropped;
-  assign triangle_o.kind         = p_q.kind;
-  assign triangle_o.primitive_id = p_q.primitive_id;
-  assign triangle_o.box          = box_q;
-  assign triangle_o.state        = p_q.state;
-  assign triangle_o.vertex       = turned_vertex;
-  assign triangle_o.area         = A'(is_negative ? -area_q : area_q);
-  assign triangle_o.edge_value   = value;
 
 endmodule

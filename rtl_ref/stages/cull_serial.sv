@@ -26,6 +26,7 @@ module cull_serial (
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
+    output logic is_no_sample_o,  // never: it does not look at samples
     output logic is_dropped_o  // whatever the kind
 );
 
@@ -230,6 +231,7 @@ module cull_serial (
   assign is_zero_area_o    = leaves && is_zero;
   assign is_backface_o     = leaves && is_back;
   assign is_empty_o        = leaves && is_counted && is_empty_q && !is_zero && !is_back;
+  assign is_no_sample_o    = 1'b0;
   assign is_dropped_o      = leaves && is_dropped;
 
   assign triangle_valid_o        = state_q == OFFER && primitive_valid_i && !is_empty_q;

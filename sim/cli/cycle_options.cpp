@@ -360,7 +360,7 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
   out << "\nskipped     tiles behind HiZ " << with_commas(s.tiles_hiz) << saved("tiles_hiz") << "; tiles outside "
       << with_commas(s.tiles_outside) << saved("tiles_outside") << "; fast clear" << saved("fast_clear") << "\n"
       << "            back faces " << with_commas(s.backface) << ", zero area " << with_commas(s.zero_area)
-      << ", empty " << with_commas(s.empty) << ": nothing behind cull\n"
+      << ", empty " << with_commas(s.empty) << ", no sample " << with_commas(s.no_sample) << ": nothing behind cull\n"
       << "bottleneck  " << bottleneck(cycle) << '\n';
   if (cycle.rows.empty()) return;
   out << "\nwhat if                            cycles    change          ms     moving tiles      memory\n";

@@ -118,7 +118,7 @@ TEST_F(CycleCommand, TheTimelineIsChromeTraceJsonWhoseSlicesDoNotOverlapOnATrack
       tracks += event["name"] == "thread_name" ? 1 : 0;
       if (event["ph"] == "X") slices[event["tid"]].emplace_back(event["ts"], event["dur"]);
     }
-    EXPECT_EQ(tracks, 11u);
+    EXPECT_EQ(tracks, 14u);
     EXPECT_GE(slices.size(), 6u);
     for (auto& [track, of_track] : slices) {
       std::sort(of_track.begin(), of_track.end());
@@ -194,7 +194,7 @@ TEST_F(CycleCommand, ConfigListsWhatTheCycleEngineCanVaryAndWhatEveryStageTakes)
   EXPECT_EQ(list["timing_settings"].size(), 10u);
   const Json stages = result({"config", "--stages"})["stages"];
   EXPECT_EQ(stages[0]["stage"], "cull");
-  EXPECT_EQ(stages[1]["latency"], "21");
+  EXPECT_EQ(stages[1]["latency"], "18");
 }
 
 }  // namespace

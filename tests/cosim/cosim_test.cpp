@@ -188,7 +188,7 @@ TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacketAndTakesTheCyclesOfTheBaseline)
 TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   const DutFactory& factory = find_dut(preset("embedded"));
   ASSERT_TRUE(factory.has_mutants);
-  EXPECT_GE(mutants().size(), 55u);
+  EXPECT_GE(mutants().size(), 61u);
   const auto dut = make_dut(factory);
   for (const Mutant& mutant : mutants()) {
     LockstepOptions options;

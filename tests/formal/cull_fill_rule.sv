@@ -6,29 +6,31 @@
     covers = exact > 0 || (exact == 0 && (dy < 0 || (dy == 0 && dx > 0)));
   endfunction
   (* anyseq *) logic signed [E-1:0] any_exact;
-  (* anyseq *) logic signed [D-1:0] any_dx, any_dy;
   always_comb begin
     assume (any_exact != $signed({1'b1, {(E - 1) {1'b0}}}));  // no code without its negative
-    assume (any_dx != $signed({1'b1, {(D - 1) {1'b0}}}) && any_dy != $signed({1'b1, {(D - 1) {1'b0}}}));
-    if (any_dx != 0 || any_dy != 0)
-      assert (covers(any_exact, any_dx, any_dy) != covers(-any_exact, -any_dx, -any_dy));
+    assume (dx_q != $signed({1'b1, {(D - 1) {1'b0}}}) && dy_q != $signed({1'b1, {(D - 1) {1'b0}}}));
+    if (dx_q != 0 || dy_q != 0) assert (covers(any_exact, dx_q, dy_q) != covers(-any_exact, -dx_q, -dy_q));
   end
   genvar k;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
-      // The triangle's own edge k runs the way of the canonical order: turned round if the area was negative.
-      logic signed [E-1:0] oriented;
+      // An edge in the direction of dx_q, dy_q whose value, with the bias that goes with them, is the one that becomes
+      // edge k. The triangle's own edge runs the way of the canonical order: turned round if the area was negative.
+      (* anyseq *) logic signed [E-1:0] exact;
+      logic signed [E-1:0] oriented, biased;
       logic signed [D-1:0] dx, dy;
-      assign oriented = is_negative ? -gen_edge[k].exact : gen_edge[k].exact;
-      assign dx       = is_negative ? -gen_edge[k].edge_dx : gen_edge[k].edge_dx;
-      assign dy       = is_negative ? -gen_edge[k].edge_dy : gen_edge[k].edge_dy;
+      logic [V-1:0]        kept;
+      assign oriented = is_negative ? -exact : exact;
+      assign dx       = is_negative ? -dx_q : dx_q;
+      assign dy       = is_negative ? -dy_q : dy_q;
+      assign biased   = exact - E'(is_biased);
+      assign kept     = is_negative ? edge_q[(2-k)*V+:V] : edge_q[k*V+:V];
       always_comb begin
-        // The proven range of E (Proofs.EdgeValuesOverTheWholeGuardBand...), and of a difference of coordinates.
-        assume (gen_edge[k].exact < $signed(E'(1) << (V + S - 1)) && gen_edge[k].exact > -$signed(E'(1) << (V + S - 1)));
-        assume (gen_edge[k].edge_dx != $signed({1'b1, {(D - 1) {1'b0}}}) &&
-                gen_edge[k].edge_dy != $signed({1'b1, {(D - 1) {1'b0}}}));
-        assert (!is_triangle || (gen_edge[k].edge_dx == 0 && gen_edge[k].edge_dy == 0) ||
-                !value[k*V+V-1] == covers(oriented, dx, dy));
+        // The proven range of E (Proofs.EdgeValuesOverTheWholeGuardBand...).
+        assume (exact < $signed(E'(1) << (V + S - 1)) && exact > -$signed(E'(1) << (V + S - 1)));
+        assume (kept == V'(biased >>> S));
+        assert (!d_is_triangle || (dx_q == 0 && dy_q == 0) ||
+                !triangle_o.edge_value[k*V+V-1] == covers(oriented, dx, dy));
       end
     end
   endgenerate

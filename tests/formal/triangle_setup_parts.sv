@@ -1,60 +1,58 @@
 
-  // A triangle of the stream, any: in which of the three parts it is, and how many are ahead of it; what goes with the steps
-  // of the parts. The multipliers' results may be anything.
+  // A triangle of the stream, any: the phase that it is in, and how many are ahead of it. The multipliers' results may be
+  // anything.
+  localparam int COUNT = $clog2(PARTS + 1);
   (* anyseq *) logic pick;
-  logic       inside_q, done_q;
-  logic [1:0] ahead_q;  // setups that leave before it
-  logic [1:0] count_q;  // in the three parts
-  logic [2:0] at_q;     // the part that it is in
+  logic             inside_q, done_q;
+  logic [COUNT-1:0] ahead_q;  // setups that leave before it
+  logic [COUNT-1:0] count_q;  // in all parts
+  logic [OFFER:0]   it_at_q;
   var raster_pkg::triangle_packet_t it_q;
-  logic enters, leaves, picks;
-  logic [2:0] busy;
+  logic             enters, picks;
+  logic [OFFER:0]   goes;
   assign enters = triangle_valid_i && triangle_ready_o;
-  assign leaves = setup_valid_o && setup_ready_i;
   assign picks  = enters && pick && !inside_q && !done_q;
-  assign busy   = {value_busy_q, gradient_busy_q, divide_busy_q};
-  function automatic [1:0] ones(input [2:0] bits);
-    ones = 2'(bits[0]) + 2'(bits[1]) + 2'(bits[2]);
+  assign goes   = {leaves, moves};
+  function automatic [COUNT-1:0] ones(input [OFFER:0] bits);
+    ones = '0;
+    for (int i = 0; i <= OFFER; i++) ones = ones + COUNT'(bits[i]);
   endfunction
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       inside_q <= 1'b0;
       done_q   <= 1'b0;
       count_q  <= '0;
-      at_q     <= '0;
+      it_at_q  <= '0;
     end else begin
-      count_q <= count_q + 2'(enters) - 2'(leaves);
+      count_q <= count_q + COUNT'(enters) - COUNT'(leaves);
       if (picks) begin
         inside_q <= 1'b1;
         it_q     <= triangle_i;
-        ahead_q  <= count_q - 2'(leaves);
-        at_q     <= 3'b001;
+        ahead_q  <= count_q - COUNT'(leaves);
+        it_at_q  <= (OFFER + 1)'(1);
       end else if (inside_q) begin
-        if (leaves) ahead_q <= ahead_q - 2'd1;
-        if ((at_q & {1'b0, gradient_hands_over, divide_hands_over}) != '0) at_q <= at_q << 1;
+        if (leaves) ahead_q <= ahead_q - COUNT'(1);
+        it_at_q <= ((it_at_q & goes) << 1) | (it_at_q & ~goes);
         if (leaves && ahead_q == '0) begin
           inside_q <= 1'b0;
           done_q   <= 1'b1;
-          at_q     <= '0;
         end
       end
     end
   end
   always_comb if (runs_q) begin
-    assert (count_q == ones(busy));
-    assert (inside_q == (at_q != '0) && (at_q & (at_q - 3'd1)) == '0 && (at_q & ~busy) == '0);
-    if (inside_q) assert (ahead_q == ones(busy & ~(at_q | (at_q - 3'd1))) && !done_q);
-    // A part is never a step behind the one before it.
-    if (divide_busy_q && gradient_busy_q) assert (gradient_step_q >= divide_step_q || gradient_step_q == STEP'(GRADIENT_LAST));
-    if (gradient_busy_q && value_busy_q) assert (value_step_q >= gradient_step_q || value_step_q == STEP'(VALUE_LAST));
-    assert (divide_step_q <= STEP'(DIVIDE_LAST) && gradient_step_q <= STEP'(GRADIENT_LAST) && value_step_q <= STEP'(VALUE_LAST));
-    if (!divide_busy_q) assert (!issues_numerator);
+    assert (count_q == ones(at_q));
+    assert (inside_q == (it_at_q != '0) && (it_at_q & (it_at_q - 1'b1)) == '0 && (it_at_q & ~at_q) == '0);
+    if (inside_q) assert (ahead_q == ones(at_q & ~(it_at_q | (it_at_q - 1'b1))) && !done_q);
   end
-  // The numerators are with the cross products for two cycles.
-  logic issued_q;
-  always_ff @(posedge clk_i) issued_q <= rst_ni && issues_numerator;
-  always_comb if (runs_q && divide_busy_q) begin
-    assert (issued_q == (divide_step_q >= STEP'(2) && divide_step_q <= STEP'(PLANES + 1)));
-    assert (numerator_done == (divide_step_q >= STEP'(3) && divide_step_q <= STEP'(PLANES + 2)));
-  end
-  always_comb if (runs_q && !divide_busy_q) assert (!issued_q && !numerator_done);
+  // A part holds one, and it is never a step behind the one in the part before; in the last it may wait for long.
+  genvar m, n;
+  generate
+    for (m = 0; m <= OFFER; m++) begin : gen_order
+      for (n = m + 1; n <= OFFER; n++) begin : gen_pair
+        if (n / STEPS == m / STEPS || (n < m + STEPS && n != OFFER)) begin : gen_never
+          always_comb if (runs_q) assert (!(at_q[m] && at_q[n]));
+        end
+      end
+    end
+  endgenerate

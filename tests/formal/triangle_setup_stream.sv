@@ -1,34 +1,38 @@
 
   // It leaves once, in its turn, as it came. And no deadlock: unless the consumer holds a setup packet, what is left to do
   // before it leaves gets less in every cycle.
+  genvar q;
+  generate
+    for (q = 0; q < PARTS; q++) begin : gen_packet
+      localparam int FIRST = q * STEPS;
+      localparam int BEHIND = q == LAST_PART ? OFFER + 1 : FIRST + STEPS;
+      always_comb if (runs_q && it_at_q[BEHIND-1:FIRST] != '0) assert (packets_q[q*T+:T] == it_q);
+    end
+  endgenerate
   always_comb if (runs_q) begin
-    if (at_q[0]) assert (t_q == it_q);
-    if (at_q[1]) assert (g_q == it_q);
-    if (at_q[2]) assert (v_q == it_q);
     if (leaves && inside_q && ahead_q == '0) begin
-      assert (at_q[2]);
+      assert (it_at_q[OFFER]);
       assert (setup_o.kind == it_q.kind && setup_o.primitive_id == it_q.primitive_id && setup_o.box == it_q.box &&
               setup_o.state == it_q.state && setup_o.edge_value == it_q.edge_value);
     end
     cover (done_q);
-    cover (leaves && busy == 3'b111 && enters);
+    cover (leaves && count_q == COUNT'(LAST_PART));
   end
 
-  // What is left to do before it leaves, its own part first.
-  logic [STEP:0] divide_left, gradient_left, value_left;
-  logic [1:0]    parts;
-  logic [3*STEP+4:0] left, left_q;
-  logic              moves_q;
-  assign divide_left   = at_q[0] ? (STEP + 1)'(DIVIDE_LAST) - (STEP + 1)'(divide_step_q) : '0;
-  assign gradient_left = (at_q[0] || at_q[1]) && gradient_busy_q ? (STEP + 1)'(GRADIENT_LAST + 1) - (STEP + 1)'(gradient_step_q) : '0;
-  assign value_left    = value_busy_q ? (STEP + 1)'(VALUE_LAST + 1) - (STEP + 1)'(value_step_q) : '0;
-  assign parts         = at_q[0] ? 2'd3 : at_q[1] ? 2'd2 : at_q[2] ? 2'd1 : 2'd0;
-  assign left          = {parts, divide_left, gradient_left, value_left};
+  // The phases that it and those ahead of it still have before them.
+  localparam int LEFT = $clog2(PARTS * (OFFER + 1) + 1);
+  function automatic [LEFT-1:0] phases(input [OFFER:0] bits);
+    phases = '0;
+    for (int i = 0; i <= OFFER; i++) if (bits[i]) phases = phases + LEFT'(OFFER + 1 - i);
+  endfunction
+  logic [LEFT-1:0] left, left_q;
+  logic            waits_q;
+  assign left = phases(at_q & ~(it_at_q - 1'b1));
   always_ff @(posedge clk_i) begin
     left_q  <= left;
-    moves_q <= rst_ni && inside_q && !(setup_valid_o && !setup_ready_i);
+    waits_q <= rst_ni && inside_q && !(setup_valid_o && !setup_ready_i);
   end
-  always_comb if (runs_q && moves_q) assert (left < left_q);
+  always_comb if (runs_q && waits_q && inside_q) assert (left < left_q);
   var raster_pkg::setup_packet_t offered_q;
   logic                          stalled_q;
   always_ff @(posedge clk_i) begin

@@ -11,6 +11,7 @@
 #include "model/stages/hiz.hpp"
 #include "model/stages/homogeneous_setup.hpp"
 #include "model/stages/line_raster.hpp"
+#include "model/stages/triangle_setup.hpp"
 #include "model/stages/viewport.hpp"
 
 namespace halfplane {
@@ -105,6 +106,56 @@ TEST(FillRules, EachRuleOwnsTheEdgesThatItsDefinitionNames) {
   EXPECT_EQ(edge_bias(at(-16, 0), at(-16, 64), FillRule::offset_point, 4), 1) << "through the point: nobody's";
   EXPECT_EQ(edge_bias(at(-16, 64), at(-16, 0), FillRule::offset_point, 4), 1);
   EXPECT_EQ(edge_bias(right, a, FillRule::inclusive, 4), 0);
+}
+
+/// By its definition, sample by sample, over small triangles everywhere: in the middle of the target, at its border, and in
+/// scissors that leave a few samples of larger ones.
+TEST(Cull, ASmallTriangleIsDroppedIfAndOnlyIfItCoversNoSample) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  test::Random random(21);
+  std::size_t dropped = 0, drawn = 0, large = 0;
+  for (int n = 0; n < 300000; ++n) {
+    PrimitivePacket in;
+    const int reach = 16 << random.index(4), x = random.index(200), y = random.index(200);
+    for (std::size_t i = 0; i < 3; ++i) {
+      in.vertex.x[i] = x + random.index(reach);
+      in.vertex.y[i] = y + random.index(reach);
+    }
+    const int left = random.index(12), top = random.index(12);
+    in.box = n % 2 == 0 ? to_box({0, 0, 63, 63}) : to_box({left, top, left + random.index(3), top + random.index(3)});
+    CounterPacket counters, ignored;
+    const auto all = cull(in, widths, ignored);
+    if (!all) continue;
+    const bool is_kept = cull(in, widths, counters, true).has_value();
+    ASSERT_EQ(counters.no_sample, is_kept ? 0u : 1u);
+    const SetupPacket setup = setup_packet(*all, config, widths);
+    const int first_x = all->box.left & ~7, first_y = all->box.top & ~7;
+    int covered = 0;
+    for (int j = all->box.top; j <= all->box.bottom; ++j)
+      for (int i = all->box.left; i <= all->box.right; ++i) {
+        bool is_covered = true;
+        for (std::size_t e = 0; e < 3; ++e)
+          is_covered = is_covered && setup.edge_value[e] + std::int64_t{setup.dx[e]} * (j - first_y) -
+                                             std::int64_t{setup.dy[e]} * (i - first_x) >=
+                                         0;
+        covered += is_covered ? 1 : 0;
+      }
+    if (!is_kept) {
+      ASSERT_EQ(covered, 0);
+    }
+    const auto [x_min, x_max] = std::minmax({in.vertex.x[0], in.vertex.x[1], in.vertex.x[2]});
+    const auto [y_min, y_max] = std::minmax({in.vertex.y[0], in.vertex.y[1], in.vertex.y[2]});
+    const bool is_small = x_max - x_min < 64 && y_max - y_min < 64 && all->box.right - all->box.left <= 1 &&
+                          all->box.bottom - all->box.top <= 1;
+    if (is_small) {
+      ASSERT_EQ(is_kept, covered != 0);
+    }
+    (is_small ? is_kept ? drawn : dropped : large) += 1;
+  }
+  EXPECT_GT(dropped, 10000u);
+  EXPECT_GT(drawn, 10000u);
+  EXPECT_GT(large, 10000u);
 }
 
 TEST(Cull, EachReasonToDropIsCountedOnce) {

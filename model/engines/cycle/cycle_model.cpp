@@ -37,7 +37,6 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
   const auto size = static_cast<std::uint64_t>(area < 0 ? -area : area);
   work.is_negative = is_negative_when_sorted(v, area);
-  work.turns = std::min_element(v.begin(), v.end(), canonically_before) == v.begin() + 2 ? 2 : 1;
   work.log2_area = size == 0 ? 0 : static_cast<int>(std::bit_width(size - 1));
   return work;
 }
@@ -72,7 +71,7 @@ class CycleModelOf final : public CycleModel {
       drawn_clear.emplace(host.packet).kind = PrimitiveKind::rectangle;
     const PrimitivePacket& primitive = drawn_clear ? *drawn_clear : host.packet;
     if (options_.sink != nullptr) options_.sink->primitive(host);
-    const auto triangle = cull(primitive, widths_, counters_);
+    const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
     timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
     SetupPacket packet;  // what HiZ looks at

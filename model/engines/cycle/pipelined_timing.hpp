@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <vector>
 
 #include "../../timing/queue.hpp"
 #include "back_timing.hpp"
@@ -16,9 +17,9 @@ class PipelinedTiming : public BackTiming {
   PipelinedTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
                   const TimingParameters& parameters, TransferSink* sink)
       : BackTiming(widths, stalls, memory, sink),
-        divide_(1, SetupCycles(widths, parameters.divide_bits).divide, 0),
-        gradients_(1, SetupCycles(widths, parameters.divide_bits).gradients, 0),
-        values_(1, SetupCycles(widths, parameters.divide_bits).values, 0),
+        setup_(widths, parameters.divide_bits),
+        parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
+        offer_setup_(1, setup_.last, 1),
         slots_(config.context_slots, 0, 2),
         visits_(parameters.visits, 0, 1),
         skid_(parameters.stamp_queue, 1, 1),
@@ -37,30 +38,32 @@ class PipelinedTiming : public BackTiming {
 
   /// The next primitive, through cull and triangle_setup to coarse_raster; or, if it is dropped, only into cull.
   void take(const PrimitiveWork& primitive) {
-    const Cycle taken = stream(Arrow::primitive).transfer(offer_, cull_.room());
+    const Cycle taken = stream(Arrow::primitive).transfer(offer_, sort_.room());
     note(Arrow::primitive, taken);
     if (primitive.is_counted) count_primitive(taken);
     if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
-    // Turned until the first vertex leads, once at least; then three edges, one behind the other, of three cycles each.
-    const Cycle culled =
-        taken + 1 + static_cast<Cycle>(primitive.turns) + (primitive.is_triangle ? PipelinedCycles::cull_edges : 0);
-    work(Stage::cull, culled - taken);
+    const Cycle sorted = std::max(sort_.ready(taken), decide_.room());
+    sort_.leave(sorted);
+    const Cycle decided = decide_.ready(sorted);
+    work(Stage::cull, PipelinedCycles::cull_sort);
     if (primitive.is_dropped) {
-      cull_.leave(culled);
+      decide_.leave(decided);
       return;
     }
-    const Passage triangle = triangle_queue_.pass(stream(Arrow::triangle), culled, divide_.room());
-    cull_.leave(triangle.left);
+    const Passage triangle = triangle_queue_.pass(stream(Arrow::triangle), decided, parts_.front().room());
+    decide_.leave(triangle.left);
     note(Arrow::triangle, triangle.taken);
-    work(Stage::triangle_setup, divide_.ready(triangle.taken) - triangle.taken);
-    const Cycle gradients = std::max(divide_.ready(triangle.taken), gradients_.room());
-    divide_.leave(gradients);
-    const Cycle values = std::max(gradients_.ready(gradients), values_.room());
-    gradients_.leave(values);
-    const Cycle ready = values_.ready(values);
+    work(Stage::triangle_setup, static_cast<std::uint64_t>(setup_.part));
+    Cycle entered = triangle.taken;
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      const Station& next = part + 1 < parts_.size() ? parts_[part + 1] : offer_setup_;
+      entered = std::max(parts_[part].ready(entered), next.room());
+      parts_[part].leave(entered);
+    }
+    const Cycle ready = offer_setup_.ready(entered);
     const Passage setup = setup_queue_.pass(stream(Arrow::setup), ready, std::max(coarse_.room(), slots_.room()));
-    values_.leave(setup.left);
+    offer_setup_.leave(setup.left);
     note(Arrow::setup, setup.taken);
     if (slots_.room() > std::max(ready, coarse_.room()))
       totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
@@ -177,7 +180,11 @@ class PipelinedTiming : public BackTiming {
     return enters;
   }
 
-  Station cull_{1, 0, 0}, divide_, gradients_, values_, coarse_{1, 0, 0}, slots_, visits_;
+  Station sort_{1, PipelinedCycles::cull_sort, 0}, decide_{1, PipelinedCycles::cull_decide, 0};
+  SetupCycles setup_;
+  std::vector<Station> parts_;  ///< of triangle_setup, but for the last
+  Station offer_setup_;         ///< the last
+  Station coarse_{1, 0, 0}, slots_, visits_;
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, skid_, interpolate_;
   Station context_{kSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;

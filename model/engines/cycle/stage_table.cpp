@@ -10,11 +10,10 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
   const auto number = [](int value) { return text(static_cast<std::uint64_t>(value)); };
   if (config.setup_kind == SetupKind::pipelined) {
     const SetupCycles setup(widths, parameters.divide_bits);
-    const std::string least = text(2 + PipelinedCycles::cull_edges), most = text(3 + PipelinedCycles::cull_edges);
+    const int sort = PipelinedCycles::cull_sort, decide = PipelinedCycles::cull_decide;
     const std::string steps = number(PipelinedCycles::interpolate_steps);
-    return {{Stage::cull, least + " or " + most + "; 2 for what is no triangle", "the same", "1"},
-            {Stage::triangle_setup, number(setup.divide + setup.gradients + setup.values),
-             number(std::max({setup.divide, setup.gradients, setup.values})), "3"},
+    return {{Stage::cull, number(sort + decide), number(std::max(sort, decide)), "2"},
+            {Stage::triangle_setup, number(setup.latency), number(setup.part), number(setup.parts + 1)},
             {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
              "1 a tile, one more where a HiZ bound is read",
              number(config.context_slots) + " primitives up to interpolate, " + number(parameters.visits) + " visits"},

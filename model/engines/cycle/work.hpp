@@ -13,9 +13,9 @@ namespace halfplane {
 
 /// Cycles of the pipelined stages that are the same in every configuration.
 struct PipelinedCycles {
-  static constexpr Cycle cull_edges = 5;       ///< three edge functions of three cycles each, one behind the other
-  static constexpr Cycle walk_begins = 2;      ///< coarse_raster: from a setup to its first tile
-  static constexpr int interpolate_steps = 5;  ///< each holds one stamp
+  static constexpr int cull_sort = 4, cull_decide = 4;  ///< the two parts of cull: from a primitive in to its hand-over
+  static constexpr Cycle walk_begins = 2;               ///< coarse_raster: from a setup to its first tile
+  static constexpr int interpolate_steps = 5;           ///< each holds one stamp
 };
 
 /// A primitive on its way through cull and triangle_setup.
@@ -23,7 +23,6 @@ struct PrimitiveWork {
   bool is_triangle = false, is_line = false, is_counted = false;
   bool is_dropped = false;   ///< by cull
   bool is_negative = false;  ///< the signed area, with the vertices as cull_serial has sorted them
-  int turns = 1;             ///< cycles in which cull turns the vertices: 2 where the last one leads, otherwise 1
   int log2_area = 0;         ///< ceil(log2 of twice the area); 0 for other kinds
 };
 
@@ -35,15 +34,19 @@ struct TileVisitWork {
   std::array<std::uint32_t, 32> columns{};  ///< of each row of stamps: a bit for each that has a covered sample
 };
 
-/// Cycles of the three parts of the pipelined triangle_setup: from a triangle in to its hand-over.
+/// The phases of the pipelined triangle_setup, a cycle each, and its parts, which hold a triangle each.
 struct SetupCycles {
-  int divide, gradients, values;
-  SetupCycles(const Widths& widths, int divide_bits) {
-    const int planes = widths.planes;
-    const int quotient = (widths.reciprocal.bits + divide_bits - 1) / divide_bits;
-    divide = 1 + std::max(quotient, planes + 3);
-    gradients = planes + 3;
-    values = planes + 2;
+  int part;     ///< phases of a part
+  int parts;    ///< but for the last, from which the setup is on offer
+  int last;     ///< from entering the last one to the offer
+  int latency;  ///< from the triangle in to the offer
+  SetupCycles(const Widths& widths, int divide_bits) : part(widths.planes) {
+    const int divide = (widths.reciprocal.bits + divide_bits) / divide_bits;  // a bit more, for the rounding
+    // The highest bit, the quotient; rounding, product, shift, move; then a plane's value in each.
+    const int offer = 1 + divide + 4 + widths.planes;
+    parts = offer / part;
+    last = offer % part + 1;
+    latency = offer + 1;
   }
 };
 

@@ -347,6 +347,7 @@ package raster_pkg;
     logic [COUNTER_BITS-1:0] zero_area;
     logic [COUNTER_BITS-1:0] backface;
     logic [COUNTER_BITS-1:0] empty;
+    logic [COUNTER_BITS-1:0] no_sample;
     logic [COUNTER_BITS-1:0] tiles_visited;
     logic [COUNTER_BITS-1:0] tiles_outside;
     logic [COUNTER_BITS-1:0] trivially_accepted;
@@ -359,6 +360,6 @@ package raster_pkg;
     logic [COUNTER_BITS-1:0] tile_evictions;
     logic [COUNTER_BITS-1:0] tile_clears;
   } counter_packet_t;
-  localparam int COUNTER_PACKET_BITS = 480;  // of the struct above
+  localparam int COUNTER_PACKET_BITS = 512;  // of the struct above
 
 endpackage

@@ -15,9 +15,12 @@ struct TrackName {
   std::string_view part;
 };
 constexpr std::array kTracks{TrackName{Stage::cull, ""},
+                             TrackName{Stage::cull, ", second"},
                              TrackName{Stage::triangle_setup, ""},
                              TrackName{Stage::triangle_setup, ", second"},
                              TrackName{Stage::triangle_setup, ", third"},
+                             TrackName{Stage::triangle_setup, ", fourth"},
+                             TrackName{Stage::triangle_setup, ", fifth"},
                              TrackName{Stage::coarse_raster, ""},
                              TrackName{Stage::fine_raster, ""},
                              TrackName{Stage::line_raster, ""},
@@ -53,6 +56,13 @@ void Timeline::slice(int track, const std::string& name, Cycle from, Cycle to) {
            ",\"dur\":" + std::to_string(to - from) + ",\"pid\":1,\"tid\":" + std::to_string(track) + "}";
 }
 
+void Timeline::slice_in(std::span<Cycle> ends, int first_track, Cycle from, Cycle to) {
+  const auto lane = std::find_if(ends.begin(), ends.end(), [&](Cycle end) { return end <= from; });
+  if (lane == ends.end()) return;
+  slice(first_track + static_cast<int>(lane - ends.begin()), name_, from, to);
+  *lane = to;
+}
+
 void Timeline::primitive(const HostPrimitive& primitive) {
   end_primitive();
   name_ = kind_name(primitive.packet.kind);
@@ -65,16 +75,12 @@ void Timeline::transfer(Arrow boundary, Cycle cycle) {
   switch (boundary) {
     case Arrow::primitive: taken_ = cycle; break;
     case Arrow::triangle:
-      slice(cull, name_, taken_, cycle);
+      slice_in(cull_ends_, cull_1, taken_, cycle);
       triangle_ = cycle;
       break;
     case Arrow::setup: {
       const Cycle from = std::min(triangle_, cycle);  // serial: the triangle goes when its setup has gone
-      const auto lane = std::find_if(setup_ends_.begin(), setup_ends_.end(), [&](Cycle end) { return end <= from; });
-      if (lane != setup_ends_.end()) {
-        slice(setup_1 + static_cast<int>(lane - setup_ends_.begin()), name_, from, cycle);
-        *lane = cycle;
-      }
+      slice_in(setup_ends_, setup_1, from, cycle);
       has_setup_ = true;
       setup_ = last_tile_ = cycle;
       break;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 
 #include "model/engines/cycle/cycle_model.hpp"
@@ -24,10 +25,13 @@ class Timeline final : public TransferSink {
 
  private:
   enum Track : int {
-    cull,
+    cull_1,
+    cull_2,
     setup_1,
     setup_2,
     setup_3,
+    setup_4,
+    setup_5,
     coarse,
     fine,
     lines,
@@ -37,6 +41,8 @@ class Timeline final : public TransferSink {
     memory_color
   };
   void slice(int track, const std::string& name, Cycle from, Cycle to);
+  /// The primitive in a stage that works on several: on the first of its tracks that is free from `from` on.
+  void slice_in(std::span<Cycle> ends, int first_track, Cycle from, Cycle to);
   void end_tile(Cycle limit);
   void end_visit();
   void end_primitive();
@@ -46,7 +52,8 @@ class Timeline final : public TransferSink {
   bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
   Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
         first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
-  std::array<Cycle, 3> setup_ends_{};  ///< triangle_setup works on three at a time: three tracks
+  std::array<Cycle, 2> cull_ends_{};   ///< of the last slice on each of cull's tracks
+  std::array<Cycle, 5> setup_ends_{};  ///< likewise
 };
 
 }  // namespace halfplane
