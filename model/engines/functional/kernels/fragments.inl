@@ -24,7 +24,10 @@ struct OpaqueFragments {
     return IsLess ? DepthFunc::less : state.depth_test;
   }
 
-  HALFPLANE_INLINE static I16 passes(const SliceState& state, const I16& depth, const I16& stored) {
+  /// A mask. `Lanes`: I16 or U64.
+  template <class Lanes>
+  HALFPLANE_INLINE static auto passes(const SliceState& state, const Lanes& depth, const Lanes& stored) {
+    using Mask = decltype(depth < stored);
     switch (func(state)) {
       case DepthFunc::less: return depth < stored;
       case DepthFunc::lequal: return depth <= stored;
@@ -32,8 +35,8 @@ struct OpaqueFragments {
       case DepthFunc::gequal: return depth >= stored;
       case DepthFunc::equal: return depth == stored;
       case DepthFunc::notequal: return depth != stored;
-      case DepthFunc::always: return I16(-1);
-      default: return I16(0);
+      case DepthFunc::always: return Mask(-1);
+      default: return Mask(0);
     }
   }
 
@@ -42,33 +45,40 @@ struct OpaqueFragments {
     return depth_passes(func(state), static_cast<std::uint32_t>(depth), static_cast<std::uint32_t>(stored));
   }
 
-  /// Whether no depth in [record.z_low, record.z_high] passes against one in [low, high].
-  HALFPLANE_INLINE static bool is_behind(const SliceState& state, const Record& record, std::int32_t low,
-                                         std::int32_t high) {
-    switch (func(state)) {
-      case DepthFunc::less: return record.z_low >= high;
-      case DepthFunc::lequal: return record.z_low > high;
-      case DepthFunc::greater: return record.z_high <= low;
-      case DepthFunc::gequal: return record.z_high < low;
-      case DepthFunc::equal: return record.z_low > high || record.z_high < low;
+  /// Whether no depth in `range` passes against one in the bin. Ranges that have dropped bits and touch may overlap.
+  HALFPLANE_INLINE static bool is_behind(const Bin& bin, const DepthRange& range) {
+    const std::int32_t touch = bin.range_bits_dropped != 0 ? 1 : 0;
+    switch (func(bin.state)) {
+      case DepthFunc::less: return range.low >= bin.high + touch;
+      case DepthFunc::lequal: return range.low > bin.high;
+      case DepthFunc::greater: return range.high + touch <= bin.low;
+      case DepthFunc::gequal: return range.high < bin.low;
+      case DepthFunc::equal: return range.low > bin.high || range.high < bin.low;
       case DepthFunc::never: return true;
       default: return false;
     }
   }
 
-  /// Tiles with depths in [low, high] where no fragment in [z_low, z_high] passes, and tiles where all do.
-  HALFPLANE_INLINE static void compare_ranges(const SliceState& state, const I16& z_low, const I16& z_high,
-                                              const I16& low, const I16& high, I16& behind, I16& front) {
-    behind = front = I16(0);
-    switch (func(state)) {
-      case DepthFunc::less: behind = z_low >= high, front = z_high < low; break;
-      case DepthFunc::lequal: behind = z_low > high, front = z_high <= low; break;
-      case DepthFunc::greater: behind = z_high <= low, front = z_low > high; break;
-      case DepthFunc::gequal: behind = z_high < low, front = z_low >= high; break;
-      case DepthFunc::equal: behind = (z_low > high) | (z_high < low); break;
-      case DepthFunc::notequal: front = (z_low > high) | (z_high < low); break;
-      case DepthFunc::always: front = I16(-1); break;
-      case DepthFunc::never: behind = I16(-1); break;
+  /// The bin's tiles against fragments in [low, high], a lane a tile: where none passes, and where all do.
+  struct Compared {
+    std::uint64_t behind, front;
+  };
+  HALFPLANE_INLINE static Compared compare_ranges(const Bin& bin, const U64& low, const U64& high) {
+    const U64 tile_low = U64::load(bin.tile_low), tile_high = U64::load(bin.tile_high);
+    const auto is_above = [](const U64& a, const U64& b) HALFPLANE_LAMBDA { return ~bits_at_least(b, a); };
+    const auto is_at_least = [&](const U64& a, const U64& b) HALFPLANE_LAMBDA {
+      return bin.range_bits_dropped == 0 ? bits_at_least(a, b) : is_above(a, b);
+    };
+    constexpr std::uint64_t kAll = ~std::uint64_t{0};
+    switch (func(bin.state)) {
+      case DepthFunc::less: return {is_at_least(low, tile_high), is_above(tile_low, high)};
+      case DepthFunc::lequal: return {is_above(low, tile_high), is_at_least(tile_low, high)};
+      case DepthFunc::greater: return {is_at_least(tile_low, high), is_above(low, tile_high)};
+      case DepthFunc::gequal: return {is_above(tile_low, high), is_at_least(low, tile_high)};
+      case DepthFunc::equal: return {is_above(low, tile_high) | is_above(tile_low, high), 0};
+      case DepthFunc::notequal: return {0, is_above(low, tile_high) | is_above(tile_low, high)};
+      case DepthFunc::always: return {0, kAll};
+      default: return {kAll, 0};
     }
   }
 
@@ -79,22 +89,29 @@ struct OpaqueFragments {
   /// knows: hence copies.
   struct Writer {
     SliceState state;
-    std::int32_t* depths;
-    std::uint32_t* pixels;
+    BinMemory& memory;
+    bool is_narrow;
 
-    HALFPLANE_INLINE explicit Writer(Bin& bin)
-        : state(bin.state), depths(bin.memory.depth.data()), pixels(bin.memory.color.data()) {}
+    HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), memory(bin.memory), is_narrow(bin.is_narrow) {}
 
-    /// Tests and writes the first `count`. Returns how many passed. What fails is stored as it was: which do, nobody
-    /// can foresee.
+    /// Tests and writes the first `count`. Returns how many passed.
     HALFPLANE_INLINE unsigned operator()(const FragmentLanes& fragments, int count) const {
+      return is_narrow ? write(fragments, count, memory.narrow_depth.data())
+                       : write(fragments, count, memory.depth.data());
+    }
+
+    /// What fails is stored as it was: which do, nobody can foresee.
+    template <class Depth>
+    HALFPLANE_INLINE unsigned write(const FragmentLanes& fragments, int count, Depth* depths) const {
+      std::uint32_t* const pixels = memory.color.data();
       unsigned passed_pixels = 0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
         const auto to = static_cast<std::size_t>(fragments.place[k]);
         const std::int32_t stored = depths[to], depth = fragments.depth[k];
         const std::uint32_t has_passed = passes_one(state, depth, stored) ? 1U : 0U, mask = 0U - has_passed;
         passed_pixels += has_passed;
-        if (state.depth_write) depths[to] = stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask));
+        if (state.depth_write)
+          depths[to] = static_cast<Depth>(stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask)));
         if (state.color_write) pixels[to] ^= (pixels[to] ^ static_cast<std::uint32_t>(fragments.color[k])) & mask;
       }
       return passed_pixels;
@@ -114,10 +131,15 @@ struct GeneralFragments {
     for (; covered != 0; covered &= covered - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(covered));
       const auto to = static_cast<std::size_t>(fragments.place[k]);
-      const auto depth = static_cast<std::uint32_t>(fragments.depth[k]);
-      if (!depth_passes(bin.state.depth_test, depth, static_cast<std::uint32_t>(bin.memory.depth[to]))) continue;
+      bool passes = false;
+      with_depths(bin, [&](auto* depths) {
+        using Depth = std::remove_pointer_t<decltype(depths)>;
+        passes = depth_passes(bin.state.depth_test, static_cast<std::uint32_t>(fragments.depth[k]),
+                              static_cast<std::uint32_t>(depths[to]));
+        if (passes && bin.state.depth_write) depths[to] = static_cast<Depth>(fragments.depth[k]);
+      });
+      if (!passes) continue;
       ++passed;
-      if (bin.state.depth_write) bin.memory.depth[to] = fragments.depth[k];
       if (!bin.state.color_write) continue;
       std::array<std::uint8_t, 4> code;
       for (std::size_t c = 0; c < 4; ++c)

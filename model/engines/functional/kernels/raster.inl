@@ -20,32 +20,11 @@ inline void leave_out(Bin& bin, const BinBounds& at) {
   bin.job.counters.skipped.tiles_hiz += tiles;
 }
 
-/// Whether all tiles of a box hide a record.
+/// Whether all tiles of a box hide depths in `range`.
 template <class Fragments>
-HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const Record& record, const BinBounds& box) {
-  const int left = box.left >> kTileShift, right = box.right >> kTileShift, top = box.top >> kTileShift,
-            bottom = box.bottom >> kTileShift;
-  const I16 is_column = (bin.position.pair_x >= left) & (bin.position.pair_x <= right);
-  I16 low(0x7fffffff), high(-1);
-  for (int row = top & ~1; row <= bottom; row += 2) {
-    const I16 y = bin.position.pair_y + row, is_in = is_column & (y >= top) & (y <= bottom);
-    high = max(high, select(is_in, I16::load(bin.tile_high + row * kBinTiles), I16(-1)));
-    if (!Fragments::kIsLess) low = min(low, select(is_in, I16::load(bin.tile_low + row * kBinTiles), I16(0x7fffffff)));
-  }
-  return Fragments::is_behind(bin.state, record, Fragments::kIsLess ? 0 : min_lane(low), max_lane(high));
-}
-
-/// The same for a small or medium triangle.
-template <class Fragments>
-HALFPLANE_INLINE bool is_small_behind(const Bin& bin, const Record& record, const BinBounds& box) {
-  const auto tile_of = [](int x, int y) HALFPLANE_LAMBDA { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); };
-  const int a = tile_of(box.left, box.top), b = tile_of(box.right, box.top), c = tile_of(box.left, box.bottom),
-            d = tile_of(box.right, box.bottom);
-  const bool is_over_two = b > a + 1 || c > a + kBinTiles;
-  if (is_over_two) return is_behind_tiles<Fragments>(bin, record, box);
-  const auto &low = bin.tile_low, &high = bin.tile_high;
-  return Fragments::is_behind(bin.state, record, std::min({low[a], low[b], low[c], low[d]}),
-                              std::max({high[a], high[b], high[c], high[d]}));
+HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const DepthRange& range, const BinBounds& box) {
+  const U64 low(static_cast<std::uint16_t>(range.low)), high(static_cast<std::uint16_t>(range.high));
+  return (tiles_of(box) & ~Fragments::compare_ranges(bin, low, high).behind) == 0;
 }
 
 /// What the next records need is asked for now.
@@ -59,13 +38,13 @@ HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* fir
 
 /// A triangle that is drawn by itself.
 template <class Fragments>
-HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record) {
+HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const DepthRange& range) {
   BinTriangle triangle;
   triangle.box = box_of(bin, record);
   triangle.is_whole = record.has(Record::kWhole);
   // Nearer than all of the bin: no need to look at its tiles.
-  const bool may_be_behind = !Fragments::kIsLess || record.z_low >= bin.low;
-  if (bin.skip.tiles_hiz && may_be_behind && is_behind_tiles<Fragments>(bin, record, triangle.box)) {
+  const bool may_be_behind = !Fragments::kIsLess || range.low >= bin.low;
+  if (bin.skip.tiles_hiz && may_be_behind && is_behind_tiles<Fragments>(bin, range, triangle.box)) {
     leave_out(bin, triangle.box);
     if (bin.may_be_lower) find_bin_range(bin);  // what follows may lie behind all of it
     return;
@@ -80,7 +59,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   for (; first != last; ++first) {
     const Record& record = slice.records[*first];
     fetch_records(slice, first, last);
-    if (bin.skip.tiles_hiz && Fragments::is_behind(bin.state, record, bin.low, bin.high)) {
+    const DepthRange range = range_of(bin, record);
+    if (bin.skip.tiles_hiz && Fragments::is_behind(bin, range)) {
       leave_out(bin, box_of(bin, record));
       continue;
     }
@@ -90,9 +70,9 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
     if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
       // Nearer than what every tile may hold: no need to look at its own.
-      if (bin.skip.tiles_hiz && (!Fragments::kIsLess || record.z_low >= bin.lowest_high)) {
+      if (bin.skip.tiles_hiz && (!Fragments::kIsLess || range.low >= bin.lowest_high)) {
         const BinBounds at = box_of(bin, record);
-        if (is_small_behind<Fragments>(bin, record, at)) {
+        if (is_behind_tiles<Fragments>(bin, range, at)) {
           leave_out(bin, at);
           continue;
         }
@@ -109,7 +89,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     if (record.kind() == RecordKind::cut_line)
       draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
     else
-      draw_alone<Fragments>(bin, slice, record);
+      draw_alone<Fragments>(bin, slice, record, range);
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);

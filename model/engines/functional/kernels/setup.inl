@@ -26,9 +26,12 @@ HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const Ver
   value = value < -kFar ? Values{} - kFar : value;
   value = value > kFar - 1 ? Values{} + (kFar - 1) : value;
   const Words edge = __builtin_convertvector(value + kFar, Words) - (1 << 30);  // floor: truncated above 0
-  std::memcpy(out.edge.data(), &edge, sizeof out.edge);
-  std::memcpy(out.dx.data(), &dx, sizeof out.dx);
-  std::memcpy(out.dy.data(), &dy, sizeof out.dy);
+  std::memcpy(out.edge.data(), &edge, sizeof edge);
+  std::memcpy(out.dx.data(), &dx, sizeof dx);
+  std::memcpy(out.dy.data(), &dy, sizeof dy);
+  constexpr int kSteep = ((1 << 15) - 1) / (kTileSize - 1);
+  const Words slope = (dx < 0 ? -dx : dx) + (dy < 0 ? -dy : dy);
+  out.is_steep = std::max({slope[0], slope[1], slope[2]}) > kSteep;
 }
 
 /// The four channels at once.
@@ -63,7 +66,10 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
   out.z_anchor = static_cast<std::int64_t>((static_cast<std::uint64_t>(v.z) << F) + bin.depth_format.anchor_bias);
   out.z_tile_x = out.z_tile_y = 0;
   out.z_step_x = out.z_step_y = 0;
+  out.to_low = out.to_high = 0;
   out.is_gentle = true;
+  out.is_narrow = bin.tests_narrow;
+  out.is_steep = false;
   out.c_tile_x = out.c_tile_y = {};
   const Channels codes = channels_of(v.rgba);
   for (std::size_t i = 0; i < 4; ++i)
@@ -73,9 +79,30 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
   out.color = {{}, {}, pair, pair};
 }
 
-/// Depth: its plane from tile to tile, and its steps of a pixel in a lane. `area`: positive.
+/// How far the depths of a tile lie from the one at its anchor, from where it reaches four pixels to the left and up,
+/// three to the right and down. Steps of a pixel, in a tile's units.
+HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out) {
+  const auto low = [](std::int64_t step) HALFPLANE_LAMBDA {
+    return std::min((kTileSize / 2 - 1) * step, -kTileSize / 2 * step);
+  };
+  const auto high = [](std::int64_t step) HALFPLANE_LAMBDA {
+    return std::max((kTileSize / 2 - 1) * step, -kTileSize / 2 * step);
+  };
+  const int drop = bin.depth_format.down - bin.depth_format.up + bin.range_bits_dropped;
+  const std::int64_t to_low = (low(step_x) + low(step_y)) >> drop, to_high = (high(step_x) + high(step_y)) >> drop;
+  out.to_low = static_cast<std::int32_t>(to_low);
+  out.to_high = static_cast<std::int32_t>(to_high);
+  // One pixel of the tile is inside the triangle. From there to the anchor, and on to any other, 16 bits must hold the
+  // distance to the middle of the vertices' depths.
+  constexpr std::int64_t kRange = std::int64_t{1} << 15, kRounding = 8;
+  out.is_narrow = bin.tests_narrow && out.z_high - out.z_low < (1 << 16) - kRounding;
+  const std::int64_t half = (std::int64_t{out.z_high} - out.z_low) >> (bin.range_bits_dropped + 1);
+  out.is_gentle = half + 2 * (to_high - to_low) + kRounding < kRange;
+}
+
+/// Depth: its plane from tile to tile, and its steps of a pixel in a lane.
 HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const VertexRow& b, const VertexRow& c,
-                                   const VertexRow& origin, const PlaneSteps& f, std::int64_t area, BinTriangle& out) {
+                                   const VertexRow& origin, const PlaneSteps& f, BinTriangle& out) {
   const LaneFormat& format = bin.depth_format;
   const int s = bin.widths.grid_bits;
   const std::int64_t az = std::int64_t{b.z} - a.z, bz = std::int64_t{c.z} - a.z;
@@ -92,17 +119,13 @@ HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const Ver
       static_cast<std::int64_t>(at_origin + product(step_x, f.dx) + product(step_y, f.dy) + format.anchor_bias);
   out.z_tile_x = step_x << (kTileShift + s);
   out.z_tile_y = step_y << (kTileShift + s);
-  const auto local = [&format](std::int64_t step) HALFPLANE_LAMBDA {
-    const auto rounded = static_cast<std::uint32_t>(round_shift(step, format.step_drop));
-    return static_cast<std::int32_t>(rounded << format.up);
+  const std::int64_t local_x = round_shift(step_x, format.step_drop), local_y = round_shift(step_y, format.step_drop);
+  const auto in_lane = [&format](std::int64_t step) HALFPLANE_LAMBDA {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(step) << format.up);
   };
-  out.z_step_x = local(step_x);
-  out.z_step_y = local(step_y);
-  // A pixel of the tile is inside the triangle; seven steps either way must stay in the window of codes.
-  const auto slope = static_cast<double>(std::abs(numerator_x)) + static_cast<double>(std::abs(numerator_y));
-  const std::int64_t window = (std::int64_t{1} << (bin.config.depth_bits - 1)) - 2 * kTileSize;
-  out.is_gentle =
-      slope * static_cast<double>((kTileSize - 1) << s) < static_cast<double>(window) * static_cast<double>(area);
+  out.z_step_x = in_lane(local_x);
+  out.z_step_y = in_lane(local_y);
+  find_reach(bin, local_x, local_y, out);
 }
 
 /// The triangle's constants; false when it has no area.
@@ -145,7 +168,7 @@ inline bool set_up(const Bin& bin, const Slice& slice, const Record& record, Bin
   const Reciprocal reciprocal = fast_reciprocal(area, bin.config.depth_bits + bin.config.reciprocal_extra_bits);
   f.R = static_cast<std::int64_t>(reciprocal.value);
   f.k = reciprocal.shift - bin.widths.plane_fraction;
-  set_up_depth(bin, *a, *b, *c, *origin, f, area, out);
-  set_up_colors(bin, *a, *b, *c, *origin, f, out);
+  set_up_depth(bin, *a, *b, *c, *origin, f, out);
+  if (bin.state.color_write) set_up_colors(bin, *a, *b, *c, *origin, f, out);
   return true;
 }

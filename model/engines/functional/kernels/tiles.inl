@@ -1,149 +1,225 @@
-// Large triangles: their tiles sixteen at a time, outside, behind, taken as a whole, or drawn block by block.
+// Large triangles: the 64 tiles of a bin at once, a lane each: outside, behind, taken as a whole, or drawn. What is said
+// of a tile is said in 16 bits: a bound that may be a little wide, never wrong. The pixels of a tile, 64 as well, are
+// exact.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// A pair of rows of tiles, one a lane.
-struct TileLanes {
-  I16 live, full;           ///< to be looked at; wholly covered
-  I16 z_low, z_high;        ///< range of the triangle's depths
-  std::array<I16, 3> edge;  ///< at the tiles' first pixels
-};
-
-/// What the pairs of rows of a triangle have in common. Of the depths at the tiles' anchors the bits below `drop`
-/// only carry: where their sums fit 32 bits, that is all that a lane needs.
-struct TileRows {
-  std::array<std::int32_t, 3> outside, cut;  ///< from a tile's first pixel to where an edge is largest, smallest
-  std::array<std::int32_t, 3> edge_step;     ///< from a row of tiles to the next
-  std::array<I16, 3> edge;                   ///< of the first pair of rows
-  I16 beside;                                ///< signs: columns without a pixel of the box
-  std::int32_t to_low, to_high;              ///< from an anchor
-  bool is_narrow;
-  I16 upper, lower;  ///< depth at the anchors of row 0
-  std::int32_t upper_step, lower_step;
-  I16 z_low, z_high;
-};
-
-HALFPLANE_INLINE TileRows tile_rows(const Bin& bin, const BinTriangle& t) {
-  TileRows rows;
-  constexpr int kExtent = kTileSize - 1, kSumBits = 4;  // sums of 7 + 7 + 1
-  const I16 x = bin.position.pair_x * kTileSize, y = bin.position.pair_y * kTileSize;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int32_t dx = t.dx[i], dy = t.dy[i];
-    rows.edge[i] = y * dx - x * dy + t.edge[i];
-    rows.edge_step[i] = kTileSize * dx;
-    rows.outside[i] = kExtent * (std::max(dx, 0) + std::max(-dy, 0));
-    rows.cut[i] = kExtent * (std::min(dx, 0) + std::min(-dy, 0));
+/// The 64 lanes of a plane: over the pixels of a tile, block by block, or over the tiles of a bin, row by row. From the
+/// first register the others follow by steps.
+enum class Over { pixels, tiles };
+template <Over over, class T>
+HALFPLANE_INLINE Pack<T, 64> ramp(const Bin& bin, T first, T step_x, T step_y) {
+  using Lanes = Pack<T, 64>;
+  using Register = typename Lanes::Register;
+  constexpr int kParts = Lanes::kParts;
+  constexpr bool kPixels = over == Over::pixels;
+  const S64 &column = kPixels ? bin.position.pixel_x : bin.position.tile_x,
+            &row = kPixels ? bin.position.pixel_y : bin.position.tile_y;
+  const Register x = Register{} + step_x, y = Register{} + step_y;
+  Lanes lanes;
+  lanes.part[0] = (Register)column.part[0] * x + (Register)row.part[0] * y + first;
+  const Register by_32 = y << 2;
+  if constexpr (kParts == 8) lanes.part[1] = lanes.part[0] + (kPixels ? y << 1 : y);
+  if constexpr (kParts >= 4) {
+    const Register by_16 = kPixels ? x << 2 : y << 1;
+    HALFPLANE_EACH_PART(kParts / 4, i, lanes.part[kParts / 4 + i] = lanes.part[i] + by_16)
   }
-  rows.beside = (x + (kExtent - t.box.left)) | (t.box.right - x);
-  // From the anchor a tile reaches four pixels to the left and up, three to the right and down.
-  const auto reach = [](std::int32_t step, bool is_high) HALFPLANE_LAMBDA {
-    return (step > 0) == is_high ? (kTileSize / 2 - 1) * step : -kTileSize / 2 * step;
-  };
-  rows.to_low = reach(t.z_step_x, false) + reach(t.z_step_y, false);
-  rows.to_high = reach(t.z_step_x, true) + reach(t.z_step_y, true);
-  const int drop = bin.depth_format.drop;
-  rows.is_narrow = drop + kSumBits <= 32;
-  if (rows.is_narrow) {
-    const auto upper = [drop](std::int64_t v) HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v >> drop); };
-    const auto lower = [drop](std::int64_t v)
-                           HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v & ((std::int64_t{1} << drop) - 1)); };
-    rows.upper_step = upper(t.z_tile_y);
-    rows.lower_step = lower(t.z_tile_y);
-    rows.upper = bin.position.pair_x * upper(t.z_tile_x) + bin.position.pair_y * rows.upper_step + upper(t.z_anchor);
-    rows.lower = bin.position.pair_x * lower(t.z_tile_x) + bin.position.pair_y * rows.lower_step + lower(t.z_anchor);
-  }
-  rows.z_low = I16(t.z_low);
-  rows.z_high = I16(t.z_high);
-  return rows;
-}
-
-/// The depths at the anchors of a pair of rows of tiles, in lanes.
-HALFPLANE_INLINE I16 depth_anchors(const Bin& bin, const BinTriangle& t, const TileRows& rows, int row) {
-  if (rows.is_narrow)
-    return (rows.upper + row * rows.upper_step +
-            shift_right_logical(rows.lower + row * rows.lower_step, bin.depth_format.drop))
-           << bin.depth_format.up;
-  const L16 value = convert<std::int64_t>(bin.position.pair_x) * t.z_tile_x +
-                    convert<std::int64_t>(bin.position.pair_y + row) * t.z_tile_y + t.z_anchor;
-  return convert<std::int32_t>(shift_right_logical(value, bin.depth_format.drop)) << bin.depth_format.up;
-}
-
-HALFPLANE_INLINE TileLanes classify_tiles(Bin& bin, const BinTriangle& t, const TileRows& rows, int row) {
-  TileLanes lanes;
-  constexpr int kExtent = kTileSize - 1;
-  I16 outside(0), cut(0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    lanes.edge[i] = rows.edge[i] + row * rows.edge_step[i];
-    outside |= lanes.edge[i] + rows.outside[i];
-    cut |= lanes.edge[i] + rows.cut[i];
-  }
-  const I16 y = bin.position.pair_y * kTileSize + row * kTileSize;
-  const I16 apart = rows.beside | (y + (kExtent - t.box.top)) | (t.box.bottom - y);  // from the box
-  if (!t.is_whole) {
-    const I16 x = bin.position.pair_x * kTileSize;
-    cut |= (x - t.box.left) | ((t.box.right - kExtent) - x) | (y - t.box.top) | ((t.box.bottom - kExtent) - y);
-  }
-  const std::uint32_t box = ~bits_of(apart) & 0xffff;
-  outside |= apart;
-  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(box));
-  if (bin.skip.tiles_outside) {
-    bin.job.counters.skipped.tiles_outside += static_cast<unsigned>(std::popcount(bits_of(outside) & box));
-    lanes.live = ~(outside >> 31);
-  } else {
-    lanes.live = ~(apart >> 31);
-  }
-  lanes.full = ~((outside | cut) >> 31);
-  lanes.z_low = rows.z_low;
-  lanes.z_high = rows.z_high;
-  if (t.is_gentle) {
-    const I16 anchor = depth_anchors(bin, t, rows, row);
-    lanes.z_low = decode(anchor + rows.to_low, bin.depth_format, rows.z_low, rows.z_high);
-    lanes.z_high = decode(anchor + rows.to_high, bin.depth_format, rows.z_low, rows.z_high);
-  }
+  HALFPLANE_EACH_PART(kParts / 2, i, lanes.part[kParts / 2 + i] = lanes.part[i] + by_32)
   return lanes;
+}
+
+/// The same of values of more bits, floored to units of 2^fraction; `fraction`: at most 12, so that fifteen fit 16 bits.
+template <Over over>
+HALFPLANE_INLINE S64 ramp_above(const Bin& bin, int fraction, std::int64_t first, std::int64_t step_x,
+                                std::int64_t step_y) {
+  const auto upper = [=](std::int64_t v) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(v >> fraction); };
+  const auto lower = [=](std::int64_t v)
+                         HALFPLANE_LAMBDA { return static_cast<std::uint16_t>(v & ((1 << fraction) - 1)); };
+  const U64 carry = ramp<over>(bin, lower(first), lower(step_x), lower(step_y)) >> fraction;
+  return ramp<over>(bin, upper(first), upper(step_x), upper(step_y)) + as<S64>(carry);
+}
+
+HALFPLANE_INLINE S64 every_lane(int value) { return S64(static_cast<std::int16_t>(value)); }
+
+/// Within codes that lie as far from `middle` as 16 bits reach: those in [low, high], of distances.
+HALFPLANE_INLINE U64 clamped(const S64& distance, int low, int high, int middle) {
+  return as<U64>(min(max(distance, every_lane(low - middle)), every_lane(high - middle)) + every_lane(middle));
+}
+
+/// Of the three edges; the fourth lane is not used.
+typedef std::int32_t EdgeWords __attribute__((vector_size(16)));
+HALFPLANE_INLINE EdgeWords load_edges(const std::array<std::int32_t, 4>& from) {
+  EdgeWords words;
+  std::memcpy(&words, from.data(), sizeof words);
+  return words;
+}
+HALFPLANE_INLINE std::array<std::int32_t, 4> stored(const EdgeWords& words) {
+  std::array<std::int32_t, 4> to;
+  std::memcpy(to.data(), &words, sizeof words);
+  return to;
+}
+HALFPLANE_INLINE EdgeWords smaller(const EdgeWords& a, const EdgeWords& b) { return a < b ? a : b; }
+HALFPLANE_INLINE EdgeWords larger(const EdgeWords& a, const EdgeWords& b) { return a > b ? a : b; }
+
+/// Tiles, a bit each. Either set may lack some.
+struct TileClasses {
+  std::uint64_t outside, full;  ///< no pixel is covered; all are, if the box agrees
+};
+
+/// Each edge in units of 2^drop, floored: fifteen steps and a value make an error below 15.
+HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t) {
+  constexpr int kExtent = kTileSize - 1, kStepBits = 7, kFloored = 14, kLimit = 16192;
+  static_assert(kLimit + 2 * (kBinTiles - 1) * (kTileSize << kStepBits) + 2 * (kExtent << kStepBits) + kFloored < 1 << 15);
+  const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
+  const EdgeWords largest = larger(larger(dx, -dx), larger(dy, -dy));
+  typedef float Floats __attribute__((vector_size(16)));
+  const EdgeWords bits = ((EdgeWords)__builtin_convertvector(largest, Floats) >> 23) - 126;
+  const EdgeWords drop = larger(bits - kStepBits, zero);
+  const EdgeWords to_largest = (larger(dx, zero) - smaller(dy, zero)) * kExtent,
+                  to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
+  const EdgeWords limit = zero + kLimit;
+  const EdgeWords first = larger(smaller(load_edges(t.edge) >> drop, limit), -limit);
+  const EdgeWords outer = ((to_largest + (1 << drop) - 1) >> drop) + ((drop != 0) & kFloored);
+  const auto step_x = stored((-kTileSize * dy) >> drop), step_y = stored((kTileSize * dx) >> drop),
+             outermost = stored(first + outer), inner = stored((to_smallest >> drop) - outer);
+  S64 outside(0), cut(0);  // signs
+  for (std::size_t e = 0; e < 3; ++e) {
+    const auto narrow = [e](const auto& words) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(words[e]); };
+    const S64 value = ramp<Over::tiles>(bin, narrow(outermost), narrow(step_x), narrow(step_y));
+    outside |= value;
+    cut |= value + narrow(inner);
+  }
+  return {bits_of(outside), ~bits_of(cut)};
+}
+
+/// Ranges of a triangle's depths in the tiles that it touches.
+struct TileDepths {
+  U64 low, high;
+};
+
+/// The plane at the tiles' anchors, of which lanes hold the distance to the middle of the vertices' depths, and up to
+/// twelve bits of its fraction apart; fifteen floored numbers make one.
+HALFPLANE_INLINE TileDepths tile_depths(const Bin& bin, const BinTriangle& t) {
+  const int dropped = bin.range_bits_dropped;
+  const int low = t.z_low >> dropped, high = t.z_high >> dropped, middle = (low + high) >> 1;
+  if (!t.is_gentle) return {U64(static_cast<std::uint16_t>(low)), U64(static_cast<std::uint16_t>(high))};
+  const int fraction = bin.widths.plane_fraction + dropped, kept = std::min(fraction, 12), down = fraction - kept;
+  const int code_zero = (bin.depth_format.bias >> dropped) + middle;
+  const S64 anchor =
+      ramp_above<Over::tiles>(bin, kept, t.z_anchor >> down, t.z_tile_x >> down, t.z_tile_y >> down) - every_lane(code_zero);
+  // The anchor's fraction, and what of it has been floored, may carry into the bits that to_high has floored.
+  const int tile_fraction = bin.depth_format.down - bin.depth_format.up + dropped;
+  const int above = down > 0 && (15 << tile_fraction) >= 1 << kept ? 2 : 1;
+  const auto at = [&](int offset)
+                      HALFPLANE_LAMBDA { return clamped(anchor + every_lane(offset), low, high, middle); };
+  return {at(t.to_low), at(t.to_high + above)};
+}
+
+/// The tiles that lie in a box as a whole.
+inline std::uint64_t tiles_inside(const BinBounds& box) {
+  const auto round_up = [](int at) { return (at + kTileSize - 1) & -kTileSize; };
+  const BinBounds inner{round_up(box.left), round_up(box.top), ((box.right + 1) & -kTileSize) - 1,
+                        ((box.bottom + 1) & -kTileSize) - 1};
+  return inner.left > inner.right || inner.top > inner.bottom ? 0 : tiles_of(inner);
 }
 
 /// Forgets the triangles of which no tile is left.
 HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
-  std::array<std::int32_t, BinMemory::kPlanes> moved;
+  std::array<std::int16_t, BinMemory::kPlanes> moved;
   moved.fill(-1);
   for (const auto* owners : {&bin.depth_owner, &bin.color_owner})
-    for (const std::int32_t owner : *owners)
+    for (const std::int16_t owner : *owners)
       if (owner >= 0) moved[static_cast<std::size_t>(owner)] = 0;
   bin.plane_count = 0;
   for (std::size_t i = 0; i < BinMemory::kPlanes; ++i) {
     if (moved[i] < 0) continue;
-    moved[i] = static_cast<std::int32_t>(bin.plane_count);
+    moved[i] = static_cast<std::int16_t>(bin.plane_count);
     bin.memory.planes[bin.plane_count++] = bin.memory.planes[i];
   }
   for (auto* owners : {&bin.depth_owner, &bin.color_owner})
-    for (std::int32_t& owner : *owners)
+    for (std::int16_t& owner : *owners)
       if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
 }
 
 /// Tiles that the triangle takes as a whole.
-HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, int row, const I16& taken, const TileLanes& lanes,
-                                 std::int32_t& plane) {
-  if (plane < 0) {
-    if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
-    plane = static_cast<std::int32_t>(bin.plane_count);
-    bin.memory.planes[bin.plane_count++] = t;
-  }
-  const auto replace = [&](std::int32_t* at, const I16& with)
-                           HALFPLANE_LAMBDA { select(taken, with, I16::load(at)).store(at); };
-  bin.in_memory &= ~(std::uint64_t{bits_of(taken)} << (row * kBinTiles));
+HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t taken, const TileDepths& depths) {
+  if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
+  const S64 plane(static_cast<std::int16_t>(bin.plane_count)), is_taken = lanes_of(taken);
+  bin.memory.planes[bin.plane_count++] = t;
+  const auto replace = [&](auto* at, const auto& with) HALFPLANE_LAMBDA {
+    using Lanes = std::remove_cvref_t<decltype(with)>;
+    select(is_taken, with, Lanes::load(at)).store(at);
+  };
+  bin.in_memory &= ~taken;
+  const auto tiles = static_cast<unsigned>(std::popcount(taken));
   if (bin.state.depth_write) {
-    replace(bin.depth_owner.data() + row * kBinTiles, I16(plane));
-    replace(bin.tile_low + row * kBinTiles, lanes.z_low);
-    replace(bin.tile_high + row * kBinTiles, lanes.z_high);
+    replace(bin.depth_owner.data(), plane);
+    replace(bin.tile_low, depths.low);
+    replace(bin.tile_high, depths.high);
   }
   if (bin.state.color_write) {
-    const I16 owner = I16::load(bin.color_owner.data() + row * kBinTiles);
-    bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(bits_of(taken & ~(owner >> 31))));
-    replace(bin.color_owner.data() + row * kBinTiles, I16(plane));
+    const std::uint64_t unused = taken & ~bits_of(S64::load(bin.color_owner.data()));
+    bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(unused));
+    replace(bin.color_owner.data(), plane);
   }
-  const std::uint64_t pixels = 64 * static_cast<std::uint64_t>(std::popcount(bits_of(taken)));
-  bin.job.counters.skipped.trivially_accepted += pixels / 64;
-  count_fragments(bin, pixels, pixels);
+  bin.job.counters.skipped.trivially_accepted += tiles;
+  count_fragments(bin, 64 * std::uint64_t{tiles}, 64 * std::uint64_t{tiles});
+}
+
+/// The pixels of a tile outside an edge, as signs. What an edge's smallest value is below its span, or above 0, is the
+/// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits.
+HALFPLANE_INLINE S64 outside_edges(const Bin& bin, const BinTriangle& t, int tile_x, int tile_y) {
+  constexpr int kExtent = kTileSize - 1, kFraction = 12;
+  const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
+  const EdgeWords at_tile = load_edges(t.edge) + kTileSize * (tile_y * dx - tile_x * dy);
+  const EdgeWords to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent,
+                  span = (larger(dx, -dx) + larger(dy, -dy)) * kExtent;
+  const EdgeWords smallest = smaller(larger(at_tile + to_smallest, ~span), zero);
+  const auto first = stored(smallest - to_smallest);
+  const auto narrow = [](std::int32_t v) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(v); };
+  S64 outside(0);
+  if (t.is_steep)
+    for (std::size_t e = 0; e < 3; ++e)
+      outside |= ramp_above<Over::pixels>(bin, kFraction, first[e], -std::int64_t{t.dy[e]}, t.dx[e]);
+  else
+    for (std::size_t e = 0; e < 3; ++e)
+      outside |= ramp<Over::pixels>(bin, narrow(first[e]), narrow(-t.dy[e]), narrow(t.dx[e]));
+  return outside;
+}
+
+/// The pixels of a tile outside the triangle's box.
+HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_x, int tile_y) {
+  const auto lanes = [](int at, int tile) HALFPLANE_LAMBDA { return every_lane(at - tile * kTileSize); };
+  const S64 &x = bin.position.pixel_x, &y = bin.position.pixel_y;
+  return (x - lanes(box.left, tile_x)) | (lanes(box.right, tile_x) - x) | (y - lanes(box.top, tile_y)) |
+         (lanes(box.bottom, tile_y) - y);
+}
+
+/// Depth test of a tile in memory whose codes are of 16 bits. Returns what passed.
+template <class Fragments>
+HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const BinTriangle& t, int tile, const S64& outside) {
+  const LaneFormat& format = bin.depth_format;
+  const int fraction = format.down - format.up, middle = (t.z_low + t.z_high) >> 1;
+  const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
+  const S64 value = ramp_above<Over::pixels>(bin, fraction, (anchor - kTileSize / 2 * (t.z_step_x + t.z_step_y)) >> format.up,
+                                             t.z_step_x >> format.up, t.z_step_y >> format.up);
+  const U64 depth = clamped(value - every_lane(format.bias + middle), t.z_low, t.z_high, middle);
+  std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
+  const U64 stored = U64::load(at);
+  U64 now;
+  std::uint64_t passed;
+  if constexpr (Fragments::kIsLess) {
+    now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
+    passed = ~bits_of(now == stored);
+  } else {
+    const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
+    now = select(passes, depth, stored);
+    passed = bits_of(passes);
+  }
+  if (passed == 0 || !bin.state.depth_write) return passed;
+  now.store(at);
+  bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(now));
+  bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(now));
+  return passed;
 }
 
 template <class Visit>
@@ -154,115 +230,105 @@ HALFPLANE_INLINE void for_each_block(Visit&& visit) {
   visit(std::integral_constant<std::size_t, 3>{});
 }
 
-/// The part of a triangle in one tile, block by block.
+/// Signs of sixteen pixels.
+HALFPLANE_INLINE I16 block_lanes(const Bin& bin, std::uint64_t pixels, std::size_t block) {
+  return I16(static_cast<std::int32_t>(pixels >> (kBlockPixels * block) & 0xffff)) << bin.position.to_sign;
+}
+
+/// The same with depths in lanes of 32 bits, block by block.
 template <class Fragments>
-HALFPLANE_NOINLINE void draw_tile(Bin& bin, const BinTriangle& t, int tile, bool is_full,
-                                  const std::array<std::int32_t, 3>& edge) {
-  const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
-  const int x = tile_x * kTileSize, y = tile_y * kTileSize;
-  const int left = std::max(t.box.left - x, 0), right = std::min(t.box.right - x, 7);
-  const int top = std::max(t.box.top - y, 0), bottom = std::min(t.box.bottom - y, 7);
-  const bool is_whole = t.is_whole || (left == 0 && top == 0 && right == 7 && bottom == 7);
-  need_depth(bin, tile);
-  const BlockRamp<I16> depth_plane = depth_ramp(bin, t, depth_anchor(bin, t, tile_x, tile_y));
-  std::array<BlockRamp<I16>, 3> edge_plane;
-  for (std::size_t e = 0; e < 3; ++e)
-    edge_plane[e] = {bin.position.block_y * t.dx[e] - bin.position.block_x * t.dy[e] + edge[e],
-                     I16(-kBlockSize * t.dy[e]), I16(kBlockSize * t.dx[e])};
+HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int tile, std::uint64_t covered) {
+  const BlockRamp<I16> plane = depth_ramp(bin, t, depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
   // Copies: what is stored to memory might change the members, for all that the compiler knows.
   const LaneFormat format = bin.depth_format;
   const I16 z_low(t.z_low), z_high(t.z_high);
-  const bool has_depth = bin.state.depth_write, skips = bin.skip.fragments_early_z;
-  std::int32_t* const stored_depths = bin.memory.depth.data() + first_of(tile);
-  std::array<I16, 4> passed;                        // signs
-  std::uint64_t covered_bits = 0, passed_bits = 0;  // of a block: sixteen
+  const bool has_depth = bin.state.depth_write;
+  const auto first = static_cast<std::size_t>(first_of(tile));
+  std::uint64_t passed = 0;
   I16 lowest(0x7fffffff), highest(0);
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    constexpr int kX = (block & 1) * kBlockSize, kY = (block >> 1) * kBlockSize;
-    I16 outside(0);  // signs
-    if (!is_full) outside = edge_plane[0](block) | edge_plane[1](block) | edge_plane[2](block);
-    if (!is_whole)
-      outside |= (bin.position.block_x + (kX - left)) | ((right - kX) - bin.position.block_x) |
-                 (bin.position.block_y + (kY - top)) | ((bottom - kY) - bin.position.block_y);
-    std::int32_t* const at = stored_depths + block * kBlockPixels;
-    const I16 stored = I16::load(at), depth = decode(depth_plane(block), format, z_low, z_high);
-    passed[block] = ~outside & Fragments::passes(bin.state, depth, stored);
-    const I16 now = select_by_sign(passed[block], depth, stored);
-    covered_bits |= std::uint64_t{~bits_of(outside) & 0xffff} << (kBlockPixels * block);
-    passed_bits |= std::uint64_t{bits_of(passed[block])} << (kBlockPixels * block);
+    const std::size_t at = first + block * kBlockPixels;
+    const I16 stored = load_depths(bin, at), depth = decode(plane(block), format, z_low, z_high);
+    const I16 passes = block_lanes(bin, covered, block) & Fragments::passes(bin.state, depth, stored);
+    const I16 now = select_by_sign(passes, depth, stored);
+    passed |= std::uint64_t{bits_of(passes)} << (kBlockPixels * block);
     lowest = min(lowest, now);
     highest = max(highest, now);
-    if (has_depth) now.store(at);
+    if (has_depth) store_depths(bin, at, now);
   });
-  if (bin.state.color_write && (passed_bits != 0 || !skips)) {
-    need_color(bin, tile);
-    const ColorRamp color_plane = color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y));
-    std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
-    const ColorSteps steps = t.color;
-    const LaneFormat color_format = bin.color_format;
-    const ColorFormat pixel_format = bin.config.color_format;
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if ((passed_bits >> (kBlockPixels * block) & 0xffff) == 0 && skips) return;
-      std::uint32_t* const at = pixels + block * kBlockPixels;
-      const I16 color = block_colors(steps, color_plane, block, color_format, pixel_format);
-      select_by_sign(passed[block], color, I16::load(at)).store(at);
-    });
-  }
-  const auto covered_pixels = static_cast<std::uint64_t>(std::popcount(covered_bits)),
-             passed_pixels = static_cast<std::uint64_t>(std::popcount(passed_bits));
+  if (has_depth && passed != 0) set_range(bin, tile, min_lane(lowest), max_lane(highest));
+  return passed;
+}
+
+/// Colours of the pixels that passed, of blocks that have any; of all where nobody may leave them out.
+HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
+  need_color(bin, tile);
+  const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+  std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
+  const ColorSteps steps = t.color;
+  const LaneFormat format = bin.color_format;
+  const ColorFormat pixel_format = bin.config.color_format;
+  const bool skips = bin.skip.fragments_early_z;
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    if ((passed >> (kBlockPixels * block) & 0xffff) == 0 && skips) return;
+    std::uint32_t* const at = pixels + block * kBlockPixels;
+    const I16 color = block_colors(steps, plane, block, format, pixel_format);
+    select_by_sign(block_lanes(bin, passed, block), color, I16::load(at)).store(at);
+  });
+}
+
+/// The part of a triangle in one tile.
+template <class Fragments>
+HALFPLANE_NOINLINE void draw_tile(Bin& bin, const BinTriangle& t, int tile, bool is_full) {
+  const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
   Counters& counters = bin.job.counters;
-  if (is_full)
+  S64 outside(0);
+  if (is_full) {
     ++counters.skipped.trivially_accepted;
-  else
-    counters.samples_tested += static_cast<unsigned>((right - left + 1) * (bottom - top + 1));
-  count_fragments(bin, covered_pixels, passed_pixels);
-  if (bin.state.depth_write && passed_pixels != 0) {
-    bin.tile_low[tile] = min_lane(lowest);
-    bin.tile_high[tile] = max_lane(highest);
+  } else {
+    outside = outside_edges(bin, t, tile_x, tile_y);
+    counters.samples_tested += kTileSize * kTileSize;
   }
+  if (!t.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
+  const std::uint64_t covered = ~bits_of(outside);
+  if (covered == 0) return;
+  need_depth(bin, tile);
+  const std::uint64_t passed = t.is_narrow ? test_narrow<Fragments>(bin, t, tile, outside >> 15)
+                                           : test_wide<Fragments>(bin, t, tile, covered);
+  if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) color_tile(bin, t, tile, passed);
+  count_fragments(bin, static_cast<unsigned>(std::popcount(covered)), static_cast<unsigned>(std::popcount(passed)));
 }
 
 template <class Fragments>
 void draw_large(Bin& bin, const BinTriangle& t) {
-  std::int32_t plane = -1;
   bin.line_tiles = 0;
-  const TileRows rows = tile_rows(bin, t);
-  bool is_changed = false;
-  for (int row = t.box.top >> kTileShift & ~1; row <= t.box.bottom >> kTileShift; row += 2) {
-    TileLanes lanes = classify_tiles(bin, t, rows, row);
-    std::int32_t* low = bin.tile_low + row * kBinTiles;
-    std::int32_t* high = bin.tile_high + row * kBinTiles;
-    const I16 stored_low = I16::load(low), stored_high = I16::load(high);
-    I16 behind, front;
-    Fragments::compare_ranges(bin.state, lanes.z_low, lanes.z_high, stored_low, stored_high, behind, front);
-    if (bin.skip.tiles_hiz) {
-      bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(bits_of(lanes.live & behind)));
-      lanes.live &= ~behind;
-    }
-    I16 taken(0);
-    if (bin.skip.attributes && bin.skip.trivially_accepted && (bin.state.depth_write || bin.state.color_write)) {
-      taken = lanes.live & lanes.full & front;
-      if (is_any(taken)) take_tiles(bin, t, row, taken, lanes, plane);
-    }
-    const std::uint32_t full_bits = bits_of(lanes.full);
-    const std::uint32_t live_bits = bits_of(lanes.live);
-    is_changed |= live_bits != 0;
-    std::uint32_t rest = live_bits & ~bits_of(taken);
-    if (rest == 0) continue;
-    struct {
-      std::array<std::array<std::int32_t, 16>, 3> edge;
-    } lane;
-    for (std::size_t e = 0; e < 3; ++e) lanes.edge[e].store(lane.edge[e].data());
-    for (; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const bool is_full = bin.skip.trivially_accepted && (full_bits >> i & 1) != 0;
-      draw_tile<Fragments>(bin, t, row * kBinTiles + static_cast<int>(i), is_full,
-                           {lane.edge[0][i], lane.edge[1][i], lane.edge[2][i]});
-    }
+  const TileClasses tiles = classify_tiles(bin, t);
+  const TileDepths depths = tile_depths(bin, t);
+  const auto compared = Fragments::compare_ranges(bin, depths.low, depths.high);
+  const auto count_of = [](std::uint64_t set) HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(set)); };
+  Counters& counters = bin.job.counters;
+  std::uint64_t live = tiles_of(t.box);
+  counters.tiles_visited += count_of(live);
+  if (bin.skip.tiles_outside) {
+    counters.skipped.tiles_outside += count_of(live & tiles.outside);
+    live &= ~tiles.outside;
   }
-  if (!is_changed || !bin.state.depth_write) return;
+  if (bin.skip.tiles_hiz) {
+    counters.skipped.tiles_hiz += count_of(live & compared.behind);
+    live &= ~compared.behind;
+  }
+  if (live == 0) return;
+  std::uint64_t full = 0, taken = 0;
+  if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
+  if (bin.skip.attributes && (bin.state.depth_write || bin.state.color_write)) taken = full & compared.front;
+  if (taken != 0) take_tiles(bin, t, taken, depths);
+  for (std::uint64_t rest = live & ~taken; rest != 0; rest &= rest - 1) {
+    const int tile = std::countr_zero(rest);
+    draw_tile<Fragments>(bin, t, tile, (full >> tile & 1) != 0);
+  }
+  if (!bin.state.depth_write) return;
   if (!Fragments::kIsLess) return find_bin_range(bin);
   // An upper bound that only falls: the old one will do.
-  bin.low = std::min(bin.low, t.z_low);
+  bin.low = std::min(bin.low, t.z_low >> bin.range_bits_dropped);
   bin.may_be_lower = true;
 }
