@@ -104,6 +104,7 @@ struct Bin {
         color_format(widths.color(), 16, widths),
         first_x(job.bin % job.frame.bins_x * kBinSize),
         first_y(job.bin / job.frame.bins_x * kBinSize),
+        pixel(1.0 / static_cast<double>(std::int64_t{1} << widths.grid_bits)),
         are_lines(job.target.has_whole_lines()),
         is_narrow(config.depth_bits <= 16),
         tests_narrow(is_narrow && config.depth_bits >= 15 && depth_format.down - depth_format.up <= 12),
@@ -124,6 +125,7 @@ struct Bin {
   const Skip& skip;
   LaneFormat depth_format, color_format;
   int first_x, first_y;  ///< pixels
+  double pixel;          ///< a subpixel, in pixels
   bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
   bool is_narrow;        ///< depths are in BinMemory::narrow_depth
   bool tests_narrow;     ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions

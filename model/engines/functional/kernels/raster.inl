@@ -20,11 +20,11 @@ inline void leave_out(Bin& bin, const BinBounds& at) {
   bin.job.counters.skipped.tiles_hiz += tiles;
 }
 
-/// Whether all tiles of a box hide depths in `range`.
+/// The tiles of the bin that hide depths in `range`.
 template <class Fragments>
-HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const DepthRange& range, const BinBounds& box) {
+HALFPLANE_INLINE std::uint64_t hidden_tiles(const Bin& bin, const DepthRange& range) {
   const U64 low(static_cast<std::uint16_t>(range.low)), high(static_cast<std::uint16_t>(range.high));
-  return (tiles_of(box) & ~Fragments::compare_ranges(bin, low, high).behind) == 0;
+  return Fragments::compare_ranges(bin, low, high).behind;
 }
 
 /// What the next records need is asked for now.
@@ -42,14 +42,18 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
   BinTriangle triangle;
   triangle.box = box_of(bin, record);
   triangle.is_whole = record.has(Record::kWhole);
+  std::uint64_t live = tiles_of(triangle.box);
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(live));
   // Nearer than all of the bin: no need to look at its tiles.
-  const bool may_be_behind = !Fragments::kIsLess || range.low >= bin.low;
-  if (bin.skip.tiles_hiz && may_be_behind && is_behind_tiles<Fragments>(bin, range, triangle.box)) {
-    leave_out(bin, triangle.box);
-    if (bin.may_be_lower) find_bin_range(bin);  // what follows may lie behind all of it
-    return;
+  if (bin.skip.tiles_hiz && (!Fragments::kIsLess || range.low >= bin.low)) {
+    leave_out(live, hidden_tiles<Fragments>(bin, range), bin.job.counters.skipped.tiles_hiz);
+    if (live == 0) {
+      if (bin.may_be_lower) find_bin_range(bin);  // what follows may lie behind all of it
+      return;
+    }
   }
-  if (set_up(bin, slice, record, triangle) && !record.has(Record::kDrawsNothing)) draw_large<Fragments>(bin, triangle);
+  bin.line_tiles = 0;
+  if (!record.has(Record::kDrawsNothing)) draw_large<Fragments>(bin, slice, record, live, triangle);
 }
 
 /// The records of one slice.
@@ -72,7 +76,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
       // Nearer than what every tile may hold: no need to look at its own.
       if (bin.skip.tiles_hiz && (!Fragments::kIsLess || range.low >= bin.lowest_high)) {
         const BinBounds at = box_of(bin, record);
-        if (is_behind_tiles<Fragments>(bin, range, at)) {
+        if ((tiles_of(at) & ~hidden_tiles<Fragments>(bin, range)) == 0) {
           leave_out(bin, at);
           continue;
         }

@@ -22,7 +22,7 @@ HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const Ver
   const auto value_of = [](const Words& v) HALFPLANE_LAMBDA { return __builtin_convertvector(v, Values); };
   Values value = cross(value_of(dx), value_of(dy), value_of(px), value_of(py)) + value_of(~is_top_left(dx, dy));
   constexpr double kFar = 1 << 30;
-  value *= 1.0 / static_cast<double>(std::int64_t{1} << s);
+  value *= bin.pixel;
   value = value < -kFar ? Values{} - kFar : value;
   value = value > kFar - 1 ? Values{} + (kFar - 1) : value;
   const Words edge = __builtin_convertvector(value + kFar, Words) - (1 << 30);  // floor: truncated above 0
@@ -60,6 +60,7 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
 
 /// A rectangle of one depth and one colour: no edges.
 inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
+  out.z_low = out.z_high = static_cast<std::int32_t>(v.z);
   out.edge = {};
   out.dx = out.dy = {};
   const int F = bin.widths.plane_fraction;
@@ -128,47 +129,78 @@ HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const Ver
   find_reach(bin, local_x, local_y, out);
 }
 
-/// The triangle's constants; false when it has no area.
-inline bool set_up(const Bin& bin, const Slice& slice, const Record& record, BinTriangle& out) {
+/// The corners of a triangle, turned so that its area is positive.
+struct Corners {
+  const VertexRow *a, *b, *c;
+  PlaneSteps f;  ///< the sides; the rest when the planes are set up
+  std::int64_t area;
+};
+
+/// False where it has no area.
+HALFPLANE_INLINE bool find_corners(const Slice& slice, const Record& record, Corners& out) {
   const VertexRow* v = slice.vertices.data();
-  const VertexRow *a = v + record.v[0], *b = v + record.v[1], *c = v + record.v[2];
-  out.z_low = record.z_low;
-  out.z_high = record.z_high;
-  if (record.kind() == RecordKind::rectangle) {
-    set_up_flat(bin, *a, out);
-    return true;
-  }
+  out.a = v + record.v[0];
+  out.b = v + record.v[1];
+  out.c = v + record.v[2];
   const auto difference = [](std::int32_t p, std::int32_t q) HALFPLANE_LAMBDA { return std::int64_t{p} - q; };
-  PlaneSteps f;
-  f.ax = difference(b->x, a->x);
-  f.ay = difference(b->y, a->y);
-  f.bx = difference(c->x, a->x);
-  f.by = difference(c->y, a->y);
-  std::int64_t area = cross(f.ax, f.ay, f.bx, f.by);
-  if (area == 0) return false;
-  if (area < 0) {
-    std::swap(b, c);
+  PlaneSteps& f = out.f;
+  f.ax = difference(out.b->x, out.a->x);
+  f.ay = difference(out.b->y, out.a->y);
+  f.bx = difference(out.c->x, out.a->x);
+  f.by = difference(out.c->y, out.a->y);
+  out.area = cross(f.ax, f.ay, f.bx, f.by);
+  if (out.area < 0) {
+    std::swap(out.b, out.c);
     std::swap(f.ax, f.bx);
     std::swap(f.ay, f.by);
-    area = -area;
+    out.area = -out.area;
   }
-  set_up_edges(bin, *a, *b, *c, out);
-  const VertexRow* origin = a;  // the smallest (Y, X): two in one place would leave no area
-  const auto is_before = [](const VertexRow& p, const VertexRow& q) HALFPLANE_LAMBDA {
-    return (std::int64_t{p.y} << 32) + p.x < (std::int64_t{q.y} << 32) + q.x;
+  return out.area != 0;
+}
+
+/// The first of its corners in the order of (Y, X): two in one place would leave no area.
+HALFPLANE_INLINE const VertexRow& origin_of(const Corners& corners) {
+  const auto is_before = [](const VertexRow* p, const VertexRow* q) HALFPLANE_LAMBDA {
+    return (std::int64_t{p->y} << 32) + p->x < (std::int64_t{q->y} << 32) + q->x;
   };
-  origin = is_before(*b, *origin) ? b : origin;
-  origin = is_before(*c, *origin) ? c : origin;
+  const VertexRow* origin = corners.a;
+  origin = is_before(corners.b, origin) ? corners.b : origin;
+  origin = is_before(corners.c, origin) ? corners.c : origin;
+  return *origin;
+}
+
+/// What the planes have in common, and that of the depths.
+HALFPLANE_INLINE void set_up_planes(const Bin& bin, const Record& record, Corners& corners, BinTriangle& out) {
+  PlaneSteps& f = corners.f;
+  const VertexRow& origin = origin_of(corners);
   const int s = bin.widths.grid_bits;
   const auto anchor = [s](int first) HALFPLANE_LAMBDA {
     return (std::int64_t{first + kTileSize / 2} << s) + (std::int64_t{1} << (s - 1));
   };
-  f.dx = anchor(bin.first_x) - origin->x;
-  f.dy = anchor(bin.first_y) - origin->y;
-  const Reciprocal reciprocal = fast_reciprocal(area, bin.config.depth_bits + bin.config.reciprocal_extra_bits);
+  f.dx = anchor(bin.first_x) - origin.x;
+  f.dy = anchor(bin.first_y) - origin.y;
+  const Reciprocal reciprocal = fast_reciprocal(corners.area, bin.config.depth_bits + bin.config.reciprocal_extra_bits);
   f.R = static_cast<std::int64_t>(reciprocal.value);
   f.k = reciprocal.shift - bin.widths.plane_fraction;
-  set_up_depth(bin, *a, *b, *c, *origin, f, out);
-  if (bin.state.color_write) set_up_colors(bin, *a, *b, *c, *origin, f, out);
+  out.z_low = record.z_low;
+  out.z_high = record.z_high;
+  set_up_depth(bin, *corners.a, *corners.b, *corners.c, origin, f, out);
+}
+
+HALFPLANE_INLINE void set_up_colors(const Bin& bin, const Corners& corners, BinTriangle& out) {
+  set_up_colors(bin, *corners.a, *corners.b, *corners.c, origin_of(corners), corners.f, out);
+}
+
+/// A triangle or rectangle, whatever is asked of it; false where it has no area.
+HALFPLANE_NOINLINE bool set_up(const Bin& bin, const Slice& slice, const Record& record, BinTriangle& out) {
+  if (record.kind() == RecordKind::rectangle) {
+    set_up_flat(bin, slice.vertices[record.v[0]], out);
+    return true;
+  }
+  Corners corners;
+  if (!find_corners(slice, record, corners)) return false;
+  set_up_edges(bin, *corners.a, *corners.b, *corners.c, out);
+  set_up_planes(bin, record, corners, out);
+  if (bin.state.color_write) set_up_colors(bin, corners, out);
   return true;
 }

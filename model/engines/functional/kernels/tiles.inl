@@ -165,21 +165,44 @@ HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t t
   count_fragments(bin, 64 * std::uint64_t{tiles}, 64 * std::uint64_t{tiles});
 }
 
+/// What the tiles of a triangle have in common. Copies: what is stored to memory might change it, for all that the
+/// compiler knows.
+struct TileConstants {
+  EdgeWords edge, dx, dy, to_smallest, below;  ///< `below`: less than any value is from the largest
+  bool is_steep, is_whole, is_narrow;
+  std::int32_t z_step_x, z_step_y;  ///< of a pixel, in a tile's units
+  std::int32_t z_low, z_high;
+
+  HALFPLANE_INLINE TileConstants(const Bin& bin, const BinTriangle& t)
+      : edge(load_edges(t.edge)),
+        dx(load_edges(t.dx)),
+        dy(load_edges(t.dy)),
+        is_steep(t.is_steep),
+        is_whole(t.is_whole),
+        is_narrow(t.is_narrow),
+        z_step_x(t.z_step_x >> bin.depth_format.up),
+        z_step_y(t.z_step_y >> bin.depth_format.up),
+        z_low(t.z_low),
+        z_high(t.z_high) {
+    constexpr int kExtent = kTileSize - 1;
+    const EdgeWords zero{};
+    to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
+    below = ~((larger(dx, -dx) + larger(dy, -dy)) * kExtent);
+  }
+};
+
 /// The pixels of a tile outside an edge, as signs. What an edge's smallest value is below its span, or above 0, is the
 /// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits.
-HALFPLANE_INLINE S64 outside_edges(const Bin& bin, const BinTriangle& t, int tile_x, int tile_y) {
-  constexpr int kExtent = kTileSize - 1, kFraction = 12;
-  const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
-  const EdgeWords at_tile = load_edges(t.edge) + kTileSize * (tile_y * dx - tile_x * dy);
-  const EdgeWords to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent,
-                  span = (larger(dx, -dx) + larger(dy, -dy)) * kExtent;
-  const EdgeWords smallest = smaller(larger(at_tile + to_smallest, ~span), zero);
-  const auto first = stored(smallest - to_smallest);
+HALFPLANE_INLINE S64 outside_edges(const Bin& bin, const TileConstants& t, int tile_x, int tile_y) {
+  constexpr int kFraction = 12;
+  const EdgeWords zero{};
+  const EdgeWords at_tile = t.edge + kTileSize * (tile_y * t.dx - tile_x * t.dy);
+  const EdgeWords first = smaller(larger(at_tile + t.to_smallest, t.below), zero) - t.to_smallest;
   const auto narrow = [](std::int32_t v) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(v); };
   S64 outside(0);
   if (t.is_steep)
     for (std::size_t e = 0; e < 3; ++e)
-      outside |= ramp_above<Over::pixels>(bin, kFraction, first[e], -std::int64_t{t.dy[e]}, t.dx[e]);
+      outside |= ramp_above<Over::pixels>(bin, kFraction, first[e], -t.dy[e], t.dx[e]);
   else
     for (std::size_t e = 0; e < 3; ++e)
       outside |= ramp<Over::pixels>(bin, narrow(first[e]), narrow(-t.dy[e]), narrow(t.dx[e]));
@@ -196,12 +219,12 @@ HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_
 
 /// Depth test of a tile in memory whose codes are of 16 bits. Returns what passed.
 template <class Fragments>
-HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const BinTriangle& t, int tile, const S64& outside) {
+HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int tile, std::int32_t anchor,
+                                           const S64& outside) {
   const LaneFormat& format = bin.depth_format;
   const int fraction = format.down - format.up, middle = (t.z_low + t.z_high) >> 1;
-  const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
-  const S64 value = ramp_above<Over::pixels>(bin, fraction, (anchor - kTileSize / 2 * (t.z_step_x + t.z_step_y)) >> format.up,
-                                             t.z_step_x >> format.up, t.z_step_y >> format.up);
+  const std::int32_t first = (anchor >> format.up) - kTileSize / 2 * (t.z_step_x + t.z_step_y);
+  const S64 value = ramp_above<Over::pixels>(bin, fraction, first, t.z_step_x, t.z_step_y);
   const U64 depth = clamped(value - every_lane(format.bias + middle), t.z_low, t.z_high, middle);
   std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
   const U64 stored = U64::load(at);
@@ -237,8 +260,9 @@ HALFPLANE_INLINE I16 block_lanes(const Bin& bin, std::uint64_t pixels, std::size
 
 /// The same with depths in lanes of 32 bits, block by block.
 template <class Fragments>
-HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int tile, std::uint64_t covered) {
-  const BlockRamp<I16> plane = depth_ramp(bin, t, depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int tile, std::int32_t anchor,
+                                         std::uint64_t covered) {
+  const BlockRamp<I16> plane = depth_ramp(bin, t, anchor);
   // Copies: what is stored to memory might change the members, for all that the compiler knows.
   const LaneFormat format = bin.depth_format;
   const I16 z_low(t.z_low), z_high(t.z_high);
@@ -277,55 +301,81 @@ HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::
   });
 }
 
+/// Of a triangle in tiles.
+struct PixelCounts {
+  std::uint64_t covered = 0, passed = 0;
+};
+
 /// The part of a triangle in one tile.
 template <class Fragments>
-HALFPLANE_NOINLINE void draw_tile(Bin& bin, const BinTriangle& t, int tile, bool is_full) {
+HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConstants& constants, int tile, bool is_full,
+                                PixelCounts& pixels) {
   const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
-  Counters& counters = bin.job.counters;
   S64 outside(0);
-  if (is_full) {
-    ++counters.skipped.trivially_accepted;
-  } else {
-    outside = outside_edges(bin, t, tile_x, tile_y);
-    counters.samples_tested += kTileSize * kTileSize;
-  }
-  if (!t.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
+  if (!is_full) outside = outside_edges(bin, constants, tile_x, tile_y);
+  if (!constants.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
   const std::uint64_t covered = ~bits_of(outside);
   if (covered == 0) return;
   need_depth(bin, tile);
-  const std::uint64_t passed = t.is_narrow ? test_narrow<Fragments>(bin, t, tile, outside >> 15)
-                                           : test_wide<Fragments>(bin, t, tile, covered);
+  const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
+  const std::uint64_t passed = constants.is_narrow
+                                   ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
+                                   : test_wide<Fragments>(bin, t, tile, anchor, covered);
   if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) color_tile(bin, t, tile, passed);
-  count_fragments(bin, static_cast<unsigned>(std::popcount(covered)), static_cast<unsigned>(std::popcount(passed)));
+  pixels.covered += static_cast<unsigned>(std::popcount(covered));
+  pixels.passed += static_cast<unsigned>(std::popcount(passed));
 }
 
+/// `full`: of those tiles, which need no look at the edges.
 template <class Fragments>
-void draw_large(Bin& bin, const BinTriangle& t) {
-  bin.line_tiles = 0;
+HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t tiles, std::uint64_t full) {
+  const TileConstants constants(bin, t);
+  PixelCounts pixels;
+  const auto full_tiles = static_cast<unsigned>(std::popcount(tiles & full)),
+             cut_tiles = static_cast<unsigned>(std::popcount(tiles & ~full));
+  for (; tiles != 0; tiles &= tiles - 1) {
+    const int tile = std::countr_zero(tiles);
+    draw_tile<Fragments>(bin, t, constants, tile, (full >> tile & 1) != 0, pixels);
+  }
+  bin.job.counters.skipped.trivially_accepted += full_tiles;
+  bin.job.counters.samples_tested += std::uint64_t{kTileSize * kTileSize} * cut_tiles;
+  count_fragments(bin, pixels.covered, pixels.passed);
+}
+
+/// Takes tiles out of a set for a reason that counts.
+HALFPLANE_INLINE void leave_out(std::uint64_t& live, std::uint64_t out, std::uint64_t& counter) {
+  counter += static_cast<unsigned>(std::popcount(live & out));
+  live &= ~out;
+}
+
+/// A triangle or rectangle by itself. Of its tiles that are `live`, first those go that its edges leave, then those
+/// behind: only what is left asks for depths, then for colours.
+template <class Fragments>
+HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& record, std::uint64_t live,
+                                 BinTriangle& t) {
+  const bool is_flat = record.kind() == RecordKind::rectangle;
+  auto& skipped = bin.job.counters.skipped;
+  Corners corners;
+  if (is_flat) {
+    set_up_flat(bin, slice.vertices[record.v[0]], t);
+  } else {
+    if (!find_corners(slice, record, corners)) return;
+    set_up_edges(bin, *corners.a, *corners.b, *corners.c, t);
+  }
   const TileClasses tiles = classify_tiles(bin, t);
+  if (bin.skip.tiles_outside) leave_out(live, tiles.outside, skipped.tiles_outside);
+  if (live == 0) return;
+  if (!is_flat) set_up_planes(bin, record, corners, t);
   const TileDepths depths = tile_depths(bin, t);
   const auto compared = Fragments::compare_ranges(bin, depths.low, depths.high);
-  const auto count_of = [](std::uint64_t set) HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(set)); };
-  Counters& counters = bin.job.counters;
-  std::uint64_t live = tiles_of(t.box);
-  counters.tiles_visited += count_of(live);
-  if (bin.skip.tiles_outside) {
-    counters.skipped.tiles_outside += count_of(live & tiles.outside);
-    live &= ~tiles.outside;
-  }
-  if (bin.skip.tiles_hiz) {
-    counters.skipped.tiles_hiz += count_of(live & compared.behind);
-    live &= ~compared.behind;
-  }
+  if (bin.skip.tiles_hiz) leave_out(live, compared.behind, skipped.tiles_hiz);
   if (live == 0) return;
+  if (!is_flat && bin.state.color_write) set_up_colors(bin, corners, t);
   std::uint64_t full = 0, taken = 0;
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
   if (bin.skip.attributes && (bin.state.depth_write || bin.state.color_write)) taken = full & compared.front;
   if (taken != 0) take_tiles(bin, t, taken, depths);
-  for (std::uint64_t rest = live & ~taken; rest != 0; rest &= rest - 1) {
-    const int tile = std::countr_zero(rest);
-    draw_tile<Fragments>(bin, t, tile, (full >> tile & 1) != 0);
-  }
+  if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full);
   if (!bin.state.depth_write) return;
   if (!Fragments::kIsLess) return find_bin_range(bin);
   // An upper bound that only falls: the old one will do.
