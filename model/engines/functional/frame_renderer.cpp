@@ -246,7 +246,17 @@ void FrameRenderer::settle(const Rect& rect) {
   forget(TileStates::kDepthCleared, held_depth_, clear_depth_);
   forget(TileStates::kColorCleared, held_color_, clear_color_);
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
+  const bool is_whole = rect == Rect{0, 0, frame.width, frame.height};
   for_each_index(arena_.get(), bins, [&](std::size_t bin) {
+    constexpr std::size_t kTiles = kBinTiles * kBinTiles;
+    std::uint8_t* const waits = tiles_.pending.data() + bin * kTiles;
+    std::uint8_t is_missing = 0;  // in memory
+    for (std::size_t i = 0; i < kTiles; ++i)
+      is_missing |= static_cast<std::uint8_t>(waits[i] & ~tiles_.held[bin * kTiles + i]);
+    if (is_whole && is_missing == 0) {
+      std::fill_n(waits, kTiles, std::uint8_t{0});
+      return;
+    }
     const int first_x = static_cast<int>(bin) % bins_x_ * kBinSize,
               first_y = static_cast<int>(bin) / bins_x_ * kBinSize;
     for (int tile = 0; tile < kBinTiles * kBinTiles; ++tile) {

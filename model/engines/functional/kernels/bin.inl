@@ -143,7 +143,7 @@ struct Bin {
   std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks;  ///< and room for one that is not kept
   bool falls = false, rises = false;                               ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
-  bool may_be_lower = false;    ///< the bin's upper bound, since it was found
+  bool is_range_old = true;     ///< low, high and lowest_high: found when somebody asks
   std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;

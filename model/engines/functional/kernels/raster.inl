@@ -12,19 +12,40 @@
 // the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// Counts what lies behind its tiles.
-inline void leave_out(Bin& bin, const BinBounds& at) {
-  const auto tiles = static_cast<unsigned>(((at.right >> kTileShift) - (at.left >> kTileShift) + 1) *
-                                           ((at.bottom >> kTileShift) - (at.top >> kTileShift) + 1));
-  bin.job.counters.tiles_visited += tiles;
-  bin.job.counters.skipped.tiles_hiz += tiles;
-}
-
 /// The tiles of the bin that hide depths in `range`.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t hidden_tiles(const Bin& bin, const DepthRange& range) {
   const U64 low(static_cast<std::uint16_t>(range.low)), high(static_cast<std::uint16_t>(range.high));
   return Fragments::compare_ranges(bin, low, high).behind;
+}
+
+/// Whether nothing of a record can be seen. Where it is one of many small ones, the whole bin is asked first; otherwise
+/// all tiles at once: those that may show it become `live`.
+template <class Fragments>
+HALFPLANE_INLINE bool is_hidden(Bin& bin, const Record& record, const BinBounds& box, std::uint64_t& live) {
+  const DepthRange range = range_of(bin, record);
+  live = tiles_of(box);
+  if (!bin.skip.tiles_hiz) return false;
+  const bool is_line = record.kind() == RecordKind::whole_line || record.kind() == RecordKind::cut_line;
+  if (is_line || record.has(Record::kSmall)) {
+    if (bin.is_range_old) find_bin_range(bin);
+    const bool is_behind = Fragments::is_behind(bin, range);
+    // Nearer than what every tile may hold: no need to look at its own.
+    if (!is_behind && (is_line || (Fragments::kIsLess && range.low < bin.lowest_high))) return false;
+    if (!is_behind && (live & ~hidden_tiles<Fragments>(bin, range)) != 0) return false;
+    const auto tiles = static_cast<unsigned>(std::popcount(live));
+    bin.job.counters.tiles_visited += tiles;
+    bin.job.counters.skipped.tiles_hiz += tiles;
+    return true;
+  }
+  const std::uint64_t hidden = live & hidden_tiles<Fragments>(bin, range);
+  bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(hidden));
+  if (hidden != live) {
+    live &= ~hidden;
+    return false;
+  }
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(live));
+  return true;
 }
 
 /// What the next records need is asked for now.
@@ -36,23 +57,15 @@ HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* fir
     for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
 }
 
-/// A triangle that is drawn by itself.
+/// A triangle or rectangle that is drawn by itself, in its tiles that are `live`.
 template <class Fragments>
-HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const DepthRange& range) {
+HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box,
+                                 std::uint64_t live) {
   BinTriangle triangle;
-  triangle.box = box_of(bin, record);
+  triangle.box = box;
   triangle.is_whole = record.has(Record::kWhole);
-  std::uint64_t live = tiles_of(triangle.box);
-  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(live));
-  // Nearer than all of the bin: no need to look at its tiles.
-  if (bin.skip.tiles_hiz && (!Fragments::kIsLess || range.low >= bin.low)) {
-    leave_out(live, hidden_tiles<Fragments>(bin, range), bin.job.counters.skipped.tiles_hiz);
-    if (live == 0) {
-      if (bin.may_be_lower) find_bin_range(bin);  // what follows may lie behind all of it
-      return;
-    }
-  }
   bin.line_tiles = 0;
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles_of(box)));
   if (!record.has(Record::kDrawsNothing)) draw_large<Fragments>(bin, slice, record, live, triangle);
 }
 
@@ -63,24 +76,14 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   for (; first != last; ++first) {
     const Record& record = slice.records[*first];
     fetch_records(slice, first, last);
-    const DepthRange range = range_of(bin, record);
-    if (bin.skip.tiles_hiz && Fragments::is_behind(bin, range)) {
-      leave_out(bin, box_of(bin, record));
-      continue;
-    }
+    const BinBounds box = box_of(bin, record);
+    std::uint64_t live;
+    if (is_hidden<Fragments>(bin, record, box, live)) continue;
     // A batch pays for medium triangles from the third in a row on.
     constexpr int kAlone = 2;
     const bool is_medium = record.has(Record::kMedium);
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
     if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
-      // Nearer than what every tile may hold: no need to look at its own.
-      if (bin.skip.tiles_hiz && (!Fragments::kIsLess || range.low >= bin.lowest_high)) {
-        const BinBounds at = box_of(bin, record);
-        if ((tiles_of(at) & ~hidden_tiles<Fragments>(bin, range)) == 0) {
-          leave_out(bin, at);
-          continue;
-        }
-      }
       if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
       continue;
     }
@@ -93,7 +96,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     if (record.kind() == RecordKind::cut_line)
       draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
     else
-      draw_alone<Fragments>(bin, slice, record, range);
+      draw_alone<Fragments>(bin, slice, record, box, live);
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);
@@ -110,7 +113,7 @@ static void raster(BinJob& job) {
     const std::uint32_t* last = slice.bin_records.data() + slice.bin_first[number + 1];
     if (first == last) continue;
     bin.state = slice.state;
-    find_bin_range(bin);
+    bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
     // Opaque ones twice: for the test that nearly every scene has, and for any.

@@ -145,7 +145,7 @@ HALFPLANE_INLINE void need_color(Bin& bin, int tile) {
 }
 
 inline void find_bin_range(Bin& bin) {
-  bin.may_be_lower = false;
+  bin.is_range_old = false;
   const U64 high = U64::load(bin.tile_high);
   bin.low = static_cast<std::int32_t>(min_lane(U64::load(bin.tile_low)));
   bin.high = static_cast<std::int32_t>(max_lane(high));

@@ -376,9 +376,5 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.skip.attributes && (bin.state.depth_write || bin.state.color_write)) taken = full & compared.front;
   if (taken != 0) take_tiles(bin, t, taken, depths);
   if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full);
-  if (!bin.state.depth_write) return;
-  if (!Fragments::kIsLess) return find_bin_range(bin);
-  // An upper bound that only falls: the old one will do.
-  bin.low = std::min(bin.low, t.z_low >> bin.range_bits_dropped);
-  bin.may_be_lower = true;
+  if (bin.state.depth_write) bin.is_range_old = true;
 }
