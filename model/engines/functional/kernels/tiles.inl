@@ -7,36 +7,56 @@
 /// first register the others follow by steps.
 enum class Over { pixels, tiles };
 template <Over over, class T>
-HALFPLANE_INLINE Pack<T, 64> ramp(const Bin& bin, T first, T step_x, T step_y) {
+struct Ramp {
   using Lanes = Pack<T, 64>;
   using Register = typename Lanes::Register;
-  constexpr int kParts = Lanes::kParts;
-  constexpr bool kPixels = over == Over::pixels;
-  const S64 &column = kPixels ? bin.position.pixel_x : bin.position.tile_x,
-            &row = kPixels ? bin.position.pixel_y : bin.position.tile_y;
-  const Register x = Register{} + step_x, y = Register{} + step_y;
-  Lanes lanes;
-  lanes.part[0] = (Register)column.part[0] * x + (Register)row.part[0] * y + first;
-  const Register by_32 = y << 2;
-  if constexpr (kParts == 8) lanes.part[1] = lanes.part[0] + (kPixels ? y << 1 : y);
-  if constexpr (kParts >= 4) {
-    const Register by_16 = kPixels ? x << 2 : y << 1;
-    HALFPLANE_EACH_PART(kParts / 4, i, lanes.part[kParts / 4 + i] = lanes.part[i] + by_16)
+  Register start, by_8, by_16, by_32;  ///< from the first lane to those of the first register; so many lanes on
+
+  HALFPLANE_INLINE Ramp() = default;
+  HALFPLANE_INLINE Ramp(const Bin& bin, T step_x, T step_y) {
+    constexpr bool kPixels = over == Over::pixels;
+    const S64 &column = kPixels ? bin.position.pixel_x : bin.position.tile_x,
+              &row = kPixels ? bin.position.pixel_y : bin.position.tile_y;
+    const Register x = Register{} + step_x, y = Register{} + step_y;
+    start = (Register)column.part[0] * x + (Register)row.part[0] * y;
+    by_8 = kPixels ? y << 1 : y;
+    by_16 = kPixels ? x << 2 : y << 1;
+    by_32 = y << 2;
   }
-  HALFPLANE_EACH_PART(kParts / 2, i, lanes.part[kParts / 2 + i] = lanes.part[i] + by_32)
-  return lanes;
-}
+  HALFPLANE_INLINE Lanes operator()(T first) const {
+    constexpr int kParts = Lanes::kParts;
+    Lanes lanes;
+    lanes.part[0] = start + first;
+    if constexpr (kParts == 8) lanes.part[1] = lanes.part[0] + by_8;
+    if constexpr (kParts >= 4) HALFPLANE_EACH_PART(kParts / 4, i, lanes.part[kParts / 4 + i] = lanes.part[i] + by_16)
+    HALFPLANE_EACH_PART(kParts / 2, i, lanes.part[kParts / 2 + i] = lanes.part[i] + by_32)
+    return lanes;
+  }
+};
 
 /// The same of values of more bits, floored to units of 2^fraction; `fraction`: at most 12, so that fifteen fit 16 bits.
 template <Over over>
-HALFPLANE_INLINE S64 ramp_above(const Bin& bin, int fraction, std::int64_t first, std::int64_t step_x,
-                                std::int64_t step_y) {
-  const auto upper = [=](std::int64_t v) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(v >> fraction); };
-  const auto lower = [=](std::int64_t v)
-                         HALFPLANE_LAMBDA { return static_cast<std::uint16_t>(v & ((1 << fraction) - 1)); };
-  const U64 carry = ramp<over>(bin, lower(first), lower(step_x), lower(step_y)) >> fraction;
-  return ramp<over>(bin, upper(first), upper(step_x), upper(step_y)) + as<S64>(carry);
-}
+struct LongRamp {
+  Ramp<over, std::int16_t> upper;
+  Ramp<over, std::uint16_t> lower;
+  int fraction;
+
+  HALFPLANE_INLINE LongRamp() = default;
+  HALFPLANE_INLINE LongRamp(const Bin& bin, int fraction_, std::int64_t step_x, std::int64_t step_y)
+      : fraction(fraction_) {
+    upper = Ramp<over, std::int16_t>(bin, upper_of(step_x), upper_of(step_y));
+    lower = Ramp<over, std::uint16_t>(bin, lower_of(step_x), lower_of(step_y));
+  }
+  HALFPLANE_INLINE S64 operator()(std::int64_t first) const {
+    return upper(upper_of(first)) + as<S64>(lower(lower_of(first)) >> fraction);
+  }
+
+ private:
+  HALFPLANE_INLINE std::int16_t upper_of(std::int64_t v) const { return static_cast<std::int16_t>(v >> fraction); }
+  HALFPLANE_INLINE std::uint16_t lower_of(std::int64_t v) const {
+    return static_cast<std::uint16_t>(v & ((1 << fraction) - 1));
+  }
+};
 
 HALFPLANE_INLINE S64 every_lane(int value) { return S64(static_cast<std::int16_t>(value)); }
 
@@ -84,7 +104,7 @@ HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t
   S64 outside(0), cut(0);  // signs
   for (std::size_t e = 0; e < 3; ++e) {
     const auto narrow = [e](const auto& words) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(words[e]); };
-    const S64 value = ramp<Over::tiles>(bin, narrow(outermost), narrow(step_x), narrow(step_y));
+    const S64 value = Ramp<Over::tiles, std::int16_t>(bin, narrow(step_x), narrow(step_y))(narrow(outermost));
     outside |= value;
     cut |= value + narrow(inner);
   }
@@ -103,9 +123,9 @@ HALFPLANE_INLINE TileDepths tile_depths(const Bin& bin, const BinTriangle& t) {
   const int low = t.z_low >> dropped, high = t.z_high >> dropped, middle = (low + high) >> 1;
   if (!t.is_gentle) return {U64(static_cast<std::uint16_t>(low)), U64(static_cast<std::uint16_t>(high))};
   const int fraction = bin.widths.plane_fraction + dropped, kept = std::min(fraction, 12), down = fraction - kept;
-  const int code_zero = (bin.depth_format.bias >> dropped) + middle;
-  const S64 anchor =
-      ramp_above<Over::tiles>(bin, kept, t.z_anchor >> down, t.z_tile_x >> down, t.z_tile_y >> down) - every_lane(code_zero);
+  const std::int64_t zero = std::int64_t{(bin.depth_format.bias >> dropped) + middle} << kept;
+  const LongRamp<Over::tiles> plane(bin, kept, t.z_tile_x >> down, t.z_tile_y >> down);
+  const S64 anchor = plane((t.z_anchor >> down) - zero);
   // The anchor's fraction, and what of it has been floored, may carry into the bits that to_high has floored.
   const int tile_fraction = bin.depth_format.down - bin.depth_format.up + dropped;
   const int above = down > 0 && (15 << tile_fraction) >= 1 << kept ? 2 : 1;
@@ -168,45 +188,49 @@ HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t t
 /// What the tiles of a triangle have in common. Copies: what is stored to memory might change it, for all that the
 /// compiler knows.
 struct TileConstants {
-  EdgeWords edge, dx, dy, to_smallest, below;  ///< `below`: less than any value is from the largest
+  EdgeWords edge, tile_dx, tile_dy, to_smallest, below;  ///< `below`: less than any value is from the largest
   bool is_steep, is_whole, is_narrow;
-  std::int32_t z_step_x, z_step_y;  ///< of a pixel, in a tile's units
-  std::int32_t z_low, z_high;
+  std::int32_t z_low, z_high, middle;
+  std::int32_t z_first;  ///< from a tile's anchor to its first pixel, and from codes to the middle: a tile's units
+  std::array<Ramp<Over::pixels, std::int16_t>, 3> edges;
+  std::array<LongRamp<Over::pixels>, 3> steep_edges;
+  LongRamp<Over::pixels> depth;
 
   HALFPLANE_INLINE TileConstants(const Bin& bin, const BinTriangle& t)
       : edge(load_edges(t.edge)),
-        dx(load_edges(t.dx)),
-        dy(load_edges(t.dy)),
         is_steep(t.is_steep),
         is_whole(t.is_whole),
         is_narrow(t.is_narrow),
-        z_step_x(t.z_step_x >> bin.depth_format.up),
-        z_step_y(t.z_step_y >> bin.depth_format.up),
         z_low(t.z_low),
-        z_high(t.z_high) {
-    constexpr int kExtent = kTileSize - 1;
-    const EdgeWords zero{};
+        z_high(t.z_high),
+        middle((t.z_low + t.z_high) >> 1) {
+    constexpr int kExtent = kTileSize - 1, kSteepFraction = 12;
+    const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
+    tile_dx = dx * kTileSize;
+    tile_dy = dy * kTileSize;
     to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
     below = ~((larger(dx, -dx) + larger(dy, -dy)) * kExtent);
+    if (is_steep)
+      for (std::size_t e = 0; e < 3; ++e) steep_edges[e] = {bin, kSteepFraction, -t.dy[e], t.dx[e]};
+    else
+      for (std::size_t e = 0; e < 3; ++e)
+        edges[e] = {bin, static_cast<std::int16_t>(-t.dy[e]), static_cast<std::int16_t>(t.dx[e])};
+    const LaneFormat& format = bin.depth_format;
+    const std::int32_t step_x = t.z_step_x >> format.up, step_y = t.z_step_y >> format.up;
+    depth = {bin, format.down - format.up, step_x, step_y};
+    z_first = -kTileSize / 2 * (step_x + step_y) - ((format.bias + middle) << depth.fraction);
   }
 };
 
 /// The pixels of a tile outside an edge, as signs. What an edge's smallest value is below its span, or above 0, is the
 /// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits.
-HALFPLANE_INLINE S64 outside_edges(const Bin& bin, const TileConstants& t, int tile_x, int tile_y) {
-  constexpr int kFraction = 12;
-  const EdgeWords zero{};
-  const EdgeWords at_tile = t.edge + kTileSize * (tile_y * t.dx - tile_x * t.dy);
-  const EdgeWords first = smaller(larger(at_tile + t.to_smallest, t.below), zero) - t.to_smallest;
-  const auto narrow = [](std::int32_t v) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(v); };
-  S64 outside(0);
+HALFPLANE_INLINE S64 outside_edges(const TileConstants& t, int tile_x, int tile_y) {
+  const EdgeWords at_tile = t.edge + (tile_y * t.tile_dx - tile_x * t.tile_dy);
+  const auto first = stored(smaller(larger(at_tile + t.to_smallest, t.below), EdgeWords{}) - t.to_smallest);
   if (t.is_steep)
-    for (std::size_t e = 0; e < 3; ++e)
-      outside |= ramp_above<Over::pixels>(bin, kFraction, first[e], -t.dy[e], t.dx[e]);
-  else
-    for (std::size_t e = 0; e < 3; ++e)
-      outside |= ramp<Over::pixels>(bin, narrow(first[e]), narrow(-t.dy[e]), narrow(t.dx[e]));
-  return outside;
+    return t.steep_edges[0](first[0]) | t.steep_edges[1](first[1]) | t.steep_edges[2](first[2]);
+  const auto narrow = [&first](std::size_t e) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(first[e]); };
+  return t.edges[0](narrow(0)) | t.edges[1](narrow(1)) | t.edges[2](narrow(2));
 }
 
 /// The pixels of a tile outside the triangle's box.
@@ -221,11 +245,8 @@ HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int tile, std::int32_t anchor,
                                            const S64& outside) {
-  const LaneFormat& format = bin.depth_format;
-  const int fraction = format.down - format.up, middle = (t.z_low + t.z_high) >> 1;
-  const std::int32_t first = (anchor >> format.up) - kTileSize / 2 * (t.z_step_x + t.z_step_y);
-  const S64 value = ramp_above<Over::pixels>(bin, fraction, first, t.z_step_x, t.z_step_y);
-  const U64 depth = clamped(value - every_lane(format.bias + middle), t.z_low, t.z_high, middle);
+  const S64 distance = t.depth((anchor >> bin.depth_format.up) + t.z_first);
+  const U64 depth = clamped(distance, t.z_low, t.z_high, t.middle);
   std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
   const U64 stored = U64::load(at);
   U64 now;
@@ -312,7 +333,7 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
                                 PixelCounts& pixels) {
   const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
   S64 outside(0);
-  if (!is_full) outside = outside_edges(bin, constants, tile_x, tile_y);
+  if (!is_full) outside = outside_edges(constants, tile_x, tile_y);
   if (!constants.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
   const std::uint64_t covered = ~bits_of(outside);
   if (covered == 0) return;
