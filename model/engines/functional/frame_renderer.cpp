@@ -386,7 +386,9 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
     constexpr std::size_t kMany = 512, kStale = 1 << 15;
     if (chunks.primitives >= kMany && pending_primitives_ > 0 && (!has_flushed_ || pending_primitives_ >= kStale))
       flush();
-    if (is_behind(DrawContext(*scene_, config_, draw, command), chunks)) {
+    // Before anything is drawn there is only the clear, which hides something when it is not the farthest depth.
+    const bool may_hide = has_flushed_ || clear_depth_ < (std::uint32_t{1} << config_.depth_bits) - 1;
+    if (may_hide && is_behind(DrawContext(*scene_, config_, draw, command), chunks)) {
       primitive_ += static_cast<std::uint32_t>(chunks.primitives);
       Counters& counters = rendering_.counters;
       counters.primitives_in += chunks.primitives;

@@ -15,6 +15,20 @@ struct FragmentLanes {
   alignas(64) Lane color;  ///< packed in the policy's format
 };
 
+/// Ranges of the bin's tiles, and a bit each for how others compare with them. Ranges that have dropped bits and touch may
+/// overlap.
+struct RangeLanes {
+  const Bin& bin;
+
+  HALFPLANE_INLINE explicit RangeLanes(const Bin& bin_) : bin(bin_) {}
+  HALFPLANE_INLINE U64 low() const { return U64::load(bin.tile_low); }
+  HALFPLANE_INLINE U64 high() const { return U64::load(bin.tile_high); }
+  HALFPLANE_INLINE static std::uint64_t is_above(const U64& a, const U64& b) { return ~bits_at_least(b, a); }
+  HALFPLANE_INLINE std::uint64_t is_at_least(const U64& a, const U64& b) const {
+    return bin.range_bits_dropped == 0 ? bits_at_least(a, b) : is_above(a, b);
+  }
+};
+
 /// IsLess: the test that nearly every scene has, known when compiled. Otherwise it is the state's.
 template <bool IsLess>
 struct OpaqueFragments {
@@ -45,7 +59,7 @@ struct OpaqueFragments {
     return depth_passes(func(state), static_cast<std::uint32_t>(depth), static_cast<std::uint32_t>(stored));
   }
 
-  /// Whether no depth in `range` passes against one in the bin. Ranges that have dropped bits and touch may overlap.
+  /// Whether no depth in `range` passes against one in the bin.
   HALFPLANE_INLINE static bool is_behind(const Bin& bin, const DepthRange& range) {
     const std::int32_t touch = bin.range_bits_dropped != 0 ? 1 : 0;
     switch (func(bin.state)) {
@@ -59,26 +73,35 @@ struct OpaqueFragments {
     }
   }
 
-  /// The bin's tiles against fragments in [low, high], a lane a tile: where none passes, and where all do.
-  struct Compared {
-    std::uint64_t behind, front;
-  };
-  HALFPLANE_INLINE static Compared compare_ranges(const Bin& bin, const U64& low, const U64& high) {
-    const U64 tile_low = U64::load(bin.tile_low), tile_high = U64::load(bin.tile_high);
-    const auto is_above = [](const U64& a, const U64& b) HALFPLANE_LAMBDA { return ~bits_at_least(b, a); };
-    const auto is_at_least = [&](const U64& a, const U64& b) HALFPLANE_LAMBDA {
-      return bin.range_bits_dropped == 0 ? bits_at_least(a, b) : is_above(a, b);
-    };
-    constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  /// The bin's tiles against fragments in [depths.low(), depths.high()], a lane a tile: where none passes.
+  template <class Depths>
+  HALFPLANE_INLINE static std::uint64_t tiles_behind(const Bin& bin, const Depths& depths) {
+    const RangeLanes tile(bin);
     switch (func(bin.state)) {
-      case DepthFunc::less: return {is_at_least(low, tile_high), is_above(tile_low, high)};
-      case DepthFunc::lequal: return {is_above(low, tile_high), is_at_least(tile_low, high)};
-      case DepthFunc::greater: return {is_at_least(tile_low, high), is_above(low, tile_high)};
-      case DepthFunc::gequal: return {is_above(tile_low, high), is_at_least(low, tile_high)};
-      case DepthFunc::equal: return {is_above(low, tile_high) | is_above(tile_low, high), 0};
-      case DepthFunc::notequal: return {0, is_above(low, tile_high) | is_above(tile_low, high)};
-      case DepthFunc::always: return {0, kAll};
-      default: return {kAll, 0};
+      case DepthFunc::less: return tile.is_at_least(depths.low(), tile.high());
+      case DepthFunc::lequal: return tile.is_above(depths.low(), tile.high());
+      case DepthFunc::greater: return tile.is_at_least(tile.low(), depths.high());
+      case DepthFunc::gequal: return tile.is_above(tile.low(), depths.high());
+      case DepthFunc::equal:
+        return tile.is_above(depths.low(), tile.high()) | tile.is_above(tile.low(), depths.high());
+      case DepthFunc::never: return ~std::uint64_t{0};
+      default: return 0;
+    }
+  }
+
+  /// Where all do.
+  template <class Depths>
+  HALFPLANE_INLINE static std::uint64_t tiles_in_front(const Bin& bin, const Depths& depths) {
+    const RangeLanes tile(bin);
+    switch (func(bin.state)) {
+      case DepthFunc::less: return tile.is_above(tile.low(), depths.high());
+      case DepthFunc::lequal: return tile.is_at_least(tile.low(), depths.high());
+      case DepthFunc::greater: return tile.is_above(depths.low(), tile.high());
+      case DepthFunc::gequal: return tile.is_at_least(depths.low(), tile.high());
+      case DepthFunc::notequal:
+        return tile.is_above(depths.low(), tile.high()) | tile.is_above(tile.low(), depths.high());
+      case DepthFunc::always: return ~std::uint64_t{0};
+      default: return 0;
     }
   }
 

@@ -12,12 +12,13 @@
 // the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// The tiles of the bin that hide depths in `range`.
-template <class Fragments>
-HALFPLANE_INLINE std::uint64_t hidden_tiles(const Bin& bin, const DepthRange& range) {
-  const U64 low(static_cast<std::uint16_t>(range.low)), high(static_cast<std::uint16_t>(range.high));
-  return Fragments::compare_ranges(bin, low, high).behind;
-}
+/// One range of depths for all tiles.
+struct SameDepths {
+  DepthRange range;
+
+  HALFPLANE_INLINE U64 low() const { return U64(static_cast<std::uint16_t>(range.low)); }
+  HALFPLANE_INLINE U64 high() const { return U64(static_cast<std::uint16_t>(range.high)); }
+};
 
 /// Whether nothing of a record can be seen. Where it is one of many small ones, the whole bin is asked first; otherwise
 /// all tiles at once: those that may show it become `live`.
@@ -32,13 +33,13 @@ HALFPLANE_INLINE bool is_hidden(Bin& bin, const Record& record, const BinBounds&
     const bool is_behind = Fragments::is_behind(bin, range);
     // Nearer than what every tile may hold: no need to look at its own.
     if (!is_behind && (is_line || (Fragments::kIsLess && range.low < bin.lowest_high))) return false;
-    if (!is_behind && (live & ~hidden_tiles<Fragments>(bin, range)) != 0) return false;
+    if (!is_behind && (live & ~Fragments::tiles_behind(bin, SameDepths{range})) != 0) return false;
     const auto tiles = static_cast<unsigned>(std::popcount(live));
     bin.job.counters.tiles_visited += tiles;
     bin.job.counters.skipped.tiles_hiz += tiles;
     return true;
   }
-  const std::uint64_t hidden = live & hidden_tiles<Fragments>(bin, range);
+  const std::uint64_t hidden = live & Fragments::tiles_behind(bin, SameDepths{range});
   bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(hidden));
   if (hidden != live) {
     live &= ~hidden;

@@ -19,7 +19,13 @@ HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const Ver
   const Words x{a.x, b.x, c.x, 0}, y{a.y, b.y, c.y, 0};
   const Words dx = __builtin_shufflevector(x, x, 1, 2, 0, 3) - x, dy = __builtin_shufflevector(y, y, 1, 2, 0, 3) - y;
   const Words px = (bin.first_x << s) + half - x, py = (bin.first_y << s) + half - y;
-  const auto value_of = [](const Words& v) HALFPLANE_LAMBDA { return __builtin_convertvector(v, Values); };
+  const auto value_of = [](const Words& v) HALFPLANE_LAMBDA {
+#if HALFPLANE_ISA == 128
+    return __builtin_convertvector(v, Values);
+#else  // GCC would convert half and half
+    return (Values)_mm256_cvtepi32_pd((__m128i)v);
+#endif
+  };
   Values value = cross(value_of(dx), value_of(dy), value_of(px), value_of(py)) + value_of(~is_top_left(dx, dy));
   constexpr double kFar = 1 << 30;
   value *= bin.pixel;

@@ -111,28 +111,33 @@ HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t
   return {bits_of(outside), ~bits_of(cut)};
 }
 
-/// Ranges of a triangle's depths in the tiles that it touches.
+/// Ranges of a triangle's depths in the tiles that it touches: the plane at their anchors, of which lanes hold the
+/// distance to the middle of the vertices' depths, and from there to the lowest and the highest.
 struct TileDepths {
-  U64 low, high;
-};
+  bool is_known;  ///< else they are the vertices'
+  std::int32_t first, last, middle, to_low, to_high;
+  S64 anchor;
 
-/// The plane at the tiles' anchors, of which lanes hold the distance to the middle of the vertices' depths, and up to
-/// twelve bits of its fraction apart; fifteen floored numbers make one.
-HALFPLANE_INLINE TileDepths tile_depths(const Bin& bin, const BinTriangle& t) {
-  const int dropped = bin.range_bits_dropped;
-  const int low = t.z_low >> dropped, high = t.z_high >> dropped, middle = (low + high) >> 1;
-  if (!t.is_gentle) return {U64(static_cast<std::uint16_t>(low)), U64(static_cast<std::uint16_t>(high))};
-  const int fraction = bin.widths.plane_fraction + dropped, kept = std::min(fraction, 12), down = fraction - kept;
-  const std::int64_t zero = std::int64_t{(bin.depth_format.bias >> dropped) + middle} << kept;
-  const LongRamp<Over::tiles> plane(bin, kept, t.z_tile_x >> down, t.z_tile_y >> down);
-  const S64 anchor = plane((t.z_anchor >> down) - zero);
-  // The anchor's fraction, and what of it has been floored, may carry into the bits that to_high has floored.
-  const int tile_fraction = bin.depth_format.down - bin.depth_format.up + dropped;
-  const int above = down > 0 && (15 << tile_fraction) >= 1 << kept ? 2 : 1;
-  const auto at = [&](int offset)
-                      HALFPLANE_LAMBDA { return clamped(anchor + every_lane(offset), low, high, middle); };
-  return {at(t.to_low), at(t.to_high + above)};
-}
+  /// Up to twelve bits of a fraction are kept, of fifteen floored numbers.
+  HALFPLANE_INLINE TileDepths(const Bin& bin, const BinTriangle& t) : is_known(t.is_gentle) {
+    const int dropped = bin.range_bits_dropped;
+    first = t.z_low >> dropped;
+    last = t.z_high >> dropped;
+    middle = (first + last) >> 1;
+    const int fraction = bin.widths.plane_fraction + dropped, kept = std::min(fraction, 12), down = fraction - kept;
+    const std::int64_t zero = std::int64_t{(bin.depth_format.bias >> dropped) + middle} << kept;
+    anchor = LongRamp<Over::tiles>(bin, kept, t.z_tile_x >> down, t.z_tile_y >> down)((t.z_anchor >> down) - zero);
+    // The anchor's fraction, and what of it has been floored, may carry into the bits that to_high has floored.
+    const int tile_fraction = bin.depth_format.down - bin.depth_format.up + dropped;
+    to_low = t.to_low;
+    to_high = t.to_high + (down > 0 && (15 << tile_fraction) >= 1 << kept ? 2 : 1);
+  }
+  HALFPLANE_INLINE U64 low() const { return is_known ? at(to_low) : U64(static_cast<std::uint16_t>(first)); }
+  HALFPLANE_INLINE U64 high() const { return is_known ? at(to_high) : U64(static_cast<std::uint16_t>(last)); }
+  HALFPLANE_INLINE U64 at(std::int32_t offset) const {
+    return clamped(anchor + every_lane(offset), first, last, middle);
+  }
+};
 
 /// The tiles that lie in a box as a whole.
 inline std::uint64_t tiles_inside(const BinBounds& box) {
@@ -173,8 +178,8 @@ HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t t
   const auto tiles = static_cast<unsigned>(std::popcount(taken));
   if (bin.state.depth_write) {
     replace(bin.depth_owner.data(), plane);
-    replace(bin.tile_low, depths.low);
-    replace(bin.tile_high, depths.high);
+    replace(bin.tile_low, depths.low());
+    replace(bin.tile_high, depths.high());
   }
   if (bin.state.color_write) {
     const std::uint64_t unused = taken & ~bits_of(S64::load(bin.color_owner.data()));
@@ -387,14 +392,14 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.skip.tiles_outside) leave_out(live, tiles.outside, skipped.tiles_outside);
   if (live == 0) return;
   if (!is_flat) set_up_planes(bin, record, corners, t);
-  const TileDepths depths = tile_depths(bin, t);
-  const auto compared = Fragments::compare_ranges(bin, depths.low, depths.high);
-  if (bin.skip.tiles_hiz) leave_out(live, compared.behind, skipped.tiles_hiz);
+  const TileDepths depths(bin, t);
+  if (bin.skip.tiles_hiz) leave_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
   if (live == 0) return;
   if (!is_flat && bin.state.color_write) set_up_colors(bin, corners, t);
   std::uint64_t full = 0, taken = 0;
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
-  if (bin.skip.attributes && (bin.state.depth_write || bin.state.color_write)) taken = full & compared.front;
+  if (full != 0 && bin.skip.attributes && (bin.state.depth_write || bin.state.color_write))
+    taken = full & Fragments::tiles_in_front(bin, depths);
   if (taken != 0) take_tiles(bin, t, taken, depths);
   if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full);
   if (bin.state.depth_write) bin.is_range_old = true;
