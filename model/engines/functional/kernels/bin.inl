@@ -117,6 +117,8 @@ struct Bin {
       depth_owner[t] = (pending[t] & TileStates::kDepthCleared) != 0 ? kCleared : kInTarget;
       color_owner[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
     }
+    cleared_depths.fill(static_cast<std::uint16_t>(job.clear_depth));
+    cleared_colors.fill(job.clear_color);
   }
 
   BinJob& job;
@@ -147,6 +149,9 @@ struct Bin {
   std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
+  // What a clear leaves, to be read as if it were in memory: of a tile where 16 bits suffice, of a block.
+  alignas(64) std::array<std::uint16_t, kTileSize * kTileSize> cleared_depths;
+  alignas(64) std::array<std::uint32_t, kBlockPixels> cleared_colors;
 };
 
 /// Depths as the ranges of tiles keep them.

@@ -246,14 +246,15 @@ HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_
          (lanes(box.bottom, tile_y) - y);
 }
 
-/// Depth test of a tile in memory whose codes are of 16 bits. Returns what passed.
+/// Depth test of a tile whose codes are of 16 bits, in memory or cleared. Returns what passed.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int tile, std::int32_t anchor,
                                            const S64& outside) {
   const S64 distance = t.depth((anchor >> bin.depth_format.up) + t.z_first);
   const U64 depth = clamped(distance, t.z_low, t.z_high, t.middle);
+  if (bin.depth_owner[tile] != Bin::kCleared) need_depth(bin, tile);
   std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
-  const U64 stored = U64::load(at);
+  const U64 stored = U64::load(bin.depth_owner[tile] == Bin::kCleared ? bin.cleared_depths.data() : at);
   U64 now;
   std::uint64_t passed;
   if constexpr (Fragments::kIsLess) {
@@ -266,6 +267,7 @@ HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int
   }
   if (passed == 0 || !bin.state.depth_write) return passed;
   now.store(at);
+  bin.depth_owner[tile] = Bin::kInMemory;
   bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(now));
   bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(now));
   return passed;
@@ -312,7 +314,11 @@ HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int til
 
 /// Colours of the pixels that passed, of blocks that have any; of all where nobody may leave them out.
 HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
-  need_color(bin, tile);
+  const bool is_cleared = bin.color_owner[tile] == Bin::kCleared;
+  if (is_cleared)
+    bin.color_owner[tile] = Bin::kInMemory;
+  else
+    need_color(bin, tile);
   const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
   std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
   const ColorSteps steps = t.color;
@@ -320,10 +326,14 @@ HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::
   const ColorFormat pixel_format = bin.config.color_format;
   const bool skips = bin.skip.fragments_early_z;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    if ((passed >> (kBlockPixels * block) & 0xffff) == 0 && skips) return;
     std::uint32_t* const at = pixels + block * kBlockPixels;
+    const I16 stored = I16::load(is_cleared ? bin.cleared_colors.data() : at);
+    if ((passed >> (kBlockPixels * block) & 0xffff) == 0 && skips) {
+      if (is_cleared) stored.store(at);
+      return;
+    }
     const I16 color = block_colors(steps, plane, block, format, pixel_format);
-    select_by_sign(block_lanes(bin, passed, block), color, I16::load(at)).store(at);
+    select_by_sign(block_lanes(bin, passed, block), color, stored).store(at);
   });
 }
 
@@ -342,7 +352,7 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   if (!constants.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
   const std::uint64_t covered = ~bits_of(outside);
   if (covered == 0) return;
-  need_depth(bin, tile);
+  if (!constants.is_narrow) need_depth(bin, tile);
   const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
   const std::uint64_t passed = constants.is_narrow
                                    ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
