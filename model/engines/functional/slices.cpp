@@ -141,6 +141,9 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   static thread_local std::vector<std::uint32_t> next;
   static thread_local std::vector<Entry> entries;
   next.assign(bins, 0);
+  entries.resize(std::max(entries.size(), slice.record_count));  // one each, and room for more where there are more
+  Entry* entry = entries.data();
+  std::uint32_t* const in_bin = next.data();
   std::size_t count = 0;
   const auto bin_at = [this](int x, int y) {
     return static_cast<std::uint32_t>((y >> kBinShift) * bins_x_ + (x >> kBinShift));
@@ -148,14 +151,17 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   const std::span records(slice.records.data(), slice.record_count);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& record = records[i];
-    if (entries.size() < count + bins) entries.resize(2 * (count + bins));
     const auto add = [&](std::uint32_t bin) {
-      entries[count++] = {bin, static_cast<std::uint32_t>(i)};
-      ++next[bin];
+      entry[count++] = {bin, static_cast<std::uint32_t>(i)};
+      ++in_bin[bin];
     };
     const std::uint32_t first = bin_at(record.left(), record.top()), last = bin_at(record.right(), record.bottom());
     add(first);
     if (first == last) continue;
+    if (const std::size_t room = count + bins + records.size() - i; entries.size() < room) {
+      entries.resize(2 * room);
+      entry = entries.data();
+    }
     const std::uint32_t columns = bin_at(record.right(), record.top()) - first;
     for (std::uint32_t bin = first + 1; bin <= first + columns; ++bin) add(bin);
     for (std::uint32_t end = first + static_cast<std::uint32_t>(bins_x_) + columns; end <= last;
@@ -170,7 +176,7 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   }
   slice.bin_first[bins] = sum;
   slice.bin_records.resize(sum);
-  for (const Entry& entry : std::span(entries.data(), count)) slice.bin_records[next[entry.bin]++] = entry.record;
+  for (std::size_t i = 0; i < count; ++i) slice.bin_records[in_bin[entry[i].bin]++] = entry[i].record;
 }
 
 }  // namespace halfplane::functional

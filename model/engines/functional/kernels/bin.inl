@@ -10,7 +10,7 @@ struct LanePositions {
   I16 block_x, block_y;
   S64 tile_x, tile_y;    ///< of the tiles of a bin, row by row
   S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
-  I16 block_yx;  ///< pairs: row low, column high
+  I16 block_yx;          ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
 

@@ -82,8 +82,7 @@ struct OpaqueFragments {
       case DepthFunc::lequal: return tile.is_above(depths.low(), tile.high());
       case DepthFunc::greater: return tile.is_at_least(tile.low(), depths.high());
       case DepthFunc::gequal: return tile.is_above(tile.low(), depths.high());
-      case DepthFunc::equal:
-        return tile.is_above(depths.low(), tile.high()) | tile.is_above(tile.low(), depths.high());
+      case DepthFunc::equal: return tile.is_above(depths.low(), tile.high()) | tile.is_above(tile.low(), depths.high());
       case DepthFunc::never: return ~std::uint64_t{0};
       default: return 0;
     }
@@ -112,29 +111,21 @@ struct OpaqueFragments {
   /// knows: hence copies.
   struct Writer {
     SliceState state;
-    BinMemory& memory;
-    bool is_narrow;
+    DepthPixels depths;
+    std::uint32_t* pixels;
 
-    HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), memory(bin.memory), is_narrow(bin.is_narrow) {}
+    HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), depths(bin), pixels(bin.memory.color.data()) {}
 
-    /// Tests and writes the first `count`. Returns how many passed.
+    /// Tests and writes the first `count`. Returns how many passed. What fails is stored as it was: which do, nobody
+    /// can foresee.
     HALFPLANE_INLINE unsigned operator()(const FragmentLanes& fragments, int count) const {
-      return is_narrow ? write(fragments, count, memory.narrow_depth.data())
-                       : write(fragments, count, memory.depth.data());
-    }
-
-    /// What fails is stored as it was: which do, nobody can foresee.
-    template <class Depth>
-    HALFPLANE_INLINE unsigned write(const FragmentLanes& fragments, int count, Depth* depths) const {
-      std::uint32_t* const pixels = memory.color.data();
       unsigned passed_pixels = 0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
         const auto to = static_cast<std::size_t>(fragments.place[k]);
-        const std::int32_t stored = depths[to], depth = fragments.depth[k];
+        const std::int32_t stored = depths.at(to), depth = fragments.depth[k];
         const std::uint32_t has_passed = passes_one(state, depth, stored) ? 1U : 0U, mask = 0U - has_passed;
         passed_pixels += has_passed;
-        if (state.depth_write)
-          depths[to] = static_cast<Depth>(stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask)));
+        if (state.depth_write) depths.set(to, stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask)));
         if (state.color_write) pixels[to] ^= (pixels[to] ^ static_cast<std::uint32_t>(fragments.color[k])) & mask;
       }
       return passed_pixels;
@@ -150,19 +141,15 @@ struct GeneralFragments {
 
   /// Those whose bit is set, one after the other. Returns how many passed.
   HALFPLANE_NOINLINE static unsigned draw_some(Bin& bin, const FragmentLanes& fragments, std::uint32_t covered) {
+    const DepthPixels depths(bin);
     unsigned passed = 0;
     for (; covered != 0; covered &= covered - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(covered));
       const auto to = static_cast<std::size_t>(fragments.place[k]);
-      bool passes = false;
-      with_depths(bin, [&](auto* depths) {
-        using Depth = std::remove_pointer_t<decltype(depths)>;
-        passes = depth_passes(bin.state.depth_test, static_cast<std::uint32_t>(fragments.depth[k]),
-                              static_cast<std::uint32_t>(depths[to]));
-        if (passes && bin.state.depth_write) depths[to] = static_cast<Depth>(fragments.depth[k]);
-      });
-      if (!passes) continue;
+      const auto depth = static_cast<std::uint32_t>(fragments.depth[k]);
+      if (!depth_passes(bin.state.depth_test, depth, static_cast<std::uint32_t>(depths.at(to)))) continue;
       ++passed;
+      if (bin.state.depth_write) depths.set(to, fragments.depth[k]);
       if (!bin.state.color_write) continue;
       std::array<std::uint8_t, 4> code;
       for (std::size_t c = 0; c < 4; ++c)

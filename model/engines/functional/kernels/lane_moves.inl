@@ -47,8 +47,7 @@ HALFPLANE_INLINE bool is_any(const I16& mask) { return bits_of(mask) != 0; }
 /// One bit for each of 64 lanes whose sign bit is set.
 HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
 #if HALFPLANE_ISA == 512
-  return _mm512_movepi16_mask((__m512i)mask.part[0]) |
-         std::uint64_t{_mm512_movepi16_mask((__m512i)mask.part[1])} << 32;
+  return _mm512_movepi16_mask((__m512i)mask.part[0]) | std::uint64_t{_mm512_movepi16_mask((__m512i)mask.part[1])} << 32;
 #elif HALFPLANE_ISA == 256
   const auto half = [&mask](int i) HALFPLANE_LAMBDA {  // a byte a lane, back in order
     const __m256i bytes = _mm256_packs_epi16((__m256i)mask.part[i], (__m256i)mask.part[i + 1]);
@@ -58,9 +57,9 @@ HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
 #elif defined(__x86_64__)
   std::uint64_t bits = 0;
   for (int i = 0; i < 8; i += 2)
-    bits |= static_cast<std::uint64_t>(
-                _mm_movemask_epi8(_mm_packs_epi16((__m128i)mask.part[i], (__m128i)mask.part[i + 1])))
-            << 8 * i;
+    bits |=
+        static_cast<std::uint64_t>(_mm_movemask_epi8(_mm_packs_epi16((__m128i)mask.part[i], (__m128i)mask.part[i + 1])))
+        << 8 * i;
   return bits;
 #else
   std::uint64_t bits = 0;
@@ -73,8 +72,7 @@ HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
 HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
   S64 r;
 #if HALFPLANE_ISA == 512
-  for (int i = 0; i < 2; ++i)
-    r.part[i] = (S64::Register)_mm512_movm_epi16(static_cast<__mmask32>(bits >> 32 * i));
+  for (int i = 0; i < 2; ++i) r.part[i] = (S64::Register)_mm512_movm_epi16(static_cast<__mmask32>(bits >> 32 * i));
 #else
   constexpr int kLanes = S64::kLanes;
   S64::Register bit;
@@ -92,6 +90,29 @@ HALFPLANE_INLINE std::uint64_t bits_at_least(const U64& a, const U64& b) {
          std::uint64_t{_mm512_cmpge_epu16_mask((__m512i)a.part[1], (__m512i)b.part[1])} << 32;
 #else
   return bits_of(max(a, b) == a);
+#endif
+}
+
+/// One bit for each lane with a == b.
+HALFPLANE_INLINE std::uint64_t bits_equal(const U64& a, const U64& b) {
+#if HALFPLANE_ISA == 512
+  return _mm512_cmpeq_epu16_mask((__m512i)a.part[0], (__m512i)b.part[0]) |
+         std::uint64_t{_mm512_cmpeq_epu16_mask((__m512i)a.part[1], (__m512i)b.part[1])} << 32;
+#else
+  return bits_of(a == b);
+#endif
+}
+
+/// a in the lanes whose bit is set, b elsewhere. `to_sign`: 31 - lane.
+HALFPLANE_INLINE I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b,
+                                    [[maybe_unused]] const I16& to_sign) {
+#if HALFPLANE_ISA == 512
+  I16 r;
+  r.part[0] =
+      (I16::Register)_mm512_mask_mov_epi32((__m512i)b.part[0], static_cast<__mmask16>(bits), (__m512i)a.part[0]);
+  return r;
+#else
+  return select_by_sign(I16(static_cast<std::int32_t>(bits)) << to_sign, a, b);
 #endif
 }
 

@@ -5,45 +5,23 @@
 // in memory alike, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of
 // them: half of the time of a block.
 
-/// For each register of a pack, straight: GCC takes packs apart before it unrolls loops.
-#define HALFPLANE_EACH_PART(parts, i, ...)           \
-  {                                                  \
-    {                                                \
-      constexpr int i = 0;                           \
-      __VA_ARGS__;                                   \
-    }                                                \
-    if constexpr ((parts) > 1) {                     \
-      constexpr int i = 1;                           \
-      __VA_ARGS__;                                   \
-    }                                                \
-    if constexpr ((parts) > 2) {                     \
-      {                                              \
-        constexpr int i = 2;                         \
-        __VA_ARGS__;                                 \
-      }                                              \
-      {                                              \
-        constexpr int i = 3;                         \
-        __VA_ARGS__;                                 \
-      }                                              \
-    }                                                \
-    if constexpr ((parts) > 4) {                     \
-      {                                              \
-        constexpr int i = 4;                         \
-        __VA_ARGS__;                                 \
-      }                                              \
-      {                                              \
-        constexpr int i = 5;                         \
-        __VA_ARGS__;                                 \
-      }                                              \
-      {                                              \
-        constexpr int i = 6;                         \
-        __VA_ARGS__;                                 \
-      }                                              \
-      {                                              \
-        constexpr int i = 7;                         \
-        __VA_ARGS__;                                 \
-      }                                              \
-    }                                                \
+/// For each register of a pack, straight: GCC takes packs apart before it unrolls loops, and keeps those of four registers
+/// and more in memory otherwise.
+#define HALFPLANE_PART(parts, i, at, ...) \
+  if constexpr ((parts) > at) {           \
+    constexpr int i = at;                 \
+    __VA_ARGS__;                          \
+  }
+#define HALFPLANE_EACH_PART(parts, i, ...)   \
+  {                                          \
+    HALFPLANE_PART(parts, i, 0, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 1, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 2, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 3, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 4, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 5, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 6, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 7, __VA_ARGS__) \
   }
 
 /// N lanes of a T.
@@ -168,17 +146,17 @@ template <class T>
 using MaskOf =
     std::conditional_t<sizeof(T) == 8, std::int64_t, std::conditional_t<sizeof(T) == 4, std::int32_t, std::int16_t>>;
 
-#define HALFPLANE_PACK_COMPARISON(op)                                                               \
-  template <class T, int N>                                                                         \
-  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
-    Pack<MaskOf<T>, N> r;                                                                           \
-    HALFPLANE_EACH_PART((Pack<T, N>::kParts), i,     \
-      r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i]))                  \
-    return r;                                                                                       \
-  }                                                                                                 \
-  template <class T, int N>                                                                         \
-  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
-    return a op Pack<T, N>(b);                                                                      \
+#define HALFPLANE_PACK_COMPARISON(op)                                                                \
+  template <class T, int N>                                                                          \
+  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {        \
+    Pack<MaskOf<T>, N> r;                                                                            \
+    HALFPLANE_EACH_PART((Pack<T, N>::kParts), i,                                                     \
+                        r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i])) \
+    return r;                                                                                        \
+  }                                                                                                  \
+  template <class T, int N>                                                                          \
+  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) {  \
+    return a op Pack<T, N>(b);                                                                       \
   }
 HALFPLANE_PACK_COMPARISON(<)
 HALFPLANE_PACK_COMPARISON(<=)
@@ -194,8 +172,9 @@ HALFPLANE_INLINE Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T,
   Pack<T, N> r;
 #if HALFPLANE_ISA == 256  // GCC would ask first where the mask is 0
   using Register = typename Pack<T, N>::Register;
-  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = (Register)_mm256_blendv_epi8(
-      (__m256i)b.part[i], (__m256i)a.part[i], (__m256i)mask.part[i]))
+  HALFPLANE_EACH_PART(
+      (Pack<T, N>::kParts), i,
+      r.part[i] = (Register)_mm256_blendv_epi8((__m256i)b.part[i], (__m256i)a.part[i], (__m256i)mask.part[i]))
 #else
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = mask.part[i] ? a.part[i] : b.part[i])
 #endif

@@ -20,32 +20,20 @@ struct SameDepths {
   HALFPLANE_INLINE U64 high() const { return U64(static_cast<std::uint16_t>(range.high)); }
 };
 
-/// Whether nothing of a record can be seen. Where it is one of many small ones, the whole bin is asked first; otherwise
-/// all tiles at once: those that may show it become `live`.
+/// Whether nothing of a record can be seen that is a line, or one of many small triangles: the whole bin is asked first.
 template <class Fragments>
-HALFPLANE_INLINE bool is_hidden(Bin& bin, const Record& record, const BinBounds& box, std::uint64_t& live) {
-  const DepthRange range = range_of(bin, record);
-  live = tiles_of(box);
+HALFPLANE_INLINE bool is_behind(Bin& bin, const Record& record, bool is_line) {
   if (!bin.skip.tiles_hiz) return false;
-  const bool is_line = record.kind() == RecordKind::whole_line || record.kind() == RecordKind::cut_line;
-  if (is_line || record.has(Record::kSmall)) {
-    if (bin.is_range_old) find_bin_range(bin);
-    const bool is_behind = Fragments::is_behind(bin, range);
+  if (bin.is_range_old) find_bin_range(bin);
+  const DepthRange range = range_of(bin, record);
+  if (!Fragments::is_behind(bin, range)) {
     // Nearer than what every tile may hold: no need to look at its own.
-    if (!is_behind && (is_line || (Fragments::kIsLess && range.low < bin.lowest_high))) return false;
-    if (!is_behind && (live & ~Fragments::tiles_behind(bin, SameDepths{range})) != 0) return false;
-    const auto tiles = static_cast<unsigned>(std::popcount(live));
-    bin.job.counters.tiles_visited += tiles;
-    bin.job.counters.skipped.tiles_hiz += tiles;
-    return true;
+    if (is_line || (Fragments::kIsLess && range.low < bin.lowest_high)) return false;
+    if ((tiles_of(box_of(bin, record)) & ~Fragments::tiles_behind(bin, SameDepths{range})) != 0) return false;
   }
-  const std::uint64_t hidden = live & Fragments::tiles_behind(bin, SameDepths{range});
-  bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(hidden));
-  if (hidden != live) {
-    live &= ~hidden;
-    return false;
-  }
-  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(live));
+  const auto tiles = static_cast<unsigned>(std::popcount(tiles_of(box_of(bin, record))));
+  bin.job.counters.tiles_visited += tiles;
+  bin.job.counters.skipped.tiles_hiz += tiles;
   return true;
 }
 
@@ -58,16 +46,30 @@ HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* fir
     for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
 }
 
+/// Of any other record: its tiles that may show it, where all tiles of the bin are asked at once.
+template <class Fragments>
+HALFPLANE_INLINE std::uint64_t seen_tiles(Bin& bin, const Record& record, const BinBounds& box) {
+  const std::uint64_t tiles = tiles_of(box);
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
+  if (!bin.skip.tiles_hiz) return tiles;
+  const std::uint64_t behind = tiles & Fragments::tiles_behind(bin, SameDepths{range_of(bin, record)});
+  bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(behind));
+  return tiles & ~behind;
+}
+
 /// A triangle or rectangle that is drawn by itself, in its tiles that are `live`.
 template <class Fragments>
 HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box,
                                  std::uint64_t live) {
+  // What comes first in the order must be drawn first.
+  if (bin.small.count != 0) draw_batch<Fragments>(bin, slice);
+  if (bin.lines.count != 0) draw_lines<Fragments>(bin, slice);
+  bin.line_tiles = 0;
+  if (record.has(Record::kDrawsNothing)) return;
   BinTriangle triangle;
   triangle.box = box;
   triangle.is_whole = record.has(Record::kWhole);
-  bin.line_tiles = 0;
-  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles_of(box)));
-  if (!record.has(Record::kDrawsNothing)) draw_large<Fragments>(bin, slice, record, live, triangle);
+  draw_large<Fragments>(bin, slice, record, live, triangle);
 }
 
 /// The records of one slice.
@@ -77,27 +79,32 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   for (; first != last; ++first) {
     const Record& record = slice.records[*first];
     fetch_records(slice, first, last);
-    const BinBounds box = box_of(bin, record);
-    std::uint64_t live;
-    if (is_hidden<Fragments>(bin, record, box, live)) continue;
+    const RecordKind kind = record.kind();
+    const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
+    BinBounds box;
+    std::uint64_t live = 0;
+    if (is_line || record.has(Record::kSmall)) {
+      if (is_behind<Fragments>(bin, record, is_line)) continue;
+    } else {
+      box = box_of(bin, record);
+      live = seen_tiles<Fragments>(bin, record, box);
+      if (live == 0) continue;
+    }
     // A batch pays for medium triangles from the third in a row on.
     constexpr int kAlone = 2;
     const bool is_medium = record.has(Record::kMedium);
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
     if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
       if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
-      continue;
-    }
-    if (record.kind() == RecordKind::whole_line) {
+    } else if (kind == RecordKind::whole_line) {
       if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
-      continue;
-    }
-    draw_batch<Fragments>(bin, slice);
-    draw_lines<Fragments>(bin, slice);
-    if (record.kind() == RecordKind::cut_line)
+    } else if (kind == RecordKind::cut_line) {
+      draw_batch<Fragments>(bin, slice);
+      draw_lines<Fragments>(bin, slice);
       draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
-    else
+    } else {
       draw_alone<Fragments>(bin, slice, record, box, live);
+    }
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);

@@ -97,12 +97,10 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
 /// How far the depths of a tile lie from the one at its anchor, from where it reaches four pixels to the left and up,
 /// three to the right and down. Steps of a pixel, in a tile's units.
 HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out) {
-  const auto low = [](std::int64_t step) HALFPLANE_LAMBDA {
-    return std::min((kTileSize / 2 - 1) * step, -kTileSize / 2 * step);
-  };
-  const auto high = [](std::int64_t step) HALFPLANE_LAMBDA {
-    return std::max((kTileSize / 2 - 1) * step, -kTileSize / 2 * step);
-  };
+  const auto low = [](std::int64_t step)
+                       HALFPLANE_LAMBDA { return std::min((kTileSize / 2 - 1) * step, -kTileSize / 2 * step); };
+  const auto high = [](std::int64_t step)
+                        HALFPLANE_LAMBDA { return std::max((kTileSize / 2 - 1) * step, -kTileSize / 2 * step); };
   const int drop = bin.depth_format.down - bin.depth_format.up + bin.range_bits_dropped;
   const std::int64_t to_low = (low(step_x) + low(step_y)) >> drop, to_high = (high(step_x) + high(step_y)) >> drop;
   out.to_low = static_cast<std::int32_t>(to_low);

@@ -160,10 +160,9 @@ HALFPLANE_INLINE void draw_samples(Bin& bin) {
     };
     packed(channels(0), channels(1), bin.config.color_format).store(color[s].data());
   }
+  const DepthPixels depths(bin);
   const bool has_depth = bin.state.depth_write, has_color = bin.state.color_write;
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
-  with_depths(bin, [&](auto* const depths) HALFPLANE_LAMBDA {
-  using Depth = std::remove_pointer_t<decltype(depths)>;
   for (std::uint32_t rest = bin.small.live; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     const auto samples = static_cast<std::uint32_t>(bin.small.samples[i]);
@@ -171,16 +170,14 @@ HALFPLANE_INLINE void draw_samples(Bin& bin) {
     for (std::uint32_t left_over = samples; left_over != 0; left_over &= left_over - 1) {
       const auto s = static_cast<std::size_t>(std::countr_zero(left_over));
       const auto at = static_cast<std::size_t>(place[s][i]);
-      const std::int32_t stored = depths[at];
+      const std::int32_t stored = depths.at(at);
       // Stored as it was where it fails: which do, nobody can foresee.
       const std::uint32_t passed = Fragments::passes_one(bin.state, depth[s][i], stored) ? 1U : 0U, mask = 0U - passed;
       passed_pixels += passed;
-      if (has_depth)
-        depths[at] = static_cast<Depth>(stored ^ ((stored ^ depth[s][i]) & static_cast<std::int32_t>(mask)));
+      if (has_depth) depths.set(at, stored ^ ((stored ^ depth[s][i]) & static_cast<std::int32_t>(mask)));
       if (has_color) bin.memory.color[at] ^= (bin.memory.color[at] ^ static_cast<std::uint32_t>(color[s][i])) & mask;
     }
   }
-  });
   bin.job.counters.samples_tested += kSamples * static_cast<unsigned>(std::popcount(bin.small.live));
   count_fragments(bin, covered_pixels, passed_pixels);
 }

@@ -48,14 +48,22 @@ inline void fetch_target(const Bin& bin) {
   return static_cast<std::ptrdiff_t>(bin.job.target.at(x, y));
 }
 
-/// Calls visit(depths) with the bin's depths: of 16 bits where that is enough, else of 32.
-template <class Visit>
-HALFPLANE_INLINE void with_depths(Bin& bin, Visit&& visit) {
-  if (bin.is_narrow)
-    visit(bin.memory.narrow_depth.data());
-  else
-    visit(bin.memory.depth.data());
-}
+/// The bin's depths, of 16 bits where that is enough, else of 32.
+struct DepthPixels {
+  bool is_narrow;
+  std::uint16_t* narrow;
+  std::int32_t* wide;
+
+  HALFPLANE_INLINE explicit DepthPixels(Bin& bin)
+      : is_narrow(bin.is_narrow), narrow(bin.memory.narrow_depth.data()), wide(bin.memory.depth.data()) {}
+  HALFPLANE_INLINE std::int32_t at(std::size_t pixel) const { return is_narrow ? narrow[pixel] : wide[pixel]; }
+  HALFPLANE_INLINE void set(std::size_t pixel, std::int32_t depth) const {
+    if (is_narrow)
+      narrow[pixel] = static_cast<std::uint16_t>(depth);
+    else
+      wide[pixel] = depth;
+  }
+};
 
 /// Those of the block that begins with pixel `at`.
 HALFPLANE_INLINE I16 load_depths(const Bin& bin, std::size_t at) {
@@ -109,17 +117,17 @@ HALFPLANE_INLINE TileBlocks fetched(const Bin& bin, int tile, bool is_cleared, s
   if (from < 0) return blocks;
   for (std::size_t i = 0; i < 4; ++i) {
     const auto row = static_cast<std::ptrdiff_t>(i >> 1), column = static_cast<std::ptrdiff_t>(i & 1);
-    blocks[i] = load_block(image.data() + from + kBlockSize * (row * bin.job.target.stride + column),
-                           bin.job.target.stride);
+    blocks[i] =
+        load_block(image.data() + from + kBlockSize * (row * bin.job.target.stride + column), bin.job.target.stride);
   }
   return blocks;
 }
 
 HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
   const std::int32_t owner = bin.depth_owner[tile];
-  const TileBlocks blocks = owner >= 0 ? depths_of(bin, tile)
-                                       : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_depth,
-                                                 bin.job.target.depth);
+  const TileBlocks blocks = owner >= 0
+                                ? depths_of(bin, tile)
+                                : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_depth, bin.job.target.depth);
   const auto to = static_cast<std::size_t>(first_of(tile));
   for (std::size_t i = 0; i < 4; ++i) store_depths(bin, to + kBlockPixels * i, blocks[i]);
   bin.depth_owner[tile] = Bin::kInMemory;
@@ -127,9 +135,9 @@ HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
 
 HALFPLANE_NOINLINE void fetch_color(Bin& bin, int tile) {
   const std::int32_t owner = bin.color_owner[tile];
-  const TileBlocks blocks = owner >= 0 ? colors_of(bin, tile)
-                                       : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_color,
-                                                 bin.job.target.color);
+  const TileBlocks blocks = owner >= 0
+                                ? colors_of(bin, tile)
+                                : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_color, bin.job.target.color);
   std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
   for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
   bin.color_owner[tile] = Bin::kInMemory;

@@ -88,11 +88,12 @@ struct TileClasses {
 /// Each edge in units of 2^drop, floored: fifteen steps and a value make an error below 15.
 HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t) {
   constexpr int kExtent = kTileSize - 1, kStepBits = 7, kFloored = 14, kLimit = 16192;
-  static_assert(kLimit + 2 * (kBinTiles - 1) * (kTileSize << kStepBits) + 2 * (kExtent << kStepBits) + kFloored < 1 << 15);
+  static_assert(kLimit + 2 * (kBinTiles - 1) * (kTileSize << kStepBits) + 2 * (kExtent << kStepBits) + kFloored <
+                1 << 15);
   const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
   const EdgeWords largest = larger(larger(dx, -dx), larger(dy, -dy));
   typedef float Floats __attribute__((vector_size(16)));
-  const EdgeWords bits = ((EdgeWords)__builtin_convertvector(largest, Floats) >> 23) - 126;
+  const EdgeWords bits = ((EdgeWords) __builtin_convertvector(largest, Floats) >> 23) - 126;
   const EdgeWords drop = larger(bits - kStepBits, zero);
   const EdgeWords to_largest = (larger(dx, zero) - smaller(dy, zero)) * kExtent,
                   to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
@@ -232,8 +233,7 @@ struct TileConstants {
 HALFPLANE_INLINE S64 outside_edges(const TileConstants& t, int tile_x, int tile_y) {
   const EdgeWords at_tile = t.edge + (tile_y * t.tile_dx - tile_x * t.tile_dy);
   const auto first = stored(smaller(larger(at_tile + t.to_smallest, t.below), EdgeWords{}) - t.to_smallest);
-  if (t.is_steep)
-    return t.steep_edges[0](first[0]) | t.steep_edges[1](first[1]) | t.steep_edges[2](first[2]);
+  if (t.is_steep) return t.steep_edges[0](first[0]) | t.steep_edges[1](first[1]) | t.steep_edges[2](first[2]);
   const auto narrow = [&first](std::size_t e) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(first[e]); };
   return t.edges[0](narrow(0)) | t.edges[1](narrow(1)) | t.edges[2](narrow(2));
 }
@@ -259,7 +259,7 @@ HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int
   std::uint64_t passed;
   if constexpr (Fragments::kIsLess) {
     now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
-    passed = ~bits_of(now == stored);
+    passed = ~bits_equal(now, stored);
   } else {
     const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
     now = select(passes, depth, stored);
@@ -281,9 +281,9 @@ HALFPLANE_INLINE void for_each_block(Visit&& visit) {
   visit(std::integral_constant<std::size_t, 3>{});
 }
 
-/// Signs of sixteen pixels.
-HALFPLANE_INLINE I16 block_lanes(const Bin& bin, std::uint64_t pixels, std::size_t block) {
-  return I16(static_cast<std::int32_t>(pixels >> (kBlockPixels * block) & 0xffff)) << bin.position.to_sign;
+/// Those of a block.
+HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t block) {
+  return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
 }
 
 /// The same with depths in lanes of 32 bits, block by block.
@@ -301,7 +301,8 @@ HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int til
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     const std::size_t at = first + block * kBlockPixels;
     const I16 stored = load_depths(bin, at), depth = decode(plane(block), format, z_low, z_high);
-    const I16 passes = block_lanes(bin, covered, block) & Fragments::passes(bin.state, depth, stored);
+    const I16 is_covered = I16(static_cast<std::int32_t>(block_bits(covered, block))) << bin.position.to_sign;
+    const I16 passes = is_covered & Fragments::passes(bin.state, depth, stored);
     const I16 now = select_by_sign(passes, depth, stored);
     passed |= std::uint64_t{bits_of(passes)} << (kBlockPixels * block);
     lowest = min(lowest, now);
@@ -328,12 +329,12 @@ HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     std::uint32_t* const at = pixels + block * kBlockPixels;
     const I16 stored = I16::load(is_cleared ? bin.cleared_colors.data() : at);
-    if ((passed >> (kBlockPixels * block) & 0xffff) == 0 && skips) {
+    if (block_bits(passed, block) == 0 && skips) {
       if (is_cleared) stored.store(at);
       return;
     }
     const I16 color = block_colors(steps, plane, block, format, pixel_format);
-    select_by_sign(block_lanes(bin, passed, block), color, stored).store(at);
+    select_by_bits(block_bits(passed, block), color, stored, bin.position.to_sign).store(at);
   });
 }
 
@@ -354,9 +355,8 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   if (covered == 0) return;
   if (!constants.is_narrow) need_depth(bin, tile);
   const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
-  const std::uint64_t passed = constants.is_narrow
-                                   ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
-                                   : test_wide<Fragments>(bin, t, tile, anchor, covered);
+  const std::uint64_t passed = constants.is_narrow ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
+                                                   : test_wide<Fragments>(bin, t, tile, anchor, covered);
   if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) color_tile(bin, t, tile, passed);
   pixels.covered += static_cast<unsigned>(std::popcount(covered));
   pixels.passed += static_cast<unsigned>(std::popcount(passed));
@@ -378,8 +378,8 @@ HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t
   count_fragments(bin, pixels.covered, pixels.passed);
 }
 
-/// Takes tiles out of a set for a reason that counts.
-HALFPLANE_INLINE void leave_out(std::uint64_t& live, std::uint64_t out, std::uint64_t& counter) {
+/// Takes tiles out of a set, for a reason that counts.
+HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint64_t& counter) {
   counter += static_cast<unsigned>(std::popcount(live & out));
   live &= ~out;
 }
@@ -399,11 +399,11 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
     set_up_edges(bin, *corners.a, *corners.b, *corners.c, t);
   }
   const TileClasses tiles = classify_tiles(bin, t);
-  if (bin.skip.tiles_outside) leave_out(live, tiles.outside, skipped.tiles_outside);
+  if (bin.skip.tiles_outside) take_out(live, tiles.outside, skipped.tiles_outside);
   if (live == 0) return;
   if (!is_flat) set_up_planes(bin, record, corners, t);
   const TileDepths depths(bin, t);
-  if (bin.skip.tiles_hiz) leave_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
+  if (bin.skip.tiles_hiz) take_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
   if (live == 0) return;
   if (!is_flat && bin.state.color_write) set_up_colors(bin, corners, t);
   std::uint64_t full = 0, taken = 0;
