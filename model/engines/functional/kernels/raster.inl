@@ -4,9 +4,9 @@
 //   triangle within two by two pixels  sixteen at a time through setup, then their samples
 //   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
 //   within three by three, in a row    the same
-//   larger                             its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
+//   larger                             all tiles of the bin at once: outside, behind, taken as a whole, or drawn
 //
-// A block is 4 x 4 pixels: sixteen lanes, one cache line. A tile is four of them.
+// A block is 4 x 4 pixels: sixteen lanes, one cache line of colours. A tile is four of them.
 //
 // A tile that a triangle covers wholly, in front of all that is there, is taken without looking at a pixel: it remembers
 // the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
