@@ -137,6 +137,8 @@ struct Bin {
   SliceState state;
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
+  static constexpr std::int32_t kOpen = 1 << 16;
+  std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide this depth, and what is behind
   const LanePositions& position = lane_positions();
   SmallBatch small;
   int small_run = 0;                                               ///< records in a row that were small or medium

@@ -46,14 +46,18 @@ HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* fir
     for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
 }
 
-/// Of any other record: its tiles that may show it, where all tiles of the bin are asked at once.
+/// Of any other record: its tiles that may show it. All tiles of the bin are asked at once, and where all of them hide it
+/// that is kept for the next ones.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t seen_tiles(Bin& bin, const Record& record, const BinBounds& box) {
   const std::uint64_t tiles = tiles_of(box);
   bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
   if (!bin.skip.tiles_hiz) return tiles;
-  const std::uint64_t behind = tiles & Fragments::tiles_behind(bin, SameDepths{range_of(bin, record)});
-  bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(behind));
+  const DepthRange range = range_of(bin, record);
+  std::uint64_t behind = ~std::uint64_t{0};
+  if (!Fragments::kIsLess || range.low < bin.closed_from) behind = Fragments::tiles_behind(bin, SameDepths{range});
+  if (Fragments::kIsLess && ~behind == 0) bin.closed_from = std::min(bin.closed_from, range.low);
+  bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(tiles & behind));
   return tiles & ~behind;
 }
 
@@ -124,6 +128,7 @@ static void raster(BinJob& job) {
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
+    if (bin.state.depth_test != DepthFunc::less || !bin.state.is_opaque) bin.closed_from = Bin::kOpen;
     // Opaque ones twice: for the test that nearly every scene has, and for any.
     if (!bin.state.is_opaque)
       draw_records_general(bin, slice, first, last);
