@@ -26,7 +26,7 @@ HALFPLANE_INLINE bool is_behind(Bin& bin, const Record& record, bool is_line) {
   if (!bin.skip.tiles_hiz) return false;
   if (bin.is_range_old) find_bin_range(bin);
   const DepthRange range = range_of(bin, record);
-  if (!Fragments::is_behind(bin, range)) {
+  if (!(Fragments::kIsLess ? range.low >= bin.closed_from : Fragments::is_behind(bin, range))) {
     // Nearer than what every tile may hold: no need to look at its own.
     if (is_line || (Fragments::kIsLess && range.low < bin.lowest_high)) return false;
     if ((tiles_of(box_of(bin, record)) & ~Fragments::tiles_behind(bin, SameDepths{range})) != 0) return false;
@@ -83,32 +83,36 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   for (; first != last; ++first) {
     const Record& record = slice.records[*first];
     fetch_records(slice, first, last);
-    const RecordKind kind = record.kind();
-    const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
-    BinBounds box;
-    std::uint64_t live = 0;
-    if (is_line || record.has(Record::kSmall)) {
-      if (is_behind<Fragments>(bin, record, is_line)) continue;
-    } else {
-      box = box_of(bin, record);
-      live = seen_tiles<Fragments>(bin, record, box);
-      if (live == 0) continue;
+    if (record.has(Record::kSmall)) {
+      if (is_behind<Fragments>(bin, record, false)) continue;
+      ++bin.small_run;
+      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
+      continue;
     }
+    const RecordKind kind = record.kind();
+    if (kind == RecordKind::whole_line || kind == RecordKind::cut_line) {
+      if (is_behind<Fragments>(bin, record, true)) continue;
+      bin.small_run = 0;
+      if (kind == RecordKind::whole_line) {
+        if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
+        continue;
+      }
+      draw_batch<Fragments>(bin, slice);
+      draw_lines<Fragments>(bin, slice);
+      draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
+      continue;
+    }
+    const BinBounds box = box_of(bin, record);
+    const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
+    if (live == 0) continue;
     // A batch pays for medium triangles from the third in a row on.
     constexpr int kAlone = 2;
     const bool is_medium = record.has(Record::kMedium);
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
-    if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
-      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
-    } else if (kind == RecordKind::whole_line) {
-      if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
-    } else if (kind == RecordKind::cut_line) {
-      draw_batch<Fragments>(bin, slice);
-      draw_lines<Fragments>(bin, slice);
-      draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
-    } else {
+    if (!is_medium || bin.small_run <= kAlone)
       draw_alone<Fragments>(bin, slice, record, box, live);
-    }
+    else if (bin.small.add(record))
+      draw_batch<Fragments>(bin, slice);
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);
@@ -128,7 +132,6 @@ static void raster(BinJob& job) {
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
-    if (bin.state.depth_test != DepthFunc::less || !bin.state.is_opaque) bin.closed_from = Bin::kOpen;
     // Opaque ones twice: for the test that nearly every scene has, and for any.
     if (!bin.state.is_opaque)
       draw_records_general(bin, slice, first, last);
@@ -136,6 +139,8 @@ static void raster(BinJob& job) {
       draw_records<OpaqueFragments<true>>(bin, slice, first, last);
     else
       draw_records<OpaqueFragments<false>>(bin, slice, first, last);
+    // What another test lets through may lie behind.
+    if (bin.state.depth_test != DepthFunc::less || !bin.state.is_opaque) bin.closed_from = Bin::kOpen;
   }
   finish(bin);
 }

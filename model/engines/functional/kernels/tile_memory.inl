@@ -158,6 +158,7 @@ inline void find_bin_range(Bin& bin) {
   bin.low = static_cast<std::int32_t>(min_lane(U64::load(bin.tile_low)));
   bin.high = static_cast<std::int32_t>(max_lane(high));
   bin.lowest_high = static_cast<std::int32_t>(min_lane(high));
+  bin.closed_from = std::min(bin.closed_from, bin.high + (bin.range_bits_dropped != 0 ? 1 : 0));
 }
 
 HALFPLANE_INLINE void set_range(Bin& bin, int tile, std::int32_t low, std::int32_t high) {
