@@ -4,9 +4,9 @@
 
 /// Lanes as places.
 struct LanePositions {
-  I16 pair_x, pair_y;  ///< of two rows of eight
-  I16 lane;            ///< its number
-  I16 to_sign;         ///< 31 - lane: moves bit number `lane` to the sign
+  I16 pair_x;   ///< of rows of eight
+  I16 lane;     ///< its number
+  I16 to_sign;  ///< 31 - lane: moves bit number `lane` to the sign
   I16 block_x, block_y;
   S64 tile_x, tile_y;    ///< of the tiles of a bin, row by row
   S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
@@ -16,7 +16,6 @@ struct LanePositions {
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
-    pair_y = I16::of([](int i) { return i / 8; });
     tile_x = S64::of([](int i) { return static_cast<std::int16_t>(i % kBinTiles); });
     tile_y = S64::of([](int i) { return static_cast<std::int16_t>(i / kBinTiles); });
     pixel_x = S64::of([](int i) { return static_cast<std::int16_t>(i / 16 % 2 * kBlockSize + i % 4); });
@@ -54,7 +53,7 @@ struct BinBounds {
 
 /// One triangle, as one bin sees it. Positions are pixels of the bin, tiles those of the bin.
 struct BinTriangle {
-  /// At the bin's first pixel, held within +-2^30; steps as in Edge. The fourth lane is 0.
+  /// At the bin's first pixel, held within +-2^30; steps as in Edge. The fourth is not used.
   std::array<std::int32_t, 4> edge, dx, dy;
   BinBounds box;
   std::int32_t z_low, z_high;                 ///< codes of the vertices
