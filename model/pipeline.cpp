@@ -371,9 +371,13 @@ void check_fits(const Scene& scene, const Config& config) {
                      std::to_string(scene.height) + ", but this configuration takes 1x1 to " +
                      std::to_string(config.target_width) + "x" + std::to_string(config.target_height) +
                      "; use a smaller --size, another --config, or --set target.width=... and target.height=...");
+  const Draw* looked_at = nullptr;
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);
     if (draw == nullptr) continue;
+    // A mesh of many objects is as many draws of one state.
+    if (looked_at != nullptr && draw->state == looked_at->state && draw->topology == looked_at->topology) continue;
+    looked_at = draw;
     const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
     if (context.state.color_interp == ColorInterp::perspective)
       throw InputError(place_of_draw(context.scene.name, context.draw.line) +

@@ -2,6 +2,7 @@
 // count, the instruction set and what may be skipped.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -257,6 +258,23 @@ TEST(Functional, TrianglesOfAllSizesAreTheSameOnEveryPath) {
       EXPECT_TRUE(functional::is_supported(scene, config, {}));
       expect_all_same(scene, config);
     }
+}
+
+/// Where the lanes of depths change, and with depths at both ends of the codes: a third of the vertices.
+TEST(Functional, DepthsOfAboutSixteenBitsAreTheSameOnEveryPath) {
+  for (const char* name : {"embedded", "full"})
+    for (const int depth_bits : {12, 14, 15, 16, 17, 18})
+      for (std::uint32_t seed = 1; seed <= 2; ++seed) {
+        Config config = config_of(name, depth_bits);
+        config.target_width = config.target_height = 256;
+        config.guard_band = std::min(config.guard_band, 1024);
+        SCOPED_TRACE(std::string(name) + ", depth.bits " + std::to_string(depth_bits) + ", seed " +
+                     std::to_string(seed));
+        Scene scene = triangles_of_all_sizes(seed, 200, 150, std::ldexp(1.0, -config.subpixel_bits));
+        for (Vertex& v : scene.vertices) v.z = std::clamp(1.5 * v.z - 0.25, 0.0, 1.0);
+        EXPECT_TRUE(functional::is_supported(scene, config, {}));
+        expect_all_same(scene, config);
+      }
 }
 
 TEST(Functional, ClearsThatNobodyDrewOnAreCountedByTileOfTheTarget) {

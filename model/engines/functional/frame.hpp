@@ -136,13 +136,17 @@ struct FrameContext {
 using SlowPath = void (*)(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t triangle);
 
 /// What is known of the tiles of the target without looking at their pixels, bin after bin, row by row inside a bin.
+/// Ranges of depths are kept in 16 bits, the upper ones of a code: lanes then take a bin's 64 tiles at once.
 struct TileStates {
   static constexpr std::uint8_t kDepthCleared = 1, kColorCleared = 2;  ///< a clear that has not been written yet
-  std::vector<std::int32_t> z_low, z_high;                             ///< no stored depth lies outside
+  std::vector<std::uint16_t> z_low, z_high;                            ///< no stored depth lies outside
   std::vector<std::uint8_t> pending;
   std::vector<std::uint8_t>
       held;  ///< the same bits: the target's memory is that clear, from this frame or an earlier one
 };
+
+/// Bits of a code below those that a range keeps.
+[[nodiscard]] inline int range_drop(const Config& config) { return std::max(config.depth_bits - 16, 0); }
 
 /// One bin at work.
 struct BinJob {

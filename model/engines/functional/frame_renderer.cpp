@@ -18,7 +18,7 @@ constexpr std::size_t kSlicePrimitives = 2048;  // small enough that two threads
 constexpr std::size_t kBatchPrimitives = 1 << 18;
 
 /// The range of a tile that holds no depth: in nobody's way.
-constexpr struct { std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = -1; } kNoDepth;
+constexpr struct { std::uint16_t low = 0xffff, high = 0; } kNoDepth;
 
 using Clock = std::chrono::steady_clock;
 
@@ -162,11 +162,11 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
 
 /// Nothing is known of what the frame holds: any depth.
 void FrameRenderer::forget_tiles() {
-  const auto largest = static_cast<std::int32_t>((std::uint32_t{1} << config_.depth_bits) - 1);
+  const std::uint16_t largest = range_of((std::uint32_t{1} << config_.depth_bits) - 1);
   std::ranges::fill(tiles_.pending, std::uint8_t{0});
   std::ranges::fill(tiles_.held, std::uint8_t{0});
   for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
-    tiles_.z_low[i] = is_in_target_[i] != 0 ? 0 : kNoDepth.low;
+    tiles_.z_low[i] = is_in_target_[i] != 0 ? std::uint16_t{0} : kNoDepth.low;
     tiles_.z_high[i] = is_in_target_[i] != 0 ? largest : kNoDepth.high;
   }
 }
@@ -208,8 +208,8 @@ void FrameRenderer::clear_whole(const Clear& command) {
   rendering_.counters.skipped.clear += again;
   for (std::size_t i = 0; i < tiles; ++i) pending[i] = static_cast<std::uint8_t>(pending[i] | (is_in[i] & bits));
   if (command.depth) {
-    const auto code = static_cast<std::int32_t>(clear_depth_);
-    std::int32_t *const low = tiles_.z_low.data(), *const high = tiles_.z_high.data();
+    const std::uint16_t code = range_of(clear_depth_);
+    std::uint16_t *const low = tiles_.z_low.data(), *const high = tiles_.z_high.data();
     for (std::size_t i = 0; i < tiles; ++i) low[i] = is_in[i] != 0 ? code : kNoDepth.low;
     for (std::size_t i = 0; i < tiles; ++i) high[i] = is_in[i] != 0 ? code : kNoDepth.high;
   }
@@ -226,7 +226,7 @@ void FrameRenderer::clear(const Clear& command) {
   std::ranges::fill(tiles_.held, std::uint8_t{0});
   halfplane::clear(rendering_, *scene_, command, config_);
   if (!command.depth) return;
-  const auto code = static_cast<std::int32_t>(DepthEncode(config_, scene_->planes).of_window(*command.depth));
+  const std::uint16_t code = range_of(DepthEncode(config_, scene_->planes).of_window(*command.depth));
   has_flushed_ = false;
   for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
     if (!is_in_target_[i]) continue;
@@ -246,7 +246,17 @@ void FrameRenderer::settle(const Rect& rect) {
   forget(TileStates::kDepthCleared, held_depth_, clear_depth_);
   forget(TileStates::kColorCleared, held_color_, clear_color_);
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
+  const bool is_whole = rect == Rect{0, 0, frame.width, frame.height};
   for_each_index(arena_.get(), bins, [&](std::size_t bin) {
+    constexpr std::size_t kTiles = kBinTiles * kBinTiles;
+    std::uint8_t* const waits = tiles_.pending.data() + bin * kTiles;
+    std::uint8_t is_missing = 0;  // in memory
+    for (std::size_t i = 0; i < kTiles; ++i)
+      is_missing |= static_cast<std::uint8_t>(waits[i] & ~tiles_.held[bin * kTiles + i]);
+    if (is_whole && is_missing == 0) {
+      std::fill_n(waits, kTiles, std::uint8_t{0});
+      return;
+    }
     const int first_x = static_cast<int>(bin) % bins_x_ * kBinSize,
               first_y = static_cast<int>(bin) / bins_x_ * kBinSize;
     for (int tile = 0; tile < kBinTiles * kBinTiles; ++tile) {
@@ -359,7 +369,9 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
     for (int x = left; x <= right; ++x) {
       const int bin = (y >> kShift) * bins_x_ + (x >> kShift);
       const int at = (bin * kBinTiles + (y & (kBinTiles - 1))) * kBinTiles + (x & (kBinTiles - 1));
-      if (nearest <= tiles_.z_high[static_cast<std::size_t>(at)]) return false;
+      // The bits that a range drops may all be ones.
+      const std::int64_t above = (std::int64_t{tiles_.z_high[static_cast<std::size_t>(at)]} + 1) << range_drop(config_);
+      if (nearest < static_cast<double>(above)) return false;
     }
   return true;
 }
@@ -374,7 +386,9 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
     constexpr std::size_t kMany = 512, kStale = 1 << 15;
     if (chunks.primitives >= kMany && pending_primitives_ > 0 && (!has_flushed_ || pending_primitives_ >= kStale))
       flush();
-    if (is_behind(DrawContext(*scene_, config_, draw, command), chunks)) {
+    // Before anything is drawn there is only the clear, which hides something when it is not the farthest depth.
+    const bool may_hide = has_flushed_ || clear_depth_ < (std::uint32_t{1} << config_.depth_bits) - 1;
+    if (may_hide && is_behind(DrawContext(*scene_, config_, draw, command), chunks)) {
       primitive_ += static_cast<std::uint32_t>(chunks.primitives);
       Counters& counters = rendering_.counters;
       counters.primitives_in += chunks.primitives;

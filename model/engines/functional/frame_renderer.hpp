@@ -45,6 +45,11 @@ class FrameRenderer {
   void build_outlines(Slice& slice) const;
   void fill_bins(Slice& slice) const;
 
+  /// A depth as the ranges of tiles keep it.
+  [[nodiscard]] std::uint16_t range_of(std::uint32_t code) const {
+    return static_cast<std::uint16_t>(code >> range_drop(config_));
+  }
+
   Config config_;
   Widths widths_;
   const Kernels* kernels_ = nullptr;

@@ -134,31 +134,39 @@ void FrameRenderer::build_outlines(Slice& slice) const {
 
 /// The records of each bin, in order: a counting sort. Most records lie in one bin.
 void FrameRenderer::fill_bins(Slice& slice) const {
-  constexpr std::uint32_t kMany = ~0U;
+  struct Entry {
+    std::uint32_t bin, record;
+  };
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
-  static thread_local std::vector<std::uint32_t> next, bin_of;
+  static thread_local std::vector<std::uint32_t> next;
+  static thread_local std::vector<Entry> entries;
   next.assign(bins, 0);
-  bin_of.resize(slice.record_count);
+  entries.resize(std::max(entries.size(), slice.record_count));  // one each, and room for more where there are more
+  Entry* entry = entries.data();
+  std::uint32_t* const in_bin = next.data();
+  std::size_t count = 0;
   const auto bin_at = [this](int x, int y) {
     return static_cast<std::uint32_t>((y >> kBinShift) * bins_x_ + (x >> kBinShift));
-  };
-  const auto for_each_bin = [&](const Record& record, auto&& visit) {
-    const std::uint32_t first = bin_at(record.left(), record.top()),
-                        columns = bin_at(record.right(), record.top()) - first;
-    for (std::uint32_t row = first; row <= bin_at(record.left(), record.bottom());
-         row += static_cast<std::uint32_t>(bins_x_))
-      for (std::uint32_t bin = row; bin <= row + columns; ++bin) visit(bin);
   };
   const std::span records(slice.records.data(), slice.record_count);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& record = records[i];
-    const std::uint32_t bin = bin_at(record.left(), record.top());
-    const bool is_one = bin == bin_at(record.right(), record.bottom());
-    bin_of[i] = is_one ? bin : kMany;
-    if (is_one)
-      ++next[bin];
-    else
-      for_each_bin(record, [&](std::uint32_t at) { ++next[at]; });
+    const auto add = [&](std::uint32_t bin) {
+      entry[count++] = {bin, static_cast<std::uint32_t>(i)};
+      ++in_bin[bin];
+    };
+    const std::uint32_t first = bin_at(record.left(), record.top()), last = bin_at(record.right(), record.bottom());
+    add(first);
+    if (first == last) continue;
+    if (const std::size_t room = count + bins + records.size() - i; entries.size() < room) {
+      entries.resize(2 * room);
+      entry = entries.data();
+    }
+    const std::uint32_t columns = bin_at(record.right(), record.top()) - first;
+    for (std::uint32_t bin = first + 1; bin <= first + columns; ++bin) add(bin);
+    for (std::uint32_t end = first + static_cast<std::uint32_t>(bins_x_) + columns; end <= last;
+         end += static_cast<std::uint32_t>(bins_x_))
+      for (std::uint32_t bin = end - columns; bin <= end; ++bin) add(bin);
   }
   slice.bin_first.resize(bins + 1);
   std::uint32_t sum = 0;
@@ -168,13 +176,7 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   }
   slice.bin_first[bins] = sum;
   slice.bin_records.resize(sum);
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const auto number = static_cast<std::uint32_t>(i);
-    if (bin_of[i] != kMany)
-      slice.bin_records[next[bin_of[i]]++] = number;
-    else
-      for_each_bin(records[i], [&](std::uint32_t bin) { slice.bin_records[next[bin]++] = number; });
-  }
+  for (std::size_t i = 0; i < count; ++i) slice.bin_records[in_bin[entry[i].bin]++] = entry[i].record;
 }
 
 }  // namespace halfplane::functional

@@ -4,17 +4,22 @@
 
 /// Lanes as places.
 struct LanePositions {
-  I16 pair_x, pair_y;  ///< of two rows of eight
-  I16 lane;            ///< its number
-  I16 to_sign;         ///< 31 - lane: moves bit number `lane` to the sign
+  I16 pair_x;   ///< of rows of eight
+  I16 lane;     ///< its number
+  I16 to_sign;  ///< 31 - lane: moves bit number `lane` to the sign
   I16 block_x, block_y;
-  I16 block_yx;  ///< pairs: row low, column high
+  S64 tile_x, tile_y;    ///< of the tiles of a bin, row by row
+  S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
+  I16 block_yx;          ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
-    pair_y = I16::of([](int i) { return i / 8; });
+    tile_x = S64::of([](int i) { return static_cast<std::int16_t>(i % kBinTiles); });
+    tile_y = S64::of([](int i) { return static_cast<std::int16_t>(i / kBinTiles); });
+    pixel_x = S64::of([](int i) { return static_cast<std::int16_t>(i / 16 % 2 * kBlockSize + i % 4); });
+    pixel_y = S64::of([](int i) { return static_cast<std::int16_t>(i / 32 * kBlockSize + i / 4 % 4); });
     lane = I16::of([](int i) { return i; });
     to_sign = I16::of([](int i) { return 31 - i; });
     block_x = I16::of([](int i) { return i % 4; });
@@ -48,12 +53,16 @@ struct BinBounds {
 
 /// One triangle, as one bin sees it. Positions are pixels of the bin, tiles those of the bin.
 struct BinTriangle {
-  std::array<std::int32_t, 3> edge, dx, dy;  ///< at the bin's first pixel, held within +-2^30; steps as in Edge
+  /// At the bin's first pixel, held within +-2^30; steps as in Edge. The fourth is not used.
+  std::array<std::int32_t, 4> edge, dx, dy;
   BinBounds box;
   std::int32_t z_low, z_high;                 ///< codes of the vertices
   std::int64_t z_anchor, z_tile_x, z_tile_y;  ///< plane at the first tile's anchor; steps from tile to tile
   std::int32_t z_step_x, z_step_y;            ///< of a pixel, in a lane
-  bool is_gentle;                             ///< no value of a tile that it touches wraps
+  std::int32_t to_low, to_high;               ///< in a range's units: from a tile's anchor to its lowest and highest
+  bool is_gentle;                             ///< so they are known: nothing of it wraps
+  bool is_narrow;                             ///< its depths are tested in lanes of 16 bits
+  bool is_steep;                              ///< an edge needs more than 16 bits in a tile
   bool is_whole;                              ///< its edges alone say what it covers
   std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< likewise, channel by channel
   ColorSteps color;
@@ -68,7 +77,8 @@ struct Block {
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
 struct BinMemory {
   static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
-  alignas(64) std::array<std::int32_t, kBinSize * kBinSize> depth;
+  alignas(64) std::array<std::int32_t, kBinSize * kBinSize> depth;  ///< this one or, where 16 bits suffice, the next
+  alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> narrow_depth;
   alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> color;
   alignas(64) std::array<BinTriangle, kPlanes> planes;
 
@@ -93,7 +103,11 @@ struct Bin {
         color_format(widths.color(), 16, widths),
         first_x(job.bin % job.frame.bins_x * kBinSize),
         first_y(job.bin / job.frame.bins_x * kBinSize),
+        pixel(1.0 / static_cast<double>(std::int64_t{1} << widths.grid_bits)),
         are_lines(job.target.has_whole_lines()),
+        is_narrow(config.depth_bits <= 16),
+        tests_narrow(is_narrow && config.depth_bits >= 15 && depth_format.down - depth_format.up <= 12),
+        range_bits_dropped(range_drop(config)),
         tile_low(job.tiles.z_low.data() + std::ptrdiff_t{job.bin} * kTiles),
         tile_high(job.tiles.z_high.data() + std::ptrdiff_t{job.bin} * kTiles),
         memory(BinMemory::of_thread()) {
@@ -102,6 +116,8 @@ struct Bin {
       depth_owner[t] = (pending[t] & TileStates::kDepthCleared) != 0 ? kCleared : kInTarget;
       color_owner[t] = (pending[t] & TileStates::kColorCleared) != 0 ? kCleared : kInTarget;
     }
+    cleared_depths.fill(static_cast<std::uint16_t>(job.clear_depth));
+    cleared_colors.fill(job.clear_color);
   }
 
   BinJob& job;
@@ -110,12 +126,18 @@ struct Bin {
   const Skip& skip;
   LaneFormat depth_format, color_format;
   int first_x, first_y;  ///< pixels
+  double pixel;          ///< a subpixel, in pixels
   bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
-  std::int32_t *tile_low, *tile_high;
+  bool is_narrow;        ///< depths are in BinMemory::narrow_depth
+  bool tests_narrow;     ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
+  int range_bits_dropped;
+  std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
   SliceState state;
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
+  static constexpr std::int32_t kOpen = 1 << 16;
+  std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide this depth, and what is behind
   const LanePositions& position = lane_positions();
   SmallBatch small;
   int small_run = 0;                                               ///< records in a row that were small or medium
@@ -124,11 +146,30 @@ struct Bin {
   std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks;  ///< and room for one that is not kept
   bool falls = false, rises = false;                               ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
-  bool may_be_lower = false;    ///< the bin's upper bound, since it was found
+  bool is_range_old = true;     ///< low, high and lowest_high: found when somebody asks
   std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
-  alignas(64) std::array<std::int32_t, kTiles> depth_owner, color_owner;
+  alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
+  // What a clear leaves, to be read as if it were in memory: of a tile where 16 bits suffice, of a block.
+  alignas(64) std::array<std::uint16_t, kTileSize * kTileSize> cleared_depths;
+  alignas(64) std::array<std::uint32_t, kBlockPixels> cleared_colors;
 };
+
+/// Depths as the ranges of tiles keep them.
+struct DepthRange {
+  std::int32_t low, high;
+};
+HALFPLANE_INLINE DepthRange range_of(const Bin& bin, const Record& record) {
+  return {record.z_low >> bin.range_bits_dropped, record.z_high >> bin.range_bits_dropped};
+}
+
+/// The tiles of a box, a bit each.
+HALFPLANE_INLINE std::uint64_t tiles_of(const BinBounds& box) {
+  constexpr std::uint64_t kColumn = 0x0101010101010101;
+  const std::uint64_t row = (2U << (box.right >> kTileShift)) - (1U << (box.left >> kTileShift));
+  const int above = box.top >> kTileShift << kTileShift, last = box.bottom >> kTileShift << kTileShift;
+  return row * ((kColumn >> (56 - last)) & (~std::uint64_t{0} << above));
+}
 
 /// The part of a record's box that lies in the bin.
 HALFPLANE_INLINE BinBounds box_of(const Bin& bin, const Record& record) {

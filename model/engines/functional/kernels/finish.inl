@@ -6,14 +6,14 @@ inline int tiles_along(int pixels) { return std::min((pixels + kTileSize - 1) / 
 /// A row of tiles as rows of pixels.
 using PixelRows = std::array<std::array<std::uint32_t, kBinSize>, kTileSize>;
 
-using TileOwners = std::array<std::int32_t, Bin::kTiles>;
+using TileOwners = std::array<std::int16_t, Bin::kTiles>;
 
 /// The row of tiles that begins with `first`. `cleared`: what is no longer pending where they were written.
 /// `blocks_of(tile)`: its values; `write_rows(left, right, tile, rows)`: those of two that triangles have taken.
 template <class BlocksOf, class WriteRows>
 HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t* image, const TileOwners& owners,
                                  std::uint8_t cleared, BlocksOf&& blocks_of, WriteRows&& write_rows) {
-  const std::int32_t* owner = owners.data() + first;
+  const std::int16_t* owner = owners.data() + first;
   alignas(64) PixelRows rows;
   std::uint32_t is_new = 0;
   for (int i = 0; i < columns; ++i) is_new |= (owner[i] >= Bin::kInMemory ? 1U : 0U) << i;

@@ -15,6 +15,20 @@ struct FragmentLanes {
   alignas(64) Lane color;  ///< packed in the policy's format
 };
 
+/// Ranges of the bin's tiles, and a bit each for how others compare with them. Ranges that have dropped bits and touch may
+/// overlap.
+struct RangeLanes {
+  const Bin& bin;
+
+  HALFPLANE_INLINE explicit RangeLanes(const Bin& bin_) : bin(bin_) {}
+  HALFPLANE_INLINE U64 low() const { return U64::load(bin.tile_low); }
+  HALFPLANE_INLINE U64 high() const { return U64::load(bin.tile_high); }
+  HALFPLANE_INLINE static std::uint64_t is_above(const U64& a, const U64& b) { return ~bits_at_least(b, a); }
+  HALFPLANE_INLINE std::uint64_t is_at_least(const U64& a, const U64& b) const {
+    return bin.range_bits_dropped == 0 ? bits_at_least(a, b) : is_above(a, b);
+  }
+};
+
 /// IsLess: the test that nearly every scene has, known when compiled. Otherwise it is the state's.
 template <bool IsLess>
 struct OpaqueFragments {
@@ -24,7 +38,10 @@ struct OpaqueFragments {
     return IsLess ? DepthFunc::less : state.depth_test;
   }
 
-  HALFPLANE_INLINE static I16 passes(const SliceState& state, const I16& depth, const I16& stored) {
+  /// A mask. `Lanes`: I16 or U64.
+  template <class Lanes>
+  HALFPLANE_INLINE static auto passes(const SliceState& state, const Lanes& depth, const Lanes& stored) {
+    using Mask = decltype(depth < stored);
     switch (func(state)) {
       case DepthFunc::less: return depth < stored;
       case DepthFunc::lequal: return depth <= stored;
@@ -32,8 +49,8 @@ struct OpaqueFragments {
       case DepthFunc::gequal: return depth >= stored;
       case DepthFunc::equal: return depth == stored;
       case DepthFunc::notequal: return depth != stored;
-      case DepthFunc::always: return I16(-1);
-      default: return I16(0);
+      case DepthFunc::always: return Mask(-1);
+      default: return Mask(0);
     }
   }
 
@@ -42,33 +59,48 @@ struct OpaqueFragments {
     return depth_passes(func(state), static_cast<std::uint32_t>(depth), static_cast<std::uint32_t>(stored));
   }
 
-  /// Whether no depth in [record.z_low, record.z_high] passes against one in [low, high].
-  HALFPLANE_INLINE static bool is_behind(const SliceState& state, const Record& record, std::int32_t low,
-                                         std::int32_t high) {
-    switch (func(state)) {
-      case DepthFunc::less: return record.z_low >= high;
-      case DepthFunc::lequal: return record.z_low > high;
-      case DepthFunc::greater: return record.z_high <= low;
-      case DepthFunc::gequal: return record.z_high < low;
-      case DepthFunc::equal: return record.z_low > high || record.z_high < low;
+  /// Whether no depth in `range` passes against one in the bin.
+  HALFPLANE_INLINE static bool is_behind(const Bin& bin, const DepthRange& range) {
+    const std::int32_t touch = bin.range_bits_dropped != 0 ? 1 : 0;
+    switch (func(bin.state)) {
+      case DepthFunc::less: return range.low >= bin.high + touch;
+      case DepthFunc::lequal: return range.low > bin.high;
+      case DepthFunc::greater: return range.high + touch <= bin.low;
+      case DepthFunc::gequal: return range.high < bin.low;
+      case DepthFunc::equal: return range.low > bin.high || range.high < bin.low;
       case DepthFunc::never: return true;
       default: return false;
     }
   }
 
-  /// Tiles with depths in [low, high] where no fragment in [z_low, z_high] passes, and tiles where all do.
-  HALFPLANE_INLINE static void compare_ranges(const SliceState& state, const I16& z_low, const I16& z_high,
-                                              const I16& low, const I16& high, I16& behind, I16& front) {
-    behind = front = I16(0);
-    switch (func(state)) {
-      case DepthFunc::less: behind = z_low >= high, front = z_high < low; break;
-      case DepthFunc::lequal: behind = z_low > high, front = z_high <= low; break;
-      case DepthFunc::greater: behind = z_high <= low, front = z_low > high; break;
-      case DepthFunc::gequal: behind = z_high < low, front = z_low >= high; break;
-      case DepthFunc::equal: behind = (z_low > high) | (z_high < low); break;
-      case DepthFunc::notequal: front = (z_low > high) | (z_high < low); break;
-      case DepthFunc::always: front = I16(-1); break;
-      case DepthFunc::never: behind = I16(-1); break;
+  /// The bin's tiles against fragments in [depths.low(), depths.high()], a lane a tile: where none passes.
+  template <class Depths>
+  HALFPLANE_INLINE static std::uint64_t tiles_behind(const Bin& bin, const Depths& depths) {
+    const RangeLanes tile(bin);
+    switch (func(bin.state)) {
+      case DepthFunc::less: return tile.is_at_least(depths.low(), tile.high());
+      case DepthFunc::lequal: return tile.is_above(depths.low(), tile.high());
+      case DepthFunc::greater: return tile.is_at_least(tile.low(), depths.high());
+      case DepthFunc::gequal: return tile.is_above(tile.low(), depths.high());
+      case DepthFunc::equal: return tile.is_above(depths.low(), tile.high()) | tile.is_above(tile.low(), depths.high());
+      case DepthFunc::never: return ~std::uint64_t{0};
+      default: return 0;
+    }
+  }
+
+  /// Where all do.
+  template <class Depths>
+  HALFPLANE_INLINE static std::uint64_t tiles_in_front(const Bin& bin, const Depths& depths) {
+    const RangeLanes tile(bin);
+    switch (func(bin.state)) {
+      case DepthFunc::less: return tile.is_above(tile.low(), depths.high());
+      case DepthFunc::lequal: return tile.is_at_least(tile.low(), depths.high());
+      case DepthFunc::greater: return tile.is_above(depths.low(), tile.high());
+      case DepthFunc::gequal: return tile.is_at_least(depths.low(), tile.high());
+      case DepthFunc::notequal:
+        return tile.is_above(depths.low(), tile.high()) | tile.is_above(tile.low(), depths.high());
+      case DepthFunc::always: return ~std::uint64_t{0};
+      default: return 0;
     }
   }
 
@@ -79,11 +111,10 @@ struct OpaqueFragments {
   /// knows: hence copies.
   struct Writer {
     SliceState state;
-    std::int32_t* depths;
+    DepthPixels depths;
     std::uint32_t* pixels;
 
-    HALFPLANE_INLINE explicit Writer(Bin& bin)
-        : state(bin.state), depths(bin.memory.depth.data()), pixels(bin.memory.color.data()) {}
+    HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), depths(bin), pixels(bin.memory.color.data()) {}
 
     /// Tests and writes the first `count`. Returns how many passed. What fails is stored as it was: which do, nobody
     /// can foresee.
@@ -91,10 +122,10 @@ struct OpaqueFragments {
       unsigned passed_pixels = 0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
         const auto to = static_cast<std::size_t>(fragments.place[k]);
-        const std::int32_t stored = depths[to], depth = fragments.depth[k];
+        const std::int32_t stored = depths.at(to), depth = fragments.depth[k];
         const std::uint32_t has_passed = passes_one(state, depth, stored) ? 1U : 0U, mask = 0U - has_passed;
         passed_pixels += has_passed;
-        if (state.depth_write) depths[to] = stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask));
+        if (state.depth_write) depths.set(to, stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask)));
         if (state.color_write) pixels[to] ^= (pixels[to] ^ static_cast<std::uint32_t>(fragments.color[k])) & mask;
       }
       return passed_pixels;
@@ -110,14 +141,15 @@ struct GeneralFragments {
 
   /// Those whose bit is set, one after the other. Returns how many passed.
   HALFPLANE_NOINLINE static unsigned draw_some(Bin& bin, const FragmentLanes& fragments, std::uint32_t covered) {
+    const DepthPixels depths(bin);
     unsigned passed = 0;
     for (; covered != 0; covered &= covered - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(covered));
       const auto to = static_cast<std::size_t>(fragments.place[k]);
       const auto depth = static_cast<std::uint32_t>(fragments.depth[k]);
-      if (!depth_passes(bin.state.depth_test, depth, static_cast<std::uint32_t>(bin.memory.depth[to]))) continue;
+      if (!depth_passes(bin.state.depth_test, depth, static_cast<std::uint32_t>(depths.at(to)))) continue;
       ++passed;
-      if (bin.state.depth_write) bin.memory.depth[to] = fragments.depth[k];
+      if (bin.state.depth_write) depths.set(to, fragments.depth[k]);
       if (!bin.state.color_write) continue;
       std::array<std::uint8_t, 4> code;
       for (std::size_t c = 0; c < 4; ++c)

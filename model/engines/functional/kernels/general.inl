@@ -9,7 +9,8 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
   need_depth(bin, tile);
   if (bin.state.color_write) need_color(bin, tile);
   const BlockRamp<I16> depth_plane = depth_ramp(bin, t, depth_anchor(bin, t, tile_x, tile_y));
-  const ColorRamp color_plane = color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y));
+  ColorRamp color_plane{};
+  if (bin.state.color_write) color_plane = color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y));
   const ColorFormat format = GeneralFragments::format(bin.config);
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
   for (std::size_t block = 0; block < 4; ++block) {
@@ -22,7 +23,8 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
     FragmentLanes fragments;
     (bin.position.lane + (first_of(tile) + static_cast<int>(block) * kBlockPixels)).store(fragments.place.data());
     block_depths(bin, t, depth_plane, block).store(fragments.depth.data());
-    block_colors(t.color, color_plane, block, bin.color_format, format).store(fragments.color.data());
+    if (bin.state.color_write)
+      block_colors(t.color, color_plane, block, bin.color_format, format).store(fragments.color.data());
     covered_pixels += static_cast<unsigned>(std::popcount(covered));
     passed_pixels += GeneralFragments::draw_some(bin, fragments, covered);
   }

@@ -44,6 +44,78 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes
 
 HALFPLANE_INLINE bool is_any(const I16& mask) { return bits_of(mask) != 0; }
 
+/// One bit for each of 64 lanes whose sign bit is set.
+HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
+#if HALFPLANE_ISA == 512
+  return _mm512_movepi16_mask((__m512i)mask.part[0]) | std::uint64_t{_mm512_movepi16_mask((__m512i)mask.part[1])} << 32;
+#elif HALFPLANE_ISA == 256
+  const auto half = [&mask](int i) HALFPLANE_LAMBDA {  // a byte a lane, back in order
+    const __m256i bytes = _mm256_packs_epi16((__m256i)mask.part[i], (__m256i)mask.part[i + 1]);
+    return static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_permute4x64_epi64(bytes, 0xd8)));
+  };
+  return half(0) | std::uint64_t{half(2)} << 32;
+#elif defined(__x86_64__)
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 8; i += 2)
+    bits |=
+        static_cast<std::uint64_t>(_mm_movemask_epi8(_mm_packs_epi16((__m128i)mask.part[i], (__m128i)mask.part[i + 1])))
+        << 8 * i;
+  return bits;
+#else
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 64; ++i) bits |= std::uint64_t{mask.part[i / 8][i % 8] < 0} << i;
+  return bits;
+#endif
+}
+
+/// The other way round: a mask.
+HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
+  S64 r;
+#if HALFPLANE_ISA == 512
+  for (int i = 0; i < 2; ++i) r.part[i] = (S64::Register)_mm512_movm_epi16(static_cast<__mmask32>(bits >> 32 * i));
+#else
+  constexpr int kLanes = S64::kLanes;
+  S64::Register bit;
+  for (int i = 0; i < kLanes; ++i) bit[i] = static_cast<std::int16_t>(1U << i);
+  for (int i = 0; i < S64::kParts; ++i)
+    r.part[i] = ((S64::Register{} + static_cast<std::int16_t>(bits >> kLanes * i)) & bit) == bit;
+#endif
+  return r;
+}
+
+/// One bit for each lane with a >= b.
+HALFPLANE_INLINE std::uint64_t bits_at_least(const U64& a, const U64& b) {
+#if HALFPLANE_ISA == 512
+  return _mm512_cmpge_epu16_mask((__m512i)a.part[0], (__m512i)b.part[0]) |
+         std::uint64_t{_mm512_cmpge_epu16_mask((__m512i)a.part[1], (__m512i)b.part[1])} << 32;
+#else
+  return bits_of(max(a, b) == a);
+#endif
+}
+
+/// One bit for each lane with a == b.
+HALFPLANE_INLINE std::uint64_t bits_equal(const U64& a, const U64& b) {
+#if HALFPLANE_ISA == 512
+  return _mm512_cmpeq_epu16_mask((__m512i)a.part[0], (__m512i)b.part[0]) |
+         std::uint64_t{_mm512_cmpeq_epu16_mask((__m512i)a.part[1], (__m512i)b.part[1])} << 32;
+#else
+  return bits_of(a == b);
+#endif
+}
+
+/// a in the lanes whose bit is set, b elsewhere. `to_sign`: 31 - lane.
+HALFPLANE_INLINE I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b,
+                                    [[maybe_unused]] const I16& to_sign) {
+#if HALFPLANE_ISA == 512
+  I16 r;
+  r.part[0] =
+      (I16::Register)_mm512_mask_mov_epi32((__m512i)b.part[0], static_cast<__mmask16>(bits), (__m512i)a.part[0]);
+  return r;
+#else
+  return select_by_sign(I16(static_cast<std::int32_t>(bits)) << to_sign, a, b);
+#endif
+}
+
 /// 32 bits from base + 4 index, lane by lane.
 HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
   I16 r;
@@ -91,6 +163,51 @@ HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
 #endif
 }
 HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
+
+HALFPLANE_INLINE std::uint32_t min_lane(const U64& v) {
+#if HALFPLANE_ISA == 128
+  U64::Register all = v.part[0];
+  for (int i = 1; i < 8; ++i) all = all < v.part[i] ? all : v.part[i];
+  std::uint32_t least = all[0];
+  for (int i = 1; i < 8; ++i) least = std::min<std::uint32_t>(least, all[i]);
+  return least;
+#else
+#if HALFPLANE_ISA == 512
+  const auto both = (__m512i)(v.part[0] < v.part[1] ? v.part[0] : v.part[1]);
+  const __m256i half = _mm256_min_epu16(_mm512_castsi512_si256(both), _mm512_extracti64x4_epi64(both, 1));
+#else
+  const auto smaller = [](const U64::Register& a, const U64::Register& b) HALFPLANE_LAMBDA { return a < b ? a : b; };
+  const auto half = (__m256i)smaller(smaller(v.part[0], v.part[1]), smaller(v.part[2], v.part[3]));
+#endif
+  const __m128i eight = _mm_min_epu16(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
+  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(eight))) & 0xffff;
+#endif
+}
+HALFPLANE_INLINE std::uint32_t max_lane(const U64& v) { return 0xffff - min_lane(~v); }
+
+/// Sixteen numbers below 2^16 from and to memory.
+HALFPLANE_INLINE I16 load_narrow(const std::uint16_t* from) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (I16::Register)_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (I16::Register)_mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from) + i));
+#else
+  for (int i = 0; i < 16; ++i) r.part[i / 4][i % 4] = from[i];
+#endif
+  return r;
+}
+HALFPLANE_INLINE void store_narrow(const I16& value, std::uint16_t* to) {
+#if HALFPLANE_ISA == 512
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtepi32_epi16((__m512i)value.part[0]));
+#elif HALFPLANE_ISA == 256
+  const __m256i both = _mm256_packus_epi32((__m256i)value.part[0], (__m256i)value.part[1]);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permute4x64_epi64(both, 0xd8));
+#else
+  for (int i = 0; i < 16; ++i) to[i] = static_cast<std::uint16_t>(value.part[i / 4][i % 4]);
+#endif
+}
 
 /// Four columns of sixteen rows of four numbers.
 struct Columns {

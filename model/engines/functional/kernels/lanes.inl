@@ -5,6 +5,25 @@
 // in memory alike, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of
 // them: half of the time of a block.
 
+/// For each register of a pack, straight: GCC takes packs apart before it unrolls loops, and keeps those of four registers
+/// and more in memory otherwise.
+#define HALFPLANE_PART(parts, i, at, ...) \
+  if constexpr ((parts) > at) {           \
+    constexpr int i = at;                 \
+    __VA_ARGS__;                          \
+  }
+#define HALFPLANE_EACH_PART(parts, i, ...)   \
+  {                                          \
+    HALFPLANE_PART(parts, i, 0, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 1, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 2, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 3, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 4, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 5, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 6, __VA_ARGS__) \
+    HALFPLANE_PART(parts, i, 7, __VA_ARGS__) \
+  }
+
 /// N lanes of a T.
 template <class T, int N>
 struct Pack {
@@ -18,7 +37,7 @@ struct Pack {
 
   HALFPLANE_INLINE Pack() = default;
   HALFPLANE_INLINE Pack(T value) {  // NOLINT: a number is the same in all lanes
-    for (Register& p : part) p = Register{} + value;
+    HALFPLANE_EACH_PART(kParts, i, part[i] = Register{} + value)
   }
   template <class Lane>
   HALFPLANE_INLINE static Pack of(Lane&& lane) {
@@ -29,12 +48,12 @@ struct Pack {
   template <class Element>
   HALFPLANE_INLINE static Pack load(const Element* from) {
     Pack pack;
-    for (int i = 0; i < kParts; ++i) pack.part[i] = reinterpret_cast<const InMemory*>(from)[i];
+    HALFPLANE_EACH_PART(kParts, i, pack.part[i] = reinterpret_cast<const InMemory*>(from)[i])
     return pack;
   }
   template <class Element>
   HALFPLANE_INLINE void store(Element* to) const {
-    for (int i = 0; i < kParts; ++i) reinterpret_cast<InMemory*>(to)[i] = part[i];
+    HALFPLANE_EACH_PART(kParts, i, reinterpret_cast<InMemory*>(to)[i] = part[i])
   }
 };
 
@@ -42,7 +61,7 @@ struct Pack {
   template <class T, int N>                                                                 \
   HALFPLANE_INLINE Pack<T, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
     Pack<T, N> r;                                                                           \
-    for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] op b.part[i];        \
+    HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] op b.part[i])        \
     return r;                                                                               \
   }                                                                                         \
   template <class T, int N>                                                                 \
@@ -65,38 +84,38 @@ HALFPLANE_PACK_OPERATOR(^)
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> operator~(const Pack<T, N>& a) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = ~a.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = ~a.part[i])
   return r;
 }
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> operator-(const Pack<T, N>& a) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = -a.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = -a.part[i])
   return r;
 }
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> operator<<(const Pack<T, N>& a, int bits) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] << bits;
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] << bits)
   return r;
 }
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> operator>>(const Pack<T, N>& a, int bits) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] >> bits;
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] >> bits)
   return r;
 }
 /// Lane by lane.
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> operator<<(const Pack<T, N>& a, const Pack<T, N>& bits) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] << bits.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] << bits.part[i])
   return r;
 }
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> operator>>(const Pack<T, N>& a, const Pack<T, N>& bits) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] >> bits.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] >> bits.part[i])
   return r;
 }
 template <class T, int N>
@@ -127,17 +146,17 @@ template <class T>
 using MaskOf =
     std::conditional_t<sizeof(T) == 8, std::int64_t, std::conditional_t<sizeof(T) == 4, std::int32_t, std::int16_t>>;
 
-#define HALFPLANE_PACK_COMPARISON(op)                                                               \
-  template <class T, int N>                                                                         \
-  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
-    Pack<MaskOf<T>, N> r;                                                                           \
-    for (int i = 0; i < Pack<T, N>::kParts; ++i)                                                    \
-      r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i]);                  \
-    return r;                                                                                       \
-  }                                                                                                 \
-  template <class T, int N>                                                                         \
-  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
-    return a op Pack<T, N>(b);                                                                      \
+#define HALFPLANE_PACK_COMPARISON(op)                                                                \
+  template <class T, int N>                                                                          \
+  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {        \
+    Pack<MaskOf<T>, N> r;                                                                            \
+    HALFPLANE_EACH_PART((Pack<T, N>::kParts), i,                                                     \
+                        r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i])) \
+    return r;                                                                                        \
+  }                                                                                                  \
+  template <class T, int N>                                                                          \
+  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) {  \
+    return a op Pack<T, N>(b);                                                                       \
   }
 HALFPLANE_PACK_COMPARISON(<)
 HALFPLANE_PACK_COMPARISON(<=)
@@ -151,14 +170,14 @@ HALFPLANE_PACK_COMPARISON(!=)
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) {
 #if HALFPLANE_ISA == 256  // GCC would ask first where the mask is 0
-    using Register = typename Pack<T, N>::Register;
-    r.part[i] = (Register)_mm256_blendv_epi8((__m256i)b.part[i], (__m256i)a.part[i], (__m256i)mask.part[i]);
+  using Register = typename Pack<T, N>::Register;
+  HALFPLANE_EACH_PART(
+      (Pack<T, N>::kParts), i,
+      r.part[i] = (Register)_mm256_blendv_epi8((__m256i)b.part[i], (__m256i)a.part[i], (__m256i)mask.part[i]))
 #else
-    r.part[i] = mask.part[i] ? a.part[i] : b.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = mask.part[i] ? a.part[i] : b.part[i])
 #endif
-  }
   return r;
 }
 /// a where the sign of the mask is set, b elsewhere.
@@ -178,13 +197,13 @@ HALFPLANE_INLINE Pack<std::int32_t, N> select_by_sign(const Pack<std::int32_t, N
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] < b.part[i] ? a.part[i] : b.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] < b.part[i] ? a.part[i] : b.part[i])
   return r;
 }
 template <class T, int N>
 HALFPLANE_INLINE Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
-  for (int i = 0; i < Pack<T, N>::kParts; ++i) r.part[i] = a.part[i] > b.part[i] ? a.part[i] : b.part[i];
+  HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] > b.part[i] ? a.part[i] : b.part[i])
   return r;
 }
 
@@ -237,12 +256,14 @@ template <class To, class From>
 HALFPLANE_INLINE To as(const From& from) {
   static_assert(sizeof(To) == sizeof(From) && To::kParts == From::kParts);
   To to;
-  for (int i = 0; i < To::kParts; ++i) to.part[i] = (typename To::Register)from.part[i];
+  HALFPLANE_EACH_PART(To::kParts, i, to.part[i] = (typename To::Register)from.part[i])
   return to;
 }
 
 using I16 = Pack<std::int32_t, 16>;
 using S32 = Pack<std::int16_t, 32>;  ///< two in each lane of an I16
+using S64 = Pack<std::int16_t, 64>;  ///< the pixels of a tile, or the tiles of a bin
+using U64 = Pack<std::uint16_t, 64>;
 using L16 = Pack<std::int64_t, 16>;
 using D16 = Pack<double, 16>;
 

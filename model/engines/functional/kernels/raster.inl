@@ -4,48 +4,37 @@
 //   triangle within two by two pixels  sixteen at a time through setup, then their samples
 //   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
 //   within three by three, in a row    the same
-//   larger                             its 64 tiles sixteen at a time: outside, behind, taken as a whole, or drawn
+//   larger                             all tiles of the bin at once: outside, behind, taken as a whole, or drawn
 //
-// A block is 4 x 4 pixels: sixteen lanes, one cache line. A tile is four of them.
+// A block is 4 x 4 pixels: sixteen lanes, one cache line of colours. A tile is four of them.
 //
 // A tile that a triangle covers wholly, in front of all that is there, is taken without looking at a pixel: it remembers
 // the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// Counts what lies behind its tiles.
-inline void leave_out(Bin& bin, const BinBounds& at) {
-  const auto tiles = static_cast<unsigned>(((at.right >> kTileShift) - (at.left >> kTileShift) + 1) *
-                                           ((at.bottom >> kTileShift) - (at.top >> kTileShift) + 1));
+/// One range of depths for all tiles.
+struct SameDepths {
+  DepthRange range;
+
+  HALFPLANE_INLINE U64 low() const { return U64(static_cast<std::uint16_t>(range.low)); }
+  HALFPLANE_INLINE U64 high() const { return U64(static_cast<std::uint16_t>(range.high)); }
+};
+
+/// Whether nothing of a record can be seen that is a line, or one of many small triangles: the whole bin is asked first.
+template <class Fragments>
+HALFPLANE_INLINE bool is_behind(Bin& bin, const Record& record, bool is_line) {
+  if (!bin.skip.tiles_hiz) return false;
+  if (bin.is_range_old) find_bin_range(bin);
+  const DepthRange range = range_of(bin, record);
+  if (!(Fragments::kIsLess ? range.low >= bin.closed_from : Fragments::is_behind(bin, range))) {
+    // Nearer than what every tile may hold: no need to look at its own.
+    if (is_line || (Fragments::kIsLess && range.low < bin.lowest_high)) return false;
+    if ((tiles_of(box_of(bin, record)) & ~Fragments::tiles_behind(bin, SameDepths{range})) != 0) return false;
+  }
+  const auto tiles = static_cast<unsigned>(std::popcount(tiles_of(box_of(bin, record))));
   bin.job.counters.tiles_visited += tiles;
   bin.job.counters.skipped.tiles_hiz += tiles;
-}
-
-/// Whether all tiles of a box hide a record.
-template <class Fragments>
-HALFPLANE_INLINE bool is_behind_tiles(const Bin& bin, const Record& record, const BinBounds& box) {
-  const int left = box.left >> kTileShift, right = box.right >> kTileShift, top = box.top >> kTileShift,
-            bottom = box.bottom >> kTileShift;
-  const I16 is_column = (bin.position.pair_x >= left) & (bin.position.pair_x <= right);
-  I16 low(0x7fffffff), high(-1);
-  for (int row = top & ~1; row <= bottom; row += 2) {
-    const I16 y = bin.position.pair_y + row, is_in = is_column & (y >= top) & (y <= bottom);
-    high = max(high, select(is_in, I16::load(bin.tile_high + row * kBinTiles), I16(-1)));
-    if (!Fragments::kIsLess) low = min(low, select(is_in, I16::load(bin.tile_low + row * kBinTiles), I16(0x7fffffff)));
-  }
-  return Fragments::is_behind(bin.state, record, Fragments::kIsLess ? 0 : min_lane(low), max_lane(high));
-}
-
-/// The same for a small or medium triangle.
-template <class Fragments>
-HALFPLANE_INLINE bool is_small_behind(const Bin& bin, const Record& record, const BinBounds& box) {
-  const auto tile_of = [](int x, int y) HALFPLANE_LAMBDA { return (y >> kTileShift) * kBinTiles + (x >> kTileShift); };
-  const int a = tile_of(box.left, box.top), b = tile_of(box.right, box.top), c = tile_of(box.left, box.bottom),
-            d = tile_of(box.right, box.bottom);
-  const bool is_over_two = b > a + 1 || c > a + kBinTiles;
-  if (is_over_two) return is_behind_tiles<Fragments>(bin, record, box);
-  const auto &low = bin.tile_low, &high = bin.tile_high;
-  return Fragments::is_behind(bin.state, record, std::min({low[a], low[b], low[c], low[d]}),
-                              std::max({high[a], high[b], high[c], high[d]}));
+  return true;
 }
 
 /// What the next records need is asked for now.
@@ -57,20 +46,34 @@ HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* fir
     for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
 }
 
-/// A triangle that is drawn by itself.
+/// Of any other record: its tiles that may show it. All tiles of the bin are asked at once, and where all of them hide it
+/// that is kept for the next ones.
 template <class Fragments>
-HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record) {
+HALFPLANE_INLINE std::uint64_t seen_tiles(Bin& bin, const Record& record, const BinBounds& box) {
+  const std::uint64_t tiles = tiles_of(box);
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
+  if (!bin.skip.tiles_hiz) return tiles;
+  const DepthRange range = range_of(bin, record);
+  std::uint64_t behind = ~std::uint64_t{0};
+  if (!Fragments::kIsLess || range.low < bin.closed_from) behind = Fragments::tiles_behind(bin, SameDepths{range});
+  if (Fragments::kIsLess && ~behind == 0) bin.closed_from = std::min(bin.closed_from, range.low);
+  bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(tiles & behind));
+  return tiles & ~behind;
+}
+
+/// A triangle or rectangle that is drawn by itself, in its tiles that are `live`.
+template <class Fragments>
+HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box,
+                                 std::uint64_t live) {
+  // What comes first in the order must be drawn first.
+  if (bin.small.count != 0) draw_batch<Fragments>(bin, slice);
+  if (bin.lines.count != 0) draw_lines<Fragments>(bin, slice);
+  bin.line_tiles = 0;
+  if (record.has(Record::kDrawsNothing)) return;
   BinTriangle triangle;
-  triangle.box = box_of(bin, record);
+  triangle.box = box;
   triangle.is_whole = record.has(Record::kWhole);
-  // Nearer than all of the bin: no need to look at its tiles.
-  const bool may_be_behind = !Fragments::kIsLess || record.z_low >= bin.low;
-  if (bin.skip.tiles_hiz && may_be_behind && is_behind_tiles<Fragments>(bin, record, triangle.box)) {
-    leave_out(bin, triangle.box);
-    if (bin.may_be_lower) find_bin_range(bin);  // what follows may lie behind all of it
-    return;
-  }
-  if (set_up(bin, slice, record, triangle) && !record.has(Record::kDrawsNothing)) draw_large<Fragments>(bin, triangle);
+  draw_large<Fragments>(bin, slice, record, live, triangle);
 }
 
 /// The records of one slice.
@@ -80,36 +83,36 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   for (; first != last; ++first) {
     const Record& record = slice.records[*first];
     fetch_records(slice, first, last);
-    if (bin.skip.tiles_hiz && Fragments::is_behind(bin.state, record, bin.low, bin.high)) {
-      leave_out(bin, box_of(bin, record));
+    if (record.has(Record::kSmall)) {
+      if (is_behind<Fragments>(bin, record, false)) continue;
+      ++bin.small_run;
+      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
       continue;
     }
+    const RecordKind kind = record.kind();
+    if (kind == RecordKind::whole_line || kind == RecordKind::cut_line) {
+      if (is_behind<Fragments>(bin, record, true)) continue;
+      bin.small_run = 0;
+      if (kind == RecordKind::whole_line) {
+        if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
+        continue;
+      }
+      draw_batch<Fragments>(bin, slice);
+      draw_lines<Fragments>(bin, slice);
+      draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
+      continue;
+    }
+    const BinBounds box = box_of(bin, record);
+    const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
+    if (live == 0) continue;
     // A batch pays for medium triangles from the third in a row on.
     constexpr int kAlone = 2;
     const bool is_medium = record.has(Record::kMedium);
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
-    if (record.has(Record::kSmall) || (is_medium && bin.small_run > kAlone)) {
-      // Nearer than what every tile may hold: no need to look at its own.
-      if (bin.skip.tiles_hiz && (!Fragments::kIsLess || record.z_low >= bin.lowest_high)) {
-        const BinBounds at = box_of(bin, record);
-        if (is_small_behind<Fragments>(bin, record, at)) {
-          leave_out(bin, at);
-          continue;
-        }
-      }
-      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
-      continue;
-    }
-    if (record.kind() == RecordKind::whole_line) {
-      if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
-      continue;
-    }
-    draw_batch<Fragments>(bin, slice);
-    draw_lines<Fragments>(bin, slice);
-    if (record.kind() == RecordKind::cut_line)
-      draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
-    else
-      draw_alone<Fragments>(bin, slice, record);
+    if (!is_medium || bin.small_run <= kAlone)
+      draw_alone<Fragments>(bin, slice, record, box, live);
+    else if (bin.small.add(record))
+      draw_batch<Fragments>(bin, slice);
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);
@@ -126,7 +129,7 @@ static void raster(BinJob& job) {
     const std::uint32_t* last = slice.bin_records.data() + slice.bin_first[number + 1];
     if (first == last) continue;
     bin.state = slice.state;
-    find_bin_range(bin);
+    bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
     // Opaque ones twice: for the test that nearly every scene has, and for any.
@@ -136,6 +139,8 @@ static void raster(BinJob& job) {
       draw_records<OpaqueFragments<true>>(bin, slice, first, last);
     else
       draw_records<OpaqueFragments<false>>(bin, slice, first, last);
+    // What another test lets through may lie behind.
+    if (bin.state.depth_test != DepthFunc::less || !bin.state.is_opaque) bin.closed_from = Bin::kOpen;
   }
   finish(bin);
 }

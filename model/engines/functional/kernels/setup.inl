@@ -19,16 +19,25 @@ HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const Ver
   const Words x{a.x, b.x, c.x, 0}, y{a.y, b.y, c.y, 0};
   const Words dx = __builtin_shufflevector(x, x, 1, 2, 0, 3) - x, dy = __builtin_shufflevector(y, y, 1, 2, 0, 3) - y;
   const Words px = (bin.first_x << s) + half - x, py = (bin.first_y << s) + half - y;
-  const auto value_of = [](const Words& v) HALFPLANE_LAMBDA { return __builtin_convertvector(v, Values); };
+  const auto value_of = [](const Words& v) HALFPLANE_LAMBDA {
+#if HALFPLANE_ISA == 128
+    return __builtin_convertvector(v, Values);
+#else  // GCC would convert half and half
+    return (Values)_mm256_cvtepi32_pd((__m128i)v);
+#endif
+  };
   Values value = cross(value_of(dx), value_of(dy), value_of(px), value_of(py)) + value_of(~is_top_left(dx, dy));
   constexpr double kFar = 1 << 30;
-  value *= 1.0 / static_cast<double>(std::int64_t{1} << s);
+  value *= bin.pixel;
   value = value < -kFar ? Values{} - kFar : value;
   value = value > kFar - 1 ? Values{} + (kFar - 1) : value;
   const Words edge = __builtin_convertvector(value + kFar, Words) - (1 << 30);  // floor: truncated above 0
-  std::memcpy(out.edge.data(), &edge, sizeof out.edge);
-  std::memcpy(out.dx.data(), &dx, sizeof out.dx);
-  std::memcpy(out.dy.data(), &dy, sizeof out.dy);
+  std::memcpy(out.edge.data(), &edge, sizeof edge);
+  std::memcpy(out.dx.data(), &dx, sizeof dx);
+  std::memcpy(out.dy.data(), &dy, sizeof dy);
+  constexpr int kSteep = ((1 << 15) - 1) / (kTileSize - 1);
+  const Words slope = (dx < 0 ? -dx : dx) + (dy < 0 ? -dy : dy);
+  out.is_steep = std::max({slope[0], slope[1], slope[2]}) > kSteep;
 }
 
 /// The four channels at once.
@@ -40,7 +49,15 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
   const Channels ab = cb - ca, ac = cc - ca;
   const auto gradient = [R = f.R, k = f.k](const Channels& numerator)
                             HALFPLANE_LAMBDA { return round_shift_channels(numerator * R, k); };
-  const Channels step_x = gradient(ab * f.by - ac * f.ay), step_y = gradient(ac * f.ax - ab * f.bx);
+  const auto times = [](const Channels& code, std::int64_t side) HALFPLANE_LAMBDA {  // 9 bits and 24
+#if HALFPLANE_ISA == 128
+    return code * side;
+#else
+    return (Channels)_mm256_mul_epi32((__m256i)code, (__m256i)(Channels{} + side));
+#endif
+  };
+  const Channels step_x = gradient(times(ab, f.by) - times(ac, f.ay)),
+                 step_y = gradient(times(ac, f.ax) - times(ab, f.bx));
   const Channels at_origin = bin.state.is_flat ? ca : codes(origin);
   store(out.c_anchor,
         (at_origin << F) + step_x * f.dx + step_y * f.dy + static_cast<std::int64_t>(bin.color_format.anchor_bias));
@@ -57,13 +74,17 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
 
 /// A rectangle of one depth and one colour: no edges.
 inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
+  out.z_low = out.z_high = static_cast<std::int32_t>(v.z);
   out.edge = {};
   out.dx = out.dy = {};
   const int F = bin.widths.plane_fraction;
   out.z_anchor = static_cast<std::int64_t>((static_cast<std::uint64_t>(v.z) << F) + bin.depth_format.anchor_bias);
   out.z_tile_x = out.z_tile_y = 0;
   out.z_step_x = out.z_step_y = 0;
+  out.to_low = out.to_high = 0;
   out.is_gentle = true;
+  out.is_narrow = bin.tests_narrow;
+  out.is_steep = false;
   out.c_tile_x = out.c_tile_y = {};
   const Channels codes = channels_of(v.rgba);
   for (std::size_t i = 0; i < 4; ++i)
@@ -73,9 +94,28 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
   out.color = {{}, {}, pair, pair};
 }
 
-/// Depth: its plane from tile to tile, and its steps of a pixel in a lane. `area`: positive.
+/// How far the depths of a tile lie from the one at its anchor, from where it reaches four pixels to the left and up,
+/// three to the right and down. Steps of a pixel, in a tile's units.
+HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out) {
+  const auto low = [](std::int64_t step)
+                       HALFPLANE_LAMBDA { return std::min((kTileSize / 2 - 1) * step, -kTileSize / 2 * step); };
+  const auto high = [](std::int64_t step)
+                        HALFPLANE_LAMBDA { return std::max((kTileSize / 2 - 1) * step, -kTileSize / 2 * step); };
+  const int drop = bin.depth_format.down - bin.depth_format.up + bin.range_bits_dropped;
+  const std::int64_t to_low = (low(step_x) + low(step_y)) >> drop, to_high = (high(step_x) + high(step_y)) >> drop;
+  out.to_low = static_cast<std::int32_t>(to_low);
+  out.to_high = static_cast<std::int32_t>(to_high);
+  // One pixel of the tile is inside the triangle. From there to the anchor, and on to any other, 16 bits must hold the
+  // distance to the middle of the vertices' depths.
+  constexpr std::int64_t kRange = std::int64_t{1} << 15, kRounding = 8;
+  out.is_narrow = bin.tests_narrow && out.z_high - out.z_low < (1 << 16) - kRounding;
+  const std::int64_t half = (std::int64_t{out.z_high} - out.z_low) >> (bin.range_bits_dropped + 1);
+  out.is_gentle = half + 2 * (to_high - to_low) + kRounding < kRange;
+}
+
+/// Depth: its plane from tile to tile, and its steps of a pixel in a lane.
 HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const VertexRow& b, const VertexRow& c,
-                                   const VertexRow& origin, const PlaneSteps& f, std::int64_t area, BinTriangle& out) {
+                                   const VertexRow& origin, const PlaneSteps& f, BinTriangle& out) {
   const LaneFormat& format = bin.depth_format;
   const int s = bin.widths.grid_bits;
   const std::int64_t az = std::int64_t{b.z} - a.z, bz = std::int64_t{c.z} - a.z;
@@ -92,60 +132,87 @@ HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const Ver
       static_cast<std::int64_t>(at_origin + product(step_x, f.dx) + product(step_y, f.dy) + format.anchor_bias);
   out.z_tile_x = step_x << (kTileShift + s);
   out.z_tile_y = step_y << (kTileShift + s);
-  const auto local = [&format](std::int64_t step) HALFPLANE_LAMBDA {
-    const auto rounded = static_cast<std::uint32_t>(round_shift(step, format.step_drop));
-    return static_cast<std::int32_t>(rounded << format.up);
+  const std::int64_t local_x = round_shift(step_x, format.step_drop), local_y = round_shift(step_y, format.step_drop);
+  const auto in_lane = [&format](std::int64_t step) HALFPLANE_LAMBDA {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(step) << format.up);
   };
-  out.z_step_x = local(step_x);
-  out.z_step_y = local(step_y);
-  // A pixel of the tile is inside the triangle; seven steps either way must stay in the window of codes.
-  const auto slope = static_cast<double>(std::abs(numerator_x)) + static_cast<double>(std::abs(numerator_y));
-  const std::int64_t window = (std::int64_t{1} << (bin.config.depth_bits - 1)) - 2 * kTileSize;
-  out.is_gentle =
-      slope * static_cast<double>((kTileSize - 1) << s) < static_cast<double>(window) * static_cast<double>(area);
+  out.z_step_x = in_lane(local_x);
+  out.z_step_y = in_lane(local_y);
+  find_reach(bin, local_x, local_y, out);
 }
 
-/// The triangle's constants; false when it has no area.
-inline bool set_up(const Bin& bin, const Slice& slice, const Record& record, BinTriangle& out) {
+/// The corners of a triangle, turned so that its area is positive.
+struct Corners {
+  const VertexRow *a, *b, *c;
+  PlaneSteps f;  ///< the sides; the rest when the planes are set up
+  std::int64_t area;
+};
+
+/// False where it has no area.
+HALFPLANE_INLINE bool find_corners(const Slice& slice, const Record& record, Corners& out) {
   const VertexRow* v = slice.vertices.data();
-  const VertexRow *a = v + record.v[0], *b = v + record.v[1], *c = v + record.v[2];
-  out.z_low = record.z_low;
-  out.z_high = record.z_high;
-  if (record.kind() == RecordKind::rectangle) {
-    set_up_flat(bin, *a, out);
-    return true;
-  }
+  out.a = v + record.v[0];
+  out.b = v + record.v[1];
+  out.c = v + record.v[2];
   const auto difference = [](std::int32_t p, std::int32_t q) HALFPLANE_LAMBDA { return std::int64_t{p} - q; };
-  PlaneSteps f;
-  f.ax = difference(b->x, a->x);
-  f.ay = difference(b->y, a->y);
-  f.bx = difference(c->x, a->x);
-  f.by = difference(c->y, a->y);
-  std::int64_t area = cross(f.ax, f.ay, f.bx, f.by);
-  if (area == 0) return false;
-  if (area < 0) {
-    std::swap(b, c);
+  PlaneSteps& f = out.f;
+  f.ax = difference(out.b->x, out.a->x);
+  f.ay = difference(out.b->y, out.a->y);
+  f.bx = difference(out.c->x, out.a->x);
+  f.by = difference(out.c->y, out.a->y);
+  out.area = cross(f.ax, f.ay, f.bx, f.by);
+  if (out.area < 0) {
+    std::swap(out.b, out.c);
     std::swap(f.ax, f.bx);
     std::swap(f.ay, f.by);
-    area = -area;
+    out.area = -out.area;
   }
-  set_up_edges(bin, *a, *b, *c, out);
-  const VertexRow* origin = a;  // the smallest (Y, X): two in one place would leave no area
-  const auto is_before = [](const VertexRow& p, const VertexRow& q) HALFPLANE_LAMBDA {
-    return (std::int64_t{p.y} << 32) + p.x < (std::int64_t{q.y} << 32) + q.x;
+  return out.area != 0;
+}
+
+/// The first of its corners in the order of (Y, X): two in one place would leave no area.
+HALFPLANE_INLINE const VertexRow& origin_of(const Corners& corners) {
+  const auto is_before = [](const VertexRow* p, const VertexRow* q) HALFPLANE_LAMBDA {
+    return (std::int64_t{p->y} << 32) + p->x < (std::int64_t{q->y} << 32) + q->x;
   };
-  origin = is_before(*b, *origin) ? b : origin;
-  origin = is_before(*c, *origin) ? c : origin;
+  const VertexRow* origin = corners.a;
+  origin = is_before(corners.b, origin) ? corners.b : origin;
+  origin = is_before(corners.c, origin) ? corners.c : origin;
+  return *origin;
+}
+
+/// What the planes have in common, and that of the depths.
+HALFPLANE_INLINE void set_up_planes(const Bin& bin, const Record& record, Corners& corners, BinTriangle& out) {
+  PlaneSteps& f = corners.f;
+  const VertexRow& origin = origin_of(corners);
   const int s = bin.widths.grid_bits;
   const auto anchor = [s](int first) HALFPLANE_LAMBDA {
     return (std::int64_t{first + kTileSize / 2} << s) + (std::int64_t{1} << (s - 1));
   };
-  f.dx = anchor(bin.first_x) - origin->x;
-  f.dy = anchor(bin.first_y) - origin->y;
-  const Reciprocal reciprocal = fast_reciprocal(area, bin.config.depth_bits + bin.config.reciprocal_extra_bits);
+  f.dx = anchor(bin.first_x) - origin.x;
+  f.dy = anchor(bin.first_y) - origin.y;
+  const Reciprocal reciprocal = fast_reciprocal(corners.area, bin.config.depth_bits + bin.config.reciprocal_extra_bits);
   f.R = static_cast<std::int64_t>(reciprocal.value);
   f.k = reciprocal.shift - bin.widths.plane_fraction;
-  set_up_depth(bin, *a, *b, *c, *origin, f, area, out);
-  set_up_colors(bin, *a, *b, *c, *origin, f, out);
+  out.z_low = record.z_low;
+  out.z_high = record.z_high;
+  set_up_depth(bin, *corners.a, *corners.b, *corners.c, origin, f, out);
+}
+
+HALFPLANE_INLINE void set_up_colors(const Bin& bin, const Corners& corners, BinTriangle& out) {
+  set_up_colors(bin, *corners.a, *corners.b, *corners.c, origin_of(corners), corners.f, out);
+}
+
+/// A triangle or rectangle, whatever is asked of it; false where it has no area.
+HALFPLANE_NOINLINE bool set_up(const Bin& bin, const Slice& slice, const Record& record, BinTriangle& out) {
+  if (record.kind() == RecordKind::rectangle) {
+    set_up_flat(bin, slice.vertices[record.v[0]], out);
+    return true;
+  }
+  Corners corners;
+  if (!find_corners(slice, record, corners)) return false;
+  set_up_edges(bin, *corners.a, *corners.b, *corners.c, out);
+  set_up_planes(bin, record, corners, out);
+  if (bin.state.color_write) set_up_colors(bin, corners, out);
   return true;
 }

@@ -109,15 +109,14 @@ HALFPLANE_INLINE void draw_block(Bin& bin, const Block& block, std::uint64_t& co
   const I16 value = bin.position.column[right] * bin.small.z_step_x[i] +
                     bin.position.row[below] * bin.small.z_step_y[i] + bin.small.z_anchor[of_box][i];
   const I16 depth = decode(value, bin.depth_format, bin.small.z_low[i], bin.small.z_high[i]);
-  std::int32_t* depths = bin.memory.depth.data() + at;
-  const I16 stored = I16::load(depths);
+  const I16 stored = load_depths(bin, at);
   const I16 covered = I16(static_cast<std::int32_t>(block.covered)) << bin.position.to_sign;
   const I16 passed = covered & Fragments::passes(bin.state, depth, stored);  // signs
   const std::uint32_t passed_bits = bits_of(passed);
   covered_pixels += static_cast<unsigned>(std::popcount(block.covered));
   passed_pixels += static_cast<unsigned>(std::popcount(passed_bits));
   if (passed_bits == 0 && bin.skip.fragments_early_z) return;
-  if (bin.state.depth_write) select_by_sign(passed, depth, stored).store(depths);
+  if (bin.state.depth_write) store_depths(bin, at, select_by_sign(passed, depth, stored));
   if (!bin.state.color_write) return;
   const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
     return channel_codes(bin, bin.position.column_pair[right], bin.position.row_pair[below], bin.small.c_step_x[p][i],
@@ -161,6 +160,7 @@ HALFPLANE_INLINE void draw_samples(Bin& bin) {
     };
     packed(channels(0), channels(1), bin.config.color_format).store(color[s].data());
   }
+  const DepthPixels depths(bin);
   const bool has_depth = bin.state.depth_write, has_color = bin.state.color_write;
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
   for (std::uint32_t rest = bin.small.live; rest != 0; rest &= rest - 1) {
@@ -170,11 +170,11 @@ HALFPLANE_INLINE void draw_samples(Bin& bin) {
     for (std::uint32_t left_over = samples; left_over != 0; left_over &= left_over - 1) {
       const auto s = static_cast<std::size_t>(std::countr_zero(left_over));
       const auto at = static_cast<std::size_t>(place[s][i]);
-      const std::int32_t stored = bin.memory.depth[at];
+      const std::int32_t stored = depths.at(at);
       // Stored as it was where it fails: which do, nobody can foresee.
       const std::uint32_t passed = Fragments::passes_one(bin.state, depth[s][i], stored) ? 1U : 0U, mask = 0U - passed;
       passed_pixels += passed;
-      if (has_depth) bin.memory.depth[at] = stored ^ ((stored ^ depth[s][i]) & static_cast<std::int32_t>(mask));
+      if (has_depth) depths.set(at, stored ^ ((stored ^ depth[s][i]) & static_cast<std::int32_t>(mask)));
       if (has_color) bin.memory.color[at] ^= (bin.memory.color[at] ^ static_cast<std::uint32_t>(color[s][i])) & mask;
     }
   }

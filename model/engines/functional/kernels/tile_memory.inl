@@ -48,6 +48,34 @@ inline void fetch_target(const Bin& bin) {
   return static_cast<std::ptrdiff_t>(bin.job.target.at(x, y));
 }
 
+/// The bin's depths, of 16 bits where that is enough, else of 32.
+struct DepthPixels {
+  bool is_narrow;
+  std::uint16_t* narrow;
+  std::int32_t* wide;
+
+  HALFPLANE_INLINE explicit DepthPixels(Bin& bin)
+      : is_narrow(bin.is_narrow), narrow(bin.memory.narrow_depth.data()), wide(bin.memory.depth.data()) {}
+  HALFPLANE_INLINE std::int32_t at(std::size_t pixel) const { return is_narrow ? narrow[pixel] : wide[pixel]; }
+  HALFPLANE_INLINE void set(std::size_t pixel, std::int32_t depth) const {
+    if (is_narrow)
+      narrow[pixel] = static_cast<std::uint16_t>(depth);
+    else
+      wide[pixel] = depth;
+  }
+};
+
+/// Those of the block that begins with pixel `at`.
+HALFPLANE_INLINE I16 load_depths(const Bin& bin, std::size_t at) {
+  return bin.is_narrow ? load_narrow(bin.memory.narrow_depth.data() + at) : I16::load(bin.memory.depth.data() + at);
+}
+HALFPLANE_INLINE void store_depths(Bin& bin, std::size_t at, const I16& depths) {
+  if (bin.is_narrow)
+    store_narrow(depths, bin.memory.narrow_depth.data() + at);
+  else
+    depths.store(bin.memory.depth.data() + at);
+}
+
 using TileBlocks = std::array<I16, 4>;
 
 /// A tile's depths, which are in memory or those of a triangle.
@@ -59,8 +87,8 @@ HALFPLANE_INLINE TileBlocks depths_of(const Bin& bin, int tile) {
     const auto ramp = depth_ramp(bin, t, depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
     for (std::size_t i = 0; i < 4; ++i) blocks[i] = block_depths(bin, t, ramp, i);
   } else {
-    const std::int32_t* from = bin.memory.depth.data() + first_of(tile);
-    for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);
+    const auto from = static_cast<std::size_t>(first_of(tile));
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = load_depths(bin, from + kBlockPixels * i);
   }
   return blocks;
 }
@@ -80,42 +108,38 @@ HALFPLANE_INLINE TileBlocks colors_of(const Bin& bin, int tile) {
   return blocks;
 }
 
-template <class Element>
-void fetch_tile(const Bin& bin, Element* to, int tile, bool is_cleared, std::uint32_t clear,
-                const Framebuffer::Image& image) {
-  const std::ptrdiff_t from = in_target(bin, tile);
-  for (int block = 0; block < 4; ++block) {
-    const std::ptrdiff_t at =
-        from + (block >> 1) * kBlockSize * std::ptrdiff_t{bin.job.target.stride} + (block & 1) * kBlockSize;
-    const I16 value = is_cleared || from < 0 ? I16(static_cast<std::int32_t>(clear))
-                                             : load_block(image.data() + at, bin.job.target.stride);
-    value.store(to + kBlockPixels * block);
+/// A tile of the target, or as a clear leaves it.
+HALFPLANE_INLINE TileBlocks fetched(const Bin& bin, int tile, bool is_cleared, std::uint32_t clear,
+                                    const Framebuffer::Image& image) {
+  TileBlocks blocks;
+  blocks.fill(I16(static_cast<std::int32_t>(clear)));
+  const std::ptrdiff_t from = is_cleared ? -1 : in_target(bin, tile);
+  if (from < 0) return blocks;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto row = static_cast<std::ptrdiff_t>(i >> 1), column = static_cast<std::ptrdiff_t>(i & 1);
+    blocks[i] =
+        load_block(image.data() + from + kBlockSize * (row * bin.job.target.stride + column), bin.job.target.stride);
   }
+  return blocks;
 }
 
 HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
-  std::int32_t* to = bin.memory.depth.data() + first_of(tile);
   const std::int32_t owner = bin.depth_owner[tile];
-  if (owner >= 0) {
-    const TileBlocks blocks = depths_of(bin, tile);
-    for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
-    bin.depth_owner[tile] = Bin::kInMemory;
-    return;
-  }
-  fetch_tile(bin, to, tile, owner == Bin::kCleared, bin.job.clear_depth, bin.job.target.depth);
+  const TileBlocks blocks = owner >= 0
+                                ? depths_of(bin, tile)
+                                : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_depth, bin.job.target.depth);
+  const auto to = static_cast<std::size_t>(first_of(tile));
+  for (std::size_t i = 0; i < 4; ++i) store_depths(bin, to + kBlockPixels * i, blocks[i]);
   bin.depth_owner[tile] = Bin::kInMemory;
 }
 
 HALFPLANE_NOINLINE void fetch_color(Bin& bin, int tile) {
-  std::uint32_t* to = bin.memory.color.data() + first_of(tile);
   const std::int32_t owner = bin.color_owner[tile];
-  if (owner >= 0) {
-    const TileBlocks blocks = colors_of(bin, tile);
-    for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
-    bin.color_owner[tile] = Bin::kInMemory;
-    return;
-  }
-  fetch_tile(bin, to, tile, owner == Bin::kCleared, bin.job.clear_color, bin.job.target.color);
+  const TileBlocks blocks = owner >= 0
+                                ? colors_of(bin, tile)
+                                : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_color, bin.job.target.color);
+  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
+  for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
   bin.color_owner[tile] = Bin::kInMemory;
 }
 
@@ -129,21 +153,27 @@ HALFPLANE_INLINE void need_color(Bin& bin, int tile) {
 }
 
 inline void find_bin_range(Bin& bin) {
-  bin.may_be_lower = false;
-  I16 low = I16::load(bin.tile_low), high = I16::load(bin.tile_high), lowest_high = high;
-  for (int t = 16; t < Bin::kTiles; t += 16) {
-    const I16 highs = I16::load(bin.tile_high + t);
-    low = min(low, I16::load(bin.tile_low + t));
-    high = max(high, highs);
-    lowest_high = min(lowest_high, highs);
-  }
-  bin.low = min_lane(low);
-  bin.high = max_lane(high);
-  bin.lowest_high = min_lane(lowest_high);
+  bin.is_range_old = false;
+  const U64 high = U64::load(bin.tile_high);
+  bin.low = static_cast<std::int32_t>(min_lane(U64::load(bin.tile_low)));
+  bin.high = static_cast<std::int32_t>(max_lane(high));
+  bin.lowest_high = static_cast<std::int32_t>(min_lane(high));
+  bin.closed_from = std::min(bin.closed_from, bin.high + (bin.range_bits_dropped != 0 ? 1 : 0));
+}
+
+HALFPLANE_INLINE void set_range(Bin& bin, int tile, std::int32_t low, std::int32_t high) {
+  bin.tile_low[tile] = static_cast<std::uint16_t>(low >> bin.range_bits_dropped);
+  bin.tile_high[tile] = static_cast<std::uint16_t>(high >> bin.range_bits_dropped);
 }
 
 /// The range of a tile's depths, from its pixels.
 HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
+  if (bin.is_narrow) {
+    const U64 depth = U64::load(bin.memory.narrow_depth.data() + first_of(tile));
+    bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(depth));
+    bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(depth));
+    return;
+  }
   const std::int32_t* from = bin.memory.depth.data() + first_of(tile);
   I16 low = I16::load(from), high = low;
   for (int block = 1; block < 4; ++block) {
@@ -151,8 +181,7 @@ HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
     low = min(low, depth);
     high = max(high, depth);
   }
-  bin.tile_low[tile] = min_lane(low);
-  bin.tile_high[tile] = max_lane(high);
+  set_range(bin, tile, min_lane(low), max_lane(high));
 }
 
 /// A tile may now hold any depths beside what it held. A store, not a minimum: the next triangle of the tile need not
@@ -160,5 +189,5 @@ HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
 template <class Fragments>
 HALFPLANE_INLINE void forget_range(Bin& bin, int tile) {
   if (Fragments::kIsLess || !bin.rises) bin.tile_low[tile] = 0;
-  if (!Fragments::kIsLess && !bin.falls) bin.tile_high[tile] = 0x7fffffff;
+  if (!Fragments::kIsLess && !bin.falls) bin.tile_high[tile] = 0xffff;
 }

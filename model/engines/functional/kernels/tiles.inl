@@ -1,149 +1,276 @@
-// Large triangles: their tiles sixteen at a time, outside, behind, taken as a whole, or drawn block by block.
+// Large triangles: the 64 tiles of a bin at once, a lane each: outside, behind, taken as a whole, or drawn. What is said
+// of a tile is said in 16 bits: a bound that may be a little wide, never wrong. The pixels of a tile, 64 as well, are
+// exact.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// A pair of rows of tiles, one a lane.
-struct TileLanes {
-  I16 live, full;           ///< to be looked at; wholly covered
-  I16 z_low, z_high;        ///< range of the triangle's depths
-  std::array<I16, 3> edge;  ///< at the tiles' first pixels
+/// The 64 lanes of a plane: over the pixels of a tile, block by block, or over the tiles of a bin, row by row. From the
+/// first register the others follow by steps.
+enum class Over { pixels, tiles };
+template <Over over, class T>
+struct Ramp {
+  using Lanes = Pack<T, 64>;
+  using Register = typename Lanes::Register;
+  Register start, by_8, by_16, by_32;  ///< from the first lane to those of the first register; so many lanes on
+
+  HALFPLANE_INLINE Ramp() = default;
+  HALFPLANE_INLINE Ramp(const Bin& bin, T step_x, T step_y) {
+    constexpr bool kPixels = over == Over::pixels;
+    const S64 &column = kPixels ? bin.position.pixel_x : bin.position.tile_x,
+              &row = kPixels ? bin.position.pixel_y : bin.position.tile_y;
+    const Register x = Register{} + step_x, y = Register{} + step_y;
+    start = (Register)column.part[0] * x + (Register)row.part[0] * y;
+    by_8 = kPixels ? y << 1 : y;
+    by_16 = kPixels ? x << 2 : y << 1;
+    by_32 = y << 2;
+  }
+  HALFPLANE_INLINE Lanes operator()(T first) const {
+    constexpr int kParts = Lanes::kParts;
+    Lanes lanes;
+    lanes.part[0] = start + first;
+    if constexpr (kParts == 8) lanes.part[1] = lanes.part[0] + by_8;
+    if constexpr (kParts >= 4) HALFPLANE_EACH_PART(kParts / 4, i, lanes.part[kParts / 4 + i] = lanes.part[i] + by_16)
+    HALFPLANE_EACH_PART(kParts / 2, i, lanes.part[kParts / 2 + i] = lanes.part[i] + by_32)
+    return lanes;
+  }
 };
 
-/// What the pairs of rows of a triangle have in common. Of the depths at the tiles' anchors the bits below `drop`
-/// only carry: where their sums fit 32 bits, that is all that a lane needs.
-struct TileRows {
-  std::array<std::int32_t, 3> outside, cut;  ///< from a tile's first pixel to where an edge is largest, smallest
-  std::array<std::int32_t, 3> edge_step;     ///< from a row of tiles to the next
-  std::array<I16, 3> edge;                   ///< of the first pair of rows
-  I16 beside;                                ///< signs: columns without a pixel of the box
-  std::int32_t to_low, to_high;              ///< from an anchor
-  bool is_narrow;
-  I16 upper, lower;  ///< depth at the anchors of row 0
-  std::int32_t upper_step, lower_step;
-  I16 z_low, z_high;
+/// The same of values of more bits, floored to units of 2^fraction; `fraction`: at most 12, so that fifteen fit 16 bits.
+template <Over over>
+struct LongRamp {
+  Ramp<over, std::int16_t> upper;
+  Ramp<over, std::uint16_t> lower;
+  int fraction;
+
+  HALFPLANE_INLINE LongRamp() = default;
+  HALFPLANE_INLINE LongRamp(const Bin& bin, int fraction_, std::int64_t step_x, std::int64_t step_y)
+      : fraction(fraction_) {
+    upper = Ramp<over, std::int16_t>(bin, upper_of(step_x), upper_of(step_y));
+    lower = Ramp<over, std::uint16_t>(bin, lower_of(step_x), lower_of(step_y));
+  }
+  HALFPLANE_INLINE S64 operator()(std::int64_t first) const {
+    return upper(upper_of(first)) + as<S64>(lower(lower_of(first)) >> fraction);
+  }
+
+ private:
+  HALFPLANE_INLINE std::int16_t upper_of(std::int64_t v) const { return static_cast<std::int16_t>(v >> fraction); }
+  HALFPLANE_INLINE std::uint16_t lower_of(std::int64_t v) const {
+    return static_cast<std::uint16_t>(v & ((1 << fraction) - 1));
+  }
 };
 
-HALFPLANE_INLINE TileRows tile_rows(const Bin& bin, const BinTriangle& t) {
-  TileRows rows;
-  constexpr int kExtent = kTileSize - 1, kSumBits = 4;  // sums of 7 + 7 + 1
-  const I16 x = bin.position.pair_x * kTileSize, y = bin.position.pair_y * kTileSize;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int32_t dx = t.dx[i], dy = t.dy[i];
-    rows.edge[i] = y * dx - x * dy + t.edge[i];
-    rows.edge_step[i] = kTileSize * dx;
-    rows.outside[i] = kExtent * (std::max(dx, 0) + std::max(-dy, 0));
-    rows.cut[i] = kExtent * (std::min(dx, 0) + std::min(-dy, 0));
-  }
-  rows.beside = (x + (kExtent - t.box.left)) | (t.box.right - x);
-  // From the anchor a tile reaches four pixels to the left and up, three to the right and down.
-  const auto reach = [](std::int32_t step, bool is_high) HALFPLANE_LAMBDA {
-    return (step > 0) == is_high ? (kTileSize / 2 - 1) * step : -kTileSize / 2 * step;
-  };
-  rows.to_low = reach(t.z_step_x, false) + reach(t.z_step_y, false);
-  rows.to_high = reach(t.z_step_x, true) + reach(t.z_step_y, true);
-  const int drop = bin.depth_format.drop;
-  rows.is_narrow = drop + kSumBits <= 32;
-  if (rows.is_narrow) {
-    const auto upper = [drop](std::int64_t v) HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v >> drop); };
-    const auto lower = [drop](std::int64_t v)
-                           HALFPLANE_LAMBDA { return static_cast<std::int32_t>(v & ((std::int64_t{1} << drop) - 1)); };
-    rows.upper_step = upper(t.z_tile_y);
-    rows.lower_step = lower(t.z_tile_y);
-    rows.upper = bin.position.pair_x * upper(t.z_tile_x) + bin.position.pair_y * rows.upper_step + upper(t.z_anchor);
-    rows.lower = bin.position.pair_x * lower(t.z_tile_x) + bin.position.pair_y * rows.lower_step + lower(t.z_anchor);
-  }
-  rows.z_low = I16(t.z_low);
-  rows.z_high = I16(t.z_high);
-  return rows;
+HALFPLANE_INLINE S64 every_lane(int value) { return S64(static_cast<std::int16_t>(value)); }
+
+/// Within codes that lie as far from `middle` as 16 bits reach: those in [low, high], of distances.
+HALFPLANE_INLINE U64 clamped(const S64& distance, int low, int high, int middle) {
+  return as<U64>(min(max(distance, every_lane(low - middle)), every_lane(high - middle)) + every_lane(middle));
 }
 
-/// The depths at the anchors of a pair of rows of tiles, in lanes.
-HALFPLANE_INLINE I16 depth_anchors(const Bin& bin, const BinTriangle& t, const TileRows& rows, int row) {
-  if (rows.is_narrow)
-    return (rows.upper + row * rows.upper_step +
-            shift_right_logical(rows.lower + row * rows.lower_step, bin.depth_format.drop))
-           << bin.depth_format.up;
-  const L16 value = convert<std::int64_t>(bin.position.pair_x) * t.z_tile_x +
-                    convert<std::int64_t>(bin.position.pair_y + row) * t.z_tile_y + t.z_anchor;
-  return convert<std::int32_t>(shift_right_logical(value, bin.depth_format.drop)) << bin.depth_format.up;
+/// Of the three edges; the fourth lane is not used.
+typedef std::int32_t EdgeWords __attribute__((vector_size(16)));
+HALFPLANE_INLINE EdgeWords load_edges(const std::array<std::int32_t, 4>& from) {
+  EdgeWords words;
+  std::memcpy(&words, from.data(), sizeof words);
+  return words;
+}
+HALFPLANE_INLINE std::array<std::int32_t, 4> stored(const EdgeWords& words) {
+  std::array<std::int32_t, 4> to;
+  std::memcpy(to.data(), &words, sizeof words);
+  return to;
+}
+HALFPLANE_INLINE EdgeWords smaller(const EdgeWords& a, const EdgeWords& b) { return a < b ? a : b; }
+HALFPLANE_INLINE EdgeWords larger(const EdgeWords& a, const EdgeWords& b) { return a > b ? a : b; }
+
+/// Tiles, a bit each. Either set may lack some.
+struct TileClasses {
+  std::uint64_t outside, full;  ///< no pixel is covered; all are, if the box agrees
+};
+
+/// Each edge in units of 2^drop, floored: fifteen steps and a value make an error below 15.
+HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t) {
+  constexpr int kExtent = kTileSize - 1, kStepBits = 7, kFloored = 14, kLimit = 16192;
+  static_assert(kLimit + 2 * (kBinTiles - 1) * (kTileSize << kStepBits) + 2 * (kExtent << kStepBits) + kFloored <
+                1 << 15);
+  const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
+  const EdgeWords largest = larger(larger(dx, -dx), larger(dy, -dy));
+  typedef float Floats __attribute__((vector_size(16)));
+  const EdgeWords bits = ((EdgeWords) __builtin_convertvector(largest, Floats) >> 23) - 126;
+  const EdgeWords drop = larger(bits - kStepBits, zero);
+  const EdgeWords to_largest = (larger(dx, zero) - smaller(dy, zero)) * kExtent,
+                  to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
+  const EdgeWords limit = zero + kLimit;
+  const EdgeWords first = larger(smaller(load_edges(t.edge) >> drop, limit), -limit);
+  const EdgeWords outer = ((to_largest + (1 << drop) - 1) >> drop) + ((drop != 0) & kFloored);
+  const auto step_x = stored((-kTileSize * dy) >> drop), step_y = stored((kTileSize * dx) >> drop),
+             outermost = stored(first + outer), inner = stored((to_smallest >> drop) - outer);
+  S64 outside(0), cut(0);  // signs
+  for (std::size_t e = 0; e < 3; ++e) {
+    const auto narrow = [e](const auto& words) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(words[e]); };
+    const S64 value = Ramp<Over::tiles, std::int16_t>(bin, narrow(step_x), narrow(step_y))(narrow(outermost));
+    outside |= value;
+    cut |= value + narrow(inner);
+  }
+  return {bits_of(outside), ~bits_of(cut)};
 }
 
-HALFPLANE_INLINE TileLanes classify_tiles(Bin& bin, const BinTriangle& t, const TileRows& rows, int row) {
-  TileLanes lanes;
-  constexpr int kExtent = kTileSize - 1;
-  I16 outside(0), cut(0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    lanes.edge[i] = rows.edge[i] + row * rows.edge_step[i];
-    outside |= lanes.edge[i] + rows.outside[i];
-    cut |= lanes.edge[i] + rows.cut[i];
+/// Ranges of a triangle's depths in the tiles that it touches: the plane at their anchors, of which lanes hold the
+/// distance to the middle of the vertices' depths, and from there to the lowest and the highest.
+struct TileDepths {
+  bool is_known;  ///< else they are the vertices'
+  std::int32_t first, last, middle, to_low, to_high;
+  S64 anchor;
+
+  /// Up to twelve bits of a fraction are kept, of fifteen floored numbers.
+  HALFPLANE_INLINE TileDepths(const Bin& bin, const BinTriangle& t) : is_known(t.is_gentle) {
+    const int dropped = bin.range_bits_dropped;
+    first = t.z_low >> dropped;
+    last = t.z_high >> dropped;
+    middle = (first + last) >> 1;
+    const int fraction = bin.widths.plane_fraction + dropped, kept = std::min(fraction, 12), down = fraction - kept;
+    const std::int64_t zero = std::int64_t{(bin.depth_format.bias >> dropped) + middle} << kept;
+    anchor = LongRamp<Over::tiles>(bin, kept, t.z_tile_x >> down, t.z_tile_y >> down)((t.z_anchor >> down) - zero);
+    // The anchor's fraction, and what of it has been floored, may carry into the bits that to_high has floored.
+    const int tile_fraction = bin.depth_format.down - bin.depth_format.up + dropped;
+    to_low = t.to_low;
+    to_high = t.to_high + (down > 0 && (15 << tile_fraction) >= 1 << kept ? 2 : 1);
   }
-  const I16 y = bin.position.pair_y * kTileSize + row * kTileSize;
-  const I16 apart = rows.beside | (y + (kExtent - t.box.top)) | (t.box.bottom - y);  // from the box
-  if (!t.is_whole) {
-    const I16 x = bin.position.pair_x * kTileSize;
-    cut |= (x - t.box.left) | ((t.box.right - kExtent) - x) | (y - t.box.top) | ((t.box.bottom - kExtent) - y);
+  HALFPLANE_INLINE U64 low() const { return is_known ? at(to_low) : U64(static_cast<std::uint16_t>(first)); }
+  HALFPLANE_INLINE U64 high() const { return is_known ? at(to_high) : U64(static_cast<std::uint16_t>(last)); }
+  HALFPLANE_INLINE U64 at(std::int32_t offset) const {
+    return clamped(anchor + every_lane(offset), first, last, middle);
   }
-  const std::uint32_t box = ~bits_of(apart) & 0xffff;
-  outside |= apart;
-  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(box));
-  if (bin.skip.tiles_outside) {
-    bin.job.counters.skipped.tiles_outside += static_cast<unsigned>(std::popcount(bits_of(outside) & box));
-    lanes.live = ~(outside >> 31);
-  } else {
-    lanes.live = ~(apart >> 31);
-  }
-  lanes.full = ~((outside | cut) >> 31);
-  lanes.z_low = rows.z_low;
-  lanes.z_high = rows.z_high;
-  if (t.is_gentle) {
-    const I16 anchor = depth_anchors(bin, t, rows, row);
-    lanes.z_low = decode(anchor + rows.to_low, bin.depth_format, rows.z_low, rows.z_high);
-    lanes.z_high = decode(anchor + rows.to_high, bin.depth_format, rows.z_low, rows.z_high);
-  }
-  return lanes;
+};
+
+/// The tiles that lie in a box as a whole.
+inline std::uint64_t tiles_inside(const BinBounds& box) {
+  const auto round_up = [](int at) { return (at + kTileSize - 1) & -kTileSize; };
+  const BinBounds inner{round_up(box.left), round_up(box.top), ((box.right + 1) & -kTileSize) - 1,
+                        ((box.bottom + 1) & -kTileSize) - 1};
+  return inner.left > inner.right || inner.top > inner.bottom ? 0 : tiles_of(inner);
 }
 
 /// Forgets the triangles of which no tile is left.
 HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
-  std::array<std::int32_t, BinMemory::kPlanes> moved;
+  std::array<std::int16_t, BinMemory::kPlanes> moved;
   moved.fill(-1);
   for (const auto* owners : {&bin.depth_owner, &bin.color_owner})
-    for (const std::int32_t owner : *owners)
+    for (const std::int16_t owner : *owners)
       if (owner >= 0) moved[static_cast<std::size_t>(owner)] = 0;
   bin.plane_count = 0;
   for (std::size_t i = 0; i < BinMemory::kPlanes; ++i) {
     if (moved[i] < 0) continue;
-    moved[i] = static_cast<std::int32_t>(bin.plane_count);
+    moved[i] = static_cast<std::int16_t>(bin.plane_count);
     bin.memory.planes[bin.plane_count++] = bin.memory.planes[i];
   }
   for (auto* owners : {&bin.depth_owner, &bin.color_owner})
-    for (std::int32_t& owner : *owners)
+    for (std::int16_t& owner : *owners)
       if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
 }
 
 /// Tiles that the triangle takes as a whole.
-HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, int row, const I16& taken, const TileLanes& lanes,
-                                 std::int32_t& plane) {
-  if (plane < 0) {
-    if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
-    plane = static_cast<std::int32_t>(bin.plane_count);
-    bin.memory.planes[bin.plane_count++] = t;
-  }
-  const auto replace = [&](std::int32_t* at, const I16& with)
-                           HALFPLANE_LAMBDA { select(taken, with, I16::load(at)).store(at); };
-  bin.in_memory &= ~(std::uint64_t{bits_of(taken)} << (row * kBinTiles));
+HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t taken, const TileDepths& depths) {
+  if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
+  const S64 plane(static_cast<std::int16_t>(bin.plane_count)), is_taken = lanes_of(taken);
+  bin.memory.planes[bin.plane_count++] = t;
+  const auto replace = [&](auto* at, const auto& with) HALFPLANE_LAMBDA {
+    using Lanes = std::remove_cvref_t<decltype(with)>;
+    select(is_taken, with, Lanes::load(at)).store(at);
+  };
+  bin.in_memory &= ~taken;
+  const auto tiles = static_cast<unsigned>(std::popcount(taken));
   if (bin.state.depth_write) {
-    replace(bin.depth_owner.data() + row * kBinTiles, I16(plane));
-    replace(bin.tile_low + row * kBinTiles, lanes.z_low);
-    replace(bin.tile_high + row * kBinTiles, lanes.z_high);
+    replace(bin.depth_owner.data(), plane);
+    replace(bin.tile_low, depths.low());
+    replace(bin.tile_high, depths.high());
   }
   if (bin.state.color_write) {
-    const I16 owner = I16::load(bin.color_owner.data() + row * kBinTiles);
-    bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(bits_of(taken & ~(owner >> 31))));
-    replace(bin.color_owner.data() + row * kBinTiles, I16(plane));
+    const std::uint64_t unused = taken & ~bits_of(S64::load(bin.color_owner.data()));
+    bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(unused));
+    replace(bin.color_owner.data(), plane);
   }
-  const std::uint64_t pixels = 64 * static_cast<std::uint64_t>(std::popcount(bits_of(taken)));
-  bin.job.counters.skipped.trivially_accepted += pixels / 64;
-  count_fragments(bin, pixels, pixels);
+  bin.job.counters.skipped.trivially_accepted += tiles;
+  count_fragments(bin, 64 * std::uint64_t{tiles}, 64 * std::uint64_t{tiles});
+}
+
+/// What the tiles of a triangle have in common. Copies: what is stored to memory might change it, for all that the
+/// compiler knows.
+struct TileConstants {
+  EdgeWords edge, tile_dx, tile_dy, to_smallest, below;  ///< `below`: less than any value is from the largest
+  bool is_steep, is_whole, is_narrow;
+  std::int32_t z_low, z_high, middle;
+  std::int32_t z_first;  ///< from a tile's anchor to its first pixel, and from codes to the middle: a tile's units
+  std::array<Ramp<Over::pixels, std::int16_t>, 3> edges;
+  std::array<LongRamp<Over::pixels>, 3> steep_edges;
+  LongRamp<Over::pixels> depth;
+
+  HALFPLANE_INLINE TileConstants(const Bin& bin, const BinTriangle& t)
+      : edge(load_edges(t.edge)),
+        is_steep(t.is_steep),
+        is_whole(t.is_whole),
+        is_narrow(t.is_narrow),
+        z_low(t.z_low),
+        z_high(t.z_high),
+        middle((t.z_low + t.z_high) >> 1) {
+    constexpr int kExtent = kTileSize - 1, kSteepFraction = 12;
+    const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
+    tile_dx = dx * kTileSize;
+    tile_dy = dy * kTileSize;
+    to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
+    below = ~((larger(dx, -dx) + larger(dy, -dy)) * kExtent);
+    if (is_steep)
+      for (std::size_t e = 0; e < 3; ++e) steep_edges[e] = {bin, kSteepFraction, -t.dy[e], t.dx[e]};
+    else
+      for (std::size_t e = 0; e < 3; ++e)
+        edges[e] = {bin, static_cast<std::int16_t>(-t.dy[e]), static_cast<std::int16_t>(t.dx[e])};
+    const LaneFormat& format = bin.depth_format;
+    const std::int32_t step_x = t.z_step_x >> format.up, step_y = t.z_step_y >> format.up;
+    depth = {bin, format.down - format.up, step_x, step_y};
+    z_first = -kTileSize / 2 * (step_x + step_y) - ((format.bias + middle) << depth.fraction);
+  }
+};
+
+/// The pixels of a tile outside an edge, as signs. What an edge's smallest value is below its span, or above 0, is the
+/// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits.
+HALFPLANE_INLINE S64 outside_edges(const TileConstants& t, int tile_x, int tile_y) {
+  const EdgeWords at_tile = t.edge + (tile_y * t.tile_dx - tile_x * t.tile_dy);
+  const auto first = stored(smaller(larger(at_tile + t.to_smallest, t.below), EdgeWords{}) - t.to_smallest);
+  if (t.is_steep) return t.steep_edges[0](first[0]) | t.steep_edges[1](first[1]) | t.steep_edges[2](first[2]);
+  const auto narrow = [&first](std::size_t e) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(first[e]); };
+  return t.edges[0](narrow(0)) | t.edges[1](narrow(1)) | t.edges[2](narrow(2));
+}
+
+/// The pixels of a tile outside the triangle's box.
+HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_x, int tile_y) {
+  const auto lanes = [](int at, int tile) HALFPLANE_LAMBDA { return every_lane(at - tile * kTileSize); };
+  const S64 &x = bin.position.pixel_x, &y = bin.position.pixel_y;
+  return (x - lanes(box.left, tile_x)) | (lanes(box.right, tile_x) - x) | (y - lanes(box.top, tile_y)) |
+         (lanes(box.bottom, tile_y) - y);
+}
+
+/// Depth test of a tile whose codes are of 16 bits, in memory or cleared. Returns what passed.
+template <class Fragments>
+HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int tile, std::int32_t anchor,
+                                           const S64& outside) {
+  const S64 distance = t.depth((anchor >> bin.depth_format.up) + t.z_first);
+  const U64 depth = clamped(distance, t.z_low, t.z_high, t.middle);
+  if (bin.depth_owner[tile] != Bin::kCleared) need_depth(bin, tile);
+  std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
+  const U64 stored = U64::load(bin.depth_owner[tile] == Bin::kCleared ? bin.cleared_depths.data() : at);
+  U64 now;
+  std::uint64_t passed;
+  if constexpr (Fragments::kIsLess) {
+    now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
+    passed = ~bits_equal(now, stored);
+  } else {
+    const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
+    now = select(passes, depth, stored);
+    passed = bits_of(passes);
+  }
+  if (passed == 0 || !bin.state.depth_write) return passed;
+  now.store(at);
+  bin.depth_owner[tile] = Bin::kInMemory;
+  bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(now));
+  bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(now));
+  return passed;
 }
 
 template <class Visit>
@@ -154,115 +281,136 @@ HALFPLANE_INLINE void for_each_block(Visit&& visit) {
   visit(std::integral_constant<std::size_t, 3>{});
 }
 
-/// The part of a triangle in one tile, block by block.
+/// Those of a block.
+HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t block) {
+  return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
+}
+
+/// The same with depths in lanes of 32 bits, block by block.
 template <class Fragments>
-HALFPLANE_NOINLINE void draw_tile(Bin& bin, const BinTriangle& t, int tile, bool is_full,
-                                  const std::array<std::int32_t, 3>& edge) {
-  const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
-  const int x = tile_x * kTileSize, y = tile_y * kTileSize;
-  const int left = std::max(t.box.left - x, 0), right = std::min(t.box.right - x, 7);
-  const int top = std::max(t.box.top - y, 0), bottom = std::min(t.box.bottom - y, 7);
-  const bool is_whole = t.is_whole || (left == 0 && top == 0 && right == 7 && bottom == 7);
-  need_depth(bin, tile);
-  const BlockRamp<I16> depth_plane = depth_ramp(bin, t, depth_anchor(bin, t, tile_x, tile_y));
-  std::array<BlockRamp<I16>, 3> edge_plane;
-  for (std::size_t e = 0; e < 3; ++e)
-    edge_plane[e] = {bin.position.block_y * t.dx[e] - bin.position.block_x * t.dy[e] + edge[e],
-                     I16(-kBlockSize * t.dy[e]), I16(kBlockSize * t.dx[e])};
+HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int tile, std::int32_t anchor,
+                                         std::uint64_t covered) {
+  const BlockRamp<I16> plane = depth_ramp(bin, t, anchor);
   // Copies: what is stored to memory might change the members, for all that the compiler knows.
   const LaneFormat format = bin.depth_format;
   const I16 z_low(t.z_low), z_high(t.z_high);
-  const bool has_depth = bin.state.depth_write, skips = bin.skip.fragments_early_z;
-  std::int32_t* const stored_depths = bin.memory.depth.data() + first_of(tile);
-  std::array<I16, 4> passed;                        // signs
-  std::uint64_t covered_bits = 0, passed_bits = 0;  // of a block: sixteen
+  const bool has_depth = bin.state.depth_write;
+  const auto first = static_cast<std::size_t>(first_of(tile));
+  std::uint64_t passed = 0;
   I16 lowest(0x7fffffff), highest(0);
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    constexpr int kX = (block & 1) * kBlockSize, kY = (block >> 1) * kBlockSize;
-    I16 outside(0);  // signs
-    if (!is_full) outside = edge_plane[0](block) | edge_plane[1](block) | edge_plane[2](block);
-    if (!is_whole)
-      outside |= (bin.position.block_x + (kX - left)) | ((right - kX) - bin.position.block_x) |
-                 (bin.position.block_y + (kY - top)) | ((bottom - kY) - bin.position.block_y);
-    std::int32_t* const at = stored_depths + block * kBlockPixels;
-    const I16 stored = I16::load(at), depth = decode(depth_plane(block), format, z_low, z_high);
-    passed[block] = ~outside & Fragments::passes(bin.state, depth, stored);
-    const I16 now = select_by_sign(passed[block], depth, stored);
-    covered_bits |= std::uint64_t{~bits_of(outside) & 0xffff} << (kBlockPixels * block);
-    passed_bits |= std::uint64_t{bits_of(passed[block])} << (kBlockPixels * block);
+    const std::size_t at = first + block * kBlockPixels;
+    const I16 stored = load_depths(bin, at), depth = decode(plane(block), format, z_low, z_high);
+    const I16 is_covered = I16(static_cast<std::int32_t>(block_bits(covered, block))) << bin.position.to_sign;
+    const I16 passes = is_covered & Fragments::passes(bin.state, depth, stored);
+    const I16 now = select_by_sign(passes, depth, stored);
+    passed |= std::uint64_t{bits_of(passes)} << (kBlockPixels * block);
     lowest = min(lowest, now);
     highest = max(highest, now);
-    if (has_depth) now.store(at);
+    if (has_depth) store_depths(bin, at, now);
   });
-  if (bin.state.color_write && (passed_bits != 0 || !skips)) {
-    need_color(bin, tile);
-    const ColorRamp color_plane = color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y));
-    std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
-    const ColorSteps steps = t.color;
-    const LaneFormat color_format = bin.color_format;
-    const ColorFormat pixel_format = bin.config.color_format;
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if ((passed_bits >> (kBlockPixels * block) & 0xffff) == 0 && skips) return;
-      std::uint32_t* const at = pixels + block * kBlockPixels;
-      const I16 color = block_colors(steps, color_plane, block, color_format, pixel_format);
-      select_by_sign(passed[block], color, I16::load(at)).store(at);
-    });
-  }
-  const auto covered_pixels = static_cast<std::uint64_t>(std::popcount(covered_bits)),
-             passed_pixels = static_cast<std::uint64_t>(std::popcount(passed_bits));
-  Counters& counters = bin.job.counters;
-  if (is_full)
-    ++counters.skipped.trivially_accepted;
-  else
-    counters.samples_tested += static_cast<unsigned>((right - left + 1) * (bottom - top + 1));
-  count_fragments(bin, covered_pixels, passed_pixels);
-  if (bin.state.depth_write && passed_pixels != 0) {
-    bin.tile_low[tile] = min_lane(lowest);
-    bin.tile_high[tile] = max_lane(highest);
-  }
+  if (has_depth && passed != 0) set_range(bin, tile, min_lane(lowest), max_lane(highest));
+  return passed;
 }
 
+/// Colours of the pixels that passed, of blocks that have any; of all where nobody may leave them out.
+HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
+  const bool is_cleared = bin.color_owner[tile] == Bin::kCleared;
+  if (is_cleared)
+    bin.color_owner[tile] = Bin::kInMemory;
+  else
+    need_color(bin, tile);
+  const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+  std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
+  const ColorSteps steps = t.color;
+  const LaneFormat format = bin.color_format;
+  const ColorFormat pixel_format = bin.config.color_format;
+  const bool skips = bin.skip.fragments_early_z;
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    std::uint32_t* const at = pixels + block * kBlockPixels;
+    const I16 stored = I16::load(is_cleared ? bin.cleared_colors.data() : at);
+    if (block_bits(passed, block) == 0 && skips) {
+      if (is_cleared) stored.store(at);
+      return;
+    }
+    const I16 color = block_colors(steps, plane, block, format, pixel_format);
+    select_by_bits(block_bits(passed, block), color, stored, bin.position.to_sign).store(at);
+  });
+}
+
+/// Of a triangle in tiles.
+struct PixelCounts {
+  std::uint64_t covered = 0, passed = 0;
+};
+
+/// The part of a triangle in one tile.
 template <class Fragments>
-void draw_large(Bin& bin, const BinTriangle& t) {
-  std::int32_t plane = -1;
-  bin.line_tiles = 0;
-  const TileRows rows = tile_rows(bin, t);
-  bool is_changed = false;
-  for (int row = t.box.top >> kTileShift & ~1; row <= t.box.bottom >> kTileShift; row += 2) {
-    TileLanes lanes = classify_tiles(bin, t, rows, row);
-    std::int32_t* low = bin.tile_low + row * kBinTiles;
-    std::int32_t* high = bin.tile_high + row * kBinTiles;
-    const I16 stored_low = I16::load(low), stored_high = I16::load(high);
-    I16 behind, front;
-    Fragments::compare_ranges(bin.state, lanes.z_low, lanes.z_high, stored_low, stored_high, behind, front);
-    if (bin.skip.tiles_hiz) {
-      bin.job.counters.skipped.tiles_hiz += static_cast<unsigned>(std::popcount(bits_of(lanes.live & behind)));
-      lanes.live &= ~behind;
-    }
-    I16 taken(0);
-    if (bin.skip.attributes && bin.skip.trivially_accepted && (bin.state.depth_write || bin.state.color_write)) {
-      taken = lanes.live & lanes.full & front;
-      if (is_any(taken)) take_tiles(bin, t, row, taken, lanes, plane);
-    }
-    const std::uint32_t full_bits = bits_of(lanes.full);
-    const std::uint32_t live_bits = bits_of(lanes.live);
-    is_changed |= live_bits != 0;
-    std::uint32_t rest = live_bits & ~bits_of(taken);
-    if (rest == 0) continue;
-    struct {
-      std::array<std::array<std::int32_t, 16>, 3> edge;
-    } lane;
-    for (std::size_t e = 0; e < 3; ++e) lanes.edge[e].store(lane.edge[e].data());
-    for (; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const bool is_full = bin.skip.trivially_accepted && (full_bits >> i & 1) != 0;
-      draw_tile<Fragments>(bin, t, row * kBinTiles + static_cast<int>(i), is_full,
-                           {lane.edge[0][i], lane.edge[1][i], lane.edge[2][i]});
-    }
+HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConstants& constants, int tile, bool is_full,
+                                PixelCounts& pixels) {
+  const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
+  S64 outside(0);
+  if (!is_full) outside = outside_edges(constants, tile_x, tile_y);
+  if (!constants.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
+  const std::uint64_t covered = ~bits_of(outside);
+  if (covered == 0) return;
+  if (!constants.is_narrow) need_depth(bin, tile);
+  const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
+  const std::uint64_t passed = constants.is_narrow ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
+                                                   : test_wide<Fragments>(bin, t, tile, anchor, covered);
+  if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) color_tile(bin, t, tile, passed);
+  pixels.covered += static_cast<unsigned>(std::popcount(covered));
+  pixels.passed += static_cast<unsigned>(std::popcount(passed));
+}
+
+/// `full`: of those tiles, which need no look at the edges.
+template <class Fragments>
+HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t tiles, std::uint64_t full) {
+  const TileConstants constants(bin, t);
+  PixelCounts pixels;
+  const auto full_tiles = static_cast<unsigned>(std::popcount(tiles & full)),
+             cut_tiles = static_cast<unsigned>(std::popcount(tiles & ~full));
+  for (; tiles != 0; tiles &= tiles - 1) {
+    const int tile = std::countr_zero(tiles);
+    draw_tile<Fragments>(bin, t, constants, tile, (full >> tile & 1) != 0, pixels);
   }
-  if (!is_changed || !bin.state.depth_write) return;
-  if (!Fragments::kIsLess) return find_bin_range(bin);
-  // An upper bound that only falls: the old one will do.
-  bin.low = std::min(bin.low, t.z_low);
-  bin.may_be_lower = true;
+  bin.job.counters.skipped.trivially_accepted += full_tiles;
+  bin.job.counters.samples_tested += std::uint64_t{kTileSize * kTileSize} * cut_tiles;
+  count_fragments(bin, pixels.covered, pixels.passed);
+}
+
+/// Takes tiles out of a set, for a reason that counts.
+HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint64_t& counter) {
+  counter += static_cast<unsigned>(std::popcount(live & out));
+  live &= ~out;
+}
+
+/// A triangle or rectangle by itself. Of its tiles that are `live`, first those go that its edges leave, then those
+/// behind: only what is left asks for depths, then for colours.
+template <class Fragments>
+HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& record, std::uint64_t live,
+                                 BinTriangle& t) {
+  const bool is_flat = record.kind() == RecordKind::rectangle;
+  auto& skipped = bin.job.counters.skipped;
+  Corners corners;
+  if (is_flat) {
+    set_up_flat(bin, slice.vertices[record.v[0]], t);
+  } else {
+    if (!find_corners(slice, record, corners)) return;
+    set_up_edges(bin, *corners.a, *corners.b, *corners.c, t);
+  }
+  const TileClasses tiles = classify_tiles(bin, t);
+  if (bin.skip.tiles_outside) take_out(live, tiles.outside, skipped.tiles_outside);
+  if (live == 0) return;
+  if (!is_flat) set_up_planes(bin, record, corners, t);
+  const TileDepths depths(bin, t);
+  if (bin.skip.tiles_hiz) take_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
+  if (live == 0) return;
+  if (!is_flat && bin.state.color_write) set_up_colors(bin, corners, t);
+  std::uint64_t full = 0, taken = 0;
+  if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
+  if (full != 0 && bin.skip.attributes && (bin.state.depth_write || bin.state.color_write))
+    taken = full & Fragments::tiles_in_front(bin, depths);
+  if (taken != 0) take_tiles(bin, t, taken, depths);
+  if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full);
+  if (bin.state.depth_write) bin.is_range_old = true;
 }
