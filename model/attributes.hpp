@@ -29,7 +29,7 @@ struct Attribute {
   int planes;                            ///< 1 to 4
   int bits;                              ///< of a code
   std::string_view symbol;               ///< what docs/spec.md calls `bits` in a bound
-  int reciprocal_bits;                   ///< significant bits of the reciprocal that its gradients are made with
+  int reciprocal_bits;                   ///< r: significant bits of the reciprocal that its gradients are made with
   int guard_bits;                        ///< l: fraction bits inside a tile
   bool is_signed = false;                ///< the codes have a sign
   bool is_clamped = true;                ///< to the range of the vertices' codes
@@ -80,7 +80,7 @@ struct AttributeList {
             .planes = needs_alpha(config) ? 4 : 3,
             .bits = 8,
             .symbol = "8",
-            .reciprocal_bits = config.depth_bits + config.reciprocal_extra_bits,
+            .reciprocal_bits = 8 + config.reciprocal_extra_bits,
             .guard_bits = config.local_guard_bits,
             .stored = StoredAs::color});
   return list;

@@ -211,8 +211,8 @@ class OutlineBuilder {
     }
     finish(line.start);
     finish(line.end);
-    auto setup = setup_line(line.start, line.end, context_.state.line_rule, line.drops_last, bounds_of(context_.rect),
-                            context_.config, widths_);
+    auto setup =
+        setup_line(line.start, line.end, context_.state.line_rule, line.drops_last, bounds_of(context_.rect), widths_);
     if (!setup) return;
     setup->primitive_id = number_;
     is_cut |= crosses;

@@ -31,6 +31,7 @@ struct PlaneTable {
   const char* what;
 };
 constexpr PlaneTable kPlaneTables[] = {{"CODE", &AttributeWidths::code, "codes"},
+                                       {"RECIPROCAL", &AttributeWidths::reciprocal, "reciprocals of the area"},
                                        {"PLANE", &AttributeWidths::plane, "values and gradients"},
                                        {"LOCAL", &AttributeWidths::local, "values and gradients inside a tile"},
                                        {"LINE", &AttributeWidths::line, "values along a line"}};

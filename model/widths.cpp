@@ -36,10 +36,9 @@ Width residue(std::string name, std::string bound, int bits) {
 std::string with_symbol(std::string text, std::string_view symbol) { return text.replace(text.find('#'), 1, symbol); }
 
 /// The planes of one attribute. The numerator is twice an area in a box of `side` subpixels by 2^bits - 1 codes.
-AttributeWidths derive_attribute(const Attribute& a, int128 side, const Width& reciprocal, const Widths& w,
-                                 const Config& config) {
+AttributeWidths derive_attribute(const Attribute& a, int128 side, const Widths& w, const Config& config) {
   if (a.is_signed || !a.is_clamped || a.interpolation != Interpolation::affine || a.base != BaseVertex::canonical ||
-      a.guard_bits != config.local_guard_bits || a.reciprocal_bits != config.depth_bits + config.reciprocal_extra_bits)
+      a.guard_bits != config.local_guard_bits)
     throw std::logic_error("no stage interpolates an attribute like " + std::string(a.name) + " yet");
   const std::string name(a.name);
   const int128 max = (int128{1} << a.bits) - 1;
@@ -48,7 +47,8 @@ AttributeWidths derive_attribute(const Attribute& a, int128 side, const Width& r
   d.code = exact(name + " code", bound("2^# - 1"), {0, max});
   d.delta = exact(name + " delta", "code - code", symmetric(max));
   d.numerator = exact(name + " numerator", bound("L * (2^# - 1)"), symmetric(side * max));
-  d.product = exact(name + " product", name + " numerator * reciprocal", d.numerator.range * reciprocal.range);
+  d.reciprocal = exact(name + " reciprocal", bound("2^(m+r) / A, r = # + extra"), {0, int128{1} << a.reciprocal_bits});
+  d.product = exact(name + " product", name + " numerator * reciprocal", d.numerator.range * d.reciprocal.range);
   d.plane = modular(name + " plane", bound("modulo 2^(# + 1 + F)"), a.bits + 1 + w.plane_fraction);
   d.local = modular("local " + name, bound("modulo 2^(# + 1 + l)"), a.bits + 1 + a.guard_bits);
   d.line = residue("line " + name, bound("modulo 2^(# + G')"), a.bits + w.line_guard_bits);
@@ -63,12 +63,12 @@ void derive_attributes(Widths& w, const Config& config, int128 side) {
   w.line_guard_bits = ceil_log2(static_cast<uint128>(int128{2} * config.guard_band)) + 2;
   int r = 0;
   for (const Attribute& a : w.attributes) r = std::max(r, a.reciprocal_bits);
-  w.reciprocal = exact("reciprocal", "2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra", {0, int128{1} << r});
+  w.reciprocal = exact("reciprocal", "2^(m+r) / A, 2^m <= A < 2^(m+1), r of the widest", {0, int128{1} << r});
   w.reciprocal_shift =
       exact("reciprocal shift", "k = m + r, m <= 2 log2 L", {0, floor_log2(static_cast<uint128>(side * side)) + r});
   std::size_t plane = 0, index = 0;
   for (const Attribute& a : w.attributes) {
-    w.attribute[index] = derive_attribute(a, side, w.reciprocal, w, config);
+    w.attribute[index] = derive_attribute(a, side, w, config);
     for (int i = 0; i < a.planes; ++i, ++plane) {
       w.attribute_of[plane] = static_cast<std::uint8_t>(index);
       w.line_mask[plane] = ~0ULL >> (64 - w.attribute[index].line.bits);
@@ -236,7 +236,7 @@ std::vector<const Width*> Widths::all() const& {
   using A = AttributeWidths;
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
-  for (const auto member : {&A::product, &A::plane, &A::local}) add_of_attributes({member});
+  for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
   add({&primitive_id, &slot,       &tile_x,     &tile_y,      &tile_pixel, &stamp_index,    &sample_mask,
        &stored_color, &kind,       &flag,       &depth_func,  &cull_mode,  &pixel_x,        &pixel_y,
        &vertex_color, &hiz_code,   &hiz_update, &memory_lane, &counter,    &line_numerator, &line_position,

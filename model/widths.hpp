@@ -45,8 +45,10 @@ struct Width {
 
 /// What each plane of an attribute takes.
 struct AttributeWidths {
-  Width code, delta, numerator, product, plane, local, line;
+  Width code, delta, numerator, reciprocal, product, plane, local, line;
 
+  /// r: significant bits of the reciprocal.
+  [[nodiscard]] int reciprocal_bits() const { return reciprocal.bits - 1; }
   /// l: fraction bits of a local plane.
   [[nodiscard]] int guard_bits() const { return local.bits - code.bits - 1; }
 };
@@ -73,7 +75,7 @@ struct Widths {
   std::array<AttributeWidths, kMaxAttributes> attribute;
   PerPlane<std::uint8_t> attribute_of{};  ///< index of each plane's attribute
   PerPlane<std::uint64_t> line_mask{};    ///< all ones in AttributeWidths::line
-  Width reciprocal, reciprocal_shift;
+  Width reciprocal, reciprocal_shift;     ///< the widest, which the others are the upper bits of
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, memory_lane, counter;
@@ -81,6 +83,8 @@ struct Widths {
   Width line_numerator, line_position, line_product;   // line_setup
   Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, beside those of the planes
 
+  /// r of the widest reciprocal.
+  [[nodiscard]] int reciprocal_bits() const { return reciprocal.bits - 1; }
   /// Those of one plane.
   [[nodiscard]] const AttributeWidths& of_plane(std::size_t p) const { return attribute[attribute_of[p]]; }
   [[nodiscard]] const AttributeWidths& depth() const { return of_plane(kDepthPlane); }

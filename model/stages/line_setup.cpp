@@ -148,8 +148,7 @@ void setup_attribute(std::int64_t from, std::int64_t to, const Slope& slope, int
 }  // namespace
 
 std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVertex& end, LineRule rule,
-                                    bool drops_last, const PixelBounds& limit, const Config& config,
-                                    const Widths& widths) {
+                                    bool drops_last, const PixelBounds& limit, const Widths& widths) {
   const int s = widths.grid_bits;
   const OctantLine line = to_octant(start, end, rule, s);
   const std::int64_t d = line.minor_delta(), D = line.major_delta();
@@ -182,7 +181,7 @@ std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVer
   out.error = position - row * D + d - D;
 
   Slope slope{{}, q.offset + (steps.low << s), s, widths.line_guard_bits};
-  slope.reciprocal = reciprocal(line.a1 - line.a0, config.depth_bits + config.reciprocal_extra_bits);
+  slope.reciprocal = reciprocal(line.a1 - line.a0, widths.reciprocal_bits());
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
     setup_attribute(start.code[p], end.code[p], slope, widths.of_plane(p).line.bits, out.value[p], out.step[p]);
   out.start = start.code;

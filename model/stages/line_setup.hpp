@@ -31,7 +31,6 @@ namespace halfplane {
 /// The line from `start` to `end` inside `limit` (inclusive, anywhere in the guard band), or nothing when it covers no
 /// pixel there. `drops_last`: leaves out the pixel of `end`; diamond exit leaves it out whatever this says.
 [[nodiscard]] std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVertex& end, LineRule rule,
-                                                  bool drops_last, const PixelBounds& limit, const Config& config,
-                                                  const Widths& widths);
+                                                  bool drops_last, const PixelBounds& limit, const Widths& widths);
 
 }  // namespace halfplane

@@ -31,6 +31,17 @@ int128 gradient(std::int64_t numerator, std::uint64_t reciprocal, const RulesFra
   return (drop > 0 ? product >> drop : product << -drop) << (f.fraction - f.kept);
 }
 
+/// For planes whose reciprocal has so many significant bits.
+void set_reciprocals(RulesFrame& frame, std::int64_t area, int significant_bits) {
+  const Reciprocal nearest = reciprocal(area, significant_bits);
+  frame.shift = nearest.shift;
+  frame.x_reciprocal = frame.y_reciprocal = nearest.value;
+  if (frame.rules.gradients != Gradients::two_reciprocals) return;
+  const uint128 one = uint128{1} << nearest.shift, divisor = static_cast<uint128>(area);
+  frame.x_reciprocal = static_cast<std::uint64_t>(one / divisor);
+  frame.y_reciprocal = static_cast<std::uint64_t>((one + divisor - 1) / divisor);
+}
+
 Plane plane_by_rules(std::int64_t c0, std::int64_t c1, std::int64_t c2, const RulesFrame& f, int bits) {
   const std::int64_t ac = c1 - c0, bc = c2 - c0;
   const Accumulator accumulator = f.rules.accumulator;
@@ -83,16 +94,11 @@ void set_planes(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, con
                                ? std::min(config.local_guard_bits + s, widths.plane_fraction)
                                : widths.plane_fraction,
                    .rules = rules};
-  const Reciprocal nearest = reciprocal(setup.area, config.depth_bits + config.reciprocal_extra_bits);
-  frame.shift = nearest.shift;
-  frame.x_reciprocal = frame.y_reciprocal = nearest.value;
-  if (rules.gradients == Gradients::two_reciprocals) {
-    const uint128 one = uint128{1} << nearest.shift, area = static_cast<uint128>(setup.area);
-    frame.x_reciprocal = static_cast<std::uint64_t>(one / area);
-    frame.y_reciprocal = static_cast<std::uint64_t>((one + area - 1) / area);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const AttributeWidths& attribute = widths.of_plane(p);
+    set_reciprocals(frame, setup.area, attribute.reciprocal_bits());
+    setup.plane[p] = plane_by_rules(v[0].code[p], v[1].code[p], v[2].code[p], frame, attribute.plane.bits);
   }
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
-    setup.plane[p] = plane_by_rules(v[0].code[p], v[1].code[p], v[2].code[p], frame, widths.of_plane(p).plane.bits);
 }
 
 Interpolated interpolate_by_rules(const TriangleSetup& setup, const StudyRules& rules, const Widths& widths, int x,

@@ -12,20 +12,20 @@ namespace {
 struct PlaneFrame {
   std::int64_t ax, ay, bx, by;  ///< v1 - v0 and v2 - v0, subpixels
   std::int64_t dx, dy;          ///< from v0 to the anchor, subpixels
-  Reciprocal reciprocal;
-  int fraction;  ///< F
+  int fraction;                 ///< F
 };
 
-PlaneValue gradient(std::int64_t numerator, const PlaneFrame& frame) {
-  const int128 product = static_cast<int128>(numerator) * static_cast<int128>(frame.reciprocal.value);
-  return static_cast<PlaneValue>(round_shift(product, frame.reciprocal.shift - frame.fraction));  // modulo 2^64
+PlaneValue gradient(std::int64_t numerator, const Reciprocal& reciprocal, int fraction) {
+  const int128 product = static_cast<int128>(numerator) * static_cast<int128>(reciprocal.value);
+  return static_cast<PlaneValue>(round_shift(product, reciprocal.shift - fraction));  // modulo 2^64
 }
 
-void setup_plane(Plane& plane, std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f, int bits) {
+void setup_plane(Plane& plane, std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f,
+                 const Reciprocal& r, int bits) {
   const std::int64_t ac = c1 - c0, bc = c2 - c0;
   const auto wrap = [bits](std::uint64_t value) { return wrap_signed(static_cast<std::int64_t>(value), bits); };
-  plane.step_x = wrap(static_cast<std::uint64_t>(gradient(ac * f.by - bc * f.ay, f)));
-  plane.step_y = wrap(static_cast<std::uint64_t>(gradient(f.ax * bc - f.bx * ac, f)));
+  plane.step_x = wrap(static_cast<std::uint64_t>(gradient(ac * f.by - bc * f.ay, r, f.fraction)));
+  plane.step_y = wrap(static_cast<std::uint64_t>(gradient(f.ax * bc - f.bx * ac, r, f.fraction)));
   // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is a residue of that.
   plane.value = wrap((static_cast<std::uint64_t>(c0) << f.fraction) +
                      static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(f.dx) +
@@ -47,17 +47,16 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
   const auto anchor = [&](int first) {  // centre of pixel first + T/2, subpixels
     return (std::int64_t{first + config.tile_size / 2} << s) + (std::int64_t{1} << (s - 1));
   };
-  const PlaneFrame frame{std::int64_t{v[1].x} - v[0].x,
-                         std::int64_t{v[1].y} - v[0].y,
-                         std::int64_t{v[2].x} - v[0].x,
-                         std::int64_t{v[2].y} - v[0].y,
-                         anchor(first_x) - v[0].x,
-                         anchor(first_y) - v[0].y,
-                         reciprocal(setup.area, config.depth_bits + config.reciprocal_extra_bits),
+  const PlaneFrame frame{std::int64_t{v[1].x} - v[0].x, std::int64_t{v[1].y} - v[0].y, std::int64_t{v[2].x} - v[0].x,
+                         std::int64_t{v[2].y} - v[0].y, anchor(first_x) - v[0].x,      anchor(first_y) - v[0].y,
                          widths.plane_fraction};
+  const int significant_bits = widths.reciprocal_bits();
+  const AreaQuotient quotient = area_quotient(setup.area, significant_bits);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const std::uint32_t c0 = v[0].code[p], c1 = v[1].code[p], c2 = v[2].code[p];
-    setup_plane(setup.plane[p], c0, c1, c2, frame, widths.of_plane(p).plane.bits);
+    const AttributeWidths& attribute = widths.of_plane(p);
+    setup_plane(setup.plane[p], c0, c1, c2, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()),
+                attribute.plane.bits);
     std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({c0, c1, c2});
   }
 }
@@ -73,14 +72,21 @@ void finish_flat_setup(TriangleSetup& setup, const SnappedVertex& v, const Width
 
 }  // namespace
 
-Reciprocal reciprocal(std::int64_t area, int significant_bits) {
+AreaQuotient area_quotient(std::int64_t area, int significant_bits) {
   if (area <= 0) return {};
   const int shift = floor_log2(static_cast<uint128>(area)) + significant_bits;
   const auto divisor = static_cast<std::uint64_t>(area);
-  // One quotient bit more than is kept, then the pipeline's rounding.
-  const std::uint64_t quotient =
-      shift < 63 ? (std::uint64_t{2} << shift) / divisor : static_cast<std::uint64_t>((uint128{2} << shift) / divisor);
-  return {round_shift(quotient, 1), shift};
+  return {
+      shift < 63 ? (std::uint64_t{2} << shift) / divisor : static_cast<std::uint64_t>((uint128{2} << shift) / divisor),
+      shift};
+}
+
+Reciprocal reciprocal(const AreaQuotient& quotient, int dropped) {
+  return {round_shift(quotient.value >> dropped, 1), quotient.shift - dropped};
+}
+
+Reciprocal reciprocal(std::int64_t area, int significant_bits) {
+  return reciprocal(area_quotient(area, significant_bits), 0);
 }
 
 TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths, const Rect& rect) {

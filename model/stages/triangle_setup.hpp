@@ -1,10 +1,11 @@
 // Triangle setup: three snapped vertices in, everything that stays constant over the triangle out.
 //
 //   edges       E_i(p) = dx_i (p_y - y_i) - dy_i (p_x - x_i), folded to one integer per pixel (see edge_function)
-//   reciprocal  R = floor(2^k / A + 1/2), k placing R in [2^(r-1), 2^r], r = B + extra bits: one for all planes
+//   reciprocal  R = floor(2^k / A + 1/2), k placing R in [2^(r-1), 2^r], r = bits of a code + extra: one quotient for all
+//               planes, of which those of shorter codes take the upper bits
 //   planes      z(p) = z_0 + (N_x (p_x - x_0) + N_y (p_y - y_0)) / A, gradients per subpixel with F fraction bits
 //
-// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-r of the depth range inside the
+// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-r of the range of the codes inside the
 // triangle, however thin. Planes live modulo 2^(bits + 1 + F): right inside the triangle, wherever they wrap outside it.
 //
 // Values are given at the first tile of the triangle's box: edges at its first pixel, planes at its anchor (the centre of
@@ -47,12 +48,21 @@ struct TriangleSetup {
   [[nodiscard]] bool is_empty() const { return left > right || top > bottom; }
 };
 
-/// floor(2^shift / area + 1/2): the one division of a triangle.
+/// floor(2^(shift+1) / area): the one division of a triangle, with a bit to round by.
+struct AreaQuotient {
+  std::uint64_t value = 0;
+  int shift = 0;
+};
+[[nodiscard]] AreaQuotient area_quotient(std::int64_t area, int significant_bits);
+
+/// floor(2^shift / area + 1/2).
 struct Reciprocal {
   std::uint64_t value = 0;
   int shift = 0;
 };
 [[nodiscard]] Reciprocal reciprocal(std::int64_t area, int significant_bits);
+/// Without the lowest `dropped` bits: as exactly rounded as the whole.
+[[nodiscard]] Reciprocal reciprocal(const AreaQuotient& quotient, int dropped);
 
 /// The whole setup. Zero area gives an empty box.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths,

@@ -16,7 +16,7 @@ mutant(6 stages/cull.sv "counter: empty triangles count when they face away, too
 
 # triangle_setup
 mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
-  [=[R'(quotient_q[QUOTIENT-R-1])]=] [=[R'(0)]=])
+  [=[R'(quotient_q[QUOTIENT-B-1])]=] [=[R'(0)]=])
 mutant(8 stages/triangle_setup.sv "rounding: the x gradient is truncated"
   [=[P'(shifted_x[0])]=] [=[P'(0)]=])
 mutant(9 stages/triangle_setup.sv "divider: an area that is a power of two has no quotient"

@@ -5,6 +5,7 @@
 // last phase until the next part is free. Whatever is done for each plane is done p phases later for plane p than for plane
 // 0, so that planes come one a cycle, those of one triangle behind those of the other:
 //   divide       the highest bit of the area; R = floor(2^k / A + 1/2), three quotient bits a cycle
+//                (of each plane as many bits of R as its codes need, rounded for themselves)
 //   differences  of the codes, and their ranges
 //   numerators   N_x, N_y
 //   gradients    round(N * R * 2^(F-k))
@@ -34,6 +35,7 @@ module triangle_setup (
   localparam int PLANES = raster_pkg::PLANES;
   localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
   localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = raster_pkg::RECIPROCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
   localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex
@@ -184,13 +186,27 @@ module triangle_setup (
     end
   endgenerate
 
-  /* verilator lint_off UNUSEDSIGNAL */  // spare bits are dropped, the last one that counts is rounded
+  // Of each plane the upper bits, rounded by the next one; what is below is dropped, spare bits with it.
+  /* verilator lint_off UNUSEDSIGNAL */
   logic [QUOTIENT-1:0] quotient_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [R-1:0]        reciprocal_q;
+  logic [PLANES*R-1:0] upper, halves;
+  logic [R-1:0]        reciprocal, reciprocal_q;
+  genvar p;
+  generate
+    for (p = 0; p < PLANES; p++) begin : gen_reciprocal
+      localparam int B = RECIPROCAL_BITS_OF[32*p+:32];
+      assign upper[p*R+:R]  = R'(quotient_q[QUOTIENT-B+:B]) << (R - B);
+      assign halves[p*R+:R] = R'(quotient_q[QUOTIENT-B-1]) << (R - B);
+    end
+  endgenerate
+  always_comb begin
+    reciprocal = upper[0+:R] + halves[0+:R];
+    for (int i = 1; i < PLANES; i++) if (at_q[ROUND+i]) reciprocal = upper[i*R+:R] + halves[i*R+:R];
+  end
   always_ff @(posedge clk_i) begin
     if (moves[ROUND-1]) quotient_q <= quotients[(DIVIDERS-1)*QUOTIENT+:QUOTIENT];
-    if (moves[ROUND]) reciprocal_q <= quotient_q[QUOTIENT-R+:R] + R'(quotient_q[QUOTIENT-R-1]);
+    if (flows[ROUND]) reciprocal_q <= reciprocal;
   end
 
   // ------------------------------------------------------------------------------------------------------- differences
@@ -201,7 +217,6 @@ module triangle_setup (
   logic [Z:0]              start;
   logic signed [DC-1:0]    ac, bc;
   logic                    is_1_below_0, is_2_below_0, is_2_below_1;
-  genvar p;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_codes
       localparam int B = CODE_BITS_OF[32*p+:32];

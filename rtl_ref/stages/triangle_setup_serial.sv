@@ -32,6 +32,7 @@ module triangle_setup_serial (
   localparam int PLANES = raster_pkg::PLANES;
   localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
   localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = raster_pkg::RECIPROCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
   localparam int A = raster_pkg::AREA_BITS;
@@ -269,6 +270,15 @@ module triangle_setup_serial (
     end
   end
 
+  logic [R-1:0] reciprocal;  // of the plane: the bits of the quotient that it keeps, and below them the highest of the others
+  always_comb begin
+    reciprocal = quotient_q;
+    for (int i = 1; i < PLANES; i++)
+      if (unit_q == UNIT'(i))
+        for (int b = 0; b < R; b++)
+          if (b < R - int'(RECIPROCAL_BITS_OF[32*i+:32])) reciprocal[b] = quotient_q[R-int'(RECIPROCAL_BITS_OF[32*i+:32])];
+  end
+
   // ------------------------------------------------------------------------------------------------- multiply and add
   // The serial factor comes lowest bit first and goes on with its sign, so the product comes out modulo any power of two.
   logic               factor, sign_q, restarts, product, addend, negates, carry_q;
@@ -292,10 +302,10 @@ module triangle_setup_serial (
       default: factor = step_y_q[0];
     endcase
   end
-  // R = (quotient + 1) >> 1: its rounding goes in as a carry.
-  assign operand = is_gradient ? ACC'(quotient_q[R-1:1]) : ACC'($signed(ring_q[0+:D]));
+  // R = (quotient + 1) >> 1: its rounding goes in as a carry, through ones where a plane has dropped bits.
+  assign operand = is_gradient ? ACC'(reciprocal[R-1:1]) : ACC'($signed(ring_q[0+:D]));
   assign total   = {acc_q[ACC-1], acc_q, 1'b1} +
-      {operand[ACC-1] && factor, operand & {ACC{factor}}, is_gradient && quotient_q[0] && factor};
+      {operand[ACC-1] && factor, operand & {ACC{factor}}, is_gradient && reciprocal[0] && factor};
   assign product = total[1];
 
   // N_x = -(bc dy0 + ac dy2), N_y = bc dx0 + ac dx2.

@@ -102,8 +102,8 @@ TEST_F(RtlJsonSchema, CosimIsDescribed) {
 }
 
 TEST_F(RtlJsonSchema, MismatchesAreDescribed) {
-  expect_results("cosim", {"triangle --size 32x32 --mutant 8"}, 1);
-  expect_results("reduce", {"triangle --size 32x32 --mutant 8"});
+  expect_results("cosim", {"triangle --size 32x32 --mutant 11"}, 1);
+  expect_results("reduce", {"triangle --size 32x32 --mutant 11"});
   expect_results("mutants", {"--random 20"}, 1);
 }
 

@@ -11,6 +11,7 @@
       logic [PRODUCT_BITS-1:0] product_q;
       logic [P-1:0]            move_q;
       logic                    waits_for_product_q, waits_for_shift_q, waits_for_sum_q;
+      logic [R-1:0]            factor_q;
       logic [P-1:0]            gradient_q, total_q;
       logic [Z:0]              code_q;
       always_ff @(posedge clk_i) begin
@@ -18,6 +19,7 @@
           delta_q <= ac;
           code_q  <= start;
         end
+        if (it_goes[ROUND+k]) factor_q <= reciprocal;
         if (it_goes[SHIFT+k]) gradient_q <= shifted_x[1+:P] + P'(shifted_x[0]);
         if (it_goes[SUM+k]) total_q <= sum;
         numerator_q         <= numerator_x;
@@ -31,6 +33,7 @@
         if (waits_for_product_q) assert (numerator_x == numerator_q);
         if (waits_for_shift_q) assert (product_x_q == product_q);
         if (waits_for_sum_q) assert (move_x_q == move_q);
+        if (it_at_q[PRODUCT+k]) assert (reciprocal_q == factor_q);
         if (it_at_q[MOVE+k]) assert (step_x_q == gradient_q);
       end
       // On their way: differences, codes; and in the chains, whose newest is the highest.
@@ -55,20 +58,17 @@
 
   // Constants while its planes pass by.
   logic [QUOTIENT-1:0] its_quotient_q;
-  logic [R-1:0]        its_reciprocal_q;
   logic [SHIFT_BITS-1:0] its_shift_q;
   logic [D-1:0]        its_corner_q, its_anchor_q;
   always_ff @(posedge clk_i) begin
     if (it_goes[ROUND-1]) its_quotient_q <= quotients[(DIVIDERS-1)*QUOTIENT+:QUOTIENT];
-    if (it_goes[ROUND]) its_reciprocal_q <= quotient_q[QUOTIENT-R+:R] + R'(quotient_q[QUOTIENT-R-1]);
     if (it_goes[SHIFT-1]) its_shift_q <= SHIFT_BITS'(log2_q[LOG2_PART*M+:M]) + SHIFT_BITS'(SHIFT_BASE);
     if (it_goes[NUMERATOR-1])
       its_corner_q <= D'($signed(corner_packet.vertex.x[C+:C])) - D'($signed(corner_packet.vertex.x[0+:C]));
     if (it_goes[MOVE-1]) its_anchor_q <= D'(anchor_x) - D'($signed(anchor_packet.vertex.x[0+:C]));
   end
   always_comb if (runs_q) begin
-    if (it_at_q[ROUND]) assert (quotient_q == its_quotient_q);
-    if (it_at_q[PRODUCT+:PLANES] != '0) assert (reciprocal_q == its_reciprocal_q);
+    if (it_at_q[ROUND+:PLANES] != '0) assert (quotient_q == its_quotient_q);
     if (it_at_q[SHIFT+:PLANES] != '0) assert (shift_q == its_shift_q);
     if (it_at_q[NUMERATOR+:PLANES] != '0) assert (ax_q == its_corner_q);
     if (it_at_q[MOVE+:PLANES] != '0) assert (to_anchor_x_q == its_anchor_q);

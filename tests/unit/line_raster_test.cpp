@@ -382,7 +382,7 @@ TEST(Line, EveryRegisterFitsItsWidthAndEveryPacketItsBits) {
       const auto rule = all_rules()[static_cast<std::size_t>(n % 5)];
       const SnappedVertex start = random_vertex(random, space, n % 2 == 0 ? 1 : 0.01);
       const SnappedVertex end = random_vertex(random, space, n % 2 == 0 ? 1 : 0.01);
-      const auto line = setup_line(start, end, rule.first, rule.second, space.target(), space.config, w);
+      const auto line = setup_line(start, end, rule.first, rule.second, space.target(), w);
       if (!line) continue;
       test::expect_survives_packing(*line, w);
       expect_fits(w.line_stay, line->step_stay);

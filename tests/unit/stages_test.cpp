@@ -163,6 +163,20 @@ TEST(Reciprocal, IsTheNearestQuotientWithAllItsSignificantBits) {
   }
 }
 
+TEST(Reciprocal, OfTheUpperBitsOfAQuotientIsThatOfADivisionOfItsOwn) {
+  Random random(13);
+  for (int n = 0; n < 4000; ++n) {
+    const auto area = n < 1024 ? std::int64_t{n + 1} : static_cast<std::int64_t>(std::exp2(random.between(0, 45)));
+    const int bits = 20 + static_cast<int>(random.index(17));
+    const AreaQuotient quotient = area_quotient(area, bits);
+    for (int dropped = 0; dropped <= bits - 10; ++dropped) {
+      const Reciprocal upper = reciprocal(quotient, dropped), own = reciprocal(area, bits - dropped);
+      ASSERT_EQ(upper.value, own.value) << "area " << area << ", " << bits - dropped << " of " << bits << " bits";
+      ASSERT_EQ(upper.shift, own.shift);
+    }
+  }
+}
+
 TEST(EdgeFunction, SteppedToAnyTileEqualsDirectEvaluation) {
   Random random(12);
   for (const auto name : preset_names()) {

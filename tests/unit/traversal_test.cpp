@@ -214,6 +214,7 @@ TEST(Traversals, EveryTraversalAndRuleEqualsTheExactOracleThroughItsTap) {
         EXPECT_EQ(c.oracle.mismatches, 0u);
         EXPECT_EQ(c.stage_mismatches, 0u);
         EXPECT_LE(c.datapath.max, 0.75);
+        EXPECT_LE(c.color_datapath.max, 0.75);
         samples += c.oracle.samples;
       }
   EXPECT_GT(samples, 50000u);

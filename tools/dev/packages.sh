@@ -20,6 +20,7 @@ libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
 libgtest-dev         test  gtest/gtest.h
 python3-jsonschema   test  /usr/lib/python3/dist-packages/jsonschema/__init__.py
 python3              coverage python3
+valgrind             test  valgrind
 libbenchmark-dev     kernels benchmark/benchmark.h
 verilator            rtl   verilator_bin
 clang-format         lint  clang-format

@@ -397,11 +397,14 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
       return;
     }
   }
+  // Vertices that neighbouring slices share are projected in each: the fewer slices, the fewer of those.
+  constexpr std::size_t kSlicesOfDraw = 16;
+  const std::size_t slice_limit = std::clamp(chunks.primitives / kSlicesOfDraw, kSlicePrimitives, 4 * kSlicePrimitives);
   for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
     const PreparedScene::Chunk& chunk = prepared_->chunks[i];
     if (pending_primitives_ >= kBatchPrimitives) flush();
     if (open_ == nullptr || open_state_ != draw.state || open_->is_lines != is_lines ||
-        open_->triangles + chunk.count > kSlicePrimitives) {
+        open_->triangles + chunk.count > slice_limit) {
       open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
       open_state_ = draw.state;
       open_->is_lines = is_lines;

@@ -64,10 +64,12 @@ package raster_pkg;
   localparam int COLOR_CODE_BITS = 8;  // 2^8 - 1
   localparam int COLOR_DELTA_BITS = 9;  // code - code
   localparam int COLOR_NUMERATOR_BITS = 31;  // L * (2^8 - 1)
-  localparam int RECIPROCAL_BITS = 29;  // 2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra
+  localparam int RECIPROCAL_BITS = 29;  // 2^(m+r) / A, 2^m <= A < 2^(m+1), r of the widest
   localparam int RECIPROCAL_SHIFT_BITS = 7;  // k = m + r, m <= 2 log2 L
+  localparam int DEPTH_RECIPROCAL_BITS = 29;  // 2^(m+r) / A, r = B + extra
+  localparam int COLOR_RECIPROCAL_BITS = 13;  // 2^(m+r) / A, r = 8 + extra
   localparam int DEPTH_PRODUCT_BITS = 75;  // depth numerator * reciprocal
-  localparam int COLOR_PRODUCT_BITS = 59;  // color numerator * reciprocal
+  localparam int COLOR_PRODUCT_BITS = 43;  // color numerator * reciprocal
   localparam int DEPTH_PLANE_BITS = 52;  // modulo 2^(B + 1 + F), F = G + s
   localparam int COLOR_PLANE_BITS = 36;  // modulo 2^(8 + 1 + F)
   localparam int LOCAL_DEPTH_BITS = 31;  // modulo 2^(B + 1 + l), l local guard bits
@@ -106,6 +108,10 @@ package raster_pkg;
   localparam logic [32*PLANES-1:0] CODE_AT = {32'd48, 32'd40, 32'd32, 32'd24, 32'd0};
   localparam int ALL_CODE_BITS = 56;  // of one for each plane
   localparam int MAX_CODE_BITS = 24;  // of the widest
+  localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = {32'd13, 32'd13, 32'd13, 32'd13, 32'd29};  // reciprocals of the area
+  localparam logic [32*PLANES-1:0] RECIPROCAL_AT = {32'd68, 32'd55, 32'd42, 32'd29, 32'd0};
+  localparam int ALL_RECIPROCAL_BITS = 81;  // of one for each plane
+  localparam int MAX_RECIPROCAL_BITS = 29;  // of the widest
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = {32'd36, 32'd36, 32'd36, 32'd36, 32'd52};  // values and gradients
   localparam logic [32*PLANES-1:0] PLANE_AT = {32'd160, 32'd124, 32'd88, 32'd52, 32'd0};
   localparam int ALL_PLANE_BITS = 196;  // of one for each plane

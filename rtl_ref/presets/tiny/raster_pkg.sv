@@ -64,8 +64,10 @@ package raster_pkg;
   localparam int COLOR_CODE_BITS = 8;  // 2^8 - 1
   localparam int COLOR_DELTA_BITS = 9;  // code - code
   localparam int COLOR_NUMERATOR_BITS = 17;  // L * (2^8 - 1)
-  localparam int RECIPROCAL_BITS = 13;  // 2^(m+r) / A, 2^m <= A < 2^(m+1), r = B + extra
+  localparam int RECIPROCAL_BITS = 13;  // 2^(m+r) / A, 2^m <= A < 2^(m+1), r of the widest
   localparam int RECIPROCAL_SHIFT_BITS = 5;  // k = m + r, m <= 2 log2 L
+  localparam int DEPTH_RECIPROCAL_BITS = 13;  // 2^(m+r) / A, r = B + extra
+  localparam int COLOR_RECIPROCAL_BITS = 13;  // 2^(m+r) / A, r = 8 + extra
   localparam int DEPTH_PRODUCT_BITS = 29;  // depth numerator * reciprocal
   localparam int COLOR_PRODUCT_BITS = 29;  // color numerator * reciprocal
   localparam int DEPTH_PLANE_BITS = 22;  // modulo 2^(B + 1 + F), F = G + s
@@ -106,6 +108,10 @@ package raster_pkg;
   localparam logic [32*PLANES-1:0] CODE_AT = {32'd24, 32'd16, 32'd8, 32'd0};
   localparam int ALL_CODE_BITS = 32;  // of one for each plane
   localparam int MAX_CODE_BITS = 8;  // of the widest
+  localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = {32'd13, 32'd13, 32'd13, 32'd13};  // reciprocals of the area
+  localparam logic [32*PLANES-1:0] RECIPROCAL_AT = {32'd39, 32'd26, 32'd13, 32'd0};
+  localparam int ALL_RECIPROCAL_BITS = 52;  // of one for each plane
+  localparam int MAX_RECIPROCAL_BITS = 13;  // of the widest
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = {32'd22, 32'd22, 32'd22, 32'd22};  // values and gradients
   localparam logic [32*PLANES-1:0] PLANE_AT = {32'd66, 32'd44, 32'd22, 32'd0};
   localparam int ALL_PLANE_BITS = 88;  // of one for each plane

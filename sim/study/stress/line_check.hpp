@@ -34,7 +34,7 @@ inline SnappedVertex centre_of(int x, int y, const LineSpace& space) {
 
 inline std::vector<LinePixel> pixels_of(const exact::Line& line, const LineSpace& space, const PixelBounds& limit) {
   std::vector<LinePixel> pixels;
-  const auto setup = setup_line(line.start, line.end, line.rule, line.drops_last, limit, space.config, space.widths);
+  const auto setup = setup_line(line.start, line.end, line.rule, line.drops_last, limit, space.widths);
   if (setup) line_raster(*setup, space.widths, [&](const LinePixel& pixel) { pixels.push_back(pixel); });
   return pixels;
 }

@@ -171,12 +171,14 @@ void WidthObserver::observe_planes(const TriangleStages& stages) {
   const auto v = to_snapped(stages.packet.vertex);
   const int128 ax = int128{v[1].x} - v[0].x, ay = int128{v[1].y} - v[0].y;
   const int128 bx = int128{v[2].x} - v[0].x, by = int128{v[2].y} - v[0].y;
-  const Reciprocal r = reciprocal(stages.setup.area, config_.depth_bits + config_.reciprocal_extra_bits);
-  see(widths_.reciprocal, static_cast<int128>(r.value));
-  see(widths_.reciprocal_shift, r.shift);
+  const Reciprocal widest = reciprocal(stages.setup.area, widths_.reciprocal_bits());
+  see(widths_.reciprocal, static_cast<int128>(widest.value));
+  see(widths_.reciprocal_shift, widest.shift);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
     const AttributeWidths& widths = widths_.of_plane(p);
     const Plane& result = stages.setup.plane[p];
+    const Reciprocal r = reciprocal(stages.setup.area, widths.reciprocal_bits());
+    see(widths.reciprocal, static_cast<int128>(r.value));
     const int128 ac = int128{v[1].code[p]} - v[0].code[p], bc = int128{v[2].code[p]} - v[0].code[p];
     for (const int128 delta : {ac, bc}) see(widths.delta, delta);
     const std::array<int128, 2> numerators{ac * by - bc * ay, ax * bc - bx * ac};
@@ -268,8 +270,7 @@ void WidthObserver::observe_line(const Probe& probe) {
   const int edge = config_.guard_band + 2;
   const PixelBounds everything{-edge, -edge, edge, edge};
   for (const bool is_whole : {true, false}) {
-    const auto line =
-        setup_line(probe.v[0], probe.v[1], probe.rule, false, is_whole ? everything : target_, config_, widths_);
+    const auto line = setup_line(probe.v[0], probe.v[1], probe.rule, false, is_whole ? everything : target_, widths_);
     if (!line) continue;
     observe_positions(probe, *line, is_whole);
     if (is_whole) continue;
@@ -323,7 +324,7 @@ void WidthObserver::observe_attributes(const Probe& probe, const LineSetup& line
   const bool x_major = line.is_x_major, is_negative = x_major ? line.is_x_negative : line.is_y_negative;
   const auto along = [x_major](const SnappedVertex& v) { return x_major ? v.x : v.y; };
   const Ends a = ends_of(along(probe.v[0]), along(probe.v[1]), is_negative, probe.rule, widths_.grid_bits);
-  const Reciprocal r = reciprocal(a.to - a.from, config_.depth_bits + config_.reciprocal_extra_bits);
+  const Reciprocal r = reciprocal(a.to - a.from, widths_.reciprocal_bits());
   see(widths_.reciprocal, static_cast<int128>(r.value));
   see(widths_.reciprocal_shift, r.shift);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {

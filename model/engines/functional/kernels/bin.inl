@@ -101,6 +101,7 @@ struct Bin {
         skip(job.frame.skip),
         depth_format(widths.depth(), 32, widths),
         color_format(widths.color(), 16, widths),
+        is_short(is_short_enough(widths, depth_format, color_format)),
         first_x(job.bin % job.frame.bins_x * kBinSize),
         first_y(job.bin / job.frame.bins_x * kBinSize),
         pixel(1.0 / static_cast<double>(std::int64_t{1} << widths.grid_bits)),
@@ -125,6 +126,7 @@ struct Bin {
   const Widths& widths;
   const Skip& skip;
   LaneFormat depth_format, color_format;
+  bool is_short;         ///< the arithmetic of small triangles
   int first_x, first_y;  ///< pixels
   double pixel;          ///< a subpixel, in pixels
   bool are_lines;        ///< sixteen pixels of a row of the target are a cache line

@@ -1,18 +1,32 @@
 /// Sixteen snapped vertices.
 struct SnappedLanes {
   I16 x, y, z, rgba;
+
+  HALFPLANE_INLINE SnappedLanes(const I16& x_, const I16& y_, const I16& z_, const I16& rgba_)
+      : x(x_), y(y_), z(z_), rgba(rgba_) {}
+  HALFPLANE_INLINE SnappedLanes(const SnappedLanes& v) : SnappedLanes(v.x, v.y, v.z, v.rgba) {}
 };
 
-/// Those that `index` names.
-HALFPLANE_INLINE SnappedLanes load_vertices(const VertexRow* vertices, const std::int32_t* index) {
-  const auto [x, y, z, rgba] = turned_rows([&](int i) HALFPLANE_LAMBDA { return vertices + index[i]; });
+/// Lane i: the one at row_at(i).
+template <class RowAt>
+HALFPLANE_INLINE SnappedLanes load_vertices(RowAt&& row_at) {
+  const auto [x, y, z, rgba] = turned_rows(row_at);
   return {x, y, z, rgba};
+}
+
+/// Those that `index` names.
+HALFPLANE_INLINE SnappedLanes load_rows(const VertexRow* vertices, const std::int32_t* index) {
+  return load_vertices([=](int i) HALFPLANE_LAMBDA { return vertices + index[i]; });
 }
 
 /// Sixteen triangles while they are culled.
 struct CullTriangles {
   std::array<I16, 3> v, x, y, z;
   I16 left, top, right, bottom;
+
+  HALFPLANE_INLINE explicit CullTriangles(const std::array<I16, 3>& corners) {
+    for (std::size_t k = 0; k < 3; ++k) v[k] = corners[k];
+  }
 };
 
 /// Differences of coordinates over a triangle.
@@ -91,6 +105,7 @@ struct CullLanes {
   Cull mode;
   bool is_front_cw;
   LaneLimits small, medium;
+  alignas(64) std::array<std::array<std::int32_t, 16>, 3> at{};  ///< the corners, in memory: where scalars find them
 
   /// Sets of triangles, a bit each.
   struct Sets {
@@ -101,12 +116,11 @@ struct CullLanes {
   };
 
   /// The corners and boxes of triangles whose t.v is known.
-  HALFPLANE_INLINE void load_corners(CullTriangles& t) const {
+  HALFPLANE_INLINE void load_corners(CullTriangles& t) {
+    for (std::size_t k = 0; k < 3; ++k) t.v[k].store(at[k].data());
     const int grid_bits = frame.widths.grid_bits, half = 1 << (grid_bits - 1);
     for (std::size_t k = 0; k < 3; ++k) {
-      std::array<std::int32_t, 16> at;
-      t.v[k].store(at.data());
-      const SnappedLanes corner = load_vertices(slice.vertices.data(), at.data());
+      const SnappedLanes corner = load_rows(slice.vertices.data(), at[k].data());
       t.x[k] = corner.x;
       t.y[k] = corner.y;
       t.z[k] = corner.z;
@@ -143,10 +157,11 @@ struct CullLanes {
                                         : live & ~front;
     sets.empty = bits_of((t.left > t.right) | (t.top > t.bottom)) & live & ~sets.culled;
     sets.drawn = live & ~sets.culled & ~sets.empty;
-    SampleLanes few{I16(0), I16(0)};
-    if (frame.skip.no_sample && sets.drawn != 0) few = covered_samples(t, is_turned, frame.widths.grid_bits);
+    const SampleLanes few = frame.skip.no_sample && sets.drawn != 0
+                                ? covered_samples(t, is_turned, frame.widths.grid_bits)
+                                : SampleLanes{I16(0), I16(0)};
     sets.sampleless = bits_of(few.is_known & (few.samples == 0)) & sets.drawn;
-    return few;
+    return {few.is_known, few.samples};
   }
 
   HALFPLANE_INLINE void count(const Sets& sets) const {
@@ -192,8 +207,7 @@ struct CullLanes {
 
   /// The triangles of `part` from `first` on, `many` or sixteen of them. `number`: of the first, in the slice.
   HALFPLANE_INLINE void operator()(const Slice::Part& part, std::size_t first, std::size_t many, std::size_t number) {
-    CullTriangles t;
-    t.v = corner_lanes(frame, slice, part.first + first, many, number);
+    CullTriangles t(corner_lanes(frame, slice, part.first + first, many, number));
     Sets sets;
     sets.lanes = (1U << many) - 1;
     find_clipped(t, sets);
@@ -231,7 +245,8 @@ static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
                   context.state.cull,
                   context.state.front == FrontFace::cw,
                   {kSmallTiles, kSmallPixelBits, frame.widths},
-                  {kMediumTiles, kMediumPixelBits, frame.widths}};
+                  {kMediumTiles, kMediumPixelBits, frame.widths},
+                  {}};
   std::size_t number = 0;
   for (const Slice::Part& part : slice.parts)
     for (std::size_t first = 0; first < part.count; first += 16) {

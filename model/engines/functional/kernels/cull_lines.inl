@@ -86,8 +86,8 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       if (slice.any_code != 0) codes = gather(slice.codes.data(), v[0]) | gather(slice.codes.data(), v[1]);
       std::array<std::array<std::int32_t, 16>, 2> ends;
       for (std::size_t k = 0; k < 2; ++k) v[k].store(ends[k].data());
-      const SnappedLanes start = load_vertices(slice.vertices.data(), ends[0].data()),
-                         end = load_vertices(slice.vertices.data(), ends[1].data());
+      const SnappedLanes start = load_rows(slice.vertices.data(), ends[0].data()),
+                         end = load_rows(slice.vertices.data(), ends[1].data());
       const OctantLanes line(start.x, start.y, end.x, end.y, rules);
       // In its octant it covers no row beside those of its ends, and the one before where it starts on a border of rows.
       const auto side = [&](const I16& from, const I16& to, const I16& is_negative, bool is_low)

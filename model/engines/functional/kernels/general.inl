@@ -9,8 +9,8 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
   need_depth(bin, tile);
   if (bin.state.color_write) need_color(bin, tile);
   const BlockRamp<I16> depth_plane = depth_ramp(bin, t, depth_anchor(bin, t, tile_x, tile_y));
-  ColorRamp color_plane{};
-  if (bin.state.color_write) color_plane = color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y));
+  const ColorRamp color_plane =
+      bin.state.color_write ? color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y)) : ColorRamp{};
   const ColorFormat format = GeneralFragments::format(bin.config);
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
   for (std::size_t block = 0; block < 4; ++block) {

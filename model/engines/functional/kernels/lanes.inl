@@ -3,7 +3,8 @@
 //
 // Packs go to memory and back register by register. GCC 12 copies what is larger than 16 bytes, std::memcpy and structs
 // in memory alike, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of
-// them: half of the time of a block.
+// them: half of the time of a block. Nor does it compile the copies that it writes itself, of a struct or an array of packs,
+// for the instruction set of this room: a struct that is to be copied says how, and std::array and std::pair are not.
 
 /// For each register of a pack, straight: GCC takes packs apart before it unrolls loops, and keeps those of four registers
 /// and more in memory otherwise.
@@ -36,6 +37,11 @@ struct Pack {
   Register part[kParts];
 
   HALFPLANE_INLINE Pack() = default;
+  HALFPLANE_INLINE Pack(const Pack& from) { *this = from; }
+  HALFPLANE_INLINE Pack& operator=(const Pack& from) {
+    for (int i = 0; i < kParts; ++i) part[i] = from.part[i];
+    return *this;
+  }
   HALFPLANE_INLINE Pack(T value) {  // NOLINT: a number is the same in all lanes
     HALFPLANE_EACH_PART(kParts, i, part[i] = Register{} + value)
   }
@@ -303,6 +309,22 @@ HALFPLANE_INLINE L16 multiply_narrow(const L16& a, const L16& b) {
   return r;
 #endif
 }
+
+HALFPLANE_INLINE D16 floor(const D16& v) {
+  D16 r;
+#if HALFPLANE_ISA == 512
+  for (int i = 0; i < D16::kParts; ++i) r.part[i] = (D16::Register)_mm512_floor_pd((__m512d)v.part[i]);
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < D16::kParts; ++i) r.part[i] = (D16::Register)_mm256_floor_pd((__m256d)v.part[i]);
+#else
+  for (int i = 0; i < 16; ++i)
+    r.part[i / D16::kLanes][i % D16::kLanes] = std::floor(v.part[i / D16::kLanes][i % D16::kLanes]);
+#endif
+  return r;
+}
+
+/// The upper 32 bits of each lane.
+HALFPLANE_INLINE I16 upper_halves(const L16& v) { return convert<std::int32_t>(shift_right_logical(v, 32)); }
 
 /// Two values of 16 bits in the halves of each lane.
 HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }

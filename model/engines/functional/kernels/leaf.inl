@@ -72,8 +72,8 @@ HALFPLANE_INLINE I16 decode(const I16& value, const LaneFormat& format, const I1
   return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, format);
 }
 
-/// reciprocal() by a division in binary64, put right by its remainder: exact.
-HALFPLANE_INLINE Reciprocal fast_reciprocal(std::int64_t area, int significant_bits) {
+/// area_quotient() by a division in binary64, put right by its remainder: exact.
+HALFPLANE_INLINE AreaQuotient fast_area_quotient(std::int64_t area, int significant_bits) {
   const int shift = 63 - std::countl_zero(static_cast<std::uint64_t>(area)) + significant_bits;
   double power;
   const std::uint64_t bits = static_cast<std::uint64_t>(1023 + shift + 1) << 52;
@@ -84,20 +84,46 @@ HALFPLANE_INLINE Reciprocal fast_reciprocal(std::int64_t area, int significant_b
   const auto remainder =
       static_cast<std::int64_t>(numerator - static_cast<std::uint64_t>(quotient) * static_cast<std::uint64_t>(area));
   quotient += remainder < 0 ? -1 : remainder >= area ? 1 : 0;
-  return {static_cast<std::uint64_t>((quotient + 1) >> 1), shift};
+  return {static_cast<std::uint64_t>(quotient), shift};
 }
-/// The reciprocals of sixteen areas below 2^31 and their shifts. significant_bits <= 29: a quotient fits 31 bits.
-HALFPLANE_INLINE void reciprocal_lanes(const I16& area, int significant_bits, L16& value, L16& shift) {
+/// reciprocal() of such a quotient.
+HALFPLANE_INLINE Reciprocal short_reciprocal(const AreaQuotient& quotient, int dropped) {
+  return {((quotient.value >> dropped) + 1) >> 1, quotient.shift - dropped};
+}
+
+/// Sixteen of them, and shifts.
+struct QuotientLanes {
+  I16 value, shift;
+};
+/// Of areas below 2^`area_bits`, where binary64 tells each quotient from the next: its division is exact when rounded down.
+[[nodiscard]] constexpr bool is_exact_division(int area_bits, int significant_bits) {
+  return area_bits + significant_bits + 2 <= 52;
+}
+HALFPLANE_INLINE QuotientLanes exact_quotient_lanes(const I16& area, int significant_bits) {
+  const D16 divisor = convert<double>(max(area, I16(1)));
+  const L16 exponent = as<L16>(divisor) & (std::int64_t{0x7ff} << 52);  // of 2^m
+  const auto power = as<D16>(exponent + (static_cast<std::int64_t>(significant_bits + 1) << 52));
+  return {convert<std::int32_t>(power / divisor), (upper_halves(exponent) >> 20) + (significant_bits - 1023)};
+}
+/// Of areas below 2^31. significant_bits <= 29: a quotient fits 31 bits.
+HALFPLANE_INLINE QuotientLanes quotient_lanes(const I16& area, int significant_bits) {
   const D16 divisor = convert<double>(max(area, I16(1)));
   const auto bits = as<L16>(divisor);
-  shift = shift_right_logical(bits, 52) - (1023 - significant_bits);
+  const L16 shift = shift_right_logical(bits, 52) - (1023 - significant_bits);
   const L16 power_bits = (shift + 1024) << 52;  // of 2^(shift + 1)
   const auto power = as<D16>(power_bits);
   L16 quotient = convert<std::int64_t>(convert<std::int32_t>(power / divisor));
   const L16 remainder = (L16(1) << (shift + 1)) - multiply_narrow(quotient, convert<std::int64_t>(area));
   quotient = quotient + (remainder < 0) - (remainder >= convert<std::int64_t>(area));
-  value = shift_right_logical(quotient + 1, 1);
+  return {convert<std::int32_t>(quotient), convert<std::int32_t>(shift)};
 }
+/// Their reciprocals, without the lowest `dropped` bits.
+struct ReciprocalLanes {
+  I16 value, shift;
+  HALFPLANE_INLINE ReciprocalLanes(const QuotientLanes& quotient, int dropped)
+      : value(shift_right_logical(shift_right_logical(quotient.value, dropped) + 1, 1)),
+        shift(quotient.shift - dropped) {}
+};
 
 /// Gradients of sixteen planes: numerators times reciprocals, rounded.
 struct GradientLanes {
@@ -106,8 +132,8 @@ struct GradientLanes {
   L16 addend, lowered;
 
   /// `k`: bits that a product drops; negative: gains.
-  HALFPLANE_INLINE GradientLanes(const L16& reciprocal_, const I16& k)
-      : reciprocal(reciprocal_),
+  HALFPLANE_INLINE GradientLanes(const I16& reciprocal_, const I16& k)
+      : reciprocal(convert<std::int64_t>(reciprocal_)),
         left(convert<std::int64_t>(max(-k, I16(0)))),
         right(convert<std::int64_t>(max(k, I16(0)))),
         addend(shift_right_logical(L16(1) << right, 1) + kRaise),
@@ -121,6 +147,56 @@ struct GradientLanes {
   HALFPLANE_INLINE L16 rounded(const L16& product) const {
     return shift_right_logical((product << left) + addend, right) - lowered;
   }
+};
+
+/// A value that wraps, in two lanes of 32 bits: the bits below some place, and those from there on.
+struct SplitLanes {
+  I16 upper, lower;
+
+  HALFPLANE_INLINE SplitLanes(const I16& upper_, const I16& lower_) : upper(upper_), lower(lower_) {}
+  HALFPLANE_INLINE SplitLanes(const SplitLanes& from) : SplitLanes(from.upper, from.lower) {}
+  HALFPLANE_INLINE SplitLanes& operator=(const SplitLanes& from) {
+    upper = from.upper;
+    lower = from.lower;
+    return *this;
+  }
+  HALFPLANE_INLINE friend SplitLanes operator+(const SplitLanes& a, const SplitLanes& b) {
+    return {a.upper + b.upper, a.lower + b.lower};
+  }
+  HALFPLANE_INLINE friend SplitLanes operator<<(const SplitLanes& a, int bits) {
+    return {a.upper << bits, a.lower << bits};
+  }
+};
+
+/// The same where binary64 holds the products: numerators times reciprocals below 2^53, gradients below 2^51.
+struct ExactGradientLanes {
+  D16 factor;  ///< R 2^-k
+  int place;   ///< where a gradient is split
+
+  HALFPLANE_INLINE ExactGradientLanes(const I16& reciprocal, const I16& k, int place_) : place(place_) {
+    const L16 power = convert<std::int64_t>(1023 - k) << 52;
+    factor = convert<double>(reciprocal) * as<D16>(power);
+  }
+
+  HALFPLANE_INLINE SplitLanes operator()(const I16& numerator) const { return (*this)(convert<double>(numerator)); }
+  HALFPLANE_INLINE SplitLanes operator()(const D16& numerator) const {
+    constexpr double kInteger = 0x1.8p52;  // what is added to it is an integer in the lower bits
+    const auto bits = as<L16>(floor(numerator * factor + 0.5) + kInteger);
+    return {convert<std::int32_t>(shift_right_logical(bits, place)),
+            convert<std::int32_t>(bits) & ((std::int32_t{1} << place) - 1)};
+  }
+};
+
+/// The same where 32 bits hold the products, and the planes, which wrap.
+struct NarrowGradientLanes {
+  I16 reciprocal, right, addend;
+
+  HALFPLANE_INLINE NarrowGradientLanes(const I16& reciprocal_, const I16& k)
+      : reciprocal(reciprocal_ << max(-k, I16(0))),  // where a product gains bits
+        right(max(k, I16(0))),
+        addend((I16(1) << right) >> 1) {}
+
+  HALFPLANE_INLINE I16 operator()(const I16& numerator) const { return (numerator * reciprocal + addend) >> right; }
 };
 
 /// round_shift(), the lower 32 bits. bits <= 32.

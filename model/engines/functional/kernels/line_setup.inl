@@ -92,21 +92,19 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
 /// took a tenth more instructions.
 HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const FrameContext& frame, int first_x,
                                      int first_y) {
-  const Config& config = frame.config;
   const Widths& widths = frame.widths;
   const LineRules rules(slice.context->state, widths);
   for (int i = batch.count; i < 16; ++i)  // what is not there is like the first
     for (std::size_t k = 0; k < 3; ++k) batch.v[k][static_cast<std::size_t>(i)] = batch.v[k][0];
   const auto fetch = [&](std::size_t k)
-                         HALFPLANE_LAMBDA { return load_vertices(slice.vertices.data(), batch.v[k].data()); };
+                         HALFPLANE_LAMBDA { return load_rows(slice.vertices.data(), batch.v[k].data()); };
   const SnappedLanes start = fetch(0), end = fetch(1);
   const OctantLanes line(start.x, start.y, end.x, end.y, rules);
   const LineWay way = set_up_way(batch, line, rules, first_x, first_y);
-  L16 reciprocal, shift;
-  reciprocal_lanes(line.D, config.depth_bits + config.reciprocal_extra_bits, reciprocal, shift);
-  reciprocal = select(convert<std::int64_t>(line.a1 == line.a0), L16(0), reciprocal);
+  ReciprocalLanes reciprocal(quotient_lanes(line.D, widths.reciprocal_bits()), 0);
+  reciprocal.value = select(line.a1 == line.a0, I16(0), reciprocal.value);
   const int s = rules.grid_bits, guard_bits = widths.line_guard_bits;
-  const GradientLanes gradient(reciprocal, convert<std::int32_t>(shift) - (s + guard_bits));
+  const GradientLanes gradient(reciprocal.value, reciprocal.shift - (s + guard_bits));
   const L16 to_first = convert<std::int64_t>(way.offset), to_bin = convert<std::int64_t>(way.low);
   const std::int64_t half_code = std::int64_t{1} << (guard_bits - 1), half_step = std::int64_t{1} << (s - 1);
   // Values wrap far above their bits: shifts need no sign. Steps do as well, but not where they are still to be shifted

@@ -37,6 +37,12 @@ HALFPLANE_INLINE bool is_behind(Bin& bin, const Record& record, bool is_line) {
   return true;
 }
 
+/// Of the part of a record's box that lies in the bin.
+HALFPLANE_INLINE int first_tile(const Bin& bin, const Record& record) {
+  const int x = std::max(record.left() - bin.first_x, 0), y = std::max(record.top() - bin.first_y, 0);
+  return (y >> kTileShift) * kBinTiles + (x >> kTileShift);
+}
+
 /// What the next records need is asked for now.
 HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
   constexpr std::ptrdiff_t kAhead = 8;
@@ -84,7 +90,9 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     const Record& record = slice.records[*first];
     fetch_records(slice, first, last);
     if (record.has(Record::kSmall)) {
-      if (is_behind<Fragments>(bin, record, false)) continue;
+      // Nearer than what one of its tiles may hold: no need to look at the others, nor at the bin.
+      const bool is_near = Fragments::kIsLess && range_of(bin, record).low < bin.tile_high[first_tile(bin, record)];
+      if (!is_near && is_behind<Fragments>(bin, record, false)) continue;
       ++bin.small_run;
       if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
       continue;

@@ -5,8 +5,20 @@
 struct PlaneSteps {
   std::int64_t ax, ay, bx, by;  ///< second and third corner from the first
   std::int64_t dx, dy;          ///< from the origin to the anchor of the bin's first tile
-  std::int64_t R;               ///< reciprocal of the area
-  int k;                        ///< bits that a product with it drops
+  AreaQuotient quotient;
+};
+
+/// What makes a numerator a gradient.
+struct GradientFactor {
+  std::int64_t R;  ///< reciprocal of the area
+  int k;           ///< bits that a product with it drops
+
+  HALFPLANE_INLINE GradientFactor(const AreaQuotient& quotient, const AttributeWidths& attribute,
+                                  const Widths& widths) {
+    const Reciprocal reciprocal = short_reciprocal(quotient, widths.reciprocal_bits() - attribute.reciprocal_bits());
+    R = static_cast<std::int64_t>(reciprocal.value);
+    k = reciprocal.shift - widths.plane_fraction;
+  }
 };
 
 /// The three edges at once: edge_function(), whose values binary64 holds. Inside a bin they move by less than 2^30:
@@ -47,7 +59,8 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
   const auto codes = [](const VertexRow& v) HALFPLANE_LAMBDA { return channels_of(v.rgba); };
   const Channels ca = codes(a), cb = bin.state.is_flat ? ca : codes(b), cc = bin.state.is_flat ? ca : codes(c);
   const Channels ab = cb - ca, ac = cc - ca;
-  const auto gradient = [R = f.R, k = f.k](const Channels& numerator)
+  const GradientFactor factor(f.quotient, bin.widths.color(), bin.widths);
+  const auto gradient = [R = factor.R, k = factor.k](const Channels& numerator)
                             HALFPLANE_LAMBDA { return round_shift_channels(numerator * R, k); };
   const auto times = [](const Channels& code, std::int64_t side) HALFPLANE_LAMBDA {  // 9 bits and 24
 #if HALFPLANE_ISA == 128
@@ -122,7 +135,8 @@ HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const Ver
   const std::int64_t numerator_x = az * f.by - bz * f.ay, numerator_y = f.ax * bz - f.bx * az;
   constexpr std::int64_t kNarrow = std::int64_t{1} << 32;  // times a reciprocal of 30 bits
   const bool is_narrow = std::abs(numerator_x) < kNarrow && std::abs(numerator_y) < kNarrow;
-  const auto gradient = [=, R = f.R, k = f.k](std::int64_t numerator) HALFPLANE_LAMBDA {
+  const GradientFactor factor(f.quotient, bin.widths.depth(), bin.widths);
+  const auto gradient = [=, R = factor.R, k = factor.k](std::int64_t numerator) HALFPLANE_LAMBDA {
     return is_narrow ? round_shift(numerator * R, k)
                      : static_cast<std::int64_t>(round_shift(static_cast<int128>(numerator) * R, k));
   };
@@ -191,9 +205,7 @@ HALFPLANE_INLINE void set_up_planes(const Bin& bin, const Record& record, Corner
   };
   f.dx = anchor(bin.first_x) - origin.x;
   f.dy = anchor(bin.first_y) - origin.y;
-  const Reciprocal reciprocal = fast_reciprocal(corners.area, bin.config.depth_bits + bin.config.reciprocal_extra_bits);
-  f.R = static_cast<std::int64_t>(reciprocal.value);
-  f.k = reciprocal.shift - bin.widths.plane_fraction;
+  f.quotient = fast_area_quotient(corners.area, bin.widths.reciprocal_bits());
   out.z_low = record.z_low;
   out.z_high = record.z_high;
   set_up_depth(bin, *corners.a, *corners.b, *corners.c, origin, f, out);

@@ -82,7 +82,8 @@ HALFPLANE_INLINE std::size_t find_blocks(Bin& bin) {
     tested += static_cast<unsigned>((columns + 1) * (rows + 1));
     if (columns < 2 && rows < 2) continue;
     for (int dy = 0; dy <= rows; ++dy) {
-      std::array<I16, 3> at = edge;
+      std::array<I16, 3> at;
+      for (std::size_t e = 0; e < 3; ++e) at[e] = edge[e];
       for (int dx = 0; dx <= columns; ++dx) {
         if (dx >= 2 || dy >= 2)
           add(place + kColumn * static_cast<std::uint32_t>(dx) + kRow * static_cast<std::uint32_t>(dy),
@@ -136,50 +137,138 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin) {
   count_fragments(bin, covered, passed);
 }
 
-/// Triangles whose few samples are known: a triangle a lane, then sample by sample in their order.
-template <class Fragments>
-HALFPLANE_INLINE void draw_samples(Bin& bin) {
-  constexpr std::size_t kSamples = 4;
-  alignas(64) std::array<SmallBatch::Lane, kSamples> depth, color, place;
-  const I16 left = I16::load(bin.small.left.data()), top = I16::load(bin.small.top.data());
-  const auto from_anchor = [](const I16& at) HALFPLANE_LAMBDA { return (at & (kTileSize - 1)) - kTileSize / 2; };
-  const std::array<I16, 2> x{left, left + 1}, y{top, top + 1};
-  const std::array<I16, 2> column{from_anchor(x[0]), from_anchor(x[1])}, row{from_anchor(y[0]), from_anchor(y[1])};
-  const auto load = [](const SmallBatch::Lane& lane) HALFPLANE_LAMBDA { return I16::load(lane.data()); };
-  for (std::size_t s = 0; s < kSamples; ++s) {
-    const std::size_t i = s & 1, j = s >> 1, anchor = i + kMediumTiles * j;
-    place_of(x[i], y[j]).store(place[s].data());
-    const I16 value =
-        column[i] * load(bin.small.z_step_x) + row[j] * load(bin.small.z_step_y) + load(bin.small.z_anchor[anchor]);
-    decode(value, bin.depth_format, load(bin.small.z_low), load(bin.small.z_high)).store(depth[s].data());
-    if (!bin.state.color_write) continue;
-    const I16 columns = pairs(column[i], column[i]), rows = pairs(row[j], row[j]);
-    const auto channels = [&](std::size_t p) HALFPLANE_LAMBDA {
-      return channel_codes(bin, columns, rows, load(bin.small.c_step_x[p]), load(bin.small.c_step_y[p]),
-                           load(bin.small.c_anchor[p][anchor]), load(bin.small.c_low[p]), load(bin.small.c_high[p]));
+/// The samples of triangles that have few, round by round: of each triangle one more.
+struct SampleRounds {
+  static constexpr std::size_t kMost = 4;
+  std::size_t count = 0;
+  alignas(64) std::array<SmallBatch::Lane, kMost> to_x, to_y;   ///< FromOrigin of its tile's anchor
+  alignas(64) std::array<SmallBatch::Lane, kMost> column, row;  ///< from there, in both halves
+  alignas(64) std::array<SmallBatch::Lane, kMost> place, depth, color;
+
+  [[nodiscard]] HALFPLANE_INLINE FromOrigin to(std::size_t round) const {
+    return {I16::load(to_x[round].data()), I16::load(to_y[round].data())};
+  }
+};
+
+/// Where they are. As many rounds as one triangle has samples; who has none left has a place somewhere in the bin.
+HALFPLANE_INLINE void find_samples(const Bin& bin, const SmallCorners& corners, SampleRounds& rounds) {
+  const SmallBatch& batch = bin.small;
+  const I16 left = I16::load(batch.left.data()), top = I16::load(batch.top.data());
+  I16 rest = I16::load(batch.samples.data());
+  for (rounds.count = 0; is_any(rest != 0); ++rounds.count) {
+    const I16 sample = rest & -rest, is_last = shift_right_logical(sample, 3);  // 1 2 / 4 8
+    rest &= rest - 1;
+    const I16 x = left + ((shift_right_logical(sample, 1) & 1) | is_last),
+              y = top + ((shift_right_logical(sample, 2) & 1) | is_last);
+    const FromOrigin to = anchor_from_origin(corners, x, y, bin.widths.grid_bits, bin.first_x, bin.first_y);
+    const I16 column = (x & (kTileSize - 1)) - kTileSize / 2, row = (y & (kTileSize - 1)) - kTileSize / 2;
+    const std::size_t r = rounds.count;
+    to.x.store(rounds.to_x[r].data());
+    to.y.store(rounds.to_y[r].data());
+    pairs(column, column).store(rounds.column[r].data());
+    pairs(row, row).store(rounds.row[r].data());
+    place_of(x, y).store(rounds.place[r].data());
+  }
+}
+
+template <class Arithmetic>
+HALFPLANE_INLINE void sample_depths(const Bin& bin, const SmallPlanes<Arithmetic>& planes, SampleRounds& rounds) {
+  const LaneFormat& format = bin.depth_format;
+  const auto [x, y] = planes.depth_gradients(format);
+  const I16 step_x = local_step(x, format), step_y = local_step(y, format);
+  const I16 &low = planes.corners.z_low, &high = planes.corners.z_high;
+  for (std::size_t r = 0; r < rounds.count; ++r) {
+    const I16 anchor =
+        narrowed(plane_at(rounds.to(r), bin.widths.plane_fraction, planes.corners.origin.z, x, y, format), format);
+    const I16 column = I16::load(rounds.column[r].data()) >> 16, row = I16::load(rounds.row[r].data()) >> 16;
+    decode(column * step_x + row * step_y + anchor, format, low, high).store(rounds.depth[r].data());
+  }
+}
+
+/// A channel: half of a lane.
+template <class Step>
+struct SampleChannel {
+  I16 at_origin;
+  Step x, y;
+  I16 step_x, step_y;
+};
+
+/// Two channels of each round, to `code`.
+template <class Arithmetic>
+HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>& planes, std::size_t pair,
+                                  const SampleRounds& rounds, std::array<SmallBatch::Lane, SampleRounds::kMost>& code) {
+  const LaneFormat& format = bin.color_format;
+  const PairCodes codes(planes.corners, pair, bin.state.is_flat);
+  const auto gradient = planes.color();
+  const auto channel = [&](std::size_t half) HALFPLANE_LAMBDA {
+    const auto of_half = [half](const I16& both) HALFPLANE_LAMBDA { return PairCodes::of_half(both, half); };
+    const auto [x, y] = channel_gradients(planes.corners, gradient, codes, half);
+    using Step = std::remove_const_t<decltype(x)>;
+    return SampleChannel<Step>{of_half(codes.at_origin), x, y, local_step(x, format), local_step(y, format)};
+  };
+  const auto first = channel(0), second = channel(1);
+  const I16 step_x = pairs(first.step_x, second.step_x), step_y = pairs(first.step_y, second.step_y);
+  for (std::size_t r = 0; r < rounds.count; ++r) {
+    const auto anchor = [&](const auto& half) HALFPLANE_LAMBDA {
+      return narrowed(plane_at(rounds.to(r), bin.widths.plane_fraction, half.at_origin, half.x, half.y, format),
+                      format);
     };
-    packed(channels(0), channels(1), bin.config.color_format).store(color[s].data());
+    channel_codes(bin, I16::load(rounds.column[r].data()), I16::load(rounds.row[r].data()), step_x, step_y,
+                  pairs(anchor(first), anchor(second)), codes.low, codes.high)
+        .store(code[r].data());
   }
-  const DepthPixels depths(bin);
-  const bool has_depth = bin.state.depth_write, has_color = bin.state.color_write;
-  std::uint64_t covered_pixels = 0, passed_pixels = 0;
-  for (std::uint32_t rest = bin.small.live; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    const auto samples = static_cast<std::uint32_t>(bin.small.samples[i]);
-    covered_pixels += static_cast<unsigned>(std::popcount(samples));
-    for (std::uint32_t left_over = samples; left_over != 0; left_over &= left_over - 1) {
-      const auto s = static_cast<std::size_t>(std::countr_zero(left_over));
-      const auto at = static_cast<std::size_t>(place[s][i]);
-      const std::int32_t stored = depths.at(at);
+}
+
+/// Depths and colours of the samples of a batch, from the planes at the anchors of their tiles.
+template <class Arithmetic>
+HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRounds& rounds) {
+  const SmallCorners corners = small_corners(bin.small, slice);
+  const SmallPlanes<Arithmetic> planes(corners, bin.widths);
+  find_samples(bin, corners, rounds);
+  sample_depths(bin, planes, rounds);
+  if (!bin.state.color_write) return;
+  alignas(64) std::array<SmallBatch::Lane, SampleRounds::kMost> red_blue, green_alpha;
+  sample_pair(bin, planes, 0, rounds, red_blue);
+  sample_pair(bin, planes, 1, rounds, green_alpha);
+  for (std::size_t r = 0; r < rounds.count; ++r)
+    packed(I16::load(red_blue[r].data()), I16::load(green_alpha[r].data()), bin.config.color_format)
+        .store(rounds.color[r].data());
+}
+
+/// Triangles whose few samples are known: their samples one by one, in their order. What is written, the state says.
+template <class Fragments, bool kDepth, bool kColor, class Depth>
+HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* depths) {
+  const SliceState state = bin.state;
+  std::uint32_t* const colors = bin.memory.color.data();
+  unsigned covered_pixels = 0, passed_pixels = 0;
+  for (std::uint32_t lanes = bin.small.live; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
+    const auto samples = static_cast<unsigned>(bin.small.samples[i]);
+    std::size_t round = 0;
+    for (unsigned rest = samples; rest != 0; rest &= rest - 1, ++round) {
+      const auto at = static_cast<std::uint32_t>(rounds.place[round][i]);
+      const std::int32_t depth = rounds.depth[round][i], stored = depths[at];
       // Stored as it was where it fails: which do, nobody can foresee.
-      const std::uint32_t passed = Fragments::passes_one(bin.state, depth[s][i], stored) ? 1U : 0U, mask = 0U - passed;
-      passed_pixels += passed;
-      if (has_depth) depths.set(at, stored ^ ((stored ^ depth[s][i]) & static_cast<std::int32_t>(mask)));
-      if (has_color) bin.memory.color[at] ^= (bin.memory.color[at] ^ static_cast<std::uint32_t>(color[s][i])) & mask;
+      const bool passed = Fragments::passes_one(state, depth, stored);
+      passed_pixels += passed ? 1 : 0;
+      if (kDepth) depths[at] = static_cast<Depth>(passed ? depth : stored);
+      if (kColor) {
+        const std::uint32_t color = static_cast<std::uint32_t>(rounds.color[round][i]), old = colors[at];
+        colors[at] = passed ? color : old;
+      }
     }
+    covered_pixels += static_cast<unsigned>(round);
   }
-  bin.job.counters.samples_tested += kSamples * static_cast<unsigned>(std::popcount(bin.small.live));
+  bin.job.counters.samples_tested += 4 * static_cast<unsigned>(std::popcount(bin.small.live));
   count_fragments(bin, covered_pixels, passed_pixels);
+}
+template <class Fragments, class Depth>
+HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* depths) {
+  const bool has_depth = bin.state.depth_write, has_color = bin.state.color_write;
+  if (has_depth && has_color) return draw_samples<Fragments, true, true>(bin, rounds, depths);
+  if (has_depth) return draw_samples<Fragments, true, false>(bin, rounds, depths);
+  has_color ? draw_samples<Fragments, false, true>(bin, rounds, depths)
+            : draw_samples<Fragments, false, false>(bin, rounds, depths);
 }
 
 /// Draws the small and medium triangles that wait.
@@ -189,14 +278,23 @@ void draw_batch(Bin& bin, const Slice& slice) {
   bin.line_tiles = 0;
   load_records(bin.small, bin.first_x, bin.first_y);
   const BatchTiles tiles = batch_tiles(bin);
-  if (tiles.is_over_two)
-    set_up_small<kMediumTiles>(bin.small, slice, bin.job.frame, bin.depth_format, bin.color_format, bin.first_x,
-                               bin.first_y);
-  else
-    set_up_small<kSmallTiles>(bin.small, slice, bin.job.frame, bin.depth_format, bin.color_format, bin.first_x,
-                              bin.first_y);
-  const bool is_changed = touch_tiles<Fragments>(bin, tiles.touched);
-  bin.small.has_samples ? draw_samples<Fragments>(bin) : draw_blocks<Fragments>(bin);
+  const bool is_short = bin.is_short;
+  bool is_changed = false;
+  if (bin.small.has_samples) {
+    SampleRounds rounds;
+    (is_short ? set_up_samples<ShortArithmetic> : set_up_samples<LongArithmetic>)(bin, slice, rounds);
+    is_changed = touch_tiles<Fragments>(bin, tiles.touched);
+    bin.is_narrow ? draw_samples<Fragments>(bin, rounds, bin.memory.narrow_depth.data())
+                  : draw_samples<Fragments>(bin, rounds, bin.memory.depth.data());
+  } else {
+    const auto set_up =
+        tiles.is_over_two
+            ? (is_short ? set_up_small<kMediumTiles, ShortArithmetic> : set_up_small<kMediumTiles, LongArithmetic>)
+            : (is_short ? set_up_small<kSmallTiles, ShortArithmetic> : set_up_small<kSmallTiles, LongArithmetic>);
+    set_up(bin.small, slice, bin.widths, bin.depth_format, bin.color_format, bin.first_x, bin.first_y);
+    is_changed = touch_tiles<Fragments>(bin, tiles.touched);
+    draw_blocks<Fragments>(bin);
+  }
   bin.small.count = 0;
   // With less, a bound that is too high will do.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);

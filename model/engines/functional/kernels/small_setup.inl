@@ -9,10 +9,9 @@ struct SmallBatch {
 
   int count = 0;
   std::array<const Record*, 16> records;
-  bool has_samples = true;  ///< of all that wait
+  bool has_samples = true;  ///< of all of them it is known which few they cover
 
   std::uint32_t live = 0;                     ///< lanes that draw something in this bin
-  std::array<I16, 3> v;                       ///< corners, into Slice::vertices
   alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
   alignas(64) Lane first_tile;                ///< of the box: column + kMediumTiles row
   alignas(64) Lane z_low, z_high;
@@ -23,7 +22,7 @@ struct SmallBatch {
   alignas(64) Lane place;                       ///< the first block: lane, column, row, a byte each
   alignas(64) Lane there;              ///< bits: the box touches that block, its right neighbour, the lower, both's
   alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
-  /// Of the tiles that the box may touch, kMediumTiles a row; with has_samples, of those of its four samples.
+  /// Of the tiles that the box may touch, kMediumTiles a row.
   alignas(64) LaneArray<kMediumTiles * kMediumTiles> z_anchor;
   alignas(64) Lane z_step_x, z_step_y;
   alignas(64) std::array<LaneArray<kMediumTiles * kMediumTiles>, 2> c_anchor;  ///< by channel pair
@@ -31,7 +30,6 @@ struct SmallBatch {
 
   /// True when that was the last for which there is room.
   HALFPLANE_INLINE bool add(const Record& record) {
-    has_samples = (count == 0 || has_samples) && record.samples() != 0;
     records[static_cast<std::size_t>(count)] = &record;
     return ++count == 16;
   }
@@ -40,15 +38,11 @@ struct SmallBatch {
 /// The fields of the records that wait; live.
 HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
   for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
-  const auto half = [&batch](int i, int first_word) HALFPLANE_LAMBDA {
-    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + first_word;
-  };
-  const auto [v0, v1, v2, low] = turned_rows([&](int i) HALFPLANE_LAMBDA { return half(i, 0); });
-  const auto [high, left_top, right_bottom, traits] = turned_rows([&](int i) HALFPLANE_LAMBDA { return half(i, 4); });
+  const auto [z_high, left_top, right_bottom, traits] = turned_rows([&batch](int i) HALFPLANE_LAMBDA {
+    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + 4;
+  });
   const I16 covered = traits >> Record::kSamplesShift;
-  batch.v = {v0, v1, v2};
-  low.store(batch.z_low.data());
-  high.store(batch.z_high.data());
+  batch.has_samples = !is_any(covered == 0);
   const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
   const I16 box_x = max(x0, I16(0)), box_y = max(y0, I16(0));
   box_x.store(batch.left.data());
@@ -67,36 +61,43 @@ HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y
       ((1U << batch.count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
 }
 
-/// The corners of a batch's triangles, turned so that no area is negative; and the first of them in the order of (Y, X).
+/// The corners of a batch's triangles as they come, b and c also from a; the first of them in the order of (Y, X), which
+/// the planes start from; and twice the area.
 struct SmallCorners {
   SnappedLanes a, b, c, origin;
-  I16 area;
+  I16 ax, ay, bx, by;
+  I16 area, is_turned;  ///< its magnitude; a mask: it is negative
+  I16 z_low, z_high;
 };
 
-/// Takes those of no area out of batch.live.
+/// Takes those of no area out of batch.live. Extents of less than 2^14 subpixels.
 HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slice) {
-  const auto fetch = [&](std::size_t k) HALFPLANE_LAMBDA {
-    SmallBatch::Lane at;
-    batch.v[k].store(at.data());
-    return load_vertices(slice.vertices.data(), at.data());
+  const auto fetch = [&batch, vertices = slice.vertices.data()](std::size_t k) HALFPLANE_LAMBDA {
+    return load_vertices([&](int i)
+                             HALFPLANE_LAMBDA { return vertices + batch.records[static_cast<std::size_t>(i)]->v[k]; });
   };
-  const auto choose = [](const I16& mask, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
-    return SnappedLanes{select(mask, p.x, q.x), select(mask, p.y, q.y), select(mask, p.z, q.z),
-                        select(mask, p.rgba, q.rgba)};
+  const auto choose = [](const I16& sign, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
+    return SnappedLanes{select_by_sign(sign, p.x, q.x), select_by_sign(sign, p.y, q.y), select_by_sign(sign, p.z, q.z),
+                        select_by_sign(sign, p.rgba, q.rgba)};
   };
-  const auto is_before = [](const SnappedLanes& p, const SnappedLanes& q)
-                             HALFPLANE_LAMBDA { return (p.y < q.y) | ((p.y == q.y) & (p.x < q.x)); };
   const SnappedLanes a = fetch(0), b = fetch(1), c = fetch(2);
-  SmallCorners corners;
-  const I16 area = cross(b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y), is_turned = area < 0;
-  corners.a = a;
-  corners.b = choose(is_turned, c, b);
-  corners.c = choose(is_turned, b, c);
-  corners.area = turned(area, is_turned);
-  batch.live &= ~bits_of(corners.area == 0);
-  corners.origin = choose(is_before(corners.b, a), corners.b, a);
-  corners.origin = choose(is_before(corners.c, corners.origin), corners.c, corners.origin);
-  return corners;
+  const I16 ax = b.x - a.x, ay = b.y - a.y, bx = c.x - a.x, by = c.y - a.y;
+  const I16 area = cross(ax, ay, bx, by), is_turned = area >> 31;
+  batch.live &= ~bits_of(area == 0);
+  // (Y, X) from a, as one number.
+  const I16 b_key = (ay << 16) + ax, c_key = (by << 16) + bx;
+  return {a,
+          b,
+          c,
+          choose(c_key - min(b_key, I16(0)), c, choose(b_key, b, a)),
+          ax,
+          ay,
+          bx,
+          by,
+          turned(area, is_turned),
+          is_turned,
+          min(min(a.z, b.z), c.z),
+          max(max(a.z, b.z), c.z)};
 }
 
 /// `s`: bits of the subpixel grid.
@@ -107,11 +108,13 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
     return (((I16::load(box.data()) & ~(kBlockSize - 1)) + first) << s) + half;
   };
   const I16 px = first_of_block(batch.left, first_x), py = first_of_block(batch.top, first_y);
-  const std::array<const SnappedLanes*, 4> corner{&corners.a, &corners.b, &corners.c, &corners.a};
+  // Turned so that no area is negative.
+  const auto& [a, b, c, origin, ax, ay, bx, by, area, is_turned, z_low, z_high] = corners;
+  const std::array<I16, 4> x{a.x, select(is_turned, c.x, b.x), select(is_turned, b.x, c.x), a.x},
+      y{a.y, select(is_turned, c.y, b.y), select(is_turned, b.y, c.y), a.y};
   for (std::size_t e = 0; e < 3; ++e) {
-    const SnappedLanes &from = *corner[e], &to = *corner[e + 1];
-    const I16 dx = to.x - from.x, dy = to.y - from.y;
-    const I16 value = (cross(dx, dy, px - from.x, py - from.y) + ~is_top_left(dx, dy)) >> s;
+    const I16 dx = x[e + 1] - x[e], dy = y[e + 1] - y[e];
+    const I16 value = (cross(dx, dy, px - x[e], py - y[e]) + ~is_top_left(dx, dy)) >> s;
     value.store(batch.edge[e].data());
     pairs(dx, -dy).store(batch.edge_step[e].data());
     (dy * -kBlockSize).store(batch.to_right[e].data());
@@ -130,36 +133,204 @@ HALFPLANE_INLINE void find_places(SmallBatch& batch) {
   select(is_drawn != 0, has_right | has_below | has_both | 1, I16(0)).store(batch.there.data());
 }
 
-/// What the planes of a batch have in common.
-struct SmallPlanes {
-  int fraction, to_tile;   ///< bits: of a plane; from a step of a pixel to one of a tile
-  I16 ax, ay, bx, by;      ///< corners b and c from corner a
-  I16 to_x, to_y;          ///< from the origin to the anchor of the box's first tile
-  I16 is_right, is_below;  ///< whether the tiles that follow differ: with has_samples, that of the next sample
-  GradientLanes gradient;
+/// A place to evaluate planes at, from their origin, subpixels.
+struct FromOrigin {
+  I16 x, y;
+};
 
-  HALFPLANE_INLINE SmallPlanes(const SmallBatch& batch, const SmallCorners& corners, const L16& reciprocal,
-                               const I16& shift, const Widths& widths, int first_x, int first_y)
-      : fraction(widths.plane_fraction),
-        to_tile(kTileShift + widths.grid_bits),
-        gradient(reciprocal, shift - widths.plane_fraction) {
-    const auto& [a, b, c, origin, area] = corners;
-    ax = b.x - a.x;
-    ay = b.y - a.y;
-    bx = c.x - a.x;
-    by = c.y - a.y;
-    const int s = widths.grid_bits, half = 1 << (s - 1);
-    const auto anchor_of = [&](const I16& box, int first) HALFPLANE_LAMBDA {
-      return (((box & ~(kTileSize - 1)) + (first + kTileSize / 2)) << s) + half;
+/// The anchor of the tile that holds a pixel of the bin. `first_x`, `first_y`: the bin's first; `s`: bits of the grid.
+HALFPLANE_INLINE FromOrigin anchor_from_origin(const SmallCorners& corners, const I16& x, const I16& y, int s,
+                                               int first_x, int first_y) {
+  const auto anchor_of = [s](const I16& pixel, int first) HALFPLANE_LAMBDA {
+    return ((pixel & ~(kTileSize - 1)) << s) + (((first + kTileSize / 2) << s) + (1 << (s - 1)));
+  };
+  return {anchor_of(x, first_x) - corners.origin.x, anchor_of(y, first_y) - corners.origin.y};
+}
+
+// Planes and gradients that wrap come in three widths: I16 where 32 bits hold them; SplitLanes, split at
+// LaneFormat::drop, of whose upper part 32 bits suffice; L16.
+
+/// The value of a plane, with LaneFormat::anchor_bias. `fraction`: its bits.
+HALFPLANE_INLINE I16 plane_at(const FromOrigin& to, int fraction, const I16& at_origin, const I16& step_x,
+                              const I16& step_y, const LaneFormat& format) {
+  return (at_origin << fraction) + step_x * to.x + step_y * to.y +
+         static_cast<std::int32_t>(static_cast<std::uint32_t>(format.anchor_bias));
+}
+HALFPLANE_INLINE SplitLanes plane_at(const FromOrigin& to, int fraction, const I16& at_origin, const SplitLanes& step_x,
+                                     const SplitLanes& step_y, const LaneFormat& format) {
+  const auto bias = static_cast<std::int64_t>(format.anchor_bias);
+  const auto low_bias = static_cast<std::int32_t>(bias & ((std::int64_t{1} << format.drop) - 1));
+  return {(at_origin << (fraction - format.drop)) + step_x.upper * to.x + step_y.upper * to.y +
+              static_cast<std::int32_t>(bias >> format.drop),
+          step_x.lower * to.x + step_y.lower * to.y + low_bias};
+}
+HALFPLANE_INLINE L16 plane_at(const FromOrigin& to, int fraction, const I16& at_origin, const L16& step_x,
+                              const L16& step_y, const LaneFormat& format) {
+  return (convert<std::int64_t>(at_origin) << fraction) + step_x * convert<std::int64_t>(to.x) +
+         step_y * convert<std::int64_t>(to.y) + static_cast<std::int64_t>(format.anchor_bias);
+}
+/// What fits_split() allows for: offsets below 64 pixels, two products, two steps to tiles and a bias.
+HALFPLANE_INLINE bool fits_split(const LaneFormat& format, const Widths& widths) {
+  constexpr int kOffset = 6 + 2;
+  return format.drop + widths.grid_bits + kOffset < 32 && format.step_drop > 0;
+}
+
+/// That value as a tile keeps it.
+HALFPLANE_INLINE I16 narrowed(const I16& value, const LaneFormat& format) {
+  return shift_right_logical(value, format.drop) << format.up;
+}
+HALFPLANE_INLINE I16 narrowed(const SplitLanes& value, const LaneFormat& format) {
+  return (value.upper + (value.lower >> format.drop)) << format.up;
+}
+HALFPLANE_INLINE I16 narrowed(const L16& value, const LaneFormat& format) {
+  return convert<std::int32_t>(shift_right_logical(value, format.drop)) << format.up;
+}
+
+/// A gradient as a tile keeps it: of a pixel.
+HALFPLANE_INLINE I16 local_step(const I16& step, const LaneFormat& format) {
+  const int drop = format.step_drop;
+  return shift_right_logical(step + (1 << (drop - 1)), drop) << format.up;
+}
+HALFPLANE_INLINE I16 local_step(const SplitLanes& step, const LaneFormat& format) {
+  const int drop = format.step_drop;
+  return ((step.upper << (format.drop - drop)) + ((step.lower + (1 << (drop - 1))) >> drop)) << format.up;
+}
+HALFPLANE_INLINE I16 local_step(const L16& step, const LaneFormat& format) {
+  return round_shift_lanes(step, format.step_drop) << format.up;
+}
+
+/// Of a plane, in x and in y.
+template <class Step>
+struct Gradients {
+  Step x, y;
+};
+
+/// Gradients of depth. `Gradient`: GradientLanes or ExactGradientLanes; `Numerator`: I16, L16 or D16.
+template <class Numerator, class Gradient>
+HALFPLANE_INLINE auto depth_gradients_by(const SmallCorners& t, const Gradient& gradient) {
+  const I16 az = t.b.z - t.a.z, bz = t.c.z - t.a.z;
+  const auto product = [](const I16& m, const I16& n) HALFPLANE_LAMBDA {
+    if constexpr (std::is_same_v<Numerator, I16>)
+      return m * n;
+    else if constexpr (std::is_same_v<Numerator, L16>)
+      return multiply_narrow(convert<std::int64_t>(m), convert<std::int64_t>(n));
+    else
+      return convert<double>(m) * convert<double>(n);
+  };
+  return Gradients{gradient(product(az, t.by) - product(bz, t.ay)), gradient(product(t.ax, bz) - product(t.bx, az))};
+}
+
+/// Two channels: the halves of each lane.
+struct PairCodes {
+  I16 at_origin, ac, bc, low, high;
+
+  /// Red and blue, or green and alpha.
+  HALFPLANE_INLINE PairCodes(const SmallCorners& t, std::size_t pair, bool is_flat) {
+    const auto codes = [pair](const SnappedLanes& v) HALFPLANE_LAMBDA {
+      return as<S32>(shift_right_logical(v.rgba, static_cast<int>(8 * pair)) & 0xff00ff);
     };
-    const I16 box_x = I16::load(batch.left.data()), box_y = I16::load(batch.top.data());
-    to_x = anchor_of(box_x, first_x) - origin.x;
-    to_y = anchor_of(box_y, first_y) - origin.y;
-    const auto is_next = [&batch](const I16& at) HALFPLANE_LAMBDA {
-      return batch.has_samples ? (at & (kTileSize - 1)) == kTileSize - 1 : I16(-1);
-    };
-    is_right = is_next(box_x);
-    is_below = is_next(box_y);
+    const S32 a = codes(t.a), b = is_flat ? a : codes(t.b), c = is_flat ? a : codes(t.c);
+    at_origin = as<I16>(is_flat ? a : codes(t.origin));
+    ac = as<I16>(b - a);
+    bc = as<I16>(c - a);
+    low = as<I16>(min(min(a, b), c));
+    high = as<I16>(max(max(a, b), c));
+  }
+  /// Half 0 or 1 of a lane.
+  HALFPLANE_INLINE static I16 of_half(const I16& pair, std::size_t half) {
+    return half == 0 ? pair << 16 >> 16 : pair >> 16;
+  }
+  /// Whether that half is the same all over each triangle: then the clamp alone makes it.
+  [[nodiscard]] HALFPLANE_INLINE bool is_flat(std::size_t half) const {
+    return !is_any(of_half(low ^ high, half) != 0);
+  }
+};
+
+/// Gradients of one half of the pairs.
+HALFPLANE_INLINE auto channel_gradients(const SmallCorners& t, const GradientLanes& gradient, const PairCodes& codes,
+                                        std::size_t half) {
+  const I16 ac = PairCodes::of_half(codes.ac, half), bc = PairCodes::of_half(codes.bc, half);
+  return Gradients{gradient(ac * t.by - bc * t.ay), gradient(t.ax * bc - t.bx * ac)};
+}
+HALFPLANE_INLINE auto channel_gradients(const SmallCorners& t, const NarrowGradientLanes& gradient,
+                                        const PairCodes& codes, std::size_t half) {
+  const I16 both = half == 0 ? pairs(codes.ac, codes.bc)
+                             : shift_right_logical(codes.ac, 16) | (codes.bc & static_cast<std::int32_t>(0xffff0000));
+  return Gradients{gradient(multiply_add_pairs(both, pairs(t.by, -t.ay))),
+                   gradient(multiply_add_pairs(both, pairs(-t.bx, t.ax)))};
+}
+
+/// Whether the short arithmetic, below, holds everything of triangles within kMediumTiles.
+HALFPLANE_INLINE bool is_short_enough(const Widths& widths, const LaneFormat& depth_format,
+                                      const LaneFormat& color_format) {
+  const int extent = extent_bits(kMediumPixelBits, widths);
+  const AttributeWidths &depth = widths.depth(), &color = widths.color();
+  // Binary64 holds areas' quotients, and what makes the gradients of depth.
+  const bool is_exact = is_exact_division(2 * extent, widths.reciprocal_bits()) && fits_split(depth_format, widths) &&
+                        depth.code.bits + extent + depth.reciprocal.bits <= 53 &&
+                        depth.code.bits + extent + widths.plane_fraction <= 50;
+  // 32 bits hold colours: products with their reciprocal, and planes.
+  const bool is_narrow =
+      color.code.bits + extent + color.reciprocal_bits() <= 30 && color.plane.bits <= 32 && color_format.step_drop > 0;
+  return is_exact && is_narrow;
+}
+
+/// How gradients are made: in short lanes, or in those that hold everything.
+struct ShortArithmetic {
+  using DepthGradient = ExactGradientLanes;
+  using ColorGradient = NarrowGradientLanes;
+  using WideNumerator = D16;
+  HALFPLANE_INLINE static QuotientLanes quotient(const I16& area, int bits) { return exact_quotient_lanes(area, bits); }
+};
+struct LongArithmetic {
+  using DepthGradient = GradientLanes;
+  using ColorGradient = GradientLanes;
+  using WideNumerator = L16;
+  HALFPLANE_INLINE static QuotientLanes quotient(const I16& area, int bits) { return quotient_lanes(area, bits); }
+};
+
+/// The planes of a batch, as far as they follow from its corners.
+template <class Arithmetic>
+struct SmallPlanes {
+  const SmallCorners& corners;
+  const Widths& widths;
+  QuotientLanes quotient;
+
+  HALFPLANE_INLINE SmallPlanes(const SmallCorners& corners_, const Widths& widths_)
+      : corners(corners_),
+        widths(widths_),
+        quotient(Arithmetic::quotient(corners.area, widths.reciprocal_bits())),
+        steep(std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths))) {}
+
+  /// Gradients of depth, in x and in y.
+  [[nodiscard]] HALFPLANE_INLINE auto depth_gradients(const LaneFormat& format) const {
+    const auto gradient = depth(format);
+    return is_any(corners.z_high - corners.z_low >= steep)
+               ? depth_gradients_by<typename Arithmetic::WideNumerator>(corners, gradient)
+               : depth_gradients_by<I16>(corners, gradient);
+  }
+  [[nodiscard]] HALFPLANE_INLINE typename Arithmetic::ColorGradient color() const {
+    const auto [reciprocal, k] = factor(widths.color());
+    return {reciprocal, k};
+  }
+
+ private:
+  std::int32_t steep;  ///< differences of depth codes from here on need products of more than 32 bits
+
+  [[nodiscard]] HALFPLANE_INLINE typename Arithmetic::DepthGradient depth(const LaneFormat& format) const {
+    const auto [reciprocal, k] = factor(widths.depth());
+    if constexpr (std::is_same_v<typename Arithmetic::DepthGradient, ExactGradientLanes>)
+      return {reciprocal, k, format.drop};
+    else
+      return {reciprocal, k};
+  }
+  /// The reciprocal of the area, with its sign, and the bits that a product with it drops.
+  struct Factor {
+    I16 reciprocal, k;
+  };
+  [[nodiscard]] HALFPLANE_INLINE Factor factor(const AttributeWidths& attribute) const {
+    const ReciprocalLanes reciprocal(quotient, widths.reciprocal_bits() - attribute.reciprocal_bits());
+    return {turned(reciprocal.value, corners.is_turned), reciprocal.shift - widths.plane_fraction};
   }
 };
 
@@ -172,139 +343,86 @@ HALFPLANE_INLINE void for_each_anchor(Visit&& visit) {
     for (std::size_t i = 0; i < Side; ++i) visit(j * kMediumTiles + i);
 }
 
-/// The bits from `drop` on. Where the products of the bits below fit 32, that is all that a lane needs: what is above
-/// wraps.
-template <std::size_t Side>
-HALFPLANE_INLINE void find_anchors(const SmallPlanes& f, const I16& at_origin, const L16& step_x, const L16& step_y,
+/// From the first one on. `to_tile`: bits from a step of a subpixel to one of a tile.
+template <std::size_t Side, class Step>
+HALFPLANE_INLINE void find_anchors(Step first, const Step& step_x, const Step& step_y, int to_tile,
                                    const LaneFormat& format, Anchors& out) {
-  const int drop = format.drop;
-  // Offsets below 64 pixels; two products, two steps to tiles and a bias.
-  if (constexpr int kOffset = 6 + 2; drop + f.to_tile - kTileShift + kOffset < 32) {
-    const std::int32_t below = (std::int32_t{1} << drop) - 1;
-    const I16 x0 = convert<std::int32_t>(step_x) & below, y0 = convert<std::int32_t>(step_y) & below;
-    const I16 x1 = convert<std::int32_t>(shift_right_logical(step_x, drop)),
-              y1 = convert<std::int32_t>(shift_right_logical(step_y, drop));
-    I16 upper = (at_origin << (f.fraction - drop)) + x1 * f.to_x + y1 * f.to_y +
-                static_cast<std::int32_t>(static_cast<std::uint32_t>(format.anchor_bias >> drop));
-    I16 lower = x0 * f.to_x + y0 * f.to_y + (static_cast<std::int32_t>(format.anchor_bias) & below);
-    const I16 right1 = (x1 << f.to_tile) & f.is_right, right0 = (x0 << f.to_tile) & f.is_right,
-              down1 = (y1 << f.to_tile) & f.is_below, down0 = (y0 << f.to_tile) & f.is_below;
-    for (std::size_t j = 0; j < Side; ++j) {
-      I16 high = upper, low = lower;
-      for (std::size_t i = 0; i < Side; ++i) {
-        out[j * kMediumTiles + i] = (high + (low >> drop)) << format.up;
-        high += right1;
-        low += right0;
-      }
-      upper += down1;
-      lower += down0;
-    }
-    return;
-  }
-  L16 first = (convert<std::int64_t>(at_origin) << f.fraction) + step_x * convert<std::int64_t>(f.to_x) +
-              step_y * convert<std::int64_t>(f.to_y) + static_cast<std::int64_t>(format.anchor_bias);
-  const L16 aside = (step_x << f.to_tile) & convert<std::int64_t>(f.is_right),
-            down = (step_y << f.to_tile) & convert<std::int64_t>(f.is_below);
+  const Step aside = step_x << to_tile, down = step_y << to_tile;
   for (std::size_t j = 0; j < Side; ++j) {
-    L16 value = first;
+    Step value = first;
     for (std::size_t i = 0; i < Side; ++i) {
-      out[j * kMediumTiles + i] = convert<std::int32_t>(shift_right_logical(value, drop)) << format.up;
-      value += aside;
+      out[j * kMediumTiles + i] = narrowed(value, format);
+      value = value + aside;
     }
-    first += down;
+    first = first + down;
   }
 }
 
-/// A step of a pixel, in a lane.
-HALFPLANE_INLINE I16 local_step(const L16& step, const LaneFormat& format) {
-  return round_shift_lanes(step, format.step_drop) << format.up;
-}
-
-/// `steep`: differences of codes from here on need products of more than 32 bits.
-template <std::size_t Side>
-HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallCorners& corners, const SmallPlanes& f,
-                                         const LaneFormat& format, std::int32_t steep) {
-  const I16 az = corners.b.z - corners.a.z, bz = corners.c.z - corners.a.z;
-  L16 step_x, step_y;
-  if (is_any(I16::load(batch.z_high.data()) - I16::load(batch.z_low.data()) >= steep)) {
-    const auto difference = [](const I16& p, const I16& q, const I16& r, const I16& t) HALFPLANE_LAMBDA {  // pq - rt
-      const auto product = [](const I16& m, const I16& n) HALFPLANE_LAMBDA {
-        return multiply_narrow(convert<std::int64_t>(m), convert<std::int64_t>(n));
-      };
-      return product(p, q) - product(r, t);
-    };
-    step_x = f.gradient(difference(az, f.by, bz, f.ay));
-    step_y = f.gradient(difference(f.ax, bz, f.bx, az));
-  } else {
-    step_x = f.gradient(az * f.by - bz * f.ay);
-    step_y = f.gradient(f.ax * bz - f.bx * az);
-  }
+template <std::size_t Side, class Arithmetic>
+HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes, const FromOrigin& to,
+                                         const LaneFormat& format) {
+  const SmallCorners& corners = planes.corners;
+  const Widths& widths = planes.widths;
+  const auto [step_x, step_y] = planes.depth_gradients(format);
   Anchors at;
-  find_anchors<Side>(f, corners.origin.z, step_x, step_y, format, at);
+  find_anchors<Side>(plane_at(to, widths.plane_fraction, corners.origin.z, step_x, step_y, format), step_x, step_y,
+                     kTileShift + widths.grid_bits, format, at);
   for_each_anchor<Side>([&](std::size_t i) HALFPLANE_LAMBDA { at[i].store(batch.z_anchor[i].data()); });
   local_step(step_x, format).store(batch.z_step_x.data());
   local_step(step_y, format).store(batch.z_step_y.data());
+  corners.z_low.store(batch.z_low.data());
+  corners.z_high.store(batch.z_high.data());
 }
 
 /// One channel of sixteen triangles: half of a lane.
 struct SmallChannel {
   Anchors at;
-  I16 step_x, step_y, low, high;
+  I16 step_x, step_y;
 };
 
-/// `down`: the channel's place in a colour.
-template <std::size_t Side>
-HALFPLANE_INLINE void set_up_small_channel(const SmallCorners& corners, const SmallPlanes& f, const LaneFormat& format,
-                                           bool is_flat, int down, SmallChannel& to) {
-  const auto code = [down](const SnappedLanes& v) HALFPLANE_LAMBDA { return shift_right_logical(v.rgba, down) & 255; };
-  const I16 ca = code(corners.a), cb = is_flat ? ca : code(corners.b), cc = is_flat ? ca : code(corners.c);
-  to.low = min(min(ca, cb), cc);
-  to.high = max(max(ca, cb), cc);
-  if (bits_of(to.low == to.high) == 0xffff) {  // the same everywhere: the clamp alone makes it
-    to.at.fill(I16(0));
-    to.step_x = to.step_y = I16(0);
-    return;
-  }
-  const I16 c0 = is_flat ? ca : code(corners.origin);
-  const I16 ac = cb - ca, bc = cc - ca;
-  const L16 gx = f.gradient(ac * f.by - bc * f.ay), gy = f.gradient(f.ax * bc - f.bx * ac);
-  find_anchors<Side>(f, c0, gx, gy, format, to.at);
-  to.step_x = local_step(gx, format);
-  to.step_y = local_step(gy, format);
-}
-
-template <std::size_t Side>
-HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallCorners& corners, const SmallPlanes& f,
-                                          const LaneFormat& format, bool is_flat) {
-  for (std::size_t p = 0; p < 2; ++p) {  // red and blue, green and alpha
+template <std::size_t Side, class Arithmetic>
+HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes,
+                                          const FromOrigin& to, const LaneFormat& format, bool is_flat) {
+  const Widths& widths = planes.widths;
+  const auto gradient = planes.color();
+  for (std::size_t p = 0; p < 2; ++p) {
+    const PairCodes codes(planes.corners, p, is_flat);
     std::array<SmallChannel, 2> halves;
-    for (std::size_t h = 0; h < 2; ++h)
-      set_up_small_channel<Side>(corners, f, format, is_flat, static_cast<int>(8 * (p + 2 * h)), halves[h]);
-    const SmallChannel &low = halves[0], &high = halves[1];
-    for_each_anchor<Side>([&](std::size_t i)
-                              HALFPLANE_LAMBDA { pairs(low.at[i], high.at[i]).store(batch.c_anchor[p][i].data()); });
-    pairs(low.step_x, high.step_x).store(batch.c_step_x[p].data());
-    pairs(low.step_y, high.step_y).store(batch.c_step_y[p].data());
-    pairs(low.low, high.low).store(batch.c_low[p].data());
-    pairs(low.high, high.high).store(batch.c_high[p].data());
+    for (std::size_t h = 0; h < 2; ++h) {
+      SmallChannel& half = halves[h];
+      if (codes.is_flat(h)) {
+        for_each_anchor<Side>([&](std::size_t i) HALFPLANE_LAMBDA { half.at[i] = I16(0); });
+        half.step_x = half.step_y = I16(0);
+        continue;
+      }
+      const auto of_half = [h](const I16& pair) HALFPLANE_LAMBDA { return PairCodes::of_half(pair, h); };
+      const auto [step_x, step_y] = channel_gradients(planes.corners, gradient, codes, h);
+      find_anchors<Side>(plane_at(to, widths.plane_fraction, of_half(codes.at_origin), step_x, step_y, format), step_x,
+                         step_y, kTileShift + widths.grid_bits, format, half.at);
+      half.step_x = local_step(step_x, format);
+      half.step_y = local_step(step_y, format);
+    }
+    for_each_anchor<Side>([&](std::size_t i) HALFPLANE_LAMBDA {
+      pairs(halves[0].at[i], halves[1].at[i]).store(batch.c_anchor[p][i].data());
+    });
+    pairs(halves[0].step_x, halves[1].step_x).store(batch.c_step_x[p].data());
+    pairs(halves[0].step_y, halves[1].step_y).store(batch.c_step_y[p].data());
+    codes.low.store(batch.c_low[p].data());
+    codes.high.store(batch.c_high[p].data());
   }
 }
 
 /// The constants of a batch that is loaded. `Side`: tiles along a side of a box at most.
-template <std::size_t Side>
-HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, const FrameContext& frame,
+template <std::size_t Side, class Arithmetic>
+HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, const Widths& widths,
                                      const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
                                      int first_y) {
-  const Config& config = frame.config;
-  const Widths& widths = frame.widths;
   const SmallCorners corners = small_corners(batch, slice);
-  if (!batch.has_samples) set_up_small_edges(batch, corners, widths.grid_bits, first_x, first_y);
+  set_up_small_edges(batch, corners, widths.grid_bits, first_x, first_y);
   find_places(batch);
-  L16 reciprocal, shift;
-  reciprocal_lanes(corners.area, config.depth_bits + config.reciprocal_extra_bits, reciprocal, shift);
-  const SmallPlanes planes(batch, corners, reciprocal, convert<std::int32_t>(shift), widths, first_x, first_y);
-  // Of medium triangles whatever Side is: that counts tiles of the bin.
-  const std::int32_t steep = std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths));
-  set_up_small_depth<Side>(batch, corners, planes, depth_format, steep);
-  if (slice.state.color_write) set_up_small_colors<Side>(batch, corners, planes, color_format, slice.state.is_flat);
+  const SmallPlanes<Arithmetic> planes(corners, widths);
+  const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
+                                           widths.grid_bits, first_x, first_y);
+  set_up_small_depth<Side>(batch, planes, to, depth_format);
+  if (slice.state.color_write) set_up_small_colors<Side>(batch, planes, to, color_format, slice.state.is_flat);
 }

@@ -112,7 +112,7 @@ HALFPLANE_INLINE TileBlocks colors_of(const Bin& bin, int tile) {
 HALFPLANE_INLINE TileBlocks fetched(const Bin& bin, int tile, bool is_cleared, std::uint32_t clear,
                                     const Framebuffer::Image& image) {
   TileBlocks blocks;
-  blocks.fill(I16(static_cast<std::int32_t>(clear)));
+  for (I16& block : blocks) block = I16(static_cast<std::int32_t>(clear));
   const std::ptrdiff_t from = is_cleared ? -1 : in_target(bin, tile);
   if (from < 0) return blocks;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -18,6 +18,17 @@ template <class Lanes>
 struct BlockRamp {
   Lanes first, right, below;
 
+  HALFPLANE_INLINE BlockRamp(const Lanes& first_, const Lanes& right_, const Lanes& below_)
+      : first(first_), right(right_), below(below_) {}
+  HALFPLANE_INLINE BlockRamp() = default;
+  HALFPLANE_INLINE BlockRamp(const BlockRamp& from) : BlockRamp(from.first, from.right, from.below) {}
+  HALFPLANE_INLINE BlockRamp& operator=(const BlockRamp& from) {
+    first = from.first;
+    right = from.right;
+    below = from.below;
+    return *this;
+  }
+
   HALFPLANE_INLINE Lanes operator()(std::size_t block) const {
     const Lanes upper = (block & 1) != 0 ? first + right : first;
     return (block >> 1) != 0 ? upper + below : upper;
@@ -33,9 +44,10 @@ HALFPLANE_INLINE ColorRamp color_ramp(const Bin& bin, const ColorSteps& t, const
   ColorRamp ramp;
   for (std::size_t p = 0; p < 2; ++p) {
     const auto step_x = as<S32>(I16(t.step_x[p])), step_y = as<S32>(I16(t.step_y[p]));
-    ramp[p] = {as<S32>(bin.position.column_pair[0]) * step_x + as<S32>(bin.position.row_pair[0]) * step_y +
-                   as<S32>(I16(anchor[p])),
-               step_x << kBlockShift, step_y << kBlockShift};
+    ramp[p].first = as<S32>(bin.position.column_pair[0]) * step_x + as<S32>(bin.position.row_pair[0]) * step_y +
+                    as<S32>(I16(anchor[p]));
+    ramp[p].right = step_x << kBlockShift;
+    ramp[p].below = step_y << kBlockShift;
   }
   return ramp;
 }

@@ -1,0 +1,21 @@
+// Draws frames of a built-in scene with the functional engine on one thread, for tools/instructions.py to count: the first
+// makes memory, those behind it only draw. Arguments: scene, width, height, frames.
+#include <cstdlib>
+
+#include "model/engines/functional.hpp"
+#include "sim/scene/builtin.hpp"
+
+int main(int argc, char** argv) {
+  using namespace halfplane;
+  if (argc != 5) return 2;
+  Config config = preset("embedded");
+  set(config, "color.format", "rgba8888");
+  const Scene scene = make_builtin(argv[1], std::atoi(argv[2]), std::atoi(argv[3]), {}, 1);
+  const PreparedScene prepared(scene);
+  FunctionalEngine engine(config);
+  RenderOptions options;
+  options.threads = 1;
+  std::uint64_t written = 0;
+  for (int frame = 0; frame < std::atoi(argv[4]); ++frame) written = engine.render(prepared, options).counters.written;
+  return written != 0 ? 0 : 1;
+}

@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""What the functional engine spends on small triangles, in instructions (valgrind --tool=callgrind, AVX2, one thread).
+
+Time on a shared machine says little, and instructions do not lie about how much work there is: a gate that a slow
+neighbour cannot close. Counted is a frame whose memory is there from the frame before: three frames less one, halved.
+
+  tools/instructions.py PROGRAM [--valgrind FILE]     PROGRAM: halfplane_frames, of a release build
+
+Exit status: 0 within the bounds, 1 beyond one, 3 something is missing.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+# Scene, size, triangles that count, instructions that each may take: what was measured with g++ 12, and a twentieth.
+GATES = [
+    ('dust:250000', (640, 360), 249_630, 395),
+    ('ball', (1280, 720), 51_200, 1090),
+]
+COUNTED = 'halfplane::functional::FrameRenderer::render*'
+
+
+def instructions(program, valgrind, scene, size, frames):
+    """Of all frames, inside the engine."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [valgrind, '--tool=callgrind', f'--callgrind-out-file={folder}/out', f'--toggle-collect={COUNTED}',
+                   program, scene, *map(str, size), str(frames)]
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            sys.exit(f'{" ".join(command)}: status {run.returncode}\n{run.stderr}')
+        summary = re.search(r'^(?:totals|summary): (\d+)', pathlib.Path(folder, 'out').read_text(), re.MULTILINE)
+        if summary is None or int(summary[1]) == 0:
+            sys.exit(f'nothing was counted in {COUNTED}')
+        return int(summary[1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
+    parser.add_argument('program')
+    parser.add_argument('--valgrind', default='valgrind')
+    options = parser.parse_args()
+    within = True
+    for scene, size, triangles, bound in GATES:
+        one, three = (instructions(options.program, options.valgrind, scene, size, frames) for frames in (1, 3))
+        each = (three - one) / 2 / triangles
+        within &= each <= bound
+        print(f'{scene:12} {size[0]}x{size[1]}  {each:7.1f} instructions a triangle, at most {bound}')
+    return 0 if within else 1
+
+
+if __name__ == '__main__':
+    try:
+        sys.exit(main())
+    except FileNotFoundError as missing:
+        print(f'{missing.filename}: not found', file=sys.stderr)
+        sys.exit(3)
