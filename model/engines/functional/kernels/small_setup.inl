@@ -50,7 +50,7 @@ HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y
   ((box_x >> kTileShift) + (box_y >> kTileShift) * kMediumTiles).store(batch.first_tile.data());
   min((right_bottom << 16 >> 16) - first_x, I16(kBinSize - 1)).store(batch.right.data());
   min((right_bottom >> 16) - first_y, I16(kBinSize - 1)).store(batch.bottom.data());
-  // Of two by two batch.samples the bin may have one column or row: those on the batch.left, or those on the batch.right moved there.
+  // Of two by two samples the bin may have one column or row: those on the left, or those on the right moved there.
   constexpr std::int32_t kLeft = 1 | 4, kUpper = 1 | 2;
   const I16 in_columns =
       select(x0 < 0, shift_right_logical(covered, 1) & kLeft, select(x0 == kBinSize - 1, covered & kLeft, covered));
