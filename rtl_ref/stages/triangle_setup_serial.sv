@@ -270,13 +270,21 @@ module triangle_setup_serial (
     end
   end
 
-  logic [R-1:0] reciprocal;  // of the plane: the bits of the quotient that it keeps, and below them the highest of the others
+  // Of each plane the bits of the quotient that it keeps, and below them the highest of the others.
+  logic [PLANES*R-1:0] reciprocals;
+  logic [R-1:0]        reciprocal;
+  genvar b;
+  generate
+    for (p = 0; p < PLANES; p++) begin : gen_reciprocal
+      localparam int DROPPED = R - RECIPROCAL_BITS_OF[32*p+:32];
+      for (b = 0; b < R; b++) begin : gen_bit
+        assign reciprocals[p*R+b] = quotient_q[b<DROPPED?DROPPED : b];
+      end
+    end
+  endgenerate
   always_comb begin
-    reciprocal = quotient_q;
-    for (int i = 1; i < PLANES; i++)
-      if (unit_q == UNIT'(i))
-        for (int b = 0; b < R; b++)
-          if (b < R - int'(RECIPROCAL_BITS_OF[32*i+:32])) reciprocal[b] = quotient_q[R-int'(RECIPROCAL_BITS_OF[32*i+:32])];
+    reciprocal = reciprocals[0+:R];
+    for (int i = 1; i < PLANES; i++) if (unit_q == UNIT'(i)) reciprocal = reciprocals[i*R+:R];
   end
 
   // ------------------------------------------------------------------------------------------------- multiply and add
