@@ -81,10 +81,6 @@ AreaQuotient area_quotient(std::int64_t area, int significant_bits) {
       shift};
 }
 
-Reciprocal reciprocal(const AreaQuotient& quotient, int dropped) {
-  return {round_shift(quotient.value >> dropped, 1), quotient.shift - dropped};
-}
-
 Reciprocal reciprocal(std::int64_t area, int significant_bits) {
   return reciprocal(area_quotient(area, significant_bits), 0);
 }

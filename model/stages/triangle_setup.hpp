@@ -62,7 +62,9 @@ struct Reciprocal {
 };
 [[nodiscard]] Reciprocal reciprocal(std::int64_t area, int significant_bits);
 /// Without the lowest `dropped` bits: as exactly rounded as the whole.
-[[nodiscard]] Reciprocal reciprocal(const AreaQuotient& quotient, int dropped);
+[[nodiscard]] constexpr Reciprocal reciprocal(const AreaQuotient& quotient, int dropped) {
+  return {round_shift(quotient.value >> dropped, 1), quotient.shift - dropped};
+}
 
 /// The whole setup. Zero area gives an empty box.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths,

@@ -132,6 +132,25 @@ TEST_F(CycleCommand, TheTimelineIsChromeTraceJsonWhoseSlicesDoNotOverlapOnATrack
   }
 }
 
+TEST_F(CycleCommand, TheTimelineHasEveryPrimitiveHoweverManyAreUnderWay) {
+  for (const char* const setting : {"depth.bits=16", "depth.bits=32"}) {
+    (void)result({"render", "dust:2000", "--size", "64x64", "--set", setting, "--set", "reciprocal.extra_bits=12",
+                  "--engine", "cycle", "--trace", "t.json"});
+    const Bytes bytes = read("t.json");
+    const Json trace = Json::parse(bytes.begin(), bytes.end());
+    std::map<int, std::string> name;
+    std::size_t in_setup = 0, in_raster = 0;
+    for (const Json& event : trace["traceEvents"]) {
+      if (event["name"] == "thread_name") name[event["tid"]] = event["args"]["name"];
+      if (event["ph"] != "X") continue;
+      in_setup += name.at(event["tid"]).starts_with("triangle_setup") ? 1 : 0;
+      in_raster += name.at(event["tid"]) == "coarse_raster" ? 1 : 0;
+    }
+    EXPECT_GT(in_raster, 500u);
+    EXPECT_EQ(in_setup, in_raster) << setting;
+  }
+}
+
 TEST_F(CycleCommand, TheHeatMapSharesOutTheCyclesOfTheVisits) {
   const Json json = result({"render", "teapot:5", "--size", "64x48", "--engine", "cycle", "--heat", "heat.npy"});
   const Bytes bytes = read("heat.npy");

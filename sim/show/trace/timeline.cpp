@@ -44,10 +44,13 @@ Timeline::Timeline(const std::string& title)
   text_ += metadata("process_name", 0, "name", title);
   for (std::size_t i = 0; i < kTracks.size(); ++i) {
     const int track = static_cast<int>(i);
-    text_ += ",\n" + metadata("thread_name", track, "name",
-                              "\"" + std::string(info(kTracks[i].stage).name) + std::string(kTracks[i].part) + "\"");
-    text_ += ",\n" + metadata("thread_sort_index", track, "sort_index", std::to_string(i));
+    add_track(track, kOrder * track, std::string(info(kTracks[i].stage).name) + std::string(kTracks[i].part));
   }
+}
+
+void Timeline::add_track(int track, int order, const std::string& name) {
+  text_ += ",\n" + metadata("thread_name", track, "name", "\"" + name + "\"");
+  text_ += ",\n" + metadata("thread_sort_index", track, "sort_index", std::to_string(order));
 }
 
 void Timeline::slice(int track, const std::string& name, Cycle from, Cycle to) {
@@ -56,11 +59,15 @@ void Timeline::slice(int track, const std::string& name, Cycle from, Cycle to) {
            ",\"dur\":" + std::to_string(to - from) + ",\"pid\":1,\"tid\":" + std::to_string(track) + "}";
 }
 
-void Timeline::slice_in(std::span<Cycle> ends, int first_track, Cycle from, Cycle to) {
-  const auto lane = std::find_if(ends.begin(), ends.end(), [&](Cycle end) { return end <= from; });
-  if (lane == ends.end()) return;
-  slice(first_track + static_cast<int>(lane - ends.begin()), name_, from, to);
-  *lane = to;
+void Timeline::slice_in(std::vector<Lane>& lanes, Cycle from, Cycle to) {
+  auto lane = std::find_if(lanes.begin(), lanes.end(), [&](const Lane& free) { return free.end <= from; });
+  if (lane == lanes.end()) {
+    const Stage stage = kTracks[static_cast<std::size_t>(lanes.front().track)].stage;
+    lane = lanes.insert(lanes.end(), {tracks_++, 0, lanes.back().order + 1});
+    add_track(lane->track, lane->order, std::string(info(stage).name) + ", number " + std::to_string(lanes.size()));
+  }
+  slice(lane->track, name_, from, to);
+  lane->end = to;
 }
 
 void Timeline::primitive(const HostPrimitive& primitive) {
@@ -75,12 +82,12 @@ void Timeline::transfer(Arrow boundary, Cycle cycle) {
   switch (boundary) {
     case Arrow::primitive: taken_ = cycle; break;
     case Arrow::triangle:
-      slice_in(cull_ends_, cull_1, taken_, cycle);
+      slice_in(cull_lanes_, taken_, cycle);
       triangle_ = cycle;
       break;
     case Arrow::setup: {
       const Cycle from = std::min(triangle_, cycle);  // serial: the triangle goes when its setup has gone
-      slice_in(setup_ends_, setup_1, from, cycle);
+      slice_in(setup_lanes_, from, cycle);
       has_setup_ = true;
       setup_ = last_tile_ = cycle;
       break;

@@ -3,9 +3,8 @@
 // finish(): about 100 bytes a slice, of which a primitive has three and a tile visit up to five.
 #pragma once
 
-#include <array>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "model/engines/cycle/cycle_model.hpp"
 
@@ -40,9 +39,17 @@ class Timeline final : public TransferSink {
     memory_depth,
     memory_color
   };
+  static constexpr int kOrder = 64;  ///< from one track to the next: room for more lanes of a stage
+  /// One of the tracks of a stage that works on several primitives.
+  struct Lane {
+    int track;
+    Cycle end = 0;               ///< of its last slice
+    int order = kOrder * track;  ///< from top to bottom
+  };
+  void add_track(int track, int order, const std::string& name);
   void slice(int track, const std::string& name, Cycle from, Cycle to);
-  /// The primitive in a stage that works on several: on the first of its tracks that is free from `from` on.
-  void slice_in(std::span<Cycle> ends, int first_track, Cycle from, Cycle to);
+  /// The primitive in such a stage: on the first lane that is free from `from` on, or on a new one.
+  void slice_in(std::vector<Lane>& lanes, Cycle from, Cycle to);
   void end_tile(Cycle limit);
   void end_visit();
   void end_primitive();
@@ -52,8 +59,9 @@ class Timeline final : public TransferSink {
   bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
   Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
         first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
-  std::array<Cycle, 2> cull_ends_{};   ///< of the last slice on each of cull's tracks
-  std::array<Cycle, 5> setup_ends_{};  ///< likewise
+  std::vector<Lane> cull_lanes_{{cull_1}, {cull_2}},
+      setup_lanes_{{setup_1}, {setup_2}, {setup_3}, {setup_4}, {setup_5}};
+  int tracks_ = memory_color + 1;  ///< those above, and the lanes that deeper configurations need
 };
 
 }  // namespace halfplane

@@ -86,11 +86,6 @@ HALFPLANE_INLINE AreaQuotient fast_area_quotient(std::int64_t area, int signific
   quotient += remainder < 0 ? -1 : remainder >= area ? 1 : 0;
   return {static_cast<std::uint64_t>(quotient), shift};
 }
-/// reciprocal() of such a quotient.
-HALFPLANE_INLINE Reciprocal short_reciprocal(const AreaQuotient& quotient, int dropped) {
-  return {((quotient.value >> dropped) + 1) >> 1, quotient.shift - dropped};
-}
-
 /// Sixteen of them, and shifts.
 struct QuotientLanes {
   I16 value, shift;

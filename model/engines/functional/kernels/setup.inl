@@ -15,9 +15,9 @@ struct GradientFactor {
 
   HALFPLANE_INLINE GradientFactor(const AreaQuotient& quotient, const AttributeWidths& attribute,
                                   const Widths& widths) {
-    const Reciprocal reciprocal = short_reciprocal(quotient, widths.reciprocal_bits() - attribute.reciprocal_bits());
-    R = static_cast<std::int64_t>(reciprocal.value);
-    k = reciprocal.shift - widths.plane_fraction;
+    const Reciprocal shortened = reciprocal(quotient, widths.reciprocal_bits() - attribute.reciprocal_bits());
+    R = static_cast<std::int64_t>(shortened.value);
+    k = shortened.shift - widths.plane_fraction;
   }
 };
 
