@@ -11,6 +11,8 @@ namespace halfplane {
 namespace {
 
 constexpr std::array<std::string_view, 2> kColorFormatNames{"rgb565", "rgba8888"};
+constexpr std::array<std::string_view, 2> kCacheKindNames{"tiles", "blocks"};
+constexpr std::array<std::string_view, 2> kFrameClearsNames{"resolve", "flags"};
 constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
 
 const std::array kSettings{
@@ -34,8 +36,16 @@ const std::array kSettings{
             &Config::context_slots},
     Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32,
             &Config::hiz_bits},
-    Setting{"cache.lines", "tiles", "tiles that the on-chip depth and colour RAM holds; a power of two", 1, 256,
-            &Config::cache_lines},
+    Setting{"cache.kind", "tiles|blocks", "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead", 0, 0,
+            &Config::cache_kind},
+    Setting{"cache.lines", "lines", "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
+            4096, &Config::cache_lines},
+    Setting{"cache.queue", "fragments", "blocks: between tags and depth test; a power of two", 4, 128,
+            &Config::cache_queue},
+    Setting{"cache.victims", "blocks", "blocks: evicted and not yet written; a power of two", 2, 32,
+            &Config::cache_victims},
+    Setting{"frame.clears", "resolve|flags", "blocks: what a flush writes of cleared blocks: colours, or flags", 0, 0,
+            &Config::frame_clears},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
             &Config::setup_kind},
     Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
@@ -145,6 +155,10 @@ std::string get(const Config& config, const Setting& setting) {
   if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
     return std::string(depth_mapping_names()[static_cast<std::size_t>(config.**mapping)]);
   if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member)) return to_string(config.**stored);
+  if (const auto* cache = std::get_if<CacheKind Config::*>(&setting.member))
+    return std::string(kCacheKindNames[static_cast<std::size_t>(config.**cache)]);
+  if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
+    return std::string(kFrameClearsNames[static_cast<std::size_t>(config.**clears)]);
   const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
   return std::string(kSetupKindNames[static_cast<std::size_t>(kind)]);
 }
@@ -167,6 +181,10 @@ void set(Config& config, std::string_view key, std::string_view value) {
     }
     if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
       config.** format = static_cast<ColorFormat>(parse_name(key, value, kColorFormatNames));
+    else if (const auto* cache = std::get_if<CacheKind Config::*>(&setting.member))
+      config.** cache = static_cast<CacheKind>(parse_name(key, value, kCacheKindNames));
+    else if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
+      config.** clears = static_cast<FrameClears>(parse_name(key, value, kFrameClearsNames));
     else if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
       config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
     else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))
@@ -188,6 +206,10 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
   refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
   refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
+  refuse_unless(is_power_of_two(config.cache_queue), "cache.queue must be a power of two");
+  refuse_unless(is_power_of_two(config.cache_victims), "cache.victims must be a power of two");
+  refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
+                "a cache of tiles holds at most 256: lower cache.lines");
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");

@@ -21,6 +21,13 @@ struct InputError : std::runtime_error {
 /// Layout of a stored colour. rgb565: R in bits 15...11. rgba8888: R in the lowest byte, so memory order is R, G, B, A.
 enum class ColorFormat : int { rgb565, rgba8888 };
 
+/// What the on-chip depth and colour RAM holds, and how it meets memory: whole tiles, a miss at a time; or blocks of 4x4
+/// pixels, whose tags run ahead of the depth test.
+enum class CacheKind : int { tiles, blocks };
+
+/// What a flush leaves of cleared blocks that nothing was drawn into: their clear colour in memory, or their flags alone.
+enum class FrameClears : int { resolve, flags };
+
 /// How the RTL does triangle setup: several multipliers and a triangle every few cycles, or one shared multiplier. Same bits.
 enum class SetupKind : int { pipelined, serial };
 
@@ -40,7 +47,11 @@ struct Config {
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
   int hiz_bits = 16;           ///< bits of a tile's HiZ bound, see hiz_code_bits(); 0: no HiZ
-  int cache_lines = 16;        ///< tiles that the on-chip depth and colour RAM holds; a power of two
+  CacheKind cache_kind = CacheKind::tiles;
+  int cache_lines = 16;     ///< tiles or blocks that the on-chip depth and colour RAM holds; a power of two
+  int cache_queue = 32;     ///< blocks: fragments between the tags and the depth test; a power of two
+  int cache_victims = 8;    ///< blocks: evicted ones that wait to be written to memory; a power of two
+  FrameClears frame_clears = FrameClears::resolve;  ///< of blocks
   SetupKind setup_kind = SetupKind::pipelined;
   int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
@@ -59,7 +70,8 @@ struct Setting {
   std::string_view meaning;  ///< one line for `halfplane config --list`
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
-  std::variant<int Config::*, ColorFormat Config::*, SetupKind Config::*, DepthMapping Config::*, DepthFormat Config::*>
+  std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, SetupKind Config::*,
+               DepthMapping Config::*, DepthFormat Config::*>
       member;
 
   /// Whether the RTL depends on it.

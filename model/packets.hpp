@@ -129,6 +129,10 @@ enum class PrimitiveKind : std::uint8_t {
 /// What the end of a tile visit does to the tile's HiZ bound.
 enum class HizUpdate : std::uint8_t { none, set, clear };
 
+/// What a tile has of each pixel; and the flags of its cleared blocks, which a flush writes to memory (cache.kind blocks).
+enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags };
+inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
+
 /// An enum as the generated package has it: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
 template <class Enum>
 struct Enumerator {
@@ -168,6 +172,16 @@ struct WireEnum<HizUpdate> {
   static constexpr Width Widths::*width = &Widths::hiz_update;
   static constexpr Enumerator<HizUpdate> all[] = {
       {HizUpdate::none, "none"}, {HizUpdate::set, "set"}, {HizUpdate::clear, "clear"}};
+};
+
+template <>
+struct WireEnum<TilePlane> {
+  static constexpr std::string_view name = "tile_plane";
+  static constexpr Width Widths::*width = &Widths::tile_plane;
+  static constexpr Enumerator<TilePlane> all[] = {{TilePlane::depth, "depth"},
+                                                  {TilePlane::color, "color"},
+                                                  {TilePlane::depth_flags, "depth_flags"},
+                                                  {TilePlane::color_flags, "color_flags"}};
 };
 
 /// A rectangle of pixels, inclusive; empty when left > right or top > bottom.
@@ -399,15 +413,18 @@ struct LinePixel {
 };
 
 /// framebuffer -> memory: one stamp of one plane. Requests go in program order; reads are answered in the same order.
+/// A word of flags is bits of `data`, flag n of the word bit n; its words lie in rows of blocks: word n of block row y is
+/// asked for as tile_x n and stamp y modulo BlockGrid::per_tile of tile_y.
 struct MemoryRequest {
   PACKET(MemoryRequest, "memory_request");
   using Lanes = std::array<std::uint32_t, kMaxSamples>;
   FIELD(bool, is_write, &Widths::flag)
-  FIELD(bool, is_color, &Widths::flag)  ///< 0: the depth plane
+  FIELD(TilePlane, plane, &Widths::tile_plane)
   FIELD(std::uint16_t, tile_x, &Widths::tile_x)
   FIELD(std::uint16_t, tile_y, &Widths::tile_y)
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
-  FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 for a read
+  FIELD(SampleMask, strobe, &Widths::sample_mask)  ///< the samples to write; 0 for a read
+  FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 where none is written
   PACKET_END
 };
 

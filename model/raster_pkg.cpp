@@ -146,6 +146,12 @@ std::string raster_pkg(const Config& config) {
     if (std::holds_alternative<ColorFormat Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.color_format),
                      "0 rgb565, 1 rgba8888: " + std::string(setting.meaning));
+    else if (std::holds_alternative<CacheKind Config::*>(setting.member))
+      print_constant(out, constant_name(setting.key), static_cast<int>(config.cache_kind),
+                     "0 tiles, 1 blocks: " + std::string(setting.meaning));
+    else if (std::holds_alternative<FrameClears Config::*>(setting.member))
+      print_constant(out, constant_name(setting.key), static_cast<int>(config.frame_clears),
+                     "0 resolve, 1 flags: " + std::string(setting.meaning));
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
                      "0 pipelined, 1 serial: " + std::string(setting.meaning));
@@ -166,8 +172,11 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
   print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
   print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
-  print_constant(out, "LINE_X_BITS", widths.line_x_bits, "low bits of tile x in a cache line's number");
-  print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "low bits of tile y in a cache line's number, above those");
+  print_constant(out, "LINE_X_BITS", widths.line_x_bits, "low bits of a tile's or block's x in a cache line's number");
+  print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "likewise of its y, above those");
+  print_constant(out, "BLOCK_SIDE", widths.blocks.side, "stamps along the side of a block");
+  print_constant(out, "BLOCKS_PER_ROW", widths.blocks.per_tile, "blocks along the side of a tile");
+  print_constant(out, "FLAG_WORD", widths.blocks.flag_word, "flags of cleared blocks in a word, those of a row of blocks");
   out << stall_constants() << "\n  // Derived widths, each with its bound.\n";
   for (const Width* width : widths.all())
     print_constant(out, constant_name(width->name) + "_BITS", width->bits, std::string(width->bound));
@@ -180,6 +189,7 @@ std::string raster_pkg(const Config& config) {
   print_enum<DepthFunc>(out, widths);
   print_enum<Cull>(out, widths);
   print_enum<HizUpdate>(out, widths);
+  print_enum<TilePlane>(out, widths);
   out << "\n  // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.";
   print_struct<PixelBox>(out, widths);
   print_struct<TileBox>(out, widths);

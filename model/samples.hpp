@@ -20,6 +20,9 @@ class SampleMask {
   /// Sample n alone.
   [[nodiscard]] static constexpr SampleMask only(int n) { return SampleMask(std::uint64_t{1} << n); }
 
+  /// The first n, at least one.
+  [[nodiscard]] static constexpr SampleMask all(int n) { return SampleMask(~std::uint64_t{0} >> (64 - n)); }
+
   [[nodiscard]] constexpr std::uint64_t bits() const { return bits_; }
   [[nodiscard]] constexpr bool any() const { return bits_ != 0; }
   [[nodiscard]] constexpr bool has(std::size_t n) const { return (bits_ >> n & 1) != 0; }
@@ -39,6 +42,9 @@ class SampleMask {
   constexpr bool operator==(const SampleMask&) const = default;
   [[nodiscard]] friend constexpr SampleMask operator&(SampleMask a, SampleMask b) {
     return SampleMask(a.bits_ & b.bits_);
+  }
+  [[nodiscard]] friend constexpr SampleMask operator|(SampleMask a, SampleMask b) {
+    return SampleMask(a.bits_ | b.bits_);
   }
 
  private:

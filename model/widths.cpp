@@ -162,7 +162,11 @@ Widths derive_widths(const Config& config) {
   w.hiz_code = bits("hiz code", "hiz.bits, at most depth.bits, at least 1", std::max(1, hiz_code_bits(config)));
   w.hiz_update = count("hiz update", "HizUpdate", 3);
   w.counter = bits("counter", "modulo 2^32", 32);
+  w.tile_plane = count("tile plane", "TilePlane", 4);
   w.memory_lane = bits("memory lane", "a depth code or a stored colour", std::max(w.depth().code.bits, color_bits));
+  const int block = std::max(4, config.stamp_size);
+  w.blocks = {block / config.stamp_size, config.tile_size / block, 1};
+  while (w.blocks.flag_word < 64 && 2 * w.blocks.flag_word <= w.samples * w.memory_lane.bits) w.blocks.flag_word *= 2;
   derive_line_widths(w, config);
   return w;
 }
@@ -239,7 +243,7 @@ std::vector<const Width*> Widths::all() const& {
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
   add({&primitive_id, &slot,       &tile_x,     &tile_y,      &tile_pixel, &stamp_index,    &sample_mask,
        &stored_color, &kind,       &flag,       &depth_func,  &cull_mode,  &pixel_x,        &pixel_y,
-       &vertex_color, &hiz_code,   &hiz_update, &memory_lane, &counter,    &line_numerator, &line_position,
+       &vertex_color, &hiz_code,   &hiz_update, &tile_plane, &memory_lane, &counter,    &line_numerator, &line_position,
        &line_product, &line_error, &line_stay,  &line_move,   &line_count});
   add_of_attributes({&A::line});
   return list;

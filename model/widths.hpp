@@ -53,6 +53,16 @@ struct AttributeWidths {
   [[nodiscard]] int guard_bits() const { return local.bits - code.bits - 1; }
 };
 
+/// Blocks: 4x4 pixels of a tile, or a stamp where that is larger.
+struct BlockGrid {
+  int side = 1;       ///< stamps along the side of a block
+  int per_tile = 1;   ///< blocks along the side of a tile
+  int flag_word = 1;  ///< flags that a word holds: of blocks in one row; a power of two
+
+  [[nodiscard]] constexpr int stamps() const { return side * side; }  ///< of a block
+  bool operator==(const BlockGrid&) const = default;
+};
+
 /// The derived widths of a configuration, and the few derived constants beside them.
 struct Widths {
   // Constants.
@@ -61,11 +71,12 @@ struct Widths {
   int plane_fraction = 0;  ///< F = G + s: fraction bits of a plane at subpixel resolution
   int tile_shift = 0;      ///< log2 of the tile size
   StampGrid stamps;        ///< the stamps of a tile, the samples of a stamp
+  BlockGrid blocks;        ///< of cache.kind blocks
   int planes = 0;          ///< of all attributes together
   int color_planes = 0;    ///< those of the stored colour: kColorPlane and the next ones
   int samples = 0;         ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
-  int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's x and y that choose its cache line
+  int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's or block's x and y that choose its cache line
   int line_guard_bits = 0;               ///< fraction bits of depth and colour along a line
 
   // Coverage.
@@ -78,7 +89,7 @@ struct Widths {
   Width reciprocal, reciprocal_shift;     ///< the widest, which the others are the upper bits of
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
-  Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, memory_lane, counter;
+  Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane, memory_lane, counter;
   // Lines.
   Width line_numerator, line_position, line_product;   // line_setup
   Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, beside those of the planes

@@ -16,10 +16,14 @@ package raster_pkg;
   localparam int KEY_PRIMITIVE_BITS = 16;  // bits of the primitive number in an RTL packet key
   localparam int CONTEXT_SLOTS = 4;  // triangles whose constants the context RAM holds; a power of two
   localparam int HIZ_BITS = 16;  // bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ
-  localparam int CACHE_LINES = 16;  // tiles that the on-chip depth and colour RAM holds; a power of two
+  localparam int CACHE_KIND = 0;  // 0 tiles, 1 blocks: what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead
+  localparam int CACHE_LINES = 16;  // tiles or blocks that the on-chip depth and colour RAM holds; a power of two
+  localparam int CACHE_QUEUE = 32;  // blocks: between tags and depth test; a power of two
+  localparam int CACHE_VICTIMS = 8;  // blocks: evicted and not yet written; a power of two
+  localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: blocks: what a flush writes of cleared blocks: colours, or flags
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
-  localparam logic [63:0] CONFIG_ID = 64'haecb9e609cff6eb3;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h3d64a60c91dbfbea;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -33,8 +37,11 @@ package raster_pkg;
   localparam int SAMPLES = 4;  // samples of a stamp
   localparam int TILES_X = 240;  // tiles along the top of the widest target
   localparam int TILES_Y = 135;  // tiles along the side of the highest target
-  localparam int LINE_X_BITS = 2;  // low bits of tile x in a cache line's number
-  localparam int LINE_Y_BITS = 2;  // low bits of tile y in a cache line's number, above those
+  localparam int LINE_X_BITS = 2;  // low bits of a tile's or block's x in a cache line's number
+  localparam int LINE_Y_BITS = 2;  // likewise of its y, above those
+  localparam int BLOCK_SIDE = 2;  // stamps along the side of a block
+  localparam int BLOCKS_PER_ROW = 2;  // blocks along the side of a tile
+  localparam int FLAG_WORD = 64;  // flags of cleared blocks in a word, those of a row of blocks
 
   // Bits of raster_top's stall_i.
   localparam int STALL_PRIMITIVE = 0;
@@ -91,6 +98,7 @@ package raster_pkg;
   localparam int VERTEX_COLOR_BITS = 24;  // 8 bits a stored channel
   localparam int HIZ_CODE_BITS = 16;  // hiz.bits, at most depth.bits, at least 1
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
+  localparam int TILE_PLANE_BITS = 2;  // TilePlane
   localparam int MEMORY_LANE_BITS = 16;  // a depth code or a stored colour
   localparam int COUNTER_BITS = 32;  // modulo 2^32
   localparam int LINE_NUMERATOR_BITS = 22;  // f D + d o - 1, f < 2^s
@@ -160,6 +168,13 @@ package raster_pkg;
     HIZ_UPDATE_SET = 2'd1,
     HIZ_UPDATE_CLEAR = 2'd2
   } hiz_update_t;
+
+  typedef enum logic [TILE_PLANE_BITS-1:0] {
+    TILE_PLANE_DEPTH = 2'd0,
+    TILE_PLANE_COLOR = 2'd1,
+    TILE_PLANE_DEPTH_FLAGS = 2'd2,
+    TILE_PLANE_COLOR_FLAGS = 2'd3
+  } tile_plane_t;
 
   // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.
   typedef struct packed {
@@ -335,13 +350,14 @@ package raster_pkg;
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] is_write;
-    logic [FLAG_BITS-1:0] is_color;
+    tile_plane_t plane;
     logic [TILE_X_BITS-1:0] tile_x;
     logic [TILE_Y_BITS-1:0] tile_y;
     logic [STAMP_INDEX_BITS-1:0] stamp;
+    logic [SAMPLE_MASK_BITS-1:0] strobe;
     logic [4*MEMORY_LANE_BITS-1:0] data;
   } memory_request_t;
-  localparam int MEMORY_REQUEST_BITS = 86;  // of the struct above
+  localparam int MEMORY_REQUEST_BITS = 91;  // of the struct above
 
   typedef struct packed {
     logic [4*MEMORY_LANE_BITS-1:0] data;

@@ -274,17 +274,26 @@ module raster_top (
       .data_i         (context_data)
   );
 
-  logic                                                       access_valid, access_ready;
+  // The test, and what is behind it: whole tiles, looked up when they are tested; or blocks, looked up before.
+  logic                             tested_valid, tested_ready;
+  var raster_pkg::fragment_packet_t tested;
+  /* verilator lint_off UNUSEDSIGNAL */  // blocks take no accesses
+  logic                                                       access_valid;
   var raster_pkg::fragment_packet_t                           access;
   logic [raster_pkg::STORED_COLOR_BITS-1:0]                   access_color;
+  logic                                                       moves_tiles;  // for the co-simulation
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic                                                       access_ready;
   logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth;
   logic [COUNT-1:0]                                           covered, passed, written;
+  logic [1:0]                                                 fill, evict, clear;
+  logic                                                       framebuffer_idle;
   depth_test u_depth_test (
       .clk_i,
       .rst_ni,
-      .fragment_valid_i(fragment_valid),
-      .fragment_ready_o(fragment_accepted),
-      .fragment_i      (fragment_data),
+      .fragment_valid_i(tested_valid),
+      .fragment_ready_o(tested_ready),
+      .fragment_i      (tested),
       .access_valid_o  (access_valid),
       .access_ready_i  (access_ready),
       .access_o        (access),
@@ -299,29 +308,67 @@ module raster_top (
       .written_o       (written)
   );
 
-  logic [1:0] fill, evict, clear;
-  logic       framebuffer_idle;
-  framebuffer u_framebuffer (
-      .clk_i,
-      .rst_ni,
-      .access_valid_i  (access_valid),
-      .access_ready_o  (access_ready),
-      .access_i        (access),
-      .access_color_i  (access_color),
-      .stored_depth_o  (stored_depth),
-      .write_valid_i   (write_valid),
-      .write_i         (write_data),
-      .request_valid_o (request_offered),
-      .request_ready_i (request_ready_i && !stall_i[raster_pkg::STALL_REQUEST]),
-      .request_o,
-      .response_valid_i(response_valid_i && !stall_i[raster_pkg::STALL_RESPONSE]),
-      .response_ready_o(response_ready),
-      .response_i,
-      .fill_o          (fill),
-      .evict_o         (evict),
-      .clear_o         (clear),
-      .idle_o          (framebuffer_idle)
-  );
+  generate
+    if (raster_pkg::CACHE_KIND == 0) begin : gen_tiles
+      assign tested_valid      = fragment_valid;
+      assign fragment_accepted = tested_ready;
+      assign tested            = fragment_data;
+
+      framebuffer u_framebuffer (
+          .clk_i,
+          .rst_ni,
+          .access_valid_i  (access_valid),
+          .access_ready_o  (access_ready),
+          .access_i        (access),
+          .access_color_i  (access_color),
+          .stored_depth_o  (stored_depth),
+          .write_valid_i   (write_valid),
+          .write_i         (write_data),
+          .request_valid_o (request_offered),
+          .request_ready_i (request_ready_i && !stall_i[raster_pkg::STALL_REQUEST]),
+          .request_o,
+          .response_valid_i(response_valid_i && !stall_i[raster_pkg::STALL_RESPONSE]),
+          .response_ready_o(response_ready),
+          .response_i,
+          .fill_o          (fill),
+          .evict_o         (evict),
+          .clear_o         (clear),
+          .moves_tiles_o   (moves_tiles),
+          .idle_o          (framebuffer_idle)
+      );
+    end else begin : gen_blocks
+      assign access_ready = 1'b1;
+
+      framebuffer_blocks u_framebuffer (
+          .clk_i,
+          .rst_ni,
+          .fragment_valid_i(fragment_valid),
+          .fragment_ready_o(fragment_accepted),
+          .fragment_i      (fragment_data),
+          .tested_valid_o  (tested_valid),
+          .tested_o        (tested),
+          .stored_depth_o  (stored_depth),
+          .write_valid_i   (write_valid),
+          .write_i         (write_data),
+          .request_valid_o (request_offered),
+          .request_ready_i (request_ready_i && !stall_i[raster_pkg::STALL_REQUEST]),
+          .request_o,
+          .response_valid_i(response_valid_i && !stall_i[raster_pkg::STALL_RESPONSE]),
+          .response_ready_o(response_ready),
+          .response_i,
+          .fill_o          (fill),
+          .evict_o         (evict),
+          .clear_o         (clear),
+          .at_token_o      (moves_tiles),
+          .idle_o          (framebuffer_idle)
+      );
+
+      /* verilator lint_off UNUSEDSIGNAL */
+      logic unused_tested_ready;
+      assign unused_tested_ready = tested_ready;
+      /* verilator lint_on UNUSEDSIGNAL */
+    end
+  endgenerate
 
   // Primitives between the host and the end of their last stamp.
   localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 16);

@@ -24,7 +24,27 @@ std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, i
 }
 
 TileMemory::TileMemory(const Config& config) : widths_(derive_widths(config)) {
-  block_.resize(2 * static_cast<std::size_t>(widths_.tiles_x) * static_cast<std::size_t>(widths_.tiles_y), kNone);
+  const auto tiles = static_cast<std::size_t>(widths_.tiles_x) * static_cast<std::size_t>(widths_.tiles_y);
+  block_.resize(2 * tiles, kNone);
+  if (config.cache_kind == CacheKind::blocks)
+    for (auto& plane : flags_) plane.resize(tiles * static_cast<std::size_t>(widths_.blocks.per_tile * widths_.blocks.per_tile));
+}
+
+bool TileMemory::has(const MemoryRequest& request) const {
+  if (request.tile_y >= tiles_y()) return false;
+  if (request.plane == TilePlane::depth || request.plane == TilePlane::color)
+    return request.tile_x < tiles_x() && request.stamp < stamps();
+  return request.tile_x * widths_.blocks.flag_word < tiles_x() * widths_.blocks.per_tile &&
+         request.stamp < widths_.blocks.per_tile && !flags_[0].empty();
+}
+
+bool TileMemory::is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const {
+  const std::vector<std::uint8_t>& flags = flags_[is_color ? 1 : 0];
+  if (flags.empty()) return false;
+  const BlockAddress block =
+      block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
+                   static_cast<std::uint16_t>(stamp)}, widths_).block;
+  return flags[static_cast<std::size_t>(block.y * tiles_x() * widths_.blocks.per_tile + block.x)] != 0;
 }
 
 void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
@@ -38,15 +58,28 @@ void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
   std::copy_n(lanes_.begin() + first_lane(block, stamp), samples(), data.begin());
 }
 
-void TileMemory::write(bool is_color, int tile_x, int tile_y, int stamp,
-                       std::span<const std::uint32_t, kMaxSamples> data) {
+void TileMemory::write(const MemoryRequest& request) {
+  if (request.plane == TilePlane::depth_flags || request.plane == TilePlane::color_flags) {
+    const int row = tiles_x() * widths_.blocks.per_tile, first = request.tile_x * widths_.blocks.flag_word;
+    const int y = request.tile_y * widths_.blocks.per_tile + request.stamp;
+    const std::uint64_t bits = flag_word(request, widths_);
+    auto& flags = flags_[request.plane == TilePlane::color_flags ? 1 : 0];
+    for (int x = first; x < std::min(row, first + widths_.blocks.flag_word); ++x)
+      flags[static_cast<std::size_t>(y * row + x)] = static_cast<std::uint8_t>(bits >> (x - first) & 1);
+    return;
+  }
+  const bool is_color = request.plane == TilePlane::color;
+  const int tile_x = request.tile_x, tile_y = request.tile_y;
   std::uint32_t& block = block_[index(is_color, tile_x, tile_y)];
   if (block == kNone) {
     block = blocks_++;
     for (int other = 0; other < stamps(); ++other)
       for (int s = 0; s < samples(); ++s) lanes_.push_back(memory_garbage(is_color, tile_x, tile_y, other, s, widths_));
   }
-  std::copy_n(data.begin(), samples(), lanes_.begin() + first_lane(block, stamp));
+  const std::ptrdiff_t first = first_lane(block, request.stamp);
+  request.strobe.for_each([&](std::size_t s) {
+    lanes_[static_cast<std::size_t>(first) + s] = request.data[s];
+  });
 }
 
 Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config) {
@@ -56,7 +89,13 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   const int tile = config.tile_size, size = config.stamp_size;
   const StampGrid stamps{size, tile / size};
   std::array<std::uint32_t, kMaxSamples> data;
-  const auto copy_stamp = [&](Framebuffer::Image& image, int x, int y) {
+  const auto copy_stamp = [&](bool is_color, int x, int y) {
+    Framebuffer::Image& image = is_color ? frame.color : frame.depth;
+    const int stamp = stamps.stamp_at(x % tile, y % tile);
+    if (memory.is_cleared(is_color, x / tile, y / tile, stamp))
+      data.fill(memory.clear_value(is_color));
+    else
+      memory.read(is_color, x / tile, y / tile, stamp, data);
     for (int s = 0; s < stamps.samples(); ++s) {
       const PixelOffset pixel = stamps.pixel_of(s);
       if (x + pixel.x < width && y + pixel.y < height)
@@ -65,11 +104,8 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   };
   for (int y = 0; y < height; y += size)
     for (int x = 0; x < width; x += size) {
-      const int stamp = stamps.stamp_at(x % tile, y % tile);
-      memory.read(false, x / tile, y / tile, stamp, data);
-      copy_stamp(frame.depth, x, y);
-      memory.read(true, x / tile, y / tile, stamp, data);
-      copy_stamp(frame.color, x, y);
+      copy_stamp(false, x, y);
+      copy_stamp(true, x, y);
     }
   return frame;
 }
@@ -79,8 +115,10 @@ HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
       widths_(derive_widths(config)),
       sink_(sink),
       hiz_(config, widths_),
-      cache_(config, widths_),
-      memory_(config) {}
+      cache_(std::in_place_type<TileCache>, config, widths_),
+      memory_(config) {
+  if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
+}
 
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
   const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
@@ -118,21 +156,26 @@ void HardwareModel::join(const FragmentPacket& fragment) {
 /// depth_test, rop and framebuffer.
 void HardwareModel::shade(const FragmentPacket& fragment) {
   switch (fragment.kind) {
-    case PrimitiveKind::fast_clear:
-      cache_.fast_clear(fragment, stored_color(fragment.code[0], config_), *this, counters_);
+    case PrimitiveKind::fast_clear: {
+      const std::uint32_t color = stored_color(fragment.code[0], config_);
+      std::visit([&](auto& cache) { cache.fast_clear(fragment, color, *this, counters_); }, cache_);
+      if (fragment.state.depth_write) memory_.set_clear_value(TilePlane::depth, fragment.code[0][kDepthPlane]);
+      if (fragment.state.color_write) memory_.set_clear_value(TilePlane::color, color);
       return;
-    case PrimitiveKind::flush: cache_.flush(fragment, *this, counters_); return;
+    }
+    case PrimitiveKind::flush:
+      std::visit([&](auto& cache) { cache.flush(fragment, *this, counters_); }, cache_);
+      return;
     case PrimitiveKind::triangle:
     case PrimitiveKind::rectangle:
     case PrimitiveKind::point:
     case PrimitiveKind::line: break;
   }
   if (fragment.mask.any()) {
-    cache_.access(fragment.key.tile_x, fragment.key.tile_y, *this, counters_);
-    const auto stored = cache_.stored(TilePlane::depth, fragment.key.tile_x, fragment.key.tile_y, fragment.stamp);
+    const auto stored = std::visit([&](auto& cache) { return cache.access(fragment, *this, counters_); }, cache_);
     const WritePacket packet = rop(fragment, depth_test(fragment, stored, widths_), config_, widths_);
     sink_.take(on<Arrow::write>, packet);
-    cache_.write(packet);
+    std::visit([&](auto& cache) { cache.write(fragment, packet); }, cache_);
     if (fragment.kind != PrimitiveKind::line) visit_.add(fragment, packet.passed, widths_);
     if (is_counted(fragment.kind)) {
       const auto passed = static_cast<std::uint32_t>(packet.passed.count());
@@ -151,12 +194,12 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
 
 void HardwareModel::write(const MemoryRequest& request) {
   sink_.take(on<Arrow::request>, request);
-  memory_.write(request.is_color, request.tile_x, request.tile_y, request.stamp, request.data);
+  memory_.write(request);
 }
 
 const MemoryResponse& HardwareModel::read(const MemoryRequest& request) {
   sink_.take(on<Arrow::request>, request);
-  memory_.read(request.is_color, request.tile_x, request.tile_y, request.stamp, response_.data);
+  memory_.read(request.plane == TilePlane::color, request.tile_x, request.tile_y, request.stamp, response_.data);
   sink_.take(on<Arrow::response>, response_);
   return response_;
 }

@@ -4,10 +4,12 @@
 
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "../host_stream.hpp"
 #include "../pipeline_graph.hpp"
+#include "../stages/block_cache.hpp"
 #include "../stages/depth_test.hpp"
 #include "../stages/hiz.hpp"
 #include "../stages/tile_cache.hpp"
@@ -19,13 +21,23 @@ namespace halfplane {
 [[nodiscard]] std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample,
                                            const Widths& widths);
 
-/// The memory behind the memory port: both planes, tile-major, a stamp at a time. Tiles are allocated when written.
+/// The memory behind the memory port: both planes, tile-major, a stamp at a time, and the flags of cleared blocks. Tiles
+/// are allocated when written.
 class TileMemory {
  public:
   explicit TileMemory(const Config& config);
   /// The first `samples` lanes of `data`; the others are left alone.
   void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
-  void write(bool is_color, int tile_x, int tile_y, int stamp, std::span<const std::uint32_t, kMaxSamples> data);
+  void write(const MemoryRequest& request);
+  /// Whether the target has what a request asks for.
+  [[nodiscard]] bool has(const MemoryRequest& request) const;
+  /// The value that the last fast clear gave a plane: that of a block whose flag is set.
+  void set_clear_value(TilePlane plane, std::uint32_t code) { clear_value_[static_cast<std::size_t>(plane)] = code; }
+  [[nodiscard]] std::uint32_t clear_value(bool is_color) const { return clear_value_[is_color ? 1 : 0]; }
+  /// Whether memory's own stamp is garbage because its block's flag is set.
+  [[nodiscard]] bool is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const;
+  /// Flags by block, rows of the widest target.
+  [[nodiscard]] const std::vector<std::uint8_t>& flags(bool is_color) const { return flags_[is_color ? 1 : 0]; }
   [[nodiscard]] int tiles_x() const { return widths_.tiles_x; }  ///< of the widest and highest target
   [[nodiscard]] int tiles_y() const { return widths_.tiles_y; }
   [[nodiscard]] int stamps() const { return widths_.stamps.stamps(); }  ///< of a tile
@@ -46,6 +58,8 @@ class TileMemory {
     return (static_cast<std::ptrdiff_t>(block) * stamps() + stamp) * samples();
   }
   Widths widths_;
+  std::array<std::uint32_t, 2> clear_value_{};
+  std::array<std::vector<std::uint8_t>, 2> flags_;  ///< as the last flush wrote them
   std::vector<std::uint32_t> block_;  ///< of each tile of each plane: which tile of lanes_, or kNone
   std::uint32_t blocks_ = 0;          ///< tiles in lanes_
   std::vector<std::uint32_t> lanes_;  ///< stamp by stamp
@@ -75,7 +89,7 @@ class HardwareModel final : private MemoryPort {
   CounterPacket counters_;
   Hiz hiz_;
   TileVisit visit_;  ///< what the stamps of the current tile visit have done so far
-  TileCache cache_;
+  std::variant<TileCache, BlockCache> cache_;
   TileMemory memory_;
   MemoryResponse response_;
   std::uint8_t slot_ = 0;  ///< context slot of the next primitive

@@ -8,11 +8,12 @@ namespace {
 
 std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
 
-/// Of stamp 0.
-MemoryRequest request(const TileAddress& address, bool is_write) {
+/// Of stamp 0, all of it.
+MemoryRequest request(const TileAddress& address, bool is_write, int samples) {
   MemoryRequest request;
   request.is_write = is_write ? 1 : 0;
-  request.is_color = address.plane == TilePlane::color ? 1 : 0;
+  request.plane = address.plane;
+  if (is_write) request.strobe = SampleMask::all(samples);
   request.tile_x = address.tile_x;
   request.tile_y = address.tile_y;
   return request;
@@ -30,7 +31,7 @@ struct TileCache::DataMover {
   void look_at_tile() const {}
 
   void write_back(std::size_t line, const TileAddress& address) {
-    MemoryRequest packet = request(address, true);
+    MemoryRequest packet = request(address, true, cache.samples_);
     for (int stamp = 0; stamp < cache.stamps_; ++stamp) {
       packet.stamp = static_cast<std::uint16_t>(stamp);
       std::ranges::copy(cache.lanes(address.plane, line, stamp), packet.data.begin());
@@ -40,7 +41,8 @@ struct TileCache::DataMover {
 
   void fill(std::size_t line, int x, int y, const std::array<bool, 2>& is_cleared) {
     for (const TilePlane plane : kTilePlanes) {
-      MemoryRequest packet = request({plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, false);
+      MemoryRequest packet =
+          request({plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, false, cache.samples_);
       for (int stamp = 0; stamp < cache.stamps_; ++stamp) {
         const auto to = cache.lanes(plane, line, stamp);
         if (is_cleared[number(plane)]) {
@@ -56,7 +58,7 @@ struct TileCache::DataMover {
   }
 
   void write_clear_value(const TileAddress& address) {
-    MemoryRequest packet = request(address, true);
+    MemoryRequest packet = request(address, true, cache.samples_);
     std::fill_n(packet.data.begin(), cache.samples_, cache.clear_value_[number(address.plane)]);
     for (int stamp = 0; stamp < cache.stamps_; ++stamp) {
       packet.stamp = static_cast<std::uint16_t>(stamp);
@@ -89,11 +91,14 @@ std::span<const std::uint32_t> TileCache::stored(TilePlane plane, int tile_x, in
           static_cast<std::size_t>(samples_)};
 }
 
-void TileCache::access(int tile_x, int tile_y, MemoryPort& memory, CounterPacket& counters) {
-  directory_.access(tile_x, tile_y, DataMover{*this, memory}, counters);
+std::span<const std::uint32_t> TileCache::access(const FragmentPacket& fragment, MemoryPort& memory,
+                                                 CounterPacket& counters) {
+  const TileKey& key = fragment.key;
+  directory_.access(key.tile_x, key.tile_y, DataMover{*this, memory}, counters);
+  return stored(TilePlane::depth, key.tile_x, key.tile_y, fragment.stamp);
 }
 
-void TileCache::write(const WritePacket& packet) {
+void TileCache::write(const FragmentPacket&, const WritePacket& packet) {
   const std::size_t line = directory_.line_of(packet.key.tile_x, packet.key.tile_y);
   const auto masked_copy = [&](TilePlane plane, SampleMask mask, const WritePacket::Codes& from) {
     const auto to = lanes(plane, line, packet.stamp);

@@ -7,32 +7,23 @@
 
 #include <span>
 
+#include "memory_port.hpp"
 #include "tile_directory.hpp"
 
 namespace halfplane {
-
-/// Memory, as the cache sees it: one stamp of one plane at a time.
-struct MemoryPort {
-  virtual void write(const MemoryRequest& request) = 0;
-  /// Valid until the next read: 64 lanes are much to copy.
-  [[nodiscard]] virtual const MemoryResponse& read(const MemoryRequest& request) = 0;
-
- protected:
-  ~MemoryPort() = default;
-};
 
 class TileCache {
  public:
   TileCache(const Config& config, const Widths& widths);
 
-  /// Makes the tile resident.
-  void access(int tile_x, int tile_y, MemoryPort& memory, CounterPacket& counters);
+  /// Makes the fragment's tile resident. Returns the depth codes under it.
+  std::span<const std::uint32_t> access(const FragmentPacket& fragment, MemoryPort& memory, CounterPacket& counters);
 
   /// The codes of one stamp of a resident tile.
   [[nodiscard]] std::span<const std::uint32_t> stored(TilePlane plane, int tile_x, int tile_y, int stamp) const;
 
-  /// Writes into a resident tile.
-  void write(const WritePacket& packet);
+  /// Writes what came of a fragment into its tile, which is resident.
+  void write(const FragmentPacket& fragment, const WritePacket& packet);
 
   /// `token`: a fragment of kind fast_clear; `color`: its colour as it is stored.
   void fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory, CounterPacket& counters);

@@ -19,10 +19,6 @@
 
 namespace halfplane {
 
-/// What a tile has of each pixel.
-enum class TilePlane : std::uint8_t { depth, color };
-inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
-
 /// A plane of one tile: where a request goes.
 struct TileAddress {
   TilePlane plane;

@@ -21,24 +21,42 @@ class FixedMemory final : public MemoryTiming {
   Cycle latency_;
 };
 
-/// Where a request lies: tiles of the widest target one after the other, all depth before all colour.
+/// Where a request lies: tiles of the widest target one after the other, all depth before all colour, then the words of
+/// either plane's flags, row by row.
 class AddressMap {
  public:
   explicit AddressMap(const Config& config) : widths_(derive_widths(config)) {
     for (const bool is_color : {false, true})
       bytes_[is_color] = static_cast<std::uint64_t>(stamp_bytes(config, is_color));
   }
-  [[nodiscard]] std::uint64_t bytes(bool is_color) const { return bytes_[is_color]; }
+  [[nodiscard]] std::uint64_t bytes(const MemoryAccess& a) const {
+    return is_flags(a) ? flag_bytes() : bytes_[a.plane == TilePlane::color];
+  }
   [[nodiscard]] std::uint64_t address(const MemoryAccess& a) const {
     const auto stamps = static_cast<std::uint64_t>(widths_.stamps.stamps());
     const auto tiles_x = static_cast<std::uint64_t>(widths_.tiles_x),
                tiles_y = static_cast<std::uint64_t>(widths_.tiles_y);
     const std::uint64_t tile = static_cast<std::uint64_t>(a.tile_y) * tiles_x + static_cast<std::uint64_t>(a.tile_x);
-    const std::uint64_t depth_plane = (tiles_x * tiles_y * stamps * bytes_[0] + kPlane - 1) / kPlane * kPlane;
-    return (a.is_color ? depth_plane : 0) + (tile * stamps + static_cast<std::uint64_t>(a.stamp)) * bytes_[a.is_color];
+    const auto plane = [&](bool is_color) {
+      return (tiles_x * tiles_y * stamps * bytes_[is_color] + kPlane - 1) / kPlane * kPlane;
+    };
+    if (is_flags(a)) {
+      const auto per_tile = static_cast<std::uint64_t>(widths_.blocks.per_tile),
+                 word = static_cast<std::uint64_t>(widths_.blocks.flag_word);
+      const std::uint64_t row = (tiles_x * per_tile + word - 1) / word, rows = tiles_y * per_tile;
+      const std::uint64_t y = static_cast<std::uint64_t>(a.tile_y) * per_tile + static_cast<std::uint64_t>(a.stamp);
+      const std::uint64_t first = a.plane == TilePlane::color_flags ? rows * row : 0;
+      return plane(false) + plane(true) + (first + y * row + static_cast<std::uint64_t>(a.tile_x)) * flag_bytes();
+    }
+    const bool is_color = a.plane == TilePlane::color;
+    return (is_color ? plane(false) : 0) + (tile * stamps + static_cast<std::uint64_t>(a.stamp)) * bytes_[is_color];
   }
 
  private:
+  [[nodiscard]] static bool is_flags(const MemoryAccess& a) {
+    return a.plane == TilePlane::depth_flags || a.plane == TilePlane::color_flags;
+  }
+  [[nodiscard]] std::uint64_t flag_bytes() const { return static_cast<std::uint64_t>(flag_word_bytes(widths_)); }
   static constexpr std::uint64_t kPlane = 4096;  ///< a plane begins at a multiple of it: no stamp lies in two rows
   Widths widths_;
   std::array<std::uint64_t, 2> bytes_{};
@@ -53,7 +71,7 @@ class ClockedMemory : public MemoryTiming {
   [[nodiscard]] Cycle room() const final { return queue_.room(); }
   Cycle accept(const MemoryAccess& access, Cycle cycle) final {
     const Picoseconds arrives = round_up((cycle + 1) * cycle_);  // it has gone through a register
-    const Picoseconds done = serve(access.is_write, map_.address(access), map_.bytes(access.is_color), arrives);
+    const Picoseconds done = serve(access.is_write, map_.address(access), map_.bytes(access), arrives);
     const Cycle done_cycle = (done + cycle_ - 1) / cycle_;
     queue_.leave(done_cycle);
     return done_cycle + 1;
@@ -189,6 +207,8 @@ int stamp_bytes(const Config& config, bool is_color) {
   const int color = config.color_format == ColorFormat::rgb565 ? 2 : 4;
   return config.stamp_size * config.stamp_size * (is_color ? color : depth);
 }
+
+int flag_word_bytes(const Widths& widths) { return (widths.blocks.flag_word + 7) / 8; }
 
 std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config) {
   switch (settings.kind) {

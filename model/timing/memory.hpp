@@ -7,14 +7,15 @@
 #include <memory>
 #include <string_view>
 
-#include "../widths.hpp"
+#include "../packets.hpp"
 #include "stalls.hpp"
 
 namespace halfplane {
 
-/// One stamp of one plane of one tile.
+/// One stamp of one plane of one tile, or a word of flags (MemoryRequest).
 struct MemoryAccess {
-  bool is_write = false, is_color = false;
+  bool is_write = false;
+  TilePlane plane = TilePlane::depth;
   int tile_x = 0, tile_y = 0, stamp = 0;
 };
 
@@ -52,7 +53,8 @@ struct MemorySettings {
 /// After its power-up. Tile-major, depth before colour, each row of a memory filled before the next bank's.
 [[nodiscard]] std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config);
 
-/// Bytes of one request's data.
+/// Bytes of one request's data: of a stamp, of a word of flags.
 [[nodiscard]] int stamp_bytes(const Config& config, bool is_color);
+[[nodiscard]] int flag_word_bytes(const Widths& widths);
 
 }  // namespace halfplane

@@ -77,8 +77,7 @@ module raster_cosim (
       .idle_o
   );
 
-  assign moves_tiles_o = u_raster.u_framebuffer.state_q != '0 ||
-      (u_raster.u_framebuffer.access_valid_i && !u_raster.u_framebuffer.access_ready_o);
+  assign moves_tiles_o = u_raster.moves_tiles;
 
   /* verilator lint_off UNUSEDSIGNAL */  // the sources as they are have no mutations
   logic unused_mutant;

@@ -35,7 +35,8 @@ module framebuffer (
     output logic [1:0] evict_o,
     output logic [1:0] clear_o,
 
-    output logic idle_o  // nothing waits for memory
+    output logic moves_tiles_o,  // no access is served while tiles move, or are marked or looked at
+    output logic idle_o          // nothing waits for memory
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -127,6 +128,7 @@ module framebuffer (
   assign walks         = tile_done && (!walk_ends || access_valid_i);
 
   assign access_ready_o = state_q == SERVE ? !is_token && hits : tile_done && walk_ends;
+  assign moves_tiles_o  = state_q != SERVE || (access_valid_i && !access_ready_o);
   assign idle_o         = state_q == SERVE && !access_valid_i;
 
   always_comb begin
@@ -208,7 +210,8 @@ module framebuffer (
   end
 
   assign request_o.is_write = is_write_back;
-  assign request_o.is_color = plane_q || (is_fill && flag_depth);
+  assign request_o.plane    = plane_q || (is_fill && flag_depth) ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
+  assign request_o.strobe   = {SAMPLES{is_write_back}};
   assign request_o.tile_x   = tile_x;
   assign request_o.tile_y   = tile_y;
   assign request_o.stamp    = stamp_q;

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "model/stages/rop.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -198,6 +200,11 @@ void Lockstep::offer_primitive(HostStream& host) {
   pack_words(next->packet, widths_, primitive_.data());
   dut_.set_primitive(primitive_.data());
   has_primitive_ = true;
+  if (next->packet.kind == PrimitiveKind::fast_clear) {  // what the host knows about blocks whose flags are set
+    const PerPlane<std::uint32_t>& code = next->packet.vertex.code[0];
+    if (next->packet.state.depth_write) memory_.tiles().set_clear_value(TilePlane::depth, code[kDepthPlane]);
+    if (next->packet.state.color_write) memory_.tiles().set_clear_value(TilePlane::color, stored_color(code, config_));
+  }
   if (next->line) pack_words(*next->line, widths_, lines_.push(0));
   if (options_.compares) {
     expected_.set_sequence(static_cast<std::uint32_t>(sent_.size()));

@@ -72,7 +72,7 @@ void Lockstep::compare_memory() {
           ++result_.memory_compared;
           if (a.data == b.data) continue;
           for (MemoryRequest* r : {&a, &b}) {
-            r->is_color = is_color ? 1 : 0;
+            r->plane = is_color ? TilePlane::color : TilePlane::depth;
             r->tile_x = static_cast<std::uint16_t>(x);
             r->tile_y = static_cast<std::uint16_t>(y);
             r->stamp = static_cast<std::uint16_t>(stamp);
@@ -83,6 +83,9 @@ void Lockstep::compare_memory() {
           return;
         }
       }
+  for (const bool is_color : {false, true})
+    if (model.flags(is_color) != rtl.flags(is_color) && !result_.mismatch)
+      fail_protocol(std::string(info(Stage::framebuffer).name), "the flags of cleared blocks in memory differ");
 }
 
 }  // namespace halfplane

@@ -22,17 +22,15 @@ class MemoryModel {
 
   void accept(const std::uint32_t* words, std::uint64_t cycle) {
     const auto request = unpack_words<MemoryRequest>(words, widths_);
-    const bool is_inside =  // a faulty design may ask for what is not there: nothing is kept of it
-        request.tile_x < tiles_.tiles_x() && request.tile_y < tiles_.tiles_y() && request.stamp < tiles_.stamps();
+    const bool is_inside = tiles_.has(request);  // a faulty design may ask for what is not there: nothing is kept of it
     const Cycle due =
-        timing_->accept({request.is_write, request.is_color, request.tile_x, request.tile_y, request.stamp}, cycle);
+        timing_->accept({request.is_write, request.plane, request.tile_x, request.tile_y, request.stamp}, cycle);
     if (request.is_write) {
-      if (!is_inside) return;
-      tiles_.write(request.is_color, request.tile_x, request.tile_y, request.stamp, request.data);
+      if (is_inside) tiles_.write(request);
       return;
     }
     MemoryResponse response;
-    if (is_inside) tiles_.read(request.is_color, request.tile_x, request.tile_y, request.stamp, response.data);
+    if (is_inside) tiles_.read(request.plane == TilePlane::color, request.tile_x, request.tile_y, request.stamp, response.data);
     pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(due)));
   }
 
@@ -45,6 +43,7 @@ class MemoryModel {
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty(); }
   [[nodiscard]] const TileMemory& tiles() const { return tiles_; }
+  [[nodiscard]] TileMemory& tiles() { return tiles_; }
 
  private:
   const Widths& widths_;

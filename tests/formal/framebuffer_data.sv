@@ -88,7 +88,7 @@
         assign response    = response_i.data[m*LANE+:BITS];
         assign writes      = write_valid_i && (p == 0 ? write_i.write_depth[m] : write_i.write_color[m]);
         assign writes_word = (is_fill ? (p == 0 ? fill_depth : fill_color) : writes) && write_address == {any_line, any_stamp};
-        assign asks        = request_is_it && !request_o.is_write && request_o.is_color == p;
+        assign asks        = request_is_it && !request_o.is_write && request_o.plane == p;
         always_ff @(posedge clk_i) begin
           // Without a cache.
           if (writes && write_i.key.tile_x == any_x && write_i.key.tile_y == any_y && write_i.stamp == any_stamp)
@@ -96,7 +96,7 @@
           else if (takes_access && token && is_clear && is_masked) truth_q <= value;
           // The word of the RAM, and of memory.
           if (writes_word) word_q <= new_word;
-          if (request_is_it && request_o.is_write && request_o.is_color == p) memory_q <= lane;
+          if (request_is_it && request_o.is_write && request_o.plane == p) memory_q <= lane;
           if (reads) read_word_q <= word_q;
           if (asks) begin
             answer_q <= memory_q;

@@ -11,13 +11,13 @@
   end
   always_comb if (runs_q) begin
     if (request_valid_o) assert (request_o.stamp == run_q && stamp_q == run_q);
-    if (state_q == EVICT) assert (request_o.is_color ? line_color_dirty : line_depth_dirty);
+    if (state_q == EVICT) assert (request_o.plane[0] ? line_color_dirty : line_depth_dirty);
     if (request_valid_o) assert (request_o.is_write == (state_q != FILL));
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
     if ($past(is_write_back && !ends_plane))
-      assert (state_q == $past(state_q) && request_o.is_color == $past(request_o.is_color) &&
+      assert (state_q == $past(state_q) && request_o.plane == $past(request_o.plane) &&
               request_o.tile_x == $past(request_o.tile_x) && request_o.tile_y == $past(request_o.tile_y));
     if ($past(is_fill) && !is_fill) assert (state_q == SERVE && access_ready_o);
   end

@@ -102,7 +102,7 @@ TEST(TileCache, TileNobodyTouchesIsWrittenOnlyAtTheFlush) {
   ASSERT_EQ(sink.requests.size(), 2u * 8u * 16u);
   for (std::size_t n = 0; n < sink.requests.size(); ++n) {  // the dirty line, then the flags, depth before colour
     EXPECT_EQ(sink.requests[n].tile_x, n / 32);
-    EXPECT_EQ(sink.requests[n].is_color, n / 16 % 2);
+    EXPECT_EQ(sink.requests[n].plane, n / 16 % 2 == 0 ? TilePlane::depth : TilePlane::color);
     EXPECT_EQ(sink.requests[n].stamp, n % 16);
   }
 }

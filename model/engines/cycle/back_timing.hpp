@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "../../stages/block_directory.hpp"
 #include "../../stages/tile_directory.hpp"
 #include "../../timing/memory.hpp"
 #include "../../timing/station.hpp"
 #include "../../timing/stream.hpp"
+#include "block_timing.hpp"
 #include "streams.hpp"
 
 namespace halfplane {
@@ -37,7 +40,8 @@ struct TimingTotals {
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kStages> works{};
-  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> planes{};  ///< moved, by MoveCause and plane
+  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> stamps{};  ///< moved, by MoveCause and plane
+  std::array<std::uint64_t, 2> flag_words{};                              ///< written, by plane
   bool has_primitive = false;                                             ///< first_primitive has been seen
 
   /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
@@ -49,14 +53,19 @@ struct TimingTotals {
 class BackTiming {
  public:
   /// `memory` and `sink`, which may be null, must outlive this.
-  BackTiming(const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
+  BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
+             TransferSink* sink)
       : stalls_(stalls),
         streams_(streams_of(stalls)),
         memory_(memory),
         sink_(sink),
+        widths_(widths),
         stamps_(static_cast<Cycle>(widths.stamps.stamps())),
         moves_in_bursts_(sink == nullptr && stalls.threshold == 0 && memory.fixed_latency() != 0),
-        line_raster_(1, 1, 0) {}
+        line_raster_(1, 1, 0),
+        resolves_(config.frame_clears == FrameClears::resolve) {
+    if (config.cache_kind == CacheKind::blocks) blocks_.emplace(config, widths);
+  }
 
   [[nodiscard]] const TimingTotals& totals() const { return totals_; }
   /// When the last fragment moved.
@@ -98,6 +107,7 @@ class BackTiming {
 
   /// A stamp without a covered sample, on offer to depth_test from `offered` on. Returns when it moves.
   Cycle pass(Cycle offered) {
+    if (blocks_) return take_block(offered, {}, {}, 0);
     const Cycle moved = stream(Arrow::fragment).transfer(offered, 0);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
@@ -111,14 +121,35 @@ class BackTiming {
     return access(offered, place, std::forward<LookUp>(look_up), 0);
   }
 
+  /// The same in a framebuffer of blocks, with what the tags found and what the test made of it.
+  Cycle access(Cycle offered, const TagResult& tags, const BlockItem& item) {
+    return take_block(offered, tags, item, 0);
+  }
+
   /// The pixels of the line whose place is on offer from `offered` on: step() makes the next one and returns whether
   /// there is one behind it; `place` is then where it lies. Returns when the last one moves.
   template <class Step, class LookUp>
   Cycle take_pixels(Cycle offered, const FragmentPlace& place, Step&& step, LookUp&& look_up) {
+    return take_pixels_by(offered, step, [&](Cycle at, unsigned others) { return access(at, place, look_up, others); });
+  }
+
+  /// The same in a framebuffer of blocks: look_up(item) gives the tags of the pixel, and says what the test made of it.
+  template <class Step, class LookUp>
+  Cycle take_block_pixels(Cycle offered, Step&& step, LookUp&& look_up) {
+    return take_pixels_by(offered, step, [&](Cycle at, unsigned others) {
+      BlockItem item;
+      const TagResult tags = look_up(item);
+      return take_block(at, tags, item, others);
+    });
+  }
+
+ private:
+  template <class Step, class Access>
+  Cycle take_pixels_by(Cycle offered, Step&& step, Access&& take) {
     Cycle pixel = first_pixel_, moved = 0;
     for (bool more = true; more; pixel = moved + 1, offered = std::max(offered, pixel)) {
       more = step();
-      moved = access(std::max(offered, pixel), place, look_up, stream(Arrow::line_pixel).streams());
+      moved = take(std::max(offered, pixel), stream(Arrow::line_pixel).streams());
       stream(Arrow::line_pixel).count(pixel, moved);
       work(Stage::line_raster, 1);
       note(Arrow::line_pixel, moved);
@@ -126,6 +157,8 @@ class BackTiming {
     line_raster_.leave(moved);
     return moved;
   }
+
+ public:
 
   /// A fast clear or a flush on its way through the framebuffer. walk(mover) visits lines and tiles.
   template <class Walk>
@@ -142,6 +175,40 @@ class BackTiming {
     return moved;
   }
 
+  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes in `clears`, of tiles (0, 0) to
+  /// (last_x, last_y).
+  Cycle pass_token(Cycle offered, BlockDirectory& directory, bool is_clear, const std::array<bool, 2>& clears, int last_x,
+                   int last_y) {
+    const auto ask = [this](Cycle cycle, TilePlane plane, const StampAddress& at, bool is_write) {
+      return ask_of_block(cycle, plane, at, is_write ? MoveCause::evict : MoveCause::fill);
+    };
+    const Cycle begins =
+        stalls_.next_free(stream(Arrow::fragment).streams(), std::max(offered, blocks_->is_empty()));
+    Cycle cycle = begins + 1;
+    if (!(is_clear && clears[0] && clears[1]))
+      directory.evict_all([&](const TagResult& tags) { cycle = blocks_->walk(cycle, tags, ask); });
+    const Cycle drained = blocks_->drain(cycle, directory.write_all(), ask) + 1;
+    cycle = drained;
+    if (is_clear) {
+      const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);
+      directory.mark(last_x, last_y, clears);
+      cycle += std::max<Cycle>(directory.lines(),
+                               static_cast<Cycle>(words) * static_cast<Cycle>((last_y + 1) * widths_.blocks.per_tile));
+    } else {
+      for (const TilePlane plane : kTilePlanes)
+        directory.for_each_flag_word(plane, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
+          cycle = plane == TilePlane::color && resolves_ ? resolve_word(cycle + 2, word, y, bits)
+                                                         : write_flag_word(cycle + 1, plane, word, y);
+        });
+      if (resolves_) directory.resolve(TilePlane::color, last_x, last_y);
+    }
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, cycle);
+    count_moves(drained, moved + 1);
+    note(Arrow::fragment, moved);
+    last_fragment_ = moved;
+    return moved;
+  }
+
  protected:
   ~BackTiming() = default;
 
@@ -154,7 +221,7 @@ class BackTiming {
 
   /// The visit of the last fragment has ended.
   void retire() {
-    last_retire_ = last_fragment_ + 2;
+    last_retire_ = (blocks_ ? blocks_->tested() : last_fragment_) + 2;
     note(Arrow::retire, last_retire_);
   }
 
@@ -167,6 +234,65 @@ class BackTiming {
   TimingTotals totals_;
 
  private:
+  /// A fragment into a framebuffer of blocks.
+  Cycle take_block(Cycle offered, const TagResult& tags, const BlockItem& item, unsigned others) {
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, blocks_->room(), others);
+    note(Arrow::fragment, moved);
+    last_fragment_ = moved;
+    const std::uint64_t hazards = blocks_->hazards();
+    blocks_->take(moved, tags, item, [this](Cycle cycle, TilePlane plane, const StampAddress& at, bool is_write) {
+      return ask_of_block(cycle, plane, at, is_write ? MoveCause::evict : MoveCause::fill);
+    });
+    totals_.hazard_cycles += blocks_->hazards() - hazards;
+    if (!item.mask.any()) return moved;
+    totals_.last_write = blocks_->tested() + 1;
+    note(Arrow::write, totals_.last_write);
+    if (totals_.has_primitive) totals_.tile_cycles = moving_;
+    return moved;
+  }
+
+  /// A request of a framebuffer of blocks. Returns when it was taken, and when its answer came.
+  std::pair<Cycle, Cycle> ask_of_block(Cycle cycle, TilePlane plane, const StampAddress& at, MoveCause cause) {
+    const bool is_flags = plane == TilePlane::depth_flags || plane == TilePlane::color_flags;
+    const std::size_t p = plane == TilePlane::color || plane == TilePlane::color_flags ? 1 : 0;
+    ++(is_flags ? totals_.flag_words[p] : totals_.stamps[static_cast<std::size_t>(cause)][p]);
+    const Cycle asked = ask({cause != MoveCause::fill, plane, at.tile_x, at.tile_y, at.stamp}, cycle);
+    if (sink_ != nullptr)
+      sink_->move(cause, p != 0, at.tile_x, at.tile_y, asked, cause == MoveCause::fill ? last_response_ + 1 : asked + 1);
+    return {asked, last_response_};
+  }
+
+  /// A request, in `cycle` at the earliest. Returns when it was taken; last_response_ is when its answer came.
+  Cycle ask(const MemoryAccess& access, Cycle cycle) {
+    const Cycle asked = stream(Arrow::request).transfer(cycle, memory_.room());
+    note(Arrow::request, asked);
+    totals_.memory_cycles += asked - cycle;
+    const Cycle answer = memory_.accept(access, asked);
+    if (access.is_write) return asked;
+    last_response_ = stream(Arrow::response).transfer(std::max(answer, last_response_ + 1), 0);
+    note(Arrow::response, last_response_);
+    return asked;
+  }
+
+  /// A flush's requests for one word of flags, in `cycle` at the earliest. Both return when the next word can be read.
+  Cycle write_flag_word(Cycle cycle, TilePlane plane, int word, int y) {
+    const TilePlane flags = plane == TilePlane::color ? TilePlane::color_flags : TilePlane::depth_flags;
+    const int per_tile = widths_.blocks.per_tile;
+    const StampAddress at{static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
+                          static_cast<std::uint16_t>(y % per_tile)};
+    return ask_of_block(cycle, flags, at, MoveCause::clear).first + 1;
+  }
+  Cycle resolve_word(Cycle cycle, int word, int y, std::uint64_t bits) {
+    for (int x = word * widths_.blocks.flag_word; bits != 0; bits >>= 1, ++x) {
+      if ((bits & 1) == 0) ++cycle;
+      for (int stamp = 0; (bits & 1) != 0 && stamp < widths_.blocks.stamps(); ++stamp) {
+        const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+        cycle = ask_of_block(cycle, TilePlane::color, stamp_address({block, stamp}, widths_), MoveCause::clear).first + 1;
+      }
+    }
+    return cycle + 1;
+  }
+
   /// The framebuffer's machine while it moves tiles: `cycle` is the next one to be spent.
   struct Mover {
     BackTiming& timing;
@@ -217,7 +343,7 @@ class BackTiming {
   /// `cycle` becomes the one behind the last request.
   void move_plane(Cycle& cycle, const TileAddress& address, MoveCause cause) {
     const bool is_write = cause != MoveCause::fill;
-    ++totals_.planes[static_cast<std::size_t>(cause)][static_cast<std::size_t>(address.plane)];
+    totals_.stamps[static_cast<std::size_t>(cause)][static_cast<std::size_t>(address.plane)] += stamps_;
     if (moves_in_bursts_) {
       const Cycle last = cycle + stamps_ - 1;
       stream(Arrow::request).pass(stamps_);
@@ -229,22 +355,15 @@ class BackTiming {
       totals_.last = std::max(totals_.last, is_write ? last : last_response_);
       return;
     }
-    MemoryAccess access{is_write, address.plane == TilePlane::color, address.tile_x, address.tile_y, 0};
+    MemoryAccess access{is_write, address.plane, address.tile_x, address.tile_y, 0};
     Cycle first = 0;
     for (; access.stamp < static_cast<int>(stamps_); ++access.stamp) {
-      const Cycle asked = stream(Arrow::request).transfer(cycle, memory_.room());
+      const Cycle asked = ask(access, cycle);
       if (access.stamp == 0) first = asked;
-      note(Arrow::request, asked);
-      totals_.memory_cycles += asked - cycle;
-      const Cycle answer = memory_.accept(access, asked);
-      if (!is_write) {
-        last_response_ = stream(Arrow::response).transfer(std::max(answer, last_response_ + 1), 0);
-        note(Arrow::response, last_response_);
-      }
       cycle = asked + 1;
     }
     if (sink_ != nullptr)
-      sink_->move(cause, access.is_color, access.tile_x, access.tile_y, first, is_write ? cycle : last_response_ + 1);
+      sink_->move(cause, access.plane == TilePlane::color, access.tile_x, access.tile_y, first, is_write ? cycle : last_response_ + 1);
   }
 
   /// Both planes of a tile, from memory or from the clear value. A plane that is cleared rides along with one that is read.
@@ -286,9 +405,12 @@ class BackTiming {
   Streams streams_;
   MemoryTiming& memory_;
   TransferSink* sink_;
+  Widths widths_;
   Cycle stamps_;          ///< of a tile
   bool moves_in_bursts_;  ///< nobody looks at single requests, and none of them ever waits
   Station line_raster_;
+  bool resolves_;                      ///< frame.clears
+  std::optional<BlockTiming> blocks_;  ///< of cache.kind blocks
   Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;
   FragmentPlace last_place_;
   std::uint64_t moving_ = 0;                           ///< cycles since the first primitive in which tiles moved

@@ -51,7 +51,9 @@ class CycleModelOf final : public CycleModel {
         options_(options),
         timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink),
         hiz_(config_, widths_, options.parameters.untested_tiles),
-        directory_(config_, widths_) {}
+        directory_(config_, widths_),
+        blocks_(config_, widths_),
+        has_blocks_(config_.cache_kind == CacheKind::blocks) {}
 
   void begin(int width, int height, Cycle cycle) override {
     rendering_ = {};
@@ -117,6 +119,7 @@ class CycleModelOf final : public CycleModel {
     if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
+      if (has_blocks_) return timing_.pass_token(offered, blocks_, true, planes, last_x, last_y);
       return timing_.pass_token(offered,
                                 [&](auto& mover) { directory_.fast_clear(last_x, last_y, planes, mover, counters_); });
     });
@@ -138,11 +141,11 @@ class CycleModelOf final : public CycleModel {
   }
 
   void flush(const SetupPacket& packet) {
+    const int last_x = packet.box.right >> widths_.tile_shift, last_y = packet.box.bottom >> widths_.tile_shift;
     timing_.end_token([&](Cycle offered) {
-      return timing_.pass_token(offered, [&](auto& mover) {
-        directory_.flush(packet.box.right >> widths_.tile_shift, packet.box.bottom >> widths_.tile_shift, mover,
-                         counters_);
-      });
+      if (has_blocks_) return timing_.pass_token(offered, blocks_, false, {}, last_x, last_y);
+      return timing_.pass_token(offered,
+                                [&](auto& mover) { directory_.flush(last_x, last_y, mover, counters_); });
     });
   }
 
@@ -168,11 +171,25 @@ class CycleModelOf final : public CycleModel {
       if (passed) directory_.wrote(place.tile_x, place.tile_y, state.depth_write, state.color_write);
       return hits;
     };
+    const auto look_up_block = [&](BlockItem& item) { return block_access(place, state, passed, item); };
     const Cycle before = timing_.last_fragment();
-    timing_.end_token([&](Cycle offered) { return timing_.take_pixels(offered, place, step, look_up); });
+    timing_.end_token([&](Cycle offered) {
+      return has_blocks_ ? timing_.take_block_pixels(offered, step, look_up_block)
+                         : timing_.take_pixels(offered, place, step, look_up);
+    });
     if (!options_.want_cost) return;
     const float cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(line.remaining + 1);
     line_raster(line, widths_, [&](const LinePixel& pixel) { cost_[plain_index(pixel.x, pixel.y)] += cycles; });
+  }
+
+  /// What the tags of a framebuffer of blocks find for a fragment, and what became of it.
+  TagResult block_access(const FragmentPlace& place, const PrimitiveState& state, bool passed, BlockItem& item) {
+    const StampAddress at{static_cast<std::uint16_t>(place.tile_x), static_cast<std::uint16_t>(place.tile_y),
+                          static_cast<std::uint16_t>(place.stamp)};
+    const TagResult tags = blocks_.access(at, state, place.mask == SampleMask::all(widths_.samples));
+    item = {place.mask,        block_stamp(at, widths_).stamp,  state.depth_write,
+            state.color_write, passed && state.depth_write, passed && state.color_write};
+    return tags;
   }
 
   /// depth_test and rop of a pixel of a line. Returns whether it passed.
@@ -240,7 +257,7 @@ class CycleModelOf final : public CycleModel {
              const EdgeValues& edges, bool is_inside, const SetupPacket& packet, const PixelBounds& box, int tile_x,
              int tile_y, bool ends_primitive, std::uint32_t primitive) {
     const int size = config_.stamp_size;
-    TileMask covered_rows{};
+    TileMask covered_rows{}, passed_rows{};
     TileVisitWork work{tile_x,           tile_y, ends_primitive, box.top / size, box.bottom / size, box.left / size,
                        box.right / size, {}};
     Mask covered_count{}, passed_count{};
@@ -249,6 +266,7 @@ class CycleModelOf final : public CycleModel {
                 [&](int j, const Mask& covered_lanes, const Mask& passed_lanes) {
                   const std::uint32_t row = kernel.to_bits(covered_lanes);
                   covered_rows[static_cast<std::size_t>(j)] = row;
+                  if (has_blocks_) passed_rows[static_cast<std::size_t>(j)] = kernel.to_bits(passed_lanes);
                   work.columns[static_cast<std::size_t>(j / size)] |= row;  // pixels so far
                   covered_count += covered_lanes;
                   passed_count += passed_lanes;
@@ -277,17 +295,24 @@ class CycleModelOf final : public CycleModel {
     timing_.visit(work, [&](Cycle offered, int row, int column) {
       if (column < 0) return timing_.pass(offered);
       FragmentPlace place{tile_x, tile_y, row * widths_.stamps.stamps_per_row + column, {}, packet.state.depth_write};
-      std::uint64_t bits = 0;
-      for (int j = 0; j < size; ++j)
-        bits |=
-            std::uint64_t{covered_rows[static_cast<std::size_t>(row * size + j)] >> column * size & ((1U << size) - 1)}
-            << j * size;
-      place.mask = SampleMask(bits);
+      const auto samples = [&](const TileMask& rows) {
+        std::uint64_t bits = 0;
+        for (int j = 0; j < size; ++j)
+          bits |= std::uint64_t{rows[static_cast<std::size_t>(row * size + j)] >> column * size & ((1U << size) - 1)}
+                  << j * size;
+        return SampleMask(bits);
+      };
+      place.mask = samples(covered_rows);
+      if (has_blocks_) {
+        BlockItem item;
+        const TagResult tags = block_access(place, packet.state, samples(passed_rows).any(), item);
+        return timing_.access(offered, tags, item);
+      }
       return timing_.access(offered, place, [&](auto& mover) {
         return is_resident || ((is_resident = true), directory_.access(tile_x, tile_y, mover, counters_));
       });
     });
-    if (passed != 0) directory_.wrote(tile_x, tile_y, packet.state.depth_write, packet.state.color_write);
+    if (passed != 0 && !has_blocks_) directory_.wrote(tile_x, tile_y, packet.state.depth_write, packet.state.color_write);
     retire(packet, tile_x, tile_y, passed);
     if (!options_.want_cost) return;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before);
@@ -338,6 +363,8 @@ class CycleModelOf final : public CycleModel {
   CounterPacket counters_;
   Hiz hiz_;
   TileDirectory directory_;
+  BlockDirectory blocks_;
+  bool has_blocks_;
   Rendering rendering_;
   std::vector<float> cost_;
 };

@@ -16,7 +16,7 @@ class PipelinedTiming : public BackTiming {
  public:
   PipelinedTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
                   const TimingParameters& parameters, TransferSink* sink)
-      : BackTiming(widths, stalls, memory, sink),
+      : BackTiming(config, widths, stalls, memory, sink),
         setup_(widths, parameters.divide_bits),
         parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
         offer_setup_(1, setup_.last, 1),

@@ -15,7 +15,7 @@ class SerialTiming : public BackTiming {
  public:
   SerialTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
                const TimingParameters& parameters, TransferSink* sink)
-      : BackTiming(widths, stalls, memory, sink),
+      : BackTiming(config, widths, stalls, memory, sink),
         cycles_(widths),
         slots_(config.context_slots, 0, 2),
         visits_(parameters.visits - 1, 0, 1),

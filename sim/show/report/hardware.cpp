@@ -129,12 +129,14 @@ std::uint64_t Traffic::total() const {
 
 Traffic traffic(const CycleRun& run, const Config& config) {
   const Widths widths = derive_widths(config);
-  const auto stamps = static_cast<std::uint64_t>(widths.stamps.stamps());
   Traffic traffic;
   for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
     for (const bool is_color : {false, true})
       traffic.bytes[cause][is_color] =
-          run.totals.planes[cause][is_color] * stamps * static_cast<std::uint64_t>(stamp_bytes(config, is_color));
+          run.totals.stamps[cause][is_color] * static_cast<std::uint64_t>(stamp_bytes(config, is_color));
+  for (const bool is_color : {false, true})
+    traffic.bytes[static_cast<std::size_t>(MoveCause::clear)][is_color] +=
+        run.totals.flag_words[is_color] * static_cast<std::uint64_t>(flag_word_bytes(widths));
   return traffic;
 }
 

@@ -1,0 +1,174 @@
+// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, framebuffer_blocks.sv.
+//
+// T looks a fragment up, X tests it, W writes its colours; between T and X the fragments wait for memory, in order. Every
+// wait is for an earlier fragment or eviction, so the time of one is a maximum over those before it:
+//
+//   t(m) = max(moved + 1, t(m-1) + 1, x(m-queue) + 1), two more where a flag falls
+//   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
+//   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2)), behind the reads of what it evicts
+//   w(m) = max(x + 2, w(m-1) + 1), likewise
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <deque>
+
+#include "../../stages/block_directory.hpp"
+#include "../../timing/station.hpp"
+
+namespace halfplane {
+
+/// What the test made of a fragment.
+struct BlockItem {
+  SampleMask mask;                                 ///< covered samples; none: an empty stamp, or a line of a walk
+  int stamp = 0;                                   ///< in its block
+  bool depth_write = false, color_write = false;   ///< by its state
+  bool wrote_depth = false, wrote_color = false;   ///< any sample passed
+};
+
+class BlockTiming {
+ public:
+  BlockTiming(const Config& config, const Widths& widths)
+      : widths_(widths),
+        items_(config.cache_queue, 1, 1),
+        orders_(config.cache_queue, 1, 1),
+        slots_(static_cast<std::size_t>(config.cache_victims)),
+        dirty_(static_cast<std::size_t>(config.cache_lines)) {}
+
+  /// When T can take the next fragment.
+  [[nodiscard]] Cycle room() const { return left_; }
+  /// When T holds none.
+  [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
+  /// When X was through with the last fragment.
+  [[nodiscard]] Cycle tested() const { return tested_; }
+  /// A fragment was tested one cycle late because it needs what the one before wrote.
+  [[nodiscard]] std::uint64_t hazards() const { return hazards_; }
+
+  /// A fragment that T took in `moved`, or a line that it read then. ask(cycle, access): a request, in `cycle` at the
+  /// earliest; returns {when it was taken, when its answer came}.
+  template <class Ask>
+  void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
+    const bool reads = tags.source == DepthSource::memory, is_order = reads || tags.writes > 0;
+    Cycle t = std::max(moved + (tags.clears_flag() ? 3 : 1), items_.room());
+    if (is_order) t = std::max(t, orders_.room());
+    left_ = t;
+    const Cycle answer = is_order ? order(t, tags.writes, reads ? &item : nullptr, tags, ask) : 0;
+    Cycle x = std::max({items_.ready(t), tested_ + 1, behind_.room()});
+    if (reads) x = std::max(x, answer + 1);
+    if (tags.source == DepthSource::chip && last_line_ == tags.line && last_stamp_ == item.stamp &&
+        (last_writes_ & item.mask).any() && x < tested_ + 2) {
+      x = tested_ + 2;
+      ++hazards_;
+    }
+    Cycle color_reads = 0;
+    if (tags.eviction) {
+      const auto depth_reads = static_cast<Cycle>(std::popcount(tags.eviction->stamps[0]));
+      color_reads = static_cast<Cycle>(std::popcount(tags.eviction->stamps[1]));
+      x = std::max(x, std::max({items_.ready(t), tested_ + (depth_reads != 0 ? 2 : 1), slots_[next_slot_]}) + depth_reads);
+    }
+    const Cycle w = std::max(x + 2, colored_ + 1) + color_reads;
+    items_.leave(x);
+    behind_.leave(w);
+    tested_ = x;
+    colored_ = w;
+    if (tags.eviction) victims_.push_back(victim(*tags.eviction, w + 1));
+    note_writes(tags, item);
+  }
+
+  /// A line on a token's walk, read in `cycle`. Returns when the next one can be.
+  template <class Ask>
+  Cycle walk(Cycle cycle, const TagResult& tags, Ask&& ask) {
+    if (tags.eviction)
+      take(cycle, tags, {}, ask);
+    else
+      left_ = cycle + 1;
+    return left_ + 1;
+  }
+
+  /// All that has left the chip goes to memory, from `cycle` on. Returns when nothing is under way any more.
+  template <class Ask>
+  Cycle drain(Cycle cycle, int writes, Ask&& ask) {
+    if (writes > 0) {
+      cycle = std::max(cycle, orders_.room());
+      (void)order(cycle, writes, nullptr, {}, ask);
+    }
+    return std::max({cycle + 1, tested_ + 1, colored_ + 1, ordered_ + 1});
+  }
+
+ private:
+  struct Victim {
+    BlockAddress block;
+    std::array<std::uint64_t, 2> stamps;  ///< to be written, by plane
+    std::size_t slot;
+    Cycle ready;  ///< all of it is in the slot
+  };
+
+  template <class Ask>
+  Cycle order(Cycle pushed, int writes, const BlockItem* item, const TagResult& tags, Ask&& ask) {
+    Cycle cycle = std::max(ordered_ + 1, orders_.ready(pushed)), answer = 0;
+    for (; writes > 0; --writes) {
+      const Victim& v = victims_.front();
+      cycle = std::max(cycle, v.ready);
+      Cycle behind = cycle + 1;  // nothing to write is found in a cycle too
+      for (const TilePlane plane : kTilePlanes)
+        for (std::uint64_t left = v.stamps[static_cast<std::size_t>(plane)]; left != 0; left &= left - 1) {
+          const StampAddress at = stamp_address({v.block, std::countr_zero(left)}, widths_);
+          behind = ask(cycle, plane, at, true).first + 1;
+          cycle = behind;
+        }
+      cycle = behind;
+      slots_[v.slot] = cycle;
+      victims_.pop_front();
+    }
+    if (item != nullptr) {
+      const auto [asked, answered] = ask(cycle, TilePlane::depth, stamp_address({tags.block, item->stamp}, widths_), false);
+      cycle = asked + 1;
+      answer = answered;
+    }
+    ordered_ = cycle - 1;
+    orders_.leave(ordered_);
+    return answer;
+  }
+
+  [[nodiscard]] Victim victim(const Eviction& e, Cycle ready) {
+    Victim v{e.block, {}, next_slot_, ready};
+    next_slot_ = (next_slot_ + 1) % slots_.size();
+    const std::uint64_t all = ~std::uint64_t{0} >> (64 - widths_.blocks.stamps());
+    for (const std::size_t p : {0U, 1U}) v.stamps[p] = e.fills[p] ? all : e.stamps[p] & dirty_[e.line][p];
+    return v;
+  }
+
+  void note_writes(const TagResult& tags, const BlockItem& item) {
+    last_line_ = tags.line;
+    last_stamp_ = item.stamp;
+    last_writes_ = {};
+    if (!item.mask.any()) return;
+    const bool starts_depth = tags.source != DepthSource::chip;
+    if (!starts_depth && item.depth_write) last_writes_ = item.mask;
+    if (starts_depth && (tags.source != DepthSource::none || item.depth_write))
+      last_writes_ = SampleMask::all(widths_.samples);
+    const std::uint64_t bit = std::uint64_t{1} << item.stamp;
+    const auto note = [&](std::uint64_t& dirty, bool starts, bool writes) {
+      if (starts) dirty &= ~bit;
+      if (writes) dirty |= bit;
+    };
+    note(dirty_[tags.line][0], starts_depth, item.wrote_depth);
+    note(dirty_[tags.line][1], tags.starts_color, item.wrote_color);
+  }
+
+  Widths widths_;
+  Station items_, orders_;
+  Station behind_{2, 0, 0};                                ///< between X and W
+  Cycle left_ = 0, tested_ = 0, colored_ = 0, ordered_ = 0;  ///< when the last one left T, X, W; the last request's cycle
+  std::size_t last_line_ = 0;
+  int last_stamp_ = 0;
+  SampleMask last_writes_;  ///< samples that the last fragment may have written
+  std::uint64_t hazards_ = 0;
+  std::vector<Cycle> slots_;  ///< of victims: the cycle from which on each is free
+  std::size_t next_slot_ = 0;
+  std::deque<Victim> victims_;
+  std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
+};
+
+}  // namespace halfplane

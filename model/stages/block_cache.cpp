@@ -1,0 +1,169 @@
+#include "block_cache.hpp"
+
+#include <algorithm>
+
+namespace halfplane {
+namespace {
+
+std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
+
+/// Of a read; a write adds its strobes and data.
+MemoryRequest request_of(TilePlane plane, const StampAddress& at) {
+  MemoryRequest request;
+  request.plane = plane;
+  request.tile_x = at.tile_x;
+  request.tile_y = at.tile_y;
+  request.stamp = at.stamp;
+  return request;
+}
+
+}  // namespace
+
+BlockCache::BlockCache(const Config& config, const Widths& widths)
+    : config_(config),
+      widths_(widths),
+      directory_(config, widths),
+      stored_(static_cast<std::size_t>(widths.samples)),
+      code_mask_{static_cast<std::uint32_t>(widths.depth().code.range.hi),
+                 static_cast<std::uint32_t>(widths.stored_color.range.hi)} {
+  const std::size_t stamps = stamp_index(directory_.lines(), 0);
+  for (const TilePlane plane : kTilePlanes) {
+    lanes_[number(plane)].resize(stamps * static_cast<std::size_t>(widths.samples));
+    dirty_[number(plane)].resize(stamps);
+  }
+}
+
+std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment, MemoryPort& memory,
+                                                  CounterPacket& counters) {
+  const StampAddress at{fragment.key.tile_x, fragment.key.tile_y, fragment.stamp};
+  last_ = directory_.access(at, fragment.state, fragment.mask == SampleMask::all(widths_.samples));
+  last_stamp_ = stamp_index(last_.line, block_stamp(at, widths_).stamp);
+  write_victims(last_.writes, memory, counters);
+  switch (last_.source) {
+    case DepthSource::none: std::ranges::fill(stored_, 0); break;
+    case DepthSource::clear:
+      std::ranges::fill(stored_, clear_value_[0]);
+      ++counters.tile_clears;
+      break;
+    case DepthSource::memory: {
+      const MemoryResponse& response = memory.read(request_of(TilePlane::depth, at));
+      std::ranges::transform(std::span(response.data).first(stored_.size()), stored_.begin(),
+                             [mask = code_mask_[0]](std::uint32_t lane) { return lane & mask; });
+      ++counters.tile_fills;
+      break;
+    }
+    case DepthSource::chip: break;
+  }
+  if (last_.eviction) capture(*last_.eviction);
+  if (last_.source == DepthSource::chip) std::ranges::copy(lanes(TilePlane::depth, last_stamp_), stored_.begin());
+  return stored_;
+}
+
+void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet) {
+  const auto masked_copy = [&](TilePlane plane, SampleMask mask, const WritePacket::Codes& from) {
+    const auto to = lanes(plane, last_stamp_);
+    mask.for_each([&](std::size_t sample) { to[sample] = from[sample]; });
+  };
+  const auto add_dirty = [&](TilePlane plane, SampleMask written, bool starts) {
+    SampleMask& dirty = dirty_[number(plane)][last_stamp_];
+    dirty = starts ? written : dirty | written;
+  };
+  // What was not on the chip is from now on, all of the stamp.
+  const bool starts_depth = last_.source != DepthSource::chip;
+  if (starts_depth) std::ranges::copy(stored_, lanes(TilePlane::depth, last_stamp_).begin());
+  masked_copy(TilePlane::depth, packet.write_depth, packet.depth);
+  add_dirty(TilePlane::depth, packet.write_depth, starts_depth);
+  masked_copy(TilePlane::color, packet.write_color, packet.color);
+  if (fragment.state.color_write) add_dirty(TilePlane::color, packet.write_color, last_.starts_color);
+}
+
+/// The requests that an eviction comes to, before anything new is written into its line.
+void BlockCache::capture(const Eviction& eviction) {
+  Victim& victim = victims_.emplace_back();
+  for (const TilePlane plane : kTilePlanes) {
+    const std::size_t p = number(plane);
+    for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
+      const bool is_here = (eviction.stamps[p] >> stamp & 1) != 0;
+      const std::size_t at = stamp_index(eviction.line, stamp);
+      const SampleMask dirty = is_here ? dirty_[p][at] : SampleMask();
+      // Depths of a stamp are on the chip all or none; colours where they have been written.
+      const SampleMask held = plane == TilePlane::depth && is_here ? SampleMask::all(widths_.samples) : dirty;
+      MemoryRequest request = request_of(plane, stamp_address({eviction.block, stamp}, widths_));
+      request.is_write = 1;
+      request.strobe = eviction.fills[p] ? SampleMask::all(widths_.samples) : dirty;
+      if (!request.strobe.any()) continue;
+      const auto codes = lanes(plane, at);
+      request.strobe.for_each(
+          [&](std::size_t s) { request.data[s] = held.has(s) ? codes[s] : clear_value_[p]; });
+      victim.requests.push_back(request);
+    }
+  }
+}
+
+void BlockCache::write_victims(int count, MemoryPort& memory, CounterPacket& counters) {
+  for (; count > 0; --count) {
+    for (const MemoryRequest& request : victims_.front().requests) {
+      memory.write(request);
+      ++counters.tile_evictions;
+    }
+    victims_.pop_front();
+  }
+}
+
+/// Nothing stays on the chip, and nothing on the way.
+void BlockCache::evict_all(MemoryPort& memory, CounterPacket& counters) {
+  directory_.evict_all([&](const TagResult& result) {
+    write_victims(result.writes, memory, counters);
+    if (result.eviction) capture(*result.eviction);
+  });
+}
+
+void BlockCache::fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory,
+                            CounterPacket& counters) {
+  const std::array<bool, 2> clears{token.state.depth_write, token.state.color_write};
+  if (!(clears[0] && clears[1])) evict_all(memory, counters);
+  write_victims(directory_.write_all(), memory, counters);
+  directory_.mark(token.key.tile_x, token.key.tile_y, clears);
+  if (clears[0]) clear_value_[0] = token.code[0][kDepthPlane];
+  if (clears[1]) clear_value_[1] = color;
+}
+
+void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters) {
+  evict_all(memory, counters);
+  write_victims(directory_.write_all(), memory, counters);
+  const int last_x = token.key.tile_x, last_y = token.key.tile_y;
+  const auto write_flags = [&](TilePlane plane, TilePlane flags) {
+    directory_.for_each_flag_word(plane, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
+      const int per_tile = widths_.blocks.per_tile;
+      MemoryRequest request =
+          request_of(flags, {static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
+                             static_cast<std::uint16_t>(y % per_tile)});
+      request.is_write = 1;
+      request.strobe = SampleMask::all(widths_.samples);
+      set_flag_word(request, bits, widths_);
+      memory.write(request);
+    });
+  };
+  write_flags(TilePlane::depth, TilePlane::depth_flags);
+  if (config_.frame_clears == FrameClears::flags) {
+    write_flags(TilePlane::color, TilePlane::color_flags);
+    return;
+  }
+  directory_.for_each_flag_word(TilePlane::color, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
+    for (; bits != 0; bits &= bits - 1) {
+      const int x = word * widths_.blocks.flag_word + std::countr_zero(bits);
+      for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
+        const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+        MemoryRequest request = request_of(TilePlane::color, stamp_address({block, stamp}, widths_));
+        request.is_write = 1;
+        request.strobe = SampleMask::all(widths_.samples);
+        request.strobe.for_each([&](std::size_t s) { request.data[s] = clear_value_[1]; });
+        memory.write(request);
+        ++counters.tile_evictions;
+      }
+    }
+  });
+  directory_.resolve(TilePlane::color, last_x, last_y);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,62 @@
+// Block cache: the on-chip depth and colour of blocks of 4x4 pixels, and those that are on their way to memory.
+//
+// In: fragments, writes, fast clears, flushes, in program order. Out: stored depths, memory requests in the order of
+// block_directory.hpp, which decides what moves; here is the data.
+#pragma once
+
+#include <span>
+
+#include "block_directory.hpp"
+#include "memory_port.hpp"
+
+namespace halfplane {
+
+class BlockCache {
+ public:
+  BlockCache(const Config& config, const Widths& widths);
+
+  /// The depth codes under a fragment with covered samples, until the next call. Those of a stamp that the test does not
+  /// look at are 0.
+  [[nodiscard]] std::span<const std::uint32_t> access(const FragmentPacket& fragment, MemoryPort& memory,
+                                                      CounterPacket& counters);
+
+  /// Writes what came of the fragment of the last access.
+  void write(const FragmentPacket& fragment, const WritePacket& packet);
+
+  /// `token`: a fragment of kind fast_clear; `color`: its colour as it is stored.
+  void fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory, CounterPacket& counters);
+
+  /// `token`: a fragment of kind flush.
+  void flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters);
+
+ private:
+  /// A block that has left its line: what of it goes to memory.
+  struct Victim {
+    std::vector<MemoryRequest> requests;
+  };
+
+  [[nodiscard]] std::size_t stamp_index(std::size_t line, int stamp) const {
+    return line * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
+  }
+  [[nodiscard]] std::span<std::uint32_t> lanes(TilePlane plane, std::size_t stamp) {
+    const auto samples = static_cast<std::size_t>(widths_.samples);
+    return {lanes_[static_cast<std::size_t>(plane)].data() + stamp * samples, samples};
+  }
+  void capture(const Eviction& eviction);
+  void write_victims(int count, MemoryPort& memory, CounterPacket& counters);
+  void evict_all(MemoryPort& memory, CounterPacket& counters);
+
+  Config config_;
+  Widths widths_;
+  BlockDirectory directory_;
+  TagResult last_;                          ///< of the last access
+  std::size_t last_stamp_ = 0;              ///< likewise, in the arrays below
+  std::vector<std::uint32_t> stored_;       ///< likewise: what the depth test saw
+  std::array<std::uint32_t, 2> code_mask_;  ///< bits of a code of each plane
+  std::array<std::uint32_t, 2> clear_value_{};
+  std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
+  std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that memory does not have
+  std::deque<Victim> victims_;                       ///< oldest first
+};
+
+}  // namespace halfplane

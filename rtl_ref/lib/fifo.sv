@@ -1,0 +1,45 @@
+// FIFO: DEPTH items, a power of two. An item that enters is on offer from the next cycle on; the place of one that leaves is
+// free from the next cycle on. The memory is read without a clock, as that of LUTs is.
+module fifo #(
+    parameter int WIDTH = 1,
+    parameter int DEPTH = 2
+) (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From the producer
+    input  logic             valid_i,
+    output logic             ready_o,
+    input  logic [WIDTH-1:0] data_i,
+
+    // To the consumer
+    output logic             valid_o,
+    input  logic             ready_i,
+    output logic [WIDTH-1:0] data_o
+);
+
+  localparam int INDEX = $clog2(DEPTH);
+
+  logic [WIDTH-1:0] memory_q[0:DEPTH-1];
+  logic [INDEX:0]   head_q, tail_q;  // of the item on offer, of the next to enter; a bit more tells full from empty
+  logic             enters, leaves;
+
+  assign ready_o = head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}});
+  assign valid_o = head_q != tail_q;
+  assign data_o  = memory_q[head_q[INDEX-1:0]];
+  assign enters  = valid_i && ready_o;
+  assign leaves  = valid_o && ready_i;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      head_q <= '0;
+      tail_q <= '0;
+    end else begin
+      head_q <= head_q + (INDEX + 1)'(leaves);
+      tail_q <= tail_q + (INDEX + 1)'(enters);
+    end
+  end
+
+  always_ff @(posedge clk_i) if (enters) memory_q[tail_q[INDEX-1:0]] <= data_i;
+
+endmodule

@@ -1,0 +1,506 @@
+// Cache tags: which blocks of 4x4 pixels are on the chip, looked up before the depth test, so that memory is asked for what
+// a fragment needs while those before it are still on their way.
+//
+// In: fragments, in program order. Out: items for the test, each with what the tags have found, and orders: so many evicted
+// blocks go to memory, then a stamp of depth is read. A fragment takes two cycles to become an item, one a cycle; two more
+// where the flag of a cleared block falls. Tokens stay until all they ask for is done: a walk over the lines that evicts
+// what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
+// Specification: model/stages/block_directory.hpp.
+module cache_tags #(
+    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
+    parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),
+    parameter int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE,  // of a block
+    parameter int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS,  // bits of a stamp's number in its block
+    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
+    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
+    parameter int LINE = (raster_pkg::CACHE_LINES == 1) ? 1 : raster_pkg::LINE_X_BITS + raster_pkg::LINE_Y_BITS,
+    parameter int WRITES = $clog2(raster_pkg::CACHE_VICTIMS + 1)
+) (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From primitive_join
+    input  logic                         fragment_valid_i,
+    output logic                         fragment_ready_o,
+    input  raster_pkg::fragment_packet_t fragment_i,
+
+    // To the test: the fragment, and where its stamp lies
+    output logic                         item_valid_o,
+    input  logic                         item_ready_i,
+    output raster_pkg::fragment_packet_t item_o,
+    output logic [LINE-1:0]              item_line_o,
+    output logic [STAMP-1:0]             item_stamp_o,
+    output logic [1:0]                   item_source_o,  // of the stored depth: 0 none, 1 chip, 2 clear value, 3 memory
+    output logic                         item_starts_color_o,
+    // The block that leaves the line
+    output logic                         evicts_o,
+    output logic [BLOCK_X-1:0]           evicts_x_o,
+    output logic [BLOCK_Y-1:0]           evicts_y_o,
+    output logic [STAMPS-1:0]            evicts_depth_o,  // stamps that may have been written
+    output logic [STAMPS-1:0]            evicts_color_o,
+    output logic [1:0]                   evicts_fills_o,  // colour, depth: memory holds garbage
+
+    // To memory, in this order: evictions to write, and a read
+    output logic                                    order_valid_o,
+    input  logic                                    order_ready_i,
+    output logic [WRITES-1:0]                       order_writes_o,
+    output logic                                    order_reads_o,
+    output logic [raster_pkg::TILE_X_BITS-1:0]      order_tile_x_o,
+    output logic [raster_pkg::TILE_Y_BITS-1:0]      order_tile_y_o,
+    output logic [raster_pkg::STAMP_INDEX_BITS-1:0] order_stamp_o,
+
+    // Behind all orders: what a flush writes
+    input  logic                        drained_i,  // no item and no order is under way
+    output logic                        request_valid_o,
+    input  logic                        request_ready_i,
+    output raster_pkg::memory_request_t request_o,
+
+    output logic [raster_pkg::DEPTH_CODE_BITS-1:0]   clear_depth_o,
+    output logic [raster_pkg::STORED_COLOR_BITS-1:0] clear_color_o,
+
+    output logic is_cleared_o,  // a stamp begins with the clear value
+    output logic is_resolved_o,  // a stamp of a cleared block goes to memory
+    output logic at_token_o,
+    output logic idle_o
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
+  localparam int LINES = raster_pkg::CACHE_LINES;
+  localparam int LINE_X = raster_pkg::LINE_X_BITS;  // may be 0, or more than BLOCK_X
+  localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
+  localparam int TAG_X = (BLOCK_X > LINE_X) ? BLOCK_X - LINE_X : 1;
+  localparam int TAG_Y = (BLOCK_Y > LINE_Y) ? BLOCK_Y - LINE_Y : 1;
+  localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
+  localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
+  localparam int VICTIMS = raster_pkg::CACHE_VICTIMS;
+  localparam int VICTIM = $clog2(VICTIMS);
+  localparam int WORD = raster_pkg::FLAG_WORD;
+  localparam int BIT = $clog2(WORD);
+  localparam int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1;  // bits of a word's number in its row
+  localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
+  localparam int FLAG = $clog2(FLAGS);
+  localparam int STATE = 1 + TAG_X + TAG_Y + 2 * STAMPS + 3;  // of a line
+  localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
+  localparam logic [LINE-1:0] LINE_Y_MASK = LINE'((1 << LINE_Y) - 1);
+
+  localparam logic [3:0] SERVE = 4'd0;    // fragments
+  localparam logic [3:0] LOOK = 4'd1;     // a token's walk reads a line
+  localparam logic [3:0] ORDER = 4'd2;    // what has left the chip goes to memory
+  localparam logic [3:0] DRAIN = 4'd3;
+  localparam logic [3:0] MARK = 4'd4;     // fast clear: empties lines, sets flags
+  localparam logic [3:0] READ = 4'd5;     // flush: a word of flags
+  localparam logic [3:0] SEND = 4'd6;     // it goes to memory
+  localparam logic [3:0] RESOLVE = 4'd7;  // its blocks do
+  localparam logic [3:0] DONE = 4'd8;
+
+  localparam logic [1:0] SOURCE_NONE = 2'd0;
+  localparam logic [1:0] SOURCE_CHIP = 2'd1;
+  localparam logic [1:0] SOURCE_CLEAR = 2'd2;
+  localparam logic [1:0] SOURCE_MEMORY = 2'd3;
+
+  logic [3:0] state_q, state_d;
+
+  // A fragment on offer.
+  logic               is_clear, is_token, clears_all, takes_fragment;
+  logic [BLOCK_X-1:0] fragment_x;
+  logic [BLOCK_Y-1:0] fragment_y;
+  logic [LINE-1:0]    fragment_line;
+
+  /* verilator lint_off UNUSEDSIGNAL */  // high bits where a tile is a block, or a block a stamp
+  function automatic [15:0] column_of(input [INDEX-1:0] stamp);
+    column_of = 16'(stamp) & 16'((1 << ROW_BITS) - 1);
+  endfunction
+  function automatic [15:0] row_of(input [INDEX-1:0] stamp);
+    row_of = 16'(stamp) >> ROW_BITS;
+  endfunction
+  function automatic [STAMP-1:0] in_block(input [INDEX-1:0] stamp);
+    in_block = STAMP'(((row_of(stamp) & 16'((1 << SIDE_BITS) - 1)) << SIDE_BITS) |
+                      (column_of(stamp) & 16'((1 << SIDE_BITS) - 1)));
+  endfunction
+  function automatic [LINE-1:0] line_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
+    line_of = (LINE'(x) & LINE_X_MASK) | ((LINE'(y) & LINE_Y_MASK) << LINE_X);
+  endfunction
+  function automatic [FLAG-1:0] word_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
+    word_of = FLAG'({y, WORD_X'(x >> BIT)});
+  endfunction
+  function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
+    bit_of = BIT'(x);
+  endfunction
+  /* verilator lint_on UNUSEDSIGNAL */
+
+  assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
+  assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
+  assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
+  assign fragment_x    = (BLOCK_X'(fragment_i.key.tile_x) << TILE_BITS) | BLOCK_X'(column_of(fragment_i.stamp) >> SIDE_BITS);
+  assign fragment_y    = (BLOCK_Y'(fragment_i.key.tile_y) << TILE_BITS) | BLOCK_Y'(row_of(fragment_i.stamp) >> SIDE_BITS);
+  assign fragment_line = line_of(fragment_x, fragment_y);
+
+  // The fragment, or line of a walk, whose line has been read.
+  logic                             valid_q, walks_q;
+  var raster_pkg::fragment_packet_t fragment_q;
+  logic [1:0]                       fall_q;  // a flag falls: 0 its word is read, 1 written, 2 done
+  logic [LINE-1:0]                  walk_q;  // line of a token's walk
+  logic                             leaves, looks;
+
+  assign fragment_ready_o = state_q == SERVE ? !is_token && (!valid_q || leaves) : state_q == DONE;
+  assign takes_fragment   = fragment_valid_i && fragment_ready_o && state_q == SERVE;
+  assign looks            = state_q == LOOK && !valid_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) valid_q <= 1'b0;
+    else valid_q <= takes_fragment || looks || (valid_q && !leaves);
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (takes_fragment) fragment_q <= fragment_i;
+    if (takes_fragment || looks) walks_q <= looks;
+  end
+
+  // The lines.
+  logic [STATE-1:0]   line_read, line_state, line_new, forward_q;
+  logic               is_forwarded_q, line_writes;
+  logic [LINE-1:0]    line, line_read_address, line_write_address;
+  /* verilator lint_off UNUSEDSIGNAL */  // wider than a block's y where the cache is larger than the target
+  logic [LINE-1:0]    line_above_x;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [BLOCK_X-1:0] block_x, line_x;
+  logic [BLOCK_Y-1:0] block_y, line_y;
+  logic               line_valid, line_has_depth;
+  logic [TAG_X-1:0]   tag_x;
+  logic [TAG_Y-1:0]   tag_y;
+  logic [STAMPS-1:0]  line_known, line_colored;
+  logic [1:0]         line_cleared;
+
+  assign block_x = (BLOCK_X'(fragment_q.key.tile_x) << TILE_BITS) | BLOCK_X'(column_of(fragment_q.stamp) >> SIDE_BITS);
+  assign block_y = (BLOCK_Y'(fragment_q.key.tile_y) << TILE_BITS) | BLOCK_Y'(row_of(fragment_q.stamp) >> SIDE_BITS);
+  assign line    = walks_q ? walk_q : line_of(block_x, block_y);
+
+  assign line_read_address  = state_q == LOOK ? walk_q : fragment_line;
+  assign line_write_address = state_q == MARK ? walk_q : line;
+  sram #(
+      .WIDTH    (STATE),
+      .DEPTH    (LINES == 1 ? 2 : LINES),
+      .READS_OLD(0)
+  ) u_lines (
+      .clk_i,
+      .read_i         (takes_fragment || looks),
+      .read_address_i (line_read_address),
+      .data_o         (line_read),
+      .write_i        (line_writes),
+      .write_address_i(line_write_address),
+      .data_i         (line_new)
+  );
+
+  // A line that is read while it is written.
+  always_ff @(posedge clk_i) begin
+    if (takes_fragment || looks) begin
+      is_forwarded_q <= line_writes && line_read_address == line_write_address;
+      forward_q      <= line_new;
+    end
+  end
+  assign line_state = is_forwarded_q ? forward_q : line_read;
+  assign {line_valid, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state;
+  assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line) & BLOCK_X'((1 << LINE_X) - 1));
+  assign line_above_x = line >> LINE_X;
+  assign line_y = (BLOCK_Y'(tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
+
+  // The words of flags.
+  logic [BLOCK_X-1:0] flag_x;
+  logic [BLOCK_Y-1:0] flag_y;
+  logic [FLAG-1:0]    flag_write_address;
+  logic [WORD-1:0]    word_depth, word_color, word_depth_new, word_color_new, marks;
+  logic [1:0]         flag_writes;  // colour, depth
+  logic               flag_reads;
+
+  sram #(
+      .WIDTH(WORD),
+      .DEPTH(FLAGS),
+      .READS_OLD(0)
+  ) u_flag_depth (
+      .clk_i,
+      .read_i         (flag_reads),
+      .read_address_i (word_of(flag_x, flag_y)),
+      .data_o         (word_depth),
+      .write_i        (flag_writes[0]),
+      .write_address_i(flag_write_address),
+      .data_i         (word_depth_new)
+  );
+  sram #(
+      .WIDTH(WORD),
+      .DEPTH(FLAGS),
+      .READS_OLD(0)
+  ) u_flag_color (
+      .clk_i,
+      .read_i         (flag_reads),
+      .read_address_i (word_of(flag_x, flag_y)),
+      .data_o         (word_color),
+      .write_i        (flag_writes[1]),
+      .write_address_i(flag_write_address),
+      .data_i         (word_color_new)
+  );
+
+  // What the tags find. The flags of a block that comes are looked at before those of the one that leaves.
+  logic              is_access, hits, evicts, falls, is_full, is_known, starts_color, uses;
+  logic [1:0]        cleared, cleared_q, fills, source;
+  logic [STAMP-1:0]  stamp;
+  logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;
+
+  assign is_access  = valid_q && !walks_q && fragment_q.mask != '0;
+  assign is_full    = fragment_q.mask == '1;
+  assign stamp      = in_block(fragment_q.stamp);
+  assign stamp_bit  = STAMPS'(1) << stamp;
+  assign hits       = line_valid && tag_x == TAG_X'(block_x >> LINE_X) && tag_y == TAG_Y'(block_y >> LINE_Y);
+  assign line_depth = line_has_depth ? line_known : '0;
+  assign evicts     = line_valid && (line_has_depth || line_colored != '0) && (walks_q || (is_access && !hits));
+  assign fills      = line_cleared & {line_colored != '0, line_depth != '0};
+  assign falls      = evicts && fills != '0;
+
+  assign cleared      = hits ? line_cleared : (fall_q == '0 ? {word_color[bit_of(block_x)], word_depth[bit_of(block_x)]} : cleared_q);
+  assign known        = hits ? line_known : '0;
+  assign colored      = hits ? line_colored : '0;
+  assign is_known     = (known & stamp_bit) != '0;
+  assign starts_color = is_access && fragment_q.state.color_write && (colored & stamp_bit) == '0;
+  always_comb begin
+    source = SOURCE_NONE;
+    if (is_known) source = SOURCE_CHIP;
+    else if (fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full)
+      source = cleared[0] ? SOURCE_CLEAR : SOURCE_MEMORY;
+    if (!is_access) source = SOURCE_NONE;
+  end
+  assign uses = source != SOURCE_NONE || fragment_q.state.depth_write;
+
+  assign line_writes = (leaves && (is_access || walks_q)) || state_q == MARK;
+  always_comb begin
+    line_new = {
+      1'b1, TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y),
+      known | (uses ? stamp_bit : '0),
+      colored | (fragment_q.state.color_write ? stamp_bit : '0),
+      (hits && line_has_depth) || fragment_q.state.depth_write, cleared
+    };
+    if (walks_q || state_q == MARK) line_new[STATE-1] = 1'b0;
+  end
+
+  // Evicted blocks whose data wait. The wanted one may be among them.
+  logic [VICTIM-1:0]   oldest_q;  // number of the oldest, modulo VICTIMS
+  logic [WRITES-1:0]   waiting_q, wanted, writes;
+  logic [BLOCK_X-1:0]  victim_x_q[0:VICTIMS-1];
+  logic [BLOCK_Y-1:0]  victim_y_q[0:VICTIMS-1];
+  logic [VICTIM-1:0]   next_victim;
+  logic                orders_all;
+
+  assign next_victim = oldest_q + VICTIM'(waiting_q);
+  always_comb begin
+    wanted = '0;
+    for (int age = 0; age < VICTIMS; age++)
+      if (WRITES'(age) < waiting_q && victim_x_q[oldest_q+VICTIM'(age)] == block_x &&
+          victim_y_q[oldest_q+VICTIM'(age)] == block_y)
+        wanted = WRITES'(age + 1);
+    if (!is_access || hits) wanted = '0;
+    writes = evicts && wanted == '0 && waiting_q == WRITES'(VICTIMS) ? WRITES'(1) : wanted;
+    if (state_q == ORDER) writes = waiting_q;
+  end
+  assign orders_all = state_q == ORDER && (waiting_q == '0 || order_ready_i);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      oldest_q  <= '0;
+      waiting_q <= '0;
+    end else if (leaves || orders_all) begin
+      oldest_q  <= oldest_q + VICTIM'(writes);
+      waiting_q <= waiting_q - writes + WRITES'(evicts && leaves);
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (leaves && evicts) begin
+      victim_x_q[next_victim] <= line_x;
+      victim_y_q[next_victim] <= line_y;
+    end
+  end
+
+  // Items and orders leave together.
+  logic is_item, is_order, is_settled;
+  assign is_settled     = valid_q && (!falls || fall_q == 2'd2);
+  assign is_item        = !walks_q || evicts;
+  assign is_order       = writes != '0 || source == SOURCE_MEMORY;
+  assign item_valid_o   = is_settled && is_item && (!is_order || order_ready_i);
+  assign order_valid_o  = state_q == ORDER ? waiting_q != '0 : is_settled && is_order && (!is_item || item_ready_i);
+  assign leaves         = is_settled && (!is_item || item_ready_i) && (!is_order || order_ready_i);
+  assign order_writes_o = writes;
+  assign order_reads_o  = source == SOURCE_MEMORY;
+  assign order_tile_x_o = fragment_q.key.tile_x;
+  assign order_tile_y_o = fragment_q.key.tile_y;
+  assign order_stamp_o  = fragment_q.stamp;
+
+  always_comb begin
+    item_o = fragment_q;
+    if (walks_q) begin
+      item_o.mask           = '0;
+      item_o.ends_visit     = 1'b0;
+    end
+  end
+  assign item_line_o         = line;
+  assign item_stamp_o        = stamp;
+  assign item_source_o       = source;
+  assign item_starts_color_o = starts_color;
+  assign evicts_o            = evicts;
+  assign evicts_x_o          = line_x;
+  assign evicts_y_o          = line_y;
+  assign evicts_depth_o      = line_depth;
+  assign evicts_color_o      = line_colored;
+  assign evicts_fills_o      = fills;
+  assign is_cleared_o        = leaves && source == SOURCE_CLEAR;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) fall_q <= '0;
+    else if (leaves) fall_q <= '0;
+    else if (valid_q && falls && fall_q != 2'd2) fall_q <= fall_q + 1'b1;
+  end
+  always_ff @(posedge clk_i) if (fall_q == '0) cleared_q <= {word_color[bit_of(block_x)], word_depth[bit_of(block_x)]};
+
+  // Tokens.
+  logic [WORD_X-1:0]       word_x_q, last_word;
+  logic [BLOCK_Y-1:0]      word_y_q, last_y;
+  logic [BLOCK_X-1:0]      last_x;
+  logic                    lines_done_q, words_done_q, ends_words, is_last_line, ends_mark, next_word;
+  logic                    plane_q;  // 1: colour
+  logic [WORD-1:0]         word, bits_q;
+  logic [STAMP-1:0]        stamp_q;
+  logic                    resolves, ends_block, begins;
+  logic [CODE-1:0]         clear_depth_q;
+  logic [COLOR-1:0]        clear_color_q, color;
+
+  rop u_rop (
+      .rgba_i (fragment_i.code[CODE+:raster_pkg::VERTEX_COLOR_BITS]),
+      .color_o(color)
+  );
+
+  assign begins       = state_q == SERVE && fragment_valid_i && is_token && !valid_q;
+  assign last_x       = (BLOCK_X'(fragment_i.key.tile_x) << TILE_BITS) | BLOCK_X'((1 << TILE_BITS) - 1);
+  assign last_y       = (BLOCK_Y'(fragment_i.key.tile_y) << TILE_BITS) | BLOCK_Y'((1 << TILE_BITS) - 1);
+  assign last_word    = WORD_X'(last_x >> BIT);
+  assign is_last_line = walk_q == LINE'(LINES - 1);
+  assign ends_words   = word_x_q == last_word && word_y_q == last_y;
+  assign ends_mark    = (lines_done_q || is_last_line) && (words_done_q || ends_words);
+  assign marks        = word_x_q == last_word ? ~({WORD{1'b1}} << 1 << bit_of(last_x)) : '1;
+  assign word         = plane_q ? word_color : word_depth;
+  assign resolves     = raster_pkg::FRAME_CLEARS == 0 && plane_q;
+  assign ends_block   = request_valid_o && request_ready_i && stamp_q == STAMP'(STAMPS - 1);
+  assign next_word    = (state_q == SEND && !resolves && request_ready_i) || (state_q == RESOLVE && bits_q == '0);
+
+  always_comb begin
+    state_d = state_q;
+    case (state_q)
+      SERVE: if (begins) state_d = clears_all ? ORDER : LOOK;
+      LOOK: if (leaves && is_last_line) state_d = ORDER;
+      ORDER: if (orders_all) state_d = DRAIN;
+      DRAIN: if (drained_i) state_d = is_clear ? MARK : READ;
+      MARK: if (ends_mark) state_d = DONE;
+      READ: state_d = SEND;
+      SEND:
+      if (resolves) state_d = RESOLVE;
+      else if (next_word) state_d = ends_words && plane_q ? DONE : READ;
+      RESOLVE: if (next_word) state_d = ends_words ? DONE : READ;
+      default: if (fragment_valid_i) state_d = SERVE;
+    endcase
+  end
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) state_q <= SERVE;
+    else state_q <= state_d;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (state_q == SERVE || state_q == DRAIN) begin
+      walk_q       <= '0;
+      lines_done_q <= 1'b0;
+      words_done_q <= 1'b0;
+      word_x_q     <= '0;
+      word_y_q     <= '0;
+      plane_q      <= 1'b0;
+    end else begin
+      if ((walks_q && leaves) || state_q == MARK) begin
+        walk_q <= walk_q + 1'b1;
+        if (is_last_line) lines_done_q <= 1'b1;
+      end
+      if (state_q == MARK || next_word) begin
+        word_x_q <= word_x_q == last_word ? '0 : word_x_q + 1'b1;
+        if (word_x_q == last_word) word_y_q <= ends_words ? '0 : word_y_q + 1'b1;
+        if (ends_words) words_done_q <= 1'b1;
+        if (ends_words) plane_q <= 1'b1;
+      end
+    end
+    if (state_q == SEND) bits_q <= word;
+    else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) bits_q <= bits_q >> 1;
+    if (state_q == SEND) stamp_q <= '0;
+    else if (request_valid_o && request_ready_i) stamp_q <= ends_block ? '0 : stamp_q + 1'b1;
+    if (state_q == MARK && fragment_i.state.depth_write) clear_depth_q <= fragment_i.code[0+:CODE];
+    if (state_q == MARK && fragment_i.state.color_write) clear_color_q <= color;
+  end
+  assign clear_depth_o = clear_depth_q;
+  assign clear_color_o = clear_color_q;
+
+  // Which word is read and written: of a block that is wanted, of one that leaves, of the walks.
+  logic [BLOCK_X-1:0] resolve_x_q;  // of the flag that is bit 0 of bits_q
+  logic               falls_now;
+  assign falls_now  = valid_q && falls && fall_q == '0;
+  assign flag_reads = takes_fragment || falls_now || state_q == READ;
+  always_comb begin
+    flag_x = fragment_x;
+    flag_y = fragment_y;
+    if (falls_now) begin
+      flag_x = line_x;
+      flag_y = line_y;
+    end
+    if (state_q == READ) begin
+      flag_x = BLOCK_X'(word_x_q) << BIT;
+      flag_y = word_y_q;
+    end
+    flag_write_address = word_of(line_x, line_y);
+    flag_writes        = fills & {2{valid_q && falls && fall_q == 2'd1}};
+    word_depth_new     = word_depth & ~(WORD'(1) << bit_of(line_x));
+    word_color_new     = word_color & ~(WORD'(1) << bit_of(line_x));
+    if (state_q == MARK || state_q == RESOLVE) begin
+      flag_write_address = word_of(BLOCK_X'(word_x_q) << BIT, word_y_q);
+      word_depth_new     = marks;
+      word_color_new     = state_q == MARK ? marks : '0;
+      flag_writes        = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{!words_done_q}};
+      if (state_q == RESOLVE) flag_writes = {next_word, 1'b0};
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (state_q == SEND) resolve_x_q <= BLOCK_X'(word_x_q) << BIT;
+    else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) resolve_x_q <= resolve_x_q + 1'b1;
+  end
+
+  assign request_valid_o = (state_q == SEND && !resolves) || (state_q == RESOLVE && bits_q[0]);
+  assign is_resolved_o   = state_q == RESOLVE && request_valid_o && request_ready_i;
+  logic [7:0] resolve_column, resolve_row;
+  assign resolve_column = ((8'(resolve_x_q) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(stamp_q) & 8'((1 << SIDE_BITS) - 1));
+  assign resolve_row    = ((8'(word_y_q) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(stamp_q) >> SIDE_BITS);
+  always_comb begin
+    request_o          = '0;
+    request_o.is_write = 1'b1;
+    request_o.strobe   = '1;
+    request_o.tile_y   = raster_pkg::TILE_Y_BITS'(word_y_q >> TILE_BITS);
+    if (state_q == RESOLVE) begin
+      request_o.plane  = raster_pkg::TILE_PLANE_COLOR;
+      request_o.tile_x = raster_pkg::TILE_X_BITS'(resolve_x_q >> TILE_BITS);
+      request_o.stamp  = INDEX'((resolve_row << ROW_BITS) | resolve_column);
+      for (int s = 0; s < SAMPLES; s++) request_o.data[s*LANE+:LANE] = LANE'(clear_color_q);
+    end else begin
+      request_o.plane          = plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS;
+      request_o.tile_x         = raster_pkg::TILE_X_BITS'(word_x_q);
+      request_o.stamp          = INDEX'(8'(word_y_q) & 8'((1 << TILE_BITS) - 1));
+      request_o.data[WORD-1:0] = word;
+    end
+  end
+
+  assign at_token_o = state_q != SERVE || begins;
+  assign idle_o     = state_q == SERVE && !fragment_valid_i && !valid_q;
+
+endmodule

@@ -1,0 +1,506 @@
+// Framebuffer of blocks: the depth and colour of blocks of 4x4 pixels on the chip, a direct-mapped write-back cache of the
+// planes in memory whose misses nobody waits for.
+//
+//   fragment -> cache_tags -> items -> [X: depth RAM] <-> depth_test -> [W: colour RAM]
+//                   '------ orders -> requests <- victims -----'------------'
+//
+// cache_tags looks fragments up as they come and orders what they need from memory; up to CACHE_QUEUE of them wait here for
+// their answers. X hands them to depth_test with what is stored under them: from the RAM, the clear value, or the answer,
+// which goes into the RAM with what is written. W writes colours, which nobody reads but to write them back. A block that
+// leaves goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, and from there to memory.
+// Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+module framebuffer_blocks (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From primitive_join
+    input  logic                         fragment_valid_i,
+    output logic                         fragment_ready_o,
+    input  raster_pkg::fragment_packet_t fragment_i,
+
+    // To depth_test, which takes it at once; what is stored under it in the cycle after that
+    output logic                                                       tested_valid_o,
+    output raster_pkg::fragment_packet_t                               tested_o,
+    output logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth_o,
+
+    // From depth_test: the write of the fragment of the cycle before
+    /* verilator lint_off UNUSEDSIGNAL */  // where it goes is known here
+    input logic                      write_valid_i,
+    input raster_pkg::write_packet_t write_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // Memory
+    output logic                         request_valid_o,
+    input  logic                         request_ready_i,
+    output raster_pkg::memory_request_t  request_o,
+    input  logic                         response_valid_i,
+    output logic                         response_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */  // lanes wider than a depth code
+    input  raster_pkg::memory_response_t response_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // Stamps that this cycle adds to the counters
+    output logic [1:0] fill_o,
+    output logic [1:0] evict_o,
+    output logic [1:0] clear_o,
+
+    output logic at_token_o,  // a clear or a flush is at work
+    output logic idle_o       // nothing is under way
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
+  localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
+  localparam int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE);
+  localparam int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW);
+  localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
+  localparam int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE;  // of a block
+  localparam int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS;
+  localparam int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS;
+  localparam int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS;
+  localparam int LINES = raster_pkg::CACHE_LINES;
+  localparam int LINE = (LINES == 1) ? 1 : raster_pkg::LINE_X_BITS + raster_pkg::LINE_Y_BITS;
+  localparam int ADDRESS = LINE + STAMP;
+  localparam int VICTIMS = raster_pkg::CACHE_VICTIMS;
+  localparam int VICTIM = $clog2(VICTIMS);
+  localparam int WRITES = $clog2(VICTIMS + 1);
+  localparam int QUEUE = raster_pkg::CACHE_QUEUE;
+  localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + BLOCK_X + BLOCK_Y + 2 * STAMPS + 2;
+  localparam int ORDER = WRITES + 1 + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS + INDEX;
+
+  localparam logic [1:0] SOURCE_NONE = 2'd0;
+  localparam logic [1:0] SOURCE_CHIP = 2'd1;
+  localparam logic [1:0] SOURCE_CLEAR = 2'd2;
+  localparam logic [1:0] SOURCE_MEMORY = 2'd3;
+
+  function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
+    lowest = set & (~set + 1'b1);
+  endfunction
+  function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
+    number_of = '0;
+    for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
+  endfunction
+
+  // ------------------------------------------------------------------------------------------------ tags, items, orders
+  logic                             made_valid, made_ready, made_starts_color, made_evicts;
+  var raster_pkg::fragment_packet_t made;
+  logic [LINE-1:0]                  made_line;
+  logic [STAMP-1:0]                 made_stamp;
+  logic [1:0]                       made_source, made_fills;
+  logic [BLOCK_X-1:0]               made_x;
+  logic [BLOCK_Y-1:0]               made_y;
+  logic [STAMPS-1:0]                made_depth, made_color;
+  logic                             ordered_valid, ordered_ready, ordered_reads;
+  logic [WRITES-1:0]                ordered_writes;
+  logic [raster_pkg::TILE_X_BITS-1:0] ordered_x;
+  logic [raster_pkg::TILE_Y_BITS-1:0] ordered_y;
+  logic [INDEX-1:0]                 ordered_stamp;
+  logic                             drained, flush_valid, tags_are_idle, is_cleared, is_resolved;
+  var raster_pkg::memory_request_t  flush_request;
+  logic [CODE-1:0]                  clear_depth;
+  logic [COLOR-1:0]                 clear_color;
+
+  cache_tags u_tags (
+      .clk_i,
+      .rst_ni,
+      .fragment_valid_i,
+      .fragment_ready_o,
+      .fragment_i,
+      .item_valid_o       (made_valid),
+      .item_ready_i       (made_ready),
+      .item_o             (made),
+      .item_line_o        (made_line),
+      .item_stamp_o       (made_stamp),
+      .item_source_o      (made_source),
+      .item_starts_color_o(made_starts_color),
+      .evicts_o           (made_evicts),
+      .evicts_x_o         (made_x),
+      .evicts_y_o         (made_y),
+      .evicts_depth_o     (made_depth),
+      .evicts_color_o     (made_color),
+      .evicts_fills_o     (made_fills),
+      .order_valid_o      (ordered_valid),
+      .order_ready_i      (ordered_ready),
+      .order_writes_o     (ordered_writes),
+      .order_reads_o      (ordered_reads),
+      .order_tile_x_o     (ordered_x),
+      .order_tile_y_o     (ordered_y),
+      .order_stamp_o      (ordered_stamp),
+      .drained_i          (drained),
+      .request_valid_o    (flush_valid),
+      .request_ready_i,
+      .request_o          (flush_request),
+      .clear_depth_o      (clear_depth),
+      .clear_color_o      (clear_color),
+      .is_cleared_o       (is_cleared),
+      .is_resolved_o      (is_resolved),
+      .at_token_o,
+      .idle_o             (tags_are_idle)
+  );
+
+  logic                             item_valid, takes_item, starts_color, evicts;
+  var raster_pkg::fragment_packet_t item;
+  logic [LINE-1:0]                  item_line;
+  logic [STAMP-1:0]                 item_stamp;
+  logic [1:0]                       source, fills;
+  logic [BLOCK_X-1:0]               evicts_x;
+  logic [BLOCK_Y-1:0]               evicts_y;
+  logic [STAMPS-1:0]                evicts_depth, evicts_color;
+  fifo #(
+      .WIDTH(ITEM),
+      .DEPTH(QUEUE)
+  ) u_items (
+      .clk_i,
+      .rst_ni,
+      .valid_i(made_valid),
+      .ready_o(made_ready),
+      .data_i ({made, made_line, made_stamp, made_source, made_starts_color, made_evicts, made_x, made_y, made_depth,
+                made_color, made_fills}),
+      .valid_o(item_valid),
+      .ready_i(takes_item),
+      .data_o ({item, item_line, item_stamp, source, starts_color, evicts, evicts_x, evicts_y, evicts_depth,
+                evicts_color, fills})
+  );
+
+  logic                               order_valid, takes_order, order_reads;
+  logic [WRITES-1:0]                  order_writes;
+  logic [raster_pkg::TILE_X_BITS-1:0] order_x;
+  logic [raster_pkg::TILE_Y_BITS-1:0] order_y;
+  logic [INDEX-1:0]                   order_stamp;
+  fifo #(
+      .WIDTH(ORDER),
+      .DEPTH(QUEUE)
+  ) u_orders (
+      .clk_i,
+      .rst_ni,
+      .valid_i(ordered_valid),
+      .ready_o(ordered_ready),
+      .data_i ({ordered_writes, ordered_reads, ordered_x, ordered_y, ordered_stamp}),
+      .valid_o(order_valid),
+      .ready_i(takes_order),
+      .data_o ({order_writes, order_reads, order_x, order_y, order_stamp})
+  );
+
+  // Answers: a place for each item that can wait for one.
+  logic                    answer_valid, takes_answer;
+  logic [SAMPLES*CODE-1:0] answer, response_depth;
+  fifo #(
+      .WIDTH(SAMPLES * CODE),
+      .DEPTH(QUEUE)
+  ) u_answers (
+      .clk_i,
+      .rst_ni,
+      .valid_i(response_valid_i),
+      .ready_o(response_ready_o),
+      .data_i (response_depth),
+      .valid_o(answer_valid),
+      .ready_i(takes_answer),
+      .data_o (answer)
+  );
+
+  // --------------------------------------------------------------------------------------------------- X: the depth test
+  logic              starts_q, begins_eviction, reads_victim, slot_free, goes, hazard;  // starts: the eviction has begun
+  logic [STAMPS-1:0] left_q, left, next;
+  logic [VICTIM:0]   taken_q;    // slots of victims that X has given away
+  logic [1:0]        behind_q;   // items between X and W: as many as the buffer holds
+  logic              colors_done;  // W takes an item
+  logic              finishes;     // an eviction is in memory
+
+  logic               x1_valid_q, x1_starts_color_q, x1_evicts_q;
+  logic [LINE-1:0]    x1_line_q;
+  logic [STAMP-1:0]   x1_stamp_q;
+  logic [1:0]         x1_source_q;
+  logic               x1_fills_q;
+  logic [STAMPS-1:0]  x1_color_q;
+  logic [SAMPLES-1:0] x1_writes_q;  // samples of the RAM that may be written
+  logic [SAMPLES*CODE-1:0] answer_q;
+
+  assign slot_free       = taken_q != (VICTIM + 1)'(VICTIMS);
+  assign left            = starts_q ? left_q : evicts_depth;
+  assign next            = lowest(left);
+  assign reads_victim    = item_valid && evicts && left != '0 && (starts_q || (slot_free && !x1_valid_q));
+  assign hazard          = x1_valid_q && source == SOURCE_CHIP && x1_line_q == item_line && x1_stamp_q == item_stamp &&
+                           (x1_writes_q & item.mask) != '0;
+  assign goes            = item_valid && (!evicts || (left == '0 && (starts_q || slot_free))) &&
+                           (source != SOURCE_MEMORY || answer_valid) && !hazard && (behind_q != 2'd2 || colors_done);
+  assign begins_eviction = !starts_q && (reads_victim || (goes && evicts));
+  assign takes_item      = goes;
+  assign takes_answer    = goes && source == SOURCE_MEMORY;
+  assign tested_valid_o  = goes;
+  assign tested_o        = item;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      starts_q   <= 1'b0;
+      x1_valid_q <= 1'b0;
+      taken_q    <= '0;
+      behind_q   <= '0;
+    end else begin
+      starts_q   <= !goes && (starts_q || reads_victim);
+      x1_valid_q <= goes;
+      taken_q    <= taken_q + (VICTIM + 1)'(begins_eviction) - (VICTIM + 1)'(finishes);
+      behind_q   <= behind_q + 2'(goes) - 2'(colors_done);
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (reads_victim) left_q <= left & ~next;
+    x1_line_q         <= item_line;
+    x1_stamp_q        <= item_stamp;
+    x1_source_q       <= source;
+    x1_starts_color_q <= starts_color;
+    x1_evicts_q       <= evicts;
+    x1_fills_q        <= fills[1];
+    x1_color_q        <= evicts_color;
+    answer_q          <= answer;
+    if (item.mask == '0) x1_writes_q <= '0;
+    else if (source == SOURCE_CHIP) x1_writes_q <= item.mask & {SAMPLES{item.state.depth_write}};
+    else x1_writes_q <= {SAMPLES{source != SOURCE_NONE || item.state.depth_write}};
+  end
+
+  // The depth RAM: of each sample its code, and whether memory does not have it.
+  logic                    v_valid_q, v_fills_q;  // a stamp of a victim has been read
+  logic [STAMP-1:0]        v_stamp_q;
+  logic [VICTIM-1:0]       v_slot_q, slot_q;      // of the eviction under way in X
+  logic [SAMPLES*CODE-1:0] v_depth;
+  logic [SAMPLES-1:0]      v_depth_strobe;
+  logic [ADDRESS-1:0]      depth_read_address;
+  assign depth_read_address = {item_line, reads_victim ? number_of(next) : item_stamp};
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      v_valid_q <= 1'b0;
+      slot_q    <= '0;
+    end else begin
+      v_valid_q <= reads_victim;
+      slot_q    <= slot_q + VICTIM'(goes && evicts);
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    v_fills_q <= fills[0];
+    v_stamp_q <= number_of(next);
+    v_slot_q  <= slot_q;
+  end
+
+  genvar s;
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_depth
+      logic [CODE-1:0] code, stored, written;
+      logic            dirty, writes, strobe;
+      assign response_depth[s*CODE+:CODE] = response_i.data[s*LANE+:CODE];
+      assign stored = x1_source_q == SOURCE_CHIP ? code : (x1_source_q == SOURCE_CLEAR ? clear_depth : answer_q[s*CODE+:CODE]);
+      assign writes = x1_source_q == SOURCE_CHIP ? write_i.write_depth[s] :
+                      x1_source_q != SOURCE_NONE || write_i.write_depth[s];
+      assign written = write_i.write_depth[s] ? write_i.depth[s*CODE+:CODE] : stored;
+      assign stored_depth_o[s*CODE+:CODE] = stored;
+      sram #(
+          .WIDTH    (CODE + 1),
+          .DEPTH    (1 << ADDRESS),
+          .READS_OLD(0)
+      ) u_depth (
+          .clk_i,
+          .read_i         (reads_victim || goes),
+          .read_address_i (depth_read_address),
+          .data_o         ({dirty, code}),
+          .write_i        (write_valid_i && writes),
+          .write_address_i({x1_line_q, x1_stamp_q}),
+          .data_i         ({write_i.write_depth[s], written})
+      );
+      assign strobe = v_fills_q || dirty;
+      assign v_depth_strobe[s] = strobe;
+      assign v_depth[s*CODE+:CODE] = code & {CODE{strobe}};
+    end
+  endgenerate
+
+  // ----------------------------------------------------------------------------------------------------------- W: colours
+  localparam int COLORED = LINE + STAMP + 2 * SAMPLES + SAMPLES * COLOR + 1 + 1 + STAMPS;
+  logic                     w_valid, w_evicts, w_fills;
+  logic [LINE-1:0]          w_line;
+  logic [STAMP-1:0]         w_stamp;
+  logic [SAMPLES-1:0]       w_writes, w_dirty;
+  logic [SAMPLES*COLOR-1:0] w_color;
+  logic [STAMPS-1:0]        w_stamps;
+  /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
+  logic                     w_ready;
+  /* verilator lint_on UNUSEDSIGNAL */
+  skid_buffer #(
+      .WIDTH(COLORED)
+  ) u_colored (
+      .clk_i,
+      .rst_ni,
+      .valid_i(x1_valid_q),
+      .ready_o(w_ready),
+      .data_i ({x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),
+                write_i.write_color, write_i.color, x1_evicts_q, x1_fills_q, x1_color_q}),
+      .valid_o(w_valid),
+      .ready_i(colors_done),
+      .data_o ({w_line, w_stamp, w_writes, w_dirty, w_color, w_evicts, w_fills, w_stamps})
+  );
+
+  logic              w_starts_q, w_reads;
+  logic [STAMPS-1:0] w_left_q, w_left, w_next;
+  assign w_left      = w_starts_q ? w_left_q : w_stamps;
+  assign w_next      = lowest(w_left);
+  assign w_reads     = w_valid && w_evicts && w_left != '0;
+  assign colors_done = w_valid && !w_reads;
+
+  logic                     c_valid_q, c_fills_q;  // colours of a victim have been read
+  logic [STAMP-1:0]         c_stamp_q;
+  logic [VICTIM-1:0]        c_slot_q, w_slot_q;
+  logic [SAMPLES*COLOR-1:0] c_color;
+  logic [SAMPLES-1:0]       c_color_strobe;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      w_starts_q <= 1'b0;
+      c_valid_q  <= 1'b0;
+      w_slot_q   <= '0;
+    end else begin
+      w_starts_q <= w_reads;
+      c_valid_q  <= w_reads;
+      w_slot_q   <= w_slot_q + VICTIM'(colors_done && w_evicts);
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    w_left_q  <= w_left & ~w_next;
+    c_fills_q <= w_fills;
+    c_stamp_q <= number_of(w_next);
+    c_slot_q  <= w_slot_q;
+  end
+
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_color
+      logic [COLOR-1:0] color;
+      logic             dirty;
+      sram #(
+          .WIDTH    (COLOR + 1),
+          .DEPTH    (1 << ADDRESS),
+          .READS_OLD(0)
+      ) u_color (
+          .clk_i,
+          .read_i         (w_reads),
+          .read_address_i ({w_line, number_of(w_next)}),
+          .data_o         ({dirty, color}),
+          .write_i        (colors_done && w_writes[s]),
+          .write_address_i({w_line, w_stamp}),
+          .data_i         ({w_dirty[s], w_color[s*COLOR+:COLOR]})
+      );
+      assign c_color_strobe[s] = c_fills_q || dirty;
+      assign c_color[s*COLOR+:COLOR] = dirty ? color : clear_color & {COLOR{c_fills_q}};
+    end
+  endgenerate
+
+  // ------------------------------------------------------------------------------------ victims, and what goes to memory
+  localparam int SLOTTED = VICTIM + STAMP;  // address of a stamp in the slots
+  logic [SAMPLES*(CODE+1)-1:0]  victim_depth_q[0:(1<<SLOTTED)-1];
+  logic [SAMPLES*(COLOR+1)-1:0] victim_color_q[0:(1<<SLOTTED)-1];
+  logic [BLOCK_X+BLOCK_Y+2*STAMPS-1:0] victim_q[0:VICTIMS-1];  // where it belongs, and which of its stamps are in the slots
+  logic [STAMPS-1:0] depth_left_q[0:VICTIMS-1];  // stamps still to be written
+  logic [STAMPS-1:0] color_left_q[0:VICTIMS-1];
+  logic [VICTIM-1:0] oldest_q;  // slot of the next to be written
+  logic [VICTIM:0]   ready_q;   // evictions that wait whole
+  logic [WRITES-1:0] written_q;  // of the order at the head
+
+  logic                        sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request;
+  logic [STAMPS-1:0]           depth_left, color_left, sent, here_depth, here_color;
+  logic [STAMP-1:0]            sent_stamp;
+  logic [BLOCK_X-1:0]          sent_x;
+  logic [BLOCK_Y-1:0]          sent_y;
+  logic [SAMPLES*CODE-1:0]     sent_depth;
+  logic [SAMPLES*COLOR-1:0]    sent_color;
+  logic [SAMPLES-1:0]          sent_depth_strobe, sent_color_strobe;
+
+  assign {sent_x, sent_y, here_depth, here_color} = victim_q[oldest_q];
+  assign depth_left  = depth_left_q[oldest_q];
+  assign color_left  = color_left_q[oldest_q];
+  assign wants_write = order_valid && written_q != order_writes;
+  assign wants_read  = order_valid && written_q == order_writes;  // an order that reads nothing ends with its writes
+  assign sends       = wants_write && ready_q != '0 && (depth_left != '0 || color_left != '0);
+  assign skips       = wants_write && ready_q != '0 && depth_left == '0 && color_left == '0;
+  assign is_color    = depth_left == '0;
+  assign sent        = lowest(is_color ? color_left : depth_left);
+  assign sent_stamp  = number_of(sent);
+  assign ends_victim = is_color ? color_left == sent : depth_left == sent && color_left == '0;
+  assign is_here     = (sent & (is_color ? here_color : here_depth)) != '0;
+  assign finishes    = skips || (sends && takes_request && ends_victim);
+  assign takes_order = (finishes && written_q + 1'b1 == order_writes && !order_reads) || (wants_read && takes_request);
+
+  assign request_valid_o = flush_valid || sends || wants_read;
+  assign takes_request   = request_valid_o && request_ready_i;
+
+  assign {sent_depth_strobe, sent_depth} = victim_depth_q[{oldest_q, sent_stamp}];
+  assign {sent_color_strobe, sent_color} = victim_color_q[{oldest_q, sent_stamp}];
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      oldest_q  <= '0;
+      ready_q   <= '0;
+      written_q <= '0;
+    end else begin
+      oldest_q  <= oldest_q + VICTIM'(finishes);
+      ready_q   <= ready_q + (VICTIM + 1)'(colors_done && w_evicts) - (VICTIM + 1)'(finishes);
+      written_q <= takes_order ? '0 : written_q + WRITES'(finishes);
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (v_valid_q) victim_depth_q[{v_slot_q, v_stamp_q}] <= {v_depth_strobe, v_depth};
+    if (c_valid_q) victim_color_q[{c_slot_q, c_stamp_q}] <= {c_color_strobe, c_color};
+    if (begins_eviction) victim_q[slot_q] <= {evicts_x, evicts_y, evicts_depth, evicts_color};
+  end
+
+  genvar v;
+  generate
+    for (v = 0; v < VICTIMS; v++) begin : gen_left
+      logic begins, is_sent;
+      assign begins  = begins_eviction && slot_q == VICTIM'(v);
+      assign is_sent = sends && takes_request && oldest_q == VICTIM'(v);
+      always_ff @(posedge clk_i) begin
+        if (begins) begin
+          depth_left_q[v] <= {STAMPS{fills[0]}};
+          color_left_q[v] <= {STAMPS{fills[1]}};
+        end else begin
+          if (v_valid_q && v_slot_q == VICTIM'(v) && v_depth_strobe != '0)
+            depth_left_q[v] <= depth_left_q[v] | (STAMPS'(1) << v_stamp_q);
+          if (c_valid_q && c_slot_q == VICTIM'(v) && c_color_strobe != '0)
+            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << c_stamp_q);
+          if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
+          if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
+        end
+      end
+    end
+  endgenerate
+
+  // The request: a victim's stamp, a read, or what a flush writes.
+  logic [7:0] column, row;
+  assign column = ((8'(sent_x) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(sent_stamp) & 8'((1 << SIDE_BITS) - 1));
+  assign row    = ((8'(sent_y) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(sent_stamp) >> SIDE_BITS);
+  always_comb begin
+    request_o          = '0;
+    request_o.is_write = sends;
+    request_o.plane    = raster_pkg::TILE_PLANE_DEPTH;
+    request_o.tile_x   = order_x;
+    request_o.tile_y   = order_y;
+    request_o.stamp    = order_stamp;
+    if (sends) begin
+      request_o.tile_x = raster_pkg::TILE_X_BITS'(sent_x >> TILE_BITS);
+      request_o.tile_y = raster_pkg::TILE_Y_BITS'(sent_y >> TILE_BITS);
+      request_o.stamp  = INDEX'((row << ROW_BITS) | column);
+      if (is_color) request_o.plane = raster_pkg::TILE_PLANE_COLOR;
+      request_o.strobe = is_here ? (is_color ? sent_color_strobe : sent_depth_strobe) : '1;
+      for (int i = 0; i < SAMPLES; i++) begin
+        if (is_color) request_o.data[i*LANE+:LANE] = is_here ? LANE'(sent_color[i*COLOR+:COLOR]) : LANE'(clear_color);
+        else request_o.data[i*LANE+:LANE] = is_here ? LANE'(sent_depth[i*CODE+:CODE]) : LANE'(clear_depth);
+      end
+    end
+    if (flush_valid) request_o = flush_request;
+  end
+
+  assign drained = !item_valid && behind_q == '0 && !order_valid;
+  assign idle_o  = tags_are_idle && drained;
+  assign fill_o  = {1'b0, wants_read && takes_request};
+  assign evict_o = {1'b0, (sends && takes_request) || is_resolved};
+  assign clear_o = {1'b0, is_cleared};
+
+endmodule
