@@ -7,7 +7,8 @@
 // cache_tags looks fragments up as they come and orders what they need from memory; up to CACHE_QUEUE of them wait here for
 // their answers. X hands them to depth_test with what is stored under them: from the RAM, the clear value, or the answer,
 // which goes into the RAM with what is written. W writes colours, which nobody reads but to write them back. A block that
-// leaves goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, and from there to memory.
+// leaves goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, a stamp a cycle, first the one
+// that is about to be overwritten, and from there to memory.
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module framebuffer_blocks (
     input logic clk_i,
@@ -201,10 +202,11 @@ module framebuffer_blocks (
   );
 
   // --------------------------------------------------------------------------------------------------- X: the depth test
-  logic              starts_q, begins_eviction, reads_victim, slot_free, goes, hazard;  // starts: the eviction has begun
-  logic [STAMPS-1:0] left_q, left, next;
-  logic [VICTIM:0]   taken_q;    // slots of victims that X has given away
-  logic [1:0]        behind_q;   // items between X and W: as many as the buffer holds
+  logic              reads_victim, slot_free, goes, hazard, leaves_line;
+  logic [STAMPS-1:0] left_q, left, next, item_bit;  // stamps of the last eviction that are still to be read
+  logic [LINE-1:0]   left_line_q;
+  logic [VICTIM:0]   taken_q;   // slots of victims that X has given away
+  logic [1:0]        behind_q;  // items between X and W: as many as the buffer holds
   logic              colors_done;  // W takes an item
   logic              finishes;     // an eviction is in memory
 
@@ -217,15 +219,17 @@ module framebuffer_blocks (
   logic [SAMPLES-1:0] x1_writes_q;  // samples of the RAM that may be written
   logic [SAMPLES*CODE-1:0] answer_q;
 
-  assign slot_free       = taken_q != (VICTIM + 1)'(VICTIMS);
-  assign left            = starts_q ? left_q : evicts_depth;
-  assign next            = lowest(left);
-  assign reads_victim    = item_valid && evicts && left != '0 && (starts_q || (slot_free && !x1_valid_q));
-  assign hazard          = x1_valid_q && source == SOURCE_CHIP && x1_line_q == item_line && x1_stamp_q == item_stamp &&
-                           (x1_writes_q & item.mask) != '0;
-  assign goes            = item_valid && (!evicts || (left == '0 && (starts_q || slot_free))) &&
-                           (source != SOURCE_MEMORY || answer_valid) && !hazard && (behind_q != 2'd2 || colors_done);
-  assign begins_eviction = !starts_q && (reads_victim || (goes && evicts));
+  assign slot_free    = taken_q != (VICTIM + 1)'(VICTIMS);
+  assign item_bit     = STAMPS'(1) << item_stamp;
+  assign hazard       = x1_valid_q && source == SOURCE_CHIP && x1_line_q == item_line && x1_stamp_q == item_stamp &&
+                        (x1_writes_q & item.mask) != '0;
+  assign leaves_line  = x1_valid_q && x1_line_q == item_line && x1_writes_q != '0;
+  assign goes         = item_valid && (!evicts || (left_q == '0 && slot_free && !leaves_line)) &&
+                        (source != SOURCE_CHIP || left_q == '0) && (source != SOURCE_MEMORY || answer_valid) && !hazard &&
+                        (behind_q != 2'd2 || colors_done);
+  assign left         = goes && evicts ? evicts_depth : left_q;
+  assign next         = goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0 ? item_bit : lowest(left);
+  assign reads_victim = left != '0;
   assign takes_item      = goes;
   assign takes_answer    = goes && source == SOURCE_MEMORY;
   assign tested_valid_o  = goes;
@@ -233,20 +237,20 @@ module framebuffer_blocks (
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      starts_q   <= 1'b0;
+      left_q     <= '0;
       x1_valid_q <= 1'b0;
       taken_q    <= '0;
       behind_q   <= '0;
     end else begin
-      starts_q   <= !goes && (starts_q || reads_victim);
+      left_q     <= left & ~next;
       x1_valid_q <= goes;
-      taken_q    <= taken_q + (VICTIM + 1)'(begins_eviction) - (VICTIM + 1)'(finishes);
+      taken_q    <= taken_q + (VICTIM + 1)'(goes && evicts) - (VICTIM + 1)'(finishes);
       behind_q   <= behind_q + 2'(goes) - 2'(colors_done);
     end
   end
 
   always_ff @(posedge clk_i) begin
-    if (reads_victim) left_q <= left & ~next;
+    if (goes && evicts) left_line_q <= item_line;
     x1_line_q         <= item_line;
     x1_stamp_q        <= item_stamp;
     x1_source_q       <= source;
@@ -261,13 +265,13 @@ module framebuffer_blocks (
   end
 
   // The depth RAM: of each sample its code, and whether memory does not have it.
-  logic                    v_valid_q, v_fills_q;  // a stamp of a victim has been read
+  logic                    v_valid_q, v_last_q, v_fills_q, fills_q;  // a stamp of a victim has been read
   logic [STAMP-1:0]        v_stamp_q;
-  logic [VICTIM-1:0]       v_slot_q, slot_q;      // of the eviction under way in X
+  logic [VICTIM-1:0]       v_slot_q, slot_q;  // of the next eviction
   logic [SAMPLES*CODE-1:0] v_depth;
   logic [SAMPLES-1:0]      v_depth_strobe;
   logic [ADDRESS-1:0]      depth_read_address;
-  assign depth_read_address = {item_line, reads_victim ? number_of(next) : item_stamp};
+  assign depth_read_address = {left_q != '0 ? left_line_q : item_line, reads_victim ? number_of(next) : item_stamp};
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -279,9 +283,11 @@ module framebuffer_blocks (
     end
   end
   always_ff @(posedge clk_i) begin
-    v_fills_q <= fills[0];
+    if (goes && evicts) fills_q <= fills[0];
+    v_fills_q <= goes && evicts ? fills[0] : fills_q;
     v_stamp_q <= number_of(next);
-    v_slot_q  <= slot_q;
+    v_slot_q  <= goes && evicts ? slot_q : slot_q - 1'b1;
+    v_last_q  <= left == next;
   end
 
   genvar s;
@@ -339,34 +345,44 @@ module framebuffer_blocks (
       .data_o ({w_line, w_stamp, w_writes, w_dirty, w_color, w_evicts, w_fills, w_stamps})
   );
 
-  logic              w_starts_q, w_reads;
-  logic [STAMPS-1:0] w_left_q, w_left, w_next;
-  assign w_left      = w_starts_q ? w_left_q : w_stamps;
-  assign w_next      = lowest(w_left);
-  assign w_reads     = w_valid && w_evicts && w_left != '0;
-  assign colors_done = w_valid && !w_reads;
+  logic              w_started_q, w_starts, w_reads, w_hits;
+  logic [STAMPS-1:0] w_left_q, w_left, w_next, w_own;
+  logic [LINE-1:0]   w_left_line_q;
+  assign w_own       = w_valid && w_writes != '0 && !w_started_q ? STAMPS'(1) << w_stamp : '0;  // about to be written
+  assign w_starts    = w_valid && w_evicts && !w_started_q && w_left_q == '0;
+  assign w_left      = w_starts ? w_stamps : w_left_q;
+  assign w_hits      = (w_starts || w_left_line_q == w_line) && (w_left & w_own) != '0;
+  assign w_next      = w_hits ? w_own : lowest(w_left);
+  assign w_reads     = w_left != '0;
+  assign colors_done = w_valid && !w_hits && (!w_evicts || w_starts || w_started_q);
 
-  logic                     c_valid_q, c_fills_q;  // colours of a victim have been read
+  logic                     c_valid_q, c_last_q, c_fills_q, w_fills_q;  // colours of a victim have been read
   logic [STAMP-1:0]         c_stamp_q;
   logic [VICTIM-1:0]        c_slot_q, w_slot_q;
   logic [SAMPLES*COLOR-1:0] c_color;
   logic [SAMPLES-1:0]       c_color_strobe;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      w_starts_q <= 1'b0;
-      c_valid_q  <= 1'b0;
-      w_slot_q   <= '0;
+      w_started_q <= 1'b0;
+      w_left_q    <= '0;
+      c_valid_q   <= 1'b0;
+      w_slot_q    <= '0;
     end else begin
-      w_starts_q <= w_reads;
-      c_valid_q  <= w_reads;
-      w_slot_q   <= w_slot_q + VICTIM'(colors_done && w_evicts);
+      w_started_q <= !colors_done && (w_started_q || w_starts);
+      w_left_q    <= w_left & ~w_next;
+      c_valid_q   <= w_reads;
+      w_slot_q    <= w_slot_q + VICTIM'(w_starts);
     end
   end
   always_ff @(posedge clk_i) begin
-    w_left_q  <= w_left & ~w_next;
-    c_fills_q <= w_fills;
+    if (w_starts) begin
+      w_left_line_q <= w_line;
+      w_fills_q     <= w_fills;
+    end
+    c_fills_q <= w_starts ? w_fills : w_fills_q;
     c_stamp_q <= number_of(w_next);
-    c_slot_q  <= w_slot_q;
+    c_slot_q  <= w_starts ? w_slot_q : w_slot_q - 1'b1;
+    c_last_q  <= w_left == w_next;
   end
 
   generate
@@ -380,7 +396,7 @@ module framebuffer_blocks (
       ) u_color (
           .clk_i,
           .read_i         (w_reads),
-          .read_address_i ({w_line, number_of(w_next)}),
+          .read_address_i ({w_starts ? w_line : w_left_line_q, number_of(w_next)}),
           .data_o         ({dirty, color}),
           .write_i        (colors_done && w_writes[s]),
           .write_address_i({w_line, w_stamp}),
@@ -399,7 +415,8 @@ module framebuffer_blocks (
   logic [STAMPS-1:0] depth_left_q[0:VICTIMS-1];  // stamps still to be written
   logic [STAMPS-1:0] color_left_q[0:VICTIMS-1];
   logic [VICTIM-1:0] oldest_q;  // slot of the next to be written
-  logic [VICTIM:0]   ready_q;   // evictions that wait whole
+  logic [VICTIM:0]   depth_ready_q, color_ready_q;  // evictions whose depths, and colours, are all here
+  logic              is_ready;
   logic [WRITES-1:0] written_q;  // of the order at the head
 
   logic                        sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request;
@@ -416,8 +433,9 @@ module framebuffer_blocks (
   assign color_left  = color_left_q[oldest_q];
   assign wants_write = order_valid && written_q != order_writes;
   assign wants_read  = order_valid && written_q == order_writes;  // an order that reads nothing ends with its writes
-  assign sends       = wants_write && ready_q != '0 && (depth_left != '0 || color_left != '0);
-  assign skips       = wants_write && ready_q != '0 && depth_left == '0 && color_left == '0;
+  assign is_ready    = depth_ready_q != '0 && color_ready_q != '0;
+  assign sends       = wants_write && is_ready && (depth_left != '0 || color_left != '0);
+  assign skips       = wants_write && is_ready && depth_left == '0 && color_left == '0;
   assign is_color    = depth_left == '0;
   assign sent        = lowest(is_color ? color_left : depth_left);
   assign sent_stamp  = number_of(sent);
@@ -434,27 +452,31 @@ module framebuffer_blocks (
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      oldest_q  <= '0;
-      ready_q   <= '0;
-      written_q <= '0;
+      oldest_q      <= '0;
+      depth_ready_q <= '0;
+      color_ready_q <= '0;
+      written_q     <= '0;
     end else begin
-      oldest_q  <= oldest_q + VICTIM'(finishes);
-      ready_q   <= ready_q + (VICTIM + 1)'(colors_done && w_evicts) - (VICTIM + 1)'(finishes);
-      written_q <= takes_order ? '0 : written_q + WRITES'(finishes);
+      oldest_q      <= oldest_q + VICTIM'(finishes);
+      depth_ready_q <= depth_ready_q + (VICTIM + 1)'(goes && evicts && evicts_depth == '0) +
+                       (VICTIM + 1)'(v_valid_q && v_last_q) - (VICTIM + 1)'(finishes);
+      color_ready_q <= color_ready_q + (VICTIM + 1)'(w_starts && w_stamps == '0) +
+                       (VICTIM + 1)'(c_valid_q && c_last_q) - (VICTIM + 1)'(finishes);
+      written_q     <= takes_order ? '0 : written_q + WRITES'(finishes);
     end
   end
 
   always_ff @(posedge clk_i) begin
     if (v_valid_q) victim_depth_q[{v_slot_q, v_stamp_q}] <= {v_depth_strobe, v_depth};
     if (c_valid_q) victim_color_q[{c_slot_q, c_stamp_q}] <= {c_color_strobe, c_color};
-    if (begins_eviction) victim_q[slot_q] <= {evicts_x, evicts_y, evicts_depth, evicts_color};
+    if (goes && evicts) victim_q[slot_q] <= {evicts_x, evicts_y, evicts_depth, evicts_color};
   end
 
   genvar v;
   generate
     for (v = 0; v < VICTIMS; v++) begin : gen_left
       logic begins, is_sent;
-      assign begins  = begins_eviction && slot_q == VICTIM'(v);
+      assign begins  = goes && evicts && slot_q == VICTIM'(v);
       assign is_sent = sends && takes_request && oldest_q == VICTIM'(v);
       always_ff @(posedge clk_i) begin
         if (begins) begin

@@ -5,8 +5,11 @@
 //
 //   t(m) = max(moved + 1, t(m-1) + 1, x(m-queue) + 1), two more where a flag falls
 //   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
-//   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2)), behind the reads of what it evicts
-//   w(m) = max(x + 2, w(m-1) + 1), likewise
+//   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2))
+//   w(m) = max(x + 2, w(m-1) + 1)
+//
+// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own,
+// W writes where nothing is left to be read, and the next eviction waits.
 #pragma once
 
 #include <algorithm>
@@ -56,23 +59,23 @@ class BlockTiming {
     const Cycle answer = is_order ? order(t, tags.writes, reads ? &item : nullptr, tags, ask) : 0;
     Cycle x = std::max({items_.ready(t), tested_ + 1, behind_.room()});
     if (reads) x = std::max(x, answer + 1);
+    if (tags.source == DepthSource::chip || tags.eviction) x = std::max(x, depth_free_);
     if (tags.source == DepthSource::chip && last_line_ == tags.line && last_stamp_ == item.stamp &&
         (last_writes_ & item.mask).any() && x < tested_ + 2) {
       x = tested_ + 2;
       ++hazards_;
     }
-    Cycle color_reads = 0;
     if (tags.eviction) {
-      const auto depth_reads = static_cast<Cycle>(std::popcount(tags.eviction->stamps[0]));
-      color_reads = static_cast<Cycle>(std::popcount(tags.eviction->stamps[1]));
-      x = std::max(x, std::max({items_.ready(t), tested_ + (depth_reads != 0 ? 2 : 1), slots_[next_slot_]}) + depth_reads);
+      x = std::max(x, slots_[next_slot_]);
+      if (last_line_ == tags.line && last_writes_.any()) x = std::max(x, tested_ + 2);
+      depth_free_ = x + static_cast<Cycle>(std::popcount(tags.eviction->stamps[0]));
     }
-    const Cycle w = std::max(x + 2, colored_ + 1) + color_reads;
+    const Cycle depth_ready = depth_free_ + 1;
     items_.leave(x);
-    behind_.leave(w);
     tested_ = x;
-    colored_ = w;
-    if (tags.eviction) victims_.push_back(victim(*tags.eviction, w + 1));
+    const Cycle color_ready = color(tags, item);
+    behind_.leave(colored_);
+    if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready)));
     note_writes(tags, item);
   }
 
@@ -103,6 +106,30 @@ class BlockTiming {
     std::size_t slot;
     Cycle ready;  ///< all of it is in the slot
   };
+
+  /// W: the colours of the item that X is through with. Returns when those of what it evicts are out of the RAM.
+  Cycle color(const TagResult& tags, const BlockItem& item) {
+    const std::uint64_t own = item.wrote_color || tags.starts_color ? std::uint64_t{1} << item.stamp : 0;
+    const auto read = [this](std::uint64_t wanted) {  // the stamp that is about to be written, or the lowest
+      left_color_ &= ~(wanted != 0 ? wanted : left_color_ & (~left_color_ + 1));
+      ++color_at_;
+    };
+    Cycle w = std::max(tested_ + 2, colored_ + 1), ready = 0;
+    if (tags.eviction) w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
+    while (left_color_ != 0 && color_at_ < w) read(0);
+    if (tags.eviction) {
+      left_color_ = tags.eviction->stamps[1];
+      color_line_ = tags.line;
+      color_at_ = w;
+      ready = w + static_cast<Cycle>(std::popcount(left_color_)) + 1;
+    }
+    if (tags.line == color_line_ && (left_color_ & own) != 0) {
+      read(own);
+      ++w;
+    }
+    colored_ = w;
+    return ready;
+  }
 
   template <class Ask>
   Cycle order(Cycle pushed, int writes, const BlockItem* item, const TagResult& tags, Ask&& ask) {
@@ -161,6 +188,10 @@ class BlockTiming {
   Station items_, orders_;
   Station behind_{2, 0, 0};                                ///< between X and W
   Cycle left_ = 0, tested_ = 0, colored_ = 0, ordered_ = 0;  ///< when the last one left T, X, W; the last request's cycle
+  Cycle depth_free_ = 0;          ///< when the depth RAM has been read for the last eviction
+  std::uint64_t left_color_ = 0;  ///< stamps of it that the colour RAM is still to be read for, one a cycle
+  std::size_t color_line_ = 0;
+  Cycle color_at_ = 0;  ///< when the next of them is
   std::size_t last_line_ = 0;
   int last_stamp_ = 0;
   SampleMask last_writes_;  ///< samples that the last fragment may have written
