@@ -36,8 +36,8 @@ const std::array kSettings{
             &Config::context_slots},
     Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32,
             &Config::hiz_bits},
-    Setting{"cache.kind", "tiles|blocks", "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead", 0, 0,
-            &Config::cache_kind},
+    Setting{"cache.kind", "tiles|blocks", "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead", 0,
+            0, &Config::cache_kind},
     Setting{"cache.lines", "lines", "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
             4096, &Config::cache_lines},
     Setting{"cache.queue", "fragments", "blocks: between tags and depth test; a power of two", 4, 128,
@@ -120,6 +120,7 @@ Config preset(std::string_view name) {
     config.depth_bits = 8;
     config.stamp_size = 1;
     config.hiz_bits = 8;
+    config.cache_kind = CacheKind::tiles;
     config.cache_lines = 2;
     return config;
   }
@@ -131,6 +132,7 @@ Config preset(std::string_view name) {
     config.primitive_id_bits = 8;
     config.context_slots = 2;
     config.hiz_bits = 8;
+    config.cache_kind = CacheKind::tiles;
     config.cache_lines = 4;
     config.setup_kind = SetupKind::serial;
     config.line_units = 0;  // with it 60 MHz are out of reach there: docs/area.md

@@ -47,10 +47,10 @@ struct Config {
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
   int hiz_bits = 16;           ///< bits of a tile's HiZ bound, see hiz_code_bits(); 0: no HiZ
-  CacheKind cache_kind = CacheKind::tiles;
-  int cache_lines = 16;     ///< tiles or blocks that the on-chip depth and colour RAM holds; a power of two
-  int cache_queue = 32;     ///< blocks: fragments between the tags and the depth test; a power of two
-  int cache_victims = 8;    ///< blocks: evicted ones that wait to be written to memory; a power of two
+  CacheKind cache_kind = CacheKind::blocks;
+  int cache_lines = 256;  ///< tiles or blocks that the on-chip depth and colour RAM holds; a power of two
+  int cache_queue = 32;   ///< blocks: fragments between the tags and the depth test; a power of two
+  int cache_victims = 8;  ///< blocks: evicted ones that wait to be written to memory; a power of two
   FrameClears frame_clears = FrameClears::resolve;  ///< of blocks
   SetupKind setup_kind = SetupKind::pipelined;
   int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out

@@ -423,7 +423,7 @@ struct MemoryRequest {
   FIELD(std::uint16_t, tile_x, &Widths::tile_x)
   FIELD(std::uint16_t, tile_y, &Widths::tile_y)
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
-  FIELD(SampleMask, strobe, &Widths::sample_mask)  ///< the samples to write; 0 for a read
+  FIELD(SampleMask, strobe, &Widths::sample_mask)             ///< the samples to write; 0 for a read
   FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 where none is written
   PACKET_END
 };

@@ -176,7 +176,8 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "likewise of its y, above those");
   print_constant(out, "BLOCK_SIDE", widths.blocks.side, "stamps along the side of a block");
   print_constant(out, "BLOCKS_PER_ROW", widths.blocks.per_tile, "blocks along the side of a tile");
-  print_constant(out, "FLAG_WORD", widths.blocks.flag_word, "flags of cleared blocks in a word, those of a row of blocks");
+  print_constant(out, "FLAG_WORD", widths.blocks.flag_word,
+                 "flags of cleared blocks in a word, those of a row of blocks");
   out << stall_constants() << "\n  // Derived widths, each with its bound.\n";
   for (const Width* width : widths.all())
     print_constant(out, constant_name(width->name) + "_BITS", width->bits, std::string(width->bound));

@@ -241,10 +241,10 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&primitive_id, &slot,       &tile_x,     &tile_y,      &tile_pixel, &stamp_index,    &sample_mask,
-       &stored_color, &kind,       &flag,       &depth_func,  &cull_mode,  &pixel_x,        &pixel_y,
-       &vertex_color, &hiz_code,   &hiz_update, &tile_plane, &memory_lane, &counter,    &line_numerator, &line_position,
-       &line_product, &line_error, &line_stay,  &line_move,   &line_count});
+  add({&primitive_id,  &slot,         &tile_x,     &tile_y,     &tile_pixel,  &stamp_index, &sample_mask,
+       &stored_color,  &kind,         &flag,       &depth_func, &cull_mode,   &pixel_x,     &pixel_y,
+       &vertex_color,  &hiz_code,     &hiz_update, &tile_plane, &memory_lane, &counter,     &line_numerator,
+       &line_position, &line_product, &line_error, &line_stay,  &line_move,   &line_count});
   add_of_attributes({&A::line});
   return list;
 }

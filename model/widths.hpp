@@ -89,7 +89,8 @@ struct Widths {
   Width reciprocal, reciprocal_shift;     ///< the widest, which the others are the upper bits of
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
-  Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane, memory_lane, counter;
+  Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane,
+      memory_lane, counter;
   // Lines.
   Width line_numerator, line_position, line_product;   // line_setup
   Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, beside those of the planes

@@ -339,7 +339,7 @@ module raster_top (
     end else begin : gen_blocks
       assign access_ready = 1'b1;
 
-      framebuffer_blocks u_framebuffer (
+      block_cache u_framebuffer (
           .clk_i,
           .rst_ni,
           .fragment_valid_i(fragment_valid),

@@ -27,7 +27,8 @@ TileMemory::TileMemory(const Config& config) : widths_(derive_widths(config)) {
   const auto tiles = static_cast<std::size_t>(widths_.tiles_x) * static_cast<std::size_t>(widths_.tiles_y);
   block_.resize(2 * tiles, kNone);
   if (config.cache_kind == CacheKind::blocks)
-    for (auto& plane : flags_) plane.resize(tiles * static_cast<std::size_t>(widths_.blocks.per_tile * widths_.blocks.per_tile));
+    for (auto& plane : flags_)
+      plane.resize(tiles * static_cast<std::size_t>(widths_.blocks.per_tile * widths_.blocks.per_tile));
 }
 
 bool TileMemory::has(const MemoryRequest& request) const {
@@ -41,9 +42,10 @@ bool TileMemory::has(const MemoryRequest& request) const {
 bool TileMemory::is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const {
   const std::vector<std::uint8_t>& flags = flags_[is_color ? 1 : 0];
   if (flags.empty()) return false;
-  const BlockAddress block =
-      block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
-                   static_cast<std::uint16_t>(stamp)}, widths_).block;
+  const BlockAddress block = block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
+                                          static_cast<std::uint16_t>(stamp)},
+                                         widths_)
+                                 .block;
   return flags[static_cast<std::size_t>(block.y * tiles_x() * widths_.blocks.per_tile + block.x)] != 0;
 }
 
@@ -77,9 +79,7 @@ void TileMemory::write(const MemoryRequest& request) {
       for (int s = 0; s < samples(); ++s) lanes_.push_back(memory_garbage(is_color, tile_x, tile_y, other, s, widths_));
   }
   const std::ptrdiff_t first = first_lane(block, request.stamp);
-  request.strobe.for_each([&](std::size_t s) {
-    lanes_[static_cast<std::size_t>(first) + s] = request.data[s];
-  });
+  request.strobe.for_each([&](std::size_t s) { lanes_[static_cast<std::size_t>(first) + s] = request.data[s]; });
 }
 
 Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config) {

@@ -60,9 +60,9 @@ class TileMemory {
   Widths widths_;
   std::array<std::uint32_t, 2> clear_value_{};
   std::array<std::vector<std::uint8_t>, 2> flags_;  ///< as the last flush wrote them
-  std::vector<std::uint32_t> block_;  ///< of each tile of each plane: which tile of lanes_, or kNone
-  std::uint32_t blocks_ = 0;          ///< tiles in lanes_
-  std::vector<std::uint32_t> lanes_;  ///< stamp by stamp
+  std::vector<std::uint32_t> block_;                ///< of each tile of each plane: which tile of lanes_, or kNone
+  std::uint32_t blocks_ = 0;                        ///< tiles in lanes_
+  std::vector<std::uint32_t> lanes_;                ///< stamp by stamp
 };
 
 /// The two images, as the memory holds them. Padding as in an empty target: farthest depth, opaque black.

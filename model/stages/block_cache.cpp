@@ -93,8 +93,7 @@ void BlockCache::capture(const Eviction& eviction) {
       request.strobe = eviction.fills[p] ? SampleMask::all(widths_.samples) : dirty;
       if (!request.strobe.any()) continue;
       const auto codes = lanes(plane, at);
-      request.strobe.for_each(
-          [&](std::size_t s) { request.data[s] = held.has(s) ? codes[s] : clear_value_[p]; });
+      request.strobe.for_each([&](std::size_t s) { request.data[s] = held.has(s) ? codes[s] : clear_value_[p]; });
       victim.requests.push_back(request);
     }
   }

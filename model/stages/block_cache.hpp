@@ -1,12 +1,12 @@
 // Block cache: the on-chip depth and colour of blocks of 4x4 pixels, and those that are on their way to memory.
 //
 // In: fragments, writes, fast clears, flushes, in program order. Out: stored depths, memory requests in the order of
-// block_directory.hpp, which decides what moves; here is the data.
+// cache_tags.hpp, which decides what moves; here is the data.
 #pragma once
 
 #include <span>
 
-#include "block_directory.hpp"
+#include "cache_tags.hpp"
 #include "memory_port.hpp"
 
 namespace halfplane {
@@ -48,7 +48,7 @@ class BlockCache {
 
   Config config_;
   Widths widths_;
-  BlockDirectory directory_;
+  CacheTags directory_;
   TagResult last_;                          ///< of the last access
   std::size_t last_stamp_ = 0;              ///< likewise, in the arrays below
   std::vector<std::uint32_t> stored_;       ///< likewise: what the depth test saw

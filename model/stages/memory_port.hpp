@@ -23,10 +23,10 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
 [[nodiscard]] inline std::uint64_t flag_word(const MemoryRequest& request, const Widths& widths) {
   std::uint64_t bits = 0;
   for (int n = 0; n < widths.blocks.flag_word; ++n)
-    bits |= std::uint64_t{request.data[static_cast<std::size_t>(n / widths.memory_lane.bits)] >>
-                              n % widths.memory_lane.bits &
-                          1}
-            << n;
+    bits |=
+        std::uint64_t{
+            request.data[static_cast<std::size_t>(n / widths.memory_lane.bits)] >> n % widths.memory_lane.bits & 1}
+        << n;
   return bits;
 }
 

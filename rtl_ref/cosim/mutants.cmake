@@ -87,7 +87,7 @@ mutant(34 stages/depth_test.sv "stale HiZ: greater and its like leave the bound 
 mutant(35 stages/depth_test.sv "counter: samples count as written with both masks off"
   [=[is_counted && writes]=] [=[is_counted]=])
 
-# framebuffer
+# framebuffer of tiles: `tiny` has it
 mutant(36 stages/framebuffer.sv "write back: colour is always taken for dirty"
   [=[valid_q[line] && dirty_color_q[line]]=] [=[valid_q[line]]=])
 mutant(37 stages/framebuffer.sv "fast clear: the flag of a plane outlives its write back"
@@ -157,3 +157,30 @@ mutant(60 stages/triangle_setup.sv "dropped stall: a part hands over to one that
   [=[at_q[i*STEPS+STEPS-1] && ready[i+1]]=] [=[at_q[i*STEPS+STEPS-1]]=])
 mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes a phase late"
   [=[flows[NUMERATOR] || flows[NUMERATOR+1]]=] [=[flows[NUMERATOR+1]]=])
+
+# framebuffer of blocks
+mutant(70 stages/cache_tags.sv "tag: only the block's column is compared"
+  [=[line_valid && tag_x == TAG_X'(block_x >> LINE_X) && tag_y == TAG_Y'(block_y >> LINE_Y)]=]
+  [=[line_valid && tag_x == TAG_X'(block_x >> LINE_X)]=])
+mutant(71 stages/cache_tags.sv "fast clear: the flag of a block outlives its eviction"
+  [=[fills & {2{valid_q && falls && fall_q == 2'd1}}]=] [=[2'b00]=])
+mutant(72 stages/cache_tags.sv "order: a block on its way to memory is read as memory has it"
+  [=[!is_access || hits]=] [=[1'b1]=])
+mutant(73 stages/cache_tags.sv "tags: a line that is read while it is written is seen as it was"
+  [=[is_forwarded_q ? forward_q : line_read]=] [=[line_read]=])
+mutant(74 stages/cache_tags.sv "depth unread: always, with some samples of a stamp"
+  [=[fragment_q.mask == '1]=] [=[1'b1]=])
+mutant(75 stages/cache_tags.sv "fast clear: marks stop at the last whole word"
+  [=[~({WORD{1'b1}} << 1 << bit_of(last_x))]=] [=[{WORD{1'b0}}]=])
+mutant(76 stages/block_cache.sv "hazard: a stamp is read while the one before writes it"
+  [=[(x1_writes_q & item.mask) != '0]=] [=[1'b0]=])
+mutant(77 stages/block_cache.sv "hazard: a line is read out while its last stamp is written"
+  [=[x1_line_q == item_line && x1_writes_q != '0]=] [=[1'b0]=])
+mutant(78 stages/block_cache.sv "victims: the stamp that is about to be written is not read first"
+  [=[goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0]=] [=[1'b0]=])
+mutant(79 stages/block_cache.sv "strobes: samples count as written that only came from memory"
+  [=[{write_i.write_depth[s], written}]=] [=[{1'b1, written}]=])
+mutant(80 stages/block_cache.sv "fill: what was not drawn into keeps what the colour RAM had"
+  [=[dirty ? color : clear_color & {COLOR{c_fills_q}}]=] [=[color]=])
+mutant(81 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
+  [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])

@@ -5,7 +5,7 @@
 // blocks go to memory, then a stamp of depth is read. A fragment takes two cycles to become an item, one a cycle; two more
 // where the flag of a cleared block falls. Tokens stay until all they ask for is done: a walk over the lines that evicts
 // what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
-// Specification: model/stages/block_directory.hpp.
+// Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),
@@ -60,7 +60,7 @@ module cache_tags #(
 
     output logic is_cleared_o,  // a stamp begins with the clear value
     output logic is_resolved_o,  // a stamp of a cleared block goes to memory
-    output logic at_token_o,
+    output logic at_token_o,  // behind everything, lines and flags are at work
     output logic idle_o
 );
 
@@ -500,7 +500,7 @@ module cache_tags #(
     end
   end
 
-  assign at_token_o = state_q != SERVE || begins;
+  assign at_token_o = state_q > DRAIN;
   assign idle_o     = state_q == SERVE && !fragment_valid_i && !valid_q;
 
 endmodule

@@ -55,9 +55,22 @@ bool shows(Dut& dut, const Config& config, const ModelPicture& picture, std::uin
   return frame && color_hash(*frame, config.color_format) == picture.color && depth_hash(*frame) == picture.depth;
 }
 
+/// What comes of the random run on another design that has mutants, and parts that this one does not have.
+std::optional<Mismatch> elsewhere(LockstepOptions options, const DutFactory& here, std::uint64_t random) {
+  for (const DutFactory& factory : verilated_duts()) {
+    if (!factory.has_mutants || factory.name == here.name) continue;
+    const std::unique_ptr<Dut> dut = make_dut(factory);
+    const auto scenes = random_scenes(factory.config, options.seed, random);
+    if (const Session session = run_session(*dut, factory.config, options, scenes); session.result.mismatch)
+      return session.result.mismatch;
+  }
+  return {};
+}
+
 /// Throws Interrupted.
-Verdict judge(const MutantsCommand& options, const Config& config, Dut& dut, const Mutant& mutant,
+Verdict judge(const MutantsCommand& options, const DutFactory& factory, Dut& dut, const Mutant& mutant,
               const std::vector<ModelPicture>& pictures) {
+  const Config& config = factory.config;
   LockstepOptions lockstep = lockstep_options(options);
   lockstep.progress = [](double) {
     stop_if_interrupted();
@@ -66,6 +79,7 @@ Verdict judge(const MutantsCommand& options, const Config& config, Dut& dut, con
   lockstep.mutant = static_cast<std::uint16_t>(mutant.id);
   const Session session = run_session(dut, config, lockstep, random_scenes(config, options.seed, options.random));
   Verdict verdict{mutant, session.result.mismatch, {}};
+  if (!verdict.mismatch) verdict.mismatch = elsewhere(lockstep, factory, options.random);
   for (const ModelPicture& picture : pictures) {
     stop_if_interrupted();
     if (!shows(dut, config, picture, lockstep.mutant)) verdict.pictures.push_back(picture.scene.name);
@@ -149,7 +163,7 @@ int run(const MutantsCommand& options) {
     try {
       for (const Mutant& mutant : mutants()) {
         progress(static_cast<double>(verdicts.size()) / static_cast<double>(mutants().size()));
-        verdicts.push_back(judge(options, config, *dut, mutant, pictures));
+        verdicts.push_back(judge(options, factory, *dut, mutant, pictures));
       }
     } catch (const Interrupted&) {  // the verdicts so far stand
     }

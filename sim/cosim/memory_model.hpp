@@ -30,7 +30,8 @@ class MemoryModel {
       return;
     }
     MemoryResponse response;
-    if (is_inside) tiles_.read(request.plane == TilePlane::color, request.tile_x, request.tile_y, request.stamp, response.data);
+    if (is_inside)
+      tiles_.read(request.plane == TilePlane::color, request.tile_x, request.tile_y, request.stamp, response.data);
     pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(due)));
   }
 

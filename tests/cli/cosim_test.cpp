@@ -239,8 +239,8 @@ TEST_F(RtlCommands, WhatTheHardwareLacksIsNamed) {
   expect_refused({"cosim", "--random", "5", "--size", "8x8"}, "leave --size out, or give a SCENE in place of --random");
   expect_refused({"cosim", "--random", "5", "--camera", "fov=9"}, "leave --camera out, or give a SCENE in place of");
   expect_refused({"cosim", "triangle", "--mutant", "1000"}, "no mutant has the number 1000; give 1 to ");
-  expect_refused({"cosim", "triangle", "--mutant", "1", "--config", "tiny", "--size", "8x8"}, "has no mutants");
-  expect_refused({"mutants", "--config", "tiny"}, "has no mutants");
+  expect_refused({"cosim", "triangle", "--mutant", "1", "--config", "small", "--size", "8x8"}, "has no mutants");
+  expect_refused({"mutants", "--config", "small"}, "has no mutants");
   expect_refused({"render", "triangle", "--engine", "rtl", "--ids", "ids.npy"}, "leave out --count and --ids");
   expect_refused({"render", "triangle", "--engine", "rtl", "--count", "count.npy"}, "leave out --count and --ids");
 }

@@ -27,7 +27,8 @@ Cycle read_run(MemoryTiming& memory, int count, int tile_y_step, Cycle from) {
   Cycle at = from, answer = 0;
   for (int i = 0; i < count; ++i, ++at) {
     at = std::max(at, memory.room());
-    const Cycle next = memory.accept({false, false, tile_y_step == 0 ? i / 16 : 0, i * tile_y_step, i % 16}, at);
+    const Cycle next =
+        memory.accept({false, TilePlane::depth, tile_y_step == 0 ? i / 16 : 0, i * tile_y_step, i % 16}, at);
     EXPECT_GE(next, answer);
     answer = next;
   }

@@ -154,6 +154,10 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
       config.color_format = ColorFormat::rgba8888;
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       config.setup_kind = SetupKind::serial;
+    else if (std::holds_alternative<CacheKind Config::*>(setting.member))
+      config.cache_kind = CacheKind::tiles;
+    else if (std::holds_alternative<FrameClears Config::*>(setting.member))
+      config.frame_clears = FrameClears::flags;
     else if (!setting.is_hardware())
       set(config, setting.key, setting.key == "depth.mapping" ? "rev" : "f16");
     else

@@ -1,6 +1,8 @@
 // The blocks beside the pipeline of the hardware model: HiZ, tile cache, memory, and the stream of primitives from the host.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
@@ -78,8 +80,11 @@ TEST(Hiz, DepthThatCanRiseTakesTheBoundAway) {
   }
 }
 
+/// `embedded` with a cache of so many tiles.
+Config tiles(const char* lines) { return with("embedded", {{"cache.lines", lines}, {"cache.kind", "tiles"}}); }
+
 TEST(TileCache, FastClearedSceneThatFitsReadsNoMemory) {
-  const Config config = preset("embedded");
+  const Config config = tiles("16");
   SceneBuilder builder(32, 32);  // 4 x 4 tiles, 16 lines
   for (int n = 0; n < 5; ++n) fill_target(builder, 0.1 * n);
   Recorder sink;
@@ -92,7 +97,7 @@ TEST(TileCache, FastClearedSceneThatFitsReadsNoMemory) {
 }
 
 TEST(TileCache, TileNobodyTouchesIsWrittenOnlyAtTheFlush) {
-  const Config config = preset("embedded");
+  const Config config = tiles("16");
   SceneBuilder builder(64, 8);
   builder.triangle(at(1, 1), at(7, 1), at(1, 7));
   Recorder sink;
@@ -109,7 +114,7 @@ TEST(TileCache, TileNobodyTouchesIsWrittenOnlyAtTheFlush) {
 
 TEST(TileCache, SecondReadOfATileIsAHit) {
   // Two tiles that share a line take it from each other; staying in one costs nothing.
-  const Config config = with("embedded", {{"cache.lines", "1"}});
+  const Config config = tiles("1");
   const auto fills = [&config](std::initializer_list<double> xs) {
     SceneBuilder builder(64, 8);
     for (const double x : xs) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
@@ -123,7 +128,7 @@ TEST(TileCache, SecondReadOfATileIsAHit) {
 }
 
 TEST(TileCache, PlaneThatNobodyWroteIsNotWrittenBack) {
-  const Config config = with("embedded", {{"cache.lines", "1"}});
+  const Config config = tiles("1");
   State state = SceneBuilder::window_state();
   state.depth_write = false;
   SceneBuilder builder(16, 8, state);
@@ -143,12 +148,138 @@ TEST(TileCache, ClearOfOnePlaneKeepsTheOther) {
                    at(1, 30, 0.75, {255, 0, 0, 255}));
   builder.scene.commands.push_back(Clear{0, std::array<double, 4>{0, 255, 0, 255}, std::nullopt});
   for (const char* lines : {"1", "4", "64"}) {
-    const Config config = with("embedded", {{"cache.lines", lines}});
+    const Config config = tiles(lines);
     const Rendering expected = render_functional(builder.scene, config),
                     hardware = render_hardware(builder.scene, config);
     EXPECT_EQ(hardware.frame.depth, expected.frame.depth) << lines;
     EXPECT_EQ(hardware.frame.color, expected.frame.color) << lines;
   }
+}
+
+/// `embedded` with a cache of so many blocks of 4x4 pixels.
+Config blocks(const char* lines, const char* clears = "flags") {
+  return with("embedded", {{"cache.kind", "blocks"}, {"cache.lines", lines}, {"frame.clears", clears}});
+}
+
+/// Requests of a plane, by whether they write.
+std::size_t count(const Recorder& sink, TilePlane plane, bool is_write) {
+  return static_cast<std::size_t>(std::ranges::count_if(sink.requests, [&](const MemoryRequest& request) {
+    return request.plane == plane && (request.is_write != 0) == is_write;
+  }));
+}
+
+TEST(BlockCache, AFragmentOnAClearedTargetReadsNothingAndWritesItsBlock) {
+  SceneBuilder builder(64, 8);  // 16 x 2 blocks
+  builder.triangle(at(1, 1), at(3, 1), at(1, 3));
+  Recorder sink;
+  const CounterPacket counters = run_scene(builder.scene, blocks("16"), sink);
+  EXPECT_EQ(count(sink, TilePlane::depth, false), 0u);
+  EXPECT_EQ(count(sink, TilePlane::depth, true), 4u) << "memory was garbage: all four stamps of the block";
+  EXPECT_EQ(count(sink, TilePlane::color, true), 4u);
+  EXPECT_EQ(count(sink, TilePlane::depth_flags, true), 2u) << "a word for each row of blocks";
+  EXPECT_EQ(count(sink, TilePlane::color_flags, true), 2u);
+  EXPECT_EQ(counters.tile_evictions, 8u);
+  for (const MemoryRequest& request : sink.requests) {
+    if (request.plane != TilePlane::depth_flags) continue;
+    const std::uint64_t word = flag_word(request, derive_widths(blocks("16")));
+    EXPECT_EQ(word, request.stamp == 0 ? 0xFFFEu : 0xFFFFu) << "of 16 blocks the first has been drawn into";
+  }
+}
+
+TEST(BlockCache, AResolvedTargetHasEveryColourInMemory) {
+  SceneBuilder builder(64, 8);
+  builder.triangle(at(1, 1), at(3, 1), at(1, 3));
+  Recorder sink;
+  const CounterPacket counters = run_scene(builder.scene, blocks("16", "resolve"), sink);
+  EXPECT_EQ(count(sink, TilePlane::color, true), 64u * 8u / 4u);
+  EXPECT_EQ(count(sink, TilePlane::color_flags, true), 0u);
+  EXPECT_EQ(count(sink, TilePlane::depth, true), 4u) << "nobody reads the depths of what is cleared";
+  EXPECT_EQ(counters.tile_evictions, 64u * 8u / 4u + 4u);
+}
+
+TEST(BlockCache, OnlySamplesThatWereWrittenGoToMemoryAgain) {
+  SceneBuilder builder(64, 4);
+  // The first block, one that takes its line from it, and the first again: one pixel of it.
+  for (const double x : {0.0, 4.0, 0.0}) builder.triangle(at(x, 0), at(x + 1.2, 0), at(x, 1.2));
+  Recorder sink;
+  (void)run_scene(builder.scene, blocks("1"), sink);
+  EXPECT_EQ(count(sink, TilePlane::depth, false), 1u) << "the stamp that is tested";
+  EXPECT_EQ(count(sink, TilePlane::color, false), 0u) << "nobody reads colours";
+  EXPECT_EQ(count(sink, TilePlane::color, true), 4u + 4u + 1u);
+  const auto last = std::ranges::find_if(sink.requests.rbegin(), sink.requests.rend(),
+                                         [](const MemoryRequest& r) { return r.plane == TilePlane::color; });
+  EXPECT_EQ(last->strobe.bits(), 1u);
+}
+
+TEST(BlockCache, AFullStampThatAlwaysPassesReadsNoDepth) {
+  for (const DepthFunc func : {DepthFunc::always, DepthFunc::lequal}) {
+    State state = SceneBuilder::window_state();
+    state.depth_test = func;
+    SceneBuilder builder(64, 4);
+    for (const int x : {0, 4, 0}) {
+      state.scissor = Rect{x, 0, 4, 4};
+      builder.with_state(state).triangle(at(x, 0), at(x + 40, 0), at(x, 40));
+    }
+    Recorder sink;
+    (void)run_scene(builder.scene, blocks("1"), sink);
+    EXPECT_EQ(count(sink, TilePlane::depth, false), func == DepthFunc::always ? 0u : 4u);
+  }
+}
+
+TEST(BlockCache, ABlockOnItsWayToMemoryIsWrittenBeforeItIsReadAgain) {
+  // Two blocks that share the only line, in turns, with a deeper surface each time: a stale depth would show.
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::greater;
+  SceneBuilder builder(8, 4, state);
+  builder.scene.commands.push_back(Clear{0, std::nullopt, 0.0});
+  for (int n = 1; n < 20; ++n)
+    builder.triangle(at(n % 2 * 4, 0, 0.04 * n), at(n % 2 * 4 + 4, 0, 0.04 * n), at(n % 2 * 4, 4, 0.04 * n));
+  for (const std::string_view victims : {"2", "8"}) {
+    Config config = blocks("1");
+    set(config, "cache.victims", victims);
+    const Rendering expected = render_functional(builder.scene, config),
+                    hardware = render_hardware(builder.scene, config);
+    EXPECT_EQ(hardware.frame.depth, expected.frame.depth);
+    EXPECT_EQ(hardware.frame.color, expected.frame.color);
+  }
+}
+
+TEST(BlockCache, ClearOfOnePlaneKeepsTheOther) {
+  SceneBuilder builder(40, 40);
+  fill_target(builder, 0.5);
+  builder.scene.commands.push_back(Clear{0, std::nullopt, 0.25});
+  builder.triangle(at(1, 1, 0.75, {255, 0, 0, 255}), at(20, 1, 0.75, {255, 0, 0, 255}),
+                   at(1, 30, 0.75, {255, 0, 0, 255}));
+  builder.scene.commands.push_back(Clear{0, std::array<double, 4>{0, 255, 0, 255}, std::nullopt});
+  for (const char* lines : {"1", "4", "64"})
+    for (const char* clears : {"flags", "resolve"}) {
+      const Config config = blocks(lines, clears);
+      const Rendering expected = render_functional(builder.scene, config),
+                      hardware = render_hardware(builder.scene, config);
+      EXPECT_EQ(hardware.frame.depth, expected.frame.depth) << lines;
+      EXPECT_EQ(hardware.frame.color, expected.frame.color) << lines;
+    }
+}
+
+TEST(BlockCache, AStampOfABlockIsFoundByItsTileAndBack) {
+  for (const char* stamp : {"1", "2", "4", "8"})
+    for (const char* tile : {"8", "16"}) {
+      const Config config =
+          with("embedded", {{"stamp.size", stamp}, {"tile.size", tile}, {"plane.local_guard_bits", "8"}});
+      const Widths widths = derive_widths(config);
+      for (int n = 0; n < widths.stamps.stamps(); ++n) {
+        const StampAddress at{3, 2, static_cast<std::uint16_t>(n)};
+        const BlockStamp place = block_stamp(at, widths);
+        const StampAddress back = stamp_address(place, widths);
+        EXPECT_EQ(back.tile_x, at.tile_x);
+        EXPECT_EQ(back.tile_y, at.tile_y);
+        EXPECT_EQ(back.stamp, at.stamp);
+        const PixelOffset first = widths.stamps.origin_of(n);
+        const int side = std::max(4, config.stamp_size);
+        EXPECT_EQ(place.block.x, (3 * config.tile_size + first.x) / side);
+        EXPECT_EQ(place.block.y, (2 * config.tile_size + first.y) / side);
+      }
+    }
 }
 
 TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
@@ -157,7 +288,15 @@ TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
   TileMemory memory(config);
   std::array<std::uint32_t, 64> data{}, back{};
   for (std::uint32_t s = 0; s < 4; ++s) data[s] = s + 1;
-  memory.write(true, 2, 3, 5, data);
+  MemoryRequest request;
+  request.plane = TilePlane::color;
+  request.tile_x = 2;
+  request.tile_y = 3;
+  request.stamp = 5;
+  request.strobe = SampleMask(0b1101);
+  request.data = data;
+  memory.write(request);
+  data[1] = memory_garbage(true, 2, 3, 5, 1, widths);
   memory.read(true, 2, 3, 5, back);
   EXPECT_EQ(back, data);
   memory.read(true, 2, 3, 6, back);

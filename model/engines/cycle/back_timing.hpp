@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../stages/block_directory.hpp"
+#include "../../stages/cache_tags.hpp"
 #include "../../stages/tile_directory.hpp"
 #include "../../timing/memory.hpp"
 #include "../../timing/station.hpp"
@@ -53,8 +53,7 @@ struct TimingTotals {
 class BackTiming {
  public:
   /// `memory` and `sink`, which may be null, must outlive this.
-  BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
-             TransferSink* sink)
+  BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
       : stalls_(stalls),
         streams_(streams_of(stalls)),
         memory_(memory),
@@ -159,7 +158,6 @@ class BackTiming {
   }
 
  public:
-
   /// A fast clear or a flush on its way through the framebuffer. walk(mover) visits lines and tiles.
   template <class Walk>
   Cycle pass_token(Cycle offered, Walk&& walk) {
@@ -177,13 +175,12 @@ class BackTiming {
 
   /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes in `clears`, of tiles (0, 0) to
   /// (last_x, last_y).
-  Cycle pass_token(Cycle offered, BlockDirectory& directory, bool is_clear, const std::array<bool, 2>& clears, int last_x,
-                   int last_y) {
+  Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const std::array<bool, 2>& clears,
+                   int last_x, int last_y) {
     const auto ask = [this](Cycle cycle, TilePlane plane, const StampAddress& at, bool is_write) {
       return ask_of_block(cycle, plane, at, is_write ? MoveCause::evict : MoveCause::fill);
     };
-    const Cycle begins =
-        stalls_.next_free(stream(Arrow::fragment).streams(), std::max(offered, blocks_->is_empty()));
+    const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams(), std::max(offered, blocks_->is_empty()));
     Cycle cycle = begins + 1;
     if (!(is_clear && clears[0] && clears[1]))
       directory.evict_all([&](const TagResult& tags) { cycle = blocks_->walk(cycle, tags, ask); });
@@ -258,7 +255,8 @@ class BackTiming {
     ++(is_flags ? totals_.flag_words[p] : totals_.stamps[static_cast<std::size_t>(cause)][p]);
     const Cycle asked = ask({cause != MoveCause::fill, plane, at.tile_x, at.tile_y, at.stamp}, cycle);
     if (sink_ != nullptr)
-      sink_->move(cause, p != 0, at.tile_x, at.tile_y, asked, cause == MoveCause::fill ? last_response_ + 1 : asked + 1);
+      sink_->move(cause, p != 0, at.tile_x, at.tile_y, asked,
+                  cause == MoveCause::fill ? last_response_ + 1 : asked + 1);
     return {asked, last_response_};
   }
 
@@ -287,7 +285,8 @@ class BackTiming {
       if ((bits & 1) == 0) ++cycle;
       for (int stamp = 0; (bits & 1) != 0 && stamp < widths_.blocks.stamps(); ++stamp) {
         const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-        cycle = ask_of_block(cycle, TilePlane::color, stamp_address({block, stamp}, widths_), MoveCause::clear).first + 1;
+        cycle =
+            ask_of_block(cycle, TilePlane::color, stamp_address({block, stamp}, widths_), MoveCause::clear).first + 1;
       }
     }
     return cycle + 1;
@@ -363,7 +362,8 @@ class BackTiming {
       cycle = asked + 1;
     }
     if (sink_ != nullptr)
-      sink_->move(cause, access.plane == TilePlane::color, access.tile_x, access.tile_y, first, is_write ? cycle : last_response_ + 1);
+      sink_->move(cause, access.plane == TilePlane::color, access.tile_x, access.tile_y, first,
+                  is_write ? cycle : last_response_ + 1);
   }
 
   /// Both planes of a tile, from memory or from the clear value. A plane that is cleared rides along with one that is read.

@@ -1,4 +1,4 @@
-// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, framebuffer_blocks.sv.
+// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, block_cache.sv.
 //
 // T looks a fragment up, X tests it, W writes its colours; between T and X the fragments wait for memory, in order. Every
 // wait is for an earlier fragment or eviction, so the time of one is a maximum over those before it:
@@ -17,17 +17,17 @@
 #include <bit>
 #include <deque>
 
-#include "../../stages/block_directory.hpp"
+#include "../../stages/cache_tags.hpp"
 #include "../../timing/station.hpp"
 
 namespace halfplane {
 
 /// What the test made of a fragment.
 struct BlockItem {
-  SampleMask mask;                                 ///< covered samples; none: an empty stamp, or a line of a walk
-  int stamp = 0;                                   ///< in its block
-  bool depth_write = false, color_write = false;   ///< by its state
-  bool wrote_depth = false, wrote_color = false;   ///< any sample passed
+  SampleMask mask;                                ///< covered samples; none: an empty stamp, or a line of a walk
+  int stamp = 0;                                  ///< in its block
+  bool depth_write = false, color_write = false;  ///< by its state
+  bool wrote_depth = false, wrote_color = false;  ///< any sample passed
 };
 
 class BlockTiming {
@@ -149,7 +149,8 @@ class BlockTiming {
       victims_.pop_front();
     }
     if (item != nullptr) {
-      const auto [asked, answered] = ask(cycle, TilePlane::depth, stamp_address({tags.block, item->stamp}, widths_), false);
+      const auto [asked, answered] =
+          ask(cycle, TilePlane::depth, stamp_address({tags.block, item->stamp}, widths_), false);
       cycle = asked + 1;
       answer = answered;
     }
@@ -186,8 +187,9 @@ class BlockTiming {
 
   Widths widths_;
   Station items_, orders_;
-  Station behind_{2, 0, 0};                                ///< between X and W
-  Cycle left_ = 0, tested_ = 0, colored_ = 0, ordered_ = 0;  ///< when the last one left T, X, W; the last request's cycle
+  Station behind_{2, 0, 0};  ///< between X and W
+  Cycle left_ = 0, tested_ = 0, colored_ = 0,
+        ordered_ = 0;             ///< when the last one left T, X, W; the last request's cycle
   Cycle depth_free_ = 0;          ///< when the depth RAM has been read for the last eviction
   std::uint64_t left_color_ = 0;  ///< stamps of it that the colour RAM is still to be read for, one a cycle
   std::size_t color_line_ = 0;

@@ -144,8 +144,7 @@ class CycleModelOf final : public CycleModel {
     const int last_x = packet.box.right >> widths_.tile_shift, last_y = packet.box.bottom >> widths_.tile_shift;
     timing_.end_token([&](Cycle offered) {
       if (has_blocks_) return timing_.pass_token(offered, blocks_, false, {}, last_x, last_y);
-      return timing_.pass_token(offered,
-                                [&](auto& mover) { directory_.flush(last_x, last_y, mover, counters_); });
+      return timing_.pass_token(offered, [&](auto& mover) { directory_.flush(last_x, last_y, mover, counters_); });
     });
   }
 
@@ -187,8 +186,8 @@ class CycleModelOf final : public CycleModel {
     const StampAddress at{static_cast<std::uint16_t>(place.tile_x), static_cast<std::uint16_t>(place.tile_y),
                           static_cast<std::uint16_t>(place.stamp)};
     const TagResult tags = blocks_.access(at, state, place.mask == SampleMask::all(widths_.samples));
-    item = {place.mask,        block_stamp(at, widths_).stamp,  state.depth_write,
-            state.color_write, passed && state.depth_write, passed && state.color_write};
+    item = {place.mask,        block_stamp(at, widths_).stamp, state.depth_write,
+            state.color_write, passed && state.depth_write,    passed && state.color_write};
     return tags;
   }
 
@@ -312,7 +311,8 @@ class CycleModelOf final : public CycleModel {
         return is_resident || ((is_resident = true), directory_.access(tile_x, tile_y, mover, counters_));
       });
     });
-    if (passed != 0 && !has_blocks_) directory_.wrote(tile_x, tile_y, packet.state.depth_write, packet.state.color_write);
+    if (passed != 0 && !has_blocks_)
+      directory_.wrote(tile_x, tile_y, packet.state.depth_write, packet.state.color_write);
     retire(packet, tile_x, tile_y, passed);
     if (!options_.want_cost) return;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before);
@@ -363,7 +363,7 @@ class CycleModelOf final : public CycleModel {
   CounterPacket counters_;
   Hiz hiz_;
   TileDirectory directory_;
-  BlockDirectory blocks_;
+  CacheTags blocks_;
   bool has_blocks_;
   Rendering rendering_;
   std::vector<float> cost_;

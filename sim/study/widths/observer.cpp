@@ -15,7 +15,7 @@ namespace {
 constexpr std::array kByConstruction{&Widths::primitive_id, &Widths::slot,     &Widths::stored_color,
                                      &Widths::kind,         &Widths::flag,     &Widths::depth_func,
                                      &Widths::cull_mode,    &Widths::hiz_code, &Widths::hiz_update,
-                                     &Widths::memory_lane,  &Widths::counter};
+                                     &Widths::tile_plane,   &Widths::memory_lane, &Widths::counter};
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::logic_error(std::string("the width observer and the stage disagree: ") + what);

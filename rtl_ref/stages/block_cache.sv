@@ -10,7 +10,7 @@
 // leaves goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, a stamp a cycle, first the one
 // that is about to be overwritten, and from there to memory.
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
-module framebuffer_blocks (
+module block_cache (
     input logic clk_i,
     input logic rst_ni,
 
@@ -45,7 +45,7 @@ module framebuffer_blocks (
     output logic [1:0] evict_o,
     output logic [1:0] clear_o,
 
-    output logic at_token_o,  // a clear or a flush is at work
+    output logic at_token_o,  // a clear or a flush is at work, behind everything
     output logic idle_o       // nothing is under way
 );
 

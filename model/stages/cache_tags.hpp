@@ -1,4 +1,4 @@
-// Block directory: which blocks of 4x4 pixels are on the chip, what of them is known, and which a fast clear has flagged. It
+// Cache tags: which blocks of 4x4 pixels are on the chip, what of them is known, and which a fast clear has flagged. It
 // decides, in program order and before the depth test, what moves between chip and memory: block_cache.hpp moves the
 // data, the cycle model the time, rtl_ref/stages/cache_tags.sv is the hardware.
 //
@@ -43,7 +43,8 @@ struct BlockStamp {
   const BlockGrid& grid = widths.blocks;
   const int x = at.block.x % grid.per_tile * grid.side + at.stamp % grid.side;
   const int y = at.block.y % grid.per_tile * grid.side + at.stamp / grid.side;
-  return {static_cast<std::uint16_t>(at.block.x / grid.per_tile), static_cast<std::uint16_t>(at.block.y / grid.per_tile),
+  return {static_cast<std::uint16_t>(at.block.x / grid.per_tile),
+          static_cast<std::uint16_t>(at.block.y / grid.per_tile),
           static_cast<std::uint16_t>(y * widths.stamps.stamps_per_row + x)};
 }
 
@@ -60,14 +61,15 @@ struct Eviction {
   std::size_t line = 0;
   BlockAddress block;
   std::array<std::uint64_t, 2> stamps{};  ///< by plane, a bit each: stamps that may have been written
-  std::array<bool, 2> fills{};  ///< by plane: memory holds garbage, so all of it is written, untouched samples as cleared
+  std::array<bool, 2>
+      fills{};  ///< by plane: memory holds garbage, so all of it is written, untouched samples as cleared
 };
 
 /// What the tags make of one fragment, or of one line on a walk.
 struct TagResult {
   std::size_t line = 0;
   BlockAddress block;  ///< the fragment's
-  int writes = 0;  ///< so many evictions, oldest first, go to memory now, ahead of what is read for this fragment
+  int writes = 0;      ///< so many evictions, oldest first, go to memory now, ahead of what is read for this fragment
   std::optional<Eviction> eviction;
   DepthSource source = DepthSource::none;
   bool starts_color = false;  ///< the first colours of this stamp: the others of it are not on the chip
@@ -76,9 +78,9 @@ struct TagResult {
   [[nodiscard]] bool clears_flag() const { return eviction && (eviction->fills[0] || eviction->fills[1]); }
 };
 
-class BlockDirectory {
+class CacheTags {
  public:
-  BlockDirectory(const Config& config, const Widths& widths)
+  CacheTags(const Config& config, const Widths& widths)
       : widths_(widths),
         victims_(static_cast<std::size_t>(config.cache_victims)),
         blocks_x_(static_cast<std::size_t>(widths.tiles_x * widths.blocks.per_tile)),
@@ -102,7 +104,8 @@ class BlockDirectory {
     if (!line.is_valid || line.block != place.block) {
       result.writes = write_up_to(place.block);
       evict(line, result);
-      line = {true, place.block, 0, 0, false, {flag(TilePlane::depth, place.block) != 0, flag(TilePlane::color, place.block) != 0}};
+      line = {true, place.block, 0,
+              0,    false,       {flag(TilePlane::depth, place.block) != 0, flag(TilePlane::color, place.block) != 0}};
     }
     if ((line.known & stamp) != 0)
       result.source = DepthSource::chip;
@@ -166,9 +169,9 @@ class BlockDirectory {
   struct Line {
     bool is_valid = false;
     BlockAddress block;
-    std::uint64_t known = 0;    ///< stamps whose depths are on the chip
-    std::uint64_t colored = 0;  ///< stamps whose colours may have been written
-    bool has_depth = false;     ///< depths may have been written
+    std::uint64_t known = 0;           ///< stamps whose depths are on the chip
+    std::uint64_t colored = 0;         ///< stamps whose colours may have been written
+    bool has_depth = false;            ///< depths may have been written
     std::array<bool, 2> is_cleared{};  ///< the flags of the block, as long as it is here
   };
 
