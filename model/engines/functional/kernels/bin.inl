@@ -2,6 +2,22 @@
 // is functions over it.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
+/// Four blocks side by side, in lanes of 16 bits.
+struct Strip {
+  static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
+  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;
+  std::array<Part, static_cast<std::size_t>(kParts)> part;
+
+  /// A bit for each lane whose sign is set, block after block.
+  [[nodiscard]] HALFPLANE_INLINE std::uint64_t bits() const {
+#if HALFPLANE_ISA == 512
+    return bits_of(part[0]) | std::uint64_t{bits_of(part[1])} << 32;
+#else
+    return bits_of(part[0], part[1]) | std::uint64_t{bits_of(part[2], part[3])} << 32;
+#endif
+  }
+};
+
 /// Lanes as places.
 struct LanePositions {
   I16 pair_x;   ///< of rows of eight
@@ -10,9 +26,11 @@ struct LanePositions {
   I16 block_x, block_y;
   S64 tile_x, tile_y;    ///< of the tiles of a bin, row by row
   S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
-  I16 block_yx;          ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
+  std::array<S32, 2> channel_column, channel_row;  ///< of the left half of such a block, four channels a pixel
+  Strip::Part strip_x;                             ///< of the first blocks of a strip
+  std::array<Strip::Part, 4> strip_y;              ///< of all blocks of the strips of a window
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -24,13 +42,20 @@ struct LanePositions {
     to_sign = I16::of([](int i) { return 31 - i; });
     block_x = I16::of([](int i) { return i % 4; });
     block_y = I16::of([](int i) { return i / 4; });
-    block_yx = pairs(block_y, block_x);
+    strip_x = Strip::Part::of(
+        [](int i) { return static_cast<std::int16_t>(i / kBlockPixels * kBlockSize + i % kBlockSize); });
+    for (int strip = 0; strip < 4; ++strip)
+      strip_y[static_cast<std::size_t>(strip)] = Strip::Part::of(
+          [strip](int i) { return static_cast<std::int16_t>(strip * kBlockSize + i / kBlockSize % kBlockSize); });
     for (int side = 0; side < 2; ++side) {
       const auto at = static_cast<std::size_t>(side);
       column[at] = block_x + (kBlockSize * side - kTileSize / 2);
       row[at] = block_y + (kBlockSize * side - kTileSize / 2);
       column_pair[at] = pairs(column[at], column[at]);
       row_pair[at] = pairs(row[at], row[at]);
+      const int first = kBlockSize * side - kTileSize / 2;
+      channel_column[at] = S32::of([first](int i) { return static_cast<std::int16_t>(first + i / 4 % 2); });
+      channel_row[at] = S32::of([first](int i) { return static_cast<std::int16_t>(first + i / 8); });
     }
   }
 };
@@ -68,12 +93,6 @@ struct BinTriangle {
   ColorSteps color;
 };
 
-/// A block of a triangle of the small batch with at least one covered pixel.
-struct Block {
-  std::uint32_t place;    ///< lane of the batch, column and row among the bin's blocks: a byte each
-  std::uint32_t covered;  ///< bits
-};
-
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
 struct BinMemory {
   static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
@@ -92,7 +111,6 @@ struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
   static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3;
-  static constexpr std::size_t kSmallBlocks = kMediumTiles * kTileSize / kBlockSize;  ///< along a side
 
   explicit Bin(BinJob& job_)
       : job(job_),
@@ -101,7 +119,10 @@ struct Bin {
         skip(job.frame.skip),
         depth_format(widths.depth(), 32, widths),
         color_format(widths.color(), 16, widths),
+        centred_depth(depth_format.centred()),
+        centred_color(color_format.centred()),
         is_short(is_short_enough(widths, depth_format, color_format)),
+        has_short_edges(are_short_edges(widths)),
         first_x(job.bin % job.frame.bins_x * kBinSize),
         first_y(job.bin / job.frame.bins_x * kBinSize),
         pixel(1.0 / static_cast<double>(std::int64_t{1} << widths.grid_bits)),
@@ -126,12 +147,14 @@ struct Bin {
   const Widths& widths;
   const Skip& skip;
   LaneFormat depth_format, color_format;
-  bool is_short;         ///< the arithmetic of small triangles
-  int first_x, first_y;  ///< pixels
-  double pixel;          ///< a subpixel, in pixels
-  bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
-  bool is_narrow;        ///< depths are in BinMemory::narrow_depth
-  bool tests_narrow;     ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
+  LaneFormat centred_depth, centred_color;  ///< of small triangles
+  bool is_short;                            ///< the arithmetic of small triangles
+  bool has_short_edges;                     ///< 16 bits hold their edges
+  int first_x, first_y;                     ///< pixels
+  double pixel;                             ///< a subpixel, in pixels
+  bool are_lines;                           ///< sixteen pixels of a row of the target are a cache line
+  bool is_narrow;                           ///< depths are in BinMemory::narrow_depth
+  bool tests_narrow;  ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
   int range_bits_dropped;
   std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
@@ -142,11 +165,10 @@ struct Bin {
   std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide this depth, and what is behind
   const LanePositions& position = lane_positions();
   SmallBatch small;
-  int small_run = 0;                                               ///< records in a row that were small or medium
-  LineBatch lines, cut_line;                                       ///< cut_line: one, in lane 0
-  std::uint64_t line_tiles = 0;                                    ///< touched by lines since triangles last were drawn
-  std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks;  ///< and room for one that is not kept
-  bool falls = false, rises = false;                               ///< what a passing depth may do to the stored one
+  int small_run = 0;                  ///< records in a row that were small or medium
+  LineBatch lines, cut_line;          ///< cut_line: one, in lane 0
+  std::uint64_t line_tiles = 0;       ///< touched by lines since triangles last were drawn
+  bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
   bool is_range_old = true;     ///< low, high and lowest_high: found when somebody asks
   std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know

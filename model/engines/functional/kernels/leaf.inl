@@ -30,6 +30,7 @@ struct LaneFormat {
   int step_drop;  ///< from a plane's step to a step of a pixel in a tile
   std::int32_t bias;
   std::uint64_t anchor_bias;
+  std::uint64_t to_centred;  ///< beside it: then an arithmetic shift by `down` leaves the code less `bias`
 
   /// `lane_bits`: of the lane.
   LaneFormat(const AttributeWidths& attribute, int lane_bits, const Widths& widths) {
@@ -40,6 +41,14 @@ struct LaneFormat {
     step_drop = drop - widths.grid_bits;
     bias = std::int32_t{1} << (attribute.code.bits - 1);
     anchor_bias = plane_bias(attribute, widths);
+    to_centred = std::uint64_t{1} << (attribute.code.bits + widths.plane_fraction);
+  }
+
+  /// With anchors of that kind.
+  [[nodiscard]] LaneFormat centred() const {
+    LaneFormat format = *this;
+    format.anchor_bias += to_centred;
+    return format;
   }
 };
 

@@ -94,7 +94,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
       const bool is_near = Fragments::kIsLess && range_of(bin, record).low < bin.tile_high[first_tile(bin, record)];
       if (!is_near && is_behind<Fragments>(bin, record, false)) continue;
       ++bin.small_run;
-      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
+      add_small<Fragments>(bin, slice, record);
       continue;
     }
     const RecordKind kind = record.kind();
@@ -119,8 +119,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
     if (!is_medium || bin.small_run <= kAlone)
       draw_alone<Fragments>(bin, slice, record, box, live);
-    else if (bin.small.add(record))
-      draw_batch<Fragments>(bin, slice);
+    else
+      add_medium<Fragments>(bin, slice, record, box);
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);

@@ -5,26 +5,20 @@
 /// Batches after which a tile's range is found anew.
 constexpr std::uint8_t kTouches = 4;
 
-/// The tiles that the boxes of the batch touch.
-struct BatchTiles {
-  std::uint64_t touched = 0;  ///< a bit each
-  bool is_over_two = false;   ///< along the side of a box
-};
-
-HALFPLANE_INLINE BatchTiles batch_tiles(Bin& bin) {
+/// The tiles that the boxes of the batch touch in their windows, a bit each.
+HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
   const auto tiles_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
   const I16 left = tiles_of(bin.small.left), top = tiles_of(bin.small.top), columns = tiles_of(bin.small.right) - left,
             rows = tiles_of(bin.small.bottom) - top;
-  BatchTiles tiles;
-  for (int row = 0; row < kMediumTiles; ++row)
-    for (int column = 0; column < kMediumTiles; ++column) {
+  std::uint64_t touched = 0;
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 2; ++column) {
       const std::uint32_t lanes = bits_of((columns >= column) & (rows >= row)) & bin.small.live;
       if (lanes == 0) break;
-      tiles.touched |= or_of_bits((top + row) * kBinTiles + (left + column), lanes);
-      tiles.is_over_two |= row == 2 || column == 2;
+      touched |= or_of_bits((top + row) * kBinTiles + (left + column), lanes);
       bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(lanes));
     }
-  return tiles;
+  return touched;
 }
 
 /// They must be in memory, and their ranges are known no more. Every now and then finds a tile's range anew; says so.
@@ -50,91 +44,226 @@ HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   return is_changed;
 }
 
-/// The blocks of the batch in which a sample is covered, triangle by triangle. Two by two of them are looked at without
-/// asking whether the box touches them: a branch that nobody can foresee costs more.
-HALFPLANE_INLINE std::size_t find_blocks(Bin& bin) {
-  std::size_t blocks = 0, tested = 0;
-  const auto add = [&](std::uint32_t place, const I16& signs, std::uint32_t is_there) HALFPLANE_LAMBDA {
-    const std::uint32_t covered = ~bits_of(signs) & 0xffff & (0U - is_there);
-    bin.blocks[blocks] = {place, covered};
-    blocks += covered != 0 ? 1U : 0U;
-  };
-  for (std::uint32_t rest = bin.small.live; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    std::array<I16, 3> edge, right, below;
-    for (std::size_t e = 0; e < 3; ++e) {
-      edge[e] = multiply_add_pairs(I16(bin.small.edge_step[e][i]), bin.position.block_yx) + bin.small.edge[e][i];
-      right[e] = edge[e] + bin.small.to_right[e][i];
-      below[e] = edge[e] + bin.small.to_below[e][i];
-    }
-    const auto place = static_cast<std::uint32_t>(bin.small.place[i]),
-               there = static_cast<std::uint32_t>(bin.small.there[i]);
-    constexpr std::uint32_t kColumn = 1 << 8, kRow = 1 << 16;
-    add(place, edge[0] | edge[1] | edge[2], there & 1);
-    add(place + kColumn, right[0] | right[1] | right[2], there >> 1 & 1);
-    add(place + kRow, below[0] | below[1] | below[2], there >> 2 & 1);
-    add(place + kColumn + kRow,
-        (below[0] + bin.small.to_right[0][i]) | (below[1] + bin.small.to_right[1][i]) |
-            (below[2] + bin.small.to_right[2][i]),
-        there >> 3 & 1);
-    const int columns = (bin.small.right[i] >> kBlockShift) - (bin.small.left[i] >> kBlockShift),
-              rows = (bin.small.bottom[i] >> kBlockShift) - (bin.small.top[i] >> kBlockShift);
-    tested += static_cast<unsigned>((columns + 1) * (rows + 1));
-    if (columns < 2 && rows < 2) continue;
-    for (int dy = 0; dy <= rows; ++dy) {
-      std::array<I16, 3> at;
-      for (std::size_t e = 0; e < 3; ++e) at[e] = edge[e];
-      for (int dx = 0; dx <= columns; ++dx) {
-        if (dx >= 2 || dy >= 2)
-          add(place + kColumn * static_cast<std::uint32_t>(dx) + kRow * static_cast<std::uint32_t>(dy),
-              at[0] | at[1] | at[2], there & 1);
-        for (std::size_t e = 0; e < 3; ++e) at[e] += I16(bin.small.to_right[e][i]);
-      }
-      for (std::size_t e = 0; e < 3; ++e) edge[e] += I16(bin.small.to_below[e][i]);
+/// What the triangles of a batch cover of their windows: four by four blocks, row after row, a bit a pixel.
+struct Coverage {
+  static constexpr std::size_t kBlocks = 16, kRow = 4;
+  alignas(64) std::array<std::uint16_t, 16 * kBlocks> block{};
+
+  /// `bits`: block after block.
+  HALFPLANE_INLINE void set_row(std::size_t lane, std::size_t row, std::uint64_t bits) {
+    std::uint16_t* const to = &block[kBlocks * lane + kRow * row];
+    if constexpr (std::endian::native == std::endian::little)
+      std::memcpy(to, &bits, sizeof bits);
+    else
+      for (std::size_t k = 0; k < kRow; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+  }
+  /// Of lanes `first` to `first` + 3 the blocks with a pixel, a bit each.
+  [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t first) const {
+    return ~bits_equal(U64::load(block.data() + kBlocks * first), U64(0));
+  }
+};
+
+/// Of four blocks side by side a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
+HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std::size_t row) {
+  using Part = Strip::Part;
+  Strip outside;
+  HALFPLANE_EACH_PART(Strip::kParts, k, outside.part[k] = Part(0))
+  const Part &column_x = bin.position.strip_x, &row_y = bin.position.strip_y[row];
+  for (std::size_t e = 0; e < 3; ++e) {
+    const auto word = [i](const SmallBatch::Lane& of)
+                          HALFPLANE_LAMBDA { return Part(*reinterpret_cast<const Word*>(&of[i])); };
+    const Part x = word(bin.small.edge_x[e]), aside = x << (kBlockShift + Strip::kPartBlocks - 1);
+    Part value = column_x * x + row_y * word(bin.small.edge_y[e]) + word(bin.small.edge[e]);
+    HALFPLANE_EACH_PART(Strip::kParts, k, {
+      outside.part[k] |= value;
+      if constexpr (k + 1 < Strip::kParts) value += aside;
+    })
+  }
+  return outside.bits();
+}
+
+/// The same in 32 bits.
+HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::size_t row) {
+  std::array<I16, Coverage::kRow> outside;
+  for (I16& block : outside) block = I16(0);
+  const I16 block_y = bin.position.block_y + static_cast<std::int32_t>(row) * kBlockSize;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const I16 x = I16(bin.small.edge_x[e][i]), aside = x << kBlockShift;
+    I16 value = bin.position.block_x * x + block_y * bin.small.edge_y[e][i] + bin.small.edge[e][i];
+    for (I16& block : outside) {
+      block |= value;
+      value += aside;
     }
   }
-  bin.job.counters.samples_tested += kBlockPixels * tested;
+  std::uint64_t bits = 0;
+  for (std::size_t k = 0; k < Coverage::kRow; ++k) bits |= std::uint64_t{bits_of(outside[k])} << 16 * k;
+  return bits;
+}
+
+/// Row by row of blocks: of the boxes that touch it.
+HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
+  const SmallBatch& batch = bin.small;
+  const I16 top = I16::load(batch.top.data()), first = (top >> kBlockShift) & 1,
+            last = first + ((I16::load(batch.bottom.data()) >> kBlockShift) - (top >> kBlockShift));
+  unsigned strips = 0;
+  for (std::size_t row = 0; row < Coverage::kRow; ++row) {
+    const auto at = static_cast<std::int32_t>(row);
+    const std::uint32_t touching = bits_of((first <= at) & (last >= at)) & batch.live;
+    strips += static_cast<unsigned>(std::popcount(touching));
+    for (std::uint32_t rest = touching; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      covered.set_row(i, row, ~(bin.has_short_edges ? outside_short(bin, i, row) : outside_long(bin, i, row)));
+    }
+  }
+  bin.job.counters.samples_tested += Strip::kBlocks * kBlockPixels * strips;
+}
+
+/// A block's depths in lanes of 32 bits, centred, while they are tested.
+struct WideTest {
+  static constexpr unsigned kCount = 1;  ///< what count() says of a pixel
+  Bin& bin;
+  std::int32_t bias;
+
+  HALFPLANE_INLINE explicit WideTest(Bin& bin_) : bin(bin_), bias(bin_.depth_format.bias) {}
+  HALFPLANE_INLINE static I16 codes(const I16& code, std::int32_t low, std::int32_t high) {
+    return min(max(code, I16(low)), I16(high));
+  }
+  HALFPLANE_INLINE I16 load(std::size_t at) const { return load_depths(bin, at) - bias; }
+  HALFPLANE_INLINE void store(std::size_t at, const I16& depth) const { store_depths(bin, at, depth + bias); }
+#if HALFPLANE_ISA == 512
+  /// What is covered and passes: a bit a pixel.
+  HALFPLANE_INLINE static std::uint32_t both(std::uint32_t covered, const I16& passes) {
+    return covered & bits_of(passes);
+  }
+  HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
+  HALFPLANE_INLINE I16 choose(std::uint32_t pixels, const I16& a, const I16& b) const {
+    return select_by_bits(pixels, a, b, bin.position.to_sign);
+  }
+#else
+  /// What is covered and passes: the signs of lanes.
+  HALFPLANE_INLINE I16 both(std::uint32_t covered, const I16& passes) const {
+    return (I16(static_cast<std::int32_t>(covered)) << bin.position.to_sign) & passes;
+  }
+  HALFPLANE_INLINE static unsigned count(const I16& pixels) {
+    return static_cast<unsigned>(std::popcount(bits_of(pixels)));
+  }
+  HALFPLANE_INLINE static I16 choose(const I16& pixels, const I16& a, const I16& b) {
+    return select_by_sign(pixels, a, b);
+  }
+#endif
+  template <class Pixels>
+  HALFPLANE_INLINE I16 choose_color(const Pixels& pixels, const I16& a, const I16& b) const {
+    return choose(pixels, a, b);
+  }
+};
+
+#if HALFPLANE_ISA == 512
+using NarrowTest = WideTest;
+#else
+/// The same in 16 bits, which are half as many registers: for depths that the bin keeps in as many.
+struct NarrowTest {
+  static constexpr unsigned kCount = kCountOfLane;
+  std::uint16_t* depths;
+  std::int16_t bias;
+
+  HALFPLANE_INLINE explicit NarrowTest(Bin& bin)
+      : depths(bin.memory.narrow_depth.data()), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
+  HALFPLANE_INLINE static S16 codes(const I16& code, std::int32_t low, std::int32_t high) {
+    return min(max(saturated(code), S16(static_cast<std::int16_t>(low))), S16(static_cast<std::int16_t>(high)));
+  }
+  HALFPLANE_INLINE S16 load(std::size_t at) const { return S16::load(depths + at) - bias; }
+  HALFPLANE_INLINE void store(std::size_t at, const S16& depth) const { (depth + bias).store(depths + at); }
+  HALFPLANE_INLINE static S16 both(std::uint32_t covered, const S16& passes) {
+    return block_lanes_of(covered) & passes;
+  }
+  HALFPLANE_INLINE static unsigned count(const S16& pixels) { return count_of(pixels); }
+  HALFPLANE_INLINE static S16 choose(const S16& pixels, const S16& a, const S16& b) { return select(pixels, a, b); }
+  HALFPLANE_INLINE static I16 choose_color(const S16& pixels, const I16& a, const I16& b) {
+    return select(widened(pixels), a, b);
+  }
+};
+#endif
+
+/// The blocks of a window, row after row.
+struct WindowBlock {
+  std::uint32_t place;               ///< from the window's first tile in the bin's memory
+  std::uint32_t tile, right, below;  ///< of the window; which block of it
+};
+static constexpr std::array<WindowBlock, Coverage::kBlocks> kWindowBlocks = [] {
+  std::array<WindowBlock, Coverage::kBlocks> blocks{};
+  for (std::uint32_t k = 0; k < blocks.size(); ++k) {
+    const std::uint32_t column = k % 4, row = k / 4, right = column & 1, below = row & 1;
+    const std::uint32_t tiles = column / 2 + row / 2 * kBinTiles;
+    blocks[k] = {tiles * kTileSize * kTileSize + (right + 2 * below) * kBlockPixels, column / 2 + row / 2 * kSmallTiles,
+                 right, below};
+  }
   return blocks;
+}();
+
+/// What a block's colours are written as.
+enum class Writes { nothing, rgba8888, other };
+
+/// Colours of a block of lane i.
+template <Writes kColor>
+HALFPLANE_INLINE I16 small_colors(const Bin& bin, const LanePositions& position, std::size_t i,
+                                  const WindowBlock& block, int down) {
+  const SmallBatch& batch = bin.small;
+  const S32 step_x = repeated(batch.c_step_x[i]);
+  const S32 left = position.channel_column[block.right] * step_x +
+                   position.channel_row[block.below] * repeated(batch.c_step_y[i]) +
+                   repeated(batch.c_anchor[block.tile][i]);
+  const S32 right = left + (step_x << 1);
+  const I16 rgba =
+      ColorRange::clamped(saturated(left >> down, right >> down), I16(batch.c_low[i]), I16(batch.c_high[i]));
+  return kColor == Writes::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
 }
 
-/// Depth, test and colour of a block.
-template <class Fragments>
-HALFPLANE_INLINE void draw_block(Bin& bin, const Block& block, std::uint64_t& covered_pixels,
-                                 std::uint64_t& passed_pixels) {
-  const std::size_t i = block.place & 255;
-  const int column = static_cast<int>(block.place >> 8 & 255), row = static_cast<int>(block.place >> 16);
-  const auto of_box = static_cast<std::size_t>((column >> 1) + kMediumTiles * (row >> 1) - bin.small.first_tile[i]);
-  const std::size_t right = block.place >> 8 & 1, below = block.place >> 16 & 1;  // in its tile
-  const auto at = static_cast<std::size_t>(kColumnPlaces[static_cast<std::size_t>(column)] +
-                                           kRowPlaces[static_cast<std::size_t>(row)]);
-  const I16 value = bin.position.column[right] * bin.small.z_step_x[i] +
-                    bin.position.row[below] * bin.small.z_step_y[i] + bin.small.z_anchor[of_box][i];
-  const I16 depth = decode(value, bin.depth_format, bin.small.z_low[i], bin.small.z_high[i]);
-  const I16 stored = load_depths(bin, at);
-  const I16 covered = I16(static_cast<std::int32_t>(block.covered)) << bin.position.to_sign;
-  const I16 passed = covered & Fragments::passes(bin.state, depth, stored);  // signs
-  const std::uint32_t passed_bits = bits_of(passed);
-  covered_pixels += static_cast<unsigned>(std::popcount(block.covered));
-  passed_pixels += static_cast<unsigned>(std::popcount(passed_bits));
-  if (passed_bits == 0 && bin.skip.fragments_early_z) return;
-  if (bin.state.depth_write) store_depths(bin, at, select_by_sign(passed, depth, stored));
-  if (!bin.state.color_write) return;
-  const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
-    return channel_codes(bin, bin.position.column_pair[right], bin.position.row_pair[below], bin.small.c_step_x[p][i],
-                         bin.small.c_step_y[p][i], bin.small.c_anchor[p][of_box][i], bin.small.c_low[p][i],
-                         bin.small.c_high[p][i]);
-  };
-  const I16 color = packed(pair(0), pair(1), bin.config.color_format);
-  std::uint32_t* pixels = bin.memory.color.data() + at;
-  select_by_sign(passed, color, I16::load(pixels)).store(pixels);
+/// Depth, test and colour of the blocks that are covered in part. What is written, the state says.
+template <class Fragments, class Test, bool kDepth, Writes kColor>
+HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
+  const SmallBatch& batch = bin.small;
+  const SliceState state = bin.state;
+  const LanePositions& position = bin.position;
+  const Test test(bin);
+  std::uint32_t* const colors = bin.memory.color.data();
+  const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
+  const bool is_skipping = bin.skip.fragments_early_z;
+  unsigned covered_pixels = 0, passed_pixels = 0;
+  for (std::size_t lanes = 0; lanes < 16; lanes += 4) {
+    std::uint64_t in_bin = 0;
+    for (std::size_t k = 0; k < 4; ++k) in_bin |= std::uint64_t{batch.in_bin[lanes + k]} << 16 * k;
+    for (std::uint64_t rest = covered.blocks(lanes) & in_bin; rest != 0; rest &= rest - 1) {
+      const std::size_t number = Coverage::kBlocks * lanes + static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t i = number / Coverage::kBlocks;
+      const WindowBlock& block = kWindowBlocks[number % Coverage::kBlocks];
+      const auto at = static_cast<std::size_t>(batch.place[i]) + block.place;
+      const I16 value = position.column[block.right] * batch.z_step_x[i] +
+                        position.row[block.below] * batch.z_step_y[i] + batch.z_anchor[block.tile][i];
+      const auto depth = test.codes(value >> depth_down, batch.z_low[i], batch.z_high[i]), stored = test.load(at);
+      const auto passed = test.both(covered.block[number], Fragments::passes(state, depth, stored));
+      covered_pixels += static_cast<unsigned>(std::popcount(covered.block[number]));
+      const unsigned count = test.count(passed);
+      passed_pixels += count;
+      if (count == 0 && is_skipping) continue;
+      if (kDepth) test.store(at, test.choose(passed, depth, stored));
+      if (kColor == Writes::nothing) continue;
+      test.choose_color(passed, small_colors<kColor>(bin, position, i, block, color_down), I16::load(colors + at))
+          .store(colors + at);
+    }
+  }
+  count_fragments(bin, covered_pixels, passed_pixels / Test::kCount);
 }
-
-template <class Fragments>
-HALFPLANE_INLINE void draw_blocks(Bin& bin) {
-  const std::size_t blocks = find_blocks(bin);
-  std::uint64_t covered = 0, passed = 0;
-  for (std::size_t b = 0; b < blocks; ++b) draw_block<Fragments>(bin, bin.blocks[b], covered, passed);
-  count_fragments(bin, covered, passed);
+template <class Fragments, class Test, bool kDepth>
+HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
+  if (!bin.state.color_write) return draw_blocks<Fragments, Test, kDepth, Writes::nothing>(bin, covered);
+  bin.config.color_format == ColorFormat::rgba8888
+      ? draw_blocks<Fragments, Test, kDepth, Writes::rgba8888>(bin, covered)
+      : draw_blocks<Fragments, Test, kDepth, Writes::other>(bin, covered);
+}
+template <class Fragments, class Test>
+HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
+  bin.state.depth_write ? draw_blocks<Fragments, Test, true>(bin, covered)
+                        : draw_blocks<Fragments, Test, false>(bin, covered);
 }
 
 /// The samples of triangles that have few, round by round: of each triangle one more.
@@ -193,11 +322,12 @@ struct SampleChannel {
   I16 step_x, step_y;
 };
 
-/// Two channels of each round, to `code`.
+/// Two channels of each round, centred, to `value`.
 template <class Arithmetic>
 HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>& planes, std::size_t pair,
-                                  const SampleRounds& rounds, std::array<SmallBatch::Lane, SampleRounds::kMost>& code) {
-  const LaneFormat& format = bin.color_format;
+                                  const SampleRounds& rounds,
+                                  std::array<SmallBatch::Lane, SampleRounds::kMost>& value) {
+  const LaneFormat& format = bin.centred_color;
   const PairCodes codes(planes.corners, pair, bin.state.is_flat);
   const auto gradient = planes.color();
   const auto channel = [&](std::size_t half) HALFPLANE_LAMBDA {
@@ -207,15 +337,15 @@ HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>&
     return SampleChannel<Step>{of_half(codes.at_origin), x, y, local_step(x, format), local_step(y, format)};
   };
   const auto first = channel(0), second = channel(1);
-  const I16 step_x = pairs(first.step_x, second.step_x), step_y = pairs(first.step_y, second.step_y);
+  const auto step_x = as<S32>(pairs(first.step_x, second.step_x)), step_y = as<S32>(pairs(first.step_y, second.step_y));
   for (std::size_t r = 0; r < rounds.count; ++r) {
     const auto anchor = [&](const auto& half) HALFPLANE_LAMBDA {
       return narrowed(plane_at(rounds.to(r), bin.widths.plane_fraction, half.at_origin, half.x, half.y, format),
                       format);
     };
-    channel_codes(bin, I16::load(rounds.column[r].data()), I16::load(rounds.row[r].data()), step_x, step_y,
-                  pairs(anchor(first), anchor(second)), codes.low, codes.high)
-        .store(code[r].data());
+    const S32 at = S32::load(rounds.column[r].data()) * step_x + S32::load(rounds.row[r].data()) * step_y +
+                   as<S32>(pairs(anchor(first), anchor(second)));
+    (at >> format.down).store(value[r].data());
   }
 }
 
@@ -227,12 +357,16 @@ HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRound
   find_samples(bin, corners, rounds);
   sample_depths(bin, planes, rounds);
   if (!bin.state.color_write) return;
-  alignas(64) std::array<SmallBatch::Lane, SampleRounds::kMost> red_blue, green_alpha;
-  sample_pair(bin, planes, 0, rounds, red_blue);
-  sample_pair(bin, planes, 1, rounds, green_alpha);
-  for (std::size_t r = 0; r < rounds.count; ++r)
-    packed(I16::load(red_blue[r].data()), I16::load(green_alpha[r].data()), bin.config.color_format)
+  alignas(64) std::array<SmallBatch::Lane, SampleRounds::kMost> red_green, blue_alpha;
+  sample_pair(bin, planes, 0, rounds, red_green);
+  sample_pair(bin, planes, 1, rounds, blue_alpha);
+  const ColorRange range(corners, bin.state.is_flat);
+  for (std::size_t r = 0; r < rounds.count; ++r) {
+    const B64 channels = turns_of_halves(saturated(S32::load(red_green[r].data()), S32::load(blue_alpha[r].data())));
+    const I16 rgba = ColorRange::clamped(channels, range.low, range.high);
+    (bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format))
         .store(rounds.color[r].data());
+  }
 }
 
 /// Triangles whose few samples are known: their samples one by one, in their order. What is written, the state says.
@@ -277,25 +411,39 @@ void draw_batch(Bin& bin, const Slice& slice) {
   if (bin.small.count == 0) return;
   bin.line_tiles = 0;
   load_records(bin.small, bin.first_x, bin.first_y);
-  const BatchTiles tiles = batch_tiles(bin);
+  const std::uint64_t tiles = batch_tiles(bin);
   const bool is_short = bin.is_short;
   bool is_changed = false;
   if (bin.small.has_samples) {
     SampleRounds rounds;
     (is_short ? set_up_samples<ShortArithmetic> : set_up_samples<LongArithmetic>)(bin, slice, rounds);
-    is_changed = touch_tiles<Fragments>(bin, tiles.touched);
+    is_changed = touch_tiles<Fragments>(bin, tiles);
     bin.is_narrow ? draw_samples<Fragments>(bin, rounds, bin.memory.narrow_depth.data())
                   : draw_samples<Fragments>(bin, rounds, bin.memory.depth.data());
   } else {
-    const auto set_up =
-        tiles.is_over_two
-            ? (is_short ? set_up_small<kMediumTiles, ShortArithmetic> : set_up_small<kMediumTiles, LongArithmetic>)
-            : (is_short ? set_up_small<kSmallTiles, ShortArithmetic> : set_up_small<kSmallTiles, LongArithmetic>);
-    set_up(bin.small, slice, bin.widths, bin.depth_format, bin.color_format, bin.first_x, bin.first_y);
-    is_changed = touch_tiles<Fragments>(bin, tiles.touched);
-    draw_blocks<Fragments>(bin);
+    (is_short ? set_up_small<ShortArithmetic> : set_up_small<LongArithmetic>)(bin.small, slice, bin.widths,
+                                                                              bin.centred_depth, bin.centred_color,
+                                                                              bin.first_x, bin.first_y);
+    is_changed = touch_tiles<Fragments>(bin, tiles);
+    Coverage covered;
+    find_covered(bin, covered);
+    bin.is_narrow ? draw_blocks<Fragments, NarrowTest>(bin, covered) : draw_blocks<Fragments, WideTest>(bin, covered);
   }
   bin.small.count = 0;
   // With less, a bound that is too high will do.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
+}
+
+/// Lets a record wait. A medium one may need several windows.
+template <class Fragments>
+HALFPLANE_INLINE void add_small(Bin& bin, const Slice& slice, const Record& record) {
+  if (bin.small.add(record, 0)) draw_batch<Fragments>(bin, slice);
+}
+template <class Fragments>
+HALFPLANE_INLINE void add_medium(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box) {
+  constexpr int kSize = kSmallTiles * kTileSize;
+  const int width = box.right - (box.left & ~(kTileSize - 1)), height = box.bottom - (box.top & ~(kTileSize - 1));
+  for (int y = 0; y <= height; y += kSize)
+    for (int x = 0; x <= width; x += kSize)
+      if (bin.small.add(record, x | y << 16)) draw_batch<Fragments>(bin, slice);
 }
