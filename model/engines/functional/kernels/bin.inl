@@ -2,22 +2,6 @@
 // is functions over it.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// Four blocks side by side, in lanes of 16 bits.
-struct Strip {
-  static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
-  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;
-  std::array<Part, static_cast<std::size_t>(kParts)> part;
-
-  /// A bit for each lane whose sign is set, block after block.
-  [[nodiscard]] HALFPLANE_INLINE std::uint64_t bits() const {
-#if HALFPLANE_ISA == 512
-    return bits_of(part[0]) | std::uint64_t{bits_of(part[1])} << 32;
-#else
-    return bits_of(part[0], part[1]) | std::uint64_t{bits_of(part[2], part[3])} << 32;
-#endif
-  }
-};
-
 /// Lanes as places.
 struct LanePositions {
   I16 pair_x;   ///< of rows of eight
@@ -28,9 +12,13 @@ struct LanePositions {
   S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
-  std::array<S32, 2> channel_column, channel_row;  ///< of the left half of such a block, four channels a pixel
-  Strip::Part strip_x;                             ///< of the first blocks of a strip
-  std::array<Strip::Part, 4> strip_y;              ///< of all blocks of the strips of a window
+  struct Block {
+    I16 column, row;
+    S32 channel_column, channel_row;  ///< of its left half, four channels a pixel
+  };
+  std::array<Block, 4> block;          ///< of a tile, likewise
+  Strip::Part strip_x;                 ///< of the first blocks of a strip
+  std::array<Strip::Part, 4> strip_y;  ///< of all blocks of the strips of a window
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -53,9 +41,14 @@ struct LanePositions {
       row[at] = block_y + (kBlockSize * side - kTileSize / 2);
       column_pair[at] = pairs(column[at], column[at]);
       row_pair[at] = pairs(row[at], row[at]);
-      const int first = kBlockSize * side - kTileSize / 2;
-      channel_column[at] = S32::of([first](int i) { return static_cast<std::int16_t>(first + i / 4 % 2); });
-      channel_row[at] = S32::of([first](int i) { return static_cast<std::int16_t>(first + i / 8); });
+    }
+    for (std::size_t at = 0; at < 4; ++at) {
+      const std::size_t right = at & 1, below = at >> 1;
+      const auto first = [](std::size_t side) { return kBlockSize * static_cast<int>(side) - kTileSize / 2; };
+      block[at].column = column[right];
+      block[at].row = row[below];
+      block[at].channel_column = S32::of([&](int i) { return static_cast<std::int16_t>(first(right) + i / 4 % 2); });
+      block[at].channel_row = S32::of([&](int i) { return static_cast<std::int16_t>(first(below) + i / 8); });
     }
   }
 };

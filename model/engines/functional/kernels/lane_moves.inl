@@ -1,9 +1,6 @@
 // Lanes to bits, to one number, to memory and back.
 // One room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// The lower half of a lane in memory.
-typedef std::int16_t Word __attribute__((may_alias));
-
 /// One bit for each lane whose sign bit is set.
 HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 #if HALFPLANE_ISA == 512
@@ -43,6 +40,33 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes
     bits |= static_cast<std::uint64_t>(lanes >> i & 1) << (values.part[i / I16::kLanes][i % I16::kLanes] & 63);
   return bits;
 #endif
+}
+
+/// Sixteen numbers of four bits, one behind the other.
+HALFPLANE_INLINE std::uint64_t nibbles_of(const I16& values) {
+  const I16 placed = values << I16::of([](int i) { return 4 * (i % 8); });
+#if HALFPLANE_ISA == 512
+  const auto all = (__m512i)placed.part[0];
+  const auto low = static_cast<std::uint32_t>(_mm512_mask_reduce_or_epi32(0x00ff, all)),
+             high = static_cast<std::uint32_t>(_mm512_mask_reduce_or_epi32(0xff00, all));
+#else
+  typedef std::int32_t Four __attribute__((vector_size(16)));
+#if HALFPLANE_ISA == 256
+  const auto half = [&placed](int i) HALFPLANE_LAMBDA {
+    constexpr auto kFour = std::make_index_sequence<4>{};
+    const auto& eight = placed.part[i];
+    return lanes_from<Four, 0>(eight, eight, kFour) | lanes_from<Four, 4>(eight, eight, kFour);
+  };
+#else
+  const auto half = [&placed](int i) HALFPLANE_LAMBDA { return placed.part[2 * i] | placed.part[2 * i + 1]; };
+#endif
+  const auto or_of = [](const Four& four) HALFPLANE_LAMBDA {
+    const Four two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1);
+    return static_cast<std::uint32_t>(two[0] | two[1]);
+  };
+  const std::uint32_t low = or_of(half(0)), high = or_of(half(1));
+#endif
+  return low | std::uint64_t{high} << 32;
 }
 
 HALFPLANE_INLINE bool is_any(const I16& mask) { return bits_of(mask) != 0; }
@@ -183,7 +207,15 @@ HALFPLANE_INLINE B64 saturated(const S32& left, const S32& right) {
   return r;
 }
 
-/// One number of 64 bits in all lanes, as lanes of 16: four numbers, again and again.
+/// Two numbers of 16 bits in turns.
+template <class Lanes>
+HALFPLANE_INLINE Lanes repeated(std::int32_t two) {
+  typedef std::int32_t Wide __attribute__((vector_size(sizeof(typename Lanes::Register))));
+  Lanes r;
+  HALFPLANE_EACH_PART(Lanes::kParts, i, r.part[i] = (typename Lanes::Register)(Wide{} + two))
+  return r;
+}
+/// Four.
 HALFPLANE_INLINE S32 repeated(std::uint64_t four) {
   typedef std::uint64_t Wide __attribute__((vector_size(HALFPLANE_ISA / 8)));
   S32 r;
@@ -209,6 +241,21 @@ HALFPLANE_INLINE I16 channel_pair(const I16& rgba, std::size_t pair) {
   const I16 both = shift_right_logical(rgba, static_cast<int>(16 * pair));
   return (both & 0xff) | ((both << 8) & 0xff0000);
 #endif
+}
+
+/// The lower half of each lane in both halves.
+HALFPLANE_INLINE I16 doubled(const I16& v) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  const __m512i order = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13));
+  r.part[0] = (I16::Register)_mm512_shuffle_epi8((__m512i)v.part[0], order);
+#elif HALFPLANE_ISA == 256
+  const __m256i order = _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13));
+  for (int i = 0; i < 2; ++i) r.part[i] = (I16::Register)_mm256_shuffle_epi8((__m256i)v.part[i], order);
+#else
+  r = (v & 0xffff) | (v << 16);
+#endif
+  return r;
 }
 
 /// Of each eight numbers of 16 bits the first four and the last four in turns.

@@ -52,6 +52,19 @@ struct LaneFormat {
   }
 };
 
+/// A plane over the pixels of a block, row after row, from its steps and its value at `first`. `column`, `row`: of the
+/// pixels, with as many lanes for each pixel as there are planes. `below`: step_y times block_rows<Lanes>.
+template <class Lanes>
+constexpr int block_rows = 4 / Lanes::kParts;  ///< of a register
+template <class Lanes>
+HALFPLANE_INLINE Lanes block_plane(const Lanes& column, const Lanes& row, const Lanes& step_x, const Lanes& step_y,
+                                   const Lanes& below, const Lanes& first) {
+  Lanes plane;
+  plane.part[0] = column.part[0] * step_x.part[0] + row.part[0] * step_y.part[0] + first.part[0];
+  HALFPLANE_EACH_PART(Lanes::kParts - 1, i, plane.part[i + 1] = plane.part[i] + below.part[0])
+  return plane;
+}
+
 /// Two channels in the halves of a lane: red and blue, green and alpha.
 using ChannelPairs = std::array<std::int32_t, 2>;
 

@@ -82,13 +82,51 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
   draw_large<Fragments>(bin, slice, record, live, triangle);
 }
 
+/// Sixteen records at once, where all are small and each is nearer than what the first of its tiles may hold: a batch, of
+/// whose records nothing need be asked one by one. Nothing may be waiting.
+template <class Fragments>
+HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
+  SmallBatch& batch = bin.small;
+  for (std::size_t i = 0; i < 16; ++i) batch.records[i] = &slice.records[first[i]];
+  const auto words = [&batch](int from) HALFPLANE_LAMBDA {
+    return turned_rows([&batch, from](int i) HALFPLANE_LAMBDA {
+      return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + from;
+    });
+  };
+  const auto [z_high, left_top, right_bottom, traits] = words(4);
+  if (is_any((traits & Record::kSmall) == 0)) return false;
+  if (bin.skip.tiles_hiz) {
+    const auto tile_of = [](const I16& pixel, int bin_first)
+                             HALFPLANE_LAMBDA { return max(pixel - bin_first, I16(0)) >> kTileShift; };
+    alignas(64) SmallBatch::Lane tile, low;
+    (tile_of(left_top >> 16, bin.first_y) * kBinTiles + tile_of(left_top << 16 >> 16, bin.first_x)).store(tile.data());
+    (words(0).fourth >> bin.range_bits_dropped).store(low.data());
+    bool are_near = Fragments::kIsLess;
+    for (std::size_t i = 0; i < 16; ++i) are_near &= low[i] < bin.tile_high[tile[i]];
+    if (!are_near) return false;
+  }
+  batch.window.fill(0);
+  batch.count = 16;
+  bin.small_run += 16;
+  draw_batch<Fragments>(bin, slice);
+  return true;
+}
+
 /// The records of one slice.
 template <class Fragments>
 void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
   bin.line_tiles = 0;
-  for (; first != last; ++first) {
+  const std::uint32_t* next_sixteen = first;  // from where on it is worth a try
+  while (first != last) {
     const Record& record = slice.records[*first];
-    fetch_records(slice, first, last);
+    if (bin.small.count == 0 && record.has(Record::kSmall) && first >= next_sixteen && last - first >= 16) {
+      next_sixteen = first + 16;
+      if (draw_sixteen<Fragments>(bin, slice, first)) {
+        first = next_sixteen;
+        continue;
+      }
+    }
+    fetch_records(slice, first++, last);
     if (record.has(Record::kSmall)) {
       // Nearer than what one of its tiles may hold: no need to look at the others, nor at the bin.
       const bool is_near = Fragments::kIsLess && range_of(bin, record).low < bin.tile_high[first_tile(bin, record)];

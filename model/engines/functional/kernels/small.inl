@@ -44,36 +44,46 @@ HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   return is_changed;
 }
 
-/// What the triangles of a batch cover of their windows: four by four blocks, row after row, a bit a pixel.
+/// What the triangles of a batch cover: of each strip of four blocks that a box touches, a bit a pixel.
 struct Coverage {
-  static constexpr std::size_t kBlocks = 16, kRow = 4;
-  alignas(64) std::array<std::uint16_t, 16 * kBlocks> block{};
+  static constexpr std::size_t kMost = 64;  ///< strips: four of each window
+  std::size_t strips = 0;
+  unsigned pixels = 0;
+  std::array<std::uint8_t, kMost> lane, first;  ///< and of its blocks the first, among those of the window
+  alignas(64) std::array<std::uint16_t, kMost * Strip::kBlocks> block;
+
+  HALFPLANE_INLINE Coverage() {}
 
   /// `bits`: block after block.
-  HALFPLANE_INLINE void set_row(std::size_t lane, std::size_t row, std::uint64_t bits) {
-    std::uint16_t* const to = &block[kBlocks * lane + kRow * row];
+  HALFPLANE_INLINE void add(std::size_t at_lane, std::size_t row, std::uint64_t bits) {
+    lane[strips] = static_cast<std::uint8_t>(at_lane);
+    first[strips] = static_cast<std::uint8_t>(row * Strip::kBlocks);
+    std::uint16_t* const to = &block[Strip::kBlocks * strips++];
     if constexpr (std::endian::native == std::endian::little)
       std::memcpy(to, &bits, sizeof bits);
     else
-      for (std::size_t k = 0; k < kRow; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+      for (std::size_t k = 0; k < Strip::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+    pixels += static_cast<unsigned>(std::popcount(bits));
   }
-  /// Of lanes `first` to `first` + 3 the blocks with a pixel, a bit each.
-  [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t first) const {
-    return ~bits_equal(U64::load(block.data() + kBlocks * first), U64(0));
+  /// Of strips `from` to `from` + 15 the blocks with a pixel, a bit each.
+  [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t from) const {
+    const std::uint64_t some = ~bits_equal(U64::load(block.data() + Strip::kBlocks * from), U64(0));
+    const std::size_t there = Strip::kBlocks * (strips - from);
+    return there < 64 ? some & ((std::uint64_t{1} << there) - 1) : some;
   }
 };
 
-/// Of four blocks side by side a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
+/// Of a strip a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
 HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std::size_t row) {
   using Part = Strip::Part;
+  const LanePositions& position = bin.position;
   Strip outside;
   HALFPLANE_EACH_PART(Strip::kParts, k, outside.part[k] = Part(0))
-  const Part &column_x = bin.position.strip_x, &row_y = bin.position.strip_y[row];
   for (std::size_t e = 0; e < 3; ++e) {
-    const auto word = [i](const SmallBatch::Lane& of)
-                          HALFPLANE_LAMBDA { return Part(*reinterpret_cast<const Word*>(&of[i])); };
-    const Part x = word(bin.small.edge_x[e]), aside = x << (kBlockShift + Strip::kPartBlocks - 1);
-    Part value = column_x * x + row_y * word(bin.small.edge_y[e]) + word(bin.small.edge[e]);
+    const auto both = [i](const SmallBatch::Lane& of) HALFPLANE_LAMBDA { return repeated<Part>(of[i]); };
+    const Part aside = both(bin.small.edge_aside[e]);
+    Part value = position.strip_x * both(bin.small.edge_x[e]) + position.strip_y[row] * both(bin.small.edge_y[e]) +
+                 both(bin.small.edge[e]);
     HALFPLANE_EACH_PART(Strip::kParts, k, {
       outside.part[k] |= value;
       if constexpr (k + 1 < Strip::kParts) value += aside;
@@ -84,7 +94,7 @@ HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std:
 
 /// The same in 32 bits.
 HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::size_t row) {
-  std::array<I16, Coverage::kRow> outside;
+  std::array<I16, Strip::kBlocks> outside;
   for (I16& block : outside) block = I16(0);
   const I16 block_y = bin.position.block_y + static_cast<std::int32_t>(row) * kBlockSize;
   for (std::size_t e = 0; e < 3; ++e) {
@@ -96,26 +106,26 @@ HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::
     }
   }
   std::uint64_t bits = 0;
-  for (std::size_t k = 0; k < Coverage::kRow; ++k) bits |= std::uint64_t{bits_of(outside[k])} << 16 * k;
+  for (std::size_t k = 0; k < outside.size(); ++k) bits |= std::uint64_t{bits_of(outside[k])} << 16 * k;
   return bits;
 }
 
-/// Row by row of blocks: of the boxes that touch it.
+template <bool kShort>
+HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t strips, Coverage& covered) {
+  for (; strips != 0; strips &= strips - 1) {
+    const auto number = static_cast<std::size_t>(std::countr_zero(strips)), i = number / 4, row = number % 4;
+    covered.add(i, row, bin.small.in_bin[i] & ~(kShort ? outside_short(bin, i, row) : outside_long(bin, i, row)));
+  }
+}
+/// Triangle by triangle.
 HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
   const SmallBatch& batch = bin.small;
-  const I16 top = I16::load(batch.top.data()), first = (top >> kBlockShift) & 1,
-            last = first + ((I16::load(batch.bottom.data()) >> kBlockShift) - (top >> kBlockShift));
-  unsigned strips = 0;
-  for (std::size_t row = 0; row < Coverage::kRow; ++row) {
-    const auto at = static_cast<std::int32_t>(row);
-    const std::uint32_t touching = bits_of((first <= at) & (last >= at)) & batch.live;
-    strips += static_cast<unsigned>(std::popcount(touching));
-    for (std::uint32_t rest = touching; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      covered.set_row(i, row, ~(bin.has_short_edges ? outside_short(bin, i, row) : outside_long(bin, i, row)));
-    }
-  }
-  bin.job.counters.samples_tested += Strip::kBlocks * kBlockPixels * strips;
+  const auto row_of = [](const SmallBatch::Lane& y) HALFPLANE_LAMBDA { return I16::load(y.data()) >> kBlockShift; };
+  const I16 top = row_of(batch.top), first = top & 1, last = first + (row_of(batch.bottom) - top);
+  const I16 is_live = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(batch.live)) != 0;
+  const std::uint64_t strips = nibbles_of(((I16(2) << last) - (first + 1)) & is_live);  // 2^first is first + 1
+  bin.has_short_edges ? find_covered<true>(bin, strips, covered) : find_covered<false>(bin, strips, covered);
+  bin.job.counters.samples_tested += Strip::kBlocks * kBlockPixels * static_cast<unsigned>(covered.strips);
 }
 
 /// A block's depths in lanes of 32 bits, centred, while they are tested.
@@ -168,8 +178,9 @@ struct NarrowTest {
 
   HALFPLANE_INLINE explicit NarrowTest(Bin& bin)
       : depths(bin.memory.narrow_depth.data()), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
+  /// `low`, `high`: in both halves.
   HALFPLANE_INLINE static S16 codes(const I16& code, std::int32_t low, std::int32_t high) {
-    return min(max(saturated(code), S16(static_cast<std::int16_t>(low))), S16(static_cast<std::int16_t>(high)));
+    return min(max(saturated(code), repeated<S16>(low)), repeated<S16>(high));
   }
   HALFPLANE_INLINE S16 load(std::size_t at) const { return S16::load(depths + at) - bias; }
   HALFPLANE_INLINE void store(std::size_t at, const S16& depth) const { (depth + bias).store(depths + at); }
@@ -185,17 +196,16 @@ struct NarrowTest {
 #endif
 
 /// The blocks of a window, row after row.
-struct WindowBlock {
-  std::uint32_t place;               ///< from the window's first tile in the bin's memory
-  std::uint32_t tile, right, below;  ///< of the window; which block of it
+struct alignas(16) WindowBlock {
+  std::uint32_t place;        ///< from the window's first tile in the bin's memory
+  std::uint32_t tile, block;  ///< of the window, of its tile
 };
-static constexpr std::array<WindowBlock, Coverage::kBlocks> kWindowBlocks = [] {
-  std::array<WindowBlock, Coverage::kBlocks> blocks{};
+static constexpr std::array<WindowBlock, 16> kWindowBlocks = [] {
+  std::array<WindowBlock, 16> blocks{};
   for (std::uint32_t k = 0; k < blocks.size(); ++k) {
-    const std::uint32_t column = k % 4, row = k / 4, right = column & 1, below = row & 1;
-    const std::uint32_t tiles = column / 2 + row / 2 * kBinTiles;
-    blocks[k] = {tiles * kTileSize * kTileSize + (right + 2 * below) * kBlockPixels, column / 2 + row / 2 * kSmallTiles,
-                 right, below};
+    const std::uint32_t column = k % 4, row = k / 4, block = column % 2 + row % 2 * 2;
+    blocks[k] = {(column / 2 + row / 2 * kBinTiles) * kTileSize * kTileSize + block * kBlockPixels,
+                 column / 2 + row / 2 * kSmallTiles, block};
   }
   return blocks;
 }();
@@ -205,14 +215,13 @@ enum class Writes { nothing, rgba8888, other };
 
 /// Colours of a block of lane i.
 template <Writes kColor>
-HALFPLANE_INLINE I16 small_colors(const Bin& bin, const LanePositions& position, std::size_t i,
-                                  const WindowBlock& block, int down) {
+HALFPLANE_INLINE I16 small_colors(const Bin& bin, std::size_t i, const SmallBatch::Tile& tile,
+                                  const LanePositions::Block& block, int down) {
   const SmallBatch& batch = bin.small;
-  const S32 step_x = repeated(batch.c_step_x[i]);
-  const S32 left = position.channel_column[block.right] * step_x +
-                   position.channel_row[block.below] * repeated(batch.c_step_y[i]) +
-                   repeated(batch.c_anchor[block.tile][i]);
-  const S32 right = left + (step_x << 1);
+  const S32 step_x = repeated(batch.c_step_x[i]), step_y = repeated(batch.c_step_y[i]);
+  const S32 left = block_plane(block.channel_column, block.channel_row, step_x, step_y, step_y * block_rows<S32>,
+                               repeated(tile.color[i])),
+            right = left + (step_x << 1);
   const I16 rgba =
       ColorRange::clamped(saturated(left >> down, right >> down), I16(batch.c_low[i]), I16(batch.c_high[i]));
   return kColor == Writes::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
@@ -228,30 +237,28 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   std::uint32_t* const colors = bin.memory.color.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
   const bool is_skipping = bin.skip.fragments_early_z;
-  unsigned covered_pixels = 0, passed_pixels = 0;
-  for (std::size_t lanes = 0; lanes < 16; lanes += 4) {
-    std::uint64_t in_bin = 0;
-    for (std::size_t k = 0; k < 4; ++k) in_bin |= std::uint64_t{batch.in_bin[lanes + k]} << 16 * k;
-    for (std::uint64_t rest = covered.blocks(lanes) & in_bin; rest != 0; rest &= rest - 1) {
-      const std::size_t number = Coverage::kBlocks * lanes + static_cast<std::size_t>(std::countr_zero(rest));
-      const std::size_t i = number / Coverage::kBlocks;
-      const WindowBlock& block = kWindowBlocks[number % Coverage::kBlocks];
-      const auto at = static_cast<std::size_t>(batch.place[i]) + block.place;
-      const I16 value = position.column[block.right] * batch.z_step_x[i] +
-                        position.row[block.below] * batch.z_step_y[i] + batch.z_anchor[block.tile][i];
+  unsigned passed_pixels = 0;
+  for (std::size_t first = 0; first < covered.strips; first += 16)
+    for (std::uint64_t rest = covered.blocks(first); rest != 0; rest &= rest - 1) {
+      const std::size_t number = Strip::kBlocks * first + static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t strip = number / Strip::kBlocks, i = covered.lane[strip];
+      const WindowBlock& in_window = kWindowBlocks[covered.first[strip] + number % Strip::kBlocks];
+      const SmallBatch::Tile& tile = batch.tile[in_window.tile];
+      const LanePositions::Block& block = position.block[in_window.block];
+      const auto at = static_cast<std::size_t>(batch.place[i]) + in_window.place;
+      const I16 value = block_plane(block.column, block.row, I16(batch.z_step_x[i]), I16(batch.z_step_y[i]),
+                                    I16(batch.z_step_below[i]), I16(tile.depth[i]));
       const auto depth = test.codes(value >> depth_down, batch.z_low[i], batch.z_high[i]), stored = test.load(at);
       const auto passed = test.both(covered.block[number], Fragments::passes(state, depth, stored));
-      covered_pixels += static_cast<unsigned>(std::popcount(covered.block[number]));
       const unsigned count = test.count(passed);
       passed_pixels += count;
       if (count == 0 && is_skipping) continue;
       if (kDepth) test.store(at, test.choose(passed, depth, stored));
       if (kColor == Writes::nothing) continue;
-      test.choose_color(passed, small_colors<kColor>(bin, position, i, block, color_down), I16::load(colors + at))
+      test.choose_color(passed, small_colors<kColor>(bin, i, tile, block, color_down), I16::load(colors + at))
           .store(colors + at);
     }
-  }
-  count_fragments(bin, covered_pixels, passed_pixels / Test::kCount);
+  count_fragments(bin, covered.pixels, passed_pixels / Test::kCount);
 }
 template <class Fragments, class Test, bool kDepth>
 HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {

@@ -1,13 +1,28 @@
 // Sixteen small or medium triangles at a time through triangle_setup: the same integers, a triangle a lane.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
+/// Four blocks side by side, in lanes of 16 bits.
+struct Strip {
+  static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
+  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;
+  std::array<Part, static_cast<std::size_t>(kParts)> part;
+
+  /// A bit for each lane whose sign is set, block after block.
+  [[nodiscard]] HALFPLANE_INLINE std::uint64_t bits() const {
+#if HALFPLANE_ISA == 512
+    return bits_of(part[0]) | std::uint64_t{bits_of(part[1])} << 32;
+#else
+    return bits_of(part[0], part[1]) | std::uint64_t{bits_of(part[2], part[3])} << 32;
+#endif
+  }
+};
+
 /// Triangles of a slice that wait, as much of each as lies in a window of two by two tiles; and after set_up_small() their
 /// constants: fields of lanes, one for each.
 struct SmallBatch {
   using Lane = std::array<std::int32_t, 16>;
   template <std::size_t N>
   using LaneArray = std::array<Lane, N>;
-  using Words = std::array<std::uint16_t, 16>;
   using FourChannels = std::array<std::uint64_t, 16>;  ///< of each lane, 16 bits a channel
   static constexpr std::size_t kTiles = kSmallTiles * kSmallTiles;
 
@@ -22,12 +37,17 @@ struct SmallBatch {
 
   alignas(64) LaneArray<3> edge;            ///< at the window's first pixel
   alignas(64) LaneArray<3> edge_x, edge_y;  ///< from pixel to pixel
-  alignas(64) Words in_bin;                 ///< which blocks of the window, a bit each, row after row
-  alignas(64) Lane place;                   ///< of the window's first tile in the bin's memory
-  // Planes at the anchors of the window's tiles, and the clamp of depths: centred.
-  alignas(64) LaneArray<kTiles> z_anchor;
-  alignas(64) Lane z_step_x, z_step_y, z_low, z_high;
-  alignas(64) std::array<FourChannels, kTiles> c_anchor;
+  alignas(64) LaneArray<3> edge_aside;  ///< to the next register of a Strip; all four in both halves where 16 bits do
+  alignas(64) std::array<std::uint64_t, 16> in_bin;  ///< pixels of a strip: a bit each
+  alignas(64) Lane place;                            ///< of the window's first tile in the bin's memory
+  /// Planes at the anchors of the window's tiles, centred; of colours 16 bits a channel.
+  struct alignas(256) Tile {
+    Lane depth;
+    FourChannels color;
+  };
+  std::array<Tile, kTiles> tile;
+  alignas(64) Lane z_step_x, z_step_y, z_step_below;  ///< the last of block_rows<I16> rows
+  alignas(64) Lane z_low, z_high;                     ///< centred, in both halves where 16 bits do
   alignas(64) FourChannels c_step_x, c_step_y;
   alignas(64) Lane c_low, c_high;  ///< a byte a channel, R lowest
 
@@ -109,9 +129,18 @@ HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slic
           max(max(a.z, b.z), c.z)};
 }
 
-/// `s`: bits of the subpixel grid.
-HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& corners, int s, int first_x,
-                                         int first_y) {
+/// Whether 16 bits hold the edges of small and medium triangles in the strips of blocks that their boxes touch. A box of
+/// so many pixels has an extent below one more; a block reaches less than its size beyond it, a window less than two
+/// tiles.
+HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
+  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kBelow = kExtent + kBlockSize,
+                         kAside = kExtent + kSmallTiles * kTileSize;
+  return (kExtent * (kBelow + kAside) << widths.grid_bits) < 1 << 15;
+}
+
+/// `s`: bits of the subpixel grid. `is_short`: are_short_edges().
+HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& corners, int s, bool is_short,
+                                         int first_x, int first_y) {
   const int half = 1 << (s - 1);
   const auto first_of_tile = [&](const SmallBatch::Lane& box, int first) HALFPLANE_LAMBDA {
     return (((I16::load(box.data()) & ~(kTileSize - 1)) + first) << s) + half;
@@ -124,28 +153,20 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
   for (std::size_t e = 0; e < 3; ++e) {
     const I16 dx = x[e + 1] - x[e], dy = y[e + 1] - y[e];
     const I16 value = (cross(dx, dy, px - x[e], py - y[e]) + ~is_top_left(dx, dy)) >> s;
-    value.store(batch.edge[e].data());
-    (-dy).store(batch.edge_x[e].data());
-    dx.store(batch.edge_y[e].data());
+    const auto store = [is_short](const I16& lanes, SmallBatch::Lane& to)
+                           HALFPLANE_LAMBDA { (is_short ? doubled(lanes) : lanes).store(to.data()); };
+    store(value, batch.edge[e]);
+    store(-dy, batch.edge_x[e]);
+    store(dx, batch.edge_y[e]);
+    store(dy * -(kBlockSize * Strip::kPartBlocks), batch.edge_aside[e]);
   }
 }
 
-/// Whether 16 bits hold the edges of small and medium triangles in the strips of blocks that their boxes touch. A box of
-/// so many pixels has an extent below one more; a block reaches less than its size beyond it, a window less than two
-/// tiles.
-HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
-  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kBelow = kExtent + kBlockSize,
-                         kAside = kExtent + kSmallTiles * kTileSize;
-  return (kExtent * (kBelow + kAside) << widths.grid_bits) < 1 << 15;
-}
-
-/// Where the windows are, and which of their blocks are in the bin.
+/// Where the windows are, and which columns of them are in the bin.
 HALFPLANE_INLINE void find_places(SmallBatch& batch) {
   const I16 column = I16::load(batch.left.data()) >> kTileShift, row = I16::load(batch.top.data()) >> kTileShift;
   ((column + row * kBinTiles) * (kTileSize * kTileSize)).store(batch.place.data());
-  const I16 is_drawn = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(batch.live)) != 0;
-  const I16 columns = (column < kBinTiles - 1) | 0x3333, rows = (row < kBinTiles - 1) | 0x00ff;
-  store_narrow(is_drawn & columns & rows & 0xffff, batch.in_bin.data());
+  store_interleaved(I16(-1), column < kBinTiles - 1, batch.in_bin.data());
 }
 
 /// A place to evaluate planes at, from their origin, subpixels.
@@ -384,11 +405,16 @@ HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallPlanes<Ar
   Anchors at;
   find_anchors(plane_at(to, widths.plane_fraction, corners.origin.z, step_x, step_y, format), step_x, step_y,
                kTileShift + widths.grid_bits, format, at);
-  for (std::size_t i = 0; i < SmallBatch::kTiles; ++i) at[i].store(batch.z_anchor[i].data());
+  for (std::size_t i = 0; i < SmallBatch::kTiles; ++i) at[i].store(batch.tile[i].depth.data());
   local_step(step_x, format).store(batch.z_step_x.data());
-  local_step(step_y, format).store(batch.z_step_y.data());
-  (corners.z_low - format.bias).store(batch.z_low.data());
-  (corners.z_high - format.bias).store(batch.z_high.data());
+  const I16 local_y = local_step(step_y, format);
+  local_y.store(batch.z_step_y.data());
+  (local_y * block_rows<I16>).store(batch.z_step_below.data());
+  const bool is_narrow = HALFPLANE_ISA <= 256 && widths.depth().code.bits <= 16;  // see NarrowTest
+  const auto limit = [&](const I16& z)
+                         HALFPLANE_LAMBDA { return is_narrow ? doubled(z - format.bias) : z - format.bias; };
+  limit(corners.z_low).store(batch.z_low.data());
+  limit(corners.z_high).store(batch.z_high.data());
 }
 
 /// One channel of sixteen triangles: half of a lane.
@@ -435,7 +461,7 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
     pair.step_y = pairs(halves[0].step_y, halves[1].step_y);
   }
   for (std::size_t i = 0; i < SmallBatch::kTiles; ++i)
-    store_interleaved(colors[0].at[i], colors[1].at[i], batch.c_anchor[i].data());
+    store_interleaved(colors[0].at[i], colors[1].at[i], batch.tile[i].color.data());
   store_interleaved(colors[0].step_x, colors[1].step_x, batch.c_step_x.data());
   store_interleaved(colors[0].step_y, colors[1].step_y, batch.c_step_y.data());
 }
@@ -446,7 +472,7 @@ HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, cons
                                      const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
                                      int first_y) {
   const SmallCorners corners = small_corners(batch, slice);
-  set_up_small_edges(batch, corners, widths.grid_bits, first_x, first_y);
+  set_up_small_edges(batch, corners, widths.grid_bits, are_short_edges(widths), first_x, first_y);
   find_places(batch);
   const SmallPlanes<Arithmetic> planes(corners, widths);
   const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
