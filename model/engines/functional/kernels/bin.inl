@@ -16,9 +16,8 @@ struct LanePositions {
     I16 column, row;
     S32 channel_column, channel_row;  ///< of its left half, four channels a pixel
   };
-  std::array<Block, 4> block;          ///< of a tile, likewise
-  Strip::Part strip_x;                 ///< of the first blocks of a strip
-  std::array<Strip::Part, 4> strip_y;  ///< of all blocks of the strips of a window
+  std::array<Block, 4> block;                ///< of a tile, likewise
+  std::array<Quad::Part, 2> quad_x, quad_y;  ///< of the first part of a quad: the first one, the next one
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -30,17 +29,17 @@ struct LanePositions {
     to_sign = I16::of([](int i) { return 31 - i; });
     block_x = I16::of([](int i) { return i % 4; });
     block_y = I16::of([](int i) { return i / 4; });
-    strip_x = Strip::Part::of(
-        [](int i) { return static_cast<std::int16_t>(i / kBlockPixels * kBlockSize + i % kBlockSize); });
-    for (int strip = 0; strip < 4; ++strip)
-      strip_y[static_cast<std::size_t>(strip)] = Strip::Part::of(
-          [strip](int i) { return static_cast<std::int16_t>(strip * kBlockSize + i / kBlockSize % kBlockSize); });
     for (int side = 0; side < 2; ++side) {
       const auto at = static_cast<std::size_t>(side);
       column[at] = block_x + (kBlockSize * side - kTileSize / 2);
       row[at] = block_y + (kBlockSize * side - kTileSize / 2);
       column_pair[at] = pairs(column[at], column[at]);
       row_pair[at] = pairs(row[at], row[at]);
+      const int quad = 2 * kBlockSize * side;
+      quad_x[at] = Quad::Part::of(
+          [quad](int i) { return static_cast<std::int16_t>(quad + i / kBlockPixels * kBlockSize + i % kBlockSize); });
+      quad_y[at] =
+          Quad::Part::of([quad](int i) { return static_cast<std::int16_t>(quad + i / kBlockSize % kBlockSize); });
     }
     for (std::size_t at = 0; at < 4; ++at) {
       const std::size_t right = at & 1, below = at >> 1;

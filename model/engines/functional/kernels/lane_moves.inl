@@ -42,6 +42,13 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes
 #endif
 }
 
+#if HALFPLANE_ISA == 512
+/// One bit for each lane with a < b. Not by way of a mask in lanes, as GCC takes bits_of().
+HALFPLANE_INLINE std::uint32_t bits_below(const I16& a, const I16& b) {
+  return _mm512_cmplt_epi32_mask((__m512i)a.part[0], (__m512i)b.part[0]);
+}
+#endif
+
 /// Sixteen numbers of four bits, one behind the other.
 HALFPLANE_INLINE std::uint64_t nibbles_of(const I16& values) {
   const I16 placed = values << I16::of([](int i) { return 4 * (i % 8); });

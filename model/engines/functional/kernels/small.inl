@@ -44,66 +44,88 @@ HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   return is_changed;
 }
 
-/// What the triangles of a batch cover: of each strip of four blocks that a box touches, a bit a pixel.
+/// What the triangles of a batch cover: of each quad that a box touches, a bit a pixel.
 struct Coverage {
-  static constexpr std::size_t kMost = 64;  ///< strips: four of each window
-  std::size_t strips = 0;
+  static constexpr std::size_t kMost = 64;  ///< quads: four of each window
+  std::size_t quads = 0;
   unsigned pixels = 0;
   std::array<std::uint8_t, kMost> lane, first;  ///< and of its blocks the first, among those of the window
-  alignas(64) std::array<std::uint16_t, kMost * Strip::kBlocks> block;
+  alignas(64) std::array<std::uint16_t, kMost * Quad::kBlocks> block;
 
   HALFPLANE_INLINE Coverage() {}
 
   /// `bits`: block after block.
-  HALFPLANE_INLINE void add(std::size_t at_lane, std::size_t row, std::uint64_t bits) {
-    lane[strips] = static_cast<std::uint8_t>(at_lane);
-    first[strips] = static_cast<std::uint8_t>(row * Strip::kBlocks);
-    std::uint16_t* const to = &block[Strip::kBlocks * strips++];
+  HALFPLANE_INLINE void add(std::size_t at_lane, std::int32_t first_block, std::uint64_t bits) {
+    lane[quads] = static_cast<std::uint8_t>(at_lane);
+    first[quads] = static_cast<std::uint8_t>(first_block);
+    std::uint16_t* const to = &block[Quad::kBlocks * quads++];
     if constexpr (std::endian::native == std::endian::little)
       std::memcpy(to, &bits, sizeof bits);
     else
-      for (std::size_t k = 0; k < Strip::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+      for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
     pixels += static_cast<unsigned>(std::popcount(bits));
   }
-  /// Of strips `from` to `from` + 15 the blocks with a pixel, a bit each.
+  /// Of quads `from` to `from` + 15 the blocks with a pixel, a bit each.
   [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t from) const {
-    const std::uint64_t some = ~bits_equal(U64::load(block.data() + Strip::kBlocks * from), U64(0));
-    const std::size_t there = Strip::kBlocks * (strips - from);
+    const std::uint64_t some = ~bits_equal(U64::load(block.data() + Quad::kBlocks * from), U64(0));
+    const std::size_t there = Quad::kBlocks * (quads - from);
     return there < 64 ? some & ((std::uint64_t{1} << there) - 1) : some;
   }
 };
 
-/// Of a strip a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
-HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std::size_t row) {
-  using Part = Strip::Part;
-  const LanePositions& position = bin.position;
-  Strip outside;
-  HALFPLANE_EACH_PART(Strip::kParts, k, outside.part[k] = Part(0))
+/// The quads of a window, two by two.
+struct WindowQuads {
+  std::array<std::int32_t, 4> first;                    ///< block, from the first one's
+  std::array<std::array<std::uint64_t, 4>, 16> in_box;  ///< their pixels, a bit each, by SmallBatch::columns_rows
+};
+static constexpr WindowQuads kWindowQuads = [] {
+  WindowQuads quads{};
+  for (std::size_t q = 0; q < 4; ++q) {
+    quads.first[q] = static_cast<std::int32_t>(q % 2 * 2 + q / 2 * 8);
+    for (std::size_t box = 0; box < 16; ++box)
+      for (std::size_t k = 0; k < 4; ++k)
+        if (q % 2 * 2 + k % 2 <= box % 4 && q / 2 * 2 + k / 2 <= box / 4)
+          quads.in_box[box][q] |= std::uint64_t{0xffff} << 16 * k;
+  }
+  return quads;
+}();
+
+/// Of quad `q` of a window a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
+HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std::size_t q) {
+  using Part = Quad::Part;
+  const Part &column = bin.position.quad_x[q % 2], &row = bin.position.quad_y[q / 2];
+  Quad outside;
+  HALFPLANE_EACH_PART(Quad::kParts, k, outside.part[k] = Part(0))
   for (std::size_t e = 0; e < 3; ++e) {
     const auto both = [i](const SmallBatch::Lane& of) HALFPLANE_LAMBDA { return repeated<Part>(of[i]); };
-    const Part aside = both(bin.small.edge_aside[e]);
-    Part value = position.strip_x * both(bin.small.edge_x[e]) + position.strip_y[row] * both(bin.small.edge_y[e]) +
-                 both(bin.small.edge[e]);
-    HALFPLANE_EACH_PART(Strip::kParts, k, {
-      outside.part[k] |= value;
-      if constexpr (k + 1 < Strip::kParts) value += aside;
-    })
+    const Part below = both(bin.small.edge_below[e]);
+    Part value = column * both(bin.small.edge_x[e]) + row * both(bin.small.edge_y[e]) + both(bin.small.edge[e]);
+    constexpr std::size_t kLower = Quad::kParts / 2;
+    outside.part[0] |= value;
+    outside.part[kLower] |= value + below;
+    if constexpr (Quad::kPartBlocks == 1) {
+      value += both(bin.small.edge_aside[e]);
+      outside.part[1] |= value;
+      outside.part[kLower + 1] |= value + below;
+    }
   }
   return outside.bits();
 }
 
 /// The same in 32 bits.
-HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::size_t row) {
-  std::array<I16, Strip::kBlocks> outside;
+HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::size_t q) {
+  constexpr int kSize = 2 * kBlockSize;
+  const I16 column = bin.position.block_x + static_cast<std::int32_t>(q % 2) * kSize,
+            row = bin.position.block_y + static_cast<std::int32_t>(q / 2) * kSize;
+  std::array<I16, Quad::kBlocks> outside;
   for (I16& block : outside) block = I16(0);
-  const I16 block_y = bin.position.block_y + static_cast<std::int32_t>(row) * kBlockSize;
   for (std::size_t e = 0; e < 3; ++e) {
-    const I16 x = I16(bin.small.edge_x[e][i]), aside = x << kBlockShift;
-    I16 value = bin.position.block_x * x + block_y * bin.small.edge_y[e][i] + bin.small.edge[e][i];
-    for (I16& block : outside) {
-      block |= value;
-      value += aside;
-    }
+    const I16 aside = I16(bin.small.edge_aside[e][i]), below = I16(bin.small.edge_below[e][i]),
+              value = column * bin.small.edge_x[e][i] + row * bin.small.edge_y[e][i] + bin.small.edge[e][i];
+    outside[0] |= value;
+    outside[1] |= value + aside;
+    outside[2] |= value + below;
+    outside[3] |= value + below + aside;
   }
   std::uint64_t bits = 0;
   for (std::size_t k = 0; k < outside.size(); ++k) bits |= std::uint64_t{bits_of(outside[k])} << 16 * k;
@@ -111,21 +133,23 @@ HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::
 }
 
 template <bool kShort>
-HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t strips, Coverage& covered) {
-  for (; strips != 0; strips &= strips - 1) {
-    const auto number = static_cast<std::size_t>(std::countr_zero(strips)), i = number / 4, row = number % 4;
-    covered.add(i, row, bin.small.in_bin[i] & ~(kShort ? outside_short(bin, i, row) : outside_long(bin, i, row)));
+HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t quads, Coverage& covered) {
+  for (; quads != 0; quads &= quads - 1) {
+    const auto number = static_cast<std::size_t>(std::countr_zero(quads)), i = number / 4, q = number % 4;
+    const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q];
+    covered.add(i, bin.small.first_block[i] + kWindowQuads.first[q],
+                in_box & ~(kShort ? outside_short(bin, i, q) : outside_long(bin, i, q)));
   }
 }
 /// Triangle by triangle.
 HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
-  const SmallBatch& batch = bin.small;
-  const auto row_of = [](const SmallBatch::Lane& y) HALFPLANE_LAMBDA { return I16::load(y.data()) >> kBlockShift; };
-  const I16 top = row_of(batch.top), first = top & 1, last = first + (row_of(batch.bottom) - top);
-  const I16 is_live = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(batch.live)) != 0;
-  const std::uint64_t strips = nibbles_of(((I16(2) << last) - (first + 1)) & is_live);  // 2^first is first + 1
-  bin.has_short_edges ? find_covered<true>(bin, strips, covered) : find_covered<false>(bin, strips, covered);
-  bin.job.counters.samples_tested += Strip::kBlocks * kBlockPixels * static_cast<unsigned>(covered.strips);
+  const I16 columns_rows = I16::load(bin.small.columns_rows.data());
+  // A second column of quads, a second row, and what both make.
+  const I16 aside = shift_right_logical(columns_rows, 1) & 1, below = shift_right_logical(columns_rows, 3);
+  const I16 is_live = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(bin.small.live)) != 0;
+  const std::uint64_t quads = nibbles_of(((aside << 1) + 1) * ((below << 2) + 1) & is_live);
+  bin.has_short_edges ? find_covered<true>(bin, quads, covered) : find_covered<false>(bin, quads, covered);
+  bin.job.counters.samples_tested += Quad::kBlocks * kBlockPixels * static_cast<unsigned>(covered.quads);
 }
 
 /// A block's depths in lanes of 32 bits, centred, while they are tested.
@@ -142,8 +166,11 @@ struct WideTest {
   HALFPLANE_INLINE void store(std::size_t at, const I16& depth) const { store_depths(bin, at, depth + bias); }
 #if HALFPLANE_ISA == 512
   /// What is covered and passes: a bit a pixel.
-  HALFPLANE_INLINE static std::uint32_t both(std::uint32_t covered, const I16& passes) {
-    return covered & bits_of(passes);
+  template <class Fragments>
+  HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const I16& depth,
+                                               const I16& stored) {
+    if (Fragments::kIsLess) return covered & bits_below(depth, stored);
+    return covered & bits_of(Fragments::passes(state, depth, stored));
   }
   HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
   HALFPLANE_INLINE I16 choose(std::uint32_t pixels, const I16& a, const I16& b) const {
@@ -151,8 +178,10 @@ struct WideTest {
   }
 #else
   /// What is covered and passes: the signs of lanes.
-  HALFPLANE_INLINE I16 both(std::uint32_t covered, const I16& passes) const {
-    return (I16(static_cast<std::int32_t>(covered)) << bin.position.to_sign) & passes;
+  template <class Fragments>
+  HALFPLANE_INLINE I16 passed(const SliceState& state, std::uint32_t covered, const I16& depth,
+                              const I16& stored) const {
+    return (I16(static_cast<std::int32_t>(covered)) << bin.position.to_sign) & Fragments::passes(state, depth, stored);
   }
   HALFPLANE_INLINE static unsigned count(const I16& pixels) {
     return static_cast<unsigned>(std::popcount(bits_of(pixels)));
@@ -184,8 +213,10 @@ struct NarrowTest {
   }
   HALFPLANE_INLINE S16 load(std::size_t at) const { return S16::load(depths + at) - bias; }
   HALFPLANE_INLINE void store(std::size_t at, const S16& depth) const { (depth + bias).store(depths + at); }
-  HALFPLANE_INLINE static S16 both(std::uint32_t covered, const S16& passes) {
-    return block_lanes_of(covered) & passes;
+  template <class Fragments>
+  HALFPLANE_INLINE static S16 passed(const SliceState& state, std::uint32_t covered, const S16& depth,
+                                     const S16& stored) {
+    return block_lanes_of(covered) & Fragments::passes(state, depth, stored);
   }
   HALFPLANE_INLINE static unsigned count(const S16& pixels) { return count_of(pixels); }
   HALFPLANE_INLINE static S16 choose(const S16& pixels, const S16& a, const S16& b) { return select(pixels, a, b); }
@@ -200,13 +231,15 @@ struct alignas(16) WindowBlock {
   std::uint32_t place;        ///< from the window's first tile in the bin's memory
   std::uint32_t tile, block;  ///< of the window, of its tile
 };
-static constexpr std::array<WindowBlock, 16> kWindowBlocks = [] {
-  std::array<WindowBlock, 16> blocks{};
-  for (std::uint32_t k = 0; k < blocks.size(); ++k) {
-    const std::uint32_t column = k % 4, row = k / 4, block = column % 2 + row % 2 * 2;
-    blocks[k] = {(column / 2 + row / 2 * kBinTiles) * kTileSize * kTileSize + block * kBlockPixels,
-                 column / 2 + row / 2 * kSmallTiles, block};
-  }
+/// By the first block of a quad; beyond the window lies what no box touches.
+static constexpr std::array<std::array<WindowBlock, Quad::kBlocks>, 16> kWindowBlocks = [] {
+  std::array<std::array<WindowBlock, Quad::kBlocks>, 16> blocks{};
+  for (std::uint32_t first = 0; first < 16; ++first)
+    for (std::uint32_t k = 0; k < Quad::kBlocks; ++k) {
+      const std::uint32_t column = first % 4 + k % 2, row = first / 4 + k / 2, block = column % 2 + row % 2 * 2;
+      blocks[first][k] = {(column / 2 + row / 2 * kBinTiles) * kTileSize * kTileSize + block * kBlockPixels,
+                          column / 2 + row / 2 * kSmallTiles, block};
+    }
   return blocks;
 }();
 
@@ -238,18 +271,18 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
   const bool is_skipping = bin.skip.fragments_early_z;
   unsigned passed_pixels = 0;
-  for (std::size_t first = 0; first < covered.strips; first += 16)
+  for (std::size_t first = 0; first < covered.quads; first += 16)
     for (std::uint64_t rest = covered.blocks(first); rest != 0; rest &= rest - 1) {
-      const std::size_t number = Strip::kBlocks * first + static_cast<std::size_t>(std::countr_zero(rest));
-      const std::size_t strip = number / Strip::kBlocks, i = covered.lane[strip];
-      const WindowBlock& in_window = kWindowBlocks[covered.first[strip] + number % Strip::kBlocks];
+      const std::size_t number = Quad::kBlocks * first + static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t quad = number / Quad::kBlocks, i = covered.lane[quad];
+      const WindowBlock& in_window = kWindowBlocks[covered.first[quad]][number % Quad::kBlocks];
       const SmallBatch::Tile& tile = batch.tile[in_window.tile];
       const LanePositions::Block& block = position.block[in_window.block];
       const auto at = static_cast<std::size_t>(batch.place[i]) + in_window.place;
       const I16 value = block_plane(block.column, block.row, I16(batch.z_step_x[i]), I16(batch.z_step_y[i]),
                                     I16(batch.z_step_below[i]), I16(tile.depth[i]));
       const auto depth = test.codes(value >> depth_down, batch.z_low[i], batch.z_high[i]), stored = test.load(at);
-      const auto passed = test.both(covered.block[number], Fragments::passes(state, depth, stored));
+      const auto passed = test.template passed<Fragments>(state, covered.block[number], depth, stored);
       const unsigned count = test.count(passed);
       passed_pixels += count;
       if (count == 0 && is_skipping) continue;

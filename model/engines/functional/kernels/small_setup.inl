@@ -1,10 +1,10 @@
 // Sixteen small or medium triangles at a time through triangle_setup: the same integers, a triangle a lane.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// Four blocks side by side, in lanes of 16 bits.
-struct Strip {
+/// Two by two blocks in lanes of 16 bits.
+struct Quad {
   static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
-  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;
+  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;  ///< a block, or two side by side
   std::array<Part, static_cast<std::size_t>(kParts)> part;
 
   /// A bit for each lane whose sign is set, block after block.
@@ -35,11 +35,12 @@ struct SmallBatch {
   alignas(64) Lane left, top, right, bottom;  ///< of the part of a box that lies in the window, pixels of the bin
   alignas(64) Lane samples;                   ///< Record::samples() of the part of its box that lies in the bin
 
-  alignas(64) LaneArray<3> edge;            ///< at the window's first pixel
-  alignas(64) LaneArray<3> edge_x, edge_y;  ///< from pixel to pixel
-  alignas(64) LaneArray<3> edge_aside;  ///< to the next register of a Strip; all four in both halves where 16 bits do
-  alignas(64) std::array<std::uint64_t, 16> in_bin;  ///< pixels of a strip: a bit each
-  alignas(64) Lane place;                            ///< of the window's first tile in the bin's memory
+  alignas(64) LaneArray<3> edge;                    ///< at the first pixel of the first quad
+  alignas(64) LaneArray<3> edge_x, edge_y;          ///< from pixel to pixel
+  alignas(64) LaneArray<3> edge_aside, edge_below;  ///< from block to block; all in both halves where 16 bits hold them
+  alignas(64) Lane first_block;                     ///< of the first quad, among the four by four of the window
+  alignas(64) Lane columns_rows;                    ///< of blocks, less 1: two bits each
+  alignas(64) Lane place;                           ///< of the window's first tile in the bin's memory
   /// Planes at the anchors of the window's tiles, centred; of colours 16 bits a channel.
   struct alignas(256) Tile {
     Lane depth;
@@ -129,23 +130,21 @@ HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slic
           max(max(a.z, b.z), c.z)};
 }
 
-/// Whether 16 bits hold the edges of small and medium triangles in the strips of blocks that their boxes touch. A box of
-/// so many pixels has an extent below one more; a block reaches less than its size beyond it, a window less than two
-/// tiles.
+/// Whether 16 bits hold the edges of small and medium triangles in the quads that their boxes touch. A box of so many
+/// pixels has an extent below one more; a quad reaches less than its size beyond it.
 HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
-  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kBelow = kExtent + kBlockSize,
-                         kAside = kExtent + kSmallTiles * kTileSize;
-  return (kExtent * (kBelow + kAside) << widths.grid_bits) < 1 << 15;
+  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kReach = kExtent + 2 * kBlockSize;
+  return (2 * kExtent * kReach << widths.grid_bits) < 1 << 15;
 }
 
 /// `s`: bits of the subpixel grid. `is_short`: are_short_edges().
 HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& corners, int s, bool is_short,
                                          int first_x, int first_y) {
   const int half = 1 << (s - 1);
-  const auto first_of_tile = [&](const SmallBatch::Lane& box, int first) HALFPLANE_LAMBDA {
-    return (((I16::load(box.data()) & ~(kTileSize - 1)) + first) << s) + half;
+  const auto first_of_block = [&](const SmallBatch::Lane& box, int first) HALFPLANE_LAMBDA {
+    return (((I16::load(box.data()) & ~(kBlockSize - 1)) + first) << s) + half;
   };
-  const I16 px = first_of_tile(batch.left, first_x), py = first_of_tile(batch.top, first_y);
+  const I16 px = first_of_block(batch.left, first_x), py = first_of_block(batch.top, first_y);
   // Turned so that no area is negative.
   const auto& [a, b, c, origin, ax, ay, bx, by, area, is_turned, z_low, z_high] = corners;
   const std::array<I16, 4> x{a.x, select(is_turned, c.x, b.x), select(is_turned, b.x, c.x), a.x},
@@ -158,15 +157,19 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
     store(value, batch.edge[e]);
     store(-dy, batch.edge_x[e]);
     store(dx, batch.edge_y[e]);
-    store(dy * -(kBlockSize * Strip::kPartBlocks), batch.edge_aside[e]);
+    store(-(dy << kBlockShift), batch.edge_aside[e]);
+    store(dx << kBlockShift, batch.edge_below[e]);
   }
 }
 
-/// Where the windows are, and which columns of them are in the bin.
+/// Where the windows are, and their boxes in blocks.
 HALFPLANE_INLINE void find_places(SmallBatch& batch) {
-  const I16 column = I16::load(batch.left.data()) >> kTileShift, row = I16::load(batch.top.data()) >> kTileShift;
-  ((column + row * kBinTiles) * (kTileSize * kTileSize)).store(batch.place.data());
-  store_interleaved(I16(-1), column < kBinTiles - 1, batch.in_bin.data());
+  const auto block_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kBlockShift; };
+  const I16 column = block_of(batch.left), row = block_of(batch.top);
+  constexpr int kTilePixels = kTileSize * kTileSize;
+  ((column >> 1) * kTilePixels + (row >> 1) * (kBinTiles * kTilePixels)).store(batch.place.data());
+  ((column & 1) + (row & 1) * 4).store(batch.first_block.data());
+  ((block_of(batch.right) - column) + (block_of(batch.bottom) - row) * 4).store(batch.columns_rows.data());
 }
 
 /// A place to evaluate planes at, from their origin, subpixels.
