@@ -88,19 +88,14 @@ template <class Fragments>
 HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
   SmallBatch& batch = bin.small;
   for (std::size_t i = 0; i < 16; ++i) batch.records[i] = &slice.records[first[i]];
-  const auto words = [&batch](int from) HALFPLANE_LAMBDA {
-    return turned_rows([&batch, from](int i) HALFPLANE_LAMBDA {
-      return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + from;
-    });
-  };
-  const auto [z_high, left_top, right_bottom, traits] = words(4);
+  const auto [z_high, left_top, right_bottom, traits] = words_of(batch, 4);
   if (is_any((traits & Record::kSmall) == 0)) return false;
   if (bin.skip.tiles_hiz) {
     const auto tile_of = [](const I16& pixel, int bin_first)
                              HALFPLANE_LAMBDA { return max(pixel - bin_first, I16(0)) >> kTileShift; };
     alignas(64) SmallBatch::Lane tile, low;
     (tile_of(left_top >> 16, bin.first_y) * kBinTiles + tile_of(left_top << 16 >> 16, bin.first_x)).store(tile.data());
-    (words(0).fourth >> bin.range_bits_dropped).store(low.data());
+    (words_of(batch, 0).fourth >> bin.range_bits_dropped).store(low.data());
     bool are_near = Fragments::kIsLess;
     for (std::size_t i = 0; i < 16; ++i) are_near &= low[i] < bin.tile_high[tile[i]];
     if (!are_near) return false;
@@ -108,7 +103,8 @@ HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint
   batch.window.fill(0);
   batch.count = 16;
   bin.small_run += 16;
-  draw_batch<Fragments>(bin, slice);
+  place_records(batch, left_top, right_bottom, traits, bin.first_x, bin.first_y);
+  draw_loaded<Fragments>(bin, slice);
   return true;
 }
 

@@ -54,16 +54,15 @@ struct Coverage {
 
   HALFPLANE_INLINE Coverage() {}
 
-  /// `bits`: block after block.
-  HALFPLANE_INLINE void add(std::size_t at_lane, std::int32_t first_block, std::uint64_t bits) {
-    lane[quads] = static_cast<std::uint8_t>(at_lane);
-    first[quads] = static_cast<std::uint8_t>(first_block);
-    std::uint16_t* const to = &block[Quad::kBlocks * quads++];
+  /// Quad number `at`. `bits`: block after block.
+  HALFPLANE_INLINE void set(std::size_t at, std::size_t of_lane, std::int32_t first_block, std::uint64_t bits) {
+    lane[at] = static_cast<std::uint8_t>(of_lane);
+    first[at] = static_cast<std::uint8_t>(first_block);
+    std::uint16_t* const to = &block[Quad::kBlocks * at];
     if constexpr (std::endian::native == std::endian::little)
       std::memcpy(to, &bits, sizeof bits);
     else
       for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
-    pixels += static_cast<unsigned>(std::popcount(bits));
   }
   /// Of quads `from` to `from` + 15 the blocks with a pixel, a bit each.
   [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t from) const {
@@ -134,12 +133,17 @@ HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::
 
 template <bool kShort>
 HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t quads, Coverage& covered) {
-  for (; quads != 0; quads &= quads - 1) {
+  std::size_t at = 0;  // not in memory: bytes that are stored might change it, for all that the compiler knows
+  unsigned pixels = 0;
+  for (; quads != 0; quads &= quads - 1, ++at) {
     const auto number = static_cast<std::size_t>(std::countr_zero(quads)), i = number / 4, q = number % 4;
-    const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q];
-    covered.add(i, bin.small.first_block[i] + kWindowQuads.first[q],
-                in_box & ~(kShort ? outside_short(bin, i, q) : outside_long(bin, i, q)));
+    const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q],
+                        bits = in_box & ~(kShort ? outside_short(bin, i, q) : outside_long(bin, i, q));
+    covered.set(at, i, bin.small.first_block[i] + kWindowQuads.first[q], bits);
+    pixels += static_cast<unsigned>(std::popcount(bits));
   }
+  covered.quads = at;
+  covered.pixels = pixels;
 }
 /// Triangle by triangle.
 HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
@@ -445,12 +449,10 @@ HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* 
             : draw_samples<Fragments, false, false>(bin, rounds, depths);
 }
 
-/// Draws the small and medium triangles that wait.
+/// Draws a batch whose records are loaded.
 template <class Fragments>
-void draw_batch(Bin& bin, const Slice& slice) {
-  if (bin.small.count == 0) return;
+HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
   bin.line_tiles = 0;
-  load_records(bin.small, bin.first_x, bin.first_y);
   const std::uint64_t tiles = batch_tiles(bin);
   const bool is_short = bin.is_short;
   bool is_changed = false;
@@ -472,6 +474,14 @@ void draw_batch(Bin& bin, const Slice& slice) {
   bin.small.count = 0;
   // With less, a bound that is too high will do.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
+}
+
+/// Draws the small and medium triangles that wait.
+template <class Fragments>
+HALFPLANE_INLINE void draw_batch(Bin& bin, const Slice& slice) {
+  if (bin.small.count == 0) return;
+  load_records(bin.small, bin.first_x, bin.first_y);
+  draw_loaded<Fragments>(bin, slice);
 }
 
 /// Lets a record wait. A medium one may need several windows.

@@ -60,12 +60,16 @@ struct SmallBatch {
   }
 };
 
-/// The fields of the records that wait; live.
-HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
-  for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
-  const auto [z_high, left_top, right_bottom, traits] = turned_rows([&batch](int i) HALFPLANE_LAMBDA {
-    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + 4;
+/// Four words of each record that waits, from word `from` on.
+HALFPLANE_INLINE Columns words_of(const SmallBatch& batch, int from) {
+  return turned_rows([&batch, from](int i) HALFPLANE_LAMBDA {
+    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + from;
   });
+}
+
+/// What a batch keeps of its records' boxes and traits; live.
+HALFPLANE_INLINE void place_records(SmallBatch& batch, const I16& left_top, const I16& right_bottom, const I16& traits,
+                                    int first_x, int first_y) {
   const I16 covered = traits >> Record::kSamplesShift;
   batch.has_samples = !is_any(covered == 0);
   const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
@@ -89,6 +93,13 @@ HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y
   in_bin.store(batch.samples.data());
   batch.live =
       ((1U << batch.count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
+}
+
+/// The fields of the records that wait.
+HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
+  for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
+  const auto [z_high, left_top, right_bottom, traits] = words_of(batch, 4);
+  place_records(batch, left_top, right_bottom, traits, first_x, first_y);
 }
 
 /// The corners of a batch's triangles as they come, b and c also from a; the first of them in the order of (Y, X), which
