@@ -19,26 +19,31 @@ HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 #endif
 }
 
-/// One bit for each lane's value, 0...63, of the lanes whose bit is set in `lanes`.
-HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes) {
+/// The bits of all lanes together, of each lane `by` places up, of the lanes whose bit is set in `lanes`.
+HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uint32_t lanes) {
 #if HALFPLANE_ISA == 512
-  const __m512i one = _mm512_set1_epi64(1), v = (__m512i)values.part[0];
-  const __m512i low =
-      _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes), one, _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)));
-  const __m512i high = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes >> 8), one,
-                                               _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(v, 1)));
+  const auto half = [](std::uint32_t mask, const __m256i& b, const __m256i& places) HALFPLANE_LAMBDA {
+    return _mm512_maskz_sllv_epi64(static_cast<__mmask8>(mask), _mm512_cvtepi32_epi64(b),
+                                   _mm512_cvtepi32_epi64(places));
+  };
+  const auto b = (__m512i)bits.part[0], places = (__m512i)by.part[0];
+  const __m512i low = half(lanes, _mm512_castsi512_si256(b), _mm512_castsi512_si256(places)),
+                high = half(lanes >> 8, _mm512_extracti64x4_epi64(b, 1), _mm512_extracti64x4_epi64(places, 1));
   return static_cast<std::uint64_t>(_mm512_reduce_or_epi64(_mm512_or_si512(low, high)));
 #elif HALFPLANE_ISA == 256
-  const L16 is_in =
-      (L16::of([](int i) HALFPLANE_LAMBDA { return std::int64_t{1} << i; }) & static_cast<std::int64_t>(lanes)) != 0;
-  const L16 bits = (L16(1) << convert<std::int64_t>(values)) & is_in;
-  const L16::Register all = (bits.part[0] | bits.part[1]) | (bits.part[2] | bits.part[3]);
+  const I16 is_in = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(lanes)) != 0;
+  const L16 moved = convert<std::int64_t>(bits & is_in) << convert<std::int64_t>(by);
+  const L16::Register all = (moved.part[0] | moved.part[1]) | (moved.part[2] | moved.part[3]);
   return static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
 #else
-  std::uint64_t bits = 0;
-  for (int i = 0; i < 16; ++i)
-    bits |= static_cast<std::uint64_t>(lanes >> i & 1) << (values.part[i / I16::kLanes][i % I16::kLanes] & 63);
-  return bits;
+  std::uint64_t all = 0;
+  for (int i = 0; i < 16; ++i) {
+    const auto lane = [i](const I16& v) {
+      return static_cast<std::uint32_t>(v.part[i / I16::kLanes][i % I16::kLanes]);
+    };
+    all |= (lanes >> i & 1) * std::uint64_t{lane(bits)} << (lane(by) & 63);
+  }
+  return all;
 #endif
 }
 

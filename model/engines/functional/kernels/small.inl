@@ -7,18 +7,14 @@ constexpr std::uint8_t kTouches = 4;
 
 /// The tiles that the boxes of the batch touch in their windows, a bit each.
 HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
-  const auto tiles_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
-  const I16 left = tiles_of(bin.small.left), top = tiles_of(bin.small.top), columns = tiles_of(bin.small.right) - left,
-            rows = tiles_of(bin.small.bottom) - top;
-  std::uint64_t touched = 0;
-  for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 2; ++column) {
-      const std::uint32_t lanes = bits_of((columns >= column) & (rows >= row)) & bin.small.live;
-      if (lanes == 0) break;
-      touched |= or_of_bits((top + row) * kBinTiles + (left + column), lanes);
-      bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(lanes));
-    }
-  return touched;
+  const auto tile_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
+  const I16 left = tile_of(bin.small.left), top = tile_of(bin.small.top);
+  const I16 has_right = tile_of(bin.small.right) > left, has_below = tile_of(bin.small.bottom) > top;
+  const std::uint32_t live = bin.small.live, right = bits_of(has_right) & live, below = bits_of(has_below) & live;
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(live) + std::popcount(right) +
+                                                          std::popcount(below) + std::popcount(right & below));
+  const I16 row = (has_right & 2) | 1;
+  return or_of_bits(row | ((row << kBinTiles) & has_below), top * kBinTiles + left, live);
 }
 
 /// They must be in memory, and their ranges are known no more. Every now and then finds a tile's range anew; says so.
