@@ -88,14 +88,16 @@ template <class Fragments>
 HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
   SmallBatch& batch = bin.small;
   for (std::size_t i = 0; i < 16; ++i) batch.records[i] = &slice.records[first[i]];
-  const auto [z_high, left_top, right_bottom, traits] = words_of(batch, 4);
-  if (is_any((traits & Record::kSmall) == 0)) return false;
+  const Columns upper = words_of(batch, 4);
+  if (is_any((upper.fourth & Record::kSmall) == 0)) return false;
+  const Columns lower = words_of(batch, 0);
   if (bin.skip.tiles_hiz) {
     const auto tile_of = [](const I16& pixel, int bin_first)
                              HALFPLANE_LAMBDA { return max(pixel - bin_first, I16(0)) >> kTileShift; };
+    const I16& left_top = upper.second;
     alignas(64) SmallBatch::Lane tile, low;
     (tile_of(left_top >> 16, bin.first_y) * kBinTiles + tile_of(left_top << 16 >> 16, bin.first_x)).store(tile.data());
-    (words_of(batch, 0).fourth >> bin.range_bits_dropped).store(low.data());
+    (lower.fourth >> bin.range_bits_dropped).store(low.data());
     bool are_near = Fragments::kIsLess;
     for (std::size_t i = 0; i < 16; ++i) are_near &= low[i] < bin.tile_high[tile[i]];
     if (!are_near) return false;
@@ -103,7 +105,7 @@ HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint
   batch.window.fill(0);
   batch.count = 16;
   bin.small_run += 16;
-  place_records(batch, left_top, right_bottom, traits, bin.first_x, bin.first_y);
+  place_records(batch, lower, upper, bin.first_x, bin.first_y);
   draw_loaded<Fragments>(bin, slice);
   return true;
 }

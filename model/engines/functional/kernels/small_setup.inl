@@ -31,6 +31,7 @@ struct SmallBatch {
   alignas(64) Lane window{};  ///< from the box's first tile to the window's, pixels: column low, row high
   bool has_samples = true;    ///< of all of them it is known which few they cover
 
+  alignas(64) LaneArray<3> corner;            ///< bytes from the slice's first vertex
   std::uint32_t live = 0;                     ///< lanes that draw something in this bin
   alignas(64) Lane left, top, right, bottom;  ///< of the part of a box that lies in the window, pixels of the bin
   alignas(64) Lane samples;                   ///< Record::samples() of the part of its box that lies in the bin
@@ -67,9 +68,15 @@ HALFPLANE_INLINE Columns words_of(const SmallBatch& batch, int from) {
   });
 }
 
-/// What a batch keeps of its records' boxes and traits; live.
-HALFPLANE_INLINE void place_records(SmallBatch& batch, const I16& left_top, const I16& right_bottom, const I16& traits,
-                                    int first_x, int first_y) {
+/// What a batch keeps of its records, whose words these are; live.
+HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, const Columns& upper, int first_x,
+                                    int first_y) {
+  constexpr int kRowBits = 4;
+  static_assert(sizeof(VertexRow) == 1 << kRowBits);
+  (lower.first << kRowBits).store(batch.corner[0].data());
+  (lower.second << kRowBits).store(batch.corner[1].data());
+  (lower.third << kRowBits).store(batch.corner[2].data());
+  const I16 &left_top = upper.second, &right_bottom = upper.third, &traits = upper.fourth;
   const I16 covered = traits >> Record::kSamplesShift;
   batch.has_samples = !is_any(covered == 0);
   const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
@@ -98,8 +105,7 @@ HALFPLANE_INLINE void place_records(SmallBatch& batch, const I16& left_top, cons
 /// The fields of the records that wait.
 HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
   for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
-  const auto [z_high, left_top, right_bottom, traits] = words_of(batch, 4);
-  place_records(batch, left_top, right_bottom, traits, first_x, first_y);
+  place_records(batch, words_of(batch, 0), words_of(batch, 4), first_x, first_y);
 }
 
 /// The corners of a batch's triangles as they come, b and c also from a; the first of them in the order of (Y, X), which
@@ -113,10 +119,12 @@ struct SmallCorners {
 
 /// Takes those of no area out of batch.live. Extents of less than 2^14 subpixels.
 HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slice) {
-  const auto fetch = [&batch, vertices = slice.vertices.data()](std::size_t k) HALFPLANE_LAMBDA {
-    return load_vertices([&](int i)
-                             HALFPLANE_LAMBDA { return vertices + batch.records[static_cast<std::size_t>(i)]->v[k]; });
-  };
+  const auto fetch = [&batch, vertices = reinterpret_cast<const char*>(slice.vertices.data())](std::size_t k)
+                         HALFPLANE_LAMBDA {
+                           return load_vertices([&batch, vertices, k](int i) HALFPLANE_LAMBDA {
+                             return vertices + static_cast<std::uint32_t>(batch.corner[k][static_cast<std::size_t>(i)]);
+                           });
+                         };
   const auto choose = [](const I16& sign, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
     return SnappedLanes{select_by_sign(sign, p.x, q.x), select_by_sign(sign, p.y, q.y), select_by_sign(sign, p.z, q.z),
                         select_by_sign(sign, p.rgba, q.rgba)};
