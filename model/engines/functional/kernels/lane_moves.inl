@@ -31,8 +31,9 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& bits, const I16& by, std::u
                 high = half(lanes >> 8, _mm512_extracti64x4_epi64(b, 1), _mm512_extracti64x4_epi64(places, 1));
   return static_cast<std::uint64_t>(_mm512_reduce_or_epi64(_mm512_or_si512(low, high)));
 #elif HALFPLANE_ISA == 256
-  const I16 is_in = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(lanes)) != 0;
-  const L16 moved = convert<std::int64_t>(bits & is_in) << convert<std::int64_t>(by);
+  const L16 is_in =
+      (L16::of([](int i) HALFPLANE_LAMBDA { return std::int64_t{1} << i; }) & static_cast<std::int64_t>(lanes)) != 0;
+  const L16 moved = (convert<std::int64_t>(bits) << convert<std::int64_t>(by)) & is_in;
   const L16::Register all = (moved.part[0] | moved.part[1]) | (moved.part[2] | moved.part[3]);
   return static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
 #else

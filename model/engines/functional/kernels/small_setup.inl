@@ -439,14 +439,8 @@ HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallPlanes<Ar
   limit(corners.z_high).store(batch.z_high.data());
 }
 
-/// One channel of sixteen triangles: half of a lane.
-struct SmallChannel {
-  Anchors at;
-  I16 step_x, step_y;
-};
-
-/// Two of them.
-struct SmallPair {
+/// A channel of sixteen triangles, or two of them in the halves of each lane.
+struct SmallChannels {
   Anchors at;
   I16 step_x, step_y;
 };
@@ -459,12 +453,12 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
   range.low.store(batch.c_low.data());
   range.high.store(batch.c_high.data());
   const auto gradient = planes.color();
-  std::array<SmallPair, 2> colors;
+  std::array<SmallChannels, 2> colors;
   for (std::size_t p = 0; p < 2; ++p) {
     const PairCodes codes(planes.corners, p, is_flat);
-    std::array<SmallChannel, 2> halves;
+    std::array<SmallChannels, 2> halves;
     for (std::size_t h = 0; h < 2; ++h) {
-      SmallChannel& half = halves[h];
+      SmallChannels& half = halves[h];
       if (range.is_flat(2 * p + h)) {
         for (I16& at : half.at) at = I16(0);
         half.step_x = half.step_y = I16(0);
@@ -477,7 +471,7 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
       half.step_x = local_step(step_x, format);
       half.step_y = local_step(step_y, format);
     }
-    SmallPair& pair = colors[p];
+    SmallChannels& pair = colors[p];
     for (std::size_t i = 0; i < SmallBatch::kTiles; ++i) pair.at[i] = pairs(halves[0].at[i], halves[1].at[i]);
     pair.step_x = pairs(halves[0].step_x, halves[1].step_x);
     pair.step_y = pairs(halves[0].step_y, halves[1].step_y);
