@@ -262,6 +262,8 @@ template <class Step>
 struct Gradients {
   Step x, y;
 };
+template <class Step>
+Gradients(Step, Step) -> Gradients<Step>;  // clang 14 does not find it by itself
 
 /// Gradients of depth. `Gradient`: GradientLanes or ExactGradientLanes; `Numerator`: I16, L16 or D16.
 template <class Numerator, class Gradient>
