@@ -17,8 +17,8 @@ import tempfile
 
 # Scene, size, triangles that count, instructions that each may take: what was measured with g++ 12, and a twentieth.
 GATES = [
-    ('dust:250000', (640, 360), 249_630, 395),
-    ('ball', (1280, 720), 51_200, 1090),
+    ('dust:250000', (640, 360), 249_630, 343),
+    ('ball', (1280, 720), 51_200, 781),
 ]
 COUNTED = 'halfplane::functional::FrameRenderer::render*'
 

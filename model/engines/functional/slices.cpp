@@ -155,9 +155,11 @@ void FrameRenderer::fill_bins(Slice& slice) const {
       entry[count++] = {bin, static_cast<std::uint32_t>(i)};
       ++in_bin[bin];
     };
-    const std::uint32_t first = bin_at(record.left(), record.top()), last = bin_at(record.right(), record.bottom());
+    const std::uint32_t first = bin_at(record.left(), record.top());
     add(first);
-    if (first == last) continue;
+    constexpr auto kInBin = static_cast<std::int32_t>((kBinSize - 1) * 0x10001);
+    if (((record.left_top ^ record.right_bottom) & ~kInBin) == 0) continue;
+    const std::uint32_t last = bin_at(record.right(), record.bottom());
     if (const std::size_t room = count + bins + records.size() - i; entries.size() < room) {
       entries.resize(2 * room);
       entry = entries.data();

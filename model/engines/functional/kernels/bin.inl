@@ -10,9 +10,14 @@ struct LanePositions {
   I16 block_x, block_y;
   S64 tile_x, tile_y;    ///< of the tiles of a bin, row by row
   S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
-  I16 block_yx;          ///< pairs: row low, column high
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
+  struct Block {
+    I16 column, row;
+    S32 channel_column, channel_row;  ///< of its left half, four channels a pixel
+  };
+  std::array<Block, 4> block;                ///< of a tile, likewise
+  std::array<Quad::Part, 2> quad_x, quad_y;  ///< of the first part of a quad: the first one, the next one
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -24,13 +29,25 @@ struct LanePositions {
     to_sign = I16::of([](int i) { return 31 - i; });
     block_x = I16::of([](int i) { return i % 4; });
     block_y = I16::of([](int i) { return i / 4; });
-    block_yx = pairs(block_y, block_x);
     for (int side = 0; side < 2; ++side) {
       const auto at = static_cast<std::size_t>(side);
       column[at] = block_x + (kBlockSize * side - kTileSize / 2);
       row[at] = block_y + (kBlockSize * side - kTileSize / 2);
       column_pair[at] = pairs(column[at], column[at]);
       row_pair[at] = pairs(row[at], row[at]);
+      const int quad = 2 * kBlockSize * side;
+      quad_x[at] = Quad::Part::of(
+          [quad](int i) { return static_cast<std::int16_t>(quad + i / kBlockPixels * kBlockSize + i % kBlockSize); });
+      quad_y[at] =
+          Quad::Part::of([quad](int i) { return static_cast<std::int16_t>(quad + i / kBlockSize % kBlockSize); });
+    }
+    for (std::size_t at = 0; at < 4; ++at) {
+      const std::size_t right = at & 1, below = at >> 1;
+      const auto first = [](std::size_t side) { return kBlockSize * static_cast<int>(side) - kTileSize / 2; };
+      block[at].column = column[right];
+      block[at].row = row[below];
+      block[at].channel_column = S32::of([&](int i) { return static_cast<std::int16_t>(first(right) + i / 4 % 2); });
+      block[at].channel_row = S32::of([&](int i) { return static_cast<std::int16_t>(first(below) + i / 8); });
     }
   }
 };
@@ -68,12 +85,6 @@ struct BinTriangle {
   ColorSteps color;
 };
 
-/// A block of a triangle of the small batch with at least one covered pixel.
-struct Block {
-  std::uint32_t place;    ///< lane of the batch, column and row among the bin's blocks: a byte each
-  std::uint32_t covered;  ///< bits
-};
-
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
 struct BinMemory {
   static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
@@ -92,7 +103,6 @@ struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
   static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3;
-  static constexpr std::size_t kSmallBlocks = kMediumTiles * kTileSize / kBlockSize;  ///< along a side
 
   explicit Bin(BinJob& job_)
       : job(job_),
@@ -101,7 +111,10 @@ struct Bin {
         skip(job.frame.skip),
         depth_format(widths.depth(), 32, widths),
         color_format(widths.color(), 16, widths),
+        centred_depth(depth_format.centred()),
+        centred_color(color_format.centred()),
         is_short(is_short_enough(widths, depth_format, color_format)),
+        has_short_edges(are_short_edges(widths)),
         first_x(job.bin % job.frame.bins_x * kBinSize),
         first_y(job.bin / job.frame.bins_x * kBinSize),
         pixel(1.0 / static_cast<double>(std::int64_t{1} << widths.grid_bits)),
@@ -126,12 +139,14 @@ struct Bin {
   const Widths& widths;
   const Skip& skip;
   LaneFormat depth_format, color_format;
-  bool is_short;         ///< the arithmetic of small triangles
-  int first_x, first_y;  ///< pixels
-  double pixel;          ///< a subpixel, in pixels
-  bool are_lines;        ///< sixteen pixels of a row of the target are a cache line
-  bool is_narrow;        ///< depths are in BinMemory::narrow_depth
-  bool tests_narrow;     ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
+  LaneFormat centred_depth, centred_color;  ///< of small triangles
+  bool is_short;                            ///< the arithmetic of small triangles
+  bool has_short_edges;                     ///< 16 bits hold their edges
+  int first_x, first_y;                     ///< pixels
+  double pixel;                             ///< a subpixel, in pixels
+  bool are_lines;                           ///< sixteen pixels of a row of the target are a cache line
+  bool is_narrow;                           ///< depths are in BinMemory::narrow_depth
+  bool tests_narrow;  ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
   int range_bits_dropped;
   std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
@@ -142,11 +157,10 @@ struct Bin {
   std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide this depth, and what is behind
   const LanePositions& position = lane_positions();
   SmallBatch small;
-  int small_run = 0;                                               ///< records in a row that were small or medium
-  LineBatch lines, cut_line;                                       ///< cut_line: one, in lane 0
-  std::uint64_t line_tiles = 0;                                    ///< touched by lines since triangles last were drawn
-  std::array<Block, 16 * kSmallBlocks * kSmallBlocks + 1> blocks;  ///< and room for one that is not kept
-  bool falls = false, rises = false;                               ///< what a passing depth may do to the stored one
+  int small_run = 0;                  ///< records in a row that were small or medium
+  LineBatch lines, cut_line;          ///< cut_line: one, in lane 0
+  std::uint64_t line_tiles = 0;       ///< touched by lines since triangles last were drawn
+  bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
   bool is_range_old = true;     ///< low, high and lowest_high: found when somebody asks
   std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know

@@ -34,6 +34,24 @@ HALFPLANE_INLINE I16 extent(const std::array<I16, 3>& c) {
   return max(max(c[0], c[1]), c[2]) - min(min(c[0], c[1]), c[2]);
 }
 
+/// Of twice an area: masks.
+struct Side {
+  I16 is_turned, is_zero;  ///< below 0, 0
+};
+
+/// From the first corner to the second (a) and to the third (b): differences of 23 bits.
+HALFPLANE_INLINE Side side_of(const I16& ax, const I16& ay, const I16& bx, const I16& by) {
+  constexpr int kShort = 15;  // bits of a magnitude whose products 32 bits hold
+  const auto above = [](const I16& v) HALFPLANE_LAMBDA { return (v ^ (v >> 31)) >> kShort; };
+  if (!is_any(((above(ax) | above(ay)) | (above(bx) | above(by))) != 0)) {
+    const I16 area = cross(ax, ay, bx, by);
+    return {area >> 31, area == 0};
+  }
+  // Exact in binary64.
+  const D16 area = cross(convert<double>(ax), convert<double>(ay), convert<double>(bx), convert<double>(by));
+  return {convert<std::int32_t>(area < 0.0), convert<std::int32_t>(area == 0.0)};
+}
+
 /// What triangles of at most two by two pixel centres cover of them.
 struct SampleLanes {
   I16 is_known;  ///< for which triangles; the others are left at 0
@@ -143,13 +161,11 @@ struct CullLanes {
 
   /// By area, side and box. Returns what the small ones cover.
   HALFPLANE_INLINE SampleLanes find_drawn(const CullTriangles& t, Sets& sets) const {
-    // Twice the area: products of differences of 23 bits, exact in binary64.
-    const I16 ax = t.x[1] - t.x[0], ay = t.y[1] - t.y[0], bx = t.x[2] - t.x[0], by = t.y[2] - t.y[0];
-    const D16 area = cross(convert<double>(ax), convert<double>(ay), convert<double>(bx), convert<double>(by));
-    const I16 is_turned = convert<std::int32_t>(area < 0.0);
+    const Side side = side_of(t.x[1] - t.x[0], t.y[1] - t.y[0], t.x[2] - t.x[0], t.y[2] - t.y[0]);
+    const I16& is_turned = side.is_turned;
     const std::uint32_t turned_bits = bits_of(is_turned), front = is_front_cw ? ~turned_bits : turned_bits;
     const std::uint32_t fast = sets.lanes & ~sets.slow & ~sets.frustum;
-    sets.zero = bits_of(convert<std::int32_t>(area == 0.0)) & fast;
+    sets.zero = bits_of(side.is_zero) & fast;
     const std::uint32_t live = fast & ~sets.zero;
     sets.culled = mode == Cull::none    ? 0
                   : mode == Cull::both  ? live

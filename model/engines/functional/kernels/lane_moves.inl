@@ -19,30 +19,94 @@ HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 #endif
 }
 
-/// One bit for each lane's value, 0...63, of the lanes whose bit is set in `lanes`.
-HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& values, std::uint32_t lanes) {
+/// The bits of all lanes together, of each lane `by` places up, of the lanes whose bit is set in `lanes`.
+HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uint32_t lanes) {
 #if HALFPLANE_ISA == 512
-  const __m512i one = _mm512_set1_epi64(1), v = (__m512i)values.part[0];
-  const __m512i low =
-      _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes), one, _mm512_cvtepi32_epi64(_mm512_castsi512_si256(v)));
-  const __m512i high = _mm512_maskz_sllv_epi64(static_cast<__mmask8>(lanes >> 8), one,
-                                               _mm512_cvtepi32_epi64(_mm512_extracti64x4_epi64(v, 1)));
+  const auto half = [](std::uint32_t mask, const __m256i& b, const __m256i& places) HALFPLANE_LAMBDA {
+    return _mm512_maskz_sllv_epi64(static_cast<__mmask8>(mask), _mm512_cvtepi32_epi64(b),
+                                   _mm512_cvtepi32_epi64(places));
+  };
+  const auto b = (__m512i)bits.part[0], places = (__m512i)by.part[0];
+  const __m512i low = half(lanes, _mm512_castsi512_si256(b), _mm512_castsi512_si256(places)),
+                high = half(lanes >> 8, _mm512_extracti64x4_epi64(b, 1), _mm512_extracti64x4_epi64(places, 1));
   return static_cast<std::uint64_t>(_mm512_reduce_or_epi64(_mm512_or_si512(low, high)));
 #elif HALFPLANE_ISA == 256
   const L16 is_in =
       (L16::of([](int i) HALFPLANE_LAMBDA { return std::int64_t{1} << i; }) & static_cast<std::int64_t>(lanes)) != 0;
-  const L16 bits = (L16(1) << convert<std::int64_t>(values)) & is_in;
-  const L16::Register all = (bits.part[0] | bits.part[1]) | (bits.part[2] | bits.part[3]);
+  const L16 moved = (convert<std::int64_t>(bits) << convert<std::int64_t>(by)) & is_in;
+  const L16::Register all = (moved.part[0] | moved.part[1]) | (moved.part[2] | moved.part[3]);
   return static_cast<std::uint64_t>(all[0] | all[1] | all[2] | all[3]);
 #else
-  std::uint64_t bits = 0;
-  for (int i = 0; i < 16; ++i)
-    bits |= static_cast<std::uint64_t>(lanes >> i & 1) << (values.part[i / I16::kLanes][i % I16::kLanes] & 63);
-  return bits;
+  std::uint64_t all = 0;
+  for (int i = 0; i < 16; ++i) {
+    const auto lane = [i](const I16& v) {
+      return static_cast<std::uint32_t>(v.part[i / I16::kLanes][i % I16::kLanes]);
+    };
+    all |= (lanes >> i & 1) * std::uint64_t{lane(bits)} << (lane(by) & 63);
+  }
+  return all;
 #endif
 }
 
+#if HALFPLANE_ISA == 512
+/// One bit for each lane with a < b. Not by way of a mask in lanes, as GCC takes bits_of().
+HALFPLANE_INLINE std::uint32_t bits_below(const I16& a, const I16& b) {
+  return _mm512_cmplt_epi32_mask((__m512i)a.part[0], (__m512i)b.part[0]);
+}
+#endif
+
+/// Sixteen numbers of four bits, one behind the other.
+HALFPLANE_INLINE std::uint64_t nibbles_of(const I16& values) {
+  const I16 placed = values << I16::of([](int i) { return 4 * (i % 8); });
+#if HALFPLANE_ISA == 512
+  const auto all = (__m512i)placed.part[0];
+  const auto low = static_cast<std::uint32_t>(_mm512_mask_reduce_or_epi32(0x00ff, all)),
+             high = static_cast<std::uint32_t>(_mm512_mask_reduce_or_epi32(0xff00, all));
+#else
+  typedef std::int32_t Four __attribute__((vector_size(16)));
+#if HALFPLANE_ISA == 256
+  const auto half = [&placed](int i) HALFPLANE_LAMBDA {
+    constexpr auto kFour = std::make_index_sequence<4>{};
+    const auto& eight = placed.part[i];
+    return lanes_from<Four, 0>(eight, eight, kFour) | lanes_from<Four, 4>(eight, eight, kFour);
+  };
+#else
+  const auto half = [&placed](int i) HALFPLANE_LAMBDA { return placed.part[2 * i] | placed.part[2 * i + 1]; };
+#endif
+  const auto or_of = [](const Four& four) HALFPLANE_LAMBDA {
+    const Four two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1);
+    return static_cast<std::uint32_t>(two[0] | two[1]);
+  };
+  const std::uint32_t low = or_of(half(0)), high = or_of(half(1));
+#endif
+  return low | std::uint64_t{high} << 32;
+}
+
 HALFPLANE_INLINE bool is_any(const I16& mask) { return bits_of(mask) != 0; }
+
+/// One bit for each of 32 lanes whose sign bit is set.
+#if HALFPLANE_ISA == 512
+HALFPLANE_INLINE std::uint32_t bits_of(const S32& mask) { return _mm512_movepi16_mask((__m512i)mask.part[0]); }
+#else
+HALFPLANE_INLINE std::uint32_t bits_of(const S16& low, const S16& high) {
+#if HALFPLANE_ISA == 256
+  const __m256i bytes = _mm256_packs_epi16((__m256i)low.part[0], (__m256i)high.part[0]);  // back in order:
+  return static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_permute4x64_epi64(bytes, 0xd8)));
+#elif defined(__x86_64__)
+  const auto half = [](const S16& mask) HALFPLANE_LAMBDA {
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16((__m128i)mask.part[0], (__m128i)mask.part[1])));
+  };
+  return half(low) | half(high) << 16;
+#else
+  std::uint32_t bits = 0;
+  for (int i = 0; i < 16; ++i) {
+    bits |= std::uint32_t{low.part[i / 8][i % 8] < 0} << i;
+    bits |= std::uint32_t{high.part[i / 8][i % 8] < 0} << (16 + i);
+  }
+  return bits;
+#endif
+}
+#endif
 
 /// One bit for each of 64 lanes whose sign bit is set.
 HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
@@ -81,6 +145,175 @@ HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
     r.part[i] = ((S64::Register{} + static_cast<std::int16_t>(bits >> kLanes * i)) & bit) == bit;
 #endif
   return r;
+}
+
+#if HALFPLANE_ISA <= 256
+/// The other way round, of sixteen lanes.
+HALFPLANE_INLINE S16 block_lanes_of(std::uint32_t bits) {
+  const S16 bit = S16::of([](int i) { return static_cast<std::int16_t>(1U << i); });
+  return (S16(static_cast<std::int16_t>(bits)) & bit) == bit;
+}
+
+/// A mask for lanes of 32 bits.
+HALFPLANE_INLINE I16 widened(const S16& mask) {
+#if HALFPLANE_ISA == 256
+  I16 r;
+  r.part[0] = (I16::Register)_mm256_cvtepi16_epi32(_mm256_castsi256_si128((__m256i)mask.part[0]));
+  r.part[1] = (I16::Register)_mm256_cvtepi16_epi32(_mm256_extracti128_si256((__m256i)mask.part[0], 1));
+  return r;
+#else
+  return convert<std::int32_t>(mask);
+#endif
+}
+
+/// How many lanes of a mask are set, times kCountOfLane.
+constexpr unsigned kCountOfLane = HALFPLANE_ISA == 256 ? 2 : 1;
+HALFPLANE_INLINE unsigned count_of(const S16& mask) {
+#if HALFPLANE_ISA == 256
+  return static_cast<unsigned>(std::popcount(static_cast<unsigned>(_mm256_movemask_epi8((__m256i)mask.part[0]))));
+#elif defined(__x86_64__)
+  return static_cast<unsigned>(std::popcount(
+      static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16((__m128i)mask.part[0], (__m128i)mask.part[1])))));
+#else
+  unsigned lanes = 0;
+  for (int i = 0; i < 16; ++i) lanes += mask.part[i / 8][i % 8] != 0 ? 1 : 0;
+  return lanes;
+#endif
+}
+
+/// To 16 bits; what does not fit becomes the nearest that does.
+HALFPLANE_INLINE S16 saturated(const I16& v) {
+  S16 r;
+#if HALFPLANE_ISA == 256
+  const __m256i both = _mm256_packs_epi32((__m256i)v.part[0], (__m256i)v.part[1]);
+  r.part[0] = (S16::Register)_mm256_permute4x64_epi64(both, 0xd8);
+#elif defined(__x86_64__)
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (S16::Register)_mm_packs_epi32((__m128i)v.part[2 * i], (__m128i)v.part[2 * i + 1]);
+#else
+  for (int i = 0; i < 16; ++i)
+    r.part[i / 8][i % 8] = static_cast<std::int16_t>(std::clamp(v.part[i / 4][i % 4], -0x8000, 0x7fff));
+#endif
+  return r;
+}
+#endif
+
+/// Eight lanes of `left` and eight of `right` in turns, to bytes; what does not fit becomes the nearest signed one.
+HALFPLANE_INLINE B64 saturated(const S32& left, const S32& right) {
+  B64 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (B64::Register)_mm512_packs_epi16((__m512i)left.part[0], (__m512i)right.part[0]);
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (B64::Register)_mm256_packs_epi16((__m256i)left.part[i], (__m256i)right.part[i]);
+#elif defined(__x86_64__)
+  for (int i = 0; i < 4; ++i) r.part[i] = (B64::Register)_mm_packs_epi16((__m128i)left.part[i], (__m128i)right.part[i]);
+#else
+  for (int i = 0; i < 32; ++i) {
+    const auto byte = [i](const S32& v) {
+      return static_cast<std::uint8_t>(std::clamp<int>(v.part[i / 8][i % 8], -0x80, 0x7f));
+    };
+    r.part[i / 8][i % 8] = byte(left);
+    r.part[i / 8][8 + i % 8] = byte(right);
+  }
+#endif
+  return r;
+}
+
+/// Two numbers of 16 bits in turns.
+template <class Lanes>
+HALFPLANE_INLINE Lanes repeated(std::int32_t two) {
+  typedef std::int32_t Wide __attribute__((vector_size(sizeof(typename Lanes::Register))));
+  Lanes r;
+  HALFPLANE_EACH_PART(Lanes::kParts, i, r.part[i] = (typename Lanes::Register)(Wide{} + two))
+  return r;
+}
+/// Four.
+HALFPLANE_INLINE S32 repeated(std::uint64_t four) {
+  typedef std::uint64_t Wide __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  S32 r;
+  HALFPLANE_EACH_PART(S32::kParts, i, r.part[i] = (S32::Register)(Wide{} + four))
+  return r;
+}
+
+/// Bytes 0 and 1 of each lane, or 2 and 3, as pairs.
+HALFPLANE_INLINE I16 channel_pair(const I16& rgba, std::size_t pair) {
+#if HALFPLANE_ISA >= 256
+  typedef std::int8_t Bytes __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  Bytes from;
+  for (int i = 0; i < HALFPLANE_ISA / 8; ++i)
+    from[i] = static_cast<std::int8_t>(i % 2 != 0 ? -1 : i % 16 / 4 * 4 + 2 * static_cast<int>(pair) + i % 4 / 2);
+  I16 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (I16::Register)_mm512_shuffle_epi8((__m512i)rgba.part[0], (__m512i)from);
+#else
+  for (int i = 0; i < 2; ++i) r.part[i] = (I16::Register)_mm256_shuffle_epi8((__m256i)rgba.part[i], (__m256i)from);
+#endif
+  return r;
+#else
+  const I16 both = shift_right_logical(rgba, static_cast<int>(16 * pair));
+  return (both & 0xff) | ((both << 8) & 0xff0000);
+#endif
+}
+
+/// The lower half of each lane in both halves.
+HALFPLANE_INLINE I16 doubled(const I16& v) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  const __m512i order = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13));
+  r.part[0] = (I16::Register)_mm512_shuffle_epi8((__m512i)v.part[0], order);
+#elif HALFPLANE_ISA == 256
+  const __m256i order = _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13));
+  for (int i = 0; i < 2; ++i) r.part[i] = (I16::Register)_mm256_shuffle_epi8((__m256i)v.part[i], order);
+#else
+  r = (v & 0xffff) | (v << 16);
+#endif
+  return r;
+}
+
+/// Of each eight numbers of 16 bits the first four and the last four in turns.
+HALFPLANE_INLINE B64 turns_of_halves(const B64& v) {
+  B64 r;
+#if HALFPLANE_ISA == 512
+  const __m512i order = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15));
+  r.part[0] = (B64::Register)_mm512_shuffle_epi8((__m512i)v.part[0], order);
+#elif HALFPLANE_ISA == 256
+  const __m256i order =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15));
+  for (int i = 0; i < 2; ++i) r.part[i] = (B64::Register)_mm256_shuffle_epi8((__m256i)v.part[i], order);
+#else
+  typedef std::int16_t Words __attribute__((vector_size(16)));
+  for (int i = 0; i < 4; ++i)
+    r.part[i] = (B64::Register)__builtin_shufflevector((Words)v.part[i], (Words)v.part[i], 0, 4, 1, 5, 2, 6, 3, 7);
+#endif
+  return r;
+}
+
+/// Lane by lane the 64 bits that begin with `low`, to memory.
+template <class Element>
+HALFPLANE_INLINE void store_interleaved(const I16& low, const I16& high, Element* to) {
+  static_assert(sizeof(Element) == 8);
+#if HALFPLANE_ISA == 512
+  const auto &a = low.part[0], &b = high.part[0];
+  typedef I16::InMemory Row;
+  reinterpret_cast<Row*>(to)[0] = __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  reinterpret_cast<Row*>(to)[1] =
+      __builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < 2; ++i) {
+    const auto a = (__m256i)low.part[i], b = (__m256i)high.part[i];
+    const __m256i first = _mm256_unpacklo_epi32(a, b), second = _mm256_unpackhi_epi32(a, b);
+    __m256i* const row = reinterpret_cast<__m256i*>(to) + 2 * i;
+    _mm256_storeu_si256(row, _mm256_permute2x128_si256(first, second, 0x20));
+    _mm256_storeu_si256(row + 1, _mm256_permute2x128_si256(first, second, 0x31));
+  }
+#else
+  for (int i = 0; i < 4; ++i) {
+    I16::InMemory* const row = reinterpret_cast<I16::InMemory*>(to) + 2 * i;
+    row[0] = __builtin_shufflevector(low.part[i], high.part[i], 0, 4, 1, 5);
+    row[1] = __builtin_shufflevector(low.part[i], high.part[i], 2, 6, 3, 7);
+  }
+#endif
 }
 
 /// One bit for each lane with a >= b.
@@ -163,6 +396,24 @@ HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
 #endif
 }
 HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
+
+/// The lanes' bits together.
+HALFPLANE_INLINE std::int32_t or_of_lanes(const I16& v) {
+#if HALFPLANE_ISA == 512
+  return _mm512_reduce_or_epi32((__m512i)v.part[0]);
+#else
+  typedef std::int64_t Two __attribute__((vector_size(16)));
+#if HALFPLANE_ISA == 256
+  typedef std::int64_t Four __attribute__((vector_size(32)));
+  const Four four = (Four)(v.part[0] | v.part[1]);
+  const Two two = __builtin_shufflevector(four, four, 0, 1) | __builtin_shufflevector(four, four, 2, 3);
+#else
+  const Two two = (Two)((v.part[0] | v.part[1]) | (v.part[2] | v.part[3]));
+#endif
+  const std::int64_t all = two[0] | two[1];
+  return static_cast<std::int32_t>(all | all >> 32);
+#endif
+}
 
 HALFPLANE_INLINE std::uint32_t min_lane(const U64& v) {
 #if HALFPLANE_ISA == 128

@@ -268,8 +268,12 @@ HALFPLANE_INLINE To as(const From& from) {
 
 using I16 = Pack<std::int32_t, 16>;
 using S32 = Pack<std::int16_t, 32>;  ///< two in each lane of an I16
+#if HALFPLANE_ISA <= 256
+using S16 = Pack<std::int16_t, 16>;  ///< the pixels of a block; wider registers take them in 32 bits
+#endif
 using S64 = Pack<std::int16_t, 64>;  ///< the pixels of a tile, or the tiles of a bin
 using U64 = Pack<std::uint16_t, 64>;
+using B64 = Pack<std::uint8_t, 64>;  ///< the channels of a block
 using L16 = Pack<std::int64_t, 16>;
 using D16 = Pack<double, 16>;
 

@@ -30,6 +30,7 @@ struct LaneFormat {
   int step_drop;  ///< from a plane's step to a step of a pixel in a tile
   std::int32_t bias;
   std::uint64_t anchor_bias;
+  std::uint64_t to_centred;  ///< beside it: then an arithmetic shift by `down` leaves the code less `bias`
 
   /// `lane_bits`: of the lane.
   LaneFormat(const AttributeWidths& attribute, int lane_bits, const Widths& widths) {
@@ -40,8 +41,29 @@ struct LaneFormat {
     step_drop = drop - widths.grid_bits;
     bias = std::int32_t{1} << (attribute.code.bits - 1);
     anchor_bias = plane_bias(attribute, widths);
+    to_centred = std::uint64_t{1} << (attribute.code.bits + widths.plane_fraction);
+  }
+
+  /// With anchors of that kind.
+  [[nodiscard]] LaneFormat centred() const {
+    LaneFormat format = *this;
+    format.anchor_bias += to_centred;
+    return format;
   }
 };
+
+/// A plane over the pixels of a block, row after row, from its steps and its value at `first`. `column`, `row`: of the
+/// pixels, with as many lanes for each pixel as there are planes. `below`: step_y times block_rows<Lanes>.
+template <class Lanes>
+constexpr int block_rows = 4 / Lanes::kParts;  ///< of a register
+template <class Lanes>
+HALFPLANE_INLINE Lanes block_plane(const Lanes& column, const Lanes& row, const Lanes& step_x, const Lanes& step_y,
+                                   const Lanes& below, const Lanes& first) {
+  Lanes plane;
+  plane.part[0] = column.part[0] * step_x.part[0] + row.part[0] * step_y.part[0] + first.part[0];
+  HALFPLANE_EACH_PART(Lanes::kParts - 1, i, plane.part[i + 1] = plane.part[i] + below.part[0])
+  return plane;
+}
 
 /// Two channels in the halves of a lane: red and blue, green and alpha.
 using ChannelPairs = std::array<std::int32_t, 2>;

@@ -50,7 +50,7 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t
               y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
     const I16 at = place_of(x, y);  // of lanes behind the last pixel: somewhere in the bin
     at.store(group.place.data());
-    const std::uint64_t touched = or_of_bits(at >> 6, (1U << count) - 1);
+    const std::uint64_t touched = or_of_bits(I16(1), at >> 6, (1U << count) - 1);
     tiles |= touched;
     if ((touched & ~bin.line_tiles) != 0) touch_line_tiles<Fragments>(bin, touched & ~bin.line_tiles);
     const Pack<Depth, 16> depth = convert<Depth>(n) * depth_step + first_depth;

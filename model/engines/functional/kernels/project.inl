@@ -2,16 +2,10 @@
 // and what may not be drawn at all, goes the slow way: through the host side's own function, which knows the messages.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// floor(value * scale + 1/2) as snap() has it. |value * scale| < 2^31.
+/// floor(value * scale + 1/2) as snap() has it, as half of one more than floor(2 value * scale): no sum is rounded.
+/// |value * scale| < 2^30.
 HALFPLANE_INLINE I16 snap_lanes(const D16& value, double scale) {
-  const D16 scaled = value * scale;
-  const I16 truncated = convert<std::int32_t>(scaled);
-  const D16 toward_zero = convert<double>(truncated);
-  const L16 is_above = toward_zero > scaled;  // truncation went up
-  const D16 fraction = scaled - toward_zero;  // exact; in (-1, 1)
-  // floor is truncated - 1 where it went up; there the fraction is 1 more.
-  const L16 is_up = select(is_above, fraction + 1.0, fraction) >= 0.5;
-  return truncated + convert<std::int32_t>(is_above - is_up);
+  return (convert<std::int32_t>(floor(value * (2 * scale))) + 1) >> 1;
 }
 
 /// Sixteen vertices of the scene, attribute by attribute.

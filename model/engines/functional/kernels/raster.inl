@@ -82,19 +82,55 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
   draw_large<Fragments>(bin, slice, record, live, triangle);
 }
 
+/// Sixteen records at once, where all are small and each is nearer than what the first of its tiles may hold: a batch, of
+/// whose records nothing need be asked one by one. Nothing may be waiting.
+template <class Fragments>
+HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
+  SmallBatch& batch = bin.small;
+  for (std::size_t i = 0; i < 16; ++i) batch.records[i] = &slice.records[first[i]];
+  const Columns upper = words_of(batch, 4);
+  if (is_any((upper.fourth & Record::kSmall) == 0)) return false;
+  const Columns lower = words_of(batch, 0);
+  if (bin.skip.tiles_hiz) {
+    const auto tile_of = [](const I16& pixel, int bin_first)
+                             HALFPLANE_LAMBDA { return max(pixel - bin_first, I16(0)) >> kTileShift; };
+    const I16& left_top = upper.second;
+    alignas(64) SmallBatch::Lane tile, low;
+    (tile_of(left_top >> 16, bin.first_y) * kBinTiles + tile_of(left_top << 16 >> 16, bin.first_x)).store(tile.data());
+    (lower.fourth >> bin.range_bits_dropped).store(low.data());
+    bool are_near = Fragments::kIsLess;
+    for (std::size_t i = 0; i < 16; ++i) are_near &= low[i] < bin.tile_high[tile[i]];
+    if (!are_near) return false;
+  }
+  batch.window.fill(0);
+  batch.count = 16;
+  bin.small_run += 16;
+  place_records(batch, lower, upper, bin.first_x, bin.first_y);
+  draw_loaded<Fragments>(bin, slice);
+  return true;
+}
+
 /// The records of one slice.
 template <class Fragments>
 void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
   bin.line_tiles = 0;
-  for (; first != last; ++first) {
+  const std::uint32_t* next_sixteen = first;  // from where on it is worth a try
+  while (first != last) {
     const Record& record = slice.records[*first];
-    fetch_records(slice, first, last);
+    if (bin.small.count == 0 && record.has(Record::kSmall) && first >= next_sixteen && last - first >= 16) {
+      next_sixteen = first + 16;
+      if (draw_sixteen<Fragments>(bin, slice, first)) {
+        first = next_sixteen;
+        continue;
+      }
+    }
+    fetch_records(slice, first++, last);
     if (record.has(Record::kSmall)) {
       // Nearer than what one of its tiles may hold: no need to look at the others, nor at the bin.
       const bool is_near = Fragments::kIsLess && range_of(bin, record).low < bin.tile_high[first_tile(bin, record)];
       if (!is_near && is_behind<Fragments>(bin, record, false)) continue;
       ++bin.small_run;
-      if (bin.small.add(record)) draw_batch<Fragments>(bin, slice);
+      add_small<Fragments>(bin, slice, record);
       continue;
     }
     const RecordKind kind = record.kind();
@@ -119,8 +155,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
     if (!is_medium || bin.small_run <= kAlone)
       draw_alone<Fragments>(bin, slice, record, box, live);
-    else if (bin.small.add(record))
-      draw_batch<Fragments>(bin, slice);
+    else
+      add_medium<Fragments>(bin, slice, record, box);
   }
   draw_batch<Fragments>(bin, slice);
   draw_lines<Fragments>(bin, slice);

@@ -5,26 +5,16 @@
 /// Batches after which a tile's range is found anew.
 constexpr std::uint8_t kTouches = 4;
 
-/// The tiles that the boxes of the batch touch.
-struct BatchTiles {
-  std::uint64_t touched = 0;  ///< a bit each
-  bool is_over_two = false;   ///< along the side of a box
-};
-
-HALFPLANE_INLINE BatchTiles batch_tiles(Bin& bin) {
-  const auto tiles_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
-  const I16 left = tiles_of(bin.small.left), top = tiles_of(bin.small.top), columns = tiles_of(bin.small.right) - left,
-            rows = tiles_of(bin.small.bottom) - top;
-  BatchTiles tiles;
-  for (int row = 0; row < kMediumTiles; ++row)
-    for (int column = 0; column < kMediumTiles; ++column) {
-      const std::uint32_t lanes = bits_of((columns >= column) & (rows >= row)) & bin.small.live;
-      if (lanes == 0) break;
-      tiles.touched |= or_of_bits((top + row) * kBinTiles + (left + column), lanes);
-      tiles.is_over_two |= row == 2 || column == 2;
-      bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(lanes));
-    }
-  return tiles;
+/// The tiles that the boxes of the batch touch in their windows, a bit each.
+HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
+  const auto tile_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kTileShift; };
+  const I16 left = tile_of(bin.small.left), top = tile_of(bin.small.top);
+  const I16 has_right = tile_of(bin.small.right) > left, has_below = tile_of(bin.small.bottom) > top;
+  const std::uint32_t live = bin.small.live, right = bits_of(has_right) & live, below = bits_of(has_below) & live;
+  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(live) + std::popcount(right) +
+                                                          std::popcount(below) + std::popcount(right & below));
+  const I16 row = (has_right & 2) | 1;
+  return or_of_bits(row | ((row << kBinTiles) & has_below), top * kBinTiles + left, live);
 }
 
 /// They must be in memory, and their ranges are known no more. Every now and then finds a tile's range anew; says so.
@@ -50,91 +40,270 @@ HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   return is_changed;
 }
 
-/// The blocks of the batch in which a sample is covered, triangle by triangle. Two by two of them are looked at without
-/// asking whether the box touches them: a branch that nobody can foresee costs more.
-HALFPLANE_INLINE std::size_t find_blocks(Bin& bin) {
-  std::size_t blocks = 0, tested = 0;
-  const auto add = [&](std::uint32_t place, const I16& signs, std::uint32_t is_there) HALFPLANE_LAMBDA {
-    const std::uint32_t covered = ~bits_of(signs) & 0xffff & (0U - is_there);
-    bin.blocks[blocks] = {place, covered};
-    blocks += covered != 0 ? 1U : 0U;
-  };
-  for (std::uint32_t rest = bin.small.live; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    std::array<I16, 3> edge, right, below;
-    for (std::size_t e = 0; e < 3; ++e) {
-      edge[e] = multiply_add_pairs(I16(bin.small.edge_step[e][i]), bin.position.block_yx) + bin.small.edge[e][i];
-      right[e] = edge[e] + bin.small.to_right[e][i];
-      below[e] = edge[e] + bin.small.to_below[e][i];
-    }
-    const auto place = static_cast<std::uint32_t>(bin.small.place[i]),
-               there = static_cast<std::uint32_t>(bin.small.there[i]);
-    constexpr std::uint32_t kColumn = 1 << 8, kRow = 1 << 16;
-    add(place, edge[0] | edge[1] | edge[2], there & 1);
-    add(place + kColumn, right[0] | right[1] | right[2], there >> 1 & 1);
-    add(place + kRow, below[0] | below[1] | below[2], there >> 2 & 1);
-    add(place + kColumn + kRow,
-        (below[0] + bin.small.to_right[0][i]) | (below[1] + bin.small.to_right[1][i]) |
-            (below[2] + bin.small.to_right[2][i]),
-        there >> 3 & 1);
-    const int columns = (bin.small.right[i] >> kBlockShift) - (bin.small.left[i] >> kBlockShift),
-              rows = (bin.small.bottom[i] >> kBlockShift) - (bin.small.top[i] >> kBlockShift);
-    tested += static_cast<unsigned>((columns + 1) * (rows + 1));
-    if (columns < 2 && rows < 2) continue;
-    for (int dy = 0; dy <= rows; ++dy) {
-      std::array<I16, 3> at;
-      for (std::size_t e = 0; e < 3; ++e) at[e] = edge[e];
-      for (int dx = 0; dx <= columns; ++dx) {
-        if (dx >= 2 || dy >= 2)
-          add(place + kColumn * static_cast<std::uint32_t>(dx) + kRow * static_cast<std::uint32_t>(dy),
-              at[0] | at[1] | at[2], there & 1);
-        for (std::size_t e = 0; e < 3; ++e) at[e] += I16(bin.small.to_right[e][i]);
-      }
-      for (std::size_t e = 0; e < 3; ++e) edge[e] += I16(bin.small.to_below[e][i]);
+/// What the triangles of a batch cover: of each quad that a box touches, a bit a pixel.
+struct Coverage {
+  static constexpr std::size_t kMost = 64;  ///< quads: four of each window
+  std::size_t quads = 0;
+  unsigned pixels = 0;
+  std::array<std::uint8_t, kMost> lane, first;  ///< and of its blocks the first, among those of the window
+  alignas(64) std::array<std::uint16_t, kMost * Quad::kBlocks> block;
+
+  HALFPLANE_INLINE Coverage() {}
+
+  /// Quad number `at`. `bits`: block after block.
+  HALFPLANE_INLINE void set(std::size_t at, std::size_t of_lane, std::int32_t first_block, std::uint64_t bits) {
+    lane[at] = static_cast<std::uint8_t>(of_lane);
+    first[at] = static_cast<std::uint8_t>(first_block);
+    std::uint16_t* const to = &block[Quad::kBlocks * at];
+    if constexpr (std::endian::native == std::endian::little)
+      std::memcpy(to, &bits, sizeof bits);
+    else
+      for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+  }
+  /// Of quads `from` to `from` + 15 the blocks with a pixel, a bit each.
+  [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t from) const {
+    const std::uint64_t some = ~bits_equal(U64::load(block.data() + Quad::kBlocks * from), U64(0));
+    const std::size_t there = Quad::kBlocks * (quads - from);
+    return there < 64 ? some & ((std::uint64_t{1} << there) - 1) : some;
+  }
+};
+
+/// The quads of a window, two by two.
+struct WindowQuads {
+  std::array<std::int32_t, 4> first;                    ///< block, from the first one's
+  std::array<std::array<std::uint64_t, 4>, 16> in_box;  ///< their pixels, a bit each, by SmallBatch::columns_rows
+};
+static constexpr WindowQuads kWindowQuads = [] {
+  WindowQuads quads{};
+  for (std::size_t q = 0; q < 4; ++q) {
+    quads.first[q] = static_cast<std::int32_t>(q % 2 * 2 + q / 2 * 8);
+    for (std::size_t box = 0; box < 16; ++box)
+      for (std::size_t k = 0; k < 4; ++k)
+        if (q % 2 * 2 + k % 2 <= box % 4 && q / 2 * 2 + k / 2 <= box / 4)
+          quads.in_box[box][q] |= std::uint64_t{0xffff} << 16 * k;
+  }
+  return quads;
+}();
+
+/// Of quad `q` of a window a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
+HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std::size_t q) {
+  using Part = Quad::Part;
+  const Part &column = bin.position.quad_x[q % 2], &row = bin.position.quad_y[q / 2];
+  Quad outside;
+  HALFPLANE_EACH_PART(Quad::kParts, k, outside.part[k] = Part(0))
+  for (std::size_t e = 0; e < 3; ++e) {
+    const auto both = [i](const SmallBatch::Lane& of) HALFPLANE_LAMBDA { return repeated<Part>(of[i]); };
+    const Part below = both(bin.small.edge_below[e]);
+    Part value = column * both(bin.small.edge_x[e]) + row * both(bin.small.edge_y[e]) + both(bin.small.edge[e]);
+    constexpr std::size_t kLower = Quad::kParts / 2;
+    outside.part[0] |= value;
+    outside.part[kLower] |= value + below;
+    if constexpr (Quad::kPartBlocks == 1) {
+      value += both(bin.small.edge_aside[e]);
+      outside.part[1] |= value;
+      outside.part[kLower + 1] |= value + below;
     }
   }
-  bin.job.counters.samples_tested += kBlockPixels * tested;
+  return outside.bits();
+}
+
+/// The same in 32 bits.
+HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::size_t q) {
+  constexpr int kSize = 2 * kBlockSize;
+  const I16 column = bin.position.block_x + static_cast<std::int32_t>(q % 2) * kSize,
+            row = bin.position.block_y + static_cast<std::int32_t>(q / 2) * kSize;
+  std::array<I16, Quad::kBlocks> outside;
+  for (I16& block : outside) block = I16(0);
+  for (std::size_t e = 0; e < 3; ++e) {
+    const I16 aside = I16(bin.small.edge_aside[e][i]), below = I16(bin.small.edge_below[e][i]),
+              value = column * bin.small.edge_x[e][i] + row * bin.small.edge_y[e][i] + bin.small.edge[e][i];
+    outside[0] |= value;
+    outside[1] |= value + aside;
+    outside[2] |= value + below;
+    outside[3] |= value + below + aside;
+  }
+  std::uint64_t bits = 0;
+  for (std::size_t k = 0; k < outside.size(); ++k) bits |= std::uint64_t{bits_of(outside[k])} << 16 * k;
+  return bits;
+}
+
+template <bool kShort>
+HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t quads, Coverage& covered) {
+  std::size_t at = 0;  // not in memory: bytes that are stored might change it, for all that the compiler knows
+  unsigned pixels = 0;
+  for (; quads != 0; quads &= quads - 1, ++at) {
+    const auto number = static_cast<std::size_t>(std::countr_zero(quads)), i = number / 4, q = number % 4;
+    const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q],
+                        bits = in_box & ~(kShort ? outside_short(bin, i, q) : outside_long(bin, i, q));
+    covered.set(at, i, bin.small.first_block[i] + kWindowQuads.first[q], bits);
+    pixels += static_cast<unsigned>(std::popcount(bits));
+  }
+  covered.quads = at;
+  covered.pixels = pixels;
+}
+/// Triangle by triangle.
+HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
+  const I16 columns_rows = I16::load(bin.small.columns_rows.data());
+  // A second column of quads, a second row, and what both make.
+  const I16 aside = shift_right_logical(columns_rows, 1) & 1, below = shift_right_logical(columns_rows, 3);
+  const I16 is_live = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(bin.small.live)) != 0;
+  const std::uint64_t quads = nibbles_of(((aside << 1) + 1) * ((below << 2) + 1) & is_live);
+  bin.has_short_edges ? find_covered<true>(bin, quads, covered) : find_covered<false>(bin, quads, covered);
+  bin.job.counters.samples_tested += Quad::kBlocks * kBlockPixels * static_cast<unsigned>(covered.quads);
+}
+
+/// A block's depths in lanes of 32 bits, centred, while they are tested.
+struct WideTest {
+  static constexpr unsigned kCount = 1;  ///< what count() says of a pixel
+  Bin& bin;
+  std::int32_t bias;
+
+  HALFPLANE_INLINE explicit WideTest(Bin& bin_) : bin(bin_), bias(bin_.depth_format.bias) {}
+  HALFPLANE_INLINE static I16 codes(const I16& code, std::int32_t low, std::int32_t high) {
+    return min(max(code, I16(low)), I16(high));
+  }
+  HALFPLANE_INLINE I16 load(std::size_t at) const { return load_depths(bin, at) - bias; }
+  HALFPLANE_INLINE void store(std::size_t at, const I16& depth) const { store_depths(bin, at, depth + bias); }
+#if HALFPLANE_ISA == 512
+  /// What is covered and passes: a bit a pixel.
+  template <class Fragments>
+  HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const I16& depth,
+                                               const I16& stored) {
+    if (Fragments::kIsLess) return covered & bits_below(depth, stored);
+    return covered & bits_of(Fragments::passes(state, depth, stored));
+  }
+  HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
+  HALFPLANE_INLINE I16 choose(std::uint32_t pixels, const I16& a, const I16& b) const {
+    return select_by_bits(pixels, a, b, bin.position.to_sign);
+  }
+#else
+  /// What is covered and passes: the signs of lanes.
+  template <class Fragments>
+  HALFPLANE_INLINE I16 passed(const SliceState& state, std::uint32_t covered, const I16& depth,
+                              const I16& stored) const {
+    return (I16(static_cast<std::int32_t>(covered)) << bin.position.to_sign) & Fragments::passes(state, depth, stored);
+  }
+  HALFPLANE_INLINE static unsigned count(const I16& pixels) {
+    return static_cast<unsigned>(std::popcount(bits_of(pixels)));
+  }
+  HALFPLANE_INLINE static I16 choose(const I16& pixels, const I16& a, const I16& b) {
+    return select_by_sign(pixels, a, b);
+  }
+#endif
+  template <class Pixels>
+  HALFPLANE_INLINE I16 choose_color(const Pixels& pixels, const I16& a, const I16& b) const {
+    return choose(pixels, a, b);
+  }
+};
+
+#if HALFPLANE_ISA == 512
+using NarrowTest = WideTest;
+#else
+/// The same in 16 bits, which are half as many registers: for depths that the bin keeps in as many.
+struct NarrowTest {
+  static constexpr unsigned kCount = kCountOfLane;
+  std::uint16_t* depths;
+  std::int16_t bias;
+
+  HALFPLANE_INLINE explicit NarrowTest(Bin& bin)
+      : depths(bin.memory.narrow_depth.data()), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
+  /// `low`, `high`: in both halves.
+  HALFPLANE_INLINE static S16 codes(const I16& code, std::int32_t low, std::int32_t high) {
+    return min(max(saturated(code), repeated<S16>(low)), repeated<S16>(high));
+  }
+  HALFPLANE_INLINE S16 load(std::size_t at) const { return S16::load(depths + at) - bias; }
+  HALFPLANE_INLINE void store(std::size_t at, const S16& depth) const { (depth + bias).store(depths + at); }
+  template <class Fragments>
+  HALFPLANE_INLINE static S16 passed(const SliceState& state, std::uint32_t covered, const S16& depth,
+                                     const S16& stored) {
+    return block_lanes_of(covered) & Fragments::passes(state, depth, stored);
+  }
+  HALFPLANE_INLINE static unsigned count(const S16& pixels) { return count_of(pixels); }
+  HALFPLANE_INLINE static S16 choose(const S16& pixels, const S16& a, const S16& b) { return select(pixels, a, b); }
+  HALFPLANE_INLINE static I16 choose_color(const S16& pixels, const I16& a, const I16& b) {
+    return select(widened(pixels), a, b);
+  }
+};
+#endif
+
+/// The blocks of a window, row after row.
+struct alignas(16) WindowBlock {
+  std::uint32_t place;        ///< from the window's first tile in the bin's memory
+  std::uint32_t tile, block;  ///< of the window, of its tile
+};
+/// By the first block of a quad; beyond the window lies what no box touches.
+static constexpr std::array<std::array<WindowBlock, Quad::kBlocks>, 16> kWindowBlocks = [] {
+  std::array<std::array<WindowBlock, Quad::kBlocks>, 16> blocks{};
+  for (std::uint32_t first = 0; first < 16; ++first)
+    for (std::uint32_t k = 0; k < Quad::kBlocks; ++k) {
+      const std::uint32_t column = first % 4 + k % 2, row = first / 4 + k / 2, block = column % 2 + row % 2 * 2;
+      blocks[first][k] = {(column / 2 + row / 2 * kBinTiles) * kTileSize * kTileSize + block * kBlockPixels,
+                          column / 2 + row / 2 * kSmallTiles, block};
+    }
   return blocks;
+}();
+
+/// What a block's colours are written as.
+enum class Writes { nothing, rgba8888, other };
+
+/// Colours of a block of lane i.
+template <Writes kColor>
+HALFPLANE_INLINE I16 small_colors(const Bin& bin, std::size_t i, const SmallBatch::Tile& tile,
+                                  const LanePositions::Block& block, int down) {
+  const SmallBatch& batch = bin.small;
+  const S32 step_x = repeated(batch.c_step_x[i]), step_y = repeated(batch.c_step_y[i]);
+  const S32 left = block_plane(block.channel_column, block.channel_row, step_x, step_y, step_y * block_rows<S32>,
+                               repeated(tile.color[i])),
+            right = left + (step_x << 1);
+  const I16 rgba =
+      ColorRange::clamped(saturated(left >> down, right >> down), I16(batch.c_low[i]), I16(batch.c_high[i]));
+  return kColor == Writes::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
 }
 
-/// Depth, test and colour of a block.
-template <class Fragments>
-HALFPLANE_INLINE void draw_block(Bin& bin, const Block& block, std::uint64_t& covered_pixels,
-                                 std::uint64_t& passed_pixels) {
-  const std::size_t i = block.place & 255;
-  const int column = static_cast<int>(block.place >> 8 & 255), row = static_cast<int>(block.place >> 16);
-  const auto of_box = static_cast<std::size_t>((column >> 1) + kMediumTiles * (row >> 1) - bin.small.first_tile[i]);
-  const std::size_t right = block.place >> 8 & 1, below = block.place >> 16 & 1;  // in its tile
-  const auto at = static_cast<std::size_t>(kColumnPlaces[static_cast<std::size_t>(column)] +
-                                           kRowPlaces[static_cast<std::size_t>(row)]);
-  const I16 value = bin.position.column[right] * bin.small.z_step_x[i] +
-                    bin.position.row[below] * bin.small.z_step_y[i] + bin.small.z_anchor[of_box][i];
-  const I16 depth = decode(value, bin.depth_format, bin.small.z_low[i], bin.small.z_high[i]);
-  const I16 stored = load_depths(bin, at);
-  const I16 covered = I16(static_cast<std::int32_t>(block.covered)) << bin.position.to_sign;
-  const I16 passed = covered & Fragments::passes(bin.state, depth, stored);  // signs
-  const std::uint32_t passed_bits = bits_of(passed);
-  covered_pixels += static_cast<unsigned>(std::popcount(block.covered));
-  passed_pixels += static_cast<unsigned>(std::popcount(passed_bits));
-  if (passed_bits == 0 && bin.skip.fragments_early_z) return;
-  if (bin.state.depth_write) store_depths(bin, at, select_by_sign(passed, depth, stored));
-  if (!bin.state.color_write) return;
-  const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
-    return channel_codes(bin, bin.position.column_pair[right], bin.position.row_pair[below], bin.small.c_step_x[p][i],
-                         bin.small.c_step_y[p][i], bin.small.c_anchor[p][of_box][i], bin.small.c_low[p][i],
-                         bin.small.c_high[p][i]);
-  };
-  const I16 color = packed(pair(0), pair(1), bin.config.color_format);
-  std::uint32_t* pixels = bin.memory.color.data() + at;
-  select_by_sign(passed, color, I16::load(pixels)).store(pixels);
+/// Depth, test and colour of the blocks that are covered in part. What is written, the state says.
+template <class Fragments, class Test, bool kDepth, Writes kColor>
+HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
+  const SmallBatch& batch = bin.small;
+  const SliceState state = bin.state;
+  const LanePositions& position = bin.position;
+  const Test test(bin);
+  std::uint32_t* const colors = bin.memory.color.data();
+  const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
+  const bool is_skipping = bin.skip.fragments_early_z;
+  unsigned passed_pixels = 0;
+  for (std::size_t first = 0; first < covered.quads; first += 16)
+    for (std::uint64_t rest = covered.blocks(first); rest != 0; rest &= rest - 1) {
+      const std::size_t number = Quad::kBlocks * first + static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t quad = number / Quad::kBlocks, i = covered.lane[quad];
+      const WindowBlock& in_window = kWindowBlocks[covered.first[quad]][number % Quad::kBlocks];
+      const SmallBatch::Tile& tile = batch.tile[in_window.tile];
+      const LanePositions::Block& block = position.block[in_window.block];
+      const auto at = static_cast<std::size_t>(batch.place[i]) + in_window.place;
+      const I16 value = block_plane(block.column, block.row, I16(batch.z_step_x[i]), I16(batch.z_step_y[i]),
+                                    I16(batch.z_step_below[i]), I16(tile.depth[i]));
+      const auto depth = test.codes(value >> depth_down, batch.z_low[i], batch.z_high[i]), stored = test.load(at);
+      const auto passed = test.template passed<Fragments>(state, covered.block[number], depth, stored);
+      const unsigned count = test.count(passed);
+      passed_pixels += count;
+      if (count == 0 && is_skipping) continue;
+      if (kDepth) test.store(at, test.choose(passed, depth, stored));
+      if (kColor == Writes::nothing) continue;
+      test.choose_color(passed, small_colors<kColor>(bin, i, tile, block, color_down), I16::load(colors + at))
+          .store(colors + at);
+    }
+  count_fragments(bin, covered.pixels, passed_pixels / Test::kCount);
 }
-
-template <class Fragments>
-HALFPLANE_INLINE void draw_blocks(Bin& bin) {
-  const std::size_t blocks = find_blocks(bin);
-  std::uint64_t covered = 0, passed = 0;
-  for (std::size_t b = 0; b < blocks; ++b) draw_block<Fragments>(bin, bin.blocks[b], covered, passed);
-  count_fragments(bin, covered, passed);
+template <class Fragments, class Test, bool kDepth>
+HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
+  if (!bin.state.color_write) return draw_blocks<Fragments, Test, kDepth, Writes::nothing>(bin, covered);
+  bin.config.color_format == ColorFormat::rgba8888
+      ? draw_blocks<Fragments, Test, kDepth, Writes::rgba8888>(bin, covered)
+      : draw_blocks<Fragments, Test, kDepth, Writes::other>(bin, covered);
+}
+template <class Fragments, class Test>
+HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
+  bin.state.depth_write ? draw_blocks<Fragments, Test, true>(bin, covered)
+                        : draw_blocks<Fragments, Test, false>(bin, covered);
 }
 
 /// The samples of triangles that have few, round by round: of each triangle one more.
@@ -193,11 +362,12 @@ struct SampleChannel {
   I16 step_x, step_y;
 };
 
-/// Two channels of each round, to `code`.
+/// Two channels of each round, centred, to `value`.
 template <class Arithmetic>
 HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>& planes, std::size_t pair,
-                                  const SampleRounds& rounds, std::array<SmallBatch::Lane, SampleRounds::kMost>& code) {
-  const LaneFormat& format = bin.color_format;
+                                  const SampleRounds& rounds,
+                                  std::array<SmallBatch::Lane, SampleRounds::kMost>& value) {
+  const LaneFormat& format = bin.centred_color;
   const PairCodes codes(planes.corners, pair, bin.state.is_flat);
   const auto gradient = planes.color();
   const auto channel = [&](std::size_t half) HALFPLANE_LAMBDA {
@@ -207,15 +377,15 @@ HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>&
     return SampleChannel<Step>{of_half(codes.at_origin), x, y, local_step(x, format), local_step(y, format)};
   };
   const auto first = channel(0), second = channel(1);
-  const I16 step_x = pairs(first.step_x, second.step_x), step_y = pairs(first.step_y, second.step_y);
+  const auto step_x = as<S32>(pairs(first.step_x, second.step_x)), step_y = as<S32>(pairs(first.step_y, second.step_y));
   for (std::size_t r = 0; r < rounds.count; ++r) {
     const auto anchor = [&](const auto& half) HALFPLANE_LAMBDA {
       return narrowed(plane_at(rounds.to(r), bin.widths.plane_fraction, half.at_origin, half.x, half.y, format),
                       format);
     };
-    channel_codes(bin, I16::load(rounds.column[r].data()), I16::load(rounds.row[r].data()), step_x, step_y,
-                  pairs(anchor(first), anchor(second)), codes.low, codes.high)
-        .store(code[r].data());
+    const S32 at = S32::load(rounds.column[r].data()) * step_x + S32::load(rounds.row[r].data()) * step_y +
+                   as<S32>(pairs(anchor(first), anchor(second)));
+    (at >> format.down).store(value[r].data());
   }
 }
 
@@ -227,12 +397,16 @@ HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRound
   find_samples(bin, corners, rounds);
   sample_depths(bin, planes, rounds);
   if (!bin.state.color_write) return;
-  alignas(64) std::array<SmallBatch::Lane, SampleRounds::kMost> red_blue, green_alpha;
-  sample_pair(bin, planes, 0, rounds, red_blue);
-  sample_pair(bin, planes, 1, rounds, green_alpha);
-  for (std::size_t r = 0; r < rounds.count; ++r)
-    packed(I16::load(red_blue[r].data()), I16::load(green_alpha[r].data()), bin.config.color_format)
+  alignas(64) std::array<SmallBatch::Lane, SampleRounds::kMost> red_green, blue_alpha;
+  sample_pair(bin, planes, 0, rounds, red_green);
+  sample_pair(bin, planes, 1, rounds, blue_alpha);
+  const ColorRange range(corners, bin.state.is_flat);
+  for (std::size_t r = 0; r < rounds.count; ++r) {
+    const B64 channels = turns_of_halves(saturated(S32::load(red_green[r].data()), S32::load(blue_alpha[r].data())));
+    const I16 rgba = ColorRange::clamped(channels, range.low, range.high);
+    (bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format))
         .store(rounds.color[r].data());
+  }
 }
 
 /// Triangles whose few samples are known: their samples one by one, in their order. What is written, the state says.
@@ -271,31 +445,51 @@ HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* 
             : draw_samples<Fragments, false, false>(bin, rounds, depths);
 }
 
-/// Draws the small and medium triangles that wait.
+/// Draws a batch whose records are loaded.
 template <class Fragments>
-void draw_batch(Bin& bin, const Slice& slice) {
-  if (bin.small.count == 0) return;
+HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
   bin.line_tiles = 0;
-  load_records(bin.small, bin.first_x, bin.first_y);
-  const BatchTiles tiles = batch_tiles(bin);
+  const std::uint64_t tiles = batch_tiles(bin);
   const bool is_short = bin.is_short;
   bool is_changed = false;
   if (bin.small.has_samples) {
     SampleRounds rounds;
     (is_short ? set_up_samples<ShortArithmetic> : set_up_samples<LongArithmetic>)(bin, slice, rounds);
-    is_changed = touch_tiles<Fragments>(bin, tiles.touched);
+    is_changed = touch_tiles<Fragments>(bin, tiles);
     bin.is_narrow ? draw_samples<Fragments>(bin, rounds, bin.memory.narrow_depth.data())
                   : draw_samples<Fragments>(bin, rounds, bin.memory.depth.data());
   } else {
-    const auto set_up =
-        tiles.is_over_two
-            ? (is_short ? set_up_small<kMediumTiles, ShortArithmetic> : set_up_small<kMediumTiles, LongArithmetic>)
-            : (is_short ? set_up_small<kSmallTiles, ShortArithmetic> : set_up_small<kSmallTiles, LongArithmetic>);
-    set_up(bin.small, slice, bin.widths, bin.depth_format, bin.color_format, bin.first_x, bin.first_y);
-    is_changed = touch_tiles<Fragments>(bin, tiles.touched);
-    draw_blocks<Fragments>(bin);
+    (is_short ? set_up_small<ShortArithmetic> : set_up_small<LongArithmetic>)(bin.small, slice, bin.widths,
+                                                                              bin.centred_depth, bin.centred_color,
+                                                                              bin.first_x, bin.first_y);
+    is_changed = touch_tiles<Fragments>(bin, tiles);
+    Coverage covered;
+    find_covered(bin, covered);
+    bin.is_narrow ? draw_blocks<Fragments, NarrowTest>(bin, covered) : draw_blocks<Fragments, WideTest>(bin, covered);
   }
   bin.small.count = 0;
   // With less, a bound that is too high will do.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
+}
+
+/// Draws the small and medium triangles that wait.
+template <class Fragments>
+HALFPLANE_INLINE void draw_batch(Bin& bin, const Slice& slice) {
+  if (bin.small.count == 0) return;
+  load_records(bin.small, bin.first_x, bin.first_y);
+  draw_loaded<Fragments>(bin, slice);
+}
+
+/// Lets a record wait. A medium one may need several windows.
+template <class Fragments>
+HALFPLANE_INLINE void add_small(Bin& bin, const Slice& slice, const Record& record) {
+  if (bin.small.add(record, 0)) draw_batch<Fragments>(bin, slice);
+}
+template <class Fragments>
+HALFPLANE_INLINE void add_medium(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box) {
+  constexpr int kSize = kSmallTiles * kTileSize;
+  const int width = box.right - (box.left & ~(kTileSize - 1)), height = box.bottom - (box.top & ~(kTileSize - 1));
+  for (int y = 0; y <= height; y += kSize)
+    for (int x = 0; x <= width; x += kSize)
+      if (bin.small.add(record, x | y << 16)) draw_batch<Fragments>(bin, slice);
 }

@@ -1,55 +1,96 @@
 // Sixteen small or medium triangles at a time through triangle_setup: the same integers, a triangle a lane.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// Triangles of a slice that wait, and after set_up_small() their constants: fields of lanes, one for each.
+/// Two by two blocks in lanes of 16 bits.
+struct Quad {
+  static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
+  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;  ///< a block, or two side by side
+  std::array<Part, static_cast<std::size_t>(kParts)> part;
+
+  /// A bit for each lane whose sign is set, block after block.
+  [[nodiscard]] HALFPLANE_INLINE std::uint64_t bits() const {
+#if HALFPLANE_ISA == 512
+    return bits_of(part[0]) | std::uint64_t{bits_of(part[1])} << 32;
+#else
+    return bits_of(part[0], part[1]) | std::uint64_t{bits_of(part[2], part[3])} << 32;
+#endif
+  }
+};
+
+/// Triangles of a slice that wait, as much of each as lies in a window of two by two tiles; and after set_up_small() their
+/// constants: fields of lanes, one for each.
 struct SmallBatch {
   using Lane = std::array<std::int32_t, 16>;
   template <std::size_t N>
   using LaneArray = std::array<Lane, N>;
+  using FourChannels = std::array<std::uint64_t, 16>;  ///< of each lane, 16 bits a channel
+  static constexpr std::size_t kTiles = kSmallTiles * kSmallTiles;
 
   int count = 0;
   std::array<const Record*, 16> records;
-  bool has_samples = true;  ///< of all of them it is known which few they cover
+  alignas(64) Lane window{};  ///< from the box's first tile to the window's, pixels: column low, row high
+  bool has_samples = true;    ///< of all of them it is known which few they cover
 
+  alignas(64) LaneArray<3> corner;            ///< bytes from the slice's first vertex
   std::uint32_t live = 0;                     ///< lanes that draw something in this bin
-  alignas(64) Lane left, top, right, bottom;  ///< pixels of the bin
-  alignas(64) Lane first_tile;                ///< of the box: column + kMediumTiles row
-  alignas(64) Lane z_low, z_high;
-  alignas(64) Lane samples;  ///< Record::samples() of the part of its box that lies in the bin
+  alignas(64) Lane left, top, right, bottom;  ///< of the part of a box that lies in the window, pixels of the bin
+  alignas(64) Lane samples;                   ///< Record::samples() of the part of its box that lies in the bin
 
-  alignas(64) LaneArray<3> edge;                ///< at the first pixel of the box's first block
-  alignas(64) LaneArray<3> to_right, to_below;  ///< from a block to its neighbours
-  alignas(64) Lane place;                       ///< the first block: lane, column, row, a byte each
-  alignas(64) Lane there;              ///< bits: the box touches that block, its right neighbour, the lower, both's
-  alignas(64) LaneArray<3> edge_step;  ///< pairs: a row down low, a column to the right high
-  /// Of the tiles that the box may touch, kMediumTiles a row.
-  alignas(64) LaneArray<kMediumTiles * kMediumTiles> z_anchor;
-  alignas(64) Lane z_step_x, z_step_y;
-  alignas(64) std::array<LaneArray<kMediumTiles * kMediumTiles>, 2> c_anchor;  ///< by channel pair
-  alignas(64) LaneArray<2> c_step_x, c_step_y, c_low, c_high;
+  alignas(64) LaneArray<3> edge;                    ///< at the first pixel of the first quad
+  alignas(64) LaneArray<3> edge_x, edge_y;          ///< from pixel to pixel
+  alignas(64) LaneArray<3> edge_aside, edge_below;  ///< from block to block; all in both halves where 16 bits hold them
+  alignas(64) Lane first_block;                     ///< of the first quad, among the four by four of the window
+  alignas(64) Lane columns_rows;                    ///< of blocks, less 1: two bits each
+  alignas(64) Lane place;                           ///< of the window's first tile in the bin's memory
+  /// Planes at the anchors of the window's tiles, centred; of colours 16 bits a channel.
+  struct alignas(256) Tile {
+    Lane depth;
+    FourChannels color;
+  };
+  std::array<Tile, kTiles> tile;
+  alignas(64) Lane z_step_x, z_step_y, z_step_below;  ///< the last of block_rows<I16> rows
+  alignas(64) Lane z_low, z_high;                     ///< centred, in both halves where 16 bits do
+  alignas(64) FourChannels c_step_x, c_step_y;
+  alignas(64) Lane c_low, c_high;  ///< a byte a channel, R lowest
 
   /// True when that was the last for which there is room.
-  HALFPLANE_INLINE bool add(const Record& record) {
+  HALFPLANE_INLINE bool add(const Record& record, std::int32_t at_window) {
     records[static_cast<std::size_t>(count)] = &record;
+    window[static_cast<std::size_t>(count)] = at_window;
     return ++count == 16;
   }
 };
 
-/// The fields of the records that wait; live.
-HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
-  for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
-  const auto [z_high, left_top, right_bottom, traits] = turned_rows([&batch](int i) HALFPLANE_LAMBDA {
-    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + 4;
+/// Four words of each record that waits, from word `from` on.
+HALFPLANE_INLINE Columns words_of(const SmallBatch& batch, int from) {
+  return turned_rows([&batch, from](int i) HALFPLANE_LAMBDA {
+    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + from;
   });
+}
+
+/// What a batch keeps of its records, whose words these are; live.
+HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, const Columns& upper, int first_x,
+                                    int first_y) {
+  constexpr int kRowBits = 4;
+  static_assert(sizeof(VertexRow) == 1 << kRowBits);
+  (lower.first << kRowBits).store(batch.corner[0].data());
+  (lower.second << kRowBits).store(batch.corner[1].data());
+  (lower.third << kRowBits).store(batch.corner[2].data());
+  const I16 &left_top = upper.second, &right_bottom = upper.third, &traits = upper.fourth;
   const I16 covered = traits >> Record::kSamplesShift;
   batch.has_samples = !is_any(covered == 0);
   const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
   const I16 box_x = max(x0, I16(0)), box_y = max(y0, I16(0));
-  box_x.store(batch.left.data());
-  box_y.store(batch.top.data());
-  ((box_x >> kTileShift) + (box_y >> kTileShift) * kMediumTiles).store(batch.first_tile.data());
-  min((right_bottom << 16 >> 16) - first_x, I16(kBinSize - 1)).store(batch.right.data());
-  min((right_bottom >> 16) - first_y, I16(kBinSize - 1)).store(batch.bottom.data());
+  const I16 window = I16::load(batch.window.data());
+  const I16 window_x = (box_x & ~(kTileSize - 1)) + (window & 0xffff),
+            window_y = (box_y & ~(kTileSize - 1)) + (window >> 16);
+  max(box_x, window_x).store(batch.left.data());
+  max(box_y, window_y).store(batch.top.data());
+  const auto last_in = [](const I16& last, const I16& first) HALFPLANE_LAMBDA {
+    return min(min(last, I16(kBinSize - 1)), first + (kSmallTiles * kTileSize - 1));
+  };
+  last_in((right_bottom << 16 >> 16) - first_x, window_x).store(batch.right.data());
+  last_in((right_bottom >> 16) - first_y, window_y).store(batch.bottom.data());
   // Of two by two samples the bin may have one column or row: those on the left, or those on the right moved there.
   constexpr std::int32_t kLeft = 1 | 4, kUpper = 1 | 2;
   const I16 in_columns =
@@ -59,6 +100,12 @@ HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y
   in_bin.store(batch.samples.data());
   batch.live =
       ((1U << batch.count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
+}
+
+/// The fields of the records that wait.
+HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
+  for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
+  place_records(batch, words_of(batch, 0), words_of(batch, 4), first_x, first_y);
 }
 
 /// The corners of a batch's triangles as they come, b and c also from a; the first of them in the order of (Y, X), which
@@ -72,10 +119,12 @@ struct SmallCorners {
 
 /// Takes those of no area out of batch.live. Extents of less than 2^14 subpixels.
 HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slice) {
-  const auto fetch = [&batch, vertices = slice.vertices.data()](std::size_t k) HALFPLANE_LAMBDA {
-    return load_vertices([&](int i)
-                             HALFPLANE_LAMBDA { return vertices + batch.records[static_cast<std::size_t>(i)]->v[k]; });
-  };
+  const auto fetch = [&batch, vertices = reinterpret_cast<const char*>(slice.vertices.data())](std::size_t k)
+                         HALFPLANE_LAMBDA {
+                           return load_vertices([&batch, vertices, k](int i) HALFPLANE_LAMBDA {
+                             return vertices + static_cast<std::uint32_t>(batch.corner[k][static_cast<std::size_t>(i)]);
+                           });
+                         };
   const auto choose = [](const I16& sign, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
     return SnappedLanes{select_by_sign(sign, p.x, q.x), select_by_sign(sign, p.y, q.y), select_by_sign(sign, p.z, q.z),
                         select_by_sign(sign, p.rgba, q.rgba)};
@@ -100,9 +149,16 @@ HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slic
           max(max(a.z, b.z), c.z)};
 }
 
-/// `s`: bits of the subpixel grid.
-HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& corners, int s, int first_x,
-                                         int first_y) {
+/// Whether 16 bits hold the edges of small and medium triangles in the quads that their boxes touch. A box of so many
+/// pixels has an extent below one more; a quad reaches less than its size beyond it.
+HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
+  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kReach = kExtent + 2 * kBlockSize;
+  return (2 * kExtent * kReach << widths.grid_bits) < 1 << 15;
+}
+
+/// `s`: bits of the subpixel grid. `is_short`: are_short_edges().
+HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& corners, int s, bool is_short,
+                                         int first_x, int first_y) {
   const int half = 1 << (s - 1);
   const auto first_of_block = [&](const SmallBatch::Lane& box, int first) HALFPLANE_LAMBDA {
     return (((I16::load(box.data()) & ~(kBlockSize - 1)) + first) << s) + half;
@@ -115,22 +171,24 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
   for (std::size_t e = 0; e < 3; ++e) {
     const I16 dx = x[e + 1] - x[e], dy = y[e + 1] - y[e];
     const I16 value = (cross(dx, dy, px - x[e], py - y[e]) + ~is_top_left(dx, dy)) >> s;
-    value.store(batch.edge[e].data());
-    pairs(dx, -dy).store(batch.edge_step[e].data());
-    (dy * -kBlockSize).store(batch.to_right[e].data());
-    (dx * kBlockSize).store(batch.to_below[e].data());
+    const auto store = [is_short](const I16& lanes, SmallBatch::Lane& to)
+                           HALFPLANE_LAMBDA { (is_short ? doubled(lanes) : lanes).store(to.data()); };
+    store(value, batch.edge[e]);
+    store(-dy, batch.edge_x[e]);
+    store(dx, batch.edge_y[e]);
+    store(-(dy << kBlockShift), batch.edge_aside[e]);
+    store(dx << kBlockShift, batch.edge_below[e]);
   }
 }
 
-/// The first block of each box, and which of its neighbours the box touches.
+/// Where the windows are, and their boxes in blocks.
 HALFPLANE_INLINE void find_places(SmallBatch& batch) {
   const auto block_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kBlockShift; };
-  const I16 column = block_of(batch.left), row = block_of(batch.top), number = I16::of([](int i) { return i; });
-  (number | column << 8 | row << 16).store(batch.place.data());
-  const I16 is_drawn = I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(batch.live);
-  const I16 has_right = (block_of(batch.right) > column) & 2, has_below = (block_of(batch.bottom) > row) & 4;
-  const I16 has_both = (has_right << 2) & (has_below << 1);
-  select(is_drawn != 0, has_right | has_below | has_both | 1, I16(0)).store(batch.there.data());
+  const I16 column = block_of(batch.left), row = block_of(batch.top);
+  constexpr int kTilePixels = kTileSize * kTileSize;
+  ((column >> 1) * kTilePixels + (row >> 1) * (kBinTiles * kTilePixels)).store(batch.place.data());
+  ((column & 1) + (row & 1) * 4).store(batch.first_block.data());
+  ((block_of(batch.right) - column) + (block_of(batch.bottom) - row) * 4).store(batch.columns_rows.data());
 }
 
 /// A place to evaluate planes at, from their origin, subpixels.
@@ -204,6 +262,8 @@ template <class Step>
 struct Gradients {
   Step x, y;
 };
+template <class Step>
+Gradients(Step, Step) -> Gradients<Step>;  // clang 14 does not find it by itself
 
 /// Gradients of depth. `Gradient`: GradientLanes or ExactGradientLanes; `Numerator`: I16, L16 or D16.
 template <class Numerator, class Gradient>
@@ -220,29 +280,41 @@ HALFPLANE_INLINE auto depth_gradients_by(const SmallCorners& t, const Gradient& 
   return Gradients{gradient(product(az, t.by) - product(bz, t.ay)), gradient(product(t.ax, bz) - product(t.bx, az))};
 }
 
+/// The codes that colours of sixteen triangles are clamped to, as the target has them: a byte a channel, R lowest.
+struct ColorRange {
+  I16 low, high;
+  std::uint32_t differs;  ///< bytes: 0 where a channel is the same all over each triangle
+
+  HALFPLANE_INLINE ColorRange(const SmallCorners& t, bool is_flat) {
+    const B64 a = as<B64>(t.a.rgba), b = is_flat ? a : as<B64>(t.b.rgba), c = is_flat ? a : as<B64>(t.c.rgba);
+    low = as<I16>(min(min(a, b), c));
+    high = as<I16>(max(max(a, b), c));
+    differs = static_cast<std::uint32_t>(or_of_lanes(low ^ high));
+  }
+  /// Of channels that follow each other: then the clamp alone makes it.
+  [[nodiscard]] HALFPLANE_INLINE bool is_flat(std::size_t channel) const { return (differs >> 8 * channel & 255) == 0; }
+
+  /// Packed colours from what saturated() leaves of centred values.
+  [[nodiscard]] HALFPLANE_INLINE static I16 clamped(const B64& channels, const I16& low, const I16& high) {
+    return as<I16>(min(max(channels ^ 0x80, as<B64>(low)), as<B64>(high)));
+  }
+};
+
 /// Two channels: the halves of each lane.
 struct PairCodes {
-  I16 at_origin, ac, bc, low, high;
+  I16 at_origin, ac, bc;
 
-  /// Red and blue, or green and alpha.
+  /// Red and green, or blue and alpha.
   HALFPLANE_INLINE PairCodes(const SmallCorners& t, std::size_t pair, bool is_flat) {
-    const auto codes = [pair](const SnappedLanes& v) HALFPLANE_LAMBDA {
-      return as<S32>(shift_right_logical(v.rgba, static_cast<int>(8 * pair)) & 0xff00ff);
-    };
+    const auto codes = [pair](const SnappedLanes& v) HALFPLANE_LAMBDA { return as<S32>(channel_pair(v.rgba, pair)); };
     const S32 a = codes(t.a), b = is_flat ? a : codes(t.b), c = is_flat ? a : codes(t.c);
     at_origin = as<I16>(is_flat ? a : codes(t.origin));
     ac = as<I16>(b - a);
     bc = as<I16>(c - a);
-    low = as<I16>(min(min(a, b), c));
-    high = as<I16>(max(max(a, b), c));
   }
   /// Half 0 or 1 of a lane.
   HALFPLANE_INLINE static I16 of_half(const I16& pair, std::size_t half) {
     return half == 0 ? pair << 16 >> 16 : pair >> 16;
-  }
-  /// Whether that half is the same all over each triangle: then the clamp alone makes it.
-  [[nodiscard]] HALFPLANE_INLINE bool is_flat(std::size_t half) const {
-    return !is_any(of_half(low ^ high, half) != 0);
   }
 };
 
@@ -334,95 +406,95 @@ struct SmallPlanes {
   }
 };
 
-/// A plane at the anchors of the tiles.
-using Anchors = std::array<I16, kMediumTiles * kMediumTiles>;
-
-template <std::size_t Side, class Visit>
-HALFPLANE_INLINE void for_each_anchor(Visit&& visit) {
-  for (std::size_t j = 0; j < Side; ++j)
-    for (std::size_t i = 0; i < Side; ++i) visit(j * kMediumTiles + i);
-}
+/// A plane at the anchors of a window's tiles.
+using Anchors = std::array<I16, SmallBatch::kTiles>;
 
 /// From the first one on. `to_tile`: bits from a step of a subpixel to one of a tile.
-template <std::size_t Side, class Step>
-HALFPLANE_INLINE void find_anchors(Step first, const Step& step_x, const Step& step_y, int to_tile,
+template <class Step>
+HALFPLANE_INLINE void find_anchors(const Step& first, const Step& step_x, const Step& step_y, int to_tile,
                                    const LaneFormat& format, Anchors& out) {
-  const Step aside = step_x << to_tile, down = step_y << to_tile;
-  for (std::size_t j = 0; j < Side; ++j) {
-    Step value = first;
-    for (std::size_t i = 0; i < Side; ++i) {
-      out[j * kMediumTiles + i] = narrowed(value, format);
-      value = value + aside;
-    }
-    first = first + down;
-  }
+  const Step aside = step_x << to_tile, lower = first + (step_y << to_tile);
+  out[0] = narrowed(first, format);
+  out[1] = narrowed(first + aside, format);
+  out[2] = narrowed(lower, format);
+  out[3] = narrowed(lower + aside, format);
 }
 
-template <std::size_t Side, class Arithmetic>
+template <class Arithmetic>
 HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes, const FromOrigin& to,
                                          const LaneFormat& format) {
   const SmallCorners& corners = planes.corners;
   const Widths& widths = planes.widths;
   const auto [step_x, step_y] = planes.depth_gradients(format);
   Anchors at;
-  find_anchors<Side>(plane_at(to, widths.plane_fraction, corners.origin.z, step_x, step_y, format), step_x, step_y,
-                     kTileShift + widths.grid_bits, format, at);
-  for_each_anchor<Side>([&](std::size_t i) HALFPLANE_LAMBDA { at[i].store(batch.z_anchor[i].data()); });
+  find_anchors(plane_at(to, widths.plane_fraction, corners.origin.z, step_x, step_y, format), step_x, step_y,
+               kTileShift + widths.grid_bits, format, at);
+  for (std::size_t i = 0; i < SmallBatch::kTiles; ++i) at[i].store(batch.tile[i].depth.data());
   local_step(step_x, format).store(batch.z_step_x.data());
-  local_step(step_y, format).store(batch.z_step_y.data());
-  corners.z_low.store(batch.z_low.data());
-  corners.z_high.store(batch.z_high.data());
+  const I16 local_y = local_step(step_y, format);
+  local_y.store(batch.z_step_y.data());
+  (local_y * block_rows<I16>).store(batch.z_step_below.data());
+  const bool is_narrow = HALFPLANE_ISA <= 256 && widths.depth().code.bits <= 16;  // see NarrowTest
+  const auto limit = [&](const I16& z)
+                         HALFPLANE_LAMBDA { return is_narrow ? doubled(z - format.bias) : z - format.bias; };
+  limit(corners.z_low).store(batch.z_low.data());
+  limit(corners.z_high).store(batch.z_high.data());
 }
 
-/// One channel of sixteen triangles: half of a lane.
-struct SmallChannel {
+/// A channel of sixteen triangles, or two of them in the halves of each lane.
+struct SmallChannels {
   Anchors at;
   I16 step_x, step_y;
 };
 
-template <std::size_t Side, class Arithmetic>
+template <class Arithmetic>
 HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes,
                                           const FromOrigin& to, const LaneFormat& format, bool is_flat) {
   const Widths& widths = planes.widths;
+  const ColorRange range(planes.corners, is_flat);
+  range.low.store(batch.c_low.data());
+  range.high.store(batch.c_high.data());
   const auto gradient = planes.color();
+  std::array<SmallChannels, 2> colors;
   for (std::size_t p = 0; p < 2; ++p) {
     const PairCodes codes(planes.corners, p, is_flat);
-    std::array<SmallChannel, 2> halves;
+    std::array<SmallChannels, 2> halves;
     for (std::size_t h = 0; h < 2; ++h) {
-      SmallChannel& half = halves[h];
-      if (codes.is_flat(h)) {
-        for_each_anchor<Side>([&](std::size_t i) HALFPLANE_LAMBDA { half.at[i] = I16(0); });
+      SmallChannels& half = halves[h];
+      if (range.is_flat(2 * p + h)) {
+        for (I16& at : half.at) at = I16(0);
         half.step_x = half.step_y = I16(0);
         continue;
       }
       const auto of_half = [h](const I16& pair) HALFPLANE_LAMBDA { return PairCodes::of_half(pair, h); };
       const auto [step_x, step_y] = channel_gradients(planes.corners, gradient, codes, h);
-      find_anchors<Side>(plane_at(to, widths.plane_fraction, of_half(codes.at_origin), step_x, step_y, format), step_x,
-                         step_y, kTileShift + widths.grid_bits, format, half.at);
+      find_anchors(plane_at(to, widths.plane_fraction, of_half(codes.at_origin), step_x, step_y, format), step_x,
+                   step_y, kTileShift + widths.grid_bits, format, half.at);
       half.step_x = local_step(step_x, format);
       half.step_y = local_step(step_y, format);
     }
-    for_each_anchor<Side>([&](std::size_t i) HALFPLANE_LAMBDA {
-      pairs(halves[0].at[i], halves[1].at[i]).store(batch.c_anchor[p][i].data());
-    });
-    pairs(halves[0].step_x, halves[1].step_x).store(batch.c_step_x[p].data());
-    pairs(halves[0].step_y, halves[1].step_y).store(batch.c_step_y[p].data());
-    codes.low.store(batch.c_low[p].data());
-    codes.high.store(batch.c_high[p].data());
+    SmallChannels& pair = colors[p];
+    for (std::size_t i = 0; i < SmallBatch::kTiles; ++i) pair.at[i] = pairs(halves[0].at[i], halves[1].at[i]);
+    pair.step_x = pairs(halves[0].step_x, halves[1].step_x);
+    pair.step_y = pairs(halves[0].step_y, halves[1].step_y);
   }
+  for (std::size_t i = 0; i < SmallBatch::kTiles; ++i)
+    store_interleaved(colors[0].at[i], colors[1].at[i], batch.tile[i].color.data());
+  store_interleaved(colors[0].step_x, colors[1].step_x, batch.c_step_x.data());
+  store_interleaved(colors[0].step_y, colors[1].step_y, batch.c_step_y.data());
 }
 
-/// The constants of a batch that is loaded. `Side`: tiles along a side of a box at most.
-template <std::size_t Side, class Arithmetic>
+/// The constants of a batch that is loaded. Formats: centred.
+template <class Arithmetic>
 HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, const Widths& widths,
                                      const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
                                      int first_y) {
   const SmallCorners corners = small_corners(batch, slice);
-  set_up_small_edges(batch, corners, widths.grid_bits, first_x, first_y);
+  set_up_small_edges(batch, corners, widths.grid_bits, are_short_edges(widths), first_x, first_y);
   find_places(batch);
   const SmallPlanes<Arithmetic> planes(corners, widths);
   const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
                                            widths.grid_bits, first_x, first_y);
-  set_up_small_depth<Side>(batch, planes, to, depth_format);
-  if (slice.state.color_write) set_up_small_colors<Side>(batch, planes, to, color_format, slice.state.is_flat);
+  set_up_small_depth(batch, planes, to, depth_format);
+  if (slice.state.color_write) set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat);
 }
