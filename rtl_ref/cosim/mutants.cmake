@@ -174,13 +174,11 @@ mutant(75 stages/cache_tags.sv "fast clear: marks stop at the last whole word"
   [=[~({WORD{1'b1}} << 1 << bit_of(last_x))]=] [=[{WORD{1'b0}}]=])
 mutant(76 stages/block_cache.sv "hazard: a stamp is read while the one before writes it"
   [=[(x1_writes_q & item.mask) != '0]=] [=[1'b0]=])
-mutant(77 stages/block_cache.sv "hazard: a line is read out while its last stamp is written"
-  [=[x1_line_q == item_line && x1_writes_q != '0]=] [=[1'b0]=])
-mutant(78 stages/block_cache.sv "victims: the stamp that is about to be written is not read first"
+mutant(77 stages/block_cache.sv "victims: the stamp that is about to be written is not read first"
   [=[goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0]=] [=[1'b0]=])
-mutant(79 stages/block_cache.sv "strobes: samples count as written that only came from memory"
+mutant(78 stages/block_cache.sv "strobes: samples count as written that only came from memory"
   [=[{write_i.write_depth[s], written}]=] [=[{1'b1, written}]=])
-mutant(80 stages/block_cache.sv "fill: what was not drawn into keeps what the colour RAM had"
+mutant(79 stages/block_cache.sv "fill: what was not drawn into keeps what the colour RAM had"
   [=[dirty ? color : clear_color & {COLOR{c_fills_q}}]=] [=[color]=])
-mutant(81 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
+mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])

@@ -1,5 +1,5 @@
-// Cycles of the RTL, pipelined setup, stamp 2x2: from the first primitive taken to the last write into the on-chip tiles,
-// without the cycles in which tiles move between chip and memory. Cycles are exact, so these bounds are no timings.
+// Cycles of the RTL, pipelined setup, stamp 2x2: from the first primitive taken to the last write into the on-chip blocks,
+// memory included. Targets of up to 64x64 pixels stay on the chip. Cycles are exact, so these bounds are no timings.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -57,12 +57,10 @@ Cycles measure(const Scene& scene, const char* name) {
   EXPECT_FALSE(r.mismatch.has_value());
   const auto counters = render_hardware(scene, factory.config).counters;
   const auto primitives = static_cast<double>(r.primitives());
-  const auto cycles = static_cast<double>(r.raster_cycles - r.tile_cycles);
+  const auto cycles = static_cast<double>(r.raster_cycles);
   const Cycles result{cycles / primitives, cycles / static_cast<double>(counters.covered)};
-  std::printf("%s: %.2f cycles each, %.3f a pixel (%llu primitives, %llu cycles, %llu more moving tiles)\n", name,
-              result.each, result.per_pixel, static_cast<unsigned long long>(r.primitives()),
-              static_cast<unsigned long long>(r.raster_cycles - r.tile_cycles),
-              static_cast<unsigned long long>(r.tile_cycles));
+  std::printf("%s: %.2f cycles each, %.3f a pixel (%llu primitives, %llu cycles)\n", name, result.each, result.per_pixel,
+              static_cast<unsigned long long>(r.primitives()), static_cast<unsigned long long>(r.raster_cycles));
   return result;
 }
 
@@ -117,21 +115,26 @@ TEST(Cycles, AStreamOfThemTakesAtMostFourAndAHalfEach) {
   EXPECT_LE(measure(scene_of(32, 32, triangles), "stream").each, 4.5);
 }
 
-TEST(Cycles, RandomTrianglesInBoxesOf8PixelsTakeAtMost5Each) {
-  EXPECT_LE(measure(scene_of(640, 480, random_in_boxes(8, 640, 480, 2000)), "8 px boxes, 640x480").each, 5);
+TEST(Cycles, RandomTrianglesInBoxesOf8PixelsTakeAtMost5EachAndFromMemory16) {
+  EXPECT_LE(measure(scene_of(640, 480, random_in_boxes(8, 640, 480, 2000)), "8 px boxes, 640x480").each, 16);
   EXPECT_LE(measure(scene_of(32, 32, random_in_boxes(8, 32, 32, 2000)), "8 px boxes, 32x32").each, 5);
 }
 
-TEST(Cycles, RandomTrianglesInBoxesOf32PixelsTakeAtMost65HundredthsPerPixel) {
-  EXPECT_LE(measure(scene_of(640, 480, random_in_boxes(32, 640, 480, 2000)), "32 px boxes, 640x480").per_pixel, 0.65);
+TEST(Cycles, RandomTrianglesInBoxesOf32PixelsTakeAtMost65HundredthsPerPixelAndFromMemoryOne) {
+  EXPECT_LE(measure(scene_of(640, 480, random_in_boxes(32, 640, 480, 2000)), "32 px boxes, 640x480").per_pixel, 1.0);
   EXPECT_LE(measure(scene_of(32, 32, random_in_boxes(32, 32, 32, 2000)), "32 px boxes, 32x32").per_pixel, 0.65);
 }
 
-TEST(Cycles, ATriangleOf128By128TakesAtMost28HundredthsPerPixel) {
-  EXPECT_LE(measure(scene_of<Triangle>(128, 128, {{{{0, 0}, {128, 0}, {0, 128}}}}), "128x128").per_pixel, 0.28);
+TEST(Cycles, ATriangleOf64By64TakesAtMost28HundredthsPerPixel) {
+  EXPECT_LE(measure(scene_of<Triangle>(64, 64, {{{{0, 0}, {64, 0}, {0, 64}}}}), "64x64").per_pixel, 0.28);
+  EXPECT_LE(measure(scene_of<Triangle>(64, 64, {{{{1.3, 0.1}, {63.2, 5.7}, {20.4, 63}}}}), "64x64 askew").per_pixel, 0.28);
+}
+
+TEST(Cycles, ATriangleOf128By128TakesAtMost4TenthsPerPixelWithItsEvictions) {
+  EXPECT_LE(measure(scene_of<Triangle>(128, 128, {{{{0, 0}, {128, 0}, {0, 128}}}}), "128x128").per_pixel, 0.4);
   EXPECT_LE(measure(scene_of<Triangle>(640, 480, {{{{100.3, 50.1}, {228.2, 60.7}, {140.4, 178}}}}), "128x128 askew")
                 .per_pixel,
-            0.28);
+            0.4);
 }
 
 /// Lines of `length` pixels in all directions. Diamond exit: as many pixels as the longer side has.
@@ -150,9 +153,9 @@ std::vector<Line> random_lines(double length, int width, int height, std::size_t
 }
 
 TEST(Cycles, StreamedLinesOf16PixelsAndMoreTake101HundredthsPerPixelAnd2PerLine) {
-  for (const int length : {16, 24, 100}) {
+  for (const int length : {16, 24, 60}) {
     const std::string name = "lines of " + std::to_string(length) + " px";
-    EXPECT_LE(measure(scene_of(128, 128, random_lines(length, 128, 128, 2000)), name.c_str()).each, 1.01 * length + 2);
+    EXPECT_LE(measure(scene_of(64, 64, random_lines(length, 64, 64, 2000)), name.c_str()).each, 1.01 * length + 2);
   }
 }
 
