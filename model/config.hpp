@@ -40,6 +40,7 @@ struct Config {
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
   int hiz_bits = 16;           ///< bits of a tile's HiZ bound, see hiz_code_bits(); 0: no HiZ
+  int hiz_lag = 16;            ///< visits behind which a HiZ update is seen, and under way at most; a power of two
   int cache_lines = 16;        ///< tiles that the on-chip depth and colour RAM holds; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
   int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out

@@ -16,10 +16,11 @@ package raster_pkg;
   localparam int KEY_PRIMITIVE_BITS = 16;  // bits of the primitive number in an RTL packet key
   localparam int CONTEXT_SLOTS = 4;  // triangles whose constants the context RAM holds; a power of two
   localparam int HIZ_BITS = 16;  // bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ
+  localparam int HIZ_LAG = 16;  // tile visits behind which a HiZ update is seen, and under way at most; a power of two
   localparam int CACHE_LINES = 16;  // tiles that the on-chip depth and colour RAM holds; a power of two
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
-  localparam logic [63:0] CONFIG_ID = 64'h280bfeeb9cb9d8e2;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'ha0a5dc2326432c07;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 8;  // s: fraction bits of a coordinate, at least 1
