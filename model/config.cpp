@@ -36,6 +36,8 @@ const std::array kSettings{
             &Config::context_slots},
     Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32,
             &Config::hiz_bits},
+    Setting{"hiz.lag", "visits", "tile visits behind which a HiZ update is seen, and under way at most; a power of two",
+            2, 64, &Config::hiz_lag},
     Setting{"cache.kind", "tiles|blocks", "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead", 0,
             0, &Config::cache_kind},
     Setting{"cache.lines", "lines", "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
@@ -133,6 +135,7 @@ Config preset(std::string_view name) {
     config.context_slots = 2;
     config.hiz_bits = 8;
     config.cache_kind = CacheKind::tiles;
+    config.hiz_lag = 4;  // of which its serial stages do not take more
     config.cache_lines = 4;
     config.setup_kind = SetupKind::serial;
     config.line_units = 0;  // with it 60 MHz are out of reach there: docs/area.md
@@ -207,6 +210,7 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.tile_size), "tile.size must be 4, 8, 16 or 32");
   refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
   refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
+  refuse_unless(is_power_of_two(config.hiz_lag), "hiz.lag must be a power of two");
   refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
   refuse_unless(is_power_of_two(config.cache_queue), "cache.queue must be a power of two");
   refuse_unless(is_power_of_two(config.cache_victims), "cache.victims must be a power of two");

@@ -47,6 +47,7 @@ struct Config {
   int primitive_id_bits = 16;  ///< bits of the primitive number that rides in every packet key (modulo 2^bits)
   int context_slots = 4;       ///< triangles whose constants the context RAM holds at a time
   int hiz_bits = 16;           ///< bits of a tile's HiZ bound, see hiz_code_bits(); 0: no HiZ
+  int hiz_lag = 16;            ///< visits behind which a HiZ update is seen, and under way at most; a power of two
   CacheKind cache_kind = CacheKind::blocks;
   int cache_lines = 256;  ///< tiles or blocks that the on-chip depth and colour RAM holds; a power of two
   int cache_queue = 32;   ///< blocks: fragments between the tags and the depth test; a power of two

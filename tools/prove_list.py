@@ -39,7 +39,9 @@ SRAMS = ('*sram*',)
 OFFSETS = ('*edge_offset*',)
 HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
 STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
-HIZ_TWINS = (15, 16, 17, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'))
+LAG_4 = (('HIZ_LAG', 4),)
+HIZ_TWINS = (15, 16, 17, 62, 63, 64, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'),
+             ("seen_q + (N + 1)'(LAG);", "seen_q + (N + 1)'(LAG - 1);"))
 
 PROOFS = [
     Proof('edge_offset_step', 'a', 'lib/edge_offset.sv', 'value + x step_x + y step_y', is_combinational=True,
@@ -74,11 +76,15 @@ PROOFS = [
           cuts=SRAMS, quick=TINY, twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
     Proof('coarse_raster_corners', 'c, e', 'stages/coarse_raster.sv', 'every sample lies between the corners that are looked at',
           is_combinational=True, cuts=SRAMS, quick=TINY, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
-    Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by the bound of all earlier visits, and '
-          'what could pass is not rejected', presets=('embedded',), cuts=SRAMS, inputs='coarse_raster_bound',
-          twins=HIZ_TWINS, cover_depth=8),
-    Proof('coarse_raster_hiz_6_bits', 'd', 'stages/coarse_raster.sv', 'the same with hiz.bits=6', file='coarse_raster_hiz',
-          presets=(), no_answer=('embedded',), cuts=SRAMS, inputs='coarse_raster_bound', twins=HIZ_TWINS, package=HIZ_6),
+    Proof('hiz_bound', 'd', 'stages/hiz.sv', 'a verdict knows the visits up to n - lag, exactly; what could pass is not '
+          'rejected', presets=('embedded',), cuts=SRAMS, inputs='hiz_visits', twins=HIZ_TWINS, cover_depth=6),
+    Proof('hiz_bound_lag_4', 'd', 'stages/hiz.sv', 'the same with hiz.lag=4', file='hiz_bound',
+          presets=('embedded',), cuts=SRAMS, inputs='hiz_visits', twins=HIZ_TWINS, package=LAG_4, cover_depth=6),
+    Proof('hiz_bound_6_bits', 'd', 'stages/hiz.sv', 'the same with hiz.bits=6', file='hiz_bound',
+          presets=('embedded',), cuts=SRAMS, inputs='hiz_visits', twins=HIZ_TWINS, package=HIZ_6, cover_depth=6),
+    Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by its own verdict, made when all was settled',
+          presets=('embedded',), cuts=SRAMS, inputs='coarse_raster_bound', twins=(('is_eligible && is_settled)', 'is_eligible)'),
+          ('BOUND && !is_behind)) && is_settled', 'BOUND && !is_behind))'))),
     Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', quick=TINY,
           twins=(34, ('assign max = corner > max_q ? corner : max_q;', 'assign max = corner;'))),
     Proof('sram_word', 'd', 'lib/sram.sv', 'a read gives what was written last', has_reset=False,
@@ -100,8 +106,7 @@ PROOFS = [
           cuts=OFFSETS, twins=(28, ('if (x_ready) x_valid_q', 'if (y_ready) x_valid_q')), cover_depth=9),
     Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
           quick=TINY, twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
-    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; slots and visits are not given '
-          'twice', k=2, cuts=SRAMS, inputs='coarse_raster_bound', twins=(22, ('&& !visit_is_full;', ';')), cover_depth=7),
+    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; no slot is given twice', k=2, cuts=SRAMS, inputs='coarse_raster_bound', twins=(22, ('(tile_taken && state_q != END)', 'tile_valid_o')), cover_depth=7),
     Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time',
           k=2, cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', cover_depth=34,
           twins=(('at_q[i*STEPS+STEPS-1] && ready[i+1]', 'at_q[i*STEPS+STEPS-1]'),

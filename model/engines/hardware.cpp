@@ -187,7 +187,7 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   if (fragment.ends_visit) {
     const RetirePacket retired = visit_.retire(fragment, config_, widths_);
     sink_.take(on<Arrow::retire>, retired);
-    hiz_.update(retired);
+    hiz_.retire(retired);
     visit_ = {};
   }
 }

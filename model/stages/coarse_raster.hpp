@@ -101,7 +101,7 @@ struct TileOffset {
 /// What coarse_raster writes into the context RAM when it takes a primitive.
 [[nodiscard]] ContextPacket make_context(const SetupPacket& setup, const Widths& widths);
 
-/// The stage: calls emit(TilePacket) in the order of the walk. Whatever emit does to `hiz` is seen by the next tile.
+/// The stage: calls emit(TilePacket) in the order of the walk, which retires the visit.
 template <class Emit>
 void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
                    Emit&& emit) {
@@ -135,6 +135,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
         continue;
       }
       const TilePacket packet = make_tile_packet(setup, tile_x, tile_y, slot, widths);
+      hiz.begin_visit(setup.state);
       if (tile_class == TileClass::inside)
         ++count.trivially_accepted;
       else

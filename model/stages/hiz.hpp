@@ -1,8 +1,12 @@
 // HiZ: a bound on the depths of each tile, by which coarse_raster drops tiles that cannot pass the depth test.
 //
-// In: the retired tile visits and the fast clears, in program order. Out: whether a tile of a primitive can be left
-// out. The bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above
-// it.
+// In: the tile visits and the fast clears, in program order. Out: whether a tile of a primitive can be left out. The
+// bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above it.
+//
+// Visit n sees the updates of the visits up to n - lag, all of them and none of a later one, so that what is seen follows
+// from program order alone and nobody waits for a visit that has just begun. The visits between can only have lowered
+// depths, which leaves a bound true; if one of them may have raised a depth, by its state, no tile is behind its bound.
+// A fast clear of depth sets all bounds, and what earlier visits had to say is forgotten.
 //
 // Lines are not in any tile visit, so nothing retires that could raise a bound behind them. One whose depth test can raise
 // a depth (greater, gequal, notequal, always) makes all bounds worthless as it passes coarse_raster: later triangles are
@@ -10,6 +14,7 @@
 // other tests only lower depths, which leaves bounds what they are.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "../fragment_ops.hpp"
@@ -27,9 +32,12 @@ class Hiz {
       : untested_tiles_(untested_tiles),
         bits_(config.hiz_bits),
         low_bits_(config.depth_bits - hiz_code_bits(config)),
+        lag_(config.hiz_lag),
         tiles_x_(static_cast<std::size_t>(widths.tiles_x)),
         code_(tiles_x_ * static_cast<std::size_t>(widths.tiles_y),
-              static_cast<std::uint32_t>(widths.hiz_code.range.hi)) {}
+              static_cast<std::uint32_t>(widths.hiz_code.range.hi)),
+        unseen_(static_cast<std::size_t>(lag_)),
+        quiet_(lag_ - 1) {}
 
   /// Whether the primitive may be tested at all. Those of up to 2 x 2 tiles are not: reading the bound would cost more
   /// than it saves.
@@ -46,12 +54,23 @@ class Hiz {
 
   /// Whether no sample of an eligible primitive can pass in this tile.
   [[nodiscard]] bool rejects(const SetupPacket& setup, int tile_x, int tile_y) const {
+    if (quiet_ < lag_ - 1) return false;
     const std::uint64_t nearest = setup.range.low[kDepthPlane], farthest = bound(tile_x, tile_y);
     return setup.state.depth_test == DepthFunc::less ? nearest >= farthest : nearest > farthest;
   }
 
-  void update(const RetirePacket& retired) {
-    if (retired.update != HizUpdate::none) code_[index(retired.key.tile_x, retired.key.tile_y)] = retired.hiz_code;
+  /// A visit of this primitive begins.
+  void begin_visit(const PrimitiveState& state) {
+    quiet_ = state.depth_write && can_raise_depth(state.depth_test) ? 0 : std::min(quiet_ + 1, lag_ - 1);
+  }
+
+  /// It has retired: the next visit sees what the one `lag` visits before it had to say.
+  void retire(const RetirePacket& retired) {
+    unseen_[newest_] = retired;
+    newest_ = (newest_ + 1) % unseen_.size();
+    RetirePacket& seen = unseen_[newest_];
+    if (seen.update != HizUpdate::none) code_[index(seen.key.tile_x, seen.key.tile_y)] = seen.hiz_code;
+    seen = {};
   }
 
   /// A line follows; its pixels do not show here.
@@ -62,6 +81,8 @@ class Hiz {
   /// Tiles (0, 0) to (last_x, last_y), the whole target, now hold the clear depth.
   void clear(int last_x, int last_y, std::uint32_t depth) {
     holds_ = true;
+    quiet_ = lag_ - 1;
+    std::ranges::fill(unseen_, RetirePacket{});
     if (bits_ == 0) return;
     for (int y = 0; y <= last_y; ++y)
       for (int x = 0; x <= last_x; ++x) code_[index(x, y)] = depth >> low_bits_;
@@ -79,8 +100,12 @@ class Hiz {
   bool holds_ = true;  ///< no line can have raised a depth since the last fast clear
   int untested_tiles_;
   int bits_, low_bits_;  ///< bits stored, and dropped, of a depth code
+  int lag_;              ///< visits
   std::size_t tiles_x_;
   std::vector<std::uint32_t> code_;
+  std::vector<RetirePacket> unseen_;  ///< ring: of the last visits
+  std::size_t newest_ = 0;            ///< where the next one goes, and the oldest is
+  int quiet_;                         ///< visits since one that may raise a depth, lag - 1 at most
 };
 
 }  // namespace halfplane

@@ -34,13 +34,13 @@ mutant(13 stages/coarse_raster.sv "trivial accept: a tile whose worst sample is 
   [=[smallest >= 0]=] [=[smallest > 0]=])
 mutant(14 stages/coarse_raster.sv "saturation: large edge values wrap"
   [=[{value_q[V-1], {(TE - 1) {~value_q[V-1]}}}]=] [=[value_q[TE-1:0]]=])
-mutant(15 stages/coarse_raster.sv "stale HiZ: a tile's bound is read while an earlier visit is under way"
-  [=[is_eligible && !conflicts]=] [=[is_eligible]=])
-mutant(16 stages/coarse_raster.sv "HiZ: a bound that equals the smallest depth rejects, whatever the depth test"
-  [=[(s_q.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal)]=] [=[is_equal]=])
-mutant(17 stages/coarse_raster.sv "HiZ: greater and its like are tested"
-  [=[s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise]=]
-  [=[s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER]=])
+mutant(15 stages/hiz.sv "early HiZ: an update is seen as soon as it is there"
+  [=[(!is_settled_o || (starts_visit_i && started_q + (N + 1)'(1) == full))]=] [=[1'b1]=])
+mutant(16 stages/hiz.sv "HiZ: a bound that equals the smallest depth rejects, whatever the depth test"
+  [=[(setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal)]=] [=[is_equal]=])
+mutant(17 stages/hiz.sv "HiZ: greater and its like are tested"
+  [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise]=]
+  [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER]=])
 mutant(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
   [=[row_q + (s_q.step_y[PLANE+:P] << (TS + S))]=]
   [=[(i == 0 ? value_q : row_q) + (s_q.step_y[PLANE+:P] << (TS + S))]=])  # depth alone
@@ -130,7 +130,7 @@ mutant(50 stages/primitive_join.sv "order: a pixel goes first when it is there f
   [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE]=] [=[pixel_valid_i]=])
 
 # lines and points on their way through the other stages
-mutant(51 stages/coarse_raster.sv "stale HiZ: bounds are read behind a line that can raise depths"
+mutant(51 stages/hiz.sv "stale HiZ: bounds are read behind a line that can raise depths"
   [=[bounds_hold_q && is_triangle]=] [=[is_triangle]=])
 mutant(52 stages/depth_test.sv "HiZ: pixels of a line count for the tile visit behind it"
   [=[is_stamp && !fragment_q.kind[1]]=] [=[is_stamp]=])
@@ -157,6 +157,15 @@ mutant(60 stages/triangle_setup.sv "dropped stall: a part hands over to one that
   [=[at_q[i*STEPS+STEPS-1] && ready[i+1]]=] [=[at_q[i*STEPS+STEPS-1]]=])
 mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes a phase late"
   [=[flows[NUMERATOR] || flows[NUMERATOR+1]]=] [=[flows[NUMERATOR+1]]=])
+
+# the lag of HiZ
+mutant(62 stages/hiz.sv "stale HiZ: a visit that may raise a depth is believed not to, until it is seen"
+  [=[quiet_q == '1]=] [=[1'b1]=])
+mutant(63 stages/hiz.sv "HiZ: a visit that may raise a depth is forgotten a visit too early"
+  [=[setup_i.state.depth_write && can_raise ? '0 : quiet_q + N'(quiet_q != '1)]=]
+  [=[setup_i.state.depth_write && can_raise ? N'(1) : quiet_q + N'(quiet_q != '1)]=])
+mutant(64 stages/hiz.sv "fast clear: what earlier visits had to say comes behind it"
+  [=[clears_i ? started_q : seen_q + (N + 1)'(sees)]=] [=[seen_q + (N + 1)'(sees)]=])
 
 # framebuffer of blocks
 mutant(70 stages/cache_tags.sv "tag: only the block's column is compared"

@@ -4,8 +4,7 @@
 // tile's HiZ bound; if the last tile of the box was skipped, a packet without a visit that tells the primitive's end.
 // Two cycles from the setup packet to the first tile; then one tile per cycle, two for a tile whose HiZ bound is read.
 //
-// HiZ has program order: a primitive that reads bounds waits at a tile until every earlier visit of it has retired.
-// One whose box touches at most 2x2 tiles neither reads nor waits.
+// A primitive whose box touches at most 2x2 tiles reads no bounds. What a bound knows, and for whom it waits: hiz.sv.
 // Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
 module coarse_raster (
     input logic clk_i,
@@ -29,9 +28,7 @@ module coarse_raster (
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ only its coming counts
     input raster_pkg::retire_packet_t retire_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // Counters: pulses for the tiles of triangles, and samples
     output logic                                 is_visited_o,
@@ -57,8 +54,6 @@ module coarse_raster (
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
   localparam int S = raster_pkg::GRID_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
   localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses
@@ -76,11 +71,11 @@ module coarse_raster (
 
   logic is_triangle, is_fast_clear, has_walk, clears_bounds;
   logic takes, steps, is_last_column, is_last_tile, is_eligible, finishes;
-  logic is_outside, is_inside, is_behind, conflicts, visit_is_full, visits_are_done;
+  logic is_outside, is_inside, is_behind, is_settled, visits_are_done;
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line)
-  assign clears_bounds  = is_fast_clear && s_q.state.depth_write && HIZ != 0;
+  assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
   assign is_last_column = tile_x_q == s_q.box.right[PX-1:TS];
   assign is_last_tile   = is_last_column && tile_y_q == s_q.box.bottom[PY-1:TS];
   assign setup_ready_o  = (state_q == IDLE || finishes) && used_q != (SLOT + 1)'(SLOTS);
@@ -89,7 +84,7 @@ module coarse_raster (
 
   // --- The walk. A tile is left when it is skipped or taken by fine_raster.
   logic offers_visit, is_skipped, tile_taken;
-  assign offers_visit = ((state_q == WALK && !is_outside && !is_eligible) || (state_q == BOUND && !is_behind)) && !visit_is_full;
+  assign offers_visit = ((state_q == WALK && !is_outside && !is_eligible) || (state_q == BOUND && !is_behind)) && is_settled;
   assign is_skipped   = (state_q == WALK && is_outside) || (state_q == BOUND && is_behind);
   assign tile_valid_o = offers_visit || state_q == END;
   assign tile_taken   = tile_valid_o && tile_ready_i;
@@ -114,7 +109,7 @@ module coarse_raster (
           else if (visits_are_done) state_q <= CLEAR;
           WALK:
           if (is_outside && is_last_tile) state_q <= END;
-          else if (!is_outside && is_eligible && !conflicts) state_q <= BOUND;
+          else if (!is_outside && is_eligible && is_settled) state_q <= BOUND;
           BOUND:
           if (is_behind && is_last_tile) state_q <= END;
           else if (steps) state_q <= WALK;
@@ -139,7 +134,7 @@ module coarse_raster (
         tile_x_q <= setup_i.box.left[PX-1:TS];
         tile_y_q <= setup_i.box.top[PY-1:TS];
       end
-    end else if (state_q == PREPARE && !has_walk && (!s_q.state.depth_write || HIZ == 0)) begin
+    end else if (state_q == PREPARE && !has_walk && !clears_bounds) begin
       tile_x_q <= s_q.box.right[PX-1:TS];  // nothing to clear here
       tile_y_q <= s_q.box.bottom[PY-1:TS];
     end else if ((steps || clears) && !is_last_tile) begin
@@ -227,100 +222,26 @@ module coarse_raster (
   assign context_o.state = setup_i.state;
   assign context_o.range = setup_i.range;
 
-  // --- Visits under way, oldest first: their tiles, for the wait, in a ring.
-  localparam int VISITS = 8;
-  localparam int VISIT = $clog2(VISITS);
-  logic [VISITS-1:0]           visit_valid_q, visit_conflicts;
-  /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
-  logic [VISITS*(TX+TY)-1:0]   visit_tile_q;
-  /* verilator lint_on UNUSEDSIGNAL */
-  logic [VISIT-1:0]            newest_q, oldest_q;
-  logic                        starts_visit;
-  assign starts_visit    = tile_taken && state_q != END;
-  assign visit_is_full   = visit_valid_q[newest_q];
-  assign visits_are_done = visit_valid_q == '0;
-  assign conflicts       = visit_conflicts != '0;
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      visit_valid_q <= '0;
-      newest_q      <= '0;
-      oldest_q      <= '0;
-    end else begin
-      if (starts_visit) begin
-        visit_valid_q[newest_q] <= 1'b1;
-        newest_q                <= newest_q + VISIT'(1);
-      end
-      if (retire_valid_i) begin
-        visit_valid_q[oldest_q] <= 1'b0;
-        oldest_q                <= oldest_q + VISIT'(1);
-      end
-    end
-  end
-
-  generate
-    for (i = 0; i < VISITS; i++) begin : gen_visit
-      if (HIZ > 0) begin : gen_tile
-        always_ff @(posedge clk_i) begin
-          if (starts_visit && newest_q == VISIT'(i)) visit_tile_q[i*(TX+TY)+:TX+TY] <= {tile_y_q, tile_x_q};
-        end
-        assign visit_conflicts[i] = visit_valid_q[i] && visit_tile_q[i*(TX+TY)+:TX+TY] == {tile_y_q, tile_x_q};
-      end else begin : gen_no_tile
-        assign visit_tile_q[i*(TX+TY)+:TX+TY] = '0;
-        assign visit_conflicts[i] = 1'b0;
-      end
-    end
-
-    // --- HiZ: an upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
-    if (HIZ > 0) begin : gen_hiz
-      logic [Z-1:0]   depth_min;
-      logic [HIZ-1:0] bound;
-      logic           is_wide, is_high, can_raise, writes;
-      logic           bounds_hold_q;  // no line can have raised a depth since the last fast clear
-      assign depth_min   = s_q.range.low[0+:Z];
-      /* verilator lint_off CMPCONST */  // a small target has no such box
-      assign is_wide     = s_q.box.right[PX-1:TS] - s_q.box.left[PX-1:TS] > TX'(1);
-      assign is_high     = s_q.box.bottom[PY-1:TS] - s_q.box.top[PY-1:TS] > TY'(1);
-      /* verilator lint_on CMPCONST */
-      assign can_raise   = s_q.state.depth_test[2];  // the functions that let a farther sample pass
-      assign is_eligible = bounds_hold_q && is_triangle && (is_wide || is_high) &&
-                           s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise;
-      assign writes      = clears || (retire_valid_i && retire_i.update != raster_pkg::HIZ_UPDATE_NONE);
-
-      always_ff @(posedge clk_i or negedge rst_ni) begin
-        if (!rst_ni) bounds_hold_q <= 1'b1;
-        else if (state_q == PREPARE && s_q.state.depth_write) begin
-          if (is_fast_clear) bounds_hold_q <= 1'b1;
-          if (raster_pkg::LINES_UNIT != 0 && s_q.kind == raster_pkg::PRIMITIVE_KIND_LINE && can_raise) bounds_hold_q <= 1'b0;
-        end
-      end
-
-      sram #(
-          .WIDTH(HIZ),
-          .DEPTH(raster_pkg::TILES_Y << TX)
-      ) u_bound (
-          .clk_i,
-          .read_i         (state_q == WALK),
-          .read_address_i ({tile_y_q, tile_x_q}),
-          .data_o         (bound),
-          .write_i        (writes),
-          .write_address_i(clears ? {tile_y_q, tile_x_q} : {retire_i.key.tile_y, retire_i.key.tile_x}),
-          .data_i         (clears ? depth_min[Z-1-:HIZ] : retire_i.hiz_code)
-      );
-
-      // Behind: depth_min > bound; for `less` equality will do.
-      logic is_equal;
-      if (HIZ == Z) begin : gen_exact
-        assign is_equal = depth_min == bound;
-      end else begin : gen_high_bits
-        assign is_equal = depth_min[Z-1-:HIZ] == bound && depth_min[Z-HIZ-1:0] == '1;
-      end
-      assign is_behind = depth_min[Z-1-:HIZ] > bound || (s_q.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal);
-    end else begin : gen_no_hiz
-      assign is_eligible = 1'b0;
-      assign is_behind   = 1'b0;
-    end
-  endgenerate
+  // --- Visits under way, and what is known of the depths of a tile
+  logic starts_visit;
+  assign starts_visit = tile_taken && state_q != END;
+  hiz u_hiz (
+      .clk_i,
+      .rst_ni,
+      .setup_i          (s_q),
+      .tile_x_i         (tile_x_q),
+      .tile_y_i         (tile_y_q),
+      .passes_i         (state_q == PREPARE),
+      .reads_i          (state_q == WALK),
+      .clears_i         (clears),
+      .starts_visit_i   (starts_visit),
+      .is_eligible_o    (is_eligible),
+      .is_settled_o     (is_settled),
+      .is_behind_o      (is_behind),
+      .visits_are_done_o(visits_are_done),
+      .retire_valid_i,
+      .retire_i
+  );
 
   // --- The packet
   var raster_pkg::tile_box_t box;

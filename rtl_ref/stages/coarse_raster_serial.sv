@@ -1,8 +1,7 @@
 // Coarse raster for the smallest parts: the bits of coarse_raster.sv with one edge stepped and tested a cycle.
 //
 // The edges stand in a ring of three. TURN moves it round once: each edge is stepped to the next tile as it leaves the
-// front, and tested in the cycle after that at the back. The planes are stepped meanwhile. A primitive that reads HiZ
-// bounds waits at a tile until every earlier visit has retired, not only those of this tile.
+// front, and tested in the cycle after that at the back. The planes are stepped meanwhile.
 // Occupancy: 5 cycles a tile, one more for a visit, one more where a HiZ bound is read; a visited tile is offered until
 // fine_raster is through with it. Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
 module coarse_raster_serial (
@@ -27,9 +26,7 @@ module coarse_raster_serial (
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ only its coming counts
     input raster_pkg::retire_packet_t retire_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // Counters: pulses for the tiles of triangles, and samples
     output logic                                 is_visited_o,
@@ -55,12 +52,9 @@ module coarse_raster_serial (
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
   localparam int S = raster_pkg::GRID_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
   localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses
-  localparam int VISITS = 3;  // bits of the number of visits under way
 
   // ------------------------------------------------------------------------------------------------------------- walk
   localparam logic [2:0] IDLE = 3'd0, TURN = 3'd1, WALK = 3'd2, BOUND = 3'd3, END = 3'd4, CLEAR = 3'd5,
@@ -80,12 +74,12 @@ module coarse_raster_serial (
   logic is_triangle, is_fast_clear, is_token, clears_bounds;
   logic takes, steps, turns_end, is_last_column, is_last_tile, clears, finishes;
   logic is_eligible, is_eligible_q;  // HiZ may reject tiles
-  logic is_behind, visit_is_full, visits_are_done, is_skipped, tile_taken;
+  logic is_behind, is_settled, visits_are_done, is_skipped, tile_taken;
   logic outside_q, inside_q;  // some edge, all edges
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = s_q.kind[1];  // fast clear, flush, line
-  assign clears_bounds  = is_fast_clear && s_q.state.depth_write && HIZ != 0;
+  assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
   assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // one tile's bound per cycle
   assign is_last_column = tile_x_q == s_q.box.right[PX-1:TS];
   assign is_last_tile   = is_last_column && tile_y_q == s_q.box.bottom[PY-1:TS];
@@ -115,8 +109,7 @@ module coarse_raster_serial (
           IDLE: if (takes) state_q <= TURN;
           TURN: if (turns_end) state_q <= is_token ? CLEAR : WALK;
           WALK:
-          if (!is_eligible_q) state_q <= visit_is_full ? WALK : VISIT;
-          else if (visits_are_done) state_q <= BOUND;
+          if (is_settled) state_q <= is_eligible_q ? BOUND : VISIT;
           BOUND: state_q <= VISIT;
           CLEAR: if ((clears || !clears_bounds) && is_last_tile) state_q <= END;
           default: state_q <= state_q;
@@ -261,69 +254,25 @@ module coarse_raster_serial (
   assign context_o.range = setup_i.range;
 
   // ----------------------------------------------------------------------------------------------------- visits, HiZ
-  logic [VISITS-1:0] visits_q;  // under way
-  logic             starts_visit;
-  assign starts_visit    = tile_taken && state_q != END;
-  assign visit_is_full   = visits_q == '1;
-  assign visits_are_done = visits_q == '0;
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) visits_q <= '0;
-    else visits_q <= visits_q + VISITS'(starts_visit) - VISITS'(retire_valid_i);
-  end
-
-  // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
-  generate
-    if (HIZ > 0) begin : gen_hiz
-      logic [Z-1:0]   depth_min;
-      logic [HIZ-1:0] bound;
-      logic           is_wide, is_high, can_raise, writes;
-      logic           bounds_hold_q;  // no line can have raised a depth since the last fast clear
-      assign depth_min   = s_q.range.low[0+:Z];
-      /* verilator lint_off CMPCONST */  // a small target has no such box
-      assign is_wide     = s_q.box.right[PX-1:TS] - s_q.box.left[PX-1:TS] > TX'(1);
-      assign is_high     = s_q.box.bottom[PY-1:TS] - s_q.box.top[PY-1:TS] > TY'(1);
-      /* verilator lint_on CMPCONST */
-      assign can_raise   = s_q.state.depth_test[2];  // the functions that let a farther sample pass
-      assign is_eligible = bounds_hold_q && is_triangle && (is_wide || is_high) &&
-                           s_q.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise;
-      assign writes      = clears || (retire_valid_i && retire_i.update != raster_pkg::HIZ_UPDATE_NONE);
-
-      always_ff @(posedge clk_i or negedge rst_ni) begin
-        if (!rst_ni) bounds_hold_q <= 1'b1;
-        else if (state_q == CLEAR && s_q.state.depth_write) begin
-          if (is_fast_clear) bounds_hold_q <= 1'b1;
-          if (raster_pkg::LINES_UNIT != 0 && s_q.kind == raster_pkg::PRIMITIVE_KIND_LINE && can_raise) bounds_hold_q <= 1'b0;
-        end
-      end
-
-      sram #(
-          .WIDTH    (HIZ),
-          .DEPTH    (raster_pkg::TILES_Y << TX),
-          .READS_OLD(0)  // a bound that is looked at was read when no visit was under way
-      ) u_bound (
-          .clk_i,
-          .read_i         (state_q == WALK),
-          .read_address_i ({tile_y_q, tile_x_q}),
-          .data_o         (bound),
-          .write_i        (writes),
-          .write_address_i(clears ? {tile_y_q, tile_x_q} : {retire_i.key.tile_y, retire_i.key.tile_x}),
-          .data_i         (clears ? depth_min[Z-1-:HIZ] : retire_i.hiz_code)
-      );
-
-      // Behind: depth_min > bound; for `less` equality will do.
-      logic is_equal;
-      if (HIZ == Z) begin : gen_exact
-        assign is_equal = depth_min == bound;
-      end else begin : gen_high_bits
-        assign is_equal = depth_min[Z-1-:HIZ] == bound && depth_min[Z-HIZ-1:0] == '1;
-      end
-      assign is_behind = depth_min[Z-1-:HIZ] > bound || (s_q.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal);
-    end else begin : gen_no_hiz
-      assign is_eligible = 1'b0;
-      assign is_behind   = 1'b0;
-    end
-  endgenerate
+  logic starts_visit;
+  assign starts_visit = tile_taken && state_q != END;
+  hiz u_hiz (
+      .clk_i,
+      .rst_ni,
+      .setup_i          (s_q),
+      .tile_x_i         (tile_x_q),
+      .tile_y_i         (tile_y_q),
+      .passes_i         (turns_end),
+      .reads_i          (state_q == WALK),
+      .clears_i         (clears),
+      .starts_visit_i   (starts_visit),
+      .is_eligible_o    (is_eligible),
+      .is_settled_o     (is_settled),
+      .is_behind_o      (is_behind),
+      .visits_are_done_o(visits_are_done),
+      .retire_valid_i,
+      .retire_i
+  );
 
   // ----------------------------------------------------------------------------------------------------------- result
   // The tile's part of the box comes a cycle after the tile's coordinates, before a packet is offered.

@@ -60,12 +60,12 @@ TEST_F(CycleCommand, WhatIfIsTheSameAsSettingIt) {
     return result(more);
   };
   const Json rows =
-      with({"--what-if", "stamp.size=1,4", "--what-if", "memory=sdram", "--what-if", "visits=2"})["what_if"];
+      with({"--what-if", "stamp.size=1,4", "--what-if", "memory=sdram", "--what-if", "queue.tile=2"})["what_if"];
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0]["cycles"], with({"--set", "stamp.size=1"})["cycles"]);
   EXPECT_EQ(rows[1]["cycles"], with({"--set", "stamp.size=4"})["cycles"]);
   EXPECT_EQ(rows[2]["cycles"], with({"--memory", "sdram"})["cycles"]);
-  EXPECT_EQ(rows[3]["cycles"], with({"--timing", "visits=2"})["cycles"]);
+  EXPECT_EQ(rows[3]["cycles"], with({"--timing", "queue.tile=2"})["cycles"]);
   for (const Json& row : rows) EXPECT_EQ(row["same_picture"], true);
   EXPECT_EQ(with({"--what-if", "subpixel.bits=1"})["what_if"][0]["same_picture"], false);
 }
@@ -171,16 +171,16 @@ TEST_F(CycleCommand, TheHeatMapSharesOutTheCyclesOfTheVisits) {
 
 TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   expect_refused({"render", "triangle", "--memory", "sdram"}, "--memory: the engine functional does not have it");
-  expect_refused({"render", "triangle", "--what-if", "visits=2"},
+  expect_refused({"render", "triangle", "--what-if", "queue.tile=2"},
                  "--what-if: the engine functional does not have it; add --engine cycle");
   const auto cycle = [](Arguments more) {
     more.insert(more.begin(), {"render", "triangle", "--engine", "cycle"});
     return more;
   };
   expect_refused(cycle({"--memory", "hbm"}), "--memory: no memory 'hbm'; give fixed, sram, sdram, psram or ddr3");
-  expect_refused(cycle({"--what-if", "visits"}), "--what-if: 'visits' is not KEY=VALUE");
-  expect_refused(cycle({"--what-if", "visits=2,"}), "--what-if: visits: '' is no number in its range; give 2...1024");
-  expect_refused(cycle({"--what-if", "visits=1"}), "'1' is no number in its range; give 2...1024");
+  expect_refused(cycle({"--what-if", "queue.tile"}), "--what-if: 'queue.tile' is not KEY=VALUE");
+  expect_refused(cycle({"--what-if", "queue.stamp=2,"}), "--what-if: queue.stamp: '' is no number in its range; give 1...1024");
+  expect_refused(cycle({"--what-if", "queue.stamp=0"}), "'0' is no number in its range; give 1...1024");
   expect_refused(cycle({"--what-if", "cash.lines=4"}), "no setting 'cash.lines'");
   expect_refused(cycle({"--what-if", "cache.lines=3"}), "cache.lines");
   expect_refused(cycle({"--timing", "stamp.size=4"}), "--set takes the others");
@@ -210,7 +210,7 @@ TEST_F(CycleCommand, BenchMeasuresEnginesSideBySide) {
 
 TEST_F(CycleCommand, ConfigListsWhatTheCycleEngineCanVaryAndWhatEveryStageTakes) {
   const Json list = result({"config", "--list"});
-  EXPECT_EQ(list["timing_settings"].size(), 10u);
+  EXPECT_EQ(list["timing_settings"].size(), 9u);
   const Json stages = result({"config", "--stages"})["stages"];
   EXPECT_EQ(stages[0]["stage"], "cull");
   EXPECT_EQ(stages[1]["latency"], "18");

@@ -1,13 +1,12 @@
 
-  // The RAM is cut out; what it gave stays until the next read: sram_word.
-  generate
-    if (HIZ > 0) begin : gen_proof_bound
-      logic [HIZ-1:0] before_q;
-      logic           stays_q;
-      always_ff @(posedge clk_i) begin
-        before_q <= gen_hiz.bound;
-        stays_q  <= state_q != WALK;
-      end
-      always_comb if (runs_q && stays_q) assume (gen_hiz.bound == before_q);
-    end
-  endgenerate
+  // hiz.sv: a verdict stays until the next read (hiz_bound), and while it is settled that is so until a visit starts.
+  logic was_behind_q, was_settled_q, is_bound_q;
+  always_ff @(posedge clk_i) begin
+    was_behind_q  <= is_behind;
+    was_settled_q <= is_settled && !starts_visit;
+    is_bound_q    <= state_q == BOUND;
+  end
+  always_comb if (runs_q) begin
+    if (is_bound_q && state_q == BOUND) assume (is_behind == was_behind_q);
+    if (was_settled_q) assume (is_settled);
+  end

@@ -1,5 +1,5 @@
 
-  // Each setup ends with exactly one packet that ends the primitive; what is offered stays; no slot and no visit is given
+  // Each setup ends with exactly one packet that ends the primitive; what is offered stays; no slot is given
   // twice; nothing is stuck that its neighbours do not hold.
   logic under_way_q, ends;
   assign ends = tile_valid_o && tile_ready_i && tile_o.ends_primitive;
@@ -10,17 +10,11 @@
     else if (ends) under_way_q <= 1'b0;
     if (takes) g_q <= setup_i;
   end
-  // From outside: a box, a slot is freed when one is used, a visit retires when one is under way.
+  // From outside: a box, a slot is freed when one is used.
   always_comb begin
     if (setup_valid_i) assume (setup_i.box.left <= setup_i.box.right && setup_i.box.top <= setup_i.box.bottom);
     if (setup_valid_i) assume (setup_i.kind != raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || (setup_i.box.left == '0 && setup_i.box.top == '0));
     if (slot_free_i) assume (used_q > (SLOT + 1)'(state_q != IDLE));
-    if (retire_valid_i) assume (visit_valid_q[oldest_q]);
-  end
-  logic [VISIT:0] visits_q;
-  always_ff @(posedge clk_i) begin
-    if (!rst_ni) visits_q <= '0;
-    else visits_q <= visits_q + (VISIT + 1)'(starts_visit) - (VISIT + 1)'(retire_valid_i);
   end
   logic is_before_end;  // the walk has not passed the last tile
   assign is_before_end = tile_y_q < s_q.box.bottom[PY-1:TS] || (tile_y_q == s_q.box.bottom[PY-1:TS] && tile_x_q <= s_q.box.right[PX-1:TS]);
@@ -30,31 +24,20 @@
     if (tile_valid_o) assert (under_way_q && tile_o.key.primitive_id == g_q.primitive_id && tile_o.kind == g_q.kind);
     if (under_way_q) assert (s_q == g_q && s_q.box.left <= s_q.box.right && s_q.box.top <= s_q.box.bottom);
     assert (used_q <= (SLOT + 1)'(SLOTS) && used_q >= (SLOT + 1)'(under_way_q));
-    assert (visits_q <= (VISIT + 1)'(VISITS));
-    if (starts_visit) assert (!visit_is_full);
     assert (state_q <= CLEAR);
     if (state_q == CLEAR) assert (s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR);
     if (under_way_q) assert (s_q.kind != raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || (s_q.box.left == '0 && s_q.box.top == '0));
     if (state_q == WALK || state_q == BOUND) assert (has_walk);
     if (under_way_q) assert (is_before_end && tile_x_q >= s_q.box.left[PX-1:TS] && tile_x_q <= s_q.box.right[PX-1:TS]);
     if (state_q == END) assert (is_last_tile);
-    // With a ready consumer and every visit retired each state moves on.
-    if (tile_ready_i && visits_are_done && (state_q == WALK || state_q == BOUND))
+    // With a ready consumer each state moves on when HiZ is settled, which it is soon after every visit has retired.
+    if (tile_ready_i && is_settled && (state_q == WALK || state_q == BOUND))
       assert (steps || (state_q == WALK && is_eligible));
     if (tile_ready_i && state_q == END) assert (finishes);
     if (!under_way_q && !setup_ready_o) assert (used_q == (SLOT + 1)'(SLOTS));  // it waits for nothing but a slot
     cover (ends && state_q == END);
     cover (ends && state_q == WALK && takes);
   end
-  genvar k;
-  generate
-    for (k = 0; k < VISITS; k++) begin : gen_proof  // the ring: valid from the oldest on, as many as are under way
-      always_comb if (runs_q) assert (visit_valid_q[VISIT'(oldest_q + VISIT'(k))] == ((VISIT + 1)'(k) < visits_q));
-    end
-  endgenerate
-  logic [VISIT-1:0] behind_newest;
-  assign behind_newest = oldest_q + visits_q[VISIT-1:0];
-  always_comb if (runs_q) assert (newest_q == behind_newest);
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q) && $past(tile_valid_o && !tile_ready_i)) begin
     assert (tile_valid_o && tile_o == $past(tile_o) && edges_o == $past(edges_o));
   end

@@ -96,7 +96,7 @@ TEST(CycleModel, ADeeperQueueIsNeverSlower) {
   std::set<std::string> helped;
   for (const char* name : {"city", "teapot:6", "wires"}) {
     const Scene scene = scene_for(name, config);
-    for (const char* key : {"queue.triangle", "queue.setup", "queue.tile", "queue.stamp", "queue.fragment", "visits"}) {
+    for (const char* key : {"queue.triangle", "queue.setup", "queue.tile", "queue.stamp", "queue.fragment"}) {
       const TimingSetting& setting = *find_timing_setting(key);
       Cycle before = ~0ULL, first = 0;
       for (const int items : {2, 3, 4, 8, 16, 64}) {
@@ -111,7 +111,7 @@ TEST(CycleModel, ADeeperQueueIsNeverSlower) {
     }
   }
   // What stands in front of the narrowest place helps somewhere.
-  for (const char* key : {"queue.stamp", "queue.fragment", "visits"}) EXPECT_EQ(helped.count(key), 1u) << key;
+  for (const char* key : {"queue.stamp", "queue.fragment"}) EXPECT_EQ(helped.count(key), 1u) << key;
 }
 
 TEST(CycleModel, AFasterMemoryIsNeverSlower) {
@@ -144,7 +144,6 @@ TEST(CycleModel, ParametersThatNoHardwareHasAreRefused) {
     EXPECT_THROW((void)make_cycle_model(config, *memory, options), InputError);
   };
   refuses(preset("embedded"), &TimingParameters::stamp_queue, 0);
-  refuses(preset("embedded"), &TimingParameters::visits, 1);
   refuses(preset("embedded"), &TimingParameters::divide_bits, 0);
   refuses(preset("small"), &TimingParameters::tile_queue, 4);
 }

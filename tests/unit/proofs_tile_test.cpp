@@ -183,7 +183,10 @@ TileTally every_bound(int hiz_bits, DepthFunc func, DepthFunc asked) {
     RetirePacket retired;
     retired.update = HizUpdate::set;
     retired.hiz_code = code;
-    hiz.update(retired);
+    for (int n = 0; n < config.hiz_lag; ++n) {  // so many visits later it is seen
+      hiz.begin_visit({});
+      hiz.retire(retired);
+    }
     const std::uint32_t farthest = ((code + 1) << dropped) - 1;  // the largest depth whose high bits are the code
     for (std::uint32_t nearest = 0; nearest < static_cast<std::uint32_t>(codes); ++nearest) {
       SetupPacket setup;

@@ -46,9 +46,15 @@ TEST(Hiz, BoundOfATileFollowsTheDepthsInIt) {
   EXPECT_EQ(hiz.bound(3, 2), 65535u);
   hiz.clear(5, 5, 0x1234);
   EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
-  hiz.update({{0, 3, 2}, HizUpdate::none, 0});
+  const auto visit = [&hiz, &config](const RetirePacket& retired) {
+    for (int n = 0; n < config.hiz_lag; ++n) {  // others lag behind it, elsewhere
+      hiz.begin_visit({DepthFunc::less, true, true});
+      hiz.retire(n == 0 ? retired : RetirePacket{});
+    }
+  };
+  visit({{0, 3, 2}, HizUpdate::none, 0});
   EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
-  hiz.update({{0, 3, 2}, HizUpdate::set, 0x05});
+  visit({{0, 3, 2}, HizUpdate::set, 0x05});
   EXPECT_EQ(hiz.bound(3, 2), 0x05FFu);
   EXPECT_EQ(hiz.bound(2, 3), 0x12FFu);
   SetupPacket setup;
@@ -59,8 +65,47 @@ TEST(Hiz, BoundOfATileFollowsTheDepthsInIt) {
   EXPECT_FALSE(hiz.rejects(setup, 3, 2));
   setup.range.low[kDepthPlane] = 0x0600;
   EXPECT_TRUE(hiz.rejects(setup, 3, 2));
-  hiz.update({{0, 3, 2}, HizUpdate::clear, 0xFF});
+  visit({{0, 3, 2}, HizUpdate::clear, 0xFF});
   EXPECT_FALSE(hiz.rejects(setup, 3, 2));
+}
+
+TEST(Hiz, AVisitSeesTheUpdatesOfTheVisitsUpToItsOwnNumberLessTheLag) {
+  for (const char* lag : {"2", "4", "16"}) {
+    const Config config = with("embedded", {{"hiz.lag", lag}});
+    const Widths widths = derive_widths(config);
+    Hiz hiz(config, widths);
+    hiz.clear(5, 5, 0xFFFF);
+    const auto visit = [&hiz](std::uint16_t x, DepthFunc func, std::uint32_t code) {
+      hiz.begin_visit({func, true, true});
+      hiz.retire({{0, x, 0}, HizUpdate::set, code});
+    };
+    SetupPacket far;
+    far.range.low[kDepthPlane] = 0xFFFF;
+    far.state.depth_test = DepthFunc::less;
+    EXPECT_TRUE(hiz.rejects(far, 0, 0)) << "nothing is farther than the clear";
+    visit(1, DepthFunc::less, 0x100);
+    for (int n = 1; n < config.hiz_lag; ++n) {
+      EXPECT_EQ(hiz.bound(1, 0), 0xFFFFu) << lag << ", " << n << " visits later";
+      visit(2, DepthFunc::less, 0x200);
+    }
+    EXPECT_EQ(hiz.bound(1, 0), 0x100u);
+    EXPECT_EQ(hiz.bound(2, 0), 0xFFFFu);
+    // While one that may raise a depth has not been seen, nothing is behind anything.
+    visit(3, DepthFunc::always, 0x300);
+    for (int n = 1; n < config.hiz_lag; ++n) {
+      EXPECT_FALSE(hiz.rejects(far, 1, 0)) << lag << ", " << n << " visits later";
+      visit(2, DepthFunc::less, 0x200);
+    }
+    EXPECT_TRUE(hiz.rejects(far, 1, 0));
+    EXPECT_EQ(hiz.bound(3, 0), 0x300u);
+    // A clear comes behind the visits before it, whatever they have not said yet.
+    visit(4, DepthFunc::always, 0x400);
+    hiz.clear(5, 5, 0x8000);
+    EXPECT_TRUE(hiz.rejects(far, 4, 0));
+    for (int n = 0; n < config.hiz_lag; ++n) visit(2, DepthFunc::less, 0x200);
+    EXPECT_EQ(hiz.bound(4, 0), 0x8000u);
+    EXPECT_EQ(hiz.bound(2, 0), 0x200u);
+  }
 }
 
 TEST(Hiz, DepthThatCanRiseTakesTheBoundAway) {

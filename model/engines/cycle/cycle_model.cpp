@@ -233,7 +233,7 @@ class CycleModelOf final : public CycleModel {
           continue;
         }
         if (asks_hiz) {
-          timing_.read_bound(tile_x, tile_y);
+          timing_.read_bound();
           if (hiz_.rejects(packet, tile_x, tile_y)) {
             ++count.tiles_hiz;
             timing_.skip_behind();
@@ -257,8 +257,7 @@ class CycleModelOf final : public CycleModel {
              int tile_y, bool ends_primitive, std::uint32_t primitive) {
     const int size = config_.stamp_size;
     TileMask covered_rows{}, passed_rows{};
-    TileVisitWork work{tile_x,           tile_y, ends_primitive, box.top / size, box.bottom / size, box.left / size,
-                       box.right / size, {}};
+    TileVisitWork work{ends_primitive, box.top / size, box.bottom / size, box.left / size, box.right / size, {}};
     Mask covered_count{}, passed_count{};
     const bool wants_bits = options_.want_count || options_.want_ids;
     kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, rendering_.frame,
@@ -326,18 +325,19 @@ class CycleModelOf final : public CycleModel {
 
   /// The news of a visit for HiZ.
   void retire(const SetupPacket& packet, int tile_x, int tile_y, std::uint32_t passed) {
-    if (config_.hiz_bits == 0 || !packet.state.depth_write) return;
+    if (config_.hiz_bits == 0) return;
+    hiz_.begin_visit(packet.state);
     RetirePacket retired;
     retired.key.tile_x = static_cast<std::uint16_t>(tile_x);
     retired.key.tile_y = static_cast<std::uint16_t>(tile_y);
-    const bool is_full = passed == T * T;
+    const bool is_full = packet.state.depth_write && passed == T * T;
     std::uint32_t largest = 0;
     if (is_full)  // the codes of a covered tile are a plane, rounded and clamped: the largest is at a corner
       for (const int y : {0, T - 1})
         for (const int x : {0, T - 1})
           largest = std::max(largest, rendering_.frame.depth[rendering_.frame.at(tile_x * T + x, tile_y * T + y)]);
     set_hiz_update(retired, packet.state, is_full, passed != 0, largest, config_, widths_);
-    hiz_.update(retired);
+    hiz_.retire(retired);
   }
 
   /// Counts and owners of a row that begins at pixel (x, y).

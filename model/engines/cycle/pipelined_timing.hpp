@@ -21,14 +21,13 @@ class PipelinedTiming : public BackTiming {
         parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
         offer_setup_(1, setup_.last, 1),
         slots_(config.context_slots, 0, 2),
-        visits_(parameters.visits, 0, 1),
+        visits_(config.hiz_lag, 0, kVisitIsSeen),
         skid_(parameters.stamp_queue, 1, 1),
         interpolate_(kSteps, kSteps, 0),
         triangle_queue_(parameters.triangle_queue),
         setup_queue_(parameters.setup_queue),
         tile_queue_(parameters.tile_queue),
-        fragment_queue_(parameters.fragment_queue),
-        visited_(static_cast<std::size_t>(parameters.visits)) {}
+        fragment_queue_(parameters.fragment_queue) {}
 
   /// The host offers its next primitive from `cycle` on.
   void begin(Cycle cycle) {
@@ -85,11 +84,9 @@ class PipelinedTiming : public BackTiming {
     work(Stage::coarse_raster, 1);
   }
 
-  /// The bound of the next tile is read, when no earlier visit of it is under way.
-  void read_bound(int tile_x, int tile_y) {
-    Cycle read = walk_;
-    for (const VisitedTile& visit : visited_)
-      if (visit.tile_x == tile_x && visit.tile_y == tile_y) read = std::max(read, visit.retired + 1);
+  /// The bound of the next tile is read, when it knows of the visit hiz.lag before.
+  void read_bound() {
+    const Cycle read = std::max(walk_, visits_.room());
     totals_.bound_cycles += read - walk_;
     walk_ = read + 1;
     work(Stage::coarse_raster, 1);
@@ -149,16 +146,10 @@ class PipelinedTiming : public BackTiming {
     rows_.leave(row_at);
     retire();
     visits_.leave(last_retire_);
-    visited_[next_visited_] = {tile.tile_x, tile.tile_y, last_retire_};
-    next_visited_ = (next_visited_ + 1) % visited_.size();
   }
 
  private:
   static constexpr int kSteps = PipelinedCycles::interpolate_steps;
-  struct VisitedTile {
-    int tile_x = -1, tile_y = -1;
-    Cycle retired = 0;
-  };
 
   /// A stamp on offer by fine_raster from `offered` on, through the skid buffer and interpolate. Returns when it enters the
   /// buffer.
@@ -189,8 +180,6 @@ class PipelinedTiming : public BackTiming {
   Station context_{kSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0, last_left_ = 0;
-  std::vector<VisitedTile> visited_;  ///< ring: the last ones
-  std::size_t next_visited_ = 0;
 };
 
 }  // namespace halfplane

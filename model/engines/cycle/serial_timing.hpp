@@ -18,7 +18,7 @@ class SerialTiming : public BackTiming {
       : BackTiming(config, widths, stalls, memory, sink),
         cycles_(widths),
         slots_(config.context_slots, 0, 2),
-        visits_(parameters.visits - 1, 0, 1),
+        visits_(config.hiz_lag, 0, kVisitIsSeen),
         skid_(parameters.stamp_queue, 1, 1) {}
 
   // The interface is that of PipelinedTiming.
@@ -74,8 +74,8 @@ class SerialTiming : public BackTiming {
     walk_ += 1 + SerialCycles::turn;
     work(Stage::coarse_raster, 1 + SerialCycles::turn);
   }
-  void read_bound(int, int) {
-    const Cycle read = std::max(walk_, last_retire_ + 1);
+  void read_bound() {
+    const Cycle read = std::max(walk_, visits_.room());
     totals_.bound_cycles += read - walk_;
     walk_ = read + 1;
     work(Stage::coarse_raster, 1);

@@ -16,7 +16,7 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
             {Stage::triangle_setup, number(setup.latency), number(setup.part), number(setup.parts + 1)},
             {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
              "1 a tile, one more where a HiZ bound is read",
-             number(config.context_slots) + " primitives up to interpolate, " + number(parameters.visits) + " visits"},
+             number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
             {Stage::fine_raster, "2, then 1 in the buffer", "1 a stamp or row of stamps without one",
              "2 rows, and " + stamps + " stamps in the buffer"},
             {Stage::interpolate, steps, "1", steps}};
@@ -25,17 +25,16 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
   const Cycle start = SerialCycles::sort + SerialCycles::box + 1, product = static_cast<Cycle>(serial.product);
   const std::string kept = text(start + 4 * product + 1) + " or " + text(start + 5 * product + 3) + "; " +
                            text(start + product) + " where it is dropped, " + text(start) + " for what is no triangle";
-  return {
-      {Stage::cull, kept, "the same", "1"},
-      {Stage::triangle_setup,
-       text(1 + serial.setup(0)) + " and " + text(serial.setup(1) - serial.setup(0)) + " for each bit of the area",
-       "2 more", "1"},
-      {Stage::coarse_raster, text(1 + SerialCycles::turn) + " to the first tile",
-       text(1 + SerialCycles::turn) + " a tile, one more for a visit, one more where a HiZ bound is read",
-       number(config.context_slots) + " primitives up to interpolate, " + number(parameters.visits - 1) + " visits"},
-      {Stage::fine_raster, "1 and the way to the first stamp of the box", "1 a stamp of the box", "1 tile"},
-      {Stage::interpolate, number(SerialCycles::interpolate_steps) + ", then 1 in the buffer", "1",
-       number(SerialCycles::interpolate_steps) + ", and " + stamps + " in the buffer"}};
+  return {{Stage::cull, kept, "the same", "1"},
+          {Stage::triangle_setup,
+           text(1 + serial.setup(0)) + " and " + text(serial.setup(1) - serial.setup(0)) + " for each bit of the area",
+           "2 more", "1"},
+          {Stage::coarse_raster, text(1 + SerialCycles::turn) + " to the first tile",
+           text(1 + SerialCycles::turn) + " a tile, one more for a visit, one more where a HiZ bound is read",
+           number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
+          {Stage::fine_raster, "1 and the way to the first stamp of the box", "1 a stamp of the box", "1 tile"},
+          {Stage::interpolate, number(SerialCycles::interpolate_steps) + ", then 1 in the buffer", "1",
+           number(SerialCycles::interpolate_steps) + ", and " + stamps + " in the buffer"}};
 }
 
 }  // namespace

@@ -11,6 +11,9 @@
 
 namespace halfplane {
 
+/// From a visit's retirement until another one may start in its place: it is written down, looked up, and seen (hiz.sv).
+inline constexpr int kVisitIsSeen = 3;
+
 /// Cycles of the pipelined stages that are the same in every configuration.
 struct PipelinedCycles {
   static constexpr int cull_sort = 4, cull_decide = 4;  ///< the two parts of cull: from a primitive in to its hand-over
@@ -28,7 +31,6 @@ struct PrimitiveWork {
 
 /// A visit of one tile in fine_raster.
 struct TileVisitWork {
-  int tile_x = 0, tile_y = 0;
   bool ends_primitive = false;
   int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< of stamps, in the box
   std::array<std::uint32_t, 32> columns{};  ///< of each row of stamps: a bit for each that has a covered sample

@@ -16,6 +16,7 @@ package raster_pkg;
   localparam int KEY_PRIMITIVE_BITS = 8;  // bits of the primitive number in an RTL packet key
   localparam int CONTEXT_SLOTS = 2;  // triangles whose constants the context RAM holds; a power of two
   localparam int HIZ_BITS = 8;  // bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ
+  localparam int HIZ_LAG = 4;  // tile visits behind which a HiZ update is seen, and under way at most; a power of two
   localparam int CACHE_KIND = 0;  // 0 tiles, 1 blocks: what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead
   localparam int CACHE_LINES = 4;  // tiles or blocks that the on-chip depth and colour RAM holds; a power of two
   localparam int CACHE_QUEUE = 32;  // blocks: between tags and depth test; a power of two
@@ -23,7 +24,7 @@ package raster_pkg;
   localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: blocks: what a flush writes of cleared blocks: colours, or flags
   localparam int SETUP_KIND = 1;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int LINES_UNIT = 0;  // 1: the RTL has the unit that draws lines; 0: it takes none
-  localparam logic [63:0] CONFIG_ID = 64'hf1b3c31c6dece473;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h5d1a08314a8ca479;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1

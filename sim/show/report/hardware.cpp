@@ -150,7 +150,7 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
   times("cache.lines", 4);
   times("stamp.size", 2);
   times("context.slots", 2);
-  times("visits", 2);
+  times("hiz.lag", 2);
   if (is_pipelined) {
     for (const char* key : {"queue.tile", "queue.stamp", "queue.fragment"}) trials.push_back({key, "16", 0});
     times("divide.bits", 2);

@@ -1,0 +1,155 @@
+// HiZ: a bound on the depths of each tile, by which coarse_raster drops tiles that cannot pass the depth test; and the
+// visits under way, by whose numbers it is said what a bound knows.
+//
+// Visit n sees the updates of the visits up to n - LAG, all of them and none of a later one, whenever they come: what a
+// visit brings home waits in a queue until LAG visits have started behind it. So nothing is waited for but visit n - LAG, and
+// no more than LAG are under way. Visits between that may raise a depth make the bounds worthless until they are seen.
+// A bound is read in one cycle and its verdict is there in the next one and until the next read; it holds until a visit starts.
+// Specification: model/stages/hiz.hpp.
+module hiz (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // The primitive that coarse_raster has, and the tile at which it is
+    /* verilator lint_off UNUSEDSIGNAL */  // most of it is coarse_raster's own
+    input raster_pkg::setup_packet_t          setup_i,
+    input logic [raster_pkg::TILE_X_BITS-1:0] tile_x_i,
+    input logic [raster_pkg::TILE_Y_BITS-1:0] tile_y_i,
+    input logic                               passes_i,  // it has just come
+    input logic                               reads_i,
+    input logic                               clears_i,  // the tile's bound; no visit is under way
+    /* verilator lint_on UNUSEDSIGNAL */
+    input logic                               starts_visit_i,
+
+    output logic is_eligible_o,    // bounds may reject its tiles
+    output logic is_settled_o,     // visit n - LAG has been seen: a bound may be read, a visit may start
+    output logic is_behind_o,      // of the bound that was read
+    output logic visits_are_done_o,
+
+    // From depth_test: a tile visit has retired
+    input logic                       retire_valid_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ only its coming counts
+    input raster_pkg::retire_packet_t retire_i
+    /* verilator lint_on UNUSEDSIGNAL */
+);
+
+  localparam int TX = raster_pkg::TILE_X_BITS;
+  localparam int TY = raster_pkg::TILE_Y_BITS;
+  localparam int TS = raster_pkg::TILE_SHIFT;
+  localparam int PX = raster_pkg::PIXEL_X_BITS;
+  localparam int PY = raster_pkg::PIXEL_Y_BITS;
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
+  localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
+  localparam int LAG = raster_pkg::HIZ_LAG;
+  localparam int N = $clog2(LAG);  // bits of a place in the queue
+
+  // Visits that have started, retired and been seen, since reset or the last clear of the bounds, modulo 2 LAG.
+  logic [N:0] started_q, retired_q, seen_q, seen_next, full;
+  logic       has_update_q;  // the oldest retired one that has not been seen is at hand
+  logic       sees;
+  assign full              = seen_q + (N + 1)'(LAG);  // LAG visits have not been seen
+  assign is_settled_o      = started_q != full;
+  assign visits_are_done_o = started_q == retired_q;
+  assign sees = has_update_q && (!is_settled_o || (starts_visit_i && started_q + (N + 1)'(1) == full));
+  // A clear comes behind all of them in program order: what they have to say is forgotten.
+  assign seen_next = clears_i ? started_q : seen_q + (N + 1)'(sees);
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      started_q    <= '0;
+      retired_q    <= '0;
+      seen_q       <= '0;
+      has_update_q <= 1'b0;
+    end else begin
+      started_q    <= started_q + (N + 1)'(starts_visit_i);
+      retired_q    <= retired_q + (N + 1)'(retire_valid_i);
+      seen_q       <= seen_next;
+      has_update_q <= retired_q != seen_next;
+    end
+  end
+
+  generate
+    if (HIZ > 0) begin : gen_hiz
+      logic can_raise, is_triangle, is_wide, is_high;
+      assign can_raise   = setup_i.state.depth_test[2];  // the functions that let a farther sample pass
+      assign is_triangle = setup_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+      /* verilator lint_off CMPCONST */  // a small target has no such box
+      assign is_wide     = setup_i.box.right[PX-1:TS] - setup_i.box.left[PX-1:TS] > TX'(1);
+      assign is_high     = setup_i.box.bottom[PY-1:TS] - setup_i.box.top[PY-1:TS] > TY'(1);
+      /* verilator lint_on CMPCONST */
+
+      logic         bounds_hold_q;  // no line can have raised a depth since the last fast clear
+      logic [N-1:0] quiet_q;        // visits since one that may raise a depth, LAG - 1 at most
+      assign is_eligible_o = bounds_hold_q && is_triangle && (is_wide || is_high) &&
+                             setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise;
+
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          bounds_hold_q <= 1'b1;
+          quiet_q       <= '1;
+        end else begin
+          if (passes_i && setup_i.state.depth_write) begin
+            if (setup_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR) bounds_hold_q <= 1'b1;
+            if (raster_pkg::LINES_UNIT != 0 && setup_i.kind == raster_pkg::PRIMITIVE_KIND_LINE && can_raise) bounds_hold_q <= 1'b0;
+          end
+          if (clears_i) quiet_q <= '1;
+          else if (starts_visit_i) quiet_q <= setup_i.state.depth_write && can_raise ? '0 : quiet_q + N'(quiet_q != '1);
+        end
+      end
+
+      // What retired visits have to say about their tiles, in order.
+      localparam int UPDATE = TY + TX + HIZ + 1;
+      logic           has_news;
+      logic [TY-1:0]  update_y;
+      logic [TX-1:0]  update_x;
+      logic [HIZ-1:0] update_code;
+      sram #(
+          .WIDTH    (UPDATE),
+          .DEPTH    (LAG),
+          .READS_OLD(0),  // what is looked at was written in an earlier cycle
+          .BLOCK    (raster_pkg::SETUP_KIND != 0)
+      ) u_updates (
+          .clk_i,
+          .read_i         (1'b1),
+          .read_address_i (seen_next[N-1:0]),
+          .data_o         ({update_y, update_x, update_code, has_news}),
+          .write_i        (retire_valid_i),
+          .write_address_i(retired_q[N-1:0]),
+          .data_i         ({retire_i.key.tile_y, retire_i.key.tile_x, retire_i.hiz_code,
+                            retire_i.update != raster_pkg::HIZ_UPDATE_NONE})
+      );
+
+      // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
+      logic [Z-1:0]   depth_min;
+      logic [HIZ-1:0] bound;
+      assign depth_min = setup_i.range.low[0+:Z];
+      sram #(
+          .WIDTH    (HIZ),
+          .DEPTH    (raster_pkg::TILES_Y << TX),
+          .READS_OLD(0)  // no bound is looked at that was read while another was written
+      ) u_bound (
+          .clk_i,
+          .read_i         (reads_i),
+          .read_address_i ({tile_y_i, tile_x_i}),
+          .data_o         (bound),
+          .write_i        (clears_i || (sees && has_news)),
+          .write_address_i(clears_i ? {tile_y_i, tile_x_i} : {update_y, update_x}),
+          .data_i         (clears_i ? depth_min[Z-1-:HIZ] : update_code)
+      );
+
+      // Behind: depth_min > bound; for `less` equality will do.
+      logic is_equal;
+      if (HIZ == Z) begin : gen_exact
+        assign is_equal = depth_min == bound;
+      end else begin : gen_high_bits
+        assign is_equal = depth_min[Z-1-:HIZ] == bound && depth_min[Z-HIZ-1:0] == '1;
+      end
+      assign is_behind_o = quiet_q == '1 && (depth_min[Z-1-:HIZ] > bound ||
+                                             (setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal));
+    end else begin : gen_no_hiz
+      assign is_eligible_o = 1'b0;
+      assign is_behind_o   = 1'b0;
+    end
+  endgenerate
+
+endmodule
