@@ -24,6 +24,13 @@ void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, co
   for (auto& code : packet.vertex.code) copy_color(code, snap_codes(0, color, config), config);
 }
 
+/// Whether the first command clears all of both planes.
+bool begins_with_a_clear(const Scene& scene) {
+  const auto* clear = scene.commands.empty() ? nullptr : std::get_if<Clear>(&scene.commands.front());
+  return clear != nullptr && clear->depth && clear->color &&
+         clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height};
+}
+
 }  // namespace
 
 HostStream::HostStream(const Scene& scene, const Config& config)
@@ -31,6 +38,7 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   validate(config);
   check_hardware_scene(scene, config);
   widths_ = derive_widths(config);
+  if (begins_with_a_clear(scene)) return;
   PrimitivePacket first = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene.width, scene.height});
   clear_depth(first, 1.0, config);
   clear_color(first, {0, 0, 0, 255}, config);

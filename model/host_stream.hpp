@@ -1,6 +1,7 @@
 // What the host sends to the hardware for a scene: snapped primitives with their states, one packet each.
 //
-// First a fast clear of both planes, then the scene's commands in order, at the end a flush. The host clips; facing,
+// First a fast clear of both planes, unless the scene begins with one, then the scene's commands in order, at the end a
+// flush. The host clips; facing,
 // area and box are the hardware's to look at, except for a clipped polygon, which is culled as a whole.
 #pragma once
 

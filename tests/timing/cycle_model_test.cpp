@@ -4,12 +4,19 @@
 #include <set>
 #include <string>
 
+#include "../hardware_scene.hpp"
+#include "../scene_builder.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/show/report/hardware.hpp"
 
 namespace halfplane {
 namespace {
+
+using test::at;
+using test::SceneBuilder;
+using test::with;
 
 CycleRendering render(const Scene& scene, const Config& config, const CycleOptions& options = {},
                       const MemorySettings& memory = {}, const RenderOptions& wanted = {}) {
@@ -162,6 +169,45 @@ TEST(CycleModel, RulesThatAreSwitchedOffChangeCyclesAndNoBits) {
     EXPECT_EQ(other.rendering.frame.color, plain.rendering.frame.color);
     EXPECT_EQ(other.rendering.frame.depth, plain.rendering.frame.depth);
   }
+}
+
+/// A scene at 640x480, `embedded`, an ideal memory of 64 bits, latency 8: a frame from the first clear to the last write of
+/// the flush. Bounds: thousand cycles, and KB of traffic.
+struct WholeFrame {
+  const char* scene;
+  std::uint64_t cycles, bytes;
+};
+
+TEST(WholeFrames, TakeNoMoreCyclesAndBytesThanTheirBounds) {
+  const Config config = with("embedded", {{"frame.clears", "flags"}});
+  for (const WholeFrame& bound : {WholeFrame{"teapot", 128, 674},
+                                  {"city", 125, 951},
+                                  {"ball", 820, 1050},
+                                  {"knot", 159, 518},
+                                  {"walk", 188, 1417}}) {
+    const Scene scene = make_builtin(bound.scene, 640, 480, {}, 1);
+    const CycleRun run = render(scene, config).run;
+    const std::uint64_t bytes = traffic(run, config).total();
+    EXPECT_LE(run.cycles, bound.cycles * 1000) << bound.scene;
+    EXPECT_LE(bytes, bound.bytes * 1024) << bound.scene;
+    std::printf("%s: %llu cycles, %llu bytes\n", bound.scene, static_cast<unsigned long long>(run.cycles),
+                static_cast<unsigned long long>(bytes));
+  }
+}
+
+/// A quad over the whole target: a clear, two triangles, a flush.
+TEST(WholeFrames, AFullScreenQuadTakesAtMost55HundredthsOfACyclePerPixel) {
+  SceneBuilder builder(640, 480);
+  builder.triangle(at(0, 0), at(640, 0), at(0, 480)).triangle(at(640, 0), at(640, 480), at(0, 480));
+  const CycleRun run = render(builder.scene, with("embedded", {{"frame.clears", "flags"}})).run;
+  EXPECT_LE(static_cast<double>(run.cycles) / (640 * 480), 0.55);
+}
+
+TEST(WholeFrames, OneTriangleOfOnePixelTakesAtMost10000CyclesAndResolved80000PlusTheClearOfTheBounds) {
+  SceneBuilder builder(640, 480);
+  builder.triangle(at(100.25, 100.25), at(101, 100.25), at(100.25, 101));
+  EXPECT_LE(render(builder.scene, with("embedded", {{"frame.clears", "flags"}})).run.cycles, 10'000u);
+  EXPECT_LE(render(builder.scene, with("embedded", {{"frame.clears", "resolve"}})).run.cycles, 85'000u);
 }
 
 }  // namespace

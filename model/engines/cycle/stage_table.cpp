@@ -48,6 +48,17 @@ std::vector<StageRow> stage_table(const Config& config) {
   rows.push_back({Stage::depth_test, "1 to the write, 2 to the retired visit",
                   "1; 2 where a fragment needs the depth of the one before", "2"});
   rows.push_back({Stage::rop, "0", "1", "0"});
+  if (config.cache_kind == CacheKind::blocks) {
+    const auto block = static_cast<std::uint64_t>(widths.blocks.stamps());
+    rows.push_back({Stage::framebuffer,
+                    "2 to the test where nothing is read, for a stamp of depth from memory 3 and the memory's latency",
+                    "1; a flag that falls 2 more; on the memory port 1 a stamp: a block that leaves at most " +
+                        text(2 * block) + ", beside what follows",
+                    text(static_cast<std::uint64_t>(config.cache_lines)) + " blocks, " +
+                        text(static_cast<std::uint64_t>(config.cache_queue)) + " fragments, " +
+                        text(static_cast<std::uint64_t>(config.cache_victims)) + " blocks on their way to memory"});
+    return rows;
+  }
   rows.push_back({Stage::framebuffer, "1 where the tile is on the chip",
                   "1; a miss 2, for a dirty plane " + text(stamps + 1) + ", for a tile that was cleared " +
                       text(stamps) + ", for a plane from memory " + text(stamps) + " and once the memory's latency",
