@@ -102,11 +102,12 @@ Widths derive_widths(const Config& config) {
   w.grid_bits = config.subpixel_bits > 1 ? config.subpixel_bits : 1;
   const int s = w.grid_bits;
   const int128 band = config.guard_band;
-  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor. And more
-  // than a tile keeps: narrowing to local guard bits is a shift right, with a bit to round by, in the smallest band too.
-  w.guard_bits = std::max(ceil_log2(static_cast<uint128>(4 * band)) + 4, config.local_guard_bits + 1);
-  w.plane_fraction = w.guard_bits + s;
   w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
+  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor. And more
+  // than a tile keeps, in the smallest band too: narrowing to local guard bits is a shift right, and the bits that a step
+  // of a whole tile leaves as they are lie below them.
+  w.guard_bits = std::max(ceil_log2(static_cast<uint128>(4 * band)) + 4, config.local_guard_bits + w.tile_shift);
+  w.plane_fraction = w.guard_bits + s;
   w.stamps = {config.stamp_size, config.tile_size / config.stamp_size};
   w.samples = w.stamps.samples();
   w.tiles_x = (config.target_width + config.tile_size - 1) / config.tile_size;

@@ -73,7 +73,7 @@ void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const 
         ++counters.skipped.tiles_outside;
         continue;
       }
-      TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, widths);
+      TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, false, widths);
       tile.is_inside = tile.is_inside && skip.trivially_accepted;
       if (tile.is_inside)
         ++counters.skipped.trivially_accepted;

@@ -17,7 +17,8 @@ std::int64_t local_anchor(const SetupPacket& setup, std::size_t p, int dx, int d
 
 }  // namespace
 
-TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot, const Widths& widths) {
+TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot, bool ends,
+                            const Widths& widths) {
   const int last = (1 << widths.tile_shift) - 1;
   const auto inside_tile = [&](int pixel, int tile) {
     return static_cast<std::uint8_t>(std::clamp(pixel - (tile << widths.tile_shift), 0, last));
@@ -25,8 +26,7 @@ TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, st
   TilePacket packet;
   packet.kind = setup.kind;
   packet.is_visit = true;
-  packet.ends_primitive =
-      tile_x == setup.box.right >> widths.tile_shift && tile_y == setup.box.bottom >> widths.tile_shift;
+  packet.ends_primitive = ends;
   packet.key = {setup.primitive_id, static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y)};
   packet.slot = slot;
   packet.box = {inside_tile(setup.box.left, tile_x), inside_tile(setup.box.top, tile_y),

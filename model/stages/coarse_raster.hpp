@@ -1,9 +1,9 @@
-// Coarse raster: the tiles of a primitive's box, row by row, sorted into outside, cut and inside.
+// Coarse raster: the tiles of a primitive, row by row, sorted into outside, cut and inside.
 //
 // In: a SetupPacket. Out: a TilePacket for each tile that is neither outside nor behind its HiZ bound, and the
-// constants that wait in the context RAM. The last tile of the box always sends one: if it was left out, one without a
-// visit. A tile is outside when the largest value of one edge over its pixels is negative (trivial reject), inside
-// when the smallest value of every edge is not (trivial accept), cut otherwise.
+// constants that wait in the context RAM. The end of the walk always sends one: if its last tile was left out, one
+// without a visit. A tile is outside when the largest value of one edge over its pixels is negative (trivial reject),
+// inside when the smallest value of every edge is not (trivial accept), cut otherwise.
 //
 // Edge values leave here narrow: inside a tile they move by at most M = (T-1)(|dx| + |dy|), so saturating the value at the
 // first pixel to [-M_max - 1, M_max] leaves the sign of every sample as it was. A tile that an edge accepts or rejects
@@ -20,20 +20,89 @@ namespace halfplane {
 
 enum class TileClass { outside, cut, inside };
 
-/// `edge_dx`, `edge_dy`: of the three edges, subpixels; `value`: at the tile's first pixel.
+/// Of one edge: the largest value over the pixels of a tile with `value` at its first one. dx, dy: subpixels.
+[[nodiscard]] constexpr EdgeValue largest_in_tile(EdgeValue value, EdgeValue dx, EdgeValue dy, int tile_size) {
+  return value + (tile_size - 1) * ((dx > 0 ? dx : 0) + (dy < 0 ? -dy : 0));
+}
+[[nodiscard]] constexpr EdgeValue smallest_in_tile(EdgeValue value, EdgeValue dx, EdgeValue dy, int tile_size) {
+  return value + (tile_size - 1) * ((dx < 0 ? dx : 0) + (dy > 0 ? -dy : 0));
+}
+
+/// `edge_dx`, `edge_dy`: of the three edges; `value`: at the tile's first pixel.
 [[nodiscard]] constexpr TileClass classify(const EdgeDeltas& edge_dx, const EdgeDeltas& edge_dy,
                                            const EdgeValues& value, int tile_size) {
-  const EdgeValue extent = tile_size - 1;
   TileClass result = TileClass::inside;
   for (std::size_t i = 0; i < 3; ++i) {
-    const EdgeValue dx = edge_dx[i], dy = edge_dy[i];
-    const EdgeValue largest = value[i] + extent * ((dx > 0 ? dx : 0) + (dy < 0 ? -dy : 0));
-    const EdgeValue smallest = value[i] + extent * ((dx < 0 ? dx : 0) + (dy > 0 ? -dy : 0));
-    if (largest < 0) return TileClass::outside;
-    if (smallest < 0) result = TileClass::cut;
+    if (largest_in_tile(value[i], edge_dx[i], edge_dy[i], tile_size) < 0) return TileClass::outside;
+    if (smallest_in_tile(value[i], edge_dx[i], edge_dy[i], tile_size) < 0) result = TileClass::cut;
   }
   return result;
 }
+
+/// The edges that a tile lies outside of, a bit each.
+[[nodiscard]] constexpr unsigned outside_edges(const EdgeDeltas& edge_dx, const EdgeDeltas& edge_dy,
+                                               const EdgeValues& value, int tile_size) {
+  unsigned edges = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (largest_in_tile(value[i], edge_dx[i], edge_dy[i], tile_size) < 0) edges |= 1U << i;
+  return edges;
+}
+
+/// The way through the tiles of a primitive's box. A row is walked to the right from its start, then from there to the
+/// left, each way until an edge has been left that gets no better that way, so wherever it starts nothing is overlooked.
+/// It starts below the first tile of the row above that was not outside.
+class TileWalk {
+ public:
+  /// Tiles, inclusive; of the three edges, 0 for what has none.
+  TileWalk(int first_x, int first_y, int last_x, int last_y, const EdgeDeltas& edge_dy)
+      : x_(first_x), y_(first_y), first_x_(first_x), last_x_(last_x), last_y_(last_y), start_x_(first_x) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (edge_dy[i] >= 0) no_better_right_ |= 1U << i;
+      if (edge_dy[i] <= 0) no_better_left_ |= 1U << i;
+    }
+  }
+
+  [[nodiscard]] int x() const { return x_; }
+  [[nodiscard]] int y() const { return y_; }
+  /// Whether the walk ends with this tile, if it is not outside.
+  [[nodiscard]] bool is_last() const { return is_last_column() && !must_return_ && y_ == last_y_; }
+
+  /// From a tile that lies outside of these edges to the next one. False: there is none.
+  bool next(unsigned outside) {
+    if ((outside & no_better_left_) != 0) must_return_ = false;  // nothing lies to the left of it
+    const bool exits = is_last_column() || (outside & (goes_left_ ? no_better_left_ : no_better_right_)) != 0;
+    if (exits && !must_return_) {
+      if (y_ == last_y_) return false;
+      ++y_;
+      x_ = start_x_;
+      goes_left_ = false;
+      must_return_ = start_x_ != first_x_;
+      is_empty_ = true;
+      return true;
+    }
+    if (exits) {
+      x_ = start_x_ - 1;
+      goes_left_ = true;
+      must_return_ = false;
+    } else {
+      x_ += goes_left_ ? -1 : 1;
+    }
+    is_empty_ = is_empty_ && outside != 0;
+    if (is_empty_) start_x_ = x_;
+    return true;
+  }
+
+ private:
+  [[nodiscard]] bool is_last_column() const { return x_ == (goes_left_ ? first_x_ : last_x_); }
+
+  int x_, y_;
+  int first_x_, last_x_, last_y_;
+  int start_x_;                                        ///< of this row, then of the one below
+  unsigned no_better_right_ = 0, no_better_left_ = 0;  ///< edges that get no better that way
+  bool goes_left_ = false;
+  bool must_return_ = false;  ///< there are tiles to the left of the start
+  bool is_empty_ = true;      ///< every tile of the row so far was outside
+};
 
 [[nodiscard]] constexpr TileClass classify(const TriangleSetup& setup, const EdgeValues& value, int tile_size) {
   const auto& edge = setup.edge;
@@ -87,9 +156,9 @@ struct TileOffset {
   return value;
 }
 
-/// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive.
+/// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
-                                          const Widths& widths);
+                                          bool ends, const Widths& widths);
 
 /// The part of a primitive's box that lies in tile (tile_x, tile_y), in pixels of the tile.
 [[nodiscard]] inline PixelBounds tile_box(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
@@ -107,8 +176,8 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
                    Emit&& emit) {
   const int first_x = setup.box.left >> widths.tile_shift, last_x = setup.box.right >> widths.tile_shift;
   const int first_y = setup.box.top >> widths.tile_shift, last_y = setup.box.bottom >> widths.tile_shift;
-  const auto emit_end = [&] {  // the end of the primitive without a visit
-    TilePacket packet = make_tile_packet(setup, last_x, last_y, slot, widths);
+  const auto emit_end = [&](int tile_x, int tile_y) {  // the end of the primitive without a visit
+    TilePacket packet = make_tile_packet(setup, tile_x, tile_y, slot, true, widths);
     packet.is_visit = packet.is_inside = false;
     emit(packet);
   };
@@ -117,31 +186,35 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
     if (kind == PrimitiveKind::fast_clear && setup.state.depth_write)
       hiz.clear(last_x, last_y, setup.range.high[kDepthPlane]);
     if (kind == PrimitiveKind::line) hiz.pass_line(setup);
-    emit_end();
+    emit_end(last_x, last_y);
     return;
   }
   CounterPacket uncounted;
   CounterPacket& count = kind == PrimitiveKind::triangle ? counters : uncounted;
   const bool asks_hiz = hiz.is_eligible(setup, widths);
-  for (int tile_y = first_y; tile_y <= last_y; ++tile_y)
-    for (int tile_x = first_x; tile_x <= last_x; ++tile_x) {
-      ++count.tiles_visited;
-      const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths);
-      const TileClass tile_class = classify(setup.dx, setup.dy, edges, 1 << widths.tile_shift);
-      const bool is_outside = tile_class == TileClass::outside;
-      if (is_outside || (asks_hiz && hiz.rejects(setup, tile_x, tile_y))) {
-        ++(is_outside ? count.tiles_outside : count.tiles_hiz);
-        if (tile_x == last_x && tile_y == last_y) emit_end();
-        continue;
-      }
-      const TilePacket packet = make_tile_packet(setup, tile_x, tile_y, slot, widths);
+  TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
+  bool has_ended = false;
+  unsigned outside = 0;
+  do {
+    ++count.tiles_visited;
+    const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
+    outside = outside_edges(setup.dx, setup.dy, edges, 1 << widths.tile_shift);
+    if (outside != 0) {
+      ++count.tiles_outside;
+    } else if (asks_hiz && hiz.rejects(setup, walk.x(), walk.y())) {
+      ++count.tiles_hiz;
+    } else {
+      has_ended = walk.is_last();
+      const TilePacket packet = make_tile_packet(setup, walk.x(), walk.y(), slot, has_ended, widths);
       hiz.begin_visit(setup.state);
-      if (tile_class == TileClass::inside)
+      if (packet.is_inside != 0)
         ++count.trivially_accepted;
       else
         count.samples_tested += static_cast<std::uint32_t>(to_bounds(packet.box).samples());
       emit(packet);
     }
+  } while (walk.next(outside));
+  if (!has_ended) emit_end(walk.x(), walk.y());
 }
 
 }  // namespace halfplane

@@ -41,11 +41,11 @@ mutant(16 stages/hiz.sv "HiZ: a bound that equals the smallest depth rejects, wh
 mutant(17 stages/hiz.sv "HiZ: greater and its like are tested"
   [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise]=]
   [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER]=])
-mutant(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
-  [=[row_q + (s_q.step_y[PLANE+:P] << (TS + S))]=]
-  [=[(i == 0 ? value_q : row_q) + (s_q.step_y[PLANE+:P] << (TS + S))]=])  # depth alone
+mutant_text(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
+  [=[assign from   = exits ? row_q : value_q;]=]
+  [=[assign from   = exits && (i != 0 || raster_cosim.mutant_q != 16'd18) ? row_q : value_q;]=])  # depth alone
 mutant(19 stages/coarse_raster.sv "off by one: the last column of a tile that the box crosses is left out"
-  [=[is_last_column ? s_q.box.right[TS-1:0] : '1]=] [=[is_last_column ? s_q.box.right[TS-1:0] : ~TS'(1)]=])
+  [=[is_rightmost ? s_q.box.right[TS-1:0] : '1]=] [=[is_rightmost ? s_q.box.right[TS-1:0] : ~TS'(1)]=])
 mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is truncated"
   [=[B'(step_x[NARROW-1])]=] [=[i == 0 ? B'(0) : B'(step_x[NARROW-1])]=])
 mutant(21 stages/coarse_raster.sv "counter: rectangles count as triangles"
@@ -157,6 +157,14 @@ mutant(60 stages/triangle_setup.sv "dropped stall: a part hands over to one that
   [=[at_q[i*STEPS+STEPS-1] && ready[i+1]]=] [=[at_q[i*STEPS+STEPS-1]]=])
 mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes a phase late"
   [=[flows[NUMERATOR] || flows[NUMERATOR+1]]=] [=[flows[NUMERATOR+1]]=])
+
+# the tile walk
+mutant(65 stages/coarse_raster.sv "tile walk: what lies to the left of a row's start is left out"
+  [=[start_x_q != s_q.box.left[PX-1:TS]]=] [=[1'b0]=])
+mutant(66 stages/coarse_raster.sv "tile walk: a row ends at an upright edge that has not been met"
+  [=[!(dy > 0)]=] [=[1'b1]=])
+mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the start has the planes of the start"
+  [=[s_q.step_x[PLANE+:M] ^ {M{moves_left}}]=] [=[s_q.step_x[PLANE+:M] ^ {M{goes_left_q}}]=])
 
 # the lag of HiZ
 mutant(62 stages/hiz.sv "stale HiZ: a visit that may raise a depth is believed not to, until it is seen"

@@ -1,7 +1,8 @@
 // Coarse raster for the smallest parts: the bits of coarse_raster.sv with one edge stepped and tested a cycle.
 //
 // The edges stand in a ring of three. TURN moves it round once: each edge is stepped to the next tile as it leaves the
-// front, and tested in the cycle after that at the back. The planes are stepped meanwhile.
+// front, and tested in the cycle after that at the back. The planes are stepped meanwhile. The way from tile to tile is
+// that of coarse_raster.sv.
 // Occupancy: 5 cycles a tile, one more for a visit, one more where a HiZ bound is read; a visited tile is offered until
 // fine_raster is through with it. Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
 module coarse_raster_serial (
@@ -72,17 +73,16 @@ module coarse_raster_serial (
   logic [SLOT:0]   used_q;   // slots that are not free
 
   logic is_triangle, is_fast_clear, is_token, clears_bounds;
-  logic takes, steps, turns_end, is_last_column, is_last_tile, clears, finishes;
+  logic takes, steps, turns_end, is_last_column, is_last_row, is_last_tile, clears, finishes;
   logic is_eligible, is_eligible_q;  // HiZ may reject tiles
   logic is_behind, is_settled, visits_are_done, is_skipped, tile_taken;
-  logic outside_q, inside_q;  // some edge, all edges
+  logic outside_q, inside_q;      // some edge, all edges
+  logic ends_way_q, ends_left_q;  // outside of an edge that gets no better this way, to the left
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = s_q.kind[1];  // fast clear, flush, line
   assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
   assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // one tile's bound per cycle
-  assign is_last_column = tile_x_q == s_q.box.right[PX-1:TS];
-  assign is_last_tile   = is_last_column && tile_y_q == s_q.box.bottom[PY-1:TS];
   assign setup_ready_o  = state_q == IDLE && used_q != (SLOT + 1)'(SLOTS);
   assign takes          = setup_valid_i && setup_ready_o;
   assign context_slot_o = slot_q;
@@ -94,6 +94,27 @@ module coarse_raster_serial (
   assign steps        = is_skipped || (tile_taken && state_q != END);
   assign finishes     = tile_taken && (state_q == END || is_last_tile);
 
+  // From a tile to the next one.
+  logic [TX-1:0] start_x_q, next_x;  // start: of this row, then of the one below
+  logic          goes_left_q;        // this move, and the way from there on
+  logic          must_return_q;      // there are tiles to the left of the start
+  logic          is_empty_q;         // every tile of the row so far was outside
+  logic          goes_down_q, turns_back_q, moves_start_q;  // this move
+  logic          was_left_q;         // the way before it
+  logic          is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, goes_down;
+  assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
+  assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
+  assign is_last_column = goes_left_q ? is_leftmost : is_rightmost;
+  assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
+  assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
+  assign must_return    = must_return_q && !ends_left_q;
+  assign exits          = is_last_column || ends_way_q;
+  assign turns_back     = exits && must_return;
+  assign row_ends       = exits && !must_return;
+  assign goes_down      = is_token ? is_last_column : goes_down_q;
+  assign next_x         = goes_down || turns_back_q ? start_x_q - TX'(turns_back_q) :
+                                      goes_left_q ? tile_x_q - TX'(1) : tile_x_q + TX'(1);
+
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       state_q <= IDLE;
@@ -103,7 +124,7 @@ module coarse_raster_serial (
       if (finishes) begin
         state_q <= IDLE;
         slot_q  <= slot_q + SLOT'(1);
-      end else if (steps) state_q <= is_last_tile ? END : TURN;
+      end else if (steps) state_q <= row_ends && is_last_row ? END : TURN;
       else begin
         case (state_q)
           IDLE: if (takes) state_q <= TURN;
@@ -133,24 +154,46 @@ module coarse_raster_serial (
       tile_x_q <= s_q.box.right[PX-1:TS];  // nothing to clear here
       tile_y_q <= s_q.box.bottom[PY-1:TS];
     end else if ((turns_end && !is_new_q) || (clears && !is_last_tile)) begin
-      tile_x_q <= is_last_column ? s_q.box.left[PX-1:TS] : tile_x_q + TX'(1);
-      if (is_last_column) tile_y_q <= tile_y_q + TY'(1);
+      tile_x_q <= next_x;
+      tile_y_q <= tile_y_q + TY'(goes_down);
     end
+
+    if (takes) begin
+      start_x_q     <= setup_i.box.left[PX-1:TS];
+      goes_left_q   <= 1'b0;
+      must_return_q <= 1'b0;
+      is_empty_q    <= 1'b1;
+      goes_down_q   <= 1'b0;
+      turns_back_q  <= 1'b0;
+      moves_start_q <= 1'b0;
+      was_left_q    <= 1'b0;
+    end else if (steps) begin
+      was_left_q    <= goes_left_q;
+      goes_left_q   <= (goes_left_q || turns_back) && !row_ends;
+      must_return_q <= row_ends ? start_x_q != s_q.box.left[PX-1:TS] : must_return && !turns_back;
+      is_empty_q    <= row_ends || (is_empty_q && outside_q);
+      goes_down_q   <= row_ends;
+      turns_back_q  <= turns_back;
+      moves_start_q <= is_empty_q && outside_q;
+    end else if (turns_end && moves_start_q) start_x_q <= next_x;
   end
 
   // ------------------------------------------------------------------------------------------------------------ edges
-  // Edge 0 lowest. value: at the tile's first pixel; row: at the first tile of its row, in use after the first turn;
-  // right, down: one pixel that way. right comes as dy, its sign is turned on the first turn.
+  // Edge 0 lowest. value: at the tile's first pixel; row: at the start of its row, in use after the first turn; right,
+  // down: one pixel that way. right comes as dy, its sign is turned on the first turn.
   logic [3*V-1:0]      value_q, row_q;
   logic [3*D-1:0]      right_q, down_q;
-  logic                moves_ring, goes_down;
+  logic                moves_ring;
   logic signed [V-1:0] from, next;
   logic signed [D-1:0] step, right;
+  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
+  logic [V-TS:0]       sum;
+  /* verilator lint_on UNUSEDSIGNAL */
   assign moves_ring = state_q == TURN && turn_q != 2'd3;
-  assign goes_down  = is_last_column && !is_new_q;
-  assign from       = goes_down ? row_q[0+:V] : value_q[0+:V];
-  assign step       = is_new_q ? '0 : goes_down ? down_q[0+:D] : right_q[0+:D];
-  assign next       = from + (V'(step) <<< TS);
+  assign from       = goes_down_q || turns_back_q ? row_q[0+:V] : value_q[0+:V];
+  assign step       = is_new_q ? '0 : goes_down_q ? down_q[0+:D] : right_q[0+:D] ^ {D{goes_left_q}};
+  assign sum        = {from[V-1:TS], 1'b1} + {(V - TS)'(step), goes_left_q};
+  assign next       = {sum[V-TS:1], from[TS-1:0]};
   assign right      = (right_q[0+:D] ^ {D{is_new_q}}) + D'(is_new_q);
 
   always_ff @(posedge clk_i) begin
@@ -163,7 +206,7 @@ module coarse_raster_serial (
       right_q <= {right, right_q[D+:2*D]};
       down_q  <= {down_q[0+:D], down_q[D+:2*D]};
     end
-    if (moves_ring) row_q <= {is_new_q || goes_down ? next : row_q[0+:V], row_q[V+:2*V]};
+    if (moves_ring) row_q <= {is_new_q || goes_down_q || moves_start_q ? next : row_q[0+:V], row_q[V+:2*V]};
   end
 
   // The edge at the back, at the tile's best and at its worst corner: T - 1 pixels away.
@@ -184,8 +227,10 @@ module coarse_raster_serial (
 
   always_ff @(posedge clk_i) begin
     if (state_q == TURN) begin
-      outside_q <= turn_q != 2'd0 && (outside_q || largest < 0);
-      inside_q  <= turn_q == 2'd0 || (inside_q && smallest >= 0);
+      outside_q   <= turn_q != 2'd0 && (outside_q || largest < 0);
+      inside_q    <= turn_q == 2'd0 || (inside_q && smallest >= 0);
+      ends_way_q  <= turn_q != 2'd0 && (ends_way_q || (largest < 0 && (goes_left_q ? test_right >= 0 : test_right <= 0)));
+      ends_left_q <= turn_q != 2'd0 && (ends_left_q || (largest < 0 && test_right >= 0));
     end
   end
 
@@ -205,13 +250,16 @@ module coarse_raster_serial (
   endgenerate
 
   // ----------------------------------------------------------------------------------------------------------- planes
-  // The wide value at the tile's anchor; setup added what makes the local anchor its high bits.
-  // A step right takes the first cycle of TURN, a step down two: to the start of the next row, which is ready, and from
-  // there to the one after it. A new primitive's first value comes in the same way.
-  logic starts_row, finishes_row, goes_right;
-  assign starts_row   = state_q == TURN && turn_q == 2'd0 && (is_last_column || is_new_q);
-  assign finishes_row = state_q == TURN && turn_q == 2'd1 && (is_last_column || is_new_q);
-  assign goes_right   = state_q == TURN && turn_q == 2'd0;
+  // The wide value at the tile's anchor; setup added what makes the local anchor its high bits. In TURN, cycle 0 goes back to
+  // the row's start where the move begins there, cycle 2 steps, and cycle 3 notes a new start. The step to the right stands
+  // in front, the one down behind it; they change places twice, round the step for one down, before it for one that turns
+  // back. On the second time the step to the right is complemented where the way turns.
+  logic loads_start, adds_step, notes_start, swaps, turns_step;
+  assign loads_start = state_q == TURN && turn_q == 2'd0 && (is_new_q || goes_down_q || turns_back_q);
+  assign adds_step   = state_q == TURN && turn_q == 2'd2 && !is_new_q;
+  assign notes_start = turns_end && (goes_down_q || moves_start_q);
+  assign swaps       = state_q == TURN && ((turns_back_q && turn_q <= 2'd1) || (goes_down_q && (turn_q == 2'd1 || turn_q == 2'd2)));
+  assign turns_step  = turns_back_q ? turn_q == 2'd1 : turn_q == 2'd2 && was_left_q;
 
   // In the context are steps per pixel, narrowed to the local guard bits.
   generate
@@ -225,23 +273,27 @@ module coarse_raster_serial (
       logic [P-1:0] value;
       /* verilator lint_on UNUSEDSIGNAL */
       logic [P-1:0] step_x, step_y;
-      logic [M-1:0] plane_q, next_row_q, step_q, other_step_q, plane_next;
+      logic [M-1:0] plane_q, start_q, step_q, other_step_q;
+      /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
+      logic [M:0]   moved;
+      /* verilator lint_on UNUSEDSIGNAL */
       assign value      = setup_i.value[PLANE+:P];
       assign step_x     = setup_i.step_x[PLANE+:P];
       assign step_y     = setup_i.step_y[PLANE+:P];
-      assign plane_next = plane_q + step_q;
+      assign moved      = {plane_q, 1'b1} + {step_q, goes_left_q};
 
       always_ff @(posedge clk_i) begin
         if (takes) begin
           step_q       <= step_x[M-1:0];
           other_step_q <= step_y[M-1:0];
-        end else if (starts_row || finishes_row) begin
-          step_q       <= other_step_q;
+        end else if (swaps) begin
+          step_q       <= other_step_q ^ {M{turns_step}};
           other_step_q <= step_q;
         end
-        if (takes) next_row_q <= value[P-1:TS+S];
-        else if (finishes_row) next_row_q <= plane_next;
-        if (goes_right) plane_q <= starts_row ? next_row_q : plane_next;
+        if (takes) start_q <= value[P-1:TS+S];
+        else if (notes_start) start_q <= plane_q;
+        if (loads_start) plane_q <= start_q;
+        else if (adds_step) plane_q <= moved[M:1];
       end
 
       assign tile_o.anchor[LOCAL+:B]    = plane_q[M-1-:B];
@@ -264,6 +316,8 @@ module coarse_raster_serial (
       .tile_y_i         (tile_y_q),
       .passes_i         (turns_end),
       .reads_i          (state_q == WALK),
+      .read_x_i         (tile_x_q),
+      .read_y_i         (tile_y_q),
       .clears_i         (clears),
       .starts_visit_i   (starts_visit),
       .is_eligible_o    (is_eligible),
@@ -277,15 +331,15 @@ module coarse_raster_serial (
   // ----------------------------------------------------------------------------------------------------------- result
   // The tile's part of the box comes a cycle after the tile's coordinates, before a packet is offered.
   var raster_pkg::tile_box_t box, box_q;
-  assign box.left   = tile_x_q == s_q.box.left[PX-1:TS] ? s_q.box.left[TS-1:0] : '0;
+  assign box.left   = is_leftmost ? s_q.box.left[TS-1:0] : '0;
   assign box.top    = tile_y_q == s_q.box.top[PY-1:TS] ? s_q.box.top[TS-1:0] : '0;
-  assign box.right  = is_last_column ? s_q.box.right[TS-1:0] : '1;
-  assign box.bottom = tile_y_q == s_q.box.bottom[PY-1:TS] ? s_q.box.bottom[TS-1:0] : '1;
+  assign box.right  = is_rightmost ? s_q.box.right[TS-1:0] : '1;
+  assign box.bottom = is_last_row ? s_q.box.bottom[TS-1:0] : '1;
   always_ff @(posedge clk_i) box_q <= box;
 
   assign tile_o.kind           = s_q.kind;
   assign tile_o.is_visit       = state_q != END;
-  assign tile_o.ends_primitive = is_last_tile;
+  assign tile_o.ends_primitive = state_q == END || is_last_tile;
   assign tile_o.slot           = slot_q;
   assign tile_o.box            = box_q;
   assign tile_o.is_inside      = inside_q && state_q != END;

@@ -24,13 +24,13 @@ module cull (
     input  logic                         triangle_ready_i,
     output raster_pkg::triangle_packet_t triangle_o,
 
-    // Counters: one pulse for each
+    // Counters: one pulse for each, a cycle late
     output logic is_primitive_o,  // triangles, points and lines
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
     output logic is_no_sample_o,
-    output logic is_dropped_o  // whatever the kind
+    output logic is_dropped_o  // whatever the kind; at once
 );
 
   localparam int C = raster_pkg::COORDINATE_BITS;
@@ -317,12 +317,23 @@ module cull (
                          {columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b0};
   assign is_sampleless = d_is_triangle && is_small_q && columns <= 3'd1 && rows <= 3'd1 && is_missed == '1;
 
-  assign is_primitive_o = leaves && is_counted;
-  assign is_zero_area_o = leaves && is_zero;
-  assign is_backface_o  = leaves && is_back;
-  assign is_empty_o     = leaves && is_counted && !is_zero && !is_back && d_is_empty_q;
-  assign is_no_sample_o = leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless;
   assign is_dropped_o   = leaves && is_dropped;
+  // Counters, one cycle late: what makes a triangle leave comes late enough without them behind it.
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      is_primitive_o <= 1'b0;
+      is_zero_area_o <= 1'b0;
+      is_backface_o  <= 1'b0;
+      is_empty_o     <= 1'b0;
+      is_no_sample_o <= 1'b0;
+    end else begin
+      is_primitive_o <= leaves && is_counted;
+      is_zero_area_o <= leaves && is_zero;
+      is_backface_o  <= leaves && is_back;
+      is_empty_o     <= leaves && is_counted && !is_zero && !is_back && d_is_empty_q;
+      is_no_sample_o <= leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless;
+    end
+  end
 
   assign triangle_valid_o        = decide_busy_q && decide_step_q == 2'd3 && !is_dropped;
   assign triangle_o.kind         = kind_q;

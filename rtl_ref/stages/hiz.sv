@@ -16,8 +16,10 @@ module hiz (
     input logic [raster_pkg::TILE_X_BITS-1:0] tile_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] tile_y_i,
     input logic                               passes_i,  // it has just come
-    input logic                               reads_i,
     input logic                               clears_i,  // the tile's bound; no visit is under way
+    input logic                               reads_i,   // that of this tile:
+    input logic [raster_pkg::TILE_X_BITS-1:0] read_x_i,
+    input logic [raster_pkg::TILE_Y_BITS-1:0] read_y_i,
     /* verilator lint_on UNUSEDSIGNAL */
     input logic                               starts_visit_i,
 
@@ -130,7 +132,7 @@ module hiz (
       ) u_bound (
           .clk_i,
           .read_i         (reads_i),
-          .read_address_i ({tile_y_i, tile_x_i}),
+          .read_address_i ({read_y_i, read_x_i}),
           .data_o         (bound),
           .write_i        (clears_i || (sees && has_news)),
           .write_address_i(clears_i ? {tile_y_i, tile_x_i} : {update_y, update_x}),

@@ -137,6 +137,39 @@ TEST(Cycles, ATriangleOf128By128TakesAtMost4TenthsPerPixelWithItsEvictions) {
             0.4);
 }
 
+/// Cycles of `hidden` triangles with legs of `size` pixels behind a wall, and of a last one in front of it.
+double behind_a_wall(std::size_t hidden, double size) {
+  constexpr int kWidth = 640, kHeight = 480;
+  const Triangle wall{{{0, 0}, {2 * kWidth, 0}, {0, 2 * kHeight}}};
+  std::vector<Triangle> triangles{wall, wall};  // the second one's visits make those of the first one seen
+  Random random(5);
+  for (std::size_t i = 0; i < hidden; ++i) {
+    const double x = random.uniform(0, kWidth - size), y = random.uniform(0, kHeight - size);
+    triangles.push_back({{{x, y}, {x + size, y}, {x, y + size}}});
+  }
+  triangles.push_back(two_by_two(4, 4));
+  Scene scene = scene_of(kWidth, kHeight, triangles);
+  scene.states[0].depth_test = DepthFunc::lequal;
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+    scene.vertices[i].z = i < 6 ? 0.5 : i + 3 < scene.vertices.size() ? 0.75 : 0.25;
+  const auto tiles = render_hardware(scene, preset("embedded")).counters;
+  EXPECT_EQ(tiles.written, 2u * kWidth * kHeight + 3);
+  const std::string name = std::to_string(hidden) + " hidden ones of " + std::to_string(static_cast<int>(size)) + " px";
+  return measure(scene, name.c_str()).each * static_cast<double>(hidden + 3);
+}
+
+TEST(Cycles, AHiddenTriangleOf64PixelsTakesAtMost60) {
+  const double each = (behind_a_wall(101, 64) - behind_a_wall(1, 64)) / 100;
+  std::printf("hidden, 64 px: %.2f cycles each\n", each);
+  EXPECT_LE(each, 60);
+}
+
+TEST(Cycles, AHiddenTriangleOf256PixelsTakesAtMost650) {
+  const double each = (behind_a_wall(21, 256) - behind_a_wall(1, 256)) / 20;
+  std::printf("hidden, 256 px: %.2f cycles each\n", each);
+  EXPECT_LE(each, 650);
+}
+
 /// Lines of `length` pixels in all directions. Diamond exit: as many pixels as the longer side has.
 std::vector<Line> random_lines(double length, int width, int height, std::size_t count) {
   Random random(4);

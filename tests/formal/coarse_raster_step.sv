@@ -1,43 +1,43 @@
 
-  // The walk from tile to tile against values summed up outside of it: a column on, minus T dy; a row on, T dx from the
-  // row's first tile. The tile that they belong to is counted here as well.
-  logic [TX-1:0] tile_x_g;
+  // The walk from tile to tile against values summed up outside of it, at the tile and at the row's start: a column on, minus
+  // T dy; one back, plus T dy; a row on, T dx. The tiles that they belong to are counted here as well: from a tile the way is to
+  // one of its neighbours, or from the row's start to its left or down.
+  logic [TX-1:0] tile_x_g, start_x_g;
   logic [TY-1:0] tile_y_g;
-  logic          goes, wraps;
   var raster_pkg::setup_packet_t g_q;
-  assign goes  = steps && !is_last_tile;
-  assign wraps = tile_x_g == g_q.box.right[PX-1:TS];
   always_ff @(posedge clk_i) begin
     if (takes) begin
-      g_q      <= setup_i;
-      tile_x_g <= setup_i.box.left[PX-1:TS];
-      tile_y_g <= setup_i.box.top[PY-1:TS];
-    end else if (goes) begin
-      tile_x_g <= wraps ? g_q.box.left[PX-1:TS] : tile_x_g + TX'(1);
-      if (wraps) tile_y_g <= tile_y_g + TY'(1);
+      g_q       <= setup_i;
+      tile_x_g  <= setup_i.box.left[PX-1:TS];
+      tile_y_g  <= setup_i.box.top[PY-1:TS];
+      start_x_g <= setup_i.box.left[PX-1:TS];
+    end else if (goes_on) begin
+      tile_x_g <= row_ends ? start_x_g : turns_back ? start_x_g - TX'(1) : goes_left_q ? tile_x_g - TX'(1) : tile_x_g + TX'(1);
+      if (row_ends) tile_y_g <= tile_y_g + TY'(1);
+      else if (moves_start) start_x_g <= turns_back ? start_x_g - TX'(1) : goes_left_q ? tile_x_g - TX'(1) : tile_x_g + TX'(1);
     end
   end
   logic walks;
-  assign walks = runs_q && (state_q == WALK || state_q == BOUND) && has_walk;
-  always_comb if (walks) begin
-    assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g);
-  end
+  assign walks = runs_q && (state_q == WALK || state_q == OFFER) && has_walk;
+  always_comb if (walks) assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
   always_comb if (runs_q && state_q != IDLE) assert (s_q == g_q);
   always_comb if (runs_q && state_q == PREPARE && has_walk)
-    assert (tile_x_q == g_q.box.left[PX-1:TS] && tile_y_q == g_q.box.top[PY-1:TS] && tile_x_g == tile_x_q && tile_y_g == tile_y_q);
+    assert (tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
   genvar k;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
-      logic [V-1:0] tile_q, row_first_q, dx_tiles, dy_tiles;
+      logic [V-1:0] tile_q, row_first_q, dx_tiles, dy_tiles, to;
       assign dx_tiles = V'($signed(g_q.dx[k*D+:D])) << TS;
       assign dy_tiles = V'($signed(g_q.dy[k*D+:D])) << TS;
+      assign to       = row_ends ? row_first_q + dx_tiles : turns_back ? row_first_q + dy_tiles :
+                                   goes_left_q ? tile_q + dy_tiles : tile_q - dy_tiles;
       always_ff @(posedge clk_i) begin
         if (takes) begin
           tile_q      <= setup_i.edge_value[k*V+:V];
           row_first_q <= setup_i.edge_value[k*V+:V];
-        end else if (goes) begin
-          tile_q <= wraps ? row_first_q + dx_tiles : tile_q - dy_tiles;
-          if (wraps) row_first_q <= row_first_q + dx_tiles;
+        end else if (goes_on) begin
+          tile_q <= to;
+          if (row_ends || moves_start) row_first_q <= to;
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
@@ -53,21 +53,24 @@
       localparam int AT = PLANE_AT[32*k+:32];
       localparam int B = LOCAL_BITS_OF[32*k+:32];
       localparam int LOCAL = LOCAL_AT[32*k+:32];
-      logic [P-1:0] tile_q, row_first_q, step_x, step_y, value;
+      localparam int M = P - TS - S;  // no step changes the bits below
+      logic [P-1:0] tile_q, row_first_q, step_x, step_y, value, to;
       assign value  = setup_i.value[AT+:P];
       assign step_x = g_q.step_x[AT+:P] << (TS + S);
       assign step_y = g_q.step_y[AT+:P] << (TS + S);
+      assign to     = row_ends ? row_first_q + step_y : turns_back ? row_first_q - step_x :
+                                 goes_left_q ? tile_q - step_x : tile_q + step_x;
       always_ff @(posedge clk_i) begin
         if (takes) begin
           tile_q      <= value;
           row_first_q <= value;
-        end else if (goes) begin
-          tile_q <= wraps ? row_first_q + step_y : tile_q + step_x;
-          if (wraps) row_first_q <= row_first_q + step_y;
+        end else if (goes_on) begin
+          tile_q <= to;
+          if (row_ends || moves_start) row_first_q <= to;
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
-        assert (gen_plane[k].value_q == tile_q && gen_plane[k].row_q == row_first_q);
+        assert (gen_plane[k].value_q == tile_q[P-1-:M] && gen_plane[k].row_q == row_first_q[P-1-:M]);
       always_comb if (walks) assert (tile_o.anchor[LOCAL+:B] == tile_q[P-1-:B]);
     end
   endgenerate

@@ -14,8 +14,9 @@
   logic [N-1:0] newest, retires;  // places in the ring of the visit that starts, that retires
   assign newest  = started_q[N-1:0];
   assign retires = retired_q[N-1:0];
-  logic is_it, clears_it, raises;
+  logic is_it, reads_it, clears_it, raises;
   assign is_it     = tile_x_i == any_x && tile_y_i == any_y;
+  assign reads_it  = read_x_i == any_x && read_y_i == any_y;
   assign clears_it = clears_i && is_it;
   assign raises    = setup_i.state.depth_write && setup_i.state.depth_test[2];
 
@@ -75,7 +76,7 @@
     is_silent_q <= is_silent_g[seen_next[N-1:0]];
     code_q      <= code_g[32'(seen_next[N-1:0])*HIZ+:HIZ];
     if (reads_i) begin
-      has_word_q <= is_it && !sees && !clears_i;
+      has_word_q <= reads_it && !sees && !clears_i;
       word_q     <= bound_g;
     end
   end
@@ -97,7 +98,7 @@
   end
   // A verdict is good: it was read when the stage was settled, and no visit has started since.
   logic is_good_q, is_good;
-  assign is_good = reads_i ? is_settled_o && is_it && has_bound_q : is_good_q;
+  assign is_good = reads_i ? is_settled_o && reads_it && has_bound_q : is_good_q;
   always_ff @(posedge clk_i) is_good_q <= rst_ni && is_good && !starts_visit_i && !clears_i && !forgets;
   always_comb if (runs_q) begin
     if (has_update_q) assert (is_said_q && is_it_q == is_it_g[seen_q[N-1:0]] && is_silent_q == is_silent_g[seen_q[N-1:0]] &&

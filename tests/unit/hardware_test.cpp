@@ -137,8 +137,10 @@ TEST(Hardware, ImageAndCountersAreThoseOfTheFunctionalEngineOnRandomScenes) {
       const CounterPacket saved = walks_saved(scene, config);
       EXPECT_EQ(a.skipped.no_sample, saved.no_sample);
       EXPECT_EQ(saved.trivially_accepted, 0u);
-      EXPECT_EQ(a.tiles_visited + saved.tiles_visited, b.tiles_visited);
-      EXPECT_EQ(a.skipped.tiles_outside + saved.tiles_outside, b.skipped.tiles_outside);
+      // The walk looks at few of the tiles outside; the scalar engine at all of a box.
+      EXPECT_EQ(a.tiles_visited - a.skipped.tiles_outside + saved.tiles_visited - saved.tiles_outside,
+                b.tiles_visited - b.skipped.tiles_outside);
+      EXPECT_LE(a.skipped.tiles_outside + saved.tiles_outside, b.skipped.tiles_outside);
       EXPECT_EQ(a.depth_passed, b.depth_passed);
       EXPECT_EQ(a.written, b.written);
       EXPECT_LE(a.covered, b.covered);
@@ -237,7 +239,7 @@ TEST(Hardware, StampInterpolatedFromItsTileEqualsTheClosedFormAtEveryPixel) {
       if (setup.area == 0 || setup.is_empty()) continue;
       const SetupPacket packet = to_setup_packet(setup, widths);
       const int tile_x = setup.right >> widths.tile_shift, tile_y = setup.bottom >> widths.tile_shift;
-      StampPacket stamp = empty_stamp(make_tile_packet(packet, tile_x, tile_y, 0, widths));
+      StampPacket stamp = empty_stamp(make_tile_packet(packet, tile_x, tile_y, 0, false, widths));
       stamp.stamp = static_cast<std::uint16_t>(random.index(widths.stamps.stamps()));
       const FragmentPacket fragment = interpolate(stamp, make_context(packet, widths), widths);
       const int x = tile_x * config.tile_size + stamp.stamp % widths.stamps.stamps_per_row * size;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "../scene_builder.hpp"
 #include "model/packet_words.hpp"
@@ -33,6 +34,81 @@ Triangle random_triangle(Random& random, const Widths& widths, double reach) {
     v.depth() = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth().code.range.hi)));
   }
   return triangle;
+}
+
+/// The tiles of a triangle's box that lie outside of no edge, and how the walk comes to them.
+struct WalkTally {
+  std::uint64_t tiles = 0, met = 0, met_twice = 0, visited = 0, in_boxes = 0;
+};
+
+/// `way`: called with the edges that a tile is outside of; what it returns the walk believes.
+template <class Way>
+WalkTally walk_random_triangles(std::uint64_t seed, Way&& way) {
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  std::mt19937_64 random(seed);
+  const auto below = [&random](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
+  WalkTally tally;
+  for (int n = 0; n < 3000; ++n) {
+    const int reach = 16 << below(9), x = below(640 * 16), y = below(480 * 16);  // subpixels
+    std::array<SnappedVertex, 3> v{};
+    for (SnappedVertex& corner : v) {
+      corner.x = std::clamp(x + below(2 * reach) - reach, -32768, 32767);
+      corner.y = std::clamp(y + below(2 * reach) - reach, -32768, 32767);
+    }
+    if (below(3) == 0) {  // a sliver
+      v[2].x = (v[0].x + v[1].x) / 2 + below(5) - 2;
+      v[2].y = (v[0].y + v[1].y) / 2 + below(5) - 2;
+    }
+    PrimitivePacket primitive;
+    set_vertices(primitive.vertex, v);
+    primitive.box = to_box({0, 0, 639, 479});
+    CounterPacket counters;
+    const auto kept = cull(primitive, widths, counters);
+    if (!kept) continue;
+    const SetupPacket setup = setup_packet(*kept, config, widths);
+    const int left = setup.box.left / 8, top = setup.box.top / 8, right = setup.box.right / 8,
+              bottom = setup.box.bottom / 8;
+    const auto outside = [&](int tile_x, int tile_y) {
+      return outside_edges(setup.dx, setup.dy, edges_at_tile(setup, tile_x, tile_y, widths), 8);
+    };
+    for (int tile_y = top; tile_y <= bottom; ++tile_y)
+      for (int tile_x = left; tile_x <= right; ++tile_x) {
+        ++tally.in_boxes;
+        tally.tiles += outside(tile_x, tile_y) == 0;
+      }
+    std::set<std::pair<int, int>> seen;
+    TileWalk walk(left, top, right, bottom, setup.dy);
+    unsigned edges = 0;
+    bool was_last = false;
+    do {
+      EXPECT_FALSE(was_last) << "nothing follows the last tile";
+      edges = outside(walk.x(), walk.y());
+      ++tally.visited;
+      if (edges == 0) tally.met_twice += !seen.emplace(walk.x(), walk.y()).second;
+      was_last = edges == 0 && walk.is_last();
+    } while (walk.next(way(edges)));
+    tally.met += seen.size();
+  }
+  return tally;
+}
+
+TEST(CoarseRaster, TheWalkMeetsEveryTileThatIsNotOutsideOnceAndFewOthers) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const WalkTally tally = walk_random_triangles(seed, [](unsigned edges) { return edges; });
+    EXPECT_EQ(tally.met, tally.tiles);
+    EXPECT_EQ(tally.met_twice, 0u);
+    EXPECT_GT(tally.in_boxes, 2 * tally.tiles);
+    EXPECT_LT(tally.visited, tally.tiles + tally.tiles / 4 * 3) << "of " << tally.in_boxes << " in boxes";
+    EXPECT_EQ(walk_random_triangles(seed, [](unsigned) { return 0U; }).visited, tally.in_boxes);
+  }
+}
+
+TEST(CoarseRasterMustFail, AWalkThatTakesEdgesForOthersOverlooksTiles) {
+  const WalkTally tally =
+      walk_random_triangles(1, [](unsigned edges) { return edges == 0 ? 0U : (edges << 1 | edges >> 2) & 7U; });
+  EXPECT_LT(tally.met, tally.tiles);
 }
 
 TEST(Snap, RoundsHalvesUpOnBothSidesOfZeroAndMovesWithTheScene) {

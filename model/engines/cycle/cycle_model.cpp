@@ -76,7 +76,7 @@ class CycleModelOf final : public CycleModel {
     const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
     timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
-    SetupPacket packet;  // what HiZ looks at
+    SetupPacket packet;  // what HiZ and the walk look at
     packet.kind = triangle->kind;
     packet.box = triangle->box;
     packet.state = triangle->state;
@@ -93,6 +93,10 @@ class CycleModelOf final : public CycleModel {
     }
     const TriangleSetup setup = setup_primitive(*triangle, config_, widths_);
     packet.range = setup.range;
+    for (std::size_t i = 0; i < 3; ++i) {
+      packet.dx[i] = setup.edge[i].dx;
+      packet.dy[i] = setup.edge[i].dy;
+    }
     walk(setup, packet, host.primitive);
   }
 
@@ -220,35 +224,38 @@ class CycleModelOf final : public CycleModel {
     CounterPacket uncounted;
     CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
     const bool asks_hiz = hiz_.is_eligible(packet, widths_);
-    const int last_x = setup.right / T, last_y = setup.bottom / T;
+    TileWalk tiles(setup.left / T, setup.top / T, setup.right / T, setup.bottom / T, packet.dy);
     bool has_ended = false;
-    for (int tile_y = setup.top / T; tile_y <= last_y; ++tile_y)
-      for (int tile_x = setup.left / T; tile_x <= last_x; ++tile_x) {
-        ++count.tiles_visited;
-        const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths_);
-        const TileClass tile_class = classify(setup, edges, T);
-        if (tile_class == TileClass::outside && options_.parameters.rejects != 0) {
-          ++count.tiles_outside;
-          timing_.skip_outside();
+    unsigned outside = 0;
+    if (asks_hiz) timing_.read_ahead();
+    do {
+      ++count.tiles_visited;
+      const EdgeValues edges = edges_at_tile(setup, tiles.x(), tiles.y(), widths_);
+      outside = outside_edges(packet.dx, packet.dy, edges, T);
+      if (options_.parameters.rejects == 0) outside = 0;
+      if (outside != 0) {
+        ++count.tiles_outside;
+        timing_.skip_outside();
+        continue;
+      }
+      if (asks_hiz) {
+        timing_.read_bound();
+        if (hiz_.rejects(packet, tiles.x(), tiles.y())) {
+          ++count.tiles_hiz;
+          timing_.skip_behind();
           continue;
         }
-        if (asks_hiz) {
-          timing_.read_bound();
-          if (hiz_.rejects(packet, tile_x, tile_y)) {
-            ++count.tiles_hiz;
-            timing_.skip_behind();
-            continue;
-          }
-        }
-        const bool is_inside = tile_class == TileClass::inside;
-        const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
-        if (is_inside)
-          ++count.trivially_accepted;
-        else
-          count.samples_tested += static_cast<std::uint32_t>(box.samples());
-        has_ended = tile_x == last_x && tile_y == last_y;
-        visit(kernel, setup, lanes, edges, is_inside, packet, box, tile_x, tile_y, has_ended, primitive);
       }
+      const bool is_inside = classify(setup, edges, T) == TileClass::inside;
+      const PixelBounds box = tile_box(setup, tiles.x(), tiles.y(), widths_);
+      if (is_inside)
+        ++count.trivially_accepted;
+      else
+        count.samples_tested += static_cast<std::uint32_t>(box.samples());
+      has_ended = tiles.is_last();
+      visit(kernel, setup, lanes, edges, is_inside, packet, box, tiles.x(), tiles.y(), has_ended, primitive);
+      if (asks_hiz && !has_ended) timing_.read_ahead();
+    } while (tiles.next(outside));
     if (!has_ended) timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
   }
 

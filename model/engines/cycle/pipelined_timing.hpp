@@ -67,6 +67,7 @@ class PipelinedTiming : public BackTiming {
     if (slots_.room() > std::max(ready, coarse_.room()))
       totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
     walk_ = setup.taken + PipelinedCycles::walk_begins;
+    has_bound_ = false;
     work(Stage::coarse_raster, PipelinedCycles::walk_begins);
   }
 
@@ -84,13 +85,16 @@ class PipelinedTiming : public BackTiming {
     work(Stage::coarse_raster, 1);
   }
 
-  /// The bound of the next tile is read, when it knows of the visit hiz.lag before.
-  void read_bound() {
-    const Cycle read = std::max(walk_, visits_.room());
-    totals_.bound_cycles += read - walk_;
-    walk_ = read + 1;
-    work(Stage::coarse_raster, 1);
+  /// From here on bounds are read, each on the way to its tile: as soon as they know of the visit hiz.lag before.
+  void read_ahead() {
+    const Cycle ready = std::max(walk_, visits_.room() + 1);
+    totals_.bound_cycles += ready - walk_;
+    walk_ = ready;
+    has_bound_ = true;
   }
+
+  /// That of the next tile has been read.
+  void read_bound() {}
 
   /// The primitive lies behind that bound, and the tile is passed over.
   void skip_behind() {
@@ -119,11 +123,14 @@ class PipelinedTiming : public BackTiming {
   /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.
   template <class Shade>
   void visit(const TileVisitWork& tile, Shade&& shade) {
-    const Cycle offered = std::max(walk_, visits_.room());
-    totals_.visit_cycles += offered - walk_;
+    const Cycle decided = walk_ + (has_bound_ ? PipelinedCycles::verdict : 0);
+    const Cycle offered = std::max(decided, visits_.room());
+    totals_.visit_cycles += offered - decided;
     const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
     note(Arrow::tile, taken);
-    walk_ = left + 1;
+    walk_ = left + 1 + (has_bound_ ? PipelinedCycles::read_again : 0);
+    work(Stage::coarse_raster, has_bound_ ? PipelinedCycles::verdict + PipelinedCycles::read_again : 0);
+    has_bound_ = false;
     if (tile.ends_primitive) coarse_.leave(left);
     work(Stage::coarse_raster, 1);
     Cycle row_at = taken + 1;
@@ -180,6 +187,7 @@ class PipelinedTiming : public BackTiming {
   Station context_{kSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0, last_left_ = 0;
+  bool has_bound_ = false;  ///< the primitive reads bounds
 };
 
 }  // namespace halfplane

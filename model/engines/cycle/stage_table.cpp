@@ -15,7 +15,7 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
     return {{Stage::cull, number(sort + decide), number(std::max(sort, decide)), "2"},
             {Stage::triangle_setup, number(setup.latency), number(setup.part), number(setup.parts + 1)},
             {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
-             "1 a tile, one more where a HiZ bound is read",
+             "1 a tile, 3 for a visit where HiZ bounds are read",
              number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
             {Stage::fine_raster, "2, then 1 in the buffer", "1 a stamp or row of stamps without one",
              "2 rows, and " + stamps + " stamps in the buffer"},

@@ -18,7 +18,8 @@ inline constexpr int kVisitIsSeen = 3;
 struct PipelinedCycles {
   static constexpr int cull_sort = 4, cull_decide = 4;  ///< the two parts of cull: from a primitive in to its hand-over
   static constexpr Cycle walk_begins = 2;               ///< coarse_raster: from a setup to its first tile
-  static constexpr int interpolate_steps = 5;           ///< each holds one stamp
+  static constexpr Cycle verdict = 1, read_again = 1;  ///< where bounds are read: before a visit's offer, and behind it
+  static constexpr int interpolate_steps = 5;          ///< each holds one stamp
 };
 
 /// A primitive on its way through cull and triangle_setup.

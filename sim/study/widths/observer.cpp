@@ -198,7 +198,7 @@ void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int t
   const EdgeValues edges = edges_at_tile(stages.setup_packet, tile_x, tile_y, widths_);
   for (const EdgeValue value : edges) see(widths_.edge_value, value);
   if (classify(stages.setup, edges, config_.tile_size) == TileClass::outside) return;
-  const TilePacket tile = make_tile_packet(stages.setup_packet, tile_x, tile_y, 0, widths_);
+  const TilePacket tile = make_tile_packet(stages.setup_packet, tile_x, tile_y, 0, false, widths_);
   see_packet(tile);
   const int last = config_.tile_size - 1;
   for (std::size_t i = 0; i < 3; ++i)
