@@ -172,6 +172,7 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
   print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
   print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
+  print_constant(out, "HIZ_GROUP_BITS", widths.hiz_group_bits, "bounds of 2^this tiles of a row are cleared at once");
   print_constant(out, "LINE_X_BITS", widths.line_x_bits, "low bits of a tile's or block's x in a cache line's number");
   print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "likewise of its y, above those");
   print_constant(out, "BLOCK_SIDE", widths.blocks.side, "stamps along the side of a block");

@@ -142,6 +142,7 @@ Widths derive_widths(const Config& config) {
   w.primitive_id = count("primitive id", "modulo 2^key.primitive_bits", int128{1} << config.primitive_id_bits);
   w.slot = count("slot", "context.slots", config.context_slots);
   w.tile_x = count("tile x", "target width / T", w.tiles_x);
+  w.hiz_group_bits = std::min(3, w.tile_x.bits);
   w.tile_y = count("tile y", "target height / T", w.tiles_y);
   w.tile_pixel = count("tile pixel", "T", tile);
   w.stamp_index = count("stamp index", "(T / stamp)^2", w.stamps.stamps());

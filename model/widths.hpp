@@ -77,6 +77,7 @@ struct Widths {
   int samples = 0;         ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
   int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's or block's x and y that choose its cache line
+  int hiz_group_bits = 0;                ///< HiZ bounds of 2^so many tiles of a row are cleared at once
   int line_guard_bits = 0;               ///< fraction bits of depth and colour along a line
 
   // Coverage.

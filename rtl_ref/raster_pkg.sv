@@ -38,6 +38,7 @@ package raster_pkg;
   localparam int SAMPLES = 4;  // samples of a stamp
   localparam int TILES_X = 240;  // tiles along the top of the widest target
   localparam int TILES_Y = 135;  // tiles along the side of the highest target
+  localparam int HIZ_GROUP_BITS = 3;  // bounds of 2^this tiles of a row are cleared at once
   localparam int LINE_X_BITS = 4;  // low bits of a tile's or block's x in a cache line's number
   localparam int LINE_Y_BITS = 4;  // likewise of its y, above those
   localparam int BLOCK_SIDE = 2;  // stamps along the side of a block

@@ -101,11 +101,16 @@ module coarse_raster (
   logic          goes_left_q;
   logic          must_return_q;  // there are tiles to the left of the start
   logic          is_empty_q;     // every tile of the row so far was outside
-  logic          is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
+  logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
+  logic          clears;     // the bounds of a group of tiles each cycle
+  logic [TX-1:0] group_end;  // its last tile
   logic [2:0]    edge_is_outside, no_better_left, no_better_right;
+  assign clears         = state_q == CLEAR;
   assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
   assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
-  assign is_last_column = goes_left_q ? is_leftmost : is_rightmost;
+  assign is_last_group  = (tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
+  assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
+  assign is_last_column = goes_left_q ? is_leftmost : (clears ? is_last_group : is_rightmost);
   assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
   assign must_return    = must_return_q && (edge_is_outside & no_better_left) == '0;
   assign exits          = is_last_column || (edge_is_outside & (goes_left_q ? no_better_left : no_better_right)) != '0;
@@ -113,7 +118,7 @@ module coarse_raster (
   assign row_ends       = exits && !must_return;
   assign moves_left     = goes_left_q || turns_back;
   assign moves_start    = is_empty_q && is_outside;  // or all of it, down
-  assign next_x         = exits ? start_x_q - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : tile_x_q + TX'(1);
+  assign next_x         = exits ? start_x_q - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
   assign next_y         = tile_y_q + TY'(row_ends);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -144,9 +149,7 @@ module coarse_raster (
     end
   end
 
-  logic clears;  // one tile's bound per cycle
   logic goes_on;
-  assign clears  = state_q == CLEAR;
   assign goes_on = (steps || clears) && !(row_ends && is_last_row);
 
   always_ff @(posedge clk_i) begin
@@ -165,6 +168,8 @@ module coarse_raster (
     end else if (goes_on) begin
       tile_x_q <= next_x;
       tile_y_q <= next_y;
+    end else if (clears) begin
+      tile_x_q <= s_q.box.right[PX-1:TS];  // from its group to the last tile itself
     end
     if (takes) begin
       start_x_q     <= setup_i.box.left[PX-1:TS];

@@ -82,7 +82,7 @@ module coarse_raster_serial (
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = s_q.kind[1];  // fast clear, flush, line
   assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
-  assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // one tile's bound per cycle
+  assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // the bounds of a group of tiles each cycle
   assign setup_ready_o  = state_q == IDLE && used_q != (SLOT + 1)'(SLOTS);
   assign takes          = setup_valid_i && setup_ready_o;
   assign context_slot_o = slot_q;
@@ -101,10 +101,13 @@ module coarse_raster_serial (
   logic          is_empty_q;         // every tile of the row so far was outside
   logic          goes_down_q, turns_back_q, moves_start_q;  // this move
   logic          was_left_q;         // the way before it
-  logic          is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, goes_down;
+  logic [TX-1:0] group_end;  // the last tile of the group that is cleared
+  logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, goes_down;
   assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
   assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
-  assign is_last_column = goes_left_q ? is_leftmost : is_rightmost;
+  assign is_last_group  = (tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
+  assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
+  assign is_last_column = goes_left_q ? is_leftmost : (clears ? is_last_group : is_rightmost);
   assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
   assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
   assign must_return    = must_return_q && !ends_left_q;
@@ -113,7 +116,7 @@ module coarse_raster_serial (
   assign row_ends       = exits && !must_return;
   assign goes_down      = is_token ? is_last_column : goes_down_q;
   assign next_x         = goes_down || turns_back_q ? start_x_q - TX'(turns_back_q) :
-                                      goes_left_q ? tile_x_q - TX'(1) : tile_x_q + TX'(1);
+                                      goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -156,6 +159,8 @@ module coarse_raster_serial (
     end else if ((turns_end && !is_new_q) || (clears && !is_last_tile)) begin
       tile_x_q <= next_x;
       tile_y_q <= tile_y_q + TY'(goes_down);
+    end else if (clears) begin
+      tile_x_q <= s_q.box.right[PX-1:TS];  // from its group to the last tile itself
     end
 
     if (takes) begin

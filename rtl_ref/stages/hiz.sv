@@ -16,7 +16,7 @@ module hiz (
     input logic [raster_pkg::TILE_X_BITS-1:0] tile_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] tile_y_i,
     input logic                               passes_i,  // it has just come
-    input logic                               clears_i,  // the tile's bound; no visit is under way
+    input logic                               clears_i,  // the bounds of the tile's group; no visit is under way
     input logic                               reads_i,   // that of this tile:
     input logic [raster_pkg::TILE_X_BITS-1:0] read_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] read_y_i,
@@ -43,6 +43,7 @@ module hiz (
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
   localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
   localparam int LAG = raster_pkg::HIZ_LAG;
+  localparam int GROUP = raster_pkg::HIZ_GROUP_BITS;  // tiles side by side that are cleared at once: 2^GROUP
   localparam int N = $clog2(LAG);  // bits of a place in the queue
 
   // Visits that have started, retired and been seen, since reset or the last clear of the bounds, modulo 2 LAG.
@@ -121,23 +122,32 @@ module hiz (
                             retire_i.update != raster_pkg::HIZ_UPDATE_NONE})
       );
 
+      localparam int WORD = raster_pkg::TILES_Y << (TX - GROUP) == 1 ? 1 : $clog2(raster_pkg::TILES_Y << (TX - GROUP));
       // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
       logic [Z-1:0]   depth_min;
       logic [HIZ-1:0] bound;
       assign depth_min = setup_i.range.low[0+:Z];
-      sram #(
-          .WIDTH    (HIZ),
-          .DEPTH    (raster_pkg::TILES_Y << TX),
-          .READS_OLD(0)  // no bound is looked at that was read while another was written
-      ) u_bound (
-          .clk_i,
-          .read_i         (reads_i),
-          .read_address_i ({read_y_i, read_x_i}),
-          .data_o         (bound),
-          .write_i        (clears_i || (sees && has_news)),
-          .write_address_i(clears_i ? {tile_y_i, tile_x_i} : {update_y, update_x}),
-          .data_i         (clears_i ? depth_min[Z-1-:HIZ] : update_code)
-      );
+      logic [(HIZ<<GROUP)-1:0] bounds;  // of the tiles of a group, each in a RAM of its own
+      logic [GROUP-1:0]        read_q;  // which of them was asked for
+      always_ff @(posedge clk_i) if (reads_i) read_q <= read_x_i[GROUP-1:0];
+      assign bound = bounds[HIZ*read_q+:HIZ];
+
+      genvar t;
+      for (t = 0; t < 1 << GROUP; t++) begin : gen_tile
+        sram #(
+            .WIDTH    (HIZ),
+            .DEPTH    (raster_pkg::TILES_Y << (TX - GROUP) == 1 ? 2 : raster_pkg::TILES_Y << (TX - GROUP)),
+            .READS_OLD(0)  // no bound is looked at that was read while another was written
+        ) u_bound (
+            .clk_i,
+            .read_i         (reads_i),
+            .read_address_i (WORD'({read_y_i, read_x_i} >> GROUP)),
+            .data_o         (bounds[HIZ*t+:HIZ]),
+            .write_i        (clears_i || (sees && has_news && update_x[GROUP-1:0] == GROUP'(t))),
+            .write_address_i(WORD'((clears_i ? {tile_y_i, tile_x_i} : {update_y, update_x}) >> GROUP)),
+            .data_i         (clears_i ? depth_min[Z-1-:HIZ] : update_code)
+        );
+      end
 
       // Behind: depth_min > bound; for `less` equality will do.
       logic is_equal;

@@ -17,7 +17,9 @@
   logic is_it, reads_it, clears_it, raises;
   assign is_it     = tile_x_i == any_x && tile_y_i == any_y;
   assign reads_it  = read_x_i == any_x && read_y_i == any_y;
-  assign clears_it = clears_i && is_it;
+  logic clears_group;  // of tiles that are cleared at once: this one is among them
+  assign clears_group = tile_x_i >> GROUP == any_x >> GROUP && tile_y_i == any_y;
+  assign clears_it    = clears_i && clears_group;
   assign raises    = setup_i.state.depth_write && setup_i.state.depth_test[2];
 
   // Of each visit that has not been seen: whether it is in this tile, may raise depths, will say nothing; the farthest
@@ -31,9 +33,9 @@
   logic sees_it;
   assign sees_it = sees && is_it_g[seen_q[N-1:0]];
   always_ff @(posedge clk_i) begin
-    in_clear_q <= rst_ni && clears_i && (is_it || in_clear_q);
+    in_clear_q <= rst_ni && clears_i && (clears_group || in_clear_q);
     if (!rst_ni || forgets) has_bound_q <= 1'b0;
-    else if (clears_i) has_bound_q <= is_it || in_clear_q;
+    else if (clears_i) has_bound_q <= clears_group || in_clear_q;
     if (clears_it) begin
       bound_g         <= setup_i.range.low[Z-1-:HIZ];
       farthest_g      <= setup_i.range.low[Z-1-:HIZ];

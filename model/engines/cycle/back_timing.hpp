@@ -175,8 +175,8 @@ class BackTiming {
 
   /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes in `clears`, of tiles (0, 0) to
   /// (last_x, last_y).
-  Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const std::array<bool, 2>& clears,
-                   int last_x, int last_y) {
+  Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const std::array<bool, 2>& clears, int last_x,
+                   int last_y) {
     const auto ask = [this](Cycle cycle, TilePlane plane, const StampAddress& at, bool is_write) {
       return ask_of_block(cycle, plane, at, is_write ? MoveCause::evict : MoveCause::fill);
     };

@@ -117,7 +117,8 @@ class CycleModelOf final : public CycleModel {
     if (planes[0]) {
       hiz_.clear(last_x, last_y, code[kDepthPlane]);
       if (config_.hiz_bits != 0)
-        timing_.clear_bounds(static_cast<std::uint64_t>(last_x + 1) * static_cast<std::uint64_t>(last_y + 1));
+        timing_.clear_bounds(static_cast<std::uint64_t>((last_x >> widths_.hiz_group_bits) + 1) *
+                             static_cast<std::uint64_t>(last_y + 1));
       fill_target(rendering_.frame.depth, code[kDepthPlane]);
     }
     if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));

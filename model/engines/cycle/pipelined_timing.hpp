@@ -71,12 +71,12 @@ class PipelinedTiming : public BackTiming {
     work(Stage::coarse_raster, PipelinedCycles::walk_begins);
   }
 
-  /// A fast clear sets the bounds of `tiles` tiles, when every visit has retired.
-  void clear_bounds(std::uint64_t tiles) {
+  /// A fast clear sets the bounds of so many groups of tiles, when every visit has retired.
+  void clear_bounds(std::uint64_t groups) {
     const Cycle clears = std::max(walk_ - 1, last_retire_ + 1);
     totals_.bound_cycles += clears - (walk_ - 1);
-    walk_ = clears + 1 + tiles;
-    work(Stage::coarse_raster, tiles);
+    walk_ = clears + 1 + groups;
+    work(Stage::coarse_raster, groups);
   }
 
   /// The next tile of the walk is outside, and passed over.

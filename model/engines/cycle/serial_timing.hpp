@@ -63,11 +63,11 @@ class SerialTiming : public BackTiming {
     primitive_starts_ = true;
   }
 
-  void clear_bounds(std::uint64_t tiles) {
+  void clear_bounds(std::uint64_t groups) {
     const Cycle clears = std::max(walk_, last_retire_ + 1);
     totals_.bound_cycles += clears - walk_;
-    walk_ = clears + tiles - 1;
-    work(Stage::coarse_raster, tiles);
+    walk_ = clears + groups - 1;
+    work(Stage::coarse_raster, groups);
   }
 
   void skip_outside() {

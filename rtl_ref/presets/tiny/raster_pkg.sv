@@ -38,6 +38,7 @@ package raster_pkg;
   localparam int SAMPLES = 1;  // samples of a stamp
   localparam int TILES_X = 2;  // tiles along the top of the widest target
   localparam int TILES_Y = 2;  // tiles along the side of the highest target
+  localparam int HIZ_GROUP_BITS = 1;  // bounds of 2^this tiles of a row are cleared at once
   localparam int LINE_X_BITS = 1;  // low bits of a tile's or block's x in a cache line's number
   localparam int LINE_Y_BITS = 0;  // likewise of its y, above those
   localparam int BLOCK_SIDE = 4;  // stamps along the side of a block
