@@ -127,7 +127,7 @@ module hiz (
       assign depth_min = setup_i.range.low[0+:Z];
       sram #(
           .WIDTH    (HIZ),
-          .DEPTH    (raster_pkg::TILES_Y << TX),
+          .DEPTH    ((raster_pkg::TILES_Y > 1 ? raster_pkg::TILES_Y : 2) << TX),  // an address has both
           .READS_OLD(0)  // no bound is looked at that was read while another was written
       ) u_bound (
           .clk_i,
