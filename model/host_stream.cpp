@@ -33,6 +33,15 @@ bool begins_with_a_clear(const Scene& scene) {
 
 }  // namespace
 
+std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
+  const PrimitivePacket& packet = primitive.packet;
+  if (is_first && (packet.kind != PrimitiveKind::fast_clear || !packet.state.depth_write || !packet.state.color_write))
+    return "the stream does not begin with a fast clear of depth and colour: the flags of tiles are undefined";
+  if (packet.kind == PrimitiveKind::line && !primitive.line)
+    return "the place of a line comes without its setup: primitive_join would wait for its pixels for good";
+  return "";
+}
+
 HostStream::HostStream(const Scene& scene, const Config& config)
     : scene_(scene), config_(config), vertices_(scene.vertices.size()) {
   validate(config);

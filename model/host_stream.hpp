@@ -7,6 +7,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pipeline.hpp"
@@ -68,6 +69,11 @@ class HostStream {
   std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
   std::size_t pending_first_ = 0;
 };
+
+/// What the hardware relies on and cannot see: behind reset a fast clear of both planes, without which the flags of tiles are
+/// undefined, and a setup for the place of every line, for which primitive_join would wait for good. What is wrong with a
+/// primitive of a stream, `is_first` behind reset; empty: nothing.
+[[nodiscard]] std::string stream_fault(const HostPrimitive& primitive, bool is_first);
 
 /// Throws InputError, one line naming the state, when `scene` asks for what the hardware does not have.
 void check_hardware_scene(const Scene& scene, const Config& config);

@@ -104,7 +104,7 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
   ++counters.primitives_in;
   const auto &a = cache.get(context, index[0]), &b = cache.get(context, index[1]), &c = cache.get(context, index[2]);
   Projected result;
-  if (skip.frustum && (a.outside_volume & b.outside_volume & c.outside_volume) != 0) {
+  if (skip.frustum && (a.outside_frustum & b.outside_frustum & c.outside_frustum) != 0) {
     ++counters.skipped.frustum;
     ++counters.culled;
     return result;
@@ -221,7 +221,9 @@ class OutlineBuilder {
 
   void add_point(std::uint32_t index) {
     const VertexCache::Entry& entry = cache_.get(context_, index);
-    const bool is_inside = context_.state.point_clip == PointClip::pixel || entry.outside_volume == 0;
+    const State& state = context_.state;
+    const bool is_inside = state.point_clip == PointClip::pixel || state.space == Space::window ||
+                           outcode(context_.view_volume, context_.scene.vertices[index]) == 0;
     if (entry.outside_guard_band != 0 || !is_inside) return;
     const double pixel = static_cast<double>(std::int64_t{1} << widths_.grid_bits);
     DrawnPoint point{number_, context_.command, entry.snapped,
@@ -261,6 +263,7 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       rect(raster_rect(state, scene_.width, scene_.height)),
       guard_band(guard_band_planes(state.clip_z, viewport, config_)),
       view_volume(view_volume_planes(state.clip_z)),
+      frustum(view_volume_planes(state.clip_z, viewport, 1)),
       depth_encode(config_, scene_.planes) {}
 
 const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {
@@ -270,10 +273,10 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
   const Vertex& v = context.scene.vertices[index];
   if (context.state.space == Space::clip) {
     require_finite_distances(v, context, index);
-    entry.outside_volume = outcode(context.view_volume, v);
+    entry.outside_frustum = outcode(context.frustum, v);
     entry.outside_guard_band = outcode(context.guard_band, v) | (v.w > 0 ? 0U : 1U);
   } else {
-    entry.outside_volume = entry.outside_guard_band = 0;
+    entry.outside_frustum = entry.outside_guard_band = 0;
   }
   if (entry.outside_guard_band == 0) {
     const WindowPosition p = context.state.space == Space::clip

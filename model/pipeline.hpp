@@ -28,6 +28,8 @@ struct DrawContext {
   Viewport viewport;
   Rect rect;  ///< pixels that the draw may touch
   ClipPlanes guard_band, view_volume;
+  ClipPlanes
+      frustum;  ///< the view volume and a pixel around it: what is outside of this snaps to no pixel of the viewport
   DepthEncode depth_encode;
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
@@ -37,8 +39,8 @@ struct DrawContext {
 class VertexCache {
  public:
   struct Entry {
-    SnappedVertex snapped;        ///< valid when outside_guard_band == 0
-    unsigned outside_volume = 0;  ///< outcode against the view volume
+    SnappedVertex snapped;         ///< valid when outside_guard_band == 0
+    unsigned outside_frustum = 0;  ///< outcode against DrawContext::frustum
     unsigned outside_guard_band = 0;
     std::uint32_t state = ~0U;  ///< state that the entry was made with
   };

@@ -158,8 +158,9 @@ Widths derive_widths(const Config& config) {
   w.flag = count("flag", "yes or no", 2);
   w.depth_func = count("depth func", "DepthFunc", 8);
   w.cull_mode = count("cull mode", "Cull", 4);
-  w.pixel_x = count("pixel x", "target width", config.target_width);
-  w.pixel_y = count("pixel y", "target height", config.target_height);
+  // A bit for the tile at least, however small the target.
+  w.pixel_x = count("pixel x", "target width, at least 2 T", std::max(config.target_width, 2 * tile));
+  w.pixel_y = count("pixel y", "target height, at least 2 T", std::max(config.target_height, 2 * tile));
   w.vertex_color = bits("vertex color", "8 bits a stored channel", w.color().code.bits * w.color_planes);
   w.hiz_code = bits("hiz code", "hiz.bits, at most depth.bits, at least 1", std::max(1, hiz_code_bits(config)));
   w.hiz_update = count("hiz update", "HizUpdate", 3);

@@ -48,18 +48,18 @@ module raster_top (
   logic stamp_valid, stamp_ready, fragment_valid, fragment_ready;
   /* verilator lint_off UNUSEDSIGNAL */  // for the taps of the co-simulation where there is no unit of lines
   logic line_pixel_valid, line_pixel_ready;
-  var raster_pkg::line_pixel_t      line_pixel_data;
+  raster_pkg::line_pixel_t      line_pixel_data;
   /* verilator lint_on UNUSEDSIGNAL */
-  var raster_pkg::triangle_packet_t triangle_data;
-  var raster_pkg::setup_packet_t    setup_data;
-  var raster_pkg::context_packet_t  context_data;
-  var raster_pkg::tile_packet_t     tile_data;
-  var raster_pkg::edge_context_t    edges_data;
-  var raster_pkg::stamp_packet_t    stamp_data;
-  var raster_pkg::fragment_packet_t fragment_data;
+  raster_pkg::triangle_packet_t triangle_data;
+  raster_pkg::setup_packet_t    setup_data;
+  raster_pkg::context_packet_t  context_data;
+  raster_pkg::tile_packet_t     tile_data;
+  raster_pkg::edge_context_t    edges_data;
+  raster_pkg::stamp_packet_t    stamp_data;
+  raster_pkg::fragment_packet_t fragment_data;
   logic                             write_valid, retire_valid;
-  var raster_pkg::write_packet_t    write_data;
-  var raster_pkg::retire_packet_t   retire_data;
+  raster_pkg::write_packet_t    write_data;
+  raster_pkg::retire_packet_t   retire_data;
 
   // The same at the producer, before a stall.
   logic primitive_ready, triangle_offered, setup_offered, tile_offered, stamp_offered, fragment_offered;
@@ -86,17 +86,17 @@ module raster_top (
   logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
   logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
   logic                              context_read;
-  var raster_pkg::context_packet_t   stamp_context;
+  raster_pkg::context_packet_t   stamp_context;
 
   logic shaded_valid, shaded_ready;  // what interpolate sends
-  var raster_pkg::fragment_packet_t shaded_data;
+  raster_pkg::fragment_packet_t shaded_data;
   logic                             lines_are_done;  // none is in the unit
 
   // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
   // until they are through with it and do one thing at a time. The ports are the same.
   logic fine_valid, fine_ready, made_valid, made_ready;  // what fine_raster and interpolate send
-  var raster_pkg::stamp_packet_t    fine_data;
-  var raster_pkg::fragment_packet_t made_data;
+  raster_pkg::stamp_packet_t    fine_data;
+  raster_pkg::fragment_packet_t made_data;
 `define RASTER_FRONT(CULL, TRIANGLE_SETUP, COARSE_RASTER, FINE_RASTER, INTERPOLATE) \
     CULL u_cull (                                                                       \
         .clk_i,                                                                         \
@@ -276,10 +276,10 @@ module raster_top (
 
   // The test, and what is behind it: whole tiles, looked up when they are tested; or blocks, looked up before.
   logic                             tested_valid, tested_ready;
-  var raster_pkg::fragment_packet_t tested;
+  raster_pkg::fragment_packet_t tested;
   /* verilator lint_off UNUSEDSIGNAL */  // blocks take no accesses
   logic                                                       access_valid;
-  var raster_pkg::fragment_packet_t                           access;
+  raster_pkg::fragment_packet_t                           access;
   logic [raster_pkg::STORED_COLOR_BITS-1:0]                   access_color;
   logic                                                       moves_tiles;  // for the co-simulation
   /* verilator lint_on UNUSEDSIGNAL */
@@ -384,7 +384,7 @@ module raster_top (
   end
 
   // Performance counters: the work of triangles, points and lines, and the tile traffic of everything, since reset.
-  var raster_pkg::counter_packet_t counters_q;
+  raster_pkg::counter_packet_t counters_q;
   assign counters_o = counters_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) counters_q <= '0;

@@ -46,7 +46,7 @@ module line_positions (
     input logic clk_i, rst_ni, line_valid_i, pixel_ready_i, output logic line_ready_o, pixel_valid_o, is_last_o,
     input raster_pkg::line_setup_t line_i,
     output logic [raster_pkg::PIXEL_X_BITS-1:0] x_o, output logic [raster_pkg::PIXEL_Y_BITS-1:0] y_o);
-  var raster_pkg::line_pixel_t pixel;
+  raster_pkg::line_pixel_t pixel;
   line_raster u_line_raster (.clk_i, .rst_ni, .line_valid_i, .line_ready_o, .line_i, .pixel_valid_o, .pixel_ready_i,
                              .pixel_o(pixel));
   assign x_o = pixel.x;

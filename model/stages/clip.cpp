@@ -43,6 +43,16 @@ ClipPlanes view_volume_planes(ClipZ clip_z) {
   return {near, {0, 0, -1, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {0, -1, 0, 1}, {0, 1, 0, 1}};
 }
 
+ClipPlanes view_volume_planes(ClipZ clip_z, const Viewport& viewport, double margin) {
+  const double x = 1 + 2 * margin / viewport.width, y = 1 + 2 * margin / viewport.height;
+  ClipPlanes planes = view_volume_planes(clip_z);
+  planes[2] = {1, 0, 0, x};
+  planes[3] = {-1, 0, 0, x};
+  planes[4] = {0, -1, 0, y};
+  planes[5] = {0, 1, 0, y};
+  return planes;
+}
+
 double guard_band_limit(const Config& config) { return config.guard_band - std::ldexp(1.0, -config.subpixel_bits); }
 
 ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config) {

@@ -40,8 +40,13 @@ struct ClipPolygon {
 /// The planes that cut: near, far, and the guard band as seen through `viewport`.
 [[nodiscard]] ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config);
 
-/// The planes of the view volume: what lies outside one of them covers nothing.
+/// The planes of the view volume.
 [[nodiscard]] ClipPlanes view_volume_planes(ClipZ clip_z);
+
+/// The same with its sides so many pixels farther out, as seen through `viewport`. Outside of the volume itself a vertex
+/// may still snap to a pixel centre inside of the viewport, half a subpixel away; with a pixel around it, what lies outside
+/// of one plane covers nothing.
+[[nodiscard]] ClipPlanes view_volume_planes(ClipZ clip_z, const Viewport& viewport, double margin);
 
 /// One bit per plane that the vertex lies outside of (Cohen and Sutherland). A triangle with a bit common to all three
 /// codes is outside; one with no bit in any code has nothing to cut.

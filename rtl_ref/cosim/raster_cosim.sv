@@ -41,9 +41,9 @@ module raster_cosim (
   logic [raster_pkg::STALL_BITS-1:0] stall_q;
   logic [15:0]                   mutant_q;
   logic                          primitive_valid_q, line_valid_q, request_ready_q, response_valid_q;
-  var raster_pkg::primitive_packet_t primitive_q;
-  var raster_pkg::line_setup_t       line_q;
-  var raster_pkg::memory_response_t  response_q;
+  raster_pkg::primitive_packet_t primitive_q;
+  raster_pkg::line_setup_t       line_q;
+  raster_pkg::memory_response_t  response_q;
 
   always_ff @(posedge clk_i) begin
     stall_q           <= stall_i;

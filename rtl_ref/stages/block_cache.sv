@@ -86,7 +86,7 @@ module block_cache (
 
   // ------------------------------------------------------------------------------------------------ tags, items, orders
   logic                             made_valid, made_ready, made_starts_color, made_evicts;
-  var raster_pkg::fragment_packet_t made;
+  raster_pkg::fragment_packet_t made;
   logic [LINE-1:0]                  made_line;
   logic [STAMP-1:0]                 made_stamp;
   logic [1:0]                       made_source, made_fills;
@@ -99,7 +99,7 @@ module block_cache (
   logic [raster_pkg::TILE_Y_BITS-1:0] ordered_y;
   logic [INDEX-1:0]                 ordered_stamp;
   logic                             drained, flush_valid, tags_are_idle, is_cleared, is_resolved;
-  var raster_pkg::memory_request_t  flush_request;
+  raster_pkg::memory_request_t  flush_request;
   logic [CODE-1:0]                  clear_depth;
   logic [COLOR-1:0]                 clear_color;
 
@@ -142,7 +142,7 @@ module block_cache (
   );
 
   logic                             item_valid, takes_item, starts_color, evicts;
-  var raster_pkg::fragment_packet_t item;
+  raster_pkg::fragment_packet_t item;
   logic [LINE-1:0]                  item_line;
   logic [STAMP-1:0]                 item_stamp;
   logic [1:0]                       source, fills;

@@ -140,7 +140,7 @@ module cache_tags #(
 
   // The fragment, or line of a walk, whose line has been read.
   logic                             valid_q, walks_q;
-  var raster_pkg::fragment_packet_t fragment_q;
+  raster_pkg::fragment_packet_t fragment_q;
   logic [1:0]                       fall_q;  // a flag falls: 0 its word is read, 1 written, 2 done
   logic [LINE-1:0]                  walk_q;  // line of a token's walk
   logic                             leaves, looks;

@@ -67,7 +67,7 @@ module coarse_raster (
   logic [2:0] state_q;
 
   /* verilator lint_off UNUSEDSIGNAL */  // the values are in the registers below
-  var raster_pkg::setup_packet_t s_q;
+  raster_pkg::setup_packet_t s_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
@@ -310,7 +310,7 @@ module coarse_raster (
   );
 
   // --- The packet
-  var raster_pkg::tile_box_t box;
+  raster_pkg::tile_box_t box;
   assign box.left   = is_leftmost ? s_q.box.left[TS-1:0] : '0;
   assign box.top    = tile_y_q == s_q.box.top[PY-1:TS] ? s_q.box.top[TS-1:0] : '0;
   assign box.right  = is_rightmost ? s_q.box.right[TS-1:0] : '1;

@@ -65,7 +65,7 @@ module coarse_raster_serial (
   logic       is_new_q;   // TURN for the first tile, without a step
 
   /* verilator lint_off UNUSEDSIGNAL */  // edges and planes are in the registers below
-  var raster_pkg::setup_packet_t s_q;
+  raster_pkg::setup_packet_t s_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
@@ -335,7 +335,7 @@ module coarse_raster_serial (
 
   // ----------------------------------------------------------------------------------------------------------- result
   // The tile's part of the box comes a cycle after the tile's coordinates, before a packet is offered.
-  var raster_pkg::tile_box_t box, box_q;
+  raster_pkg::tile_box_t box, box_q;
   assign box.left   = is_leftmost ? s_q.box.left[TS-1:0] : '0;
   assign box.top    = tile_y_q == s_q.box.top[PY-1:TS] ? s_q.box.top[TS-1:0] : '0;
   assign box.right  = is_rightmost ? s_q.box.right[TS-1:0] : '1;

@@ -50,7 +50,7 @@ module cull (
 
   // ------------------------------------------------------------------------------------------------------------- sort
   /* verilator lint_off UNUSEDSIGNAL */  // the box ends in box_q
-  var raster_pkg::primitive_packet_t p_q;
+  raster_pkg::primitive_packet_t p_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic       sort_busy_q;
   logic [1:0] sort_step_q;
@@ -95,7 +95,7 @@ module cull (
   logic signed [C-1:0] x_min, x_max, y_min, y_max, x_min_q, x_max_q, y_min_q, y_max_q;
   logic signed [B-1:0] first_x, first_y, last_x, last_y;  // pixels
   logic signed [B-1:0] left, top, right, bottom;
-  var raster_pkg::pixel_box_t box_q;
+  raster_pkg::pixel_box_t box_q;
   logic                       is_empty_q;
   always_comb begin
     x_min = x0 < x1 ? x0 : x1;
@@ -177,12 +177,12 @@ module cull (
   logic       decide_busy_q;
   logic [1:0] decide_step_q;
   logic       decide_moves, leaves;
-  var raster_pkg::primitive_kind_t          kind_q;
+  raster_pkg::primitive_kind_t          kind_q;
   logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] id_q;
-  var raster_pkg::primitive_state_t         state_q;
-  var raster_pkg::cull_mode_t               mode_q;
+  raster_pkg::primitive_state_t         state_q;
+  raster_pkg::cull_mode_t               mode_q;
   logic                                     front_cw_q, d_is_empty_q;
-  var raster_pkg::pixel_box_t               d_box_q;
+  raster_pkg::pixel_box_t               d_box_q;
   logic [3*(2*C+CODES)-1:0]                 vertex_q;
   logic                                     d_is_triangle, is_counted, is_zero, is_back, is_sampleless, is_dropped;
 

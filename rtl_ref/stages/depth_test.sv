@@ -52,7 +52,7 @@ module depth_test (
   // D1: never stalls.
   logic valid_q;
   /* verilator lint_off UNUSEDSIGNAL */  // kind, ends_primitive and all codes but depth end here
-  var raster_pkg::fragment_packet_t fragment_q;
+  raster_pkg::fragment_packet_t fragment_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
@@ -80,7 +80,7 @@ module depth_test (
   end
 
   // The depth function as the three orders in which it lets a sample pass.
-  var raster_pkg::depth_func_t func;
+  raster_pkg::depth_func_t func;
   logic less_passes, equal_passes, greater_passes;
   assign func           = fragment_q.state.depth_test;
   assign less_passes    = func == raster_pkg::DEPTH_FUNC_LESS || func == raster_pkg::DEPTH_FUNC_LEQUAL ||
@@ -140,7 +140,7 @@ module depth_test (
   end
 
   // The retirement of a visit.
-  var raster_pkg::tile_key_t retire_key_q;
+  raster_pkg::tile_key_t retire_key_q;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) retire_valid_o <= 1'b0;
@@ -161,7 +161,7 @@ module depth_test (
       logic [HIZ-1:0]        max_q;
       logic                  is_full, any_passed, covers_tile;
       logic [HIZ-1:0]        max;
-      var raster_pkg::hiz_update_t update, update_q;
+      raster_pkg::hiz_update_t update, update_q;
       logic [HIZ-1:0]        code_q;
 
       assign is_full     = passed == '1;

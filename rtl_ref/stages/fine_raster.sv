@@ -37,9 +37,9 @@ module fine_raster (
 
   // -------------------------------------------------------------------------------------------------------------- rows
   /* verilator lint_off UNUSEDSIGNAL */  // edge_value is stepped in gen_edge from the moment it enters
-  var raster_pkg::tile_packet_t  tile_q;
+  raster_pkg::tile_packet_t  tile_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  var raster_pkg::edge_context_t edges_q;
+  raster_pkg::edge_context_t edges_q;
   logic             row_valid_q;
   logic [PIXEL-1:0] y_q;  // first pixel row of the current row of stamps
 
@@ -136,7 +136,7 @@ module fine_raster (
 
   // ------------------------------------------------------------------------------------------------------------ stamps
   /* verilator lint_off UNUSEDSIGNAL */  // box and edges end in the part above
-  var raster_pkg::tile_packet_t stamp_tile_q;
+  raster_pkg::tile_packet_t stamp_tile_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic             stamps_valid_q;
   logic             stamps_last_row_q;

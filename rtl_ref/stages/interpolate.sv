@@ -44,10 +44,10 @@ module interpolate (
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x
-  var raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
+  raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
   /* verilator lint_on UNUSEDSIGNAL */
   /* verilator lint_off UNUSEDSIGNAL */  // steps end after the step samples
-  var raster_pkg::context_packet_t x_context_q, y_context_q, samples_context_q;
+  raster_pkg::context_packet_t x_context_q, y_context_q, samples_context_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q, codes_valid_q;
   logic context_ready, x_ready, y_ready, samples_ready, codes_ready;
@@ -190,8 +190,8 @@ module interpolate (
   endgenerate
 
   /* verilator lint_off UNUSEDSIGNAL */
-  var raster_pkg::stamp_packet_t   codes_stamp_q;
-  var raster_pkg::context_packet_t codes_context_q;
+  raster_pkg::stamp_packet_t   codes_stamp_q;
+  raster_pkg::context_packet_t codes_context_q;
   /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i) begin
     if (codes_ready) begin

@@ -40,7 +40,7 @@ module interpolate_serial (
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end in the step x
-  var raster_pkg::stamp_packet_t x_stamp_q, y_stamp_q;
+  raster_pkg::stamp_packet_t x_stamp_q, y_stamp_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic has_context_q, x_valid_q, y_valid_q;
   logic x_ready, y_ready, is_empty;

@@ -31,7 +31,7 @@ module line_raster (
 
   logic valid_q;  // a pixel is on offer
   /* verilator lint_off UNUSEDSIGNAL */  // what changes is in the registers below
-  var raster_pkg::line_setup_t line_q;
+  raster_pkg::line_setup_t line_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [PX-1:0]         x_q;
   logic [PY-1:0]         y_q;

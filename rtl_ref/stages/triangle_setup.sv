@@ -104,7 +104,7 @@ module triangle_setup (
 
   /* verilator lint_off UNUSEDSIGNAL */  // what a part does not look at ends in the part before
   logic [PARTS*T-1:0] packets_q;  // of each part
-  var raster_pkg::triangle_packet_t first_packet, delta_packet, corner_packet, anchor_packet, last_packet;
+  raster_pkg::triangle_packet_t first_packet, delta_packet, corner_packet, anchor_packet, last_packet;
   /* verilator lint_on UNUSEDSIGNAL */
   assign first_packet  = packets_q[0+:T];
   assign delta_packet  = packets_q[DELTA_PART*T+:T];

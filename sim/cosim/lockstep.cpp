@@ -197,6 +197,11 @@ void Lockstep::offer_primitive(HostStream& host) {
     dut_.set_primitive(nullptr);
     return;
   }
+  if (const std::string fault = stream_fault(*next, is_first_); !fault.empty()) {
+    fail_protocol("host", fault);
+    return;
+  }
+  is_first_ = false;
   pack_words(next->packet, widths_, primitive_.data());
   dut_.set_primitive(primitive_.data());
   has_primitive_ = true;

@@ -152,6 +152,7 @@ class Lockstep {
   PacketQueue lines_;                     // of the primitives in sent_, not yet taken: a stream of its own
   std::vector<std::uint32_t> held_;       // words of a request on offer
   bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_response_ = false, has_held_ = false;
+  bool is_first_ = true;  // no primitive since reset
   bool is_tracing_ = false, has_traced_ = false, was_idle_ = false, drains_ = false;
   std::uint64_t cycle_ = 0;           // since reset
   std::uint64_t first_taken_ = 0;     // cycle of the first primitive that counts

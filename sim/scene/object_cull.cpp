@@ -9,6 +9,7 @@
 #include "model/config.hpp"
 #include "model/stages/clip.hpp"
 #include "model/stages/primitive_assembly.hpp"
+#include "model/stages/viewport.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
@@ -44,7 +45,7 @@ unsigned clearly_outside(const ClipPlanes& planes, const Vertex& v) {
 bool is_outside(const Scene& scene, const Draw& draw) {
   const State& state = scene.states[draw.state];
   if (state.space == Space::window || draw.count == 0) return false;
-  const ClipPlanes planes = view_volume_planes(state.clip_z);
+  const ClipPlanes planes = view_volume_planes(state.clip_z, effective_viewport(state, scene.width, scene.height), 1);
   const bool is_filled =
       primitive_type(draw.topology) == PrimitiveType::triangle && state.polygon_mode == PolygonMode::fill;
   unsigned common = is_filled ? 0x3fU : 0x3U;  // near and far are the first two

@@ -4,7 +4,7 @@
   // one of its neighbours, or from the row's start to its left or down.
   logic [TX-1:0] tile_x_g, start_x_g;
   logic [TY-1:0] tile_y_g;
-  var raster_pkg::setup_packet_t g_q;
+  raster_pkg::setup_packet_t g_q;
   always_ff @(posedge clk_i) begin
     if (takes) begin
       g_q       <= setup_i;

@@ -3,7 +3,7 @@
   // twice; nothing is stuck that its neighbours do not hold.
   logic under_way_q, ends;
   assign ends = tile_valid_o && tile_ready_i && tile_o.ends_primitive;
-  var raster_pkg::setup_packet_t g_q;
+  raster_pkg::setup_packet_t g_q;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) under_way_q <= 1'b0;
     else if (takes) under_way_q <= 1'b1;

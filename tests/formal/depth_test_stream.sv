@@ -27,7 +27,7 @@
     if ($past(must_wait && needs_access)) assert (!must_wait);
   end
   logic ended_q, ended_2_q;
-  var raster_pkg::fragment_packet_t before_q, before_2_q;
+  raster_pkg::fragment_packet_t before_q, before_2_q;
   always_ff @(posedge clk_i) begin
     ended_q    <= rst_ni && takes_fragment && fragment_i.ends_visit;
     ended_2_q  <= rst_ni && ended_q;

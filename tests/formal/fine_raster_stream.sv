@@ -8,7 +8,7 @@
   logic [SAMPLES-1:0] want_q;                    // of the stamp, once its row has been looked at
   logic               has_want_q;
   logic [PIXEL:0]     last_q;                    // column of the last stamp sent of this row, and one; 0: none
-  var raster_pkg::tile_packet_t g_q;
+  raster_pkg::tile_packet_t g_q;
   logic picks, row_moves, sends_it;
   assign picks     = takes_tile && pick && !in_rows_q && !in_stamps_q && !done_q;
   assign row_moves = row_leaves && row_is_sent;  // into the part `stamps`

@@ -8,7 +8,7 @@
   logic token;  // fast clear, flush
   assign token = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
   logic access_waits_q, access_taken_q;
-  var raster_pkg::fragment_packet_t       access_before_q;
+  raster_pkg::fragment_packet_t       access_before_q;
   logic [COLOR-1:0]                       access_color_before_q;
   logic [STAMP_BITS+1:0]                  unanswered_q;
   always_ff @(posedge clk_i) begin

@@ -152,9 +152,9 @@
   end
   always_comb if (runs_q && raised_q) assert (!gen_hiz.bounds_hold_q && !is_eligible_o);
   (* anyseq *) logic [SAMPLES*CODE-1:0] any_fragment, any_stored;
-  var raster_pkg::fragment_packet_t fragment, access;
-  var raster_pkg::write_packet_t    write;
-  var raster_pkg::retire_packet_t   retire;
+  raster_pkg::fragment_packet_t fragment, access;
+  raster_pkg::write_packet_t    write;
+  raster_pkg::retire_packet_t   retire;
   always_comb begin
     fragment                  = '0;
     fragment.mask             = '1;
@@ -189,7 +189,7 @@
   always_comb if (runs_q) cover (rejected_q);
   // What coarse_raster takes for granted: a verdict stays until the next read.
   logic was_good_q, was_behind_q;
-  var raster_pkg::setup_packet_t was_setup_q;
+  raster_pkg::setup_packet_t was_setup_q;
   always_ff @(posedge clk_i) begin
     was_good_q   <= rst_ni && !reads_i && is_good_q && !starts_visit_i && !clears_i;
     was_behind_q <= is_behind_o;

@@ -5,9 +5,9 @@
   logic [2:0] ahead_q;  // fragments that leave before it
   logic [4:0] at_q;     // the step that it is in: context, x, y, samples, codes
   logic [2:0] count_q;  // in the pipeline
-  var raster_pkg::stamp_packet_t   g_q;
+  raster_pkg::stamp_packet_t   g_q;
   /* verilator lint_off UNUSEDSIGNAL */
-  var raster_pkg::context_packet_t context_q;
+  raster_pkg::context_packet_t context_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic enters, leaves, picks;
   assign enters = stamp_valid_i && stamp_ready_o;

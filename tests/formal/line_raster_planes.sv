@@ -1,6 +1,6 @@
 
   // The line as it was taken, the pixels sent before this one, and first + n steps, summed up.
-  var raster_pkg::line_setup_t g_q;
+  raster_pkg::line_setup_t g_q;
   logic [COUNT-1:0] n_q;
   logic             sends;
   assign sends = pixel_valid_o && pixel_ready_i;

@@ -2,7 +2,7 @@
   // The line as it was taken; the pixels sent before this one, n; how many of them changed the row, m; and
   // first error + n d - m D, summed up in two bits more than the stage has.
   localparam int WIDE = E + 2;
-  var raster_pkg::line_setup_t g_q;
+  raster_pkg::line_setup_t g_q;
   logic        [COUNT-1:0] n_q, m_q;
   logic signed [WIDE-1:0]  sum_q, stay, move;
   assign stay = WIDE'($signed({1'b0, g_q.step_stay}));

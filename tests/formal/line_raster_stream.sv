@@ -1,6 +1,6 @@
 
   // Each line gives remaining + 1 pixels, the last one marked, before the next line is taken.
-  var raster_pkg::line_setup_t g_q;
+  raster_pkg::line_setup_t g_q;
   logic             under_way_q;
   logic [COUNT-1:0] n_q;
   logic             sends;

@@ -7,7 +7,7 @@
   logic [COUNT-1:0] ahead_q;  // setups that leave before it
   logic [COUNT-1:0] count_q;  // in all parts
   logic [OFFER:0]   it_at_q;
-  var raster_pkg::triangle_packet_t it_q;
+  raster_pkg::triangle_packet_t it_q;
   logic             enters, picks;
   logic [OFFER:0]   goes;
   assign enters = triangle_valid_i && triangle_ready_o;

@@ -33,7 +33,7 @@
     waits_q <= rst_ni && inside_q && !(setup_valid_o && !setup_ready_i);
   end
   always_comb if (runs_q && waits_q && inside_q) assert (left < left_q);
-  var raster_pkg::setup_packet_t offered_q;
+  raster_pkg::setup_packet_t offered_q;
   logic                          stalled_q;
   always_ff @(posedge clk_i) begin
     offered_q <= setup_o;

@@ -54,6 +54,41 @@ void expect_same_image(const Rendering& a, const Rendering& b) {
   EXPECT_EQ(a.counters.clipped, b.counters.clipped);
 }
 
+/// A triangle just beyond the right or the lower edge of a viewport, which lies `beyond` subpixels from pixel centres.
+Scene beside_a_viewport(double beyond, bool is_below) {
+  const double edge = 10.5 + beyond / 16, step = 1.0 / 1024;
+  State state;
+  state.viewport = Viewport{0, 0, edge, edge};
+  test::SceneBuilder builder(24, 24, state);
+  const auto at = [&](double along, double across) {  // pixels; clip coordinates of a vertex with w = 1
+    const double x = 2 * along / edge - 1, y = 1 - 2 * across / edge;
+    Vertex v;
+    v.x = is_below ? 2 * across / edge - 1 : x;
+    v.y = is_below ? 1 - 2 * along / edge : y;
+    return v;
+  };
+  builder.triangle(at(edge + step, 2), at(edge + 5, 5), at(edge + step, 9));
+  return builder.scene;
+}
+
+TEST(Engines, WhatSnapsToAPixelInsideOfTheViewportIsDrawnWhateverIsSkipped) {
+  const Config config = preset("embedded");
+  for (const bool is_below : {false, true})
+    for (const double beyond : {0.25, 0.45, 0.75}) {
+      SCOPED_TRACE(std::to_string(beyond) + (is_below ? ", below" : ", to the right"));
+      const Scene scene = beside_a_viewport(beyond, is_below);
+      RenderOptions without;
+      without.skip = skip_none();
+      const Rendering all = render_scalar(scene, config, without);
+      EXPECT_EQ(all.counters.written, beyond < 0.5 ? 7u : 0u) << "half a subpixel is the end of it";
+      for (const Rendering& rendering : {render_scalar(scene, config), render_functional(scene, config),
+                                         render_functional(scene, config, without)}) {
+        EXPECT_EQ(rendering.frame.color, all.frame.color);
+        EXPECT_EQ(rendering.frame.depth, all.frame.depth);
+      }
+    }
+}
+
 TEST(Engines, FunctionalEqualsScalarOnRandomScenesOfEveryPresetAndTile) {
   std::uint64_t written = 0;
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {

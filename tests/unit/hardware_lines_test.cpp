@@ -1,7 +1,10 @@
 // Lines and points in the hardware model: their fragments, their place in program order, and what they do to HiZ.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "model/engines/functional.hpp"
+#include "model/host_stream.hpp"
 #include "model/stages/primitive_join.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "tests/hardware_scene.hpp"
@@ -119,6 +122,31 @@ TEST(HardwareLines, OnlyALineThatCanRaiseDepthsPutsHizToRest) {
 }
 
 TEST(HardwareLines, AFastClearWakesHizAgain) { EXPECT_EQ(tiles_skipped(DepthFunc::always, true), 16u); }
+
+TEST(HostStreamMustFail, AMissingFirstClearAndALineWithoutASetupAreFaults) {
+  HostPrimitive first;
+  first.packet = primitive(PrimitiveKind::fast_clear, DepthFunc::always, {0, 0, 31, 31}, 60000);
+  first.packet.state.depth_write = first.packet.state.color_write = true;
+  EXPECT_EQ(stream_fault(first, true), "");
+  first.packet.state.color_write = false;
+  EXPECT_EQ(stream_fault(first, false), "") << "later clears may leave a plane alone";
+  EXPECT_NE(stream_fault(first, true).find("does not begin with a fast clear"), std::string::npos);
+  HostPrimitive line;
+  line.packet = primitive(PrimitiveKind::line, DepthFunc::less, {3, 3, 3, 3}, 0);
+  EXPECT_NE(stream_fault(line, false).find("without its setup"), std::string::npos);
+  line.line.emplace();
+  EXPECT_EQ(stream_fault(line, false), "");
+}
+
+TEST(HostStream, EveryStreamThatItMakesIsWithoutFault) {
+  const Config config = preset("embedded");
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Scene scene = random_scene(config, seed, 200);
+    HostStream host(scene, config);
+    bool is_first = true;
+    while (const auto next = host.next()) EXPECT_EQ(stream_fault(*next, std::exchange(is_first, false)), "");
+  }
+}
 
 TEST(HardwareLines, ImagesAreThoseOfTheFunctionalEngine) {
   for (const char* name : {"tiny", "embedded", "full"})

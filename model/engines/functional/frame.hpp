@@ -119,7 +119,7 @@ struct Slice {
   std::vector<std::uint32_t> bin_records;  ///< into records
   Counters counters;
 
-  static constexpr std::uint32_t kVolume = 0x3f;  ///< outside that plane of the view volume
+  static constexpr std::uint32_t kVolume = 0x3f;  ///< outside that plane of DrawContext::frustum
   static constexpr std::uint32_t kSlow = 0x40;    ///< outside the guard band, or not a vertex that may be drawn
 };
 

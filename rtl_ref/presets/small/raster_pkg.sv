@@ -95,8 +95,8 @@ package raster_pkg;
   localparam int FLAG_BITS = 1;  // yes or no
   localparam int DEPTH_FUNC_BITS = 3;  // DepthFunc
   localparam int CULL_MODE_BITS = 2;  // Cull
-  localparam int PIXEL_X_BITS = 9;  // target width
-  localparam int PIXEL_Y_BITS = 8;  // target height
+  localparam int PIXEL_X_BITS = 9;  // target width, at least 2 T
+  localparam int PIXEL_Y_BITS = 8;  // target height, at least 2 T
   localparam int VERTEX_COLOR_BITS = 24;  // 8 bits a stored channel
   localparam int HIZ_CODE_BITS = 8;  // hiz.bits, at most depth.bits, at least 1
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate

@@ -20,6 +20,7 @@ struct Projection {
   Viewport viewport;
   double near_z, near_w;         ///< distance to near: near_z z + near_w w
   std::array<double, 4> band_w;  ///< the guard band's planes: left, right, top, bottom
+  double side_x, side_y;         ///< the frustum's planes: w times this
   double half_width, half_height;
   bool is_zero_one;
   double range_from, range_by;
@@ -37,6 +38,8 @@ struct Projection {
     near_z = context.guard_band[0].c;
     near_w = context.guard_band[0].d;
     for (std::size_t i = 0; i < 4; ++i) band_w[i] = context.guard_band[2 + i].d;
+    side_x = context.frustum[2].d;
+    side_y = context.frustum[4].d;
     half_width = context.guard_band[2].a;
     half_height = context.guard_band[5].b;
     is_zero_one = state.clip_z == ClipZ::zero_one;
@@ -52,13 +55,14 @@ struct Projection {
   }
 };
 
-/// Codes of clip-space vertices: which planes of the view volume they lie outside of, and whether they need the clipper.
+/// Codes of clip-space vertices: which planes of the frustum they lie outside of, and whether they need the clipper.
 HALFPLANE_INLINE I16 clip_codes(const VertexLanes& v, const Projection& p) {
   const auto is_inside = [](const D16& distance) HALFPLANE_LAMBDA { return convert<std::int32_t>(distance >= 0.0); };
   const auto bit = [](const I16& inside, int code) HALFPLANE_LAMBDA { return ~inside & code; };
   const I16 near = is_inside(v.z * p.near_z + v.w * p.near_w), far = is_inside(-v.z + v.w);
-  const I16 volume = bit(near, 1) | bit(far, 2) | bit(is_inside(v.x + v.w), 4) | bit(is_inside(-v.x + v.w), 8) |
-                     bit(is_inside(-v.y + v.w), 16) | bit(is_inside(v.y + v.w), 32);
+  const D16 side_x = v.w * p.side_x, side_y = v.w * p.side_y;
+  const I16 volume = bit(near, 1) | bit(far, 2) | bit(is_inside(v.x + side_x), 4) | bit(is_inside(-v.x + side_x), 8) |
+                     bit(is_inside(-v.y + side_y), 16) | bit(is_inside(v.y + side_y), 32);
   const D16 by_x = v.x * p.half_width, by_y = v.y * p.half_height;
   const L16 in_band = (by_x + v.w * p.band_w[0] >= 0.0) & (-by_x + v.w * p.band_w[1] >= 0.0) &
                       (-by_y + v.w * p.band_w[2] >= 0.0) & (by_y + v.w * p.band_w[3] >= 0.0) & (v.w > 0.0);

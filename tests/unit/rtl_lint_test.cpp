@@ -1,0 +1,101 @@
+// Every configuration that is accepted has RTL that Verilator reads without a warning: random ones, the package of each in
+// front of the same sources. Left out where Verilator is not installed.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "model/raster_pkg.hpp"
+#include "sim/scene/random.hpp"
+
+namespace halfplane {
+namespace {
+
+const std::filesystem::path kRtl = std::filesystem::path(HALFPLANE_SOURCE_DIR) / "rtl_ref";
+
+/// Any preset with about half of its settings changed, most of them to an end of their range or near it.
+Config random_config(Random& random) {
+  const auto below = [&random](std::size_t n) { return static_cast<std::size_t>(random.next() % n); };
+  for (;;) {
+    Config config = preset(preset_names()[below(preset_names().size())]);
+    for (const Setting& setting : settings()) {
+      if (!setting.is_hardware() || below(2) == 0) continue;
+      if (const auto* number = std::get_if<int Config::*>(&setting.member)) {
+        int value = setting.min + static_cast<int>(below(static_cast<std::size_t>(setting.max - setting.min) + 1));
+        if (setting.max > 64 && below(3) != 0) value = 1 << below(12);  // small targets, powers of two
+        if (setting.key == "target.width" || setting.key == "target.height") value += static_cast<int>(below(2));
+        if (setting.key.ends_with(".size") || setting.key.ends_with(".slots") || setting.key.ends_with(".lag"))
+          value = 1 << below(7);
+        config.** number = value;
+      } else if (setting.key == "color.format") {
+        config.color_format = below(2) == 0 ? ColorFormat::rgb565 : ColorFormat::rgba8888;
+      } else {
+        config.setup_kind = below(2) == 0 ? SetupKind::pipelined : SetupKind::serial;
+      }
+    }
+    try {
+      validate(config);
+      return config;
+    } catch (const InputError&) {  // another one
+    }
+  }
+}
+
+/// What Verilator says of the design with this package; empty: nothing.
+std::string lint(const std::string& package) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "halfplane_lint";
+  std::filesystem::create_directories(folder);
+  const std::string file = (folder / "raster_pkg.sv").string(), said = (folder / "said.txt").string(),
+                    rtl = kRtl.string();
+  std::ofstream(file) << package;
+  const std::string command = "verilator_bin --lint-only -Wall -I" + rtl + " -I" + rtl + "/lib -I" + rtl +
+                              "/stages --top-module raster_top " + file + " " + rtl + "/raster_top.sv > " + said +
+                              " 2>&1";
+  const int status = std::system(command.c_str());
+  std::ostringstream text;
+  text << std::ifstream(said).rdbuf();
+  return status == 0 ? "" : text.str().empty() ? "verilator_bin failed" : text.str();
+}
+
+bool has_verilator() { return std::system("verilator_bin --version > /dev/null 2>&1") == 0; }
+
+/// Fifty; with HALFPLANE_SOAK=SECONDS a hundred, and more while there is time.
+TEST(StressRtlLint, EveryAcceptedConfigurationIsReadWithoutAWarning) {
+  if (!has_verilator()) GTEST_SKIP() << "verilator_bin is not installed";
+  const char* soak = std::getenv("HALFPLANE_SOAK");
+  const std::uint64_t seed =
+      soak == nullptr ? 1 : static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(soak == nullptr ? 0 : std::atoi(soak));
+  for (int done = 0; done < (soak == nullptr ? 50 : 100) || std::chrono::steady_clock::now() < until; ++done) {
+    const Config config = random_config(random);
+    ASSERT_EQ(lint(raster_pkg(config)), "") << label(config, " --set ");
+  }
+}
+
+TEST(RtlLint, TargetsNoLargerThanATileAreRead) {
+  if (!has_verilator()) GTEST_SKIP() << "verilator_bin is not installed";
+  for (const auto& [width, height] : {std::pair{8, 8}, {1, 1}, {8, 9}, {20, 3}}) {
+    Config config = preset("embedded");
+    config.target_width = width;
+    config.target_height = height;
+    EXPECT_EQ(lint(raster_pkg(config)), "") << width << "x" << height;
+  }
+}
+
+TEST(RtlLintMustFail, AWireThatNobodyReadsIsFound) {
+  if (!has_verilator()) GTEST_SKIP() << "verilator_bin is not installed";
+  std::string package = raster_pkg(preset("tiny"));
+  const std::string bits = "localparam int PIXEL_X_BITS = ";
+  const auto at = package.find(bits) + bits.size();
+  EXPECT_NE(lint(package.replace(at, package.find(';', at) - at, "3")), "")
+      << "pixels of a tile, and no bit for the tile";
+}
+
+}  // namespace
+}  // namespace halfplane
