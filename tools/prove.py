@@ -91,7 +91,9 @@ def hierarchy(proof):
 def sources(proof, preset, folder, twin):
     """Writes package, library and stages into `folder`, the properties inside the module that they are about."""
     package = PACKAGES[preset].read_text(encoding='utf-8')
-    for name, value in proof.package:
+    for name, value, *only in proof.package:
+        if only and preset not in only:
+            continue
         package = re.sub(rf'(localparam int {name} =) \d+;', rf'\1 {value};', package)
     (folder / 'raster_pkg.sv').write_text(package, encoding='utf-8')
     files = [folder / 'raster_pkg.sv']

@@ -18,7 +18,7 @@ class Proof:
     twin_depth: int = 6     # a twin has to fail in the step, or in so many
     twin_traces: bool = False  # never mind the step: it has to fail in a trace from reset
     parameters: tuple = ()  # of the module: (name, number or constant of the package)
-    package: tuple = ()     # constants of the package that this proof sets otherwise
+    package: tuple = ()     # constants of the package that this proof sets otherwise: (name, number), or with presets behind
     cover_depth: int = 0    # cycles in which every cover statement is reached: what is assumed can happen
     cuts: tuple = ()        # cells whose results may be anything, by Yosys's patterns of their types
     is_combinational: bool = False
@@ -39,6 +39,8 @@ SRAMS = ('*sram*',)
 OFFSETS = ('*edge_offset*',)
 HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
 STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
+TILES = tuple((name, number, 'embedded') for name, number in
+              (('CACHE_KIND', 0), ('CACHE_LINES', 16), ('LINE_X_BITS', 2), ('LINE_Y_BITS', 2)))
 HIZ_TWINS = (15, 16, 17, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'))
 
 PROOFS = [
@@ -90,6 +92,10 @@ PROOFS = [
           parameters=(('WIDTH', 'STAMP_PACKET_BITS'),),
           quick=TINY,
           twins=(('assign ready_o = !tail_valid_q;', 'assign ready_o = 1\'b1;'), ('tail_valid_q ? tail_q : data_i', 'data_i'))),
+    Proof('fifo_stream', 'f', 'lib/fifo.sv', 'a queue of DEPTH', k=2, cover_depth=8, quick=TINY,
+          presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)),
+          twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('memory_q[head_q[INDEX-1:0]]', 'memory_q[\'0]'),
+                 ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
     Proof('line_raster_stream', 'f', 'stages/line_raster.sv', 'remaining + 1 pixels a line, in order, stable', k=2, cover_depth=7,
           quick=TINY, twins=(43, 46)),
     Proof('primitive_join_stream', 'f', 'stages/primitive_join.sv', 'each pixel is one fragment, each other fragment as it was',
@@ -111,12 +117,12 @@ PROOFS = [
           twins=(('flows[i] = moves[i+:STEPS]', 'flows[i] = at_q[i+:STEPS]'),
                  ('if (moves[ROUND-1]) quotient_q', 'if (flows[ROUND]) quotient_q'))),
     Proof('framebuffer_data', 'd, f', 'stages/framebuffer.sv', 'an access reads what was written last, or cleared; after a flush '
-          'memory holds it', cuts=SRAMS, inputs='framebuffer_inputs', twins=(37, 38, 55)),
+          'memory holds it', cuts=SRAMS, inputs='framebuffer_inputs', package=TILES, twins=(37, 38, 55)),
     Proof('framebuffer_data_4_stamps', 'd, f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
           cuts=SRAMS, inputs='framebuffer_inputs', twins=(37, 38), file='framebuffer_data', presets=('tiny',), package=STAMPS_4,
           cover_depth=40, twin_depth=30, twin_traces=True),
     Proof('framebuffer_stream', 'f', 'stages/framebuffer.sv', 'requests in order, stable; no deadlock when memory answers',
-          cuts=SRAMS, inputs='framebuffer_inputs', k=2,
+          cuts=SRAMS, inputs='framebuffer_inputs', package=TILES, k=2,
           quick=TINY,
           twins=(('== SERVE || state_q == CHECK || takes_request;', '== SERVE || state_q == CHECK || state_q == EVICT;'),
                  ('(stamp + 1\'b1) & LAST_STAMP', '(stamp + 2\'d2) & LAST_STAMP'),

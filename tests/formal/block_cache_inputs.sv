@@ -1,0 +1,37 @@
+
+  // What comes in. A fragment on offer stays as it is until it is taken (primitive_join_stream and what is in front of it); a
+  // token has no samples. From depth_test: the write of an item with samples comes in the cycle after it, of no others than
+  // its samples, of all of them for `always`, and of the planes of its state (depth_test_stream). From memory: an answer is one to a read that was taken
+  // in an earlier cycle, in turn. From the host: a fast clear of both planes before all else.
+  logic is_token, is_clear, takes_fragment, takes_token, was_cleared_q;
+  assign is_clear       = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
+  assign is_token       = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
+  assign takes_fragment = fragment_valid_i && fragment_ready_o;
+  assign takes_token    = takes_fragment && is_token;
+  logic                             waits_q, tested_valid_q;
+  var raster_pkg::fragment_packet_t before_q, tested_q;
+  logic [$clog2(QUEUE):0]           unanswered_q;
+  logic                             takes_read, takes_response;
+  assign takes_read     = takes_request && !request_o.is_write;
+  assign takes_response = response_valid_i && response_ready_o;
+  always_ff @(posedge clk_i) begin
+    waits_q        <= rst_ni && fragment_valid_i && !fragment_ready_o;
+    before_q       <= fragment_i;
+    tested_valid_q <= rst_ni && tested_valid_o;
+    tested_q       <= tested_o;
+    unanswered_q   <= rst_ni ? unanswered_q + ($clog2(QUEUE) + 1)'(takes_read) - ($clog2(QUEUE) + 1)'(takes_response) : '0;
+    if (!rst_ni) was_cleared_q <= 1'b0;
+    else if (takes_token) was_cleared_q <= 1'b1;
+  end
+  always_comb if (runs_q) begin
+    if (waits_q) assume (fragment_valid_i && fragment_i == before_q);
+    if (is_token) assume (fragment_i.mask == '0);
+    if (fragment_valid_i && !was_cleared_q)
+      assume (is_clear && fragment_i.state.depth_write && fragment_i.state.color_write);
+    assume (write_valid_i == (tested_valid_q && tested_q.mask != '0));
+    assume ((write_i.passed & ~tested_q.mask) == '0);
+    if (tested_q.state.depth_test == raster_pkg::DEPTH_FUNC_ALWAYS) assume (write_i.passed == tested_q.mask);
+    assume (write_i.write_depth == (tested_q.state.depth_write ? write_i.passed : '0));
+    assume (write_i.write_color == (tested_q.state.color_write ? write_i.passed : '0));
+    if (response_valid_i) assume (unanswered_q != '0);
+  end
