@@ -110,6 +110,10 @@ def sources(proof, preset, folder, twin):
         if name == proof.module:
             end = text.rindex('endmodule')
             text = text[:end] + properties(proof) + text[end:]
+        for module, start in proof.starts:
+            if module == name:
+                end = text.rindex('endmodule')
+                text = text[:end] + (FORMAL / f'{start}.sv').read_text(encoding='utf-8') + text[end:]
         copy = folder / path.name
         copy.write_text(text, encoding='utf-8')
         files.append(copy)

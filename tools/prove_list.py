@@ -24,6 +24,7 @@ class Proof:
     is_combinational: bool = False
     has_reset: bool = True
     file: str = ''
+    starts: tuple = ()      # what holds at the start of a bounded proof: (module, file that is put into it)
     inputs: str = ''        # another file in front of it: what is assumed of the inputs, or of what is cut
 
     @property

@@ -1,77 +1,190 @@
 
-  // One sample of one stamp, any. `truth` of a plane is what a framebuffer without a cache would hold there: the last write or
-  // fast clear. (1) The test finds it under every fragment that looks. (2) When a flush is through, memory holds it, or its
-  // flag is written and the clear value is it. Memory answers with what was written last; what that is where nothing was
-  // written is anything.
-  (* anyconst *) logic [BLOCK_X-1:0]          any_x;
-  (* anyconst *) logic [BLOCK_Y-1:0]          any_y;
-  (* anyconst *) logic [INDEX-1:0]            any_stamp;
-  (* anyconst *) logic [$clog2(SAMPLES+1)-1:0] any_sample;
-  (* anyconst *) logic [1:0]                  any_garbage;
-  logic tested_is_it_q, looks_q, asks_it, request_is_it;
-  logic truth_depth_q, truth_color_q, memory_depth_q, memory_color_q, cleared_depth_q, cleared_color_q;
-  logic flag_depth_q, flag_color_q;  // as the last flush has written them
-  logic [3:0] waits_is_it_q, waits_value_q;
-  assign request_is_it = takes_request && request_o.tile_x == any_x && request_o.tile_y == any_y && request_o.stamp == any_stamp &&
-                         request_o.plane[1] == 1'b0;
-  always_comb begin
-    assume (any_sample < SAMPLES);
-    if (is_token && fragment_valid_i) assume (any_x <= fragment_i.key.tile_x && any_y <= fragment_i.key.tile_y);
+  // Tags and queues are cut out: items, orders and answers may be any, but for what cache_tags_stream and skid_buffer_stream
+  // prove. One place of the RAMs, any: a sample m of a stamp of a line; and one slot of the victims, any.
+  (* anyconst *) logic [LINE-1:0]   any_line;
+  (* anyconst *) logic [STAMP-1:0]  any_stamp;
+  (* anyconst *) logic [VICTIM-1:0] any_slot;
+  always_comb if (runs_q) begin
+    if (item_valid && evicts) assume (source != SOURCE_CHIP);
+    if (item_valid && item.mask == '0) assume (source == SOURCE_NONE && !starts_color);
+    // A clear and what a flush writes go behind all items and orders (cache_tags_stream: DRAIN).
+    if (flush_valid) assume (!order_valid && !item_valid && taken_q == '0 && behind_q == '0);
+    if (clear_before_q != {clear_color, clear_depth}) assume (taken_q == '0 && behind_q == '0);
   end
-  localparam int WORD = raster_pkg::FLAG_WORD;
-  logic flags_are_it;
-  assign flags_are_it = takes_request && request_o.is_write && request_o.plane[1] && request_o.tile_x == any_x / WORD &&
-                        request_o.tile_y == any_y && request_o.stamp == '0;
-  logic [3:0] waits_next, values_next;
-  always_comb begin
-    waits_next  = waits_is_it_q;
-    values_next = waits_value_q;
-    if (takes_response) begin
-      waits_next  = waits_next >> 1;
-      values_next = values_next >> 1;
-    end
-    if (takes_read) begin
-      waits_next[unanswered_q - 3'(takes_response)]  = request_is_it;
-      values_next[unanswered_q - 3'(takes_response)] = memory_depth_q;
-    end
-  end
+  logic [COLOR+CODE-1:0] clear_before_q;
+  always_ff @(posedge clk_i) clear_before_q <= {clear_color, clear_depth};
+
+  // Between X and W: a queue of two.
+  logic [COLORED-1:0] first_q, second_q, entering;
+  logic [1:0]         count_q;
+  assign entering = {x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),
+                     write_i.write_color, write_i.color, x1_evicts_q, x1_fills_q, x1_color_q};
   always_ff @(posedge clk_i) begin
-    tested_is_it_q <= tested_valid_o && tested_o.key.tile_x == any_x && tested_o.key.tile_y == any_y && tested_o.stamp == any_stamp &&
-                      tested_o.mask[any_sample];
-    looks_q        <= tested_o.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS;
-    waits_is_it_q  <= waits_next;
-    waits_value_q  <= values_next;
-    if (!rst_ni) begin
-      memory_depth_q <= any_garbage[0];
-      memory_color_q <= any_garbage[1];
-    end else if (request_is_it && request_o.is_write && request_o.strobe[any_sample]) begin
-      if (request_o.plane[0]) memory_color_q <= request_o.data[any_sample*LANE];
-      else memory_depth_q <= request_o.data[any_sample*LANE];
-    end
-    if (takes_token && is_clear && fragment_i.state.depth_write) begin
-      truth_depth_q   <= fragment_i.code[0];
-      cleared_depth_q <= fragment_i.code[0];
-    end else if (tested_is_it_q && write_valid_i && write_i.write_depth[any_sample]) truth_depth_q <= write_i.depth[any_sample*CODE];
-    if (takes_token && is_clear && fragment_i.state.color_write) begin
-      truth_color_q   <= fragment_i.code[CODE];
-      cleared_color_q <= fragment_i.code[CODE];
-    end else if (tested_is_it_q && write_valid_i && write_i.write_color[any_sample]) truth_color_q <= write_i.color[any_sample*COLOR];
-    if (flags_are_it) begin
-      if (request_o.plane[0]) flag_color_q <= request_o.data[any_x % WORD];
-      else flag_depth_q <= request_o.data[any_x % WORD];
-    end
+    count_q <= rst_ni ? count_q + 2'(x1_valid_q) - 2'(colors_done) : '0;
+    if (x1_valid_q && count_q == 2'(colors_done)) first_q <= entering;
+    else if (colors_done) first_q <= second_q;
+    if (x1_valid_q) second_q <= entering;
   end
-  always_comb begin
-    if (takes_response && waits_is_it_q[0]) assume (response_i.data[any_sample*LANE] == waits_value_q[0]);
-    if (runs_q) begin
-      if (tested_is_it_q && looks_q) assert (stored_depth_o[any_sample*CODE] == truth_depth_q);
-      if (takes_token && !is_clear) begin
-        assert (flag_depth_q ? truth_depth_q == cleared_depth_q : truth_depth_q == memory_depth_q);
-        if (raster_pkg::FRAME_CLEARS == 0) assert (truth_color_q == memory_color_q);
-        else assert (flag_color_q ? truth_color_q == cleared_color_q : truth_color_q == memory_color_q);
+  logic [COLORED-1:0] leaving;
+  assign leaving = {w_line, w_stamp, w_writes, w_dirty, w_color, w_evicts, w_fills, w_stamps};
+  always_comb if (runs_q) begin
+    assume (w_valid == (count_q != '0));
+    if (w_valid) assume (leaving == first_q);
+    assert (32'(behind_q) == 32'(count_q) + 32'(x1_valid_q) && behind_q <= 2'd2);  // room in it, always
+    assert (!(x1_valid_q && count_q == 2'd2));
+  end
+
+  // The slots: given to evictions in turn, written to memory in turn; which are in the queue.
+  logic [1:0]      evictions_behind;  // those that W has not begun
+  logic            holds_any, first_evicts, second_evicts;
+  logic [VICTIM:0] age;
+  assign first_evicts     = count_q != '0 && first_q[STAMPS+1] && !w_started_q;
+  assign second_evicts    = count_q == 2'd2 && second_q[STAMPS+1];
+  assign evictions_behind = 2'(x1_valid_q && x1_evicts_q) + 2'(first_evicts) + 2'(second_evicts);
+  assign age              = (VICTIM + 1)'(VICTIM'(any_slot - oldest_q));
+  assign holds_any        = age < taken_q;
+  always_comb if (runs_q) begin
+    assert (taken_q <= (VICTIM + 1)'(VICTIMS));
+    assert (VICTIM'(taken_q) == VICTIM'(slot_q - oldest_q));
+    assert (VICTIM'(evictions_behind) == VICTIM'(slot_q - w_slot_q) && 32'(evictions_behind) <= 32'(taken_q));
+    assert (32'(depth_ready_q) + 32'(v_valid_q) == 32'(taken_q));
+    assert (32'(color_ready_q) + 32'(c_valid_q) + 32'(evictions_behind) == 32'(taken_q));
+    if (left_q != '0) assert (v_valid_q);
+    if (w_left_q != '0) assert (c_valid_q);
+    if (v_valid_q) assert (v_last_q == (left_q == '0) && v_slot_q == VICTIM'(slot_q - 1'b1) && v_fills_q == fills_q);
+    if (c_valid_q) assert (c_last_q == (w_left_q == '0) && c_slot_q == VICTIM'(w_slot_q - 1'b1) && c_fills_q == w_fills_q);
+    if (w_started_q) assert (w_valid && w_evicts);
+    // What is about to be written is not still to be read.
+    if (w_started_q && w_writes != '0 && w_left_line_q == w_line) assert ((w_left_q & (STAMPS'(1) << w_stamp)) == '0);
+    if (x1_valid_q && x1_writes_q != '0 && left_line_q == x1_line_q) assert ((left_q & (STAMPS'(1) << x1_stamp_q)) == '0);
+    // What the queue holds of them is what their slots hold.
+    if (x1_valid_q && x1_evicts_q && VICTIM'(slot_q - 1'b1) == any_slot)
+      assert (x1_color_q == here_color_any && {STAMPS{x1_fills_q}} == color_left_q[any_slot]);
+    if (second_evicts && VICTIM'(w_slot_q + VICTIM'(first_evicts)) == any_slot)
+      assert (second_q[STAMPS-1:0] == here_color_any && {STAMPS{second_q[STAMPS]}} == color_left_q[any_slot]);
+    if (first_evicts && w_slot_q == any_slot)
+      assert (first_q[STAMPS-1:0] == here_color_any && {STAMPS{first_q[STAMPS]}} == color_left_q[any_slot]);
+  end
+
+  // No stamp is tested while the one before it writes it, and depth_test never waits: tags have known since the fragment
+  // before that the stamp is on the chip (cache_tags_data), and a stamp has one place.
+  always_comb if (runs_q && tested_valid_o && x1_valid_q && tested_q.mask != '0 && item.mask != '0 && is_same) begin
+    assume (source == SOURCE_CHIP && item_line == x1_line_q && item_stamp == x1_stamp_q);
+    assert (!(tested_q.state.depth_write && (tested_q.mask & item.mask) != '0));
+  end
+  logic is_same;
+  assign is_same = tested_q.state.depth_write && tested_q.key.tile_x == item.key.tile_x && tested_q.key.tile_y == item.key.tile_y &&
+                   tested_q.stamp == item.stamp;
+  logic [SAMPLES-1:0] x1_mask;
+  assign x1_mask = x1_valid_q ? tested_q.mask : '0;
+  always_comb if (runs_q) begin
+    assert (x1_valid_q == tested_valid_q);
+    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == SOURCE_NONE && !x1_starts_color_q && x1_writes_q == '0);
+    if (x1_valid_q && tested_q.mask != '0)
+      assert (x1_writes_q == (x1_source_q == SOURCE_CHIP ? tested_q.mask & {SAMPLES{tested_q.state.depth_write}} :
+                              {SAMPLES{x1_source_q != SOURCE_NONE || tested_q.state.depth_write}}));
+  end
+
+  // What an eviction takes along, as it is when all before it, and nothing behind it, has been written. It is what memory
+  // gets, each sample once, and only then the slot is free. `at`: where the sample is: still in the RAM, read, in its slot.
+  logic [STAMPS-1:0] any_bit;
+  logic              sends_any;
+  assign any_bit   = STAMPS'(1) << any_stamp;
+  assign sends_any = sends && takes_request && oldest_q == any_slot && sent == any_bit;
+  genvar p, m;
+  generate
+    for (p = 0; p < 2; p++) begin : gen_plane
+      localparam int BITS = p == 0 ? CODE : COLOR;
+      logic            begins, is_line_q, is_here_q, fills_q, read_is_it, writes_it, is_left, is_read, is_begun, is_behind;
+      logic [STAMPS-1:0] stamps, left_now;
+      logic [LINE-1:0] begins_line;
+      logic [LINE+STAMP-1:0] write_address, read_address;
+      logic            reads, slot_left;
+      assign stamps        = p == 0 ? evicts_depth : w_stamps;
+      assign begins        = p == 0 ? goes && evicts && slot_q == any_slot : w_starts && w_slot_q == any_slot;
+      assign begins_line   = p == 0 ? item_line : w_line;
+      assign reads         = p == 0 ? reads_victim || goes : w_reads;
+      assign read_address  = p == 0 ? depth_read_address : {w_starts ? w_line : w_left_line_q, number_of(w_next)};
+      assign write_address = p == 0 ? {x1_line_q, x1_stamp_q} : {w_line, w_stamp};
+      // The last eviction that has begun is that of the slot, and its stamp is still to be read, or has been.
+      assign is_begun  = holds_any && (p == 0 || 32'(taken_q) - 32'(evictions_behind) > 32'(age));
+      assign is_left   = is_begun && (p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot &&
+                         ((p == 0 ? left_q : w_left_q) & any_bit) != '0;
+      assign is_read   = p == 0 ? v_valid_q && v_slot_q == any_slot && v_stamp_q == any_stamp :
+                                  c_valid_q && c_slot_q == any_slot && c_stamp_q == any_stamp;
+      assign slot_left = ((p == 0 ? depth_left_q[any_slot] : color_left_q[any_slot]) & any_bit) != '0;
+      always_ff @(posedge clk_i) if (begins) begin
+        is_line_q <= begins_line == any_line;
+        is_here_q <= (stamps & any_bit) != '0;
+        fills_q   <= p == 0 ? fills[0] : w_fills;
       end
-      cover (tested_is_it_q && looks_q && waits_is_it_q[0] && truth_depth_q != cleared_depth_q);
-      cover (tested_is_it_q && looks_q && x1_source_q == SOURCE_MEMORY && truth_depth_q != cleared_depth_q);
-      cover (takes_token && !is_clear && flag_depth_q && !flag_color_q && truth_color_q != cleared_color_q);
+      always_comb if (runs_q && is_begun) begin
+        if ((p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot)
+          if ((p == 0 ? v_valid_q : c_valid_q))
+            assert (is_line_q == ((p == 0 ? left_line_q : w_left_line_q) == any_line) && fills_q == (p == 0 ? v_fills_q : c_fills_q));
+        if (is_left || is_read) assert (is_here_q && slot_left == fills_q);
+        if (!is_here_q && slot_left) assert (fills_q);
+        if (is_read) assert (is_here_q && !is_left);
+        assert (((p == 0 ? here_depth_any : here_color_any) & any_bit) != '0 == is_here_q);
+      end
+      for (m = 0; m < SAMPLES; m++) begin : gen_truth
+        logic [BITS:0] word_q, read_word_q, snapshot_q, ram, stored;  // the lane's dirty bit above its code
+        logic          writes, read_is_it_q, collided_q, sent_q, owes, lane_strobe;
+        logic [BITS-1:0] lane;
+        assign writes = p == 0 ? write_valid_i && gen_depth[m].writes : colors_done && w_writes[m];
+        assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) : (BITS + 1)'({gen_color[m].dirty, gen_color[m].color});
+        assign stored = p == 0 ? (BITS + 1)'({write_i.write_depth[m], gen_depth[m].written}) : (BITS + 1)'({w_dirty[m], w_color[m*COLOR+:COLOR]});
+        assign lane   = BITS'(request_o.data[m*LANE+:BITS]);
+        assign owes   = fills_q || (is_here_q && snapshot_q[BITS]);
+        always_ff @(posedge clk_i) begin
+          if (writes && write_address == {any_line, any_stamp}) word_q <= stored;
+          if (reads) begin
+            read_word_q  <= word_q;
+            read_is_it_q <= read_address == {any_line, any_stamp};
+            collided_q   <= writes && write_address == {any_line, any_stamp};
+          end
+          if (begins) begin
+            snapshot_q <= word_q;
+            sent_q     <= 1'b0;
+          end else if (sends_any && is_color == (p == 1) && request_o.strobe[m]) sent_q <= 1'b1;
+        end
+        always_comb if (runs_q) begin
+          if (read_is_it_q && !collided_q) assume (ram == read_word_q);  // sram_word
+          // The test sees what was written last.
+          if (p == 0 && x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask[m] && {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
+            assert (read_is_it_q && !collided_q && read_word_q == word_q);
+            assert (stored_depth_o[m*CODE+:CODE] == CODE'(word_q));
+          end
+          if (begins && begins_line == any_line && (stamps & any_bit) != '0) assert (!(writes && write_address == {any_line, any_stamp}));
+          if (is_begun && is_line_q) begin
+            if (is_left || is_read) assert (!sent_q);
+            if (is_left) assert (word_q == snapshot_q);
+            if (is_read) assert (read_is_it_q && !collided_q && read_word_q == snapshot_q);
+            // In its slot.
+            if (is_here_q && !is_left && !is_read)
+              assert ((p == 0 ? slot_depth[m*CODE+:CODE] & {CODE{owes}} : slot_color[m*COLOR+:COLOR] & {COLOR{owes}}) ==
+                      (snapshot_q[BITS] || (p == 0 && fills_q) ? snapshot_q[BITS-1:0] : (fills_q ? BITS'(p == 0 ? clear_depth : clear_color) : '0)) ) ;
+            if (is_here_q && !is_left && !is_read) assert ((p == 0 ? slot_depth_strobe[m] : slot_color_strobe[m]) == owes);
+            if (!is_left && !is_read && owes) assert (sent_q || slot_left);
+            if (slot_left) assert (!sent_q);
+            // What is sent.
+            if (sends_any && is_color == (p == 1)) begin
+              assert (request_o.strobe[m] == owes);
+              if (owes)
+                assert (lane == (is_here_q && (snapshot_q[BITS] || p == 0) ? snapshot_q[BITS-1:0] : BITS'(p == 0 ? clear_depth : clear_color)));
+            end
+            if (finishes && oldest_q == any_slot && owes) assert (sent_q || (sends_any && is_color == (p == 1)));
+          end
+        end
+      end
     end
-  end
+  endgenerate
+  logic [BLOCK_X-1:0] any_sx;
+  logic [BLOCK_Y-1:0] any_sy;
+  logic [STAMPS-1:0]  here_depth_any, here_color_any;
+  logic [SAMPLES*CODE-1:0]  slot_depth;
+  logic [SAMPLES*COLOR-1:0] slot_color;
+  logic [SAMPLES-1:0]       slot_depth_strobe, slot_color_strobe;
+  assign {any_sx, any_sy, here_depth_any, here_color_any} = victim_q[any_slot];
+  assign {slot_depth_strobe, slot_depth} = victim_depth_q[{any_slot, any_stamp}];
+  assign {slot_color_strobe, slot_color} = victim_color_q[{any_slot, any_stamp}];

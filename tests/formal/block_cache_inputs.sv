@@ -2,8 +2,8 @@
   // What comes in. A fragment on offer stays as it is until it is taken (primitive_join_stream and what is in front of it); a
   // token has no samples. From depth_test: the write of an item with samples comes in the cycle after it, of no others than
   // its samples, of all of them for `always`, and of the planes of its state (depth_test_stream). From memory: an answer is one to a read that was taken
-  // in an earlier cycle, in turn. From the host: a fast clear of both planes before all else.
-  logic is_token, is_clear, takes_fragment, takes_token, was_cleared_q;
+  // in an earlier cycle, in turn.
+  logic is_token, is_clear, takes_fragment, takes_token;
   assign is_clear       = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
   assign takes_fragment = fragment_valid_i && fragment_ready_o;
@@ -20,14 +20,10 @@
     tested_valid_q <= rst_ni && tested_valid_o;
     tested_q       <= tested_o;
     unanswered_q   <= rst_ni ? unanswered_q + ($clog2(QUEUE) + 1)'(takes_read) - ($clog2(QUEUE) + 1)'(takes_response) : '0;
-    if (!rst_ni) was_cleared_q <= 1'b0;
-    else if (takes_token) was_cleared_q <= 1'b1;
   end
   always_comb if (runs_q) begin
     if (waits_q) assume (fragment_valid_i && fragment_i == before_q);
     if (is_token) assume (fragment_i.mask == '0);
-    if (fragment_valid_i && !was_cleared_q)
-      assume (is_clear && fragment_i.state.depth_write && fragment_i.state.color_write);
     assume (write_valid_i == (tested_valid_q && tested_q.mask != '0));
     assume ((write_i.passed & ~tested_q.mask) == '0);
     if (tested_q.state.depth_test == raster_pkg::DEPTH_FUNC_ALWAYS) assume (write_i.passed == tested_q.mask);
