@@ -42,6 +42,16 @@ HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
 STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
 TILES = tuple((name, number, 'embedded') for name, number in
               (('CACHE_KIND', 0), ('CACHE_LINES', 16), ('LINE_X_BITS', 2), ('LINE_Y_BITS', 2)))
+# The smallest blocks in which everything happens: two lines, two victims, four blocks of four stamps, codes of a bit.
+BLOCKS = (('CACHE_KIND', 1), ('CACHE_LINES', 2), ('LINE_X_BITS', 1), ('LINE_Y_BITS', 0), ('CACHE_QUEUE', 4), ('CACHE_VICTIMS', 2),
+          ('BLOCK_SIDE', 2), ('BLOCKS_PER_ROW', 1), ('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2), ('FLAG_WORD', 2),
+          ('TILES_X', 2), ('TILES_Y', 2), ('TILE_X_BITS', 1), ('TILE_Y_BITS', 1), ('PRIMITIVE_ID_BITS', 1), ('COLOR_FORMAT', 1),
+          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('ALL_CODE_BITS', 2), ('MEMORY_LANE_BITS', 2),
+          ('FRAGMENT_PACKET_BITS', 18, 'tiny'), ('FRAGMENT_PACKET_BITS', 27, 'embedded'))
+# The same with two by two of them in a tile, and flags that outlive a flush.
+BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAMP_INDEX_BITS', 4), ('FRAME_CLEARS', 1),
+                   ('FRAGMENT_PACKET_BITS', 20, 'tiny'), ('FRAGMENT_PACKET_BITS', 29, 'embedded'))
+QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*')
 HIZ_TWINS = (15, 16, 17, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'))
 
 PROOFS = [
@@ -131,6 +141,21 @@ PROOFS = [
     Proof('framebuffer_stream_4_stamps', 'f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
           cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2,
           cover_depth=30, twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
+    Proof('cache_tags_data', 'd, f', 'stages/cache_tags.sv', 'of any block: where its depth is, what leaves, what is ordered and '
+          'flagged is as specified', cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, cover_depth=32, twins=(70, 71, 72, 73, 75)),
+    Proof('cache_tags_data_in_tiles', 'd, f', 'stages/cache_tags.sv', 'the same with blocks in tiles, and frame.clears=flags',
+          cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
+          quick=('embedded',), twins=(70, 74, 75)),
+    Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
+          cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
+          twins=(('is_settled && is_item && (!is_order || order_ready_i)', 'is_settled && is_item'),
+                 ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
+    Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
+          'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS,
+          quick=TINY, cover_depth=9, twins=(76, 77, 78, 79, 80, 81)),
+    Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
+          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS, quick=TINY, cover_depth=9,
+          twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, in its turn', cover_depth=14, k=2,
           cuts=MULTIPLIERS, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
 ]

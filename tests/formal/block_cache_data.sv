@@ -1,71 +1,4 @@
 
-  // Tags and queues are cut out: items, orders and answers may be any, but for what cache_tags_stream and skid_buffer_stream
-  // prove. One place of the RAMs, any: a sample m of a stamp of a line; and one slot of the victims, any.
-  (* anyconst *) logic [LINE-1:0]   any_line;
-  (* anyconst *) logic [STAMP-1:0]  any_stamp;
-  (* anyconst *) logic [VICTIM-1:0] any_slot;
-  always_comb if (runs_q) begin
-    if (item_valid && evicts) assume (source != SOURCE_CHIP);
-    if (item_valid && item.mask == '0) assume (source == SOURCE_NONE && !starts_color);
-    // A clear and what a flush writes go behind all items and orders (cache_tags_stream: DRAIN).
-    if (flush_valid) assume (!order_valid && !item_valid && taken_q == '0 && behind_q == '0);
-    if (clear_before_q != {clear_color, clear_depth}) assume (taken_q == '0 && behind_q == '0);
-  end
-  logic [COLOR+CODE-1:0] clear_before_q;
-  always_ff @(posedge clk_i) clear_before_q <= {clear_color, clear_depth};
-
-  // Between X and W: a queue of two.
-  logic [COLORED-1:0] first_q, second_q, entering;
-  logic [1:0]         count_q;
-  assign entering = {x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),
-                     write_i.write_color, write_i.color, x1_evicts_q, x1_fills_q, x1_color_q};
-  always_ff @(posedge clk_i) begin
-    count_q <= rst_ni ? count_q + 2'(x1_valid_q) - 2'(colors_done) : '0;
-    if (x1_valid_q && count_q == 2'(colors_done)) first_q <= entering;
-    else if (colors_done) first_q <= second_q;
-    if (x1_valid_q) second_q <= entering;
-  end
-  logic [COLORED-1:0] leaving;
-  assign leaving = {w_line, w_stamp, w_writes, w_dirty, w_color, w_evicts, w_fills, w_stamps};
-  always_comb if (runs_q) begin
-    assume (w_valid == (count_q != '0));
-    if (w_valid) assume (leaving == first_q);
-    assert (32'(behind_q) == 32'(count_q) + 32'(x1_valid_q) && behind_q <= 2'd2);  // room in it, always
-    assert (!(x1_valid_q && count_q == 2'd2));
-  end
-
-  // The slots: given to evictions in turn, written to memory in turn; which are in the queue.
-  logic [1:0]      evictions_behind;  // those that W has not begun
-  logic            holds_any, first_evicts, second_evicts;
-  logic [VICTIM:0] age;
-  assign first_evicts     = count_q != '0 && first_q[STAMPS+1] && !w_started_q;
-  assign second_evicts    = count_q == 2'd2 && second_q[STAMPS+1];
-  assign evictions_behind = 2'(x1_valid_q && x1_evicts_q) + 2'(first_evicts) + 2'(second_evicts);
-  assign age              = (VICTIM + 1)'(VICTIM'(any_slot - oldest_q));
-  assign holds_any        = age < taken_q;
-  always_comb if (runs_q) begin
-    assert (taken_q <= (VICTIM + 1)'(VICTIMS));
-    assert (VICTIM'(taken_q) == VICTIM'(slot_q - oldest_q));
-    assert (VICTIM'(evictions_behind) == VICTIM'(slot_q - w_slot_q) && 32'(evictions_behind) <= 32'(taken_q));
-    assert (32'(depth_ready_q) + 32'(v_valid_q) == 32'(taken_q));
-    assert (32'(color_ready_q) + 32'(c_valid_q) + 32'(evictions_behind) == 32'(taken_q));
-    if (left_q != '0) assert (v_valid_q);
-    if (w_left_q != '0) assert (c_valid_q);
-    if (v_valid_q) assert (v_last_q == (left_q == '0) && v_slot_q == VICTIM'(slot_q - 1'b1) && v_fills_q == fills_q);
-    if (c_valid_q) assert (c_last_q == (w_left_q == '0) && c_slot_q == VICTIM'(w_slot_q - 1'b1) && c_fills_q == w_fills_q);
-    if (w_started_q) assert (w_valid && w_evicts);
-    // What is about to be written is not still to be read.
-    if (w_started_q && w_writes != '0 && w_left_line_q == w_line) assert ((w_left_q & (STAMPS'(1) << w_stamp)) == '0);
-    if (x1_valid_q && x1_writes_q != '0 && left_line_q == x1_line_q) assert ((left_q & (STAMPS'(1) << x1_stamp_q)) == '0);
-    // What the queue holds of them is what their slots hold.
-    if (x1_valid_q && x1_evicts_q && VICTIM'(slot_q - 1'b1) == any_slot)
-      assert (x1_color_q == here_color_any && {STAMPS{x1_fills_q}} == color_left_q[any_slot]);
-    if (second_evicts && VICTIM'(w_slot_q + VICTIM'(first_evicts)) == any_slot)
-      assert (second_q[STAMPS-1:0] == here_color_any && {STAMPS{second_q[STAMPS]}} == color_left_q[any_slot]);
-    if (first_evicts && w_slot_q == any_slot)
-      assert (first_q[STAMPS-1:0] == here_color_any && {STAMPS{first_q[STAMPS]}} == color_left_q[any_slot]);
-  end
-
   // No stamp is tested while the one before it writes it, and depth_test never waits: tags have known since the fragment
   // before that the stamp is on the chip (cache_tags_data), and a stamp has one place.
   always_comb if (runs_q && tested_valid_o && x1_valid_q && tested_q.mask != '0 && item.mask != '0 && is_same) begin
@@ -85,8 +18,12 @@
                               {SAMPLES{x1_source_q != SOURCE_NONE || tested_q.state.depth_write}}));
   end
 
+  // One place of the RAMs, any: a sample m of a stamp of a line.
+  (* anyconst *) logic [LINE-1:0]   any_line;
+  (* anyconst *) logic [STAMP-1:0]  any_stamp;
   // What an eviction takes along, as it is when all before it, and nothing behind it, has been written. It is what memory
-  // gets, each sample once, and only then the slot is free. `at`: where the sample is: still in the RAM, read, in its slot.
+  // gets, each sample once, and only then the slot is free.
+  // In between it is in the RAM, on its way, or in the slot.
   logic [STAMPS-1:0] any_bit;
   logic              sends_any;
   assign any_bit   = STAMPS'(1) << any_stamp;
@@ -133,7 +70,7 @@
         logic [BITS-1:0] lane;
         assign writes = p == 0 ? write_valid_i && gen_depth[m].writes : colors_done && w_writes[m];
         assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) : (BITS + 1)'({gen_color[m].dirty, gen_color[m].color});
-        assign stored = p == 0 ? (BITS + 1)'({write_i.write_depth[m], gen_depth[m].written}) : (BITS + 1)'({w_dirty[m], w_color[m*COLOR+:COLOR]});
+        assign stored = p == 0 ? (BITS + 1)'(gen_depth[m].word) : (BITS + 1)'(gen_color[m].word);
         assign lane   = BITS'(request_o.data[m*LANE+:BITS]);
         assign owes   = fills_q || (is_here_q && snapshot_q[BITS]);
         always_ff @(posedge clk_i) begin
@@ -150,6 +87,10 @@
         end
         always_comb if (runs_q) begin
           if (read_is_it_q && !collided_q) assume (ram == read_word_q);  // sram_word
+          // What is written: what passed, or what was there (a colour: garbage, under a strobe that says so).
+          if (p == 0 && writes) assert (stored == {write_i.write_depth[m], write_i.write_depth[m] ? write_i.depth[m*CODE+:CODE] :
+                                                                            stored_depth_o[m*CODE+:CODE]});
+          if (p == 1 && writes) assert (stored[BITS] == w_dirty[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
           // The test sees what was written last.
           if (p == 0 && x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask[m] && {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
             assert (read_is_it_q && !collided_q && read_word_q == word_q);
@@ -179,12 +120,13 @@
       end
     end
   endgenerate
-  logic [BLOCK_X-1:0] any_sx;
-  logic [BLOCK_Y-1:0] any_sy;
-  logic [STAMPS-1:0]  here_depth_any, here_color_any;
   logic [SAMPLES*CODE-1:0]  slot_depth;
   logic [SAMPLES*COLOR-1:0] slot_color;
   logic [SAMPLES-1:0]       slot_depth_strobe, slot_color_strobe;
-  assign {any_sx, any_sy, here_depth_any, here_color_any} = victim_q[any_slot];
   assign {slot_depth_strobe, slot_depth} = victim_depth_q[{any_slot, any_stamp}];
   assign {slot_color_strobe, slot_color} = victim_color_q[{any_slot, any_stamp}];
+  always_comb if (runs_q) begin
+    cover (gen_plane[0].is_begun && gen_plane[0].is_line_q && gen_plane[0].gen_truth[0].owes && sends_any && !is_color);
+    cover (gen_plane[1].is_begun && gen_plane[1].is_line_q && gen_plane[1].is_here_q && gen_plane[1].fills_q && sends_any && is_color);
+    cover (x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask != '0 && v_valid_q);
+  end

@@ -22,7 +22,7 @@
   assign fills_it     = flag_q & {colored_q != '0, has_depth_q && known_q != '0};
   assign pending      = pending_q && age_q >= writes;
   assign age          = age_q - writes;
-  assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full;
+  assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || fragment_q.mask != '1;
   always_comb begin
     if (fragment_valid_i && is_token) assume (any_x <= last_x && any_y <= last_y);
     assume (32'(any_stamp) < STAMPS && 32'(any_x) < (raster_pkg::TILES_X << TILE_BITS) &&
@@ -66,6 +66,9 @@
       assert (item_line_o == any_line);
     end
     if (takes_token) assert (!pending_q && (!here_q || clears_all));
+    cover (leaves && is_it && order_reads_o && order_writes_o != '0);
+    cover (leaves && evicts_it && fills_it == 2'b11);
+    cover (takes_token && !is_clear && flag_q != '0);
     // Where the specification is in the hardware. The word of the line is old while the write of it is under way.
     if (!is_marking) begin
       assert (here_q == (word_valid && word_x == any_x && word_y == any_y));
