@@ -91,7 +91,9 @@ def hierarchy(proof):
 def sources(proof, preset, folder, twin):
     """Writes package, library and stages into `folder`, the properties inside the module that they are about."""
     package = PACKAGES[preset].read_text(encoding='utf-8')
-    for name, value in proof.package:
+    for name, value, *only in proof.package:
+        if only and preset not in only:
+            continue
         package = re.sub(rf'(localparam int {name} =) \d+;', rf'\1 {value};', package)
     (folder / 'raster_pkg.sv').write_text(package, encoding='utf-8')
     files = [folder / 'raster_pkg.sv']
@@ -108,6 +110,10 @@ def sources(proof, preset, folder, twin):
         if name == proof.module:
             end = text.rindex('endmodule')
             text = text[:end] + properties(proof) + text[end:]
+        for module, start in proof.starts:
+            if module == name:
+                end = text.rindex('endmodule')
+                text = text[:end] + (FORMAL / f'{start}.sv').read_text(encoding='utf-8') + text[end:]
         copy = folder / path.name
         copy.write_text(text, encoding='utf-8')
         files.append(copy)

@@ -18,12 +18,13 @@ class Proof:
     twin_depth: int = 6     # a twin has to fail in the step, or in so many
     twin_traces: bool = False  # never mind the step: it has to fail in a trace from reset
     parameters: tuple = ()  # of the module: (name, number or constant of the package)
-    package: tuple = ()     # constants of the package that this proof sets otherwise
+    package: tuple = ()     # constants of the package that this proof sets otherwise: (name, number), or with presets behind
     cover_depth: int = 0    # cycles in which every cover statement is reached: what is assumed can happen
     cuts: tuple = ()        # cells whose results may be anything, by Yosys's patterns of their types
     is_combinational: bool = False
     has_reset: bool = True
     file: str = ''
+    starts: tuple = ()      # what holds at the start of a bounded proof: (module, file that is put into it)
     inputs: str = ''        # another file in front of it: what is assumed of the inputs, or of what is cut
 
     @property
@@ -42,6 +43,18 @@ STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
 LAG_4 = (('HIZ_LAG', 4),)
 HIZ_TWINS = (15, 16, 17, 62, 63, 64, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'),
              ("seen_q + (N + 1)'(LAG);", "seen_q + (N + 1)'(LAG - 1);"))
+TILES = tuple((name, number, 'embedded') for name, number in
+              (('CACHE_KIND', 0), ('CACHE_LINES', 16), ('LINE_X_BITS', 2), ('LINE_Y_BITS', 2)))
+# The smallest blocks in which everything happens: two lines, two victims, four blocks of four stamps, codes of a bit.
+BLOCKS = (('CACHE_KIND', 1), ('CACHE_LINES', 2), ('LINE_X_BITS', 1), ('LINE_Y_BITS', 0), ('CACHE_QUEUE', 4), ('CACHE_VICTIMS', 2),
+          ('BLOCK_SIDE', 2), ('BLOCKS_PER_ROW', 1), ('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2), ('FLAG_WORD', 2),
+          ('TILES_X', 2), ('TILES_Y', 2), ('TILE_X_BITS', 1), ('TILE_Y_BITS', 1), ('PRIMITIVE_ID_BITS', 1), ('COLOR_FORMAT', 1),
+          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('ALL_CODE_BITS', 2), ('MEMORY_LANE_BITS', 2),
+          ('FRAGMENT_PACKET_BITS', 18, 'tiny'), ('FRAGMENT_PACKET_BITS', 27, 'embedded'))
+# The same with two by two of them in a tile, and flags that outlive a flush.
+BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAMP_INDEX_BITS', 4), ('FRAME_CLEARS', 1),
+                   ('FRAGMENT_PACKET_BITS', 20, 'tiny'), ('FRAGMENT_PACKET_BITS', 29, 'embedded'))
+QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*')
 
 PROOFS = [
     Proof('edge_offset_step', 'a', 'lib/edge_offset.sv', 'value + x step_x + y step_y', is_combinational=True,
@@ -96,6 +109,10 @@ PROOFS = [
           parameters=(('WIDTH', 'STAMP_PACKET_BITS'),),
           quick=TINY,
           twins=(('assign ready_o = !tail_valid_q;', 'assign ready_o = 1\'b1;'), ('tail_valid_q ? tail_q : data_i', 'data_i'))),
+    Proof('fifo_stream', 'f', 'lib/fifo.sv', 'a queue of DEPTH', k=2, cover_depth=8, quick=TINY,
+          presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)),
+          twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('memory_q[head_q[INDEX-1:0]]', 'memory_q[\'0]'),
+                 ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
     Proof('line_raster_stream', 'f', 'stages/line_raster.sv', 'remaining + 1 pixels a line, in order, stable', k=2, cover_depth=7,
           quick=TINY, twins=(43, 46)),
     Proof('primitive_join_stream', 'f', 'stages/primitive_join.sv', 'each pixel is one fragment, each other fragment as it was',
@@ -116,12 +133,12 @@ PROOFS = [
           twins=(('flows[i] = moves[i+:STEPS]', 'flows[i] = at_q[i+:STEPS]'),
                  ('if (moves[ROUND-1]) quotient_q', 'if (flows[ROUND]) quotient_q'))),
     Proof('framebuffer_data', 'd, f', 'stages/framebuffer.sv', 'an access reads what was written last, or cleared; after a flush '
-          'memory holds it', cuts=SRAMS, inputs='framebuffer_inputs', twins=(37, 38, 55)),
+          'memory holds it', cuts=SRAMS, inputs='framebuffer_inputs', package=TILES, twins=(37, 38, 55)),
     Proof('framebuffer_data_4_stamps', 'd, f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
           cuts=SRAMS, inputs='framebuffer_inputs', twins=(37, 38), file='framebuffer_data', presets=('tiny',), package=STAMPS_4,
           cover_depth=40, twin_depth=30, twin_traces=True),
     Proof('framebuffer_stream', 'f', 'stages/framebuffer.sv', 'requests in order, stable; no deadlock when memory answers',
-          cuts=SRAMS, inputs='framebuffer_inputs', k=2,
+          cuts=SRAMS, inputs='framebuffer_inputs', package=TILES, k=2,
           quick=TINY,
           twins=(('== SERVE || state_q == CHECK || takes_request;', '== SERVE || state_q == CHECK || state_q == EVICT;'),
                  ('(stamp + 1\'b1) & LAST_STAMP', '(stamp + 2\'d2) & LAST_STAMP'),
@@ -129,6 +146,21 @@ PROOFS = [
     Proof('framebuffer_stream_4_stamps', 'f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
           cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2,
           cover_depth=30, twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
+    Proof('cache_tags_data', 'd, f', 'stages/cache_tags.sv', 'of any block: where its depth is, what leaves, what is ordered and '
+          'flagged is as specified', cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, cover_depth=32, twins=(70, 71, 72, 73, 75)),
+    Proof('cache_tags_data_in_tiles', 'd, f', 'stages/cache_tags.sv', 'the same with blocks in tiles, and frame.clears=flags',
+          cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
+          quick=('embedded',), twins=(70, 74, 75)),
+    Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
+          cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
+          twins=(('is_settled && is_item && (!is_order || order_ready_i)', 'is_settled && is_item'),
+                 ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
+    Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
+          'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS,
+          quick=TINY, cover_depth=9, twins=(76, 77, 78, 79, 80, 81)),
+    Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
+          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS, quick=TINY, cover_depth=9,
+          twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, in its turn', cover_depth=14, k=2,
           cuts=MULTIPLIERS, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
 ]

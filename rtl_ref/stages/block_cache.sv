@@ -295,11 +295,13 @@ module block_cache (
     for (s = 0; s < SAMPLES; s++) begin : gen_depth
       logic [CODE-1:0] code, stored, written;
       logic            dirty, writes, strobe;
+      logic [CODE:0]   word;
       assign response_depth[s*CODE+:CODE] = response_i.data[s*LANE+:CODE];
       assign stored = x1_source_q == SOURCE_CHIP ? code : (x1_source_q == SOURCE_CLEAR ? clear_depth : answer_q[s*CODE+:CODE]);
       assign writes = x1_source_q == SOURCE_CHIP ? write_i.write_depth[s] :
                       x1_source_q != SOURCE_NONE || write_i.write_depth[s];
       assign written = write_i.write_depth[s] ? write_i.depth[s*CODE+:CODE] : stored;
+      assign word = {write_i.write_depth[s], written};
       assign stored_depth_o[s*CODE+:CODE] = stored;
       sram #(
           .WIDTH    (CODE + 1),
@@ -312,7 +314,7 @@ module block_cache (
           .data_o         ({dirty, code}),
           .write_i        (write_valid_i && writes),
           .write_address_i({x1_line_q, x1_stamp_q}),
-          .data_i         ({write_i.write_depth[s], written})
+          .data_i         (word)
       );
       assign strobe = v_fills_q || dirty;
       assign v_depth_strobe[s] = strobe;
@@ -388,7 +390,9 @@ module block_cache (
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_color
       logic [COLOR-1:0] color;
+      logic [COLOR:0]   word;
       logic             dirty;
+      assign word = {w_dirty[s], w_color[s*COLOR+:COLOR]};
       sram #(
           .WIDTH    (COLOR + 1),
           .DEPTH    (1 << ADDRESS),
@@ -400,7 +404,7 @@ module block_cache (
           .data_o         ({dirty, color}),
           .write_i        (colors_done && w_writes[s]),
           .write_address_i({w_line, w_stamp}),
-          .data_i         ({w_dirty[s], w_color[s*COLOR+:COLOR]})
+          .data_i         (word)
       );
       assign c_color_strobe[s] = c_fills_q || dirty;
       assign c_color[s*COLOR+:COLOR] = dirty ? color : clear_color & {COLOR{c_fills_q}};

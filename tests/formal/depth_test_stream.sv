@@ -14,6 +14,7 @@
     if (write_valid_o) begin
       assert (write_o.key == $past(fragment_i.key) && write_o.stamp == $past(fragment_i.stamp));
       assert ((write_o.passed & ~$past(fragment_i.mask)) == '0);
+      if ($past(fragment_i.state.depth_test) == raster_pkg::DEPTH_FUNC_ALWAYS) assert (write_o.passed == $past(fragment_i.mask));
       assert (write_o.write_depth == ($past(fragment_i.state.depth_write) ? write_o.passed : '0));
       assert (write_o.write_color == ($past(fragment_i.state.color_write) ? write_o.passed : '0));
       // What is written one cycle after its access is not read by an access of this cycle.

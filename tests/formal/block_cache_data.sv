@@ -1,0 +1,132 @@
+
+  // No stamp is tested while the one before it writes it, and depth_test never waits: tags have known since the fragment
+  // before that the stamp is on the chip (cache_tags_data), and a stamp has one place.
+  always_comb if (runs_q && tested_valid_o && x1_valid_q && tested_q.mask != '0 && item.mask != '0 && is_same) begin
+    assume (source == SOURCE_CHIP && item_line == x1_line_q && item_stamp == x1_stamp_q);
+    assert (!(tested_q.state.depth_write && (tested_q.mask & item.mask) != '0));
+  end
+  logic is_same;
+  assign is_same = tested_q.state.depth_write && tested_q.key.tile_x == item.key.tile_x && tested_q.key.tile_y == item.key.tile_y &&
+                   tested_q.stamp == item.stamp;
+  logic [SAMPLES-1:0] x1_mask;
+  assign x1_mask = x1_valid_q ? tested_q.mask : '0;
+  always_comb if (runs_q) begin
+    assert (x1_valid_q == tested_valid_q);
+    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == SOURCE_NONE && !x1_starts_color_q && x1_writes_q == '0);
+    if (x1_valid_q && tested_q.mask != '0)
+      assert (x1_writes_q == (x1_source_q == SOURCE_CHIP ? tested_q.mask & {SAMPLES{tested_q.state.depth_write}} :
+                              {SAMPLES{x1_source_q != SOURCE_NONE || tested_q.state.depth_write}}));
+  end
+
+  // One place of the RAMs, any: a sample m of a stamp of a line.
+  (* anyconst *) logic [LINE-1:0]   any_line;
+  (* anyconst *) logic [STAMP-1:0]  any_stamp;
+  // What an eviction takes along, as it is when all before it, and nothing behind it, has been written. It is what memory
+  // gets, each sample once, and only then the slot is free.
+  // In between it is in the RAM, on its way, or in the slot.
+  logic [STAMPS-1:0] any_bit;
+  logic              sends_any;
+  assign any_bit   = STAMPS'(1) << any_stamp;
+  assign sends_any = sends && takes_request && oldest_q == any_slot && sent == any_bit;
+  genvar p, m;
+  generate
+    for (p = 0; p < 2; p++) begin : gen_plane
+      localparam int BITS = p == 0 ? CODE : COLOR;
+      logic            begins, is_line_q, is_here_q, fills_q, read_is_it, writes_it, is_left, is_read, is_begun, is_behind;
+      logic [STAMPS-1:0] stamps, left_now;
+      logic [LINE-1:0] begins_line;
+      logic [LINE+STAMP-1:0] write_address, read_address;
+      logic            reads, slot_left;
+      assign stamps        = p == 0 ? evicts_depth : w_stamps;
+      assign begins        = p == 0 ? goes && evicts && slot_q == any_slot : w_starts && w_slot_q == any_slot;
+      assign begins_line   = p == 0 ? item_line : w_line;
+      assign reads         = p == 0 ? reads_victim || goes : w_reads;
+      assign read_address  = p == 0 ? depth_read_address : {w_starts ? w_line : w_left_line_q, number_of(w_next)};
+      assign write_address = p == 0 ? {x1_line_q, x1_stamp_q} : {w_line, w_stamp};
+      // The last eviction that has begun is that of the slot, and its stamp is still to be read, or has been.
+      assign is_begun  = holds_any && (p == 0 || 32'(taken_q) - 32'(evictions_behind) > 32'(age));
+      assign is_left   = is_begun && (p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot &&
+                         ((p == 0 ? left_q : w_left_q) & any_bit) != '0;
+      assign is_read   = p == 0 ? v_valid_q && v_slot_q == any_slot && v_stamp_q == any_stamp :
+                                  c_valid_q && c_slot_q == any_slot && c_stamp_q == any_stamp;
+      assign slot_left = ((p == 0 ? depth_left_q[any_slot] : color_left_q[any_slot]) & any_bit) != '0;
+      always_ff @(posedge clk_i) if (begins) begin
+        is_line_q <= begins_line == any_line;
+        is_here_q <= (stamps & any_bit) != '0;
+        fills_q   <= p == 0 ? fills[0] : w_fills;
+      end
+      always_comb if (runs_q && is_begun) begin
+        if ((p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot)
+          if ((p == 0 ? v_valid_q : c_valid_q))
+            assert (is_line_q == ((p == 0 ? left_line_q : w_left_line_q) == any_line) && fills_q == (p == 0 ? v_fills_q : c_fills_q));
+        if (is_left || is_read) assert (is_here_q && slot_left == fills_q);
+        if (!is_here_q && slot_left) assert (fills_q);
+        if (is_read) assert (is_here_q && !is_left);
+        assert (((p == 0 ? here_depth_any : here_color_any) & any_bit) != '0 == is_here_q);
+      end
+      for (m = 0; m < SAMPLES; m++) begin : gen_truth
+        logic [BITS:0] word_q, read_word_q, snapshot_q, ram, stored;  // the lane's dirty bit above its code
+        logic          writes, read_is_it_q, collided_q, sent_q, owes, lane_strobe;
+        logic [BITS-1:0] lane;
+        assign writes = p == 0 ? write_valid_i && gen_depth[m].writes : colors_done && w_writes[m];
+        assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) : (BITS + 1)'({gen_color[m].dirty, gen_color[m].color});
+        assign stored = p == 0 ? (BITS + 1)'(gen_depth[m].word) : (BITS + 1)'(gen_color[m].word);
+        assign lane   = BITS'(request_o.data[m*LANE+:BITS]);
+        assign owes   = fills_q || (is_here_q && snapshot_q[BITS]);
+        always_ff @(posedge clk_i) begin
+          if (writes && write_address == {any_line, any_stamp}) word_q <= stored;
+          if (reads) begin
+            read_word_q  <= word_q;
+            read_is_it_q <= read_address == {any_line, any_stamp};
+            collided_q   <= writes && write_address == {any_line, any_stamp};
+          end
+          if (begins) begin
+            snapshot_q <= word_q;
+            sent_q     <= 1'b0;
+          end else if (sends_any && is_color == (p == 1) && request_o.strobe[m]) sent_q <= 1'b1;
+        end
+        always_comb if (runs_q) begin
+          if (read_is_it_q && !collided_q) assume (ram == read_word_q);  // sram_word
+          // What is written: what passed, or what was there (a colour: garbage, under a strobe that says so).
+          if (p == 0 && writes) assert (stored == {write_i.write_depth[m], write_i.write_depth[m] ? write_i.depth[m*CODE+:CODE] :
+                                                                            stored_depth_o[m*CODE+:CODE]});
+          if (p == 1 && writes) assert (stored[BITS] == w_dirty[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
+          // The test sees what was written last.
+          if (p == 0 && x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask[m] && {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
+            assert (read_is_it_q && !collided_q && read_word_q == word_q);
+            assert (stored_depth_o[m*CODE+:CODE] == CODE'(word_q));
+          end
+          if (begins && begins_line == any_line && (stamps & any_bit) != '0) assert (!(writes && write_address == {any_line, any_stamp}));
+          if (is_begun && is_line_q) begin
+            if (is_left || is_read) assert (!sent_q);
+            if (is_left) assert (word_q == snapshot_q);
+            if (is_read) assert (read_is_it_q && !collided_q && read_word_q == snapshot_q);
+            // In its slot.
+            if (is_here_q && !is_left && !is_read)
+              assert ((p == 0 ? slot_depth[m*CODE+:CODE] & {CODE{owes}} : slot_color[m*COLOR+:COLOR] & {COLOR{owes}}) ==
+                      (snapshot_q[BITS] || (p == 0 && fills_q) ? snapshot_q[BITS-1:0] : (fills_q ? BITS'(p == 0 ? clear_depth : clear_color) : '0)) ) ;
+            if (is_here_q && !is_left && !is_read) assert ((p == 0 ? slot_depth_strobe[m] : slot_color_strobe[m]) == owes);
+            if (!is_left && !is_read && owes) assert (sent_q || slot_left);
+            if (slot_left) assert (!sent_q);
+            // What is sent.
+            if (sends_any && is_color == (p == 1)) begin
+              assert (request_o.strobe[m] == owes);
+              if (owes)
+                assert (lane == (is_here_q && (snapshot_q[BITS] || p == 0) ? snapshot_q[BITS-1:0] : BITS'(p == 0 ? clear_depth : clear_color)));
+            end
+            if (finishes && oldest_q == any_slot && owes) assert (sent_q || (sends_any && is_color == (p == 1)));
+          end
+        end
+      end
+    end
+  endgenerate
+  logic [SAMPLES*CODE-1:0]  slot_depth;
+  logic [SAMPLES*COLOR-1:0] slot_color;
+  logic [SAMPLES-1:0]       slot_depth_strobe, slot_color_strobe;
+  assign {slot_depth_strobe, slot_depth} = victim_depth_q[{any_slot, any_stamp}];
+  assign {slot_color_strobe, slot_color} = victim_color_q[{any_slot, any_stamp}];
+  always_comb if (runs_q) begin
+    cover (gen_plane[0].is_begun && gen_plane[0].is_line_q && gen_plane[0].gen_truth[0].owes && sends_any && !is_color);
+    cover (gen_plane[1].is_begun && gen_plane[1].is_line_q && gen_plane[1].is_here_q && gen_plane[1].fills_q && sends_any && is_color);
+    cover (x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask != '0 && v_valid_q);
+  end

@@ -1,0 +1,122 @@
+
+  // Towards memory: what is offered stays. Offers of tags and queues stay (cache_tags_stream, fifo_stream).
+  logic [ORDER-1:0]                order, order_before_q;
+  var raster_pkg::memory_request_t flush_before_q;
+  logic                            order_stays_q, flush_stays_q;
+  assign order = {order_writes, order_reads, order_x, order_y, order_stamp};
+  always_ff @(posedge clk_i) begin
+    order_before_q <= order;
+    flush_before_q <= flush_request;
+    order_stays_q  <= rst_ni && order_valid && !takes_order;
+    flush_stays_q  <= rst_ni && flush_valid && !request_ready_i;
+  end
+  always_comb if (runs_q) begin
+    if (order_stays_q) assume (order_valid && order == order_before_q);
+    if (flush_stays_q) assume (flush_valid && flush_request == flush_before_q);
+    if (order_valid) assume (order_writes != '0 || order_reads);  // is_order
+    if (order_valid) assert (written_q <= order_writes);
+    if (order_valid && !order_reads) assert (written_q != order_writes);
+    if (!order_valid) assert (written_q == '0);
+    if (!sends && wants_read && takes_request) assert (!request_o.is_write && request_o.tile_x == order_x && request_o.tile_y == order_y &&
+                                                       request_o.stamp == order_stamp && request_o.plane == raster_pkg::TILE_PLANE_DEPTH);
+  end
+  always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
+    if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
+  end
+
+  // No read overtakes the write of an eviction of its block. Any eviction and any later order that reads its block: the
+  // tags order the write with it or before it (cache_tags_data: nothing of the block is pending). A queue of the writes that
+  // orders ask for says how many evictions have to be written before an order's read; the eviction is one of them.
+  (* anyseq *) logic is_eviction, is_reader;  // the ones that are looked at
+  localparam int N = $clog2(QUEUE * VICTIMS + VICTIMS + 1) + 1;
+  logic [N-1:0] asked_q, ahead_q, needs_q, asked, queued;
+  logic         evicted_q, unwritten_q, reader_waits_q;
+  logic [$clog2(QUEUE):0] place_q, orders_q;  // of the reader in the queue; orders in it
+  logic [WRITES-1:0] writes_q[0:QUEUE-1];     // head at 0
+  logic enters, starts_eviction, starts_reader;
+  logic [N-1:0] waiting_q;                    // evictions that are not ordered yet
+  assign enters          = ordered_valid && ordered_ready;
+  assign starts_eviction = made_valid && made_ready && made_evicts && is_eviction && !evicted_q;
+  assign starts_reader   = enters && ordered_reads && is_reader && evicted_q && !reader_waits_q;
+  assign asked           = asked_q + (enters ? N'(ordered_writes) : '0);
+  logic [$clog2(QUEUE):0] last;
+  assign last = orders_q - ($clog2(QUEUE) + 1)'(takes_order);
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      {asked_q, waiting_q, orders_q} <= '0;
+      {evicted_q, unwritten_q, reader_waits_q} <= '0;
+    end else begin
+      asked_q   <= asked - N'(finishes);
+      waiting_q <= waiting_q - (enters ? N'(ordered_writes) : '0) + N'(made_valid && made_ready && made_evicts);
+      orders_q  <= last + ($clog2(QUEUE) + 1)'(enters);
+      if (starts_eviction) begin
+        {evicted_q, unwritten_q} <= '1;
+        ahead_q                  <= asked_q + waiting_q - N'(finishes);
+      end else if (finishes) begin
+        if (ahead_q == '0) unwritten_q <= 1'b0;
+        ahead_q <= ahead_q - N'(ahead_q != '0);
+      end
+      if (starts_reader) begin
+        reader_waits_q <= 1'b1;
+        place_q        <= last;
+        needs_q        <= asked - N'(finishes);
+      end else begin
+        if (takes_order && place_q == '0) reader_waits_q <= 1'b0;
+        if (takes_order) place_q <= place_q - 1'b1;
+        needs_q <= needs_q - N'(finishes && reader_waits_q);
+      end
+    end
+  end
+  genvar q;
+  generate
+    for (q = 0; q < QUEUE; q++) begin : gen_queue
+      always_ff @(posedge clk_i)
+        if (enters && last == q) writes_q[q] <= ordered_writes;
+        else if (takes_order && q + 1 < QUEUE) writes_q[q] <= writes_q[(q + 1) % QUEUE];
+    end
+  endgenerate
+  logic [N-1:0] sum, sum_reader;
+  always_comb begin
+    sum        = '0;
+    sum_reader = '0;
+    for (int i = 0; i < QUEUE; i++) begin
+      if (i < orders_q) sum = sum + N'(writes_q[i]);
+      if (i <= place_q) sum_reader = sum_reader + N'(writes_q[i]);
+    end
+  end
+  always_comb if (runs_q) begin
+    // fifo_stream; and tags order what waits, each once.
+    assume (order_valid == (orders_q != '0) && ordered_ready == (orders_q != QUEUE));
+    if (order_valid) assume (order_writes == writes_q[0]);
+    if (ordered_valid) assume (N'(ordered_writes) <= waiting_q && waiting_q <= VICTIMS && (ordered_writes != '0 || ordered_reads));
+    if (made_valid && made_ready && made_evicts)
+      assume (waiting_q - (enters ? N'(ordered_writes) : '0) < VICTIMS);
+    if (starts_reader && unwritten_q) assume (ahead_q < asked);
+    assert (orders_q <= QUEUE && waiting_q <= VICTIMS);
+    for (int i = 0; i < QUEUE; i++) if (i < orders_q) assert (writes_q[i] <= VICTIMS);
+    assert (asked_q + N'(written_q) == sum);
+    if (unwritten_q) assert (evicted_q && ahead_q < asked_q + waiting_q);
+    if (reader_waits_q) begin
+      assert (evicted_q && place_q < orders_q && needs_q + N'(written_q) == sum_reader && needs_q <= asked_q);
+      if (unwritten_q) assert (ahead_q < needs_q);
+      if (place_q == '0 && wants_read) assert (!unwritten_q);  // it reads
+    end
+  end
+
+  // No deadlock. An item waits for stamps that are read, one a cycle, for the item in X1, for W, which takes one a cycle but
+  // for stamps that it reads, and then only for a slot or an answer; memory's next waits only for data on their way from X and W.
+  always_comb if (runs_q) begin
+    if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
+      assert ((evicts && !slot_free) || (source == SOURCE_MEMORY && !answer_valid));
+    if (order_valid && !request_valid_o) assert (skips || !is_ready);
+    if (taken_q != '0 && left_q == '0 && w_left_q == '0 && !v_valid_q && !c_valid_q && behind_q == '0) assert (is_ready);
+    cover (reader_waits_q && !unwritten_q && place_q == '0 && wants_read && order_writes != '0);
+    cover (item_valid && evicts && !goes && !slot_free);
+  end
+  always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
+    if ($past(left_q != '0 && !(goes && evicts))) assert (left_q < $past(left_q));
+    if ($past(x1_valid_q && !goes)) assert (!x1_valid_q);
+    if ($past(w_valid && !colors_done)) assert (w_left_q < $past(w_left_q) || (w_started_q && !$past(w_started_q)));
+    if ($past(v_valid_q)) assert (left_q != '0 || !v_valid_q || v_last_q);
+    if ($past(sends && takes_request && !ends_victim)) assert (oldest_q == $past(oldest_q) && {depth_left, color_left} < $past({depth_left, color_left}));
+  end

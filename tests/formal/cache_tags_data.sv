@@ -1,0 +1,219 @@
+
+  // One block, any, and one stamp of it: what a cache with one line for it, and memory behind it, must do with it. `g_` is
+  // the specification (model/stages/cache_tags.hpp), told of what leaves here, in order; the RAMs may answer anything but
+  // for the words in which the block is (sram_word). From the
+  // host: tokens are of all blocks that are ever drawn to.
+  (* anyconst *) logic [BLOCK_X-1:0] any_x;
+  (* anyconst *) logic [BLOCK_Y-1:0] any_y;
+  (* anyconst *) logic [STAMP-1:0]   any_stamp;
+  logic [LINE-1:0]   any_line;
+  logic              is_it, misses_it, empties_it, here_q, has_depth_q, pending_q;
+  logic [STAMPS-1:0] known_q, colored_q;
+  logic [1:0]        flag_q;      // colour, depth: memory holds garbage
+  logic [WRITES-1:0] age_q;       // of the newest eviction of it that waits: so many older ones do
+  logic              is_dirty, evicts_it, pending, is_looked_at;
+  logic [1:0]        fills_it;
+  logic [WRITES-1:0] age;
+  assign any_line     = line_of(any_x, any_y);
+  assign is_it        = is_access && block_x == any_x && block_y == any_y;
+  assign empties_it   = valid_q && line == any_line && (walks_q || (is_access && !is_it));
+  assign is_dirty     = has_depth_q || colored_q != '0;
+  assign evicts_it    = here_q && is_dirty && empties_it;
+  assign fills_it     = flag_q & {colored_q != '0, has_depth_q && known_q != '0};
+  assign pending      = pending_q && age_q >= writes;
+  assign age          = age_q - writes;
+  assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || fragment_q.mask != '1;
+  always_comb begin
+    if (fragment_valid_i && is_token) assume (any_x <= last_x && any_y <= last_y);
+    assume (32'(any_stamp) < STAMPS && 32'(any_x) < (raster_pkg::TILES_X << TILE_BITS) &&
+            32'(any_y) < (raster_pkg::TILES_Y << TILE_BITS));
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (leaves && is_it) begin
+      here_q      <= 1'b1;
+      known_q     <= (here_q ? known_q : '0) | (is_looked_at || fragment_q.state.depth_write ? stamp_bit : '0);
+      colored_q   <= (here_q ? colored_q : '0) | (fragment_q.state.color_write ? stamp_bit : '0);
+      has_depth_q <= (here_q && has_depth_q) || fragment_q.state.depth_write;
+    end
+    if (leaves && empties_it) here_q <= 1'b0;
+    if (leaves && evicts_it) flag_q <= flag_q & ~fills_it;
+    if (leaves || orders_all) begin
+      pending_q <= pending || (leaves && evicts_it);
+      age_q     <= leaves && evicts_it ? waiting_q - writes : age;
+    end
+    if (takes_token && is_clear) begin
+      here_q <= 1'b0;
+      flag_q <= flag_q | {fragment_i.state.color_write, fragment_i.state.depth_write};
+    end
+    if (takes_token && !is_clear && raster_pkg::FRAME_CLEARS == 0) flag_q[1] <= 1'b0;
+    if (!rst_ni) {here_q, pending_q} <= '0;
+  end
+
+  always_comb if (runs_q && is_known_q) begin
+    // A fragment of it.
+    if (leaves && is_it) begin
+      assert (item_source_o == (here_q && known_q[stamp] ? SOURCE_CHIP : !is_looked_at ? SOURCE_NONE :
+                                flag_q[0] ? SOURCE_CLEAR : SOURCE_MEMORY));
+      assert (item_starts_color_o == (fragment_q.state.color_write && !(here_q && colored_q[stamp])));
+      assert (order_reads_o == (item_source_o == SOURCE_MEMORY));
+      assert (!pending);  // what it asks memory for is behind the writes of all that has left the chip of it
+    end
+    // It leaves when another block comes, or a token walks by, and only then; with all of it.
+    if (leaves) assert ((evicts_o && evicts_x_o == any_x && evicts_y_o == any_y) == evicts_it);
+    if (leaves && evicts_it) begin
+      assert (evicts_depth_o == (has_depth_q ? known_q : '0) && evicts_color_o == colored_q && evicts_fills_o == fills_it);
+      assert (item_line_o == any_line);
+    end
+    if (takes_token) assert (!pending_q && (!here_q || clears_all));
+    cover (leaves && is_it && order_reads_o && order_writes_o != '0);
+    cover (leaves && evicts_it && fills_it == 2'b11);
+    cover (takes_token && !is_clear && flag_q != '0);
+    // Where the specification is in the hardware. The word of the line is old while the write of it is under way.
+    if (!is_marking) begin
+      assert (here_q == (word_valid && word_x == any_x && word_y == any_y));
+      if (here_q)
+        assert ({known_q, colored_q, has_depth_q, flag_q} == {word_known, word_colored, word_has_depth, word_cleared});
+    end
+    if (is_marking && !clears_all) assert (!here_q);
+    if (here_q && !is_marking) assert (!pending_q);
+  end
+
+  // The line's word, and that of the flags. What is read in the cycle of a write of it is not looked at.
+  logic [STATE-1:0]   word_q, read_word_q;
+  logic               word_valid, word_has_depth, is_marking, read_is_it_q, collided_q, line_stays_q, flags_stay_q;
+  logic [TAG_X-1:0]   word_tag_x;
+  logic [TAG_Y-1:0]   word_tag_y;
+  logic [STAMPS-1:0]  word_known, word_colored;
+  logic [1:0]         word_cleared, flag_ram_q, flag_read_q;
+  logic [BLOCK_X-1:0] word_x;
+  logic [BLOCK_Y-1:0] word_y;
+  logic               flag_is_it, flag_reads_it, flag_read_is_it_q;
+  logic [STATE-1:0]   line_before_q;
+  logic [WORD-1:0]    depth_before_q, color_before_q;
+  assign {word_valid, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q;
+  assign word_x        = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
+  assign word_y        = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
+  assign is_marking    = state_q == MARK || (state_q == DONE && is_clear);
+  assign flag_is_it    = flag_write_address == word_of(any_x, any_y);
+  assign flag_reads_it = word_of(flag_x, flag_y) == word_of(any_x, any_y);
+  always_ff @(posedge clk_i) begin
+    if (line_writes && line_write_address == any_line) word_q <= line_new;
+    if (takes_fragment || looks) begin
+      read_word_q  <= word_q;
+      read_is_it_q <= line_read_address == any_line;
+      collided_q   <= line_writes && line_write_address == any_line;
+    end
+    line_stays_q  <= !(takes_fragment || looks);
+    line_before_q <= line_read;
+    if (flag_is_it && flag_writes[0]) flag_ram_q[0] <= word_depth_new[bit_of(any_x)];
+    if (flag_is_it && flag_writes[1]) flag_ram_q[1] <= word_color_new[bit_of(any_x)];
+    if (flag_reads) begin
+      flag_read_q       <= flag_ram_q;
+      flag_read_is_it_q <= flag_reads_it;
+    end
+    flags_stay_q   <= !flag_reads;
+    depth_before_q <= word_depth;
+    color_before_q <= word_color;
+  end
+  always_comb if (runs_q) begin
+    if (line_stays_q) assume (line_read == line_before_q);
+    if (read_is_it_q && !collided_q) assume (line_read == read_word_q);
+    if (flags_stay_q) assume (word_depth == depth_before_q && word_color == color_before_q);
+    if (flag_read_is_it_q) assume ({word_color[bit_of(any_x)], word_depth[bit_of(any_x)]} == flag_read_q);
+    // No word of flags is read while it is written.
+    if (flag_reads) assert (flag_writes == '0);
+  end
+
+  // For induction: what has been read is what is there; what is under way.
+  logic [1:0] marked, flag_now;  // what the RAMs of flags hold while a token or an eviction is at work
+  logic words_passed, lines_passed;
+  assign marked   = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{words_passed}};
+  assign words_passed = (is_clear ? words_done_q : state_q == DONE) || word_y_q > any_y || (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));
+  assign lines_passed = lines_done_q || walk_q > any_line;
+  always_comb if (runs_q) begin
+    assert (state_q <= DONE);
+    assert (waiting_q <= WRITES'(VICTIMS) && writes <= waiting_q);
+    if (state_q != SERVE) assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)));
+    if (state_q == SERVE) assert (!valid_q || !walks_q);
+    if (state_q == LOOK) assert (!lines_done_q && !clears_all);
+    if (!valid_q || !falls) assert (fall_q == '0);
+    assert (fall_q != 2'd3);
+    if (state_q > ORDER) assert (waiting_q == '0);
+    if (state_q == MARK) assert (is_clear);
+    if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear);
+    if (state_q == RESOLVE) assert (resolves);
+    if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
+    if (!is_known_q && is_marking) assert ((flag_ram_q & marked) == marked);
+    if (!is_known_q) assert (!here_q && !pending_q && !valid_q && (state_q == SERVE || is_marking || state_q == ORDER || state_q == DRAIN) && waiting_q == '0);
+    if (valid_q && line == any_line) begin
+      assert (read_is_it_q && (is_forwarded_q == collided_q));
+      assert (line_state == word_q);
+    end
+    // Tokens: lines are empty behind the walk, flags are set and reset behind it.
+    if (((state_q == LOOK && lines_passed) || (state_q > LOOK && !(clears_all && !lines_passed) && !(clears_all && state_q < MARK)))) assert (!word_valid);
+    if (state_q == DONE) assert (words_done_q && (is_clear ? lines_done_q : plane_q));
+  end
+  always_comb begin
+    flag_now = flag_q;
+    if (is_marking) flag_now = flag_q | marked;
+    else if (state_q > DRAIN) flag_now[1] = flag_q[1] && !(raster_pkg::FRAME_CLEARS == 0 && plane_q && words_passed);
+    else if (evicts_it && fall_q == 2'd2) flag_now = flag_q & ~fills_it;
+  end
+  always_comb if (runs_q && is_known_q) begin
+    assert (flag_ram_q == flag_now);
+    if (valid_q && fall_q == 2'd0 && is_it && !hits) assert (flag_read_is_it_q && flag_read_q == flag_ram_q);
+    if (valid_q && fall_q == 2'd1) assert (flag_read_is_it_q == flag_is_it && flag_read_q == flag_ram_q);
+    if (valid_q && fall_q != 2'd0 && is_it && !hits) assert (cleared_q == flag_ram_q);
+    if (state_q == SEND || state_q == RESOLVE)
+      assert (flag_read_is_it_q == (word_of(BLOCK_X'(word_x_q) << BIT, word_y_q) == word_of(any_x, any_y)) && flag_read_q == flag_ram_q);
+    // The evictions that wait.
+    if (pending_q)
+      assert (age_q < waiting_q && victim_x_q[oldest_q+VICTIM'(age_q)] == any_x && victim_y_q[oldest_q+VICTIM'(age_q)] == any_y);
+    for (int a = 0; a < VICTIMS; a++)
+      if (WRITES'(a) < waiting_q && victim_x_q[oldest_q+VICTIM'(a)] == any_x && victim_y_q[oldest_q+VICTIM'(a)] == any_y)
+        assert (pending_q && WRITES'(a) <= age_q);
+  end
+
+  // A flush writes the words of the flags, each once, and, where colours are resolved, every stamp of a block whose colours
+  // are still flagged.
+  logic [INDEX-1:0] any_index;
+  logic [1:0]       flags_sent_q;
+  logic             is_sent_q, word_is_it, words_are_behind, has_sent, takes_request;
+  assign any_index     = INDEX'(((((8'(any_y) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(any_stamp) >> SIDE_BITS)) << ROW_BITS) |
+                                ((8'(any_x) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(any_stamp) & 8'((1 << SIDE_BITS) - 1)));
+  assign takes_request = request_valid_o && request_ready_i;
+  assign word_is_it    = word_x_q == WORD_X'(any_x >> BIT) && word_y_q == any_y;
+  assign words_are_behind = state_q == DONE || word_y_q > any_y || (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));
+  assign has_sent = flag_q[1] && resolves && (words_are_behind || (state_q == RESOLVE && word_is_it &&
+                    (bits_q == '0 || resolve_x_q > any_x || (resolve_x_q == any_x && stamp_q > any_stamp))));
+  always_ff @(posedge clk_i) begin
+    if (state_q == DRAIN) {is_sent_q, flags_sent_q} <= '0;
+    else if (takes_request) begin
+      if (state_q == SEND && word_is_it) flags_sent_q <= flags_sent_q | {plane_q, !plane_q};
+      if (state_q == RESOLVE && request_o.tile_x == any_x >> TILE_BITS && request_o.tile_y == any_y >> TILE_BITS &&
+          request_o.stamp == any_index)
+        is_sent_q <= 1'b1;
+    end
+  end
+  always_comb if (runs_q && is_known_q) begin
+    if (request_valid_o && state_q == SEND) begin
+      assert (request_o.tile_x == word_x_q && request_o.tile_y == word_y_q >> TILE_BITS &&
+              request_o.plane == (plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS));
+      if (word_is_it) assert (request_o.data[bit_of(any_x)] == flag_q[plane_q]);
+    end
+    if (request_valid_o && state_q == RESOLVE) assert (request_o.plane == raster_pkg::TILE_PLANE_COLOR);
+    if (takes_token && !is_clear)
+      assert (raster_pkg::FRAME_CLEARS == 0 ? flags_sent_q[0] && is_sent_q == flag_q[1] : flags_sent_q == 2'b11);
+    if (state_q == READ || state_q == SEND || state_q == RESOLVE || (state_q == DONE && !is_clear)) begin
+      assert (flags_sent_q[0] == (plane_q || words_are_behind));
+      if (raster_pkg::FRAME_CLEARS != 0) assert (flags_sent_q[1] == (plane_q && words_are_behind));
+      assert (is_sent_q == has_sent);
+    end
+    if (state_q == RESOLVE && bits_q != '0) begin
+      assert (WORD_X'(resolve_x_q >> BIT) == word_x_q && (bits_q << (BIT + 1)'(bit_of(resolve_x_q)) >> bit_of(resolve_x_q)) == bits_q);
+      if (word_is_it && resolve_x_q <= any_x) assert (bits_q[any_x-resolve_x_q] == flag_q[1]);
+    end
+    if (state_q == RESOLVE && !bits_q[0]) assert (stamp_q == '0);
+    if (state_q == READ) assert (!(words_done_q && !plane_q));
+  end

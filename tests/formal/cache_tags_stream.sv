@@ -1,0 +1,107 @@
+
+  // Each fragment leaves once, in its turn, as it was; what is on offer stays while the other side's FIFO has room. (FIFOs:
+  // ready does not depend on valid, and goes only when something enters.)
+  logic is_stuck;
+  assign is_stuck = is_settled && !leaves;
+  always_comb if (runs_q) begin
+    assert ((valid_q && leaves && is_item) == (item_valid_o && item_ready_i));
+    assert (orders_all == (state_q == ORDER && !(order_valid_o && !order_ready_i)));
+    if (item_valid_o && item_ready_i && is_order) assert (order_valid_o && order_ready_i);  // together
+    if (!walks_q && item_valid_o) assert (item_o == fragment_q);
+    if (walks_q && item_valid_o) assert (item_o.mask == '0 && !item_o.ends_visit && evicts_o && !order_reads_o);
+    if (valid_q && item_valid_o && item_o.mask == '0) assert (item_source_o == SOURCE_NONE && !item_starts_color_o);
+    if (item_source_o == SOURCE_CHIP) assert (!evicts_o);
+  end
+  always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
+    if ($past(takes_fragment)) assert (valid_q && !walks_q && fragment_q == $past(fragment_i));
+    if ($past(valid_q && !leaves)) assert (valid_q && walks_q == $past(walks_q) && fragment_q == $past(fragment_q));
+    if ($past(is_stuck))
+      assert (is_settled && item_o == $past(item_o) && item_line_o == $past(item_line_o) && item_stamp_o == $past(item_stamp_o) &&
+              {order_writes_o, order_reads_o, evicts_o} == $past({order_writes_o, order_reads_o, evicts_o}) &&
+              {item_source_o, evicts_depth_o, evicts_color_o, evicts_fills_o} ==
+              $past({item_source_o, evicts_depth_o, evicts_color_o, evicts_fills_o}));
+    if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
+  end
+  // The RAMs: sram_word.
+  logic              lines_stay_q, flags_stay_q;
+  logic [STATE-1:0]  line_before_q;
+  logic [2*WORD-1:0] flags_before_q;
+  always_ff @(posedge clk_i) begin
+    lines_stay_q   <= !(takes_fragment || looks);
+    flags_stay_q   <= !flag_reads;
+    line_before_q  <= line_read;
+    flags_before_q <= {word_color, word_depth};
+  end
+  always_comb if (runs_q) begin
+    if (lines_stay_q) assume (line_read == line_before_q);
+    if (flags_stay_q) assume ({word_color, word_depth} == flags_before_q);
+  end
+
+  // No deadlock: when items, orders and requests are taken and what was ordered is done, a fragment leaves within three cycles,
+  // and what is left to do for a token gets less in every cycle. That is, the most significant first: its parts; lines to
+  // look at, or planes; rows and columns of words; lines to mark; flags of a word and stamps of a block.
+  logic             others_do;
+  logic [2:0]       part;
+  logic [1:0]       step;
+  logic [LINE:0]    lines_left;
+  logic [WORD_X:0]  columns_left;
+  logic [BLOCK_Y:0] rows_left;
+  logic [STAMP:0]   stamps_left;
+  localparam int LEFT = 3 + 1 + BLOCK_Y + 1 + WORD_X + 1 + LINE + 1 + 2 + WORD + STAMP + 1;
+  logic [LEFT-1:0]  left;
+  assign others_do = item_ready_i && order_ready_i && drained_i && request_ready_i;
+  always_comb begin
+    part         = 3'd0;
+    lines_left   = '0;
+    rows_left    = '0;
+    columns_left = '0;
+    step         = '0;
+    stamps_left  = '0;
+    case (state_q)
+      LOOK: begin
+        part       = 3'd5;
+        lines_left = (LINE + 1)'(LINES) - (LINE + 1)'(walk_q);
+        step       = valid_q ? 2'd2 - fall_q : 2'd3;
+      end
+      ORDER: part = 3'd4;
+      DRAIN: part = 3'd3;
+      MARK: begin
+        part       = 3'd2;
+        lines_left = lines_done_q ? '0 : (LINE + 1)'(LINES) - (LINE + 1)'(walk_q);
+      end
+      READ, SEND, RESOLVE: begin
+        part        = 3'd2;
+        step        = 2'(RESOLVE - state_q);
+        stamps_left = state_q == RESOLVE ? (STAMP + 1)'(STAMPS) - (STAMP + 1)'(stamp_q) : '0;
+      end
+      default: part = state_q == DONE ? 3'd1 : 3'd6;
+    endcase
+    if (part == 3'd2 && !(is_clear && words_done_q)) begin
+      rows_left    = (BLOCK_Y + 1)'(last_y) - (BLOCK_Y + 1)'(word_y_q) + 1'b1;
+      columns_left = (WORD_X + 1)'(last_word) - (WORD_X + 1)'(word_x_q);
+    end
+    left = {part, part == 3'd2 && !is_clear && !plane_q, rows_left, columns_left, lines_left, step,
+            state_q == RESOLVE ? bits_q : WORD'(0), stamps_left};
+  end
+  always_comb if (runs_q) begin
+    assert (state_q <= DONE && fall_q != 2'd3 && waiting_q <= WRITES'(VICTIMS));
+    if (state_q != SERVE) assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)));
+    if (state_q == SERVE) assert (!valid_q || !walks_q);
+    if (!valid_q || !falls) assert (fall_q == '0);
+    if (state_q == LOOK) assert (!lines_done_q);
+    if (state_q == MARK) assert (is_clear);
+    if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear && (state_q == RESOLVE || !words_done_q || plane_q));
+    if (state_q == RESOLVE) assert (resolves && (bits_q[0] || stamp_q == '0));
+    if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
+    if (state_q == SERVE && fragment_valid_i && is_token && !valid_q) assert (state_d != SERVE);
+    if (state_q == SERVE && !valid_q && !is_token) assert (fragment_ready_o);
+    cover (takes_token && !is_clear && is_known_q);
+  end
+  always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
+    if ($past(others_do && valid_q && fall_q == 2'd2)) assert ($past(leaves));
+    if ($past(others_do && valid_q && !falls)) assert ($past(leaves));
+    if ($past(valid_q && !leaves && others_do)) assert (fall_q == $past(fall_q) + 1'b1);
+    if ($past(others_do && state_q != SERVE && state_q != DONE)) assert (left < $past(left));
+    if ($past(state_q != SERVE && state_q != DONE)) assert (left <= $past(left));
+    if ($past(state_q == DONE)) assert (state_q == SERVE && $past(takes_token));
+  end
