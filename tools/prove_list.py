@@ -157,7 +157,7 @@ PROOFS = [
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
           'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS,
-          quick=TINY, cover_depth=9, twins=(76, 77, 78, 79, 80, 81)),
+          quick=TINY, cover_depth=9, twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80)),
     Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
           k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS, quick=TINY, cover_depth=9,
           twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
