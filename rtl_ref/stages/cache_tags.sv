@@ -389,7 +389,7 @@ module cache_tags #(
   assign word         = plane_q ? word_color : word_depth;
   assign resolves     = raster_pkg::FRAME_CLEARS == 0 && plane_q;
   assign ends_block   = request_valid_o && request_ready_i && stamp_q == STAMP'(STAMPS - 1);
-  assign next_word    = (state_q == SEND && !resolves && request_ready_i) || (state_q == RESOLVE && bits_q == '0);
+  assign next_word    = (state_q == SEND && !resolves && request_ready_i) || (state_q == RESOLVE && (bits_q == '0 || (ends_block && bits_q[WORD-1:1] == '0)));
 
   always_comb begin
     state_d = state_q;

@@ -281,6 +281,7 @@ class BackTiming {
     return ask_of_block(cycle, flags, at, MoveCause::clear).first + 1;
   }
   Cycle resolve_word(Cycle cycle, int word, int y, std::uint64_t bits) {
+    if (bits == 0) ++cycle;
     for (int x = word * widths_.blocks.flag_word; bits != 0; bits >>= 1, ++x) {
       if ((bits & 1) == 0) ++cycle;
       for (int stamp = 0; (bits & 1) != 0 && stamp < widths_.blocks.stamps(); ++stamp) {
@@ -289,7 +290,7 @@ class BackTiming {
             ask_of_block(cycle, TilePlane::color, stamp_address({block, stamp}, widths_), MoveCause::clear).first + 1;
       }
     }
-    return cycle + 1;
+    return cycle;
   }
 
   /// The framebuffer's machine while it moves tiles: `cycle` is the next one to be spent.
