@@ -228,6 +228,8 @@ def prove(proof, preset, limit, solver):
     outcome = Outcome(proof, preset, False, [], 0, 0)
     try:
         calls = {'base': 1} if proof.is_combinational else {'base': proof.depth, 'step': proof.k}
+        if proof.is_bounded:
+            del calls['step']
         results = solver(front_end(proof, preset, base, None), base, calls, limit)
         if proof.cover_depth and 'FAILED' not in results.values():
             folder = base / 'cover'
@@ -238,7 +240,7 @@ def prove(proof, preset, limit, solver):
         outcome.seconds = time.monotonic() - began
         for number, twin in enumerate(proof.twins):
             calls = {'base': 1} if proof.is_combinational else {'step': proof.k, 'base': proof.twin_depth}
-            if proof.twin_traces:
+            if proof.twin_traces or proof.is_bounded:
                 del calls['step']
             outcome.caught.append(None)
             for name, cycles in calls.items():
@@ -256,6 +258,8 @@ def prove(proof, preset, limit, solver):
 def line(outcome):
     proof = outcome.proof
     method = f'induction k={proof.k}, base {proof.depth}'
+    if proof.is_bounded:
+        method = f'{proof.depth} cycles from where it starts'
     if proof.is_combinational:
         method = 'every input'
     twins = f'{sum(c is not None for c in outcome.caught)} of {len(proof.twins)} twins caught'

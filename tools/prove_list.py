@@ -22,16 +22,17 @@ class Proof:
     cover_depth: int = 0    # cycles in which every cover statement is reached: what is assumed can happen
     cuts: tuple = ()        # cells whose results may be anything, by Yosys's patterns of their types
     is_combinational: bool = False
+    is_bounded: bool = False  # no induction: `depth` cycles, from where it starts
     has_reset: bool = True
     file: str = ''
     starts: tuple = ()      # what holds at the start of a bounded proof: (module, file that is put into it)
-    inputs: str = ''        # another file in front of it: what is assumed of the inputs, or of what is cut
+    inputs: str = ''        # other files in front of it: what is assumed of the inputs, or of what is cut
 
     @property
     def properties(self):
         file = self.file or self.name
         reset = ['reset'] if self.has_reset and not self.is_combinational else []
-        return [*reset, *([self.inputs] if self.inputs else []), file]
+        return [*reset, *self.inputs.split(), file]
 
 
 TINY = ('tiny',)
@@ -156,11 +157,17 @@ PROOFS = [
           twins=(('is_settled && is_item && (!is_order || order_ready_i)', 'is_settled && is_item'),
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
-          'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS,
+          'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
           quick=TINY, cover_depth=9, twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80)),
     Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
-          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs', package=BLOCKS, quick=TINY, cover_depth=9,
+          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, quick=TINY, cover_depth=9,
           twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
+    Proof('block_cache_whole', 'd, f', 'stages/block_cache.sv', 'tags and all: the test sees what was written last, or cleared',
+          is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs', package=BLOCKS,
+          presets=TINY, cover_depth=9, twins=(70, 73, 76), twin_depth=10),
+    Proof('block_cache_whole_flags', 'd, f', 'stages/block_cache.sv', 'the same where everything is flagged, frame.clears=flags',
+          is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs',
+          file='block_cache_whole', package=(*BLOCKS, ('FRAME_CLEARS', 1)), presets=TINY, twins=(70, 73, 76), twin_depth=10),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, in its turn', cover_depth=14, k=2,
           cuts=MULTIPLIERS, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
 ]

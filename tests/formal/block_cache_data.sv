@@ -69,7 +69,8 @@
         logic          writes, read_is_it_q, collided_q, sent_q, owes, lane_strobe;
         logic [BITS-1:0] lane;
         assign writes = p == 0 ? write_valid_i && gen_depth[m].writes : colors_done && w_writes[m];
-        assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) : (BITS + 1)'({gen_color[m].dirty, gen_color[m].color});
+        assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) :
+                                 (BITS + 1)'({gen_color[m].dirty, gen_color[m].color});
         assign stored = p == 0 ? (BITS + 1)'(gen_depth[m].word) : (BITS + 1)'(gen_color[m].word);
         assign lane   = BITS'(request_o.data[m*LANE+:BITS]);
         assign owes   = fills_q || (is_here_q && snapshot_q[BITS]);
@@ -92,20 +93,24 @@
                                                                             stored_depth_o[m*CODE+:CODE]});
           if (p == 1 && writes) assert (stored[BITS] == w_dirty[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
           // The test sees what was written last.
-          if (p == 0 && x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask[m] && {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
+          if (p == 0 && x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask[m] &&
+              {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
             assert (read_is_it_q && !collided_q && read_word_q == word_q);
             assert (stored_depth_o[m*CODE+:CODE] == CODE'(word_q));
           end
-          if (begins && begins_line == any_line && (stamps & any_bit) != '0) assert (!(writes && write_address == {any_line, any_stamp}));
+          if (begins && begins_line == any_line && (stamps & any_bit) != '0)
+            assert (!(writes && write_address == {any_line, any_stamp}));
           if (is_begun && is_line_q) begin
             if (is_left || is_read) assert (!sent_q);
             if (is_left) assert (word_q == snapshot_q);
             if (is_read) assert (read_is_it_q && !collided_q && read_word_q == snapshot_q);
             // In its slot.
-            if (is_here_q && !is_left && !is_read)
-              assert ((p == 0 ? slot_depth[m*CODE+:CODE] & {CODE{owes}} : slot_color[m*COLOR+:COLOR] & {COLOR{owes}}) ==
-                      (snapshot_q[BITS] || (p == 0 && fills_q) ? snapshot_q[BITS-1:0] : (fills_q ? BITS'(p == 0 ? clear_depth : clear_color) : '0)) ) ;
-            if (is_here_q && !is_left && !is_read) assert ((p == 0 ? slot_depth_strobe[m] : slot_color_strobe[m]) == owes);
+            if (is_here_q && !is_left && !is_read) begin
+              assert ((p == 0 ? slot_depth_strobe[m] : slot_color_strobe[m]) == owes);
+              if (owes)
+                assert ((p == 0 ? BITS'(slot_depth[m*CODE+:CODE]) : BITS'(slot_color[m*COLOR+:COLOR])) ==
+                        (snapshot_q[BITS] || p == 0 ? snapshot_q[BITS-1:0] : BITS'(clear_color)));
+            end
             if (!is_left && !is_read && owes) assert (sent_q || slot_left);
             if (slot_left) assert (!sent_q);
             // What is sent.
@@ -128,5 +133,5 @@
   always_comb if (runs_q) begin
     cover (gen_plane[0].is_begun && gen_plane[0].is_line_q && gen_plane[0].gen_truth[0].owes && sends_any && !is_color);
     cover (gen_plane[1].is_begun && gen_plane[1].is_line_q && gen_plane[1].is_here_q && gen_plane[1].fills_q && sends_any && is_color);
-    cover (x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask != '0 && v_valid_q);
+    cover (x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask != '0 && item_valid && hazard);
   end

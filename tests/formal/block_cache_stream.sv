@@ -17,8 +17,9 @@
     if (order_valid) assert (written_q <= order_writes);
     if (order_valid && !order_reads) assert (written_q != order_writes);
     if (!order_valid) assert (written_q == '0);
-    if (!sends && wants_read && takes_request) assert (!request_o.is_write && request_o.tile_x == order_x && request_o.tile_y == order_y &&
-                                                       request_o.stamp == order_stamp && request_o.plane == raster_pkg::TILE_PLANE_DEPTH);
+    if (!sends && wants_read && takes_request)
+      assert (!request_o.is_write && request_o.tile_x == order_x && request_o.tile_y == order_y &&
+              request_o.stamp == order_stamp && request_o.plane == raster_pkg::TILE_PLANE_DEPTH);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
@@ -118,5 +119,6 @@
     if ($past(x1_valid_q && !goes)) assert (!x1_valid_q);
     if ($past(w_valid && !colors_done)) assert (w_left_q < $past(w_left_q) || (w_started_q && !$past(w_started_q)));
     if ($past(v_valid_q)) assert (left_q != '0 || !v_valid_q || v_last_q);
-    if ($past(sends && takes_request && !ends_victim)) assert (oldest_q == $past(oldest_q) && {depth_left, color_left} < $past({depth_left, color_left}));
+    if ($past(sends && takes_request && !ends_victim))
+      assert (oldest_q == $past(oldest_q) && {depth_left, color_left} < $past({depth_left, color_left}));
   end

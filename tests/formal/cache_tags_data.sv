@@ -129,7 +129,8 @@
   logic [1:0] marked, flag_now;  // what the RAMs of flags hold while a token or an eviction is at work
   logic words_passed, lines_passed;
   assign marked   = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{words_passed}};
-  assign words_passed = (is_clear ? words_done_q : state_q == DONE) || word_y_q > any_y || (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));
+  assign words_passed = (is_clear ? words_done_q : state_q == DONE) || word_y_q > any_y ||
+                        (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));
   assign lines_passed = lines_done_q || walk_q > any_line;
   always_comb if (runs_q) begin
     assert (state_q <= DONE);
@@ -145,13 +146,14 @@
     if (state_q == RESOLVE) assert (resolves);
     if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
     if (!is_known_q && is_marking) assert ((flag_ram_q & marked) == marked);
-    if (!is_known_q) assert (!here_q && !pending_q && !valid_q && (state_q == SERVE || is_marking || state_q == ORDER || state_q == DRAIN) && waiting_q == '0);
+    if (!is_known_q)
+      assert (!here_q && !pending_q && !valid_q && (state_q == SERVE || is_marking || state_q == ORDER || state_q == DRAIN) && waiting_q == '0);
     if (valid_q && line == any_line) begin
       assert (read_is_it_q && (is_forwarded_q == collided_q));
       assert (line_state == word_q);
     end
     // Tokens: lines are empty behind the walk, flags are set and reset behind it.
-    if (((state_q == LOOK && lines_passed) || (state_q > LOOK && !(clears_all && !lines_passed) && !(clears_all && state_q < MARK)))) assert (!word_valid);
+    if (state_q == LOOK ? lines_passed : state_q > LOOK && (!clears_all || (state_q >= MARK && lines_passed))) assert (!word_valid);
     if (state_q == DONE) assert (words_done_q && (is_clear ? lines_done_q : plane_q));
   end
   always_comb begin
@@ -166,7 +168,8 @@
     if (valid_q && fall_q == 2'd1) assert (flag_read_is_it_q == flag_is_it && flag_read_q == flag_ram_q);
     if (valid_q && fall_q != 2'd0 && is_it && !hits) assert (cleared_q == flag_ram_q);
     if (state_q == SEND || state_q == RESOLVE)
-      assert (flag_read_is_it_q == (word_of(BLOCK_X'(word_x_q) << BIT, word_y_q) == word_of(any_x, any_y)) && flag_read_q == flag_ram_q);
+      assert (flag_read_is_it_q == (word_of(BLOCK_X'(word_x_q) << BIT, word_y_q) == word_of(any_x, any_y)) &&
+              flag_read_q == flag_ram_q);
     // The evictions that wait.
     if (pending_q)
       assert (age_q < waiting_q && victim_x_q[oldest_q+VICTIM'(age_q)] == any_x && victim_y_q[oldest_q+VICTIM'(age_q)] == any_y);
@@ -211,7 +214,8 @@
       assert (is_sent_q == has_sent);
     end
     if (state_q == RESOLVE && bits_q != '0) begin
-      assert (WORD_X'(resolve_x_q >> BIT) == word_x_q && (bits_q << (BIT + 1)'(bit_of(resolve_x_q)) >> bit_of(resolve_x_q)) == bits_q);
+      assert (WORD_X'(resolve_x_q >> BIT) == word_x_q &&
+              (bits_q << (BIT + 1)'(bit_of(resolve_x_q)) >> bit_of(resolve_x_q)) == bits_q);
       if (word_is_it && resolve_x_q <= any_x) assert (bits_q[any_x-resolve_x_q] == flag_q[1]);
     end
     if (state_q == RESOLVE && !bits_q[0]) assert (stamp_q == '0);
