@@ -39,20 +39,13 @@ std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment
   last_ = directory_.access(at, fragment.state, fragment.mask == SampleMask::all(widths_.samples));
   last_stamp_ = stamp_index(last_.line, block_stamp(at, widths_).stamp);
   write_victims(last_.writes, memory, counters);
-  switch (last_.source) {
-    case DepthSource::none: std::ranges::fill(stored_, 0); break;
-    case DepthSource::clear:
-      std::ranges::fill(stored_, clear_value_[0]);
-      ++counters.tile_clears;
-      break;
-    case DepthSource::memory: {
-      const MemoryResponse& response = memory.read(request_of(TilePlane::depth, at));
-      std::ranges::transform(std::span(response.data).first(stored_.size()), stored_.begin(),
-                             [mask = code_mask_[0]](std::uint32_t lane) { return lane & mask; });
-      ++counters.tile_fills;
-      break;
-    }
-    case DepthSource::chip: break;
+  std::ranges::fill(stored_, last_.source == DepthSource::clear ? clear_value_[0] : 0);
+  if (last_.source == DepthSource::clear) ++counters.tile_clears;
+  if (last_.source == DepthSource::memory) {
+    const MemoryResponse& response = memory.read(request_of(TilePlane::depth, at));
+    std::ranges::transform(std::span(response.data).first(stored_.size()), stored_.begin(),
+                           [mask = code_mask_[0]](std::uint32_t lane) { return lane & mask; });
+    ++counters.tile_fills;
   }
   if (last_.eviction) capture(*last_.eviction);
   if (last_.source == DepthSource::chip) std::ranges::copy(lanes(TilePlane::depth, last_stamp_), stored_.begin());
