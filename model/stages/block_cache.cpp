@@ -82,7 +82,7 @@ void BlockCache::capture(const Eviction& eviction) {
       // Depths of a stamp are on the chip all or none; colours where they have been written.
       const SampleMask held = plane == TilePlane::depth && is_here ? SampleMask::all(widths_.samples) : dirty;
       MemoryRequest request = request_of(plane, stamp_address({eviction.block, stamp}, widths_));
-      request.is_write = 1;
+      request.is_write = true;
       request.strobe = eviction.fills[p] ? SampleMask::all(widths_.samples) : dirty;
       if (!request.strobe.any()) continue;
       const auto codes = lanes(plane, at);
@@ -130,7 +130,7 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
       MemoryRequest request =
           request_of(flags, {static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
                              static_cast<std::uint16_t>(y % per_tile)});
-      request.is_write = 1;
+      request.is_write = true;
       request.strobe = SampleMask::all(widths_.samples);
       set_flag_word(request, bits, widths_);
       memory.write(request);
@@ -147,7 +147,7 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
       for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
         const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
         MemoryRequest request = request_of(TilePlane::color, stamp_address({block, stamp}, widths_));
-        request.is_write = 1;
+        request.is_write = true;
         request.strobe = SampleMask::all(widths_.samples);
         request.strobe.for_each([&](std::size_t s) { request.data[s] = clear_value_[1]; });
         memory.write(request);

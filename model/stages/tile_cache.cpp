@@ -11,7 +11,7 @@ std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
 /// Of stamp 0, all of it.
 MemoryRequest request(const TileAddress& address, bool is_write, int samples) {
   MemoryRequest request;
-  request.is_write = is_write ? 1 : 0;
+  request.is_write = is_write;
   request.plane = address.plane;
   if (is_write) request.strobe = SampleMask::all(samples);
   request.tile_x = address.tile_x;

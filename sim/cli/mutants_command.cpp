@@ -56,7 +56,7 @@ bool shows(Dut& dut, const Config& config, const ModelPicture& picture, std::uin
 }
 
 /// What comes of the random run on another design that has mutants, and parts that this one does not have.
-std::optional<Mismatch> elsewhere(LockstepOptions options, const DutFactory& here, std::uint64_t random) {
+std::optional<Mismatch> elsewhere(const LockstepOptions& options, const DutFactory& here, std::uint64_t random) {
   for (const DutFactory& factory : verilated_duts()) {
     if (!factory.has_mutants || factory.name == here.name) continue;
     const std::unique_ptr<Dut> dut = make_dut(factory);
