@@ -44,7 +44,7 @@ demo() {
 
 Look at   out/teapot.png   model, golden, and the error between them
           out/teapot.json  every figure
-          out/teapot-mutant.hpt, .fst  the fault's capture and waveform (./dev mutants: all 55 of them)
+          out/teapot-mutant.hpt, .fst  the fault's capture and waveform (./dev mutants: all of them)
 Try next  build/halfplane compare walk --config tiny --set guard.band=64 --set target.width=64 --set target.height=48 --size 64x48 -o out/walk.png
           build/halfplane render city --size 1280x720 -o out/city.png --repeat 20
           build/halfplane cosim --random 20000 --stalls 0.3 --seed 7
