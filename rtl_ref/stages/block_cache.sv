@@ -56,7 +56,6 @@ module block_cache (
   localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
   localparam int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE);
   localparam int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW);
-  localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
   localparam int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE;  // of a block
   localparam int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS;
   localparam int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS;
@@ -499,9 +498,17 @@ module block_cache (
   endgenerate
 
   // The request: a victim's stamp, a read, or what a flush writes.
-  logic [7:0] column, row;
-  assign column = ((8'(sent_x) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(sent_stamp) & 8'((1 << SIDE_BITS) - 1));
-  assign row    = ((8'(sent_y) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(sent_stamp) >> SIDE_BITS);
+  logic [raster_pkg::TILE_X_BITS-1:0] sent_tile_x;
+  logic [raster_pkg::TILE_Y_BITS-1:0] sent_tile_y;
+  logic [INDEX-1:0]                   sent_index;
+  stamp_address u_sent_address (
+      .block_x_i(sent_x),
+      .block_y_i(sent_y),
+      .stamp_i  (sent_stamp),
+      .tile_x_o (sent_tile_x),
+      .tile_y_o (sent_tile_y),
+      .stamp_o  (sent_index)
+  );
   always_comb begin
     request_o          = '0;
     request_o.is_write = sends;
@@ -510,9 +517,9 @@ module block_cache (
     request_o.tile_y   = order_y;
     request_o.stamp    = order_stamp;
     if (sends) begin
-      request_o.tile_x = raster_pkg::TILE_X_BITS'(sent_x >> TILE_BITS);
-      request_o.tile_y = raster_pkg::TILE_Y_BITS'(sent_y >> TILE_BITS);
-      request_o.stamp  = INDEX'((row << ROW_BITS) | column);
+      request_o.tile_x = sent_tile_x;
+      request_o.tile_y = sent_tile_y;
+      request_o.stamp  = sent_index;
       if (is_color) request_o.plane = raster_pkg::TILE_PLANE_COLOR;
       request_o.strobe = is_here ? (is_color ? sent_color_strobe : sent_depth_strobe) : '1;
       for (int i = 0; i < SAMPLES; i++) begin

@@ -73,7 +73,6 @@ module cache_tags #(
   localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
   localparam int TAG_X = (BLOCK_X > LINE_X) ? BLOCK_X - LINE_X : 1;
   localparam int TAG_Y = (BLOCK_Y > LINE_Y) ? BLOCK_Y - LINE_Y : 1;
-  localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
   localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
   localparam int VICTIMS = raster_pkg::CACHE_VICTIMS;
   localparam int VICTIM = $clog2(VICTIMS);
@@ -110,16 +109,6 @@ module cache_tags #(
   logic [LINE-1:0]    fragment_line;
 
   /* verilator lint_off UNUSEDSIGNAL */  // high bits where a tile is a block, or a block a stamp
-  function automatic [15:0] column_of(input [INDEX-1:0] stamp);
-    column_of = 16'(stamp) & 16'((1 << ROW_BITS) - 1);
-  endfunction
-  function automatic [15:0] row_of(input [INDEX-1:0] stamp);
-    row_of = 16'(stamp) >> ROW_BITS;
-  endfunction
-  function automatic [STAMP-1:0] in_block(input [INDEX-1:0] stamp);
-    in_block = STAMP'(((row_of(stamp) & 16'((1 << SIDE_BITS) - 1)) << SIDE_BITS) |
-                      (column_of(stamp) & 16'((1 << SIDE_BITS) - 1)));
-  endfunction
   function automatic [LINE-1:0] line_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
     line_of = (LINE'(x) & LINE_X_MASK) | ((LINE'(y) & LINE_Y_MASK) << LINE_X);
   endfunction
@@ -134,9 +123,17 @@ module cache_tags #(
   assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
   assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
-  assign fragment_x    = (BLOCK_X'(fragment_i.key.tile_x) << TILE_BITS) | BLOCK_X'(column_of(fragment_i.stamp) >> SIDE_BITS);
-  assign fragment_y    = (BLOCK_Y'(fragment_i.key.tile_y) << TILE_BITS) | BLOCK_Y'(row_of(fragment_i.stamp) >> SIDE_BITS);
   assign fragment_line = line_of(fragment_x, fragment_y);
+  /* verilator lint_off PINCONNECTEMPTY */  // its number there is looked at a cycle later
+  block_stamp u_fragment_stamp (
+      .tile_x_i (fragment_i.key.tile_x),
+      .tile_y_i (fragment_i.key.tile_y),
+      .stamp_i  (fragment_i.stamp),
+      .block_x_o(fragment_x),
+      .block_y_o(fragment_y),
+      .stamp_o  ()
+  );
+  /* verilator lint_on PINCONNECTEMPTY */
 
   // The fragment, or line of a walk, whose line has been read.
   logic                             valid_q, walks_q;
@@ -174,8 +171,15 @@ module cache_tags #(
   logic [STAMPS-1:0]  line_known, line_colored;
   logic [1:0]         line_cleared;
 
-  assign block_x = (BLOCK_X'(fragment_q.key.tile_x) << TILE_BITS) | BLOCK_X'(column_of(fragment_q.stamp) >> SIDE_BITS);
-  assign block_y = (BLOCK_Y'(fragment_q.key.tile_y) << TILE_BITS) | BLOCK_Y'(row_of(fragment_q.stamp) >> SIDE_BITS);
+  logic [STAMP-1:0] stamp;
+  block_stamp u_block_stamp (
+      .tile_x_i (fragment_q.key.tile_x),
+      .tile_y_i (fragment_q.key.tile_y),
+      .stamp_i  (fragment_q.stamp),
+      .block_x_o(block_x),
+      .block_y_o(block_y),
+      .stamp_o  (stamp)
+  );
   assign line    = walks_q ? walk_q : line_of(block_x, block_y);
 
   assign line_read_address  = state_q == LOOK ? walk_q : fragment_line;
@@ -245,12 +249,10 @@ module cache_tags #(
   // What the tags find. The flags of a block that comes are looked at before those of the one that leaves.
   logic              is_access, hits, evicts, falls, is_full, is_known, starts_color, uses;
   logic [1:0]        cleared, cleared_q, fills, source;
-  logic [STAMP-1:0]  stamp;
   logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;
 
   assign is_access  = valid_q && !walks_q && fragment_q.mask != '0;
   assign is_full    = fragment_q.mask == '1;
-  assign stamp      = in_block(fragment_q.stamp);
   assign stamp_bit  = STAMPS'(1) << stamp;
   assign hits       = line_valid && tag_x == TAG_X'(block_x >> LINE_X) && tag_y == TAG_Y'(block_y >> LINE_Y);
   assign line_depth = line_has_depth ? line_known : '0;
@@ -479,23 +481,31 @@ module cache_tags #(
 
   assign request_valid_o = (state_q == SEND && !resolves) || (state_q == RESOLVE && bits_q[0]);
   assign is_resolved_o   = state_q == RESOLVE && request_valid_o && request_ready_i;
-  logic [7:0] resolve_column, resolve_row;
-  assign resolve_column = ((8'(resolve_x_q) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(stamp_q) & 8'((1 << SIDE_BITS) - 1));
-  assign resolve_row    = ((8'(word_y_q) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(stamp_q) >> SIDE_BITS);
+  logic [raster_pkg::TILE_X_BITS-1:0] resolve_tile_x;
+  logic [raster_pkg::TILE_Y_BITS-1:0] resolve_tile_y;
+  logic [INDEX-1:0]                   resolve_stamp;
+  stamp_address u_resolve_address (
+      .block_x_i(resolve_x_q),
+      .block_y_i(word_y_q),
+      .stamp_i  (stamp_q),
+      .tile_x_o (resolve_tile_x),
+      .tile_y_o (resolve_tile_y),
+      .stamp_o  (resolve_stamp)
+  );
   always_comb begin
     request_o          = '0;
     request_o.is_write = 1'b1;
     request_o.strobe   = '1;
-    request_o.tile_y   = raster_pkg::TILE_Y_BITS'(word_y_q >> TILE_BITS);
+    request_o.tile_y   = resolve_tile_y;  // of a word of flags the same: that of its row of blocks
     if (state_q == RESOLVE) begin
       request_o.plane  = raster_pkg::TILE_PLANE_COLOR;
-      request_o.tile_x = raster_pkg::TILE_X_BITS'(resolve_x_q >> TILE_BITS);
-      request_o.stamp  = INDEX'((resolve_row << ROW_BITS) | resolve_column);
+      request_o.tile_x = resolve_tile_x;
+      request_o.stamp  = resolve_stamp;
       for (int s = 0; s < SAMPLES; s++) request_o.data[s*LANE+:LANE] = LANE'(clear_color_q);
     end else begin
       request_o.plane          = plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS;
       request_o.tile_x         = raster_pkg::TILE_X_BITS'(word_x_q);
-      request_o.stamp          = INDEX'(8'(word_y_q) & 8'((1 << TILE_BITS) - 1));
+      request_o.stamp          = INDEX'(word_y_q) & INDEX'((1 << TILE_BITS) - 1);
       request_o.data[WORD-1:0] = word;
     end
   end

@@ -18,14 +18,17 @@ soak() {
   local seconds=${1:-600} file
   [[ $seconds =~ ^[1-9][0-9]*$ ]] || { say "./dev soak: SECONDS is a whole number, not '$seconds'"; exit 2; }
   ensure "${everyday[@]}" soak
-  insist build sim test
+  insist build sim test rtl
   step 'configure' configure release
   step 'build program and tests' build release halfplane_tests
+  step 'build the tests of the RTL' build release halfplane_cosim_tests
   link_program release
   step "the stress list for $seconds s" build/halfplane stress --seconds "$seconds" --threads "$(jobs)" \
     --seed "$(date +%s)" --json=build/stress.json
   step "stress tests for $seconds s" env HALFPLANE_SOAK="$seconds" \
     build/release/tests/halfplane_tests --gtest_filter='Stress*' --gtest_brief=1
+  step 'lint of random configurations' env HALFPLANE_SOAK="$seconds" \
+    build/release/tests/halfplane_cosim_tests --gtest_filter='Stress*' --gtest_brief=1
   [[ -z $(lacking soak) ]] || { say "Fuzzers left out: clang is not installed"; return; }
   step 'configure the fuzzers' configure fuzz
   for file in tests/fuzz/fuzz_*.cpp; do
