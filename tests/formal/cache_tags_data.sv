@@ -183,6 +183,7 @@
   logic [INDEX-1:0] any_index;
   logic [1:0]       flags_sent_q;
   logic             is_sent_q, word_is_it, words_are_behind, has_sent, takes_request;
+  localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
   assign any_index     = INDEX'(((((8'(any_y) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(any_stamp) >> SIDE_BITS)) << ROW_BITS) |
                                 ((8'(any_x) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(any_stamp) & 8'((1 << SIDE_BITS) - 1)));
   assign takes_request = request_valid_o && request_ready_i;
