@@ -13,6 +13,8 @@ namespace {
 constexpr std::array<std::string_view, 2> kColorFormatNames{"rgb565", "rgba8888"};
 constexpr std::array<std::string_view, 2> kCacheKindNames{"tiles", "blocks"};
 constexpr std::array<std::string_view, 2> kFrameClearsNames{"resolve", "flags"};
+constexpr std::array<std::string_view, 2> kFrameOrderNames{"program", "bins"};
+constexpr std::array<std::string_view, 2> kFrameStoreNames{"all", "color"};
 constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
 
 const std::array kSettings{
@@ -27,6 +29,10 @@ const std::array kSettings{
             &Config::local_guard_bits},
     Setting{"reciprocal.extra_bits", "bits", "significant bits of 1/area beyond depth.bits", 2, 12,
             &Config::reciprocal_extra_bits},
+    Setting{"perspective.bits", "bits", "bits N of 1/w, and of what is interpolated over w", 12, 26,
+            &Config::perspective_bits},
+    Setting{"perspective.mantissa_bits", "bits", "bits k of 1/w that a pixel's reciprocal looks at", 8, 20,
+            &Config::perspective_mantissa_bits},
     Setting{"color.format", "rgb565|rgba8888", "layout of a stored colour", 0, 0, &Config::color_format},
     Setting{"tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32, &Config::tile_size},
     Setting{"stamp.size", "pixels", "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8, &Config::stamp_size},
@@ -46,12 +52,23 @@ const std::array kSettings{
             &Config::cache_queue},
     Setting{"cache.victims", "blocks", "blocks: evicted and not yet written; a power of two", 2, 32,
             &Config::cache_victims},
-    Setting{"frame.clears", "resolve|flags", "blocks: what a flush writes of cleared blocks: colours, or flags", 0, 0,
+    Setting{"frame.clears", "resolve|flags", "what a flush writes of cleared blocks or tiles: colours, or flags", 0, 0,
             &Config::frame_clears},
+    Setting{"memory.port_bits", "bits", "data that the memory port moves in a cycle; a power of two", 16, 512,
+            &Config::memory_port_bits},
+    Setting{"frame.order", "program|bins",
+            "blocks: order in which the host sends a frame: as named, or by parts that fit the chip", 0, 0,
+            &Config::frame_order},
+    Setting{"frame.store", "all|color", "blocks: planes of a frame that come to memory; color: its depth is lost", 0, 0,
+            &Config::frame_store},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
             &Config::setup_kind},
     Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
             &Config::line_units},
+    Setting{"counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0, 1,
+            &Config::counter_units},
+    Setting{"counters.bits", "bits", "of a performance counter of the RTL; a sticky bit tells that one has wrapped", 16,
+            32, &Config::counter_bits},
     Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
             "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
             &Config::depth_mapping},
@@ -120,10 +137,14 @@ Config preset(std::string_view name) {
     config.guard_band = 32;
     config.target_width = config.target_height = 16;
     config.depth_bits = 8;
+    config.perspective_bits = 16;
+    config.perspective_mantissa_bits = 14;
     config.stamp_size = 1;
     config.hiz_bits = 8;
     config.cache_kind = CacheKind::tiles;
     config.cache_lines = 2;
+    config.memory_port_bits = 16;
+    config.counter_bits = 16;  // so few that tests see one wrap
     return config;
   }
   if (name == "small") {  // what fits an FPGA without multipliers
@@ -137,8 +158,10 @@ Config preset(std::string_view name) {
     config.cache_kind = CacheKind::tiles;
     config.hiz_lag = 4;  // of which its serial stages do not take more
     config.cache_lines = 4;
+    config.memory_port_bits = 16;
     config.setup_kind = SetupKind::serial;
     config.line_units = 0;  // with it 60 MHz are out of reach there: docs/area.md
+    config.counter_units = 0;
     return config;
   }
   if (name == "full") {
@@ -146,8 +169,10 @@ Config preset(std::string_view name) {
     config.guard_band = 8192;
     config.target_width = config.target_height = 4096;
     config.depth_bits = 24;
+    config.perspective_bits = 26;
     config.color_format = ColorFormat::rgba8888;
     config.stamp_size = 4;
+    config.memory_port_bits = 512;  // a stamp of either plane
     return config;
   }
   throw InputError("no preset '" + std::string(name) + "'; the presets are " + joined(kPresetNames));
@@ -164,6 +189,10 @@ std::string get(const Config& config, const Setting& setting) {
     return std::string(kCacheKindNames[static_cast<std::size_t>(config.**cache)]);
   if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
     return std::string(kFrameClearsNames[static_cast<std::size_t>(config.**clears)]);
+  if (const auto* order = std::get_if<FrameOrder Config::*>(&setting.member))
+    return std::string(kFrameOrderNames[static_cast<std::size_t>(config.**order)]);
+  if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
+    return std::string(kFrameStoreNames[static_cast<std::size_t>(config.**store)]);
   const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
   return std::string(kSetupKindNames[static_cast<std::size_t>(kind)]);
 }
@@ -190,6 +219,10 @@ void set(Config& config, std::string_view key, std::string_view value) {
       config.** cache = static_cast<CacheKind>(parse_name(key, value, kCacheKindNames));
     else if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
       config.** clears = static_cast<FrameClears>(parse_name(key, value, kFrameClearsNames));
+    else if (const auto* order = std::get_if<FrameOrder Config::*>(&setting.member))
+      config.** order = static_cast<FrameOrder>(parse_name(key, value, kFrameOrderNames));
+    else if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
+      config.** store = static_cast<FrameStore>(parse_name(key, value, kFrameStoreNames));
     else if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
       config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
     else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))
@@ -214,8 +247,13 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
   refuse_unless(is_power_of_two(config.cache_queue), "cache.queue must be a power of two");
   refuse_unless(is_power_of_two(config.cache_victims), "cache.victims must be a power of two");
+  refuse_unless(is_power_of_two(config.memory_port_bits), "memory.port_bits must be 16, 32, 64, 128, 256 or 512");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
                 "a cache of tiles holds at most 256: lower cache.lines");
+  refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_order == FrameOrder::program,
+                "a cache of tiles has no bins: use frame.order=program or cache.kind=blocks");
+  refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_store == FrameStore::all,
+                "a cache of tiles stores both planes: use frame.store=all or cache.kind=blocks");
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");

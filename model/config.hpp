@@ -28,6 +28,13 @@ enum class CacheKind : int { tiles, blocks };
 /// What a flush leaves of cleared blocks that nothing was drawn into: their clear colour in memory, or their flags alone.
 enum class FrameClears : int { resolve, flags };
 
+/// In which order the host sends a frame's primitives: as the scene names them, or sorted by bin, a part of the target that
+/// the on-chip blocks hold.
+enum class FrameOrder : int { program, bins };
+
+/// Which planes of a frame come to memory.
+enum class FrameStore : int { all, color };
+
 /// How the RTL does triangle setup: several multipliers and a triangle every few cycles, or one shared multiplier. Same bits.
 enum class SetupKind : int { pipelined, serial };
 
@@ -39,8 +46,10 @@ struct Config {
   int target_width = 1920;          ///< widest target, pixels
   int target_height = 1080;         ///< highest target, pixels
   int depth_bits = 16;  ///< B: bits of the depth that is interpolated, and stored unless depth_format says otherwise
-  int local_guard_bits = 6;       ///< fraction bits of a plane stepped inside one tile
-  int reciprocal_extra_bits = 4;  ///< the reciprocal of the area has depth_bits + this many significant bits
+  int local_guard_bits = 6;            ///< fraction bits of a plane stepped inside one tile
+  int reciprocal_extra_bits = 4;       ///< the reciprocal of the area has depth_bits + this many significant bits
+  int perspective_bits = 22;           ///< N: bits of 1/w, and of what is interpolated over w
+  int perspective_mantissa_bits = 18;  ///< k: bits of 1/w that a pixel's reciprocal looks at
   ColorFormat color_format = ColorFormat::rgb565;
   int tile_size = 8;           ///< pixels along the side of a tile
   int stamp_size = 2;          ///< pixels along the side of the stamp that fine_raster tests in one clock
@@ -52,9 +61,14 @@ struct Config {
   int cache_lines = 256;  ///< tiles or blocks that the on-chip depth and colour RAM holds; a power of two
   int cache_queue = 32;   ///< blocks: fragments between the tags and the depth test; a power of two
   int cache_victims = 8;  ///< blocks: evicted ones that wait to be written to memory; a power of two
-  FrameClears frame_clears = FrameClears::resolve;  ///< of blocks
+  FrameClears frame_clears = FrameClears::resolve;
+  FrameOrder frame_order = FrameOrder::program;  ///< the host's: no matter to the RTL
+  FrameStore frame_store = FrameStore::all;      ///< likewise: a bit of fast clears and flushes says it
+  int memory_port_bits = 64;                     ///< data of one beat of the memory port; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
   int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
+  int counter_units = 1;   ///< 1: the RTL counts its work; 0: its counters are left out
+  int counter_bits = 32;   ///< of each of them
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
   DepthFormat depth_format;                               ///< the RTL has `plane` alone
 
@@ -71,14 +85,16 @@ struct Setting {
   std::string_view meaning;  ///< one line for `halfplane config --list`
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
-  std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, SetupKind Config::*,
-               DepthMapping Config::*, DepthFormat Config::*>
+  std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, FrameOrder Config::*,
+               FrameStore Config::*, SetupKind Config::*, DepthMapping Config::*, DepthFormat Config::*>
       member;
 
   /// Whether the RTL depends on it.
   [[nodiscard]] bool is_hardware() const {
     return !std::holds_alternative<DepthMapping Config::*>(member) &&
-           !std::holds_alternative<DepthFormat Config::*>(member);
+           !std::holds_alternative<DepthFormat Config::*>(member) &&
+           !std::holds_alternative<FrameOrder Config::*>(member) &&
+           !std::holds_alternative<FrameStore Config::*>(member);
   }
 };
 

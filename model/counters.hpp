@@ -58,6 +58,8 @@ struct Counters {
   std::uint64_t written = 0;         ///< of those, with depth or colour writes enabled
   std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated; scanline: samples visited
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
+  std::uint64_t bins = 1;            ///< of hardware: parts of the target that the frame is sent in
+  std::uint64_t pairs = 0;  ///< of hardware: triangles, lines and points sent; one in several bins counts in each
   struct {
     std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
                   fragments_early_z = 0, tiles_hiz = 0;

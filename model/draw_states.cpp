@@ -20,7 +20,13 @@ requires(std::is_enum_v<Value> || std::is_same_v<Value, bool>) StateValue to_val
 }
 
 StateValue to_value(double value, std::size_t words) { return {words, {value}}; }
-StateValue to_value(const std::array<double, 2>& v, std::size_t words) { return {words, {v[0], v[1]}}; }
+StateValue to_value(std::uint32_t value, std::size_t words) { return {words, {static_cast<double>(value)}}; }
+template <class Value, std::size_t count>
+StateValue to_value(const std::array<Value, count>& v, std::size_t words) {
+  StateValue value{words, {}};
+  std::ranges::transform(v, value.numbers.begin(), [](Value number) { return static_cast<double>(number); });
+  return value;
+}
 template <class Box>
 requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) StateValue
     to_value(const Box& box, std::size_t words) {
@@ -41,8 +47,13 @@ requires(std::is_enum_v<Value> || std::is_same_v<Value, bool>) void from_value(c
 }
 
 void from_value(const StateValue& from, double& to, std::size_t) { to = from.numbers[0]; }
-void from_value(const StateValue& from, std::array<double, 2>& to, std::size_t) {
-  to = {from.numbers[0], from.numbers[1]};
+void from_value(const StateValue& from, std::uint32_t& to, std::size_t) {
+  to = static_cast<std::uint32_t>(from.numbers[0]);
+}
+template <class Value, std::size_t count>
+void from_value(const StateValue& from, std::array<Value, count>& to, std::size_t) {
+  std::transform(from.numbers.begin(), from.numbers.begin() + count, to.begin(),
+                 [](double number) { return static_cast<Value>(number); });
 }
 template <class Box>
 requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) void from_value(const StateValue& from, Box& to,
@@ -132,6 +143,30 @@ constexpr std::array<Words, 3> line_rule_words{"midpoint", "bresenham", "diamond
 constexpr std::array<Words, 3> line_last_words{"off", "on", "rule"};
 constexpr std::array<Words, 2> point_clip_words{"pixel", "center"};
 
+constexpr std::array<Words, 1> texture_words{"off"};
+constexpr std::array<Words, 2> texture_interp_words{"perspective", "affine"};
+constexpr std::array<Words, 6> texture_min_words{"nearest",
+                                                 "linear",
+                                                 "nearest_mipmap_nearest",
+                                                 "linear_mipmap_nearest",
+                                                 "nearest_mipmap_linear",
+                                                 "linear_mipmap_linear"};
+constexpr std::array<Words, 2> texture_mag_words{"nearest", "linear"};
+constexpr std::array<Words, 3> wrap_words{"repeat", "clamp", "mirror"};
+constexpr std::array<Words, 4> combine_words{"modulate", "replace", "decal", "add"};
+
+constexpr std::array<StateNumber, 1> texture_numbers{{
+    {"texture", 0, 65535, true, false, 0, 1, 0, {}, true},
+}};
+constexpr std::array<StateNumber, 2> texture_wrap_numbers{{
+    {"texture_wrap along u", 0, 2, true, false, 0, 1, 3, wrap_words},
+    {"texture_wrap along v", 0, 2, true, false, 0, 1, 3, wrap_words},
+}};
+constexpr std::array<StateNumber, 3> texture_lod_numbers{{
+    {"texture_lod's bias", -16, 16, false, false, -2, 0.25, 17},
+    {"texture_lod's least level", 0, 12, false, false, 0, 0.5, 4},
+    {"texture_lod's largest level", 0, 12, false, false, 2, 0.5, 21},
+}};
 constexpr std::array<StateNumber, 4> scissor_numbers{{
     {"scissor x", -far_away, far_away, true, false, -5, 1, 26},
     {"scissor y", -far_away, far_away, true, false, -5, 1, 26},
@@ -238,6 +273,31 @@ constexpr std::array table{
                                         "reach the target from outside the guard band"}),
     row<&State::point_clip>(
         {.name = "point_clip", .words = point_clip_words, .purpose = "what the view's sides clip of a point"}),
+    row<&State::texture>({.name = "texture",
+                          .words = texture_words,
+                          .numbers = texture_numbers,
+                          .form = "NAME",
+                          .purpose = "the texture of filled triangles, by the name of its line"}),
+    row<&State::texture_interp>({.name = "texture_interp",
+                                 .words = texture_interp_words,
+                                 .purpose = "how its coordinates run over a triangle"}),
+    row<&State::texture_min>({.name = "texture_min",
+                              .words = texture_min_words,
+                              .purpose = "which texels count where a pixel holds more than one"}),
+    row<&State::texture_mag>({.name = "texture_mag",
+                              .words = texture_mag_words,
+                              .purpose = "which texels count where a pixel holds less than one"}),
+    row<&State::texture_wrap>({.name = "texture_wrap",
+                               .numbers = texture_wrap_numbers,
+                               .form = "S T",
+                               .purpose = "what lies beyond the image along u and v; `clamp` is to its edge"}),
+    row<&State::texture_lod>({.name = "texture_lod",
+                              .numbers = texture_lod_numbers,
+                              .form = "bias min max",
+                              .purpose = "added to the level of detail, which is then held between min and max"}),
+    row<&State::texture_combine>({.name = "texture_combine",
+                                  .words = combine_words,
+                                  .purpose = "what becomes of the triangle's colour and the texel"}),
 };
 
 static_assert(table.size() == count_members<State>(), "a member of State has no row, or two");

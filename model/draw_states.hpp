@@ -38,6 +38,8 @@ struct StateNumber {
   /// Random values: random_low + k * random_step, 0 <= k < random_count, near the small targets of tests.
   double random_low = 0, random_step = 0;
   unsigned random_count = 1;
+  std::span<const std::string_view> words{};  ///< written as one of these: the number is its place
+  bool is_texture = false;                    ///< an index into Scene::textures, written as a name
 };
 
 /// A row of the table.
@@ -49,7 +51,7 @@ struct DrawState {
   std::string_view unit{};                    ///< of the numbers, if they have one: "pixels"
   std::string_view purpose{};                 ///< Markdown, for docs/capture.md
   StateHome home = StateHome::host;
-  std::string_view refused{};   ///< a word that every engine but the golden model refuses
+  std::string_view refused{};   ///< a word that the hardware refuses
   std::string_view simplest{};  ///< the word that a failing scene is reduced to, if not the default
   /// Do not call: see value() and set().
   StateValue (*get_value)(const State& state, std::size_t words) = nullptr;

@@ -1,6 +1,7 @@
 #include "host_stream.hpp"
 
 #include "fragment_ops.hpp"
+#include "stages/surface.hpp"
 
 namespace halfplane {
 namespace {
@@ -24,11 +25,15 @@ void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, co
   for (auto& code : packet.vertex.code) copy_color(code, snap_codes(0, color, config), config);
 }
 
-/// Whether the first command clears all of both planes.
-bool begins_with_a_clear(const Scene& scene) {
-  const auto* clear = scene.commands.empty() ? nullptr : std::get_if<Clear>(&scene.commands.front());
-  return clear != nullptr && clear->depth && clear->color &&
-         clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height};
+/// The command if it is a clear of the whole target.
+const Clear* whole_clear(const Scene& scene, const Command& command) {
+  const auto* clear = std::get_if<Clear>(&command);
+  return clear != nullptr && clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height} ? clear : nullptr;
+}
+
+bool clears_depth(const Scene& scene, const Command& command) {
+  const Clear* clear = whole_clear(scene, command);
+  return clear != nullptr && clear->depth;
 }
 
 }  // namespace
@@ -47,16 +52,23 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   validate(config);
   check_hardware_scene(scene, config);
   widths_ = derive_widths(config);
-  if (begins_with_a_clear(scene)) return;
-  PrimitivePacket first = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene.width, scene.height});
+  if (config.frame_order == FrameOrder::bins) {
+    bins_.emplace(widths_, scene.width, scene.height);
+    counters_.bins = 0;
+  }
+  const Clear* clear = scene.commands.empty() ? nullptr : whole_clear(scene, scene.commands.front());
+  if (clear != nullptr && clear->depth && clear->color) return;
+  PrimitivePacket first = fast_clear();
   clear_depth(first, 1.0, config);
   clear_color(first, {0, 0, 0, 255}, config);
-  send(first, 0);
+  send(host_primitive(first, 0));
   pending_.back().command = HostPrimitive::kNoCommand;
 }
 
 std::optional<HostPrimitive> HostStream::next() {
   while (pending_first_ == pending_.size()) {
+    if (bins_)
+      if (auto part = bins_->next()) return part;
     if (is_finished_) return std::nullopt;
     pending_.clear();
     pending_first_ = 0;
@@ -69,12 +81,19 @@ std::optional<HostPrimitive> HostStream::next() {
 void HostStream::advance() {
   if (assembled_next_ < assembled_.size()) {
     send_next_primitive();
+  } else if (bins_ && !bins_->is_empty() &&
+             (command_ == scene_.commands.size() || clears_depth(scene_, scene_.commands[command_]))) {
+    bins_->close(config_.frame_store == FrameStore::color);
+    counters_.bins = bins_->bins();
+    counters_.pairs = bins_->pairs();
   } else if (command_ < scene_.commands.size()) {
     const Command& command = scene_.commands[command_++];
     if (const auto* clear = std::get_if<Clear>(&command)) send_clear(*clear);
     if (const auto* draw = std::get_if<Draw>(&command)) start_draw(*draw);
   } else {
-    send(flat_packet(PrimitiveKind::flush, {0, 0, scene_.width, scene_.height}), primitive_);
+    PrimitivePacket flush = flat_packet(PrimitiveKind::flush, {0, 0, scene_.width, scene_.height});
+    if (config_.frame_store == FrameStore::color) flush.state.depth_test = DepthFunc::never;  // drops_depth()
+    send(host_primitive(flush, primitive_));
     pending_.back().command = HostPrimitive::kNoCommand;
     is_finished_ = true;
   }
@@ -101,14 +120,13 @@ void HostStream::send_next_primitive() {
     send_outline(assembled);
   } else {
     pieces_.clear();
-    bool is_cut = false;
-    if (context_->rect.width > 0 && context_->rect.height > 0) {
-      is_cut = geometry_for_hardware(*context_, vertices_, assembled.index, primitive_, counters_, pieces_);
-    } else {  // no packet can say so: culled here
+    bool is_culled =
+        true;  // nothing is left to cull: no packet can say that a rectangle is empty, and bins hold no others
+    if (!bins_ && context_->rect.width > 0 && context_->rect.height > 0)
+      is_culled = geometry_for_hardware(*context_, vertices_, assembled.index, primitive_, counters_, pieces_);
+    else
       geometry(*context_, vertices_, assembled.index, primitive_, Skip{}, counters_, pieces_);
-      pieces_.clear();
-    }
-    for (const Triangle& piece : pieces_) send_triangle(piece, is_cut);
+    for (const Triangle& piece : pieces_) send_triangle(piece, is_culled);
   }
   ++primitive_;
 }
@@ -118,17 +136,30 @@ void HostStream::send_outline(const AssembledPrimitive& assembled) {
   outline_.lines.clear();
   outline_.points.clear();
   geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
-  for (const LinePrimitive& line : outline_.lines) {
-    const LineSetup& setup = line.setup;
-    send(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
-    pending_.back().line = setup;
-    pending_.back().line->primitive_id = pending_.back().packet.primitive_id;
-  }
+  for (const LinePrimitive& line : outline_.lines) send_line(line);
   for (const PointPrimitive& point : outline_.points) {
     PrimitivePacket packet = draw_packet(PrimitiveKind::point, point.box);
     packet.vertex.code.fill(point.drawn.at.code);
-    send(packet, primitive_);
+    send(host_primitive(packet, primitive_));
   }
+}
+
+void HostStream::send_line(const LinePrimitive& line) {
+  const LineSetup& setup = line.setup;
+  HostPrimitive place =
+      host_primitive(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
+  if (bins_) {
+    const Rect& rect = context_->rect;
+    bins_->add(place, {line.drawn.start,
+                       line.drawn.end,
+                       context_->state.line_rule,
+                       line.drawn.drops_last,
+                       {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}});
+    return;
+  }
+  place.line = setup;
+  place.line->primitive_id = place.packet.primitive_id;
+  send(place);
 }
 
 PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
@@ -140,33 +171,49 @@ PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& b
   return packet;
 }
 
-void HostStream::send_triangle(const Triangle& triangle, bool is_clipped) {
+void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   const State& state = context_->state;
   const Rect& rect = context_->rect;
   PrimitivePacket packet =
       draw_packet(PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
-  packet.cull = is_clipped ? Cull::none : state.cull;
+  packet.cull = is_culled ? Cull::none : state.cull;
   packet.front_cw = state.front == FrontFace::cw;
   set_vertices(packet.vertex, triangle.v);
-  send(packet, triangle.primitive);
+  send(host_primitive(packet, triangle.primitive));
+}
+
+/// Of the whole target; of no plane so far.
+PrimitivePacket HostStream::fast_clear() const {
+  PrimitivePacket packet = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene_.width, scene_.height});
+  if (bins_ && config_.frame_store == FrameStore::color) packet.state.depth_test = DepthFunc::never;  // drops_depth()
+  return packet;
 }
 
 void HostStream::send_clear(const Clear& command) {
   const Rect rect = clear_rect(scene_, command);
   if (rect.width <= 0 || rect.height <= 0 || (!command.depth && !command.color)) return;
-  const bool is_whole = rect == Rect{0, 0, scene_.width, scene_.height};
-  PrimitivePacket packet = flat_packet(is_whole ? PrimitiveKind::fast_clear : PrimitiveKind::rectangle, rect);
+  const bool is_fast = rect == Rect{0, 0, scene_.width, scene_.height} && (!bins_ || bins_->is_empty());
+  PrimitivePacket packet = is_fast ? fast_clear() : flat_packet(PrimitiveKind::rectangle, rect);
   if (command.depth) clear_depth(packet, *command.depth, config_);
   if (command.color) clear_color(packet, *command.color, config_);
-  send(packet, primitive_);
+  send(host_primitive(packet, primitive_));
 }
 
-void HostStream::send(const PrimitivePacket& packet, std::uint32_t primitive) {
-  HostPrimitive& sent = pending_.emplace_back();
-  sent.packet = packet;
-  sent.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
-  sent.primitive = primitive;
-  sent.command = static_cast<std::uint32_t>(command_ - 1);
+HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
+  HostPrimitive out{packet, {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
+  out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  return out;
+}
+
+/// Tokens go at once, and in program order everything does.
+void HostStream::send(const HostPrimitive& primitive) {
+  const PrimitiveKind kind = primitive.packet.kind;
+  if (bins_ && kind != PrimitiveKind::fast_clear && kind != PrimitiveKind::flush) {
+    if (!bins_->add(primitive)) ++counters_.skipped.no_sample;
+    return;
+  }
+  pending_.push_back(primitive);
+  if (is_counted(kind)) ++counters_.pairs;
 }
 
 double HostStream::progress() const {
@@ -185,10 +232,15 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
     throw InputError(
         "depth.mapping w and log and every depth.format but plane: this hardware stores the depth that it "
         "interpolates; use the functional, scalar or golden engine, or depth.format=plane");
-  if (config.line_units != 0) return;
   for (const Command& command : scene.commands) {
     const auto* draw = std::get_if<Draw>(&command);
-    if (draw != nullptr && drawn_as(scene.states[draw->state], draw->topology) == PrimitiveType::line)
+    if (draw == nullptr) continue;
+    const State& state = scene.states[draw->state];
+    if (has_surface(state) && drawn_as(state, draw->topology) == PrimitiveType::triangle)
+      throw InputError(place_of_draw(scene.name, draw->line) + ": state " +
+                       (state.texture ? "texture" : "color_interp perspective") +
+                       ": this hardware has no attributes over w; use the functional, scalar or golden engine");
+    if (config.line_units == 0 && drawn_as(state, draw->topology) == PrimitiveType::line)
       throw InputError(place_of_draw(scene.name, draw->line) +
                        ": lines, but this hardware has no unit that draws them; use --set lines.unit=1");
   }

@@ -1,8 +1,10 @@
 // What the host sends to the hardware for a scene: snapped primitives with their states, one packet each.
 //
-// First a fast clear of both planes, unless the scene begins with one, then the scene's commands in order, at the end a
-// flush. The host clips; facing,
-// area and box are the hardware's to look at, except for a clipped polygon, which is culled as a whole.
+// First a fast clear of both planes, unless the scene begins with one, then the scene's commands, at the end a flush. In
+// program order (frame.order program) primitives go as they are made: the host clips; facing, area and box are the
+// hardware's to look at, except for a clipped polygon, which is culled as a whole. In bins the host culls, sorts what is
+// left (frame_bins.hpp), and sends it bin by bin: at the flush, and where the depth of the whole target is cleared, which
+// begins new bins. Of all other clears those behind the first primitive of its bins go into them.
 #pragma once
 
 #include <array>
@@ -10,20 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "frame_bins.hpp"
+#include "host_primitive.hpp"
 #include "pipeline.hpp"
 #include "stages/line_setup.hpp"
 
 namespace halfplane {
-
-/// A primitive on its way to the hardware, and where it came from.
-struct HostPrimitive {
-  static constexpr std::uint32_t kNoCommand = ~0U;
-
-  PrimitivePacket packet;
-  std::optional<LineSetup> line;  ///< beside a packet of kind line
-  std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise: of the next one
-  std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
-};
 
 /// The primitives of a scene, pulled one at a time. `scene` must outlive the stream.
 class HostStream {
@@ -37,7 +31,7 @@ class HostStream {
   /// The next primitive; none after the flush. Throws InputError for a vertex that cannot be snapped.
   [[nodiscard]] std::optional<HostPrimitive> next();
 
-  /// What the host itself has counted so far: primitives_in, clipped, and what it culled, by reason.
+  /// What the host itself has counted so far: primitives_in, clipped, and what it culled, by reason; bins and pairs.
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
   /// 0...1: how much of the scene has been sent, every command counted alike.
@@ -49,9 +43,12 @@ class HostStream {
   void send_next_primitive();
   void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
-  void send_triangle(const Triangle& triangle, bool is_clipped);
+  void send_triangle(const Triangle& triangle, bool is_culled);
+  void send_line(const LinePrimitive& line);
   [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
-  void send(const PrimitivePacket& packet, std::uint32_t primitive);
+  [[nodiscard]] PrimitivePacket fast_clear() const;
+  [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  void send(const HostPrimitive& primitive);
 
   const Scene& scene_;
   Config config_;
@@ -66,6 +63,7 @@ class HostStream {
   std::size_t assembled_next_ = 0;             ///< the next of them
   std::vector<Triangle> pieces_;               ///< scratch
   Outline outline_;                            ///< scratch
+  std::optional<FrameBins> bins_;              ///< of frame.order bins: what waits for the frame to be complete
   std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
   std::size_t pending_first_ = 0;
 };

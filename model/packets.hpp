@@ -18,6 +18,9 @@
 
 namespace halfplane {
 
+/// The widest memory port.
+inline constexpr std::size_t kMaxPortBytes = 64;
+
 // ------------------------------------------------------------------------------------------------------- what a field is
 
 /// Stands for the width of a member that has fields of its own.
@@ -102,12 +105,19 @@ struct SnappedVertex {
   return std::tie(a.y, a.x, a.code[kDepthPlane]) < std::tie(b.y, b.x, b.code[kDepthPlane]);
 }
 
+/// What of a vertex lives over w: host side.
+struct SurfaceVertex {
+  double w = 1;         ///< clip-space w
+  double u = 0, v = 0;  ///< 0 and 1 are the sides of a texture
+};
+
 /// A triangle between viewport and triangle_setup: where the RTL starts. One input triangle that was clipped yields
 /// several of these with the same `primitive`.
 struct Triangle {
   std::uint32_t primitive = 0;  ///< number of the input triangle, over the whole scene
   std::uint32_t draw = 0;       ///< index into Scene::commands
   std::array<SnappedVertex, 3> v{};
+  std::array<SurfaceVertex, 3> surface{};  ///< of the same vertices
 };
 
 /// What a primitive is. Rectangles and points cover their whole box with one code a plane. Bit 1 set: a token,
@@ -129,9 +139,17 @@ enum class PrimitiveKind : std::uint8_t {
 /// What the end of a tile visit does to the tile's HiZ bound.
 enum class HizUpdate : std::uint8_t { none, set, clear };
 
-/// What a tile has of each pixel; and the flags of its cleared blocks, which a flush writes to memory (cache.kind blocks).
+/// What a tile has of each pixel; and the flags of its cleared blocks, which a flush writes to memory.
 enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags };
 inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
+
+/// Where the depth test finds what is stored under a stamp.
+enum class DepthSource : std::uint8_t {
+  none,    ///< it does not look: `always`, with a full mask
+  chip,    ///< on the chip
+  clear,   ///< the last fast clear's value
+  memory,  ///< a read
+};
 
 /// An enum as the generated package has it: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
 template <class Enum>
@@ -183,6 +201,15 @@ struct WireEnum<TilePlane> {
                                                   {TilePlane::depth_flags, "depth_flags"},
                                                   {TilePlane::color_flags, "color_flags"}};
 };
+template <>
+struct WireEnum<DepthSource> {
+  static constexpr std::string_view name = "depth_source";
+  static constexpr Width Widths::*width = &Widths::depth_source;
+  static constexpr Enumerator<DepthSource> all[] = {{DepthSource::none, "none"},
+                                                    {DepthSource::chip, "chip"},
+                                                    {DepthSource::clear, "clear"},
+                                                    {DepthSource::memory, "memory"}};
+};
 
 /// A rectangle of pixels, inclusive; empty when left > right or top > bottom.
 struct PixelBox {
@@ -207,11 +234,14 @@ struct TileBox {
 /// The states that ride with a primitive.
 struct PrimitiveState {
   PACKET(PrimitiveState, "primitive_state");
-  FIELD(DepthFunc, depth_test, &Widths::depth_func)
-  FIELD(bool, depth_write, &Widths::flag)  ///< for a fast clear: clears depth
-  FIELD(bool, color_write, &Widths::flag)  ///< likewise
+  FIELD(DepthFunc, depth_test, &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth()
+  FIELD(bool, depth_write, &Widths::flag)            ///< for a fast clear: clears depth
+  FIELD(bool, color_write, &Widths::flag)            ///< likewise
   PACKET_END
   [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
+  /// Of a fast clear: depth of blocks that leave the chip before the next fast clear or flush is lost. Of a flush: that of
+  /// those on the chip, and its flags are not written. Only in a framebuffer of blocks.
+  [[nodiscard]] constexpr bool drops_depth() const { return depth_test == DepthFunc::never; }
 };
 
 /// Whose tile it is.
@@ -240,6 +270,19 @@ struct CodeRange {
   FIELD(PerPlane<std::uint32_t>, low, &AttributeWidths::code)
   FIELD(PerPlane<std::uint32_t>, high, &AttributeWidths::code)
   PACKET_END
+};
+
+/// Where the host has put the planes in memory: bytes. It stays as it is while anything is under way. Bases of tiles and the
+/// stride are multiples of a plane of a tile, those of flags of a row of them (MemoryGrid); lower bits count as 0.
+struct MemoryLayout {
+  PACKET(MemoryLayout, "memory_layout");
+  FIELD(std::uint32_t, depth_base, &Widths::address)
+  FIELD(std::uint32_t, color_base, &Widths::address)
+  FIELD(std::uint32_t, depth_flags_base, &Widths::address)
+  FIELD(std::uint32_t, color_flags_base, &Widths::address)
+  FIELD(std::uint32_t, row_stride, &Widths::row_stride)  ///< from one row of tiles to the next
+  PACKET_END
+  bool operator==(const MemoryLayout&) const = default;
 };
 
 /// One value for each edge of a triangle.
@@ -412,7 +455,9 @@ struct LinePixel {
   bool operator==(const LinePixel&) const = default;
 };
 
-/// framebuffer -> memory: one stamp of one plane. Requests go in program order; reads are answered in the same order.
+/// framebuffer -> memory_port: a write of one stamp of one plane, or a read of `run` of them, one response each. Requests go
+/// in program order; reads are answered in the same order. A run lies one behind the other in memory (stages/memory_port.hpp)
+/// and is one burst: the writes of it follow each other, each with the number of stamps that are left of it.
 /// A word of flags is bits of `data`, flag n of the word bit n; its words lie in rows of blocks: word n of block row y is
 /// asked for as tile_x n and stamp y modulo BlockGrid::per_tile of tile_y.
 struct MemoryRequest {
@@ -423,37 +468,62 @@ struct MemoryRequest {
   FIELD(std::uint16_t, tile_x, &Widths::tile_x)
   FIELD(std::uint16_t, tile_y, &Widths::tile_y)
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(std::uint16_t, run, &Widths::run)                     ///< stamps or words of its burst from this one on
   FIELD(SampleMask, strobe, &Widths::sample_mask)             ///< the samples to write; 0 for a read
   FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 where none is written
   PACKET_END
 };
 
-/// memory -> framebuffer: the answer to a read.
+/// memory_port -> framebuffer: a stamp that was read.
 struct MemoryResponse {
   PACKET(MemoryResponse, "memory_response");
   FIELD(MemoryRequest::Lanes, data, &Widths::memory_lane, &Widths::samples)
   PACKET_END
 };
 
-/// The performance counters of the hardware: items since reset, modulo 2^32. Names as in Counters (counters.hpp).
+/// memory_port -> memory: a beat of a burst that writes, or all of a burst that reads. Bursts lie in one plane of one tile or
+/// in one row of flags, and their bytes follow each other.
+struct MemoryBeat {
+  PACKET(MemoryBeat, "memory_beat");
+  using Bytes = std::array<std::uint8_t, kMaxPortBytes>;
+  FIELD(bool, is_write, &Widths::flag)
+  FIELD(bool, is_first, &Widths::flag)                         ///< a burst begins
+  FIELD(std::uint32_t, address, &Widths::address)              ///< of its first byte; a multiple of the port's bytes
+  FIELD(std::uint16_t, length, &Widths::burst_length)          ///< beats of the burst from this one on
+  FIELD(std::uint64_t, strobe, &Widths::port_strobe)           ///< the bytes to write; 0 for a read
+  FIELD(Bytes, data, &Widths::port_byte, &Widths::port_bytes)  ///< 0 where none is written
+  PACKET_END
+};
+
+/// memory -> memory_port: a beat that was read, or the news that a burst has been written. In the order of the bursts.
+struct MemoryAnswer {
+  PACKET(MemoryAnswer, "memory_answer");
+  FIELD(bool, is_write, &Widths::flag)
+  FIELD(MemoryBeat::Bytes, data, &Widths::port_byte, &Widths::port_bytes)  ///< 0 for a write
+  PACKET_END
+};
+
+/// The performance counters of the hardware: items since reset; the RTL has them modulo
+/// 2^counters.bits. Names as in Counters (counters.hpp).
 struct CounterPacket {
   PACKET(CounterPacket, "counter_packet");
-  FIELD(std::uint32_t, primitives_in, &Widths::counter)  ///< triangles, points and lines that came to cull
-  FIELD(std::uint32_t, zero_area, &Widths::counter)
-  FIELD(std::uint32_t, backface, &Widths::counter)
-  FIELD(std::uint32_t, empty, &Widths::counter)
-  FIELD(std::uint32_t, no_sample, &Widths::counter)  ///< small triangles, by the pipelined cull
-  FIELD(std::uint32_t, tiles_visited, &Widths::counter)
-  FIELD(std::uint32_t, tiles_outside, &Widths::counter)
-  FIELD(std::uint32_t, trivially_accepted, &Widths::counter)
-  FIELD(std::uint32_t, tiles_hiz, &Widths::counter)
-  FIELD(std::uint32_t, samples_tested, &Widths::counter)
-  FIELD(std::uint32_t, covered, &Widths::counter)
-  FIELD(std::uint32_t, depth_passed, &Widths::counter)
-  FIELD(std::uint32_t, written, &Widths::counter)
-  FIELD(std::uint32_t, tile_fills, &Widths::counter)  ///< by plane, as the next two: depth and colour count apart
-  FIELD(std::uint32_t, tile_evictions, &Widths::counter)
-  FIELD(std::uint32_t, tile_clears, &Widths::counter)
+  FIELD(bool, overflow, &Widths::flag)  ///< one of the others has passed its largest value in the RTL
+  FIELD(std::uint64_t, primitives_in, &Widths::counter)  ///< triangles, points and lines that came to cull
+  FIELD(std::uint64_t, zero_area, &Widths::counter)
+  FIELD(std::uint64_t, backface, &Widths::counter)
+  FIELD(std::uint64_t, empty, &Widths::counter)
+  FIELD(std::uint64_t, no_sample, &Widths::counter)  ///< small triangles, by the pipelined cull
+  FIELD(std::uint64_t, tiles_visited, &Widths::counter)
+  FIELD(std::uint64_t, tiles_outside, &Widths::counter)
+  FIELD(std::uint64_t, trivially_accepted, &Widths::counter)
+  FIELD(std::uint64_t, tiles_hiz, &Widths::counter)
+  FIELD(std::uint64_t, samples_tested, &Widths::counter)
+  FIELD(std::uint64_t, covered, &Widths::counter)
+  FIELD(std::uint64_t, depth_passed, &Widths::counter)
+  FIELD(std::uint64_t, written, &Widths::counter)
+  FIELD(std::uint64_t, tile_fills, &Widths::counter)  ///< stamps, as the next two; of depth alone, as the last
+  FIELD(std::uint64_t, tile_evictions, &Widths::counter)
+  FIELD(std::uint64_t, tile_clears, &Widths::counter)
   PACKET_END
 };
 

@@ -7,14 +7,18 @@
 #include <optional>
 #include <span>
 
+#include "stages/surface.hpp"
+
 namespace halfplane {
 namespace {
 
 /// A clipped polygon after the snap.
 struct SnappedPolygon {
   std::array<SnappedVertex, 9> v;
+  std::array<SurfaceVertex, 9> surface;
   int size = 0;
   [[nodiscard]] const SnappedVertex& at(int i) const { return v[static_cast<std::size_t>(i % size)]; }
+  [[nodiscard]] const SurfaceVertex& surface_at(int i) const { return surface[static_cast<std::size_t>(i % size)]; }
   [[nodiscard]] std::int64_t fan_area(int start, int i) const {
     return signed_area(at(start), at(start + i), at(start + i + 1));
   }
@@ -69,6 +73,8 @@ SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uin
                      {context.scene.name, context.draw.line, number});
 }
 
+SurfaceVertex surface_vertex(const Vertex& v) { return {v.w, v.u, v.v}; }
+
 SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
   const auto& vertices = context.scene.vertices;
   std::array<Vertex, 3> v{vertices[index[0]], vertices[index[1]], vertices[index[2]]};
@@ -77,7 +83,10 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
   require_precision(corners, v, context);
   SnappedPolygon polygon;
   polygon.size = clipped.size;
-  for (std::size_t i = 0; i < corners.size(); ++i) polygon.v[i] = snap_clipped(corners[i], context, index[0]);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    polygon.v[i] = snap_clipped(corners[i], context, index[0]);
+    polygon.surface[i] = surface_vertex(corners[i]);
+  }
   return polygon;
 }
 
@@ -118,6 +127,8 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
     polygon.v[0] = a.snapped;
     polygon.v[1] = b.snapped;
     polygon.v[2] = c.snapped;
+    if (has_surface(context.state))
+      for (std::size_t i = 0; i < 3; ++i) polygon.surface[i] = surface_vertex(context.scene.vertices[index[i]]);
   }
   if (context.state.shade == Shade::flat)
     for (SnappedVertex& v : polygon.v) copy_color(v.code, flat_color(context, index[0]), context.config);
@@ -174,7 +185,10 @@ void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint3
   for (int i = 1; i + 1 < polygon.size; ++i) {
     const std::int64_t piece_area = polygon.fan_area(start, i);
     if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;
-    visit(Triangle{primitive, command, {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)}});
+    visit(Triangle{primitive,
+                   command,
+                   {polygon.at(start), polygon.at(start + i), polygon.at(start + i + 1)},
+                   {polygon.surface_at(start), polygon.surface_at(start + i), polygon.surface_at(start + i + 1)}});
   }
 }
 
@@ -349,7 +363,7 @@ bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::
   if (polygon.size < 3) return false;
   apply_polygon_offset(polygon, context);
   if (!projected.is_cut) {
-    out.push_back({primitive, context.command, {polygon.v[0], polygon.v[1], polygon.v[2]}});
+    out.push_back({primitive, context.command, {polygon.v[0], polygon.v[1], polygon.v[2]}, {}});
     return false;
   }
   const std::int64_t area = total_area(polygon);
@@ -382,11 +396,11 @@ void check_fits(const Scene& scene, const Config& config) {
     if (looked_at != nullptr && draw->state == looked_at->state && draw->topology == looked_at->topology) continue;
     looked_at = draw;
     const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
-    if (context.state.color_interp == ColorInterp::perspective)
-      throw InputError(place_of_draw(context.scene.name, context.draw.line) +
-                       ": state color_interp perspective: this engine interpolates colours affinely; "
-                       "use `render --engine golden`");
     const State& state = context.state;
+    if (drawn_as(state, draw->topology) != PrimitiveType::triangle && state.color_interp == ColorInterp::perspective)
+      throw InputError(place_of_draw(context.scene.name, context.draw.line) +
+                       ": state color_interp perspective: this engine interpolates the colours of lines and points "
+                       "affinely; use `render --engine golden`");
     const double widest = 2 * (config.guard_band - 1 - std::max(scene.width, scene.height));
     if (drawn_as(state, draw->topology) == PrimitiveType::point &&
         !(state.point_size >= 1 && state.point_size <= widest))

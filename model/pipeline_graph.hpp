@@ -13,7 +13,10 @@
 //            |                        interpolate ---> primitive_join <-----------------'
 //            |                                               | fragment
 //            '------------------------------------------ depth_test ---> rop -- write --> framebuffer
-//   memory:                                                                 request v  ^ response
+//                                                                           request v  ^ response
+//                                                                              memory_port
+//                                                                              beat v  ^ answer
+//   memory:                                                                        memory
 //
 // A stage is a pair of files of its name: model/stages/NAME.hpp is the specification of what it computes, and
 // rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither). Of framebuffer the
@@ -55,8 +58,9 @@ enum class Side : std::uint8_t { host, rtl, memory };
   STAGE(primitive_join,     rtl,    false, "stamps, pixels of lines -> fragments in program order")         \
   STAGE(depth_test,         rtl,    false, "fragment, stored depth -> samples that pass; retired visit")    \
   STAGE(rop,                rtl,    false, "colour -> stored colour")                                       \
-  STAGE(framebuffer,        rtl,    true,  "passed samples -> tiles on the chip, requests to memory")       \
-  STAGE(memory,             memory, false, "requests -> the two images, responses")
+  STAGE(framebuffer,        rtl,    true,  "passed samples -> tiles on the chip, requests for memory")      \
+  STAGE(memory_port,        rtl,    true,  "requests -> bursts; answers -> responses")                      \
+  STAGE(memory,             memory, false, "bursts -> the two images, answers")
 
 /// ARROW(name, packet, from, via, to, flow). Via: a stage without registers that the packet passes on its way, or none.
 /// Flow: see below. The number of an elastic arrow is its bit of raster_top's stall_i, and goes into the hash of injected
@@ -75,8 +79,10 @@ enum class Side : std::uint8_t { host, rtl, memory };
   ARROW(fragment,   FragmentPacket,  interpolate,    primitive_join, depth_test,     elastic(5))           \
   ARROW(write,      WritePacket,     depth_test,     rop,            framebuffer,    always())             \
   ARROW(retire,     RetirePacket,    depth_test,     none,           coarse_raster,  always())             \
-  ARROW(request,    MemoryRequest,   framebuffer,    none,           memory,         elastic(6))           \
-  ARROW(response,   MemoryResponse,  memory,         none,           framebuffer,    elastic(7))
+  ARROW(request,    MemoryRequest,   framebuffer,    none,           memory_port,    elastic(6))           \
+  ARROW(beat,       MemoryBeat,      memory_port,    none,           memory,         elastic(11))          \
+  ARROW(answer,     MemoryAnswer,    memory,         none,           memory_port,    elastic(12))          \
+  ARROW(response,   MemoryResponse,  memory_port,    none,           framebuffer,    elastic(7))
 // clang-format on
 
 /// The stall stream of the memory itself, which then takes no request: it has a number among those of the arrows.

@@ -179,6 +179,12 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "BLOCKS_PER_ROW", widths.blocks.per_tile, "blocks along the side of a tile");
   print_constant(out, "FLAG_WORD", widths.blocks.flag_word,
                  "flags of cleared blocks in a word, those of a row of blocks");
+  const MemoryGrid& memory = widths.memory;
+  print_constant(out, "PORT_SHIFT", memory.port, "log2 of the bytes of a beat");
+  print_constant(out, "DEPTH_SAMPLE_BYTES", 1 << memory.sample[0], "of a stored depth");
+  print_constant(out, "COLOR_SAMPLE_BYTES", 1 << memory.sample[1], "of a stored colour");
+  print_constant(out, "PLANE_SHIFT", memory.plane, "log2 of the bytes of a plane of a tile");
+  print_constant(out, "FLAG_ROW_SHIFT", memory.flag_row, "log2 of the bytes from one row of flags to the next");
   out << stall_constants() << "\n  // Derived widths, each with its bound.\n";
   for (const Width* width : widths.all())
     print_constant(out, constant_name(width->name) + "_BITS", width->bits, std::string(width->bound));
@@ -192,6 +198,7 @@ std::string raster_pkg(const Config& config) {
   print_enum<Cull>(out, widths);
   print_enum<HizUpdate>(out, widths);
   print_enum<TilePlane>(out, widths);
+  print_enum<DepthSource>(out, widths);
   out << "\n  // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.";
   print_struct<PixelBox>(out, widths);
   print_struct<TileBox>(out, widths);
@@ -199,6 +206,7 @@ std::string raster_pkg(const Config& config) {
   print_struct<TileKey>(out, widths);
   print_struct<TriangleVertices>(out, widths);
   print_struct<CodeRange>(out, widths);
+  print_struct<MemoryLayout>(out, widths);
   out << "\n  // Packets.";
   std::set<std::string_view> printed;
   for (std::size_t i = 0; i < kArrows; ++i)

@@ -51,6 +51,31 @@ void check_vertices(const Scene& scene, const Place& place) {
   }
 }
 
+/// A texture is what make_texture() makes, and its name is a word of a capture.
+void check_texture(const Scene& scene, std::size_t index, const Place& place) {
+  const Texture& texture = scene.textures[index];
+  const auto fail = [&](const std::string& what) { place.fail("texture " + std::to_string(index) + ": " + what); };
+  const auto is_plain = [](char c) { return c > ' ' && c != '#' && c != 127; };
+  if (texture.name.empty() || texture.name == "off" || !std::ranges::all_of(texture.name, is_plain))
+    fail("a name that is no word of a capture");
+  for (std::size_t i = 0; i < index; ++i)
+    if (scene.textures[i].name == texture.name) fail("the name " + texture.name + " of texture " + std::to_string(i));
+  if (texture.level.empty()) fail("no texels");
+  int width = texture.width(), height = texture.height();
+  if (!is_between(width, 1, kLargestTexture) || !is_between(height, 1, kLargestTexture)) fail("sides outside 1...4096");
+  for (const TextureLevel& level : texture.level) {
+    const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const bool has_palette = palette_size(texture.format) != 0;
+    const std::uint64_t codes = has_palette ? texture.palette.size() : std::uint64_t{1} << texel_bits(texture.format);
+    if (level.width != width || level.height != height || level.code.size() != texels)
+      fail("a level of another size than half of the one before");
+    if (std::ranges::any_of(level.code, [codes](std::uint32_t code) { return code >= codes; }))
+      fail("a code that the format or its palette does not have");
+    width = std::max(1, width / 2);
+    height = std::max(1, height / 2);
+  }
+}
+
 /// A member holds what its row of the table allows.
 void check_state(const Scene& scene, std::size_t index, const Place& place) {
   for (const DrawState& row : draw_states()) {
@@ -63,6 +88,9 @@ void check_state(const Scene& scene, std::size_t index, const Place& place) {
     for (std::size_t i = 0; i < row.numbers.size(); ++i) {
       const StateNumber& number = row.numbers[i];
       const double n = value.numbers[i];
+      if (number.is_texture && n >= static_cast<double>(scene.textures.size()))
+        fail("of " + std::to_string(static_cast<long>(n)) + ", but there are " + std::to_string(scene.textures.size()) +
+             " textures");
       if (!is_between(n, number.low, number.high) || (number.is_positive && n == 0))
         fail("of " + std::to_string(n) + " is outside " + std::to_string(number.low) + "..." +
              std::to_string(number.high));
@@ -107,6 +135,7 @@ void validate(const Scene& scene) {
     if (!(near > 0 && near < far) || std::isinf(near)) place.fail("planes must be 0 < near < far; far may be infinite");
   }
   check_vertices(scene, place);
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) check_texture(scene, i, place);
   for (std::size_t i = 0; i < scene.states.size(); ++i) check_state(scene, i, place);
   std::size_t primitives = 0;  // at most: an index makes no more than one
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {

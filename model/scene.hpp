@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "texture.hpp"
+
 namespace halfplane {
 
 enum class Space { clip, window };
@@ -32,12 +34,29 @@ enum class Origin { top_left, bottom_left };
 /// Which pixels a line covers; see "Lines" in docs/spec.md.
 enum class LineRule { midpoint, bresenham, diamond };
 
+/// How a texture's coordinates run over a primitive.
+enum class TextureInterp { perspective, affine };
+/// Which texels are looked at where a pixel holds more than one of them, and where it holds less.
+enum class TextureMin {
+  nearest,
+  linear,
+  nearest_mipmap_nearest,
+  linear_mipmap_nearest,
+  nearest_mipmap_linear,
+  linear_mipmap_linear
+};
+enum class TextureMag { nearest, linear };
+/// Beyond the image: again, its last texel, or turned over. Along u and v.
+enum class TextureWrap { repeat, clamp, mirror };
+/// What becomes of the primitive's colour.
+enum class TextureCombine { modulate, replace, decal, add };
+
 /// A vertex as it was given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down,
 /// pixel centres at half-integers, unless its state says otherwise), z in [0, 1], w as the clip-space w.
 struct Vertex {
   double x = 0, y = 0, z = 0, w = 1;
   std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
-  double u = 0, v = 0;
+  double u = 0, v = 0;                             ///< 0 and 1 are the sides of a texture
 };
 
 /// A rectangle of whole pixels: column and row of the corner at the state's origin, width, height.
@@ -75,6 +94,13 @@ struct State {
   std::optional<Rect> scissor;                   ///< none: the whole target
   std::optional<Viewport> viewport;              ///< none: the whole target
   std::array<double, 2> depth_range{0.0, 1.0};
+  std::optional<std::uint32_t> texture;  ///< index into Scene::textures; of filled triangles
+  TextureInterp texture_interp = TextureInterp::perspective;
+  TextureMin texture_min = TextureMin::nearest;
+  TextureMag texture_mag = TextureMag::nearest;
+  std::array<TextureWrap, 2> texture_wrap{};
+  std::array<double, 3> texture_lod{0.0, 0.0, 12.0};  ///< bias, least and largest level
+  TextureCombine texture_combine = TextureCombine::modulate;
   bool operator==(const State&) const = default;
 };
 
@@ -116,6 +142,7 @@ struct Scene {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<State> states;
+  std::vector<Texture> textures;
   std::vector<std::string> objects{""};
   std::vector<Command> commands;
 };

@@ -95,6 +95,33 @@ void derive_line_widths(Widths& w, const Config& config) {
                        {0, std::max(config.target_width, config.target_height) - 1});
 }
 
+/// Log2 of the bytes that hold so many bits of a sample: 1, 2 or 4.
+int sample_bytes_log2(int bits) { return bits <= 8 ? 0 : bits <= 16 ? 1 : 2; }
+
+void derive_memory(Widths& w, const Config& config) {
+  const auto log2 = [](int n) { return ceil_log2(static_cast<uint128>(n)); };
+  MemoryGrid& m = w.memory;
+  w.port_bytes = config.memory_port_bits / 8;
+  m.port = log2(w.port_bytes);
+  m.sample = {sample_bytes_log2(w.depth().code.bits), sample_bytes_log2(w.stored_color.bits)};
+  for (const std::size_t p : {0U, 1U}) m.stamp[p] = m.sample[p] + log2(w.samples);
+  m.flag_word = log2(w.blocks.flag_word) - 3;
+  m.plane = std::max(std::max(m.stamp[0], m.stamp[1]) + log2(w.stamps.stamps()), m.port);
+  const int words = (w.tiles_x * w.blocks.per_tile - 1) / w.blocks.flag_word + 1;
+  m.flag_row = std::max(log2(words) + m.flag_word, m.port);
+
+  const int run = std::max(w.stamps.stamps(), words);
+  w.run = exact("run", "stamps of a tile, words of a row of flags", {0, run});
+  w.address = exact("address", "bytes", {0, (int128{1} << 32) - 1});
+  w.row_stride = exact("row stride", "bytes from one row of tiles to the next, up to twice those of the widest target",
+                       {0, (int128{2} << (w.tile_x.bits + m.tile())) - 1});
+  const int largest = std::max({m.stamp[0], m.stamp[1], m.flag_word});
+  w.burst_length = exact("burst length", "beats of a plane of a tile, of a row of flags",
+                         {0, largest > m.port ? run << (largest - m.port) : run});
+  w.port_strobe = exact("port strobe", "one bit a byte of memory.port_bits", {0, (int128{1} << w.port_bytes) - 1});
+  w.port_byte = exact("port byte", "8 bits", {0, 255});
+}
+
 }  // namespace
 
 Widths derive_widths(const Config& config) {
@@ -142,7 +169,7 @@ Widths derive_widths(const Config& config) {
   w.primitive_id = count("primitive id", "modulo 2^key.primitive_bits", int128{1} << config.primitive_id_bits);
   w.slot = count("slot", "context.slots", config.context_slots);
   w.tile_x = count("tile x", "target width / T", w.tiles_x);
-  w.hiz_group_bits = std::min(3, w.tile_x.bits);
+  w.hiz_group_bits = std::min(config.setup_kind == SetupKind::serial ? 1 : 3, w.tile_x.bits);
   w.tile_y = count("tile y", "target height / T", w.tiles_y);
   w.tile_pixel = count("tile pixel", "T", tile);
   w.stamp_index = count("stamp index", "(T / stamp)^2", w.stamps.stamps());
@@ -164,13 +191,15 @@ Widths derive_widths(const Config& config) {
   w.vertex_color = bits("vertex color", "8 bits a stored channel", w.color().code.bits * w.color_planes);
   w.hiz_code = bits("hiz code", "hiz.bits, at most depth.bits, at least 1", std::max(1, hiz_code_bits(config)));
   w.hiz_update = count("hiz update", "HizUpdate", 3);
-  w.counter = bits("counter", "modulo 2^32", 32);
+  w.counter = bits("counter", "counters.bits", config.counter_bits);
   w.tile_plane = count("tile plane", "TilePlane", 4);
+  w.depth_source = count("depth source", "DepthSource", 4);
   w.memory_lane = bits("memory lane", "a depth code or a stored colour", std::max(w.depth().code.bits, color_bits));
-  const int block = std::max(4, config.stamp_size);
+  const int block = config.cache_kind == CacheKind::tiles ? config.tile_size : std::max(4, config.stamp_size);
   w.blocks = {block / config.stamp_size, config.tile_size / block, 1};
   while (w.blocks.flag_word < 64 && 2 * w.blocks.flag_word <= w.samples * w.memory_lane.bits) w.blocks.flag_word *= 2;
   derive_line_widths(w, config);
+  derive_memory(w, config);
   return w;
 }
 
@@ -244,10 +273,11 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&primitive_id,  &slot,         &tile_x,     &tile_y,     &tile_pixel,  &stamp_index, &sample_mask,
-       &stored_color,  &kind,         &flag,       &depth_func, &cull_mode,   &pixel_x,     &pixel_y,
-       &vertex_color,  &hiz_code,     &hiz_update, &tile_plane, &memory_lane, &counter,     &line_numerator,
-       &line_position, &line_product, &line_error, &line_stay,  &line_move,   &line_count});
+  add({&primitive_id, &slot,          &tile_x,        &tile_y,       &tile_pixel,   &stamp_index,  &sample_mask,
+       &stored_color, &kind,          &flag,          &depth_func,   &cull_mode,    &pixel_x,      &pixel_y,
+       &vertex_color, &hiz_code,      &hiz_update,    &tile_plane,   &depth_source, &memory_lane,  &counter,
+       &run,          &address,       &row_stride,    &burst_length, &port_strobe,  &port_byte,    &line_numerator,
+       &line_position, &line_product, &line_error,    &line_stay,    &line_move,    &line_count});
   add_of_attributes({&A::line});
   return list;
 }

@@ -53,7 +53,7 @@ struct AttributeWidths {
   [[nodiscard]] int guard_bits() const { return local.bits - code.bits - 1; }
 };
 
-/// Blocks: 4x4 pixels of a tile, or a stamp where that is larger.
+/// What a line of the cache holds: 4x4 pixels of a tile, or a stamp where that is larger; of cache.kind tiles, a tile.
 struct BlockGrid {
   int side = 1;       ///< stamps along the side of a block
   int per_tile = 1;   ///< blocks along the side of a tile
@@ -61,6 +61,17 @@ struct BlockGrid {
 
   [[nodiscard]] constexpr int stamps() const { return side * side; }  ///< of a block
   bool operator==(const BlockGrid&) const = default;
+};
+
+/// Where stamps and flags lie in memory, as logarithms of bytes; what the host chooses is in MemoryLayout (packets.hpp).
+struct MemoryGrid {
+  int port = 0;                                         ///< a beat
+  std::array<int, 2> sample{};                          ///< a sample of depth, of colour
+  std::array<int, 2> stamp{};                           ///< a stamp
+  int flag_word = 0;                                    ///< a word of flags
+  int plane = 0;                                        ///< a plane of a tile
+  int flag_row = 0;                                     ///< from the flags of one row of blocks to the next
+  [[nodiscard]] int tile() const { return plane + 1; }  ///< from one tile of a row to the next: both planes
 };
 
 /// The derived widths of a configuration, and the few derived constants beside them.
@@ -71,10 +82,12 @@ struct Widths {
   int plane_fraction = 0;  ///< F = G + s: fraction bits of a plane at subpixel resolution
   int tile_shift = 0;      ///< log2 of the tile size
   StampGrid stamps;        ///< the stamps of a tile, the samples of a stamp
-  BlockGrid blocks;        ///< of cache.kind blocks
-  int planes = 0;          ///< of all attributes together
-  int color_planes = 0;    ///< those of the stored colour: kColorPlane and the next ones
-  int samples = 0;         ///< samples of a stamp
+  BlockGrid blocks;        ///< what a cache line holds
+  MemoryGrid memory;
+  int port_bytes = 0;                    ///< of a beat on the memory port
+  int planes = 0;                        ///< of all attributes together
+  int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
+  int samples = 0;                       ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
   int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's or block's x and y that choose its cache line
   int hiz_group_bits = 0;                ///< HiZ bounds of 2^so many tiles of a row are cleared at once
@@ -91,7 +104,9 @@ struct Widths {
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane,
-      memory_lane, counter;
+      depth_source, memory_lane, counter;
+  // The memory port.
+  Width run, address, row_stride, burst_length, port_strobe, port_byte;
   // Lines.
   Width line_numerator, line_position, line_product;   // line_setup
   Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, beside those of the planes

@@ -2,7 +2,9 @@
 //
 //   cull -> triangle_setup -> coarse_raster -> fine_raster -> interpolate -> primitive_join -> depth_test -> framebuffer
 //                                 ^                                   line_raster ^              |              ^ v
-//                                 '-- the retirement of tile visits (HiZ) <----------------------'             memory
+//                                 '-- the retirement of tile visits (HiZ) <----------------------'          memory_port
+//                                                                                                               ^ v
+//                                                                                                             memory
 //
 // Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i holds
 // arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
@@ -10,7 +12,10 @@
 // docs/pipeline.md says what each stage takes and how long; the host must clear depth and colour once before it draws.
 module raster_top (
     input logic clk_i,
-    input logic rst_ni,
+    /* verilator lint_off SYNCASYNCNET */  // memory_port recovers from it
+    input logic rst_ni,       // at any time, for a cycle at least
+    /* verilator lint_on SYNCASYNCNET */
+    input logic power_on_ni,  // with it when power comes: what memory was asked for before is forgotten
 
     /* verilator lint_off UNUSEDSIGNAL */  // without the unit of lines
     input logic [raster_pkg::STALL_BITS-1:0] stall_i,
@@ -28,16 +33,19 @@ module raster_top (
     input  raster_pkg::line_setup_t line_i,
     /* verilator lint_on UNUSEDSIGNAL */
 
-    // To memory: one stamp of one plane a request, reads answered in order
-    output logic                         request_valid_o,
-    input  logic                         request_ready_i,
-    output raster_pkg::memory_request_t  request_o,
-    input  logic                         response_valid_i,
-    output logic                         response_ready_o,
-    input  raster_pkg::memory_response_t response_i,
+    // To memory: bursts of beats. Each beat that was read is answered, and each burst that was written, in order
+    input  raster_pkg::memory_layout_t layout_i,  // from the host; stays as it is while anything is under way
+    output logic                       beat_valid_o,
+    input  logic                       beat_ready_i,
+    output raster_pkg::memory_beat_t   beat_o,
+    input  logic                       answer_valid_i,
+    output logic                       answer_ready_o,
+    input  raster_pkg::memory_answer_t answer_i,
 
+    // The counters of one cycle: while hold is high they stay, to be read word by word, and counting goes on
+    input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
-    output logic                        idle_o  // nothing is under way
+    output logic                        idle_o  // nothing is under way, and all is written to memory
 );
 
   localparam int COUNTER = raster_pkg::COUNTER_BITS;
@@ -57,14 +65,18 @@ module raster_top (
   raster_pkg::edge_context_t    edges_data;
   raster_pkg::stamp_packet_t    stamp_data;
   raster_pkg::fragment_packet_t fragment_data;
+  raster_pkg::memory_request_t      request_data;
+  raster_pkg::memory_response_t     response_data;
+  logic                             request_valid, request_ready, response_valid, response_ready;
   logic                             write_valid, retire_valid;
   raster_pkg::write_packet_t    write_data;
   raster_pkg::retire_packet_t   retire_data;
 
   // The same at the producer, before a stall.
   logic primitive_ready, triangle_offered, setup_offered, tile_offered, stamp_offered, fragment_offered;
-  logic request_offered, response_ready;
+  logic request_offered, response_offered, beat_offered, answer_ready;
   logic triangle_accepted, setup_accepted, tile_accepted, stamp_accepted, fragment_accepted;
+  logic request_accepted, response_accepted;
 
   assign primitive_ready_o = primitive_ready && !stall_i[raster_pkg::STALL_PRIMITIVE];
   assign triangle_valid    = triangle_offered && !stall_i[raster_pkg::STALL_TRIANGLE];
@@ -77,8 +89,12 @@ module raster_top (
   assign stamp_ready       = stamp_accepted && !stall_i[raster_pkg::STALL_STAMP];
   assign fragment_valid    = fragment_offered && !stall_i[raster_pkg::STALL_FRAGMENT];
   assign fragment_ready    = fragment_accepted && !stall_i[raster_pkg::STALL_FRAGMENT];
-  assign request_valid_o   = request_offered && !stall_i[raster_pkg::STALL_REQUEST];
-  assign response_ready_o  = response_ready && !stall_i[raster_pkg::STALL_RESPONSE];
+  assign request_valid     = request_offered && !stall_i[raster_pkg::STALL_REQUEST];
+  assign request_ready     = request_accepted && !stall_i[raster_pkg::STALL_REQUEST];
+  assign response_valid    = response_offered && !stall_i[raster_pkg::STALL_RESPONSE];
+  assign response_ready    = response_accepted && !stall_i[raster_pkg::STALL_RESPONSE];
+  assign beat_valid_o      = beat_offered && !stall_i[raster_pkg::STALL_BEAT];
+  assign answer_ready_o    = answer_ready && !stall_i[raster_pkg::STALL_ANSWER];
 
   logic is_primitive, is_zero_area, is_backface, is_empty, is_no_sample, is_dropped;
   logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
@@ -88,14 +104,13 @@ module raster_top (
   logic                              context_read;
   raster_pkg::context_packet_t   stamp_context;
 
-  logic shaded_valid, shaded_ready;  // what interpolate sends
+  logic shaded_valid, shaded_ready;  // the same behind a buffer
   raster_pkg::fragment_packet_t shaded_data;
   logic                             lines_are_done;  // none is in the unit
 
   // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
   // until they are through with it and do one thing at a time. The ports are the same.
-  logic fine_valid, fine_ready, made_valid, made_ready;  // what fine_raster and interpolate send
-  raster_pkg::stamp_packet_t    fine_data;
+  logic                             made_valid, made_ready;  // what interpolate sends
   raster_pkg::fragment_packet_t made_data;
 `define RASTER_FRONT(CULL, TRIANGLE_SETUP, COARSE_RASTER, FINE_RASTER, INTERPOLATE) \
     CULL u_cull (                                                                       \
@@ -153,9 +168,9 @@ module raster_top (
         .tile_ready_o (tile_accepted),                                                  \
         .tile_i       (tile_data),                                                      \
         .edges_i      (edges_data),                                                     \
-        .stamp_valid_o(fine_valid),                                                     \
-        .stamp_ready_i(fine_ready),                                                     \
-        .stamp_o      (fine_data)                                                       \
+        .stamp_valid_o(stamp_offered),                                                  \
+        .stamp_ready_i(stamp_ready),                                                    \
+        .stamp_o      (stamp_data)                                                      \
     );                                                                                  \
     INTERPOLATE u_interpolate (                                                         \
         .clk_i,                                                                         \
@@ -179,26 +194,8 @@ module raster_top (
       assign shaded_valid = made_valid;
       assign made_ready   = shaded_ready;
       assign shaded_data  = made_data;
-
-      // Behind here every step waits for the next one combinationally; the buffer keeps that out of the stages before.
-      skid_buffer #(
-          .WIDTH(raster_pkg::STAMP_PACKET_BITS)
-      ) u_stamps (
-          .clk_i,
-          .rst_ni,
-          .valid_i(fine_valid),
-          .ready_o(fine_ready),
-          .data_i (fine_data),
-          .valid_o(stamp_offered),
-          .ready_i(stamp_ready),
-          .data_o (stamp_data)
-      );
     end else begin : gen_serial
       `RASTER_FRONT(cull_serial, triangle_setup_serial, coarse_raster_serial, fine_raster_serial, interpolate_serial)
-
-      assign stamp_offered = fine_valid;
-      assign fine_ready    = stamp_ready;
-      assign stamp_data    = fine_data;
 
       // Behind here a step waits for the framebuffer combinationally; the buffer keeps that out of the stages before.
       skid_buffer #(
@@ -287,7 +284,7 @@ module raster_top (
   logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth;
   logic [COUNT-1:0]                                           covered, passed, written;
   logic [1:0]                                                 fill, evict, clear;
-  logic                                                       framebuffer_idle;
+  logic                                                       framebuffer_idle, port_idle;
   depth_test u_depth_test (
       .clk_i,
       .rst_ni,
@@ -325,11 +322,11 @@ module raster_top (
           .write_valid_i   (write_valid),
           .write_i         (write_data),
           .request_valid_o (request_offered),
-          .request_ready_i (request_ready_i && !stall_i[raster_pkg::STALL_REQUEST]),
-          .request_o,
-          .response_valid_i(response_valid_i && !stall_i[raster_pkg::STALL_RESPONSE]),
-          .response_ready_o(response_ready),
-          .response_i,
+          .request_ready_i (request_ready),
+          .request_o       (request_data),
+          .response_valid_i(response_valid),
+          .response_ready_o(response_accepted),
+          .response_i      (response_data),
           .fill_o          (fill),
           .evict_o         (evict),
           .clear_o         (clear),
@@ -351,11 +348,11 @@ module raster_top (
           .write_valid_i   (write_valid),
           .write_i         (write_data),
           .request_valid_o (request_offered),
-          .request_ready_i (request_ready_i && !stall_i[raster_pkg::STALL_REQUEST]),
-          .request_o,
-          .response_valid_i(response_valid_i && !stall_i[raster_pkg::STALL_RESPONSE]),
-          .response_ready_o(response_ready),
-          .response_i,
+          .request_ready_i (request_ready),
+          .request_o       (request_data),
+          .response_valid_i(response_valid),
+          .response_ready_o(response_accepted),
+          .response_i      (response_data),
           .fill_o          (fill),
           .evict_o         (evict),
           .clear_o         (clear),
@@ -370,25 +367,68 @@ module raster_top (
     end
   endgenerate
 
+  memory_port u_memory_port (
+      .clk_i,
+      .power_on_ni,
+      .rst_ni,
+      .layout_i,
+      .request_valid_i    (request_valid),
+      .request_ready_o    (request_accepted),
+      .request_i          (request_data),
+      .response_valid_o   (response_offered),
+      .response_ready_i   (response_ready),
+      .response_o         (response_data),
+      .beat_valid_o       (beat_offered),
+      .beat_ready_i       (beat_ready_i && !stall_i[raster_pkg::STALL_BEAT]),
+      .beat_o,
+      .answer_valid_i     (answer_valid_i && !stall_i[raster_pkg::STALL_ANSWER]),
+      .answer_ready_o     (answer_ready),
+      .answer_i,
+      .idle_o             (port_idle)
+  );
+
   // Primitives between the host and the end of their last stamp.
   localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 16);
   logic [UNDER_WAY-1:0] under_way_q;
   logic                 enters, ends;
   assign enters = primitive_valid_i && primitive_ready_o;
   assign ends   = fragment_valid && fragment_accepted && fragment_data.ends_primitive;
-  assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle && lines_are_done;
+  assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle && port_idle && lines_are_done;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) under_way_q <= '0;
     else under_way_q <= under_way_q + UNDER_WAY'(enters) - UNDER_WAY'(ends) - UNDER_WAY'(is_dropped);
   end
 
-  // Performance counters: the work of triangles, points and lines, and the tile traffic of everything, since reset.
-  raster_pkg::counter_packet_t counters_q;
-  assign counters_o = counters_q;
+  // Performance counters: the work of triangles, points and lines, and the tile traffic of everything, since reset. What is
+  // counted comes through a register; a counter whose highest bit falls has wrapped, and `overflow` stays. Without the
+  // unit nothing moves, and nothing is left of it.
+  localparam int COUNTERS = (raster_pkg::COUNTER_PACKET_BITS - 1) / COUNTER;
+  raster_pkg::counter_packet_t counters_q, shown_q;
+  logic [COUNTERS-1:0]         highest, highest_q;
+  logic [1:0]                  fill_q, evict_q, clear_q;
+  logic                        overflow_q;
+  assign counters_o = shown_q;
+
+  always_comb begin
+    for (int i = 0; i < COUNTERS; i++) highest[i] = counters_q[i*COUNTER+COUNTER-1];
+  end
+
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) counters_q <= '0;
-    else begin
+    if (!rst_ni) begin
+      fill_q     <= '0;
+      evict_q    <= '0;
+      clear_q    <= '0;
+      highest_q  <= '0;
+      overflow_q <= 1'b0;
+      counters_q <= '0;
+      shown_q    <= '0;
+    end else if (raster_pkg::COUNTERS_UNIT != 0) begin
+      fill_q     <= fill;
+      evict_q    <= evict;
+      clear_q    <= clear;
+      highest_q  <= highest;
+      overflow_q <= overflow_q || (highest_q & ~highest) != '0;
       counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_primitive);
       counters_q.zero_area          <= counters_q.zero_area + COUNTER'(is_zero_area);
       counters_q.backface           <= counters_q.backface + COUNTER'(is_backface);
@@ -402,9 +442,13 @@ module raster_top (
       counters_q.covered            <= counters_q.covered + COUNTER'(covered);
       counters_q.depth_passed       <= counters_q.depth_passed + COUNTER'(passed);
       counters_q.written            <= counters_q.written + COUNTER'(written);
-      counters_q.tile_fills         <= counters_q.tile_fills + COUNTER'(fill);
-      counters_q.tile_evictions     <= counters_q.tile_evictions + COUNTER'(evict);
-      counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear);
+      counters_q.tile_fills         <= counters_q.tile_fills + COUNTER'(fill_q);
+      counters_q.tile_evictions     <= counters_q.tile_evictions + COUNTER'(evict_q);
+      counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear_q);
+      if (!counters_hold_i) begin
+        shown_q          <= counters_q;
+        shown_q.overflow <= overflow_q;
+      end
     end
   end
 

@@ -25,10 +25,12 @@ struct Recorder : PacketSink {
   void take(On<Arrow::stamp>, const StampPacket& packet) override { stamps.push_back(packet); }
   void take(On<Arrow::retire>, const RetirePacket& packet) override { retired.push_back(packet); }
   void take(On<Arrow::request>, const MemoryRequest& packet) override { requests.push_back(packet); }
+  void take(On<Arrow::beat>, const MemoryBeat& packet) override { beats.push_back(packet); }
   std::vector<TilePacket> tiles;
   std::vector<StampPacket> stamps;
   std::vector<RetirePacket> retired;
   std::vector<MemoryRequest> requests;
+  std::vector<MemoryBeat> beats;
 };
 
 /// The whole scene through the model; its counters.

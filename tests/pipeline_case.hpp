@@ -109,7 +109,7 @@ class CaptureFromBytes {
     State state;
     row.set(state, random_value(row, [this](std::uint32_t n) { return bytes_.byte() % n; }));
     std::string text = "state " + std::string(row.name);
-    write_state_value(state, row, text);
+    write_state_value(state, row, {}, text);
     line(text);
   }
 

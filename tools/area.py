@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""./dev area: what rtl_ref costs. Yosys for ECP5 and iCE40, nextpnr for iCE40, into docs/area.md.
+"""./dev area: what rtl_ref costs. Yosys for ECP5 and iCE40, nextpnr for both, into docs/area.md.
 
-Runs in the repository's root, two tools at a time, a quarter of an hour in all; build/area keeps every log.
+nextpnr-ecp5 is used where it is on the PATH; elsewhere the page says that nothing was placed for ECP5. Runs in the
+repository's root, two tools at a time, a quarter of an hour in all; build/area keeps every log.
 """
 import argparse
 import collections
@@ -10,33 +11,44 @@ import datetime
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
 BUILD = pathlib.Path('build/area')
 SYNTH_ECP5 = 'synth_ecp5 -top raster_top -nowidelut'
 # What the options of synth_ecp5 do, shown for one configuration without any module kept apart.
-FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_top', 'synth_ecp5 -top raster_top -abc9']
+FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_top', 'synth_ecp5 -top raster_top -abc9',
+             'synth_ecp5 -top raster_top -abc9 -nowidelut']
 FLAT = 'embedded, 2x2'
 SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper -abc9'
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
-STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'fine_raster', 'interpolate', 'line_raster', 'primitive_join',
-          'depth_test', 'framebuffer']
+STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'hiz', 'fine_raster', 'interpolate', 'line_raster', 'primitive_join',
+          'depth_test', 'framebuffer', 'cache_tags', 'block_cache']
 KEEP = ('setattr -mod -set keep_hierarchy 1 raster_top *skid_buffer* ' + ' '.join(f'{s} {s}_serial' for s in STAGES))
 PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
 # Title, preset, settings.
 CONFIGURATIONS = [
     ('tiny, 1x1', 'tiny', []),
     ('small, 1x1', 'small', []),
+    ('small, 1x1, counters', 'small', ['counters.unit=1']),
     ('small, 1x1, lines', 'small', ['lines.unit=1']),
     ('embedded, 1x1', 'embedded', ['stamp.size=1']),
     ('embedded, 2x2', 'embedded', []),
     ('embedded, 2x2, no lines', 'embedded', ['lines.unit=0']),
+    ('embedded, 2x2, no counters', 'embedded', ['counters.unit=0']),
+    ('embedded, 2x2, HiZ 8 bits', 'embedded', ['hiz.bits=8']),
+    ('embedded, 2x2, HiZ 8 bits, no counters', 'embedded', ['hiz.bits=8', 'counters.unit=0']),
+    ('embedded, 2x2, HiZ 8 bits, VGA', 'embedded', ['hiz.bits=8', 'target.width=640', 'target.height=480']),
     ('embedded, 4x4', 'embedded', ['stamp.size=4']),
     ('full, 2x2', 'full', ['stamp.size=2']),
     ('full, 4x4', 'full', ['stamp.size=4']),
 ]
-PLACED = ['small, 1x1', 'small, 1x1, lines']
+PLACED = ['small, 1x1', 'small, 1x1, counters', 'small, 1x1, lines']
+PLACE_ECP5 = 'nextpnr-ecp5 --25k --speed 6 --package CABGA381 --freq 65 --seed 1'
+# A 25F has 56 block RAMs: too few for bounds of 16 bits at 1920x1080.
+PLACED_ECP5 = ['embedded, 2x2, HiZ 8 bits', 'embedded, 2x2, HiZ 8 bits, no counters', 'embedded, 2x2, HiZ 8 bits, VGA']
+SYNTHS_ECP5 = ['synth_ecp5 -top pin_wrapper -abc9 -nowidelut', 'synth_ecp5 -top pin_wrapper -nowidelut']
 # The unit that draws lines, alone, and the same with nobody looking at depth and colour.
 LINES = ['tiny, 1x1', 'embedded, 2x2', 'full, 4x4']
 LINE_TOPS = {'line_raster': '`line_raster`', 'line_positions': '`line_raster`, positions alone',
@@ -154,10 +166,24 @@ def placed(title):
             'mhz': min(clock['achieved'] for clock in result['fmax'].values())}
 
 
+def placed_ecp5(title, synth):
+    """ECP5: TRELLIS_COMB, flip-flops, block RAMs, multipliers and MHz after place and route, behind the pin wrapper."""
+    tag = synth.split('pin_wrapper')[1].replace(' ', '')
+    netlist, report = BUILD / f'{slug(title)}{tag}.json', BUILD / f'{slug(title)}{tag}-report.json'
+    run(['yosys', '-q', '-p', f'{read_verilog(title, wrapper=True)}; {synth} -json {netlist}'],
+        BUILD / f'{slug(title)}{tag}-ecp5.log')
+    run([*PLACE_ECP5.split(), '--timing-allow-fail', '--json', netlist, '--report', report],
+        BUILD / f'{slug(title)}{tag}-nextpnr-ecp5.log')
+    result = json.loads(report.read_text(encoding='utf-8'))
+    used = {cell: count['used'] for cell, count in result['utilization'].items()}
+    return [used['TRELLIS_COMB'], used['TRELLIS_FF'], used['DP16KD'], used['MULT18X18D'],
+            f"{min(clock['achieved'] for clock in result['fmax'].values()):.1f}"]
+
+
 def version(command):
     out = subprocess.run(command, capture_output=True, text=True, check=True)
     first = (out.stdout + out.stderr).strip().splitlines()[0]
-    return re.sub(r'.*"?(nextpnr-ice40).*Version ([^)]*)\).*', r'\1 \2', first.split(' (git')[0])
+    return re.sub(r'.*"?(nextpnr-ice40|nextpnr-ecp5).*Version ([^)]*)\).*', r'\1 \2', first.split(' (git')[0])
 
 
 def places(count):
@@ -166,7 +192,7 @@ def places(count):
 
 
 def ecp5_cells(count):
-    return [count['LUT4'], count['CCU2C'], count['TRELLIS_DPR16X4'], places(count), count['TRELLIS_FF'],
+    return [places(count), count['LUT4'], count['CCU2C'], count['TRELLIS_DPR16X4'], count['TRELLIS_FF'],
             count['MULT18X18D'], count['DP16KD']]
 
 
@@ -185,18 +211,26 @@ def line_part(units):
     return lines
 
 
-def ecp5_part(parts, flats):
-    head = ['LUT4', 'CCU2C', 'DPR16X4', 'LUT4 places', 'FF', 'MULT18X18D', 'DP16KD']
+def ecp5_part(parts, flats, fitted):
+    head = ['places', 'LUT4', 'CCU2C', 'DPR16X4', 'FF', 'MULT18X18D', 'DP16KD']
     total = {title: sum(part.values(), collections.Counter()) for title, part in parts.items()}
     names = sorted({name for part in parts.values() for name in part}, key=lambda name: -sum(
         places(part[name]) for part in parts.values()))
     lines = ['## ECP5', '', f'`{SYNTH_ECP5}`, every stage flattened inside and kept apart from the others '
-             '(`keep_hierarchy`), so that each block has its own cells and they add up. Behind "LUT4 places" is what the '
-             'cells take up in the part: a CCU2C (two bits of a carry chain) two places, a DPR16X4 (16 words of 4 bits) '
-             'four and two more for its write port.']
+             '(`keep_hierarchy`), so that each block has its own cells and they add up. "Places" are what the cells '
+             'take up in the part, of 24,288 in a 25F: a LUT4 one, a CCU2C (two bits of a carry chain) two, a DPR16X4 (16 '
+             'words of 4 bits) four and two more for its write port.']
     lines += table(['configuration', *head], [[title, *ecp5_cells(count)] for title, count in total.items()])
-    lines += ['Which block costs what, in LUT4 places. `raster_top` is the counters, the context RAM and what joins the '
-              'stages; `depth_test` contains `rop`; `framebuffer` contains the tags, the flags and the way to its RAMs.']
+    if fitted:
+        lines += [f'Placed and routed: `{PLACE_ECP5}`, the design flat, behind `rtl_ref/area/pin_wrapper.sv`, whose cells are '
+                  'in these figures. A place is a TRELLIS_COMB here.']
+        lines += table(['configuration', 'command', 'places of 24,288', 'FF', 'DP16KD of 56', 'MULT18X18D of 28', 'MHz'],
+                       [[title, f'`{synth}`', *figures] for (title, synth), figures in fitted.items()])
+    else:
+        lines += ['nextpnr-ecp5 was not there: nothing is placed and routed for ECP5.', '']
+    lines += ['Which block costs what, in places. `raster_top` is the counters, the context RAM and what joins the '
+              'stages; `depth_test` contains `rop`; `framebuffer` is that of tiles; of blocks `cache_tags` has the '
+              'tags and flags, `block_cache` what is behind them.']
     lines += table(['block', *parts], [[f'`{name}`', *(places(part[name]) for part in parts.values())] for name in names])
     lines += ['Flip-flops and multipliers (`FF + MULT18X18D`).']
     lines += table(['block', *parts], [[f'`{name}`', *(f"{part[name]['TRELLIS_FF']:,} + {part[name]['MULT18X18D']}"
@@ -225,10 +259,13 @@ def ice40_part(fitted, packed):
     return lines
 
 
-def page(parts, flats, fitted, packed, units):
-    lines = ['# Area and speed', '', f'Written by `./dev area` on {datetime.date.today()} with {version(["yosys", "-V"])} '
-             f'and {version(["nextpnr-ice40", "--version"])}. Configurations: preset, stamp.', '']
-    lines += ecp5_part(parts, flats)
+def page(parts, flats, fitted_ecp5, fitted, packed, units):
+    tools = [version(['yosys', '-V']), version(['nextpnr-ice40', '--version'])]
+    if shutil.which('nextpnr-ecp5'):
+        tools.append(version(['nextpnr-ecp5', '--version']))
+    lines = ['# Area and speed', '', f'Written by `./dev area` on {datetime.date.today()} with {", ".join(tools)}. '
+             'Configurations: preset, stamp.', '']
+    lines += ecp5_part(parts, flats, fitted_ecp5)
     if units:
         lines += line_part(units)
     if fitted:
@@ -253,6 +290,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = {
             'fitted': {t: pool.submit(placed, t) for t in PLACED if t in titles},
+            'fitted_ecp5': {(t, s): pool.submit(placed_ecp5, t, s) for t in PLACED_ECP5 if t in titles
+                            for s in SYNTHS_ECP5 if shutil.which('nextpnr-ecp5')},
             'packed': {t: pool.submit(packed_blocks, t) for t in PLACED[:1] if t in titles},
             'units': {t: pool.submit(line_unit, t) for t in LINES if t in titles},
             'parts': {t: pool.submit(blocks, t) for t in titles},

@@ -14,6 +14,7 @@
 #include "../config.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
+#include "capture_textures.hpp"
 
 namespace halfplane {
 namespace {
@@ -21,7 +22,9 @@ namespace {
 /// Builds the scene, one line at a time.
 class CaptureReader {
  public:
-  CaptureReader(std::string_view text, std::string_view file_name) : text_(text, file_name) { scene_.name = file_name; }
+  CaptureReader(std::string_view text, std::string_view file_name) : text_(text, file_name), textures_(file_name) {
+    scene_.name = file_name;
+  }
 
   Scene read() {
     read_header();
@@ -29,6 +32,7 @@ class CaptureReader {
       read_line(text_.word());
       text_.expect_end();
     }
+    textures_.expect_complete(text_);
     return std::move(scene_);
   }
 
@@ -49,6 +53,7 @@ class CaptureReader {
   std::array<double, 4> read_color();
 
   CaptureText text_;
+  TextureReader textures_;
   Scene scene_;
   State state_;                // what the next draw gets
   bool state_changed_ = true;  // since state_number() was asked
@@ -80,6 +85,9 @@ void CaptureReader::read_header() {
 }
 
 void CaptureReader::read_line(std::string_view word) {
+  if (word == "texels") return textures_.read_texels(text_, scene_.textures);
+  if (word == "palette") return textures_.read_palette(text_);
+  textures_.expect_complete(text_);
   if (word == "v") return read_vertex();
   for (const CaptureDraw& draw : kCaptureDraws)
     if (word == draw.word) return read_draw(draw);
@@ -91,8 +99,9 @@ void CaptureReader::read_rare_line(std::string_view word) {
   if (word == "object") return read_object();
   if (word == "clear") return read_clear();
   if (word == "target") return read_target();
+  if (word == "texture") return textures_.read_texture(text_, scene_.textures);
   if (word == "space") {
-    read_state_value(text_, capture_space(), state_);
+    read_state_value(text_, capture_space(), scene_.textures, state_);
     state_changed_ = true;
   } else if (word == "frame") {
     scene_.commands.emplace_back(EndFrame{});
@@ -103,7 +112,7 @@ void CaptureReader::read_rare_line(std::string_view word) {
   } else {
     text_.fail(quoted_word(word) +
                " begins no line of a capture; write one of target, clear, space, state, v, t, ts, tf, " +
-               "l, ls, ll, p, object, planes, frame, or # before a comment");
+               "l, ls, ll, p, object, texture, palette, texels, planes, frame, or # before a comment");
   }
 }
 
@@ -156,7 +165,7 @@ void CaptureReader::read_state() {
   const auto settings = capture_states();
   const auto setting = std::find_if(settings.begin(), settings.end(), [&](const auto& s) { return s.name == name; });
   if (setting != settings.end()) {
-    read_state_value(text_, *setting, state_);
+    read_state_value(text_, *setting, scene_.textures, state_);
     state_changed_ = true;
     return;
   }

@@ -1,5 +1,7 @@
 #include "capture_states.hpp"
 
+#include <algorithm>
+
 namespace halfplane {
 namespace {
 
@@ -23,13 +25,27 @@ bool read_word(CaptureText& text, const DrawState& row, StateValue& value) {
   return false;
 }
 
-void read_numbers(CaptureText& text, const DrawState& row, StateValue& value) {
+/// The number of the texture whose name is the next word.
+double read_texture(CaptureText& text, const DrawState& row, std::span<const Texture> textures) {
+  const std::string_view name = text.word();
+  const auto found = std::ranges::find(textures, name, &Texture::name);
+  if (found == textures.end())
+    text.fail(std::string(row.name) + " " + quoted_word(name) + " is not known here; write off, or the name of a " +
+              "texture line above");
+  return static_cast<double>(found - textures.begin());
+}
+
+void read_numbers(CaptureText& text, const DrawState& row, std::span<const Texture> textures, StateValue& value) {
   std::string positive;  // "viewport width and height": what must be above 0
   bool is_refused = false;
   for (std::size_t i = 0; i < row.numbers.size(); ++i) {
     const StateNumber& number = row.numbers[i];
     double& read = value.numbers[i];
-    if (number.is_whole)
+    if (number.is_texture)
+      read = read_texture(text, row, textures);
+    else if (!number.words.empty())
+      read = static_cast<double>(text.choice(number.what, number.words));
+    else if (number.is_whole)
       read = text.integer(number.what, static_cast<int>(number.low), static_cast<int>(number.high));
     else  // -0 becomes 0: equal states are then equal in every bit
       read = text.number(number.what, number.low, number.high) + 0.0;
@@ -43,16 +59,16 @@ void read_numbers(CaptureText& text, const DrawState& row, StateValue& value) {
 
 }  // namespace
 
-void read_state_value(CaptureText& text, const DrawState& row, State& state) {
+void read_state_value(CaptureText& text, const DrawState& row, std::span<const Texture> textures, State& state) {
   StateValue value;
   if (row.numbers.empty())
     value.word = text.choice(row.name, row.words);
   else if (row.words.empty() || !read_word(text, row, value))
-    read_numbers(text, row, value);
+    read_numbers(text, row, textures, value);
   row.set(state, value);
 }
 
-void write_state_value(const State& state, const DrawState& row, std::string& out) {
+void write_state_value(const State& state, const DrawState& row, std::span<const Texture> textures, std::string& out) {
   const StateValue value = row.value(state);
   if (value.word < row.words.size()) {
     out += ' ';
@@ -60,8 +76,13 @@ void write_state_value(const State& state, const DrawState& row, std::string& ou
     return;
   }
   for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+    const StateNumber& number = row.numbers[i];
     out += ' ';
-    if (row.numbers[i].is_whole)
+    if (number.is_texture)
+      out += textures[static_cast<std::size_t>(value.numbers[i])].name;
+    else if (!number.words.empty())
+      out += number.words[static_cast<std::size_t>(value.numbers[i])];
+    else if (number.is_whole)
       out += std::to_string(static_cast<int>(value.numbers[i]));
     else
       append_number(out, value.numbers[i]);

@@ -12,11 +12,12 @@
 
 namespace halfplane {
 
-/// Reads the value of `row` from the line into `state`. `space` has a line of its own, the others stand on `state` lines.
-void read_state_value(CaptureText& text, const DrawState& row, State& state);
+/// Reads the value of `row` from the line into `state`; names of textures are looked up in `textures`. `space` has a line
+/// of its own, the others stand on `state` lines.
+void read_state_value(CaptureText& text, const DrawState& row, std::span<const Texture> textures, State& state);
 
-/// Appends the value of `row`, each of its words and numbers after a blank.
-void write_state_value(const State& state, const DrawState& row, std::string& out);
+/// Appends the value of `row`, each of its words, numbers and names after a blank.
+void write_state_value(const State& state, const DrawState& row, std::span<const Texture> textures, std::string& out);
 
 /// The rows that `state` lines may name: all but `space`, in the order in which they are written.
 [[nodiscard]] std::span<const DrawState> capture_states();

@@ -10,6 +10,7 @@
 #include "capture.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
+#include "capture_textures.hpp"
 
 namespace halfplane {
 namespace {
@@ -75,6 +76,10 @@ class CaptureWriter {
         append_number(buffer_, (*scene_.planes)[1]);
       buffer_ += '\n';
     }
+    for (const Texture& texture : scene_.textures) {
+      write_texture(texture, buffer_);
+      flush_if_full();
+    }
     for (const Vertex& vertex : scene_.vertices) write_vertex(vertex);
     for (const Command& command : scene_.commands) {
       if (const auto* clear = std::get_if<Clear>(&command)) write_clear(*clear);
@@ -125,7 +130,7 @@ void CaptureWriter::write_vertex(const Vertex& vertex) {
 void CaptureWriter::write_state(const State& wanted) {
   const auto write = [&](const DrawState& row) {
     buffer_ += row.name;
-    write_state_value(wanted, row, buffer_);
+    write_state_value(wanted, row, scene_.textures, buffer_);
     buffer_ += '\n';
   };
   if (!space_is_named_ || !capture_space().is_same(state_, wanted)) write(capture_space());
@@ -226,7 +231,7 @@ void write_capture(const Scene& scene, std::ostream& out) {
 
 bool same_scene(const Scene& a, const Scene& b) {
   return a.width == b.width && a.height == b.height && a.planes == b.planes && a.states == b.states &&
-         a.objects == b.objects &&
+         a.textures == b.textures && a.objects == b.objects &&
          std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),
                     [](const Vertex& v, const Vertex& w) { return same_bits(numbers_of(v), numbers_of(w)); }) &&
          std::equal(a.commands.begin(), a.commands.end(), b.commands.begin(), b.commands.end(),

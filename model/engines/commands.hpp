@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "../fragment_ops.hpp"
 #include "../pipeline.hpp"
 #include "../stages/line_raster.hpp"
+#include "../stages/surface.hpp"
 #include "render.hpp"
 
 namespace halfplane {
@@ -32,6 +34,27 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
   ++rendering.counters.written;
   if (!rendering.ids.empty()) rendering.ids[plain] = static_cast<std::int32_t>(primitive);
   if (!rendering.visible.empty()) rendering.visible[plain] = visible;
+}
+
+/// The surface of a triangle whose setup is not empty, if its draw has one. Throws InputError for a vertex that is not in
+/// front of the eye, as only window space can give one.
+[[nodiscard]] inline std::optional<Surface> surface_of(const DrawContext& context, const Triangle& triangle,
+                                                       const TriangleSetup& setup, const Widths& widths) {
+  const State& state = context.state;
+  if (!has_surface(state)) return std::nullopt;
+  if (!has_positive_w(triangle))
+    throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": triangle " +
+                     std::to_string(triangle.primitive) +
+                     " has a vertex with w <= 0, by which its attributes cannot be divided; give w > 0, or state "
+                     "texture_interp and color_interp affine and w 1");
+  const Texture* texture = state.texture ? &context.scene.textures[*state.texture] : nullptr;
+  return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.config, widths);
+}
+
+/// Its colour as codes.
+[[nodiscard]] inline std::array<std::uint32_t, 4> surface_channels(const Surface& surface, int x, int y) {
+  const Texel c = surface.color(x, y);
+  return {c[0], c[1], c[2], c[3]};
 }
 
 /// `visible` of a pixel that a line or a point owns.

@@ -1,8 +1,11 @@
 #include "hardware.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <utility>
 
+#include "../packet_words.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/cull.hpp"
 #include "../stages/depth_test.hpp"
@@ -14,72 +17,72 @@
 
 namespace halfplane {
 
-std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample, const Widths& widths) {
-  // Spread over all bits by an odd factor, so that a wrong tile, stamp or sample shows in narrow codes too.
-  std::uint32_t value = 0xDEADBEEFU ^ (is_color ? 0x5A5A5A5AU : 0U);
-  for (const int part : {tile_x, tile_y, stamp, sample})
-    value = (value ^ static_cast<std::uint32_t>(part)) * 0x9E3779B1U ^ value >> 15;
-  const Width& code = is_color ? widths.stored_color : widths.depth().code;
-  return static_cast<std::uint32_t>(wrap_unsigned(value, code.bits));
+std::uint8_t memory_garbage(std::uint32_t address) {
+  const std::uint32_t mixed = (address ^ 0xDEADBEEFU) * 0x9E3779B1U;  // an odd factor: no bit is lost
+  return static_cast<std::uint8_t>(mixed >> 24);
 }
 
-TileMemory::TileMemory(const Config& config) : widths_(derive_widths(config)) {
-  const auto tiles = static_cast<std::size_t>(widths_.tiles_x) * static_cast<std::size_t>(widths_.tiles_y);
-  block_.resize(2 * tiles, kNone);
-  if (config.cache_kind == CacheKind::blocks)
-    for (auto& plane : flags_)
-      plane.resize(tiles * static_cast<std::size_t>(widths_.blocks.per_tile * widths_.blocks.per_tile));
+TileMemory::TileMemory(const Config& config) : TileMemory(config, default_layout(derive_widths(config))) {}
+
+TileMemory::TileMemory(const Config& config, const MemoryLayout& layout)
+    : widths_(derive_widths(config)),
+      layout_(layout),
+      end_(layout_end(layout, widths_)),
+      has_flags_{true, config.frame_clears == FrameClears::flags},
+      page_((end_ - 1) / kPage + 1, kNone) {}
+
+std::uint8_t TileMemory::byte(std::uint32_t address) const {
+  const std::uint32_t page = page_[address / kPage];
+  return page == kNone ? memory_garbage(address) : bytes_[std::size_t{page} * kPage + address % kPage];
 }
 
-bool TileMemory::has(const MemoryRequest& request) const {
-  if (request.tile_y >= tiles_y()) return false;
-  if (request.plane == TilePlane::depth || request.plane == TilePlane::color)
-    return request.tile_x < tiles_x() && request.stamp < stamps();
-  return request.tile_x * widths_.blocks.flag_word < tiles_x() * widths_.blocks.per_tile &&
-         request.stamp < widths_.blocks.per_tile && !flags_[0].empty();
+std::span<const std::uint8_t> TileMemory::page(std::size_t n) const {
+  if (page_[n] == kNone) return {};
+  return std::span(bytes_).subspan(std::size_t{page_[n]} * kPage, kPage);
 }
 
-bool TileMemory::is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const {
-  const std::vector<std::uint8_t>& flags = flags_[is_color ? 1 : 0];
-  if (flags.empty()) return false;
-  const BlockAddress block = block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
-                                          static_cast<std::uint16_t>(stamp)},
-                                         widths_)
-                                 .block;
-  return flags[static_cast<std::size_t>(block.y * tiles_x() * widths_.blocks.per_tile + block.x)] != 0;
+void TileMemory::read(std::uint32_t address, MemoryBeat::Bytes& data) const {
+  for (int n = 0; n < widths_.port_bytes; ++n)
+    data[static_cast<std::size_t>(n)] = byte(address + static_cast<std::uint32_t>(n));
+}
+
+void TileMemory::write(const MemoryBeat& beat) {
+  if (beat.strobe == 0) return;
+  std::uint32_t& page = page_[beat.address / kPage];
+  if (page == kNone) {
+    page = static_cast<std::uint32_t>(bytes_.size() / kPage);
+    const std::uint32_t first = beat.address / kPage * kPage;
+    for (std::uint32_t n = 0; n < kPage; ++n) bytes_.push_back(memory_garbage(first + n));
+  }
+  std::uint8_t* bytes = bytes_.data() + std::size_t{page} * kPage + beat.address % kPage;
+  for (std::uint64_t left = beat.strobe; left != 0; left &= left - 1) {
+    const auto n = static_cast<std::size_t>(std::countr_zero(left));
+    bytes[n] = beat.data[n];
+  }
 }
 
 void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
                       std::span<std::uint32_t, kMaxSamples> data) const {
-  const std::uint32_t block = block_[index(is_color, tile_x, tile_y)];
-  if (block == kNone) {
-    for (int s = 0; s < samples(); ++s)
-      data[static_cast<std::size_t>(s)] = memory_garbage(is_color, tile_x, tile_y, stamp, s, widths_);
-    return;
+  const TilePlane plane = is_color ? TilePlane::color : TilePlane::depth;
+  const Width& code = is_color ? widths_.stored_color : widths_.depth().code;
+  std::uint32_t address = byte_address(plane, tile_x, tile_y, stamp, layout_, widths_);
+  for (int s = 0; s < samples(); ++s) {
+    std::uint32_t value = 0;
+    for (int n = 0; n < 1 << widths_.memory.sample[is_color ? 1 : 0]; ++n)
+      value |= std::uint32_t{byte(address++)} << 8 * n;
+    data[static_cast<std::size_t>(s)] = static_cast<std::uint32_t>(wrap_unsigned(value, code.bits));
   }
-  std::copy_n(lanes_.begin() + first_lane(block, stamp), samples(), data.begin());
 }
 
-void TileMemory::write(const MemoryRequest& request) {
-  if (request.plane == TilePlane::depth_flags || request.plane == TilePlane::color_flags) {
-    const int row = tiles_x() * widths_.blocks.per_tile, first = request.tile_x * widths_.blocks.flag_word;
-    const int y = request.tile_y * widths_.blocks.per_tile + request.stamp;
-    const std::uint64_t bits = flag_word(request, widths_);
-    auto& flags = flags_[request.plane == TilePlane::color_flags ? 1 : 0];
-    for (int x = first; x < std::min(row, first + widths_.blocks.flag_word); ++x)
-      flags[static_cast<std::size_t>(y * row + x)] = static_cast<std::uint8_t>(bits >> (x - first) & 1);
-    return;
-  }
-  const bool is_color = request.plane == TilePlane::color;
-  const int tile_x = request.tile_x, tile_y = request.tile_y;
-  std::uint32_t& block = block_[index(is_color, tile_x, tile_y)];
-  if (block == kNone) {
-    block = blocks_++;
-    for (int other = 0; other < stamps(); ++other)
-      for (int s = 0; s < samples(); ++s) lanes_.push_back(memory_garbage(is_color, tile_x, tile_y, other, s, widths_));
-  }
-  const std::ptrdiff_t first = first_lane(block, request.stamp);
-  request.strobe.for_each([&](std::size_t s) { lanes_[static_cast<std::size_t>(first) + s] = request.data[s]; });
+bool TileMemory::is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const {
+  if (!has_flags_[is_color ? 1 : 0]) return false;
+  const BlockAddress block = block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
+                                          static_cast<std::uint16_t>(stamp)},
+                                         widths_)
+                                 .block;
+  const TilePlane flags = is_color ? TilePlane::color_flags : TilePlane::depth_flags;
+  const std::uint32_t row = byte_address(flags, 0, tile_y, block.y % widths_.blocks.per_tile, layout_, widths_);
+  return (byte(row + block.x / 8U) >> block.x % 8U & 1) != 0;
 }
 
 Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config) {
@@ -111,12 +114,16 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
 }
 
 HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
+    : HardwareModel(config, sink, TileMemory(config)) {}
+
+HardwareModel::HardwareModel(const Config& config, PacketSink& sink, TileMemory memory)
     : config_(config),
       widths_(derive_widths(config)),
       sink_(sink),
       hiz_(config, widths_),
       cache_(std::in_place_type<TileCache>, config, widths_),
-      memory_(config) {
+      memory_(std::move(memory)),
+      port_(widths_, memory_.layout()) {
   if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
 }
 
@@ -192,16 +199,41 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   }
 }
 
-void HardwareModel::write(const MemoryRequest& request) {
+void HardwareModel::request(const MemoryRequest& request) {
   sink_.take(on<Arrow::request>, request);
-  memory_.write(request);
+  port_.take(request, [&](const MemoryBeat& beat) {
+    sink_.take(on<Arrow::beat>, beat);
+    if (beat.is_write) {
+      memory_.write(beat);
+      if (beat.length == 1) sink_.take(on<Arrow::answer>, MemoryAnswer{true, {}});
+      return;
+    }
+    MemoryAnswer answer;
+    for (std::uint32_t n = 0; n < beat.length; ++n) {
+      memory_.read(beat.address + (n << widths_.memory.port), answer.data);
+      sink_.take(on<Arrow::answer>, answer);
+      port_.answer(answer, [&](const MemoryResponse& response) {
+        sink_.take(on<Arrow::response>, response);
+        responses_.push_back(response);
+      });
+    }
+  });
 }
 
-const MemoryResponse& HardwareModel::read(const MemoryRequest& request) {
-  sink_.take(on<Arrow::request>, request);
-  memory_.read(request.plane == TilePlane::color, request.tile_x, request.tile_y, request.stamp, response_.data);
-  sink_.take(on<Arrow::response>, response_);
+const MemoryResponse& HardwareModel::response() {
+  response_ = responses_.front();
+  responses_.pop_front();
   return response_;
+}
+
+CounterPacket as_counted(CounterPacket counters, const Widths& widths) {
+  counters.overflow = false;
+  bool overflow = false;
+  for_each_value(std::as_const(counters), widths, [&overflow](const auto& value, const Width& width) {
+    overflow = overflow || to_bits(value) >> width.bits != 0;
+  });
+  counters.overflow = overflow;
+  return counters;
 }
 
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters) {
@@ -212,7 +244,7 @@ void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters
   counters.skipped.empty += counters.culled - culled_before_box;
   counters.skipped.zero_area += hardware.zero_area;
   counters.skipped.backface += hardware.backface;
-  counters.skipped.no_sample = hardware.no_sample;
+  counters.skipped.no_sample += hardware.no_sample;
   counters.skipped.tiles_outside = hardware.tiles_outside;
   counters.skipped.trivially_accepted = hardware.trivially_accepted;
   counters.skipped.tiles_hiz = hardware.tiles_hiz;
@@ -232,7 +264,7 @@ Rendering render_hardware(const Scene& scene, const Config& config, const Render
   DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
-    const std::uint32_t dropped_before = drawn.dropped(hardware.counters());
+    const std::uint64_t dropped_before = drawn.dropped(hardware.counters());
     hardware.run(primitive->packet, primitive->line);
     drawn.add(*primitive, drawn.dropped(hardware.counters()) == dropped_before);
     if (options.progress && ++sent % 4096 == 0) options.progress(host.progress());

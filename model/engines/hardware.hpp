@@ -2,6 +2,7 @@
 // a PacketSink on its way; the co-simulation compares the RTL's with them. Time is in cycle/cycle_model.hpp.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <span>
 #include <variant>
@@ -12,57 +13,53 @@
 #include "../stages/block_cache.hpp"
 #include "../stages/depth_test.hpp"
 #include "../stages/hiz.hpp"
+#include "../stages/memory_port.hpp"
 #include "../stages/tile_cache.hpp"
 #include "render.hpp"
 
 namespace halfplane {
 
-/// The lanes of a stamp that nobody has written yet: different everywhere, and the same for every TileMemory.
-[[nodiscard]] std::uint32_t memory_garbage(bool is_color, int tile_x, int tile_y, int stamp, int sample,
-                                           const Widths& widths);
+/// A byte of memory that nobody has written yet: the same in every TileMemory, and different in neighbouring ones.
+[[nodiscard]] std::uint8_t memory_garbage(std::uint32_t address);
 
-/// The memory behind the memory port: both planes, tile-major, a stamp at a time, and the flags of cleared blocks. Tiles
-/// are allocated when written.
+/// The memory behind the memory port: bytes, in which the host has laid out planes and flags. Pages come when they are written.
 class TileMemory {
  public:
   explicit TileMemory(const Config& config);
-  /// The first `samples` lanes of `data`; the others are left alone.
+  TileMemory(const Config& config, const MemoryLayout& layout);
+  /// Of a write.
+  void write(const MemoryBeat& beat);
+  /// The bytes of one beat.
+  void read(std::uint32_t address, MemoryBeat::Bytes& data) const;
+  /// Whether the target has what a beat is about.
+  [[nodiscard]] bool has(const MemoryBeat& beat) const { return beat.address < end_; }
+  /// The codes of a stamp: the first `samples` lanes of `data`; the others are left alone.
   void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
-  void write(const MemoryRequest& request);
-  /// Whether the target has what a request asks for.
-  [[nodiscard]] bool has(const MemoryRequest& request) const;
   /// The value that the last fast clear gave a plane: that of a block whose flag is set.
   void set_clear_value(TilePlane plane, std::uint32_t code) { clear_value_[static_cast<std::size_t>(plane)] = code; }
   [[nodiscard]] std::uint32_t clear_value(bool is_color) const { return clear_value_[is_color ? 1 : 0]; }
-  /// Whether memory's own stamp is garbage because its block's flag is set.
+  /// Whether the stamp is garbage because its block's flag is set. Behind a flush.
   [[nodiscard]] bool is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const;
-  /// Flags by block, rows of the widest target.
-  [[nodiscard]] const std::vector<std::uint8_t>& flags(bool is_color) const { return flags_[is_color ? 1 : 0]; }
+  [[nodiscard]] const MemoryLayout& layout() const { return layout_; }
   [[nodiscard]] int tiles_x() const { return widths_.tiles_x; }  ///< of the widest and highest target
   [[nodiscard]] int tiles_y() const { return widths_.tiles_y; }
   [[nodiscard]] int stamps() const { return widths_.stamps.stamps(); }  ///< of a tile
   [[nodiscard]] int samples() const { return widths_.samples; }         ///< of a stamp
-  /// Whether any stamp of the tile was ever written. Two memories with equal writes agree on it.
-  [[nodiscard]] bool is_written(bool is_color, int tile_x, int tile_y) const {
-    return block_[index(is_color, tile_x, tile_y)] != kNone;
-  }
+  [[nodiscard]] std::size_t pages() const { return page_.size(); }
+  static constexpr std::uint32_t kPage = 4096;  ///< bytes
+  /// All bytes of a page that was ever written; none of another one. Two memories with equal writes agree on it.
+  [[nodiscard]] std::span<const std::uint8_t> page(std::size_t n) const;
 
  private:
   static constexpr std::uint32_t kNone = ~0U;
-  [[nodiscard]] std::size_t index(bool is_color, int tile_x, int tile_y) const {
-    return (static_cast<std::size_t>(is_color ? widths_.tiles_y : 0) + static_cast<std::size_t>(tile_y)) *
-               static_cast<std::size_t>(widths_.tiles_x) +
-           static_cast<std::size_t>(tile_x);
-  }
-  [[nodiscard]] std::ptrdiff_t first_lane(std::uint32_t block, int stamp) const {
-    return (static_cast<std::ptrdiff_t>(block) * stamps() + stamp) * samples();
-  }
+  [[nodiscard]] std::uint8_t byte(std::uint32_t address) const;
   Widths widths_;
+  MemoryLayout layout_;
+  std::uint64_t end_;              ///< one beyond the last byte
+  std::array<bool, 2> has_flags_;  ///< of depth, of colour
   std::array<std::uint32_t, 2> clear_value_{};
-  std::array<std::vector<std::uint8_t>, 2> flags_;  ///< as the last flush wrote them
-  std::vector<std::uint32_t> block_;                ///< of each tile of each plane: which tile of lanes_, or kNone
-  std::uint32_t blocks_ = 0;                        ///< tiles in lanes_
-  std::vector<std::uint32_t> lanes_;                ///< stamp by stamp
+  std::vector<std::uint32_t> page_;  ///< which page of bytes_, or kNone
+  std::vector<std::uint8_t> bytes_;
 };
 
 /// The two images, as the memory holds them. Padding as in an empty target: farthest depth, opaque black.
@@ -72,6 +69,8 @@ class TileMemory {
 class HardwareModel final : private MemoryPort {
  public:
   HardwareModel(const Config& config, PacketSink& sink);
+  /// With a memory that may hold something already.
+  HardwareModel(const Config& config, PacketSink& sink, TileMemory memory);
   /// One primitive, to its last write: every packet that follows from it. `line`: there if and only if its kind is line.
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);
   [[nodiscard]] const CounterPacket& counters() const { return counters_; }
@@ -80,8 +79,8 @@ class HardwareModel final : private MemoryPort {
  private:
   void join(const FragmentPacket& fragment);
   void shade(const FragmentPacket& fragment);
-  void write(const MemoryRequest& request) override;
-  const MemoryResponse& read(const MemoryRequest& request) override;
+  void request(const MemoryRequest& request) override;
+  const MemoryResponse& response() override;
 
   Config config_;
   Widths widths_;
@@ -91,21 +90,27 @@ class HardwareModel final : private MemoryPort {
   TileVisit visit_;  ///< what the stamps of the current tile visit have done so far
   std::variant<TileCache, BlockCache> cache_;
   TileMemory memory_;
+  PortStage port_;
+  std::deque<MemoryResponse> responses_;  ///< to what has been asked for
   MemoryResponse response_;
   std::uint8_t slot_ = 0;  ///< context slot of the next primitive
 };
+
+/// The counters of the RTL after so many items: `overflow` tells whether one of them has passed its width.
+[[nodiscard]] CounterPacket as_counted(CounterPacket counters, const Widths& widths);
 
 /// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
 /// least one piece passed cull.
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters);
 
-/// Counts the input triangles of which at least one piece passes cull. Their pieces come one after the other.
+/// Counts the input triangles of which at least one piece passes cull, where the host does not. Their pieces come one
+/// after the other.
 class DrawnCount {
  public:
   /// Primitives that cull has dropped so far.
-  [[nodiscard]] static std::uint32_t dropped(const CounterPacket& c) { return c.zero_area + c.backface + c.empty; }
+  [[nodiscard]] static std::uint64_t dropped(const CounterPacket& c) { return c.zero_area + c.backface + c.empty; }
   void add(const HostPrimitive& primitive, bool is_kept) {
-    if (primitive.packet.kind != PrimitiveKind::triangle || !is_kept) return;
+    if (primitive.packet.kind != PrimitiveKind::triangle || primitive.is_part || !is_kept) return;
     if (last_ == primitive.primitive) return;
     ++count_;
     last_ = primitive.primitive;

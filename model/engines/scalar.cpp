@@ -38,14 +38,14 @@ struct NumberedTriangle {
 };
 
 /// One covered sample of a triangle through interpolate, depth_test and rop.
-void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Widths& widths,
+void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Surface* surface, const Widths& widths,
                   const RenderOptions& options, const NumberedTriangle& t, int x, int y, Rendering& rendering) {
   const Interpolated value = interpolate_by_rules(setup, options.rules, widths, x, y);
   if (options.fragment_tap)
     options.fragment_tap(tapped(value, t.triangle, t.index, context.config.local_guard_bits, x, y));
-  shade_sample(
-      context, options, x, y, value.code[kDepthPlane], [&value] { return color_channels(value.code); }, setup.primitive,
-      static_cast<std::int32_t>(t.index), rendering);
+  const auto color = [&] { return surface != nullptr ? surface_channels(*surface, x, y) : color_channels(value.code); };
+  shade_sample(context, options, x, y, value.code[kDepthPlane], color, setup.primitive,
+               static_cast<std::int32_t>(t.index), rendering);
 }
 
 /// What stays the same over a scene.
@@ -64,6 +64,7 @@ void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const 
   const int shift = widths.tile_shift;
   const SetupPacket packet = to_setup_packet(setup, widths);
   const EdgeContext edges = make_edge_context(setup);
+  const std::optional<Surface> surface = surface_of(context, t.triangle, setup, widths);
   Counters& counters = rendering.counters;
   for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y) {
     for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x) {
@@ -86,8 +87,8 @@ void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const 
           const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
           const int i = origin.x + pixel.x, j = origin.y + pixel.y;
           mask[static_cast<std::size_t>(j)] |= 1U << i;
-          shade_sample(context, setup, engine.widths, engine.options, t, (tile_x << shift) + i, (tile_y << shift) + j,
-                       rendering);
+          shade_sample(context, setup, surface ? &*surface : nullptr, engine.widths, engine.options, t,
+                       (tile_x << shift) + i, (tile_y << shift) + j, rendering);
         });
       });
       if (engine.options.coverage_tap) engine.options.coverage_tap(t.index, tile_x, tile_y, mask);
@@ -134,9 +135,10 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
   const bool taps = static_cast<bool>(engine.options.coverage_tap) && !setup.is_empty();
   std::optional<TapTiles> tiles;
   if (taps && rules.traversal != Traversal::tiled) tiles.emplace(setup, engine.widths.tile_shift);
+  const std::optional<Surface> surface = surface_of(context, t.triangle, setup, engine.widths);
   const auto emit = [&](int x, int y) {
     if (tiles) tiles->add(x, y);
-    shade_sample(context, setup, engine.widths, engine.options, t, x, y, rendering);
+    shade_sample(context, setup, surface ? &*surface : nullptr, engine.widths, engine.options, t, x, y, rendering);
   };
   std::uint64_t& tested = rendering.counters.samples_tested;
   switch (rules.traversal) {
@@ -159,6 +161,9 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
 /// The triangles of a draw without geometric clipping.
 void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, std::uint32_t& primitive,
                       Rendering& rendering) {
+  if (has_surface(context.state))
+    throw InputError(place_of_draw(context.scene.name, context.draw.line) +
+                     ": --clipping homogeneous has no textures and no colours over w: use --clipping polygon");
   const HomogeneousFrame frame{engine.config, engine.widths, context.state, context.viewport, context.rect};
   Counters& counters = rendering.counters;
   for_each_homogeneous(context.scene, context.draw, frame, [&](const HomogeneousSetup& setup) {

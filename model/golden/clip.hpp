@@ -16,6 +16,7 @@ template <class Real>
 struct ClipVertex {
   std::array<Real, 4> position{};  ///< x, y, z, w
   std::array<Real, 4> rgba{};      ///< 0...255
+  std::array<Real, 2> uv{};        ///< of the texture
 };
 
 /// A half-space: inside where the dot product with the position is >= 0.
@@ -50,6 +51,7 @@ template <class Real>
     v.position[k] = inside.position[k] + t * (outside.position[k] - inside.position[k]);
     v.rgba[k] = inside.rgba[k] + t * (outside.rgba[k] - inside.rgba[k]);
   }
+  for (std::size_t k = 0; k < 2; ++k) v.uv[k] = inside.uv[k] + t * (outside.uv[k] - inside.uv[k]);
   return v;
 }
 

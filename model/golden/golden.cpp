@@ -162,7 +162,9 @@ class Renderer {
     const auto real = [](double value) { return static_cast<Real>(value); };
     const Vertex& v = scene_.vertices[position];
     const auto& rgba = scene_.vertices[color].rgba;
-    return {{real(v.x), real(v.y), real(v.z), real(v.w)}, {real(rgba[0]), real(rgba[1]), real(rgba[2]), real(rgba[3])}};
+    return {{real(v.x), real(v.y), real(v.z), real(v.w)},
+            {real(rgba[0]), real(rgba[1]), real(rgba[2]), real(rgba[3])},
+            {real(v.u), real(v.v)}};
   }
 
   /// From clip or window space to pixels.
@@ -216,9 +218,9 @@ class Renderer {
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
         if (!covers(t, e)) continue;
-        Fragment<Real> fragment = interpolate(t, e, rule_of(d));
+        Fragment<Real> fragment = interpolate(t, e, rules_of(d));
         fragment.z += d.offset;
-        shade(x, y, fragment, d);
+        shade_triangle(x, y, fragment, d);
       }
     }
   }
@@ -231,7 +233,7 @@ class Renderer {
     for (auto& end : v) end.z += d.offset;
     const Line<Real> line{v[0], v[1], d.state.line_rule, drops_last_pixel(d.state)};
     for_each_candidate(line, d.region, 1, [&](int x, int y) {
-      if (covers(line, x, y)) shade(x, y, interpolate(line, x, y, rule_of(d)), d);
+      if (covers(line, x, y)) shade(x, y, interpolate(line, x, y, rules_of(d)), d);
     });
   }
 
@@ -241,7 +243,7 @@ class Renderer {
     add_outline(std::span(&at, 1), d);
     d.was_drawn = true;
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
-    const Fragment<Real> fragment{at.z + d.offset, at.rgba};
+    const Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
     for (int y = range.begin_y; y < range.end_y; ++y)
       for (int x = range.begin_x; x < range.end_x; ++x) shade(x, y, fragment, d);
   }
@@ -285,15 +287,25 @@ class Renderer {
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
         if (!(t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]))) continue;
-        shade(x, y, interpolate(t, e, rule_of(d)), d);
+        shade_triangle(x, y, interpolate(t, e, rules_of(d)), d);
       }
     }
   }
 
-  [[nodiscard]] ColorInterp rule_of(const DrawAtWork& d) const {
-    return options_.color_interp.value_or(d.state.color_interp);
+  [[nodiscard]] InterpolationRules rules_of(const DrawAtWork& d) const {
+    return {options_.color_interp.value_or(d.state.color_interp), d.state.texture_interp};
   }
 
+  /// A fragment of a triangle: its texture, if it has one, then shade().
+  void shade_triangle(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
+    if (d.state.texture) {
+      const Texture& texture = scene_.textures[*d.state.texture];
+      const Color color = combined(widen(fragment.rgba), filtered(texture, d.state, fragment.texture),
+                                   d.state.texture_combine, has_alpha(texture.format));
+      for (std::size_t c = 0; c < 4; ++c) fragment.rgba[c] = static_cast<Real>(color[c]);
+    }
+    shade(x, y, fragment, d);
+  }
   void shade(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
     if (d.offset != 0) fragment.z = std::clamp(fragment.z, Real(0), Real(1));
     const std::size_t p = pixel(x, y);

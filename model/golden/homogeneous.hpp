@@ -25,6 +25,7 @@ struct HomogeneousVertex {
   Real z = 0;                  ///< window depth, times w
   Real near = 0, far = 0;      ///< not negative on the inner side of the plane
   std::array<Real, 4> rgba{};  ///< 0...255
+  std::array<Real, 2> uv{};    ///< of the texture
 };
 
 /// a x + b y + c in pixels: the cross product of two vertices.
@@ -66,7 +67,8 @@ template <class Real>
           low * w + (high - low) * depth,
           is_zero_one ? z : z + w,
           w - z,
-          v.rgba};
+          v.rgba,
+          v.uv};
 }
 
 template <class Real>
@@ -112,16 +114,22 @@ template <class Real>
   return near >= 0 && far >= 0;
 }
 
-/// The attributes there. Affine colour is so over the whole triangle, as given; with a vertex behind the eye that has no
-/// meaning on the screen, and both rules are perspective.
+/// The attributes there. What is affine is so over the whole triangle, as given; with a vertex behind the eye that has no
+/// meaning on the screen, and it is perspective.
 template <class Real>
 [[nodiscard]] Fragment<Real> interpolate(const HomogeneousSetup<Real>& t, const std::array<Real, 3>& e,
-                                         ColorInterp rule) {
+                                         InterpolationRules rules) {
   const auto& [v0, v1, v2] = t.v;
   // sum e_i w_i is the determinant; summed from these values, it keeps a depth equal at all vertices to one ulp or so.
   const Real one = e[0] * v0.w + e[1] * v1.w + e[2] * v2.w, inverse_w = e[0] + e[1] + e[2];
-  const bool is_affine = rule == ColorInterp::affine && t.is_in_front;
+  const bool is_affine = rules.color == ColorInterp::affine && t.is_in_front;
   Fragment<Real> f;
+  std::array<Slope<Real>, 3> weight;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Real w = rules.texture == TextureInterp::affine && t.is_in_front ? t.v[i].w : Real(1);
+    weight[i] = {w * e[i], w * t.edge[i].a, w * t.edge[i].b};
+  }
+  f.texture = texture_at(weight, t.v);
   f.z = (e[0] * v0.z + e[1] * v1.z + e[2] * v2.z) / one;
   for (std::size_t c = 0; c < 4; ++c) {
     const Real d1 = v1.rgba[c] - v0.rgba[c], d2 = v2.rgba[c] - v0.rgba[c];

@@ -120,11 +120,11 @@ void for_each_candidate(const Line<Real>& line, const PixelRange& range, int mar
 
 /// The attributes at a pixel of the line, by its coordinate on the major axis.
 template <class Real>
-[[nodiscard]] Fragment<Real> interpolate(const Line<Real>& line, int x, int y, ColorInterp rule) {
+[[nodiscard]] Fragment<Real> interpolate(const Line<Real>& line, int x, int y, InterpolationRules rules) {
   const Real t = Track<Real>(line).parameter(x, y);
   const ScreenVertex<Real>&a = line.start, &b = line.end;
   const auto blend = [](Real from, Real to, Real part) { return part == 1 ? to : from + part * (to - from); };
-  const bool has_w = rule == ColorInterp::perspective && a.inverse_w > 0 && b.inverse_w > 0;
+  const bool has_w = rules.color == ColorInterp::perspective && a.inverse_w > 0 && b.inverse_w > 0;
   const Real part = has_w ? t * b.inverse_w / blend(a.inverse_w, b.inverse_w, t) : t;
   Fragment<Real> f;
   f.z = blend(a.z, b.z, t);

@@ -17,6 +17,7 @@ struct ScreenVertex {
   Real z = 0;         ///< window depth, 0...1
   Real inverse_w = 1;
   std::array<Real, 4> rgba{};  ///< 0...255
+  std::array<Real, 2> uv{};    ///< of the texture
 };
 
 /// A rectangle of pixels, half-open: `end_x` and `end_y` are no longer of it. (Boxes and bounds of the model are
@@ -64,7 +65,7 @@ template <class Real>
   const auto offset = static_cast<Real>(first_pixel_offset(state));
   const Real from_origin = y + offset;
   const bool is_up = state.origin == Origin::bottom_left;
-  return {x + offset, is_up ? static_cast<Real>(scene.height) - from_origin : from_origin, z, 1 / w, v.rgba};
+  return {x + offset, is_up ? static_cast<Real>(scene.height) - from_origin : from_origin, z, 1 / w, v.rgba, v.uv};
 }
 
 [[nodiscard]] inline Viewport viewport_of(const Scene& scene, const State& state) {
@@ -93,8 +94,11 @@ template <class Real>
   const auto near = static_cast<Real>(state.depth_range[0]), far = static_cast<Real>(state.depth_range[1]);
   const Real depth = state.clip_z == ClipZ::zero_one ? z : (z + 1) / 2;
   return {static_cast<Real>(vp.x) + (x + 1) / 2 * static_cast<Real>(vp.width),
-          static_cast<Real>(vp.y) + (1 - y) / 2 * static_cast<Real>(vp.height), near + (far - near) * depth, 1 / w,
-          v.rgba};
+          static_cast<Real>(vp.y) + (1 - y) / 2 * static_cast<Real>(vp.height),
+          near + (far - near) * depth,
+          1 / w,
+          v.rgba,
+          v.uv};
 }
 
 }  // namespace halfplane::golden

@@ -1,21 +1,12 @@
 #include "block_cache.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace halfplane {
 namespace {
 
 std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-
-/// Of a read; a write adds its strobes and data.
-MemoryRequest request_of(TilePlane plane, const StampAddress& at) {
-  MemoryRequest request;
-  request.plane = plane;
-  request.tile_x = at.tile_x;
-  request.tile_y = at.tile_y;
-  request.stamp = at.stamp;
-  return request;
-}
 
 }  // namespace
 
@@ -42,7 +33,8 @@ std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment
   std::ranges::fill(stored_, last_.source == DepthSource::clear ? clear_value_[0] : 0);
   if (last_.source == DepthSource::clear) ++counters.tile_clears;
   if (last_.source == DepthSource::memory) {
-    const MemoryResponse& response = memory.read(request_of(TilePlane::depth, at));
+    memory.request(request_of(TilePlane::depth, at));
+    const MemoryResponse& response = memory.response();
     std::ranges::transform(std::span(response.data).first(stored_.size()), stored_.begin(),
                            [mask = code_mask_[0]](std::uint32_t lane) { return lane & mask; });
     ++counters.tile_fills;
@@ -73,6 +65,7 @@ void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet
 /// The requests that an eviction comes to, before anything new is written into its line.
 void BlockCache::capture(const Eviction& eviction) {
   Victim& victim = victims_.emplace_back();
+  std::array<std::uint64_t, 2> stamps{};  // that are written, by plane
   for (const TilePlane plane : kTilePlanes) {
     const std::size_t p = number(plane);
     for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
@@ -88,14 +81,19 @@ void BlockCache::capture(const Eviction& eviction) {
       const auto codes = lanes(plane, at);
       request.strobe.for_each([&](std::size_t s) { request.data[s] = held.has(s) ? codes[s] : clear_value_[p]; });
       victim.requests.push_back(request);
+      stamps[p] |= std::uint64_t{1} << stamp;
     }
   }
+  auto request = victim.requests.begin();
+  for (std::uint64_t left : stamps)  // stamps that follow each other are a run
+    for (; left != 0; left &= left - 1)
+      request++->run = static_cast<std::uint16_t>(std::countr_one(left >> std::countr_zero(left)));
 }
 
 void BlockCache::write_victims(int count, MemoryPort& memory, CounterPacket& counters) {
   for (; count > 0; --count) {
     for (const MemoryRequest& request : victims_.front().requests) {
-      memory.write(request);
+      memory.request(request);
       ++counters.tile_evictions;
     }
     victims_.pop_front();
@@ -116,29 +114,26 @@ void BlockCache::fast_clear(const FragmentPacket& token, std::uint32_t color, Me
   if (!(clears[0] && clears[1])) evict_all(memory, counters);
   write_victims(directory_.write_all(), memory, counters);
   directory_.mark(token.key.tile_x, token.key.tile_y, clears);
+  directory_.drop_depth(token.state.drops_depth());
   if (clears[0]) clear_value_[0] = token.code[0][kDepthPlane];
   if (clears[1]) clear_value_[1] = color;
 }
 
 void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters) {
+  directory_.drop_depth(token.state.drops_depth());
   evict_all(memory, counters);
   write_victims(directory_.write_all(), memory, counters);
   const int last_x = token.key.tile_x, last_y = token.key.tile_y;
-  const auto write_flags = [&](TilePlane plane, TilePlane flags) {
+  const int words = directory_.words_of((last_x + 1) * widths_.blocks.per_tile - 1);  // of a row
+  const auto write_flags = [&](TilePlane plane) {
     directory_.for_each_flag_word(plane, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
-      const int per_tile = widths_.blocks.per_tile;
-      MemoryRequest request =
-          request_of(flags, {static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
-                             static_cast<std::uint16_t>(y % per_tile)});
-      request.is_write = true;
-      request.strobe = SampleMask::all(widths_.samples);
-      set_flag_word(request, bits, widths_);
-      memory.write(request);
+      memory.request(flag_word_request(plane, word, words, y, bits, widths_));
     });
   };
-  write_flags(TilePlane::depth, TilePlane::depth_flags);
+  if (!directory_.drops_depth()) write_flags(TilePlane::depth);
+  directory_.drop_depth(false);
   if (config_.frame_clears == FrameClears::flags) {
-    write_flags(TilePlane::color, TilePlane::color_flags);
+    write_flags(TilePlane::color);
     return;
   }
   directory_.for_each_flag_word(TilePlane::color, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
@@ -148,9 +143,10 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
         const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
         MemoryRequest request = request_of(TilePlane::color, stamp_address({block, stamp}, widths_));
         request.is_write = true;
+        request.run = static_cast<std::uint16_t>(widths_.blocks.stamps() - stamp);
         request.strobe = SampleMask::all(widths_.samples);
         request.strobe.for_each([&](std::size_t s) { request.data[s] = clear_value_[1]; });
-        memory.write(request);
+        memory.request(request);
         ++counters.tile_evictions;
       }
     }

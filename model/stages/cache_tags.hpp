@@ -12,49 +12,9 @@
 #include <optional>
 #include <vector>
 
-#include "../packets.hpp"
+#include "clear_flags.hpp"
 
 namespace halfplane {
-
-/// A block of the target, in blocks.
-struct BlockAddress {
-  std::uint16_t x = 0, y = 0;
-  bool operator==(const BlockAddress&) const = default;
-};
-
-/// A stamp, by its tile or by its block.
-struct StampAddress {
-  std::uint16_t tile_x = 0, tile_y = 0, stamp = 0;
-};
-struct BlockStamp {
-  BlockAddress block;
-  int stamp = 0;  ///< row-major number in the block
-};
-
-[[nodiscard]] inline BlockStamp block_stamp(const StampAddress& at, const Widths& widths) {
-  const BlockGrid& grid = widths.blocks;
-  const int x = at.stamp % widths.stamps.stamps_per_row, y = at.stamp / widths.stamps.stamps_per_row;
-  return {{static_cast<std::uint16_t>(at.tile_x * grid.per_tile + x / grid.side),
-           static_cast<std::uint16_t>(at.tile_y * grid.per_tile + y / grid.side)},
-          y % grid.side * grid.side + x % grid.side};
-}
-
-[[nodiscard]] inline StampAddress stamp_address(const BlockStamp& at, const Widths& widths) {
-  const BlockGrid& grid = widths.blocks;
-  const int x = at.block.x % grid.per_tile * grid.side + at.stamp % grid.side;
-  const int y = at.block.y % grid.per_tile * grid.side + at.stamp / grid.side;
-  return {static_cast<std::uint16_t>(at.block.x / grid.per_tile),
-          static_cast<std::uint16_t>(at.block.y / grid.per_tile),
-          static_cast<std::uint16_t>(y * widths.stamps.stamps_per_row + x)};
-}
-
-/// Where the depth test finds what is stored under a stamp.
-enum class DepthSource : std::uint8_t {
-  none,    ///< it does not look: `always`, with a full mask
-  chip,    ///< on the chip
-  clear,   ///< the last fast clear's value
-  memory,  ///< a read
-};
 
 /// What leaves a line.
 struct Eviction {
@@ -74,8 +34,7 @@ struct TagResult {
   DepthSource source = DepthSource::none;
   bool starts_color = false;  ///< the first colours of this stamp: the others of it are not on the chip
 
-  /// A flag falls: the hardware has to read and write a word of flags.
-  [[nodiscard]] bool clears_flag() const { return eviction && (eviction->fills[0] || eviction->fills[1]); }
+  int flag_cycles = 0;  ///< a flag falls: its word is written, and read before unless it is the one that was looked at
 };
 
 class CacheTags {
@@ -83,15 +42,12 @@ class CacheTags {
   CacheTags(const Config& config, const Widths& widths)
       : widths_(widths),
         victims_(static_cast<std::size_t>(config.cache_victims)),
-        blocks_x_(static_cast<std::size_t>(widths.tiles_x * widths.blocks.per_tile)),
-        lines_(static_cast<std::size_t>(config.cache_lines)) {
-    for (auto& plane : is_cleared_)
-      plane.resize(blocks_x_ * static_cast<std::size_t>(widths.tiles_y * widths.blocks.per_tile));
-  }
+        lines_(static_cast<std::size_t>(config.cache_lines)),
+        flags_(widths) {}
 
   [[nodiscard]] std::size_t lines() const { return lines_.size(); }
   /// Flags of a row of the widest target, in words.
-  [[nodiscard]] int flag_words() const { return words_of(static_cast<int>(blocks_x_) - 1); }
+  [[nodiscard]] int flag_words() const { return words_of(widths_.tiles_x * widths_.blocks.per_tile - 1); }
 
   /// A fragment with covered samples; `is_full`: all of its stamp.
   TagResult access(const StampAddress& at, const PrimitiveState& state, bool is_full) {
@@ -104,8 +60,13 @@ class CacheTags {
     if (!line.is_valid || line.block != place.block) {
       result.writes = write_up_to(place.block);
       evict(line, result);
-      line = {true, place.block, 0,
-              0,    false,       {flag(TilePlane::depth, place.block) != 0, flag(TilePlane::color, place.block) != 0}};
+      const BlockAddress old = line.block;
+      if (result.flag_cycles != 0 && old.y == place.block.y && word_of(old.x) == word_of(place.block.x))
+        result.flag_cycles = 1;
+      line = {};
+      line.is_valid = true;
+      line.block = place.block;
+      line.is_cleared = {flags_.is_set(TilePlane::depth, place.block), flags_.is_set(TilePlane::color, place.block)};
     }
     if ((line.known & stamp) != 0)
       result.source = DepthSource::chip;
@@ -117,6 +78,10 @@ class CacheTags {
     if (state.color_write) line.colored |= stamp;
     return result;
   }
+
+  /// Whether depth that leaves the chip from now on is lost: the flag of its block stays as it is.
+  void drop_depth(bool drops) { drops_depth_ = drops; }
+  [[nodiscard]] bool drops_depth() const { return drops_depth_; }
 
   /// Empties every line: visit(TagResult), in order.
   template <class Visit>
@@ -140,30 +105,19 @@ class CacheTags {
   /// A fast clear of the planes in `clears`, tiles (0, 0) to (last_x, last_y). Nothing is on the chip behind it.
   void mark(int last_x, int last_y, const std::array<bool, 2>& clears) {
     for (Line& line : lines_) line = {};
-    for (const TilePlane plane : kTilePlanes)
-      if (clears[number(plane)])
-        for_each_block(last_x, last_y, [&](const BlockAddress& block) { flag(plane, block) = 1; });
+    flags_.mark(last_x, last_y, clears);
   }
 
   /// The words of the flags of a plane: visit(x, y, word), word x of the row y of blocks.
   template <class Visit>
   void for_each_flag_word(TilePlane plane, int last_x, int last_y, Visit&& visit) const {
-    const int blocks = (last_x + 1) * widths_.blocks.per_tile, size = widths_.blocks.flag_word;
-    for (int y = 0; y < (last_y + 1) * widths_.blocks.per_tile; ++y)
-      for (int word = 0; word * size < blocks; ++word) {
-        std::uint64_t bits = 0;
-        for (int x = word * size; x < std::min(blocks, (word + 1) * size); ++x)
-          bits |= std::uint64_t{is_cleared_[number(plane)][index(block_at(x, y))]} << (x - word * size);
-        visit(word, y, bits);
-      }
+    flags_.for_each_word(plane, last_x, last_y, visit);
   }
 
   /// Their clear colours are in memory.
-  void resolve(TilePlane plane, int last_x, int last_y) {
-    for_each_block(last_x, last_y, [&](const BlockAddress& block) { flag(plane, block) = 0; });
-  }
+  void resolve(TilePlane plane, int last_x, int last_y) { flags_.resolve(plane, last_x, last_y); }
 
-  [[nodiscard]] int words_of(int last_block) const { return last_block / widths_.blocks.flag_word + 1; }
+  [[nodiscard]] int words_of(int last_block) const { return word_of(last_block) + 1; }
 
  private:
   struct Line {
@@ -176,22 +130,11 @@ class CacheTags {
   };
 
   [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-  [[nodiscard]] static BlockAddress block_at(int x, int y) {
-    return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-  }
-  [[nodiscard]] std::size_t index(const BlockAddress& block) const { return block.y * blocks_x_ + block.x; }
-  [[nodiscard]] std::uint8_t& flag(TilePlane plane, const BlockAddress& block) {
-    return is_cleared_[number(plane)][index(block)];
-  }
+  /// Of the words of a row of blocks.
+  [[nodiscard]] int word_of(int x) const { return x / widths_.blocks.flag_word; }
   [[nodiscard]] std::size_t line_of(const BlockAddress& block) const {
     const auto low = [](int value, int bits) { return static_cast<std::size_t>(value & ((1 << bits) - 1)); };
     return low(block.y, widths_.line_y_bits) << widths_.line_x_bits | low(block.x, widths_.line_x_bits);
-  }
-
-  template <class Visit>
-  void for_each_block(int last_x, int last_y, Visit&& visit) const {
-    for (int y = 0; y < (last_y + 1) * widths_.blocks.per_tile; ++y)
-      for (int x = 0; x < (last_x + 1) * widths_.blocks.per_tile; ++x) visit(block_at(x, y));
   }
 
   /// A block that is wanted may be on its way to memory: how many evictions have to go first, the newest of it the last.
@@ -205,15 +148,17 @@ class CacheTags {
   }
 
   void evict(const Line& line, TagResult& result) {
-    if (!line.is_valid || (!line.has_depth && line.colored == 0)) return;
+    const bool stores_depth = line.has_depth && !drops_depth_;
+    if (!line.is_valid || (!stores_depth && line.colored == 0)) return;
     Eviction& e = result.eviction.emplace();
     e.line = result.line;
     e.block = line.block;
-    e.stamps = {line.has_depth ? line.known : 0, line.colored};
+    e.stamps = {stores_depth ? line.known : 0, line.colored};
     for (const TilePlane plane : kTilePlanes) {
       e.fills[number(plane)] = e.stamps[number(plane)] != 0 && line.is_cleared[number(plane)];
-      if (e.fills[number(plane)]) flag(plane, line.block) = 0;
+      if (e.fills[number(plane)]) flags_.fall(plane, line.block);
     }
+    if (e.fills[0] || e.fills[1]) result.flag_cycles = 2;
     if (unwritten_.size() == victims_) {
       unwritten_.pop_front();
       ++result.writes;
@@ -222,10 +167,11 @@ class CacheTags {
   }
 
   Widths widths_;
-  std::size_t victims_, blocks_x_;
+  std::size_t victims_;
+  bool drops_depth_ = false;
   std::vector<Line> lines_;
-  std::deque<BlockAddress> unwritten_;                   ///< evictions whose data wait, oldest first
-  std::array<std::vector<std::uint8_t>, 2> is_cleared_;  ///< by plane and block: memory holds garbage
+  std::deque<BlockAddress> unwritten_;  ///< evictions whose data wait, oldest first
+  ClearFlags flags_;
 };
 
 }  // namespace halfplane

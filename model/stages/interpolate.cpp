@@ -2,15 +2,7 @@
 
 namespace halfplane {
 
-namespace {
-
-/// Where a pixel is: its tile, and how many pixels it lies from the tile's anchor.
-struct Place {
-  TileOffset tile;
-  std::uint64_t i, j;
-};
-
-Place place_of(const TriangleSetup& setup, const Widths& widths, int x, int y) {
+PixelPlace place_of(const TriangleSetup& setup, const Widths& widths, int x, int y) {
   const int tile_x = x >> widths.tile_shift, tile_y = y >> widths.tile_shift;
   const int half_tile = 1 << (widths.tile_shift - 1);
   return {tile_offset(setup, tile_x, tile_y, widths),
@@ -18,7 +10,9 @@ Place place_of(const TriangleSetup& setup, const Widths& widths, int x, int y) {
           static_cast<std::uint64_t>(std::int64_t{y - (tile_y << widths.tile_shift) - half_tile})};
 }
 
-inline PlaneSample sample_at(const TriangleSetup& setup, std::size_t p, const Widths& widths, const Place& place) {
+namespace {
+
+inline PlaneSample sample_at(const TriangleSetup& setup, std::size_t p, const Widths& widths, const PixelPlace& place) {
   const AttributeWidths& attribute = widths.of_plane(p);
   const LocalFormat<std::uint64_t> format(attribute);
   const PlaneValue anchor = plane_at_tile(setup.plane[p], place.tile, attribute.plane.bits);
@@ -38,7 +32,7 @@ PlaneSample plane_at(const TriangleSetup& setup, std::size_t p, const Widths& wi
 }
 
 Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
-  const Place place = place_of(setup, widths, x, y);
+  const PixelPlace place = place_of(setup, widths, x, y);
   Interpolated result;
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const PlaneSample sample = sample_at(setup, p, widths, place);

@@ -33,15 +33,23 @@ struct LocalFormat {
   [[nodiscard]] constexpr Lane offset() const { return Lane{1} << (bits - 1 + guard_bits); }
 };
 
-/// Narrows a plane at a tile's anchor: both roundings are to the nearest 2^-l LSB.
+/// Narrows a plane at a tile's anchor to l = `guard_bits`: both roundings are to the nearest 2^-l LSB.
+template <class Lane>
+[[nodiscard]] inline LocalPlane<Lane> narrow_plane(PlaneValue anchor, const Plane& plane, int guard_bits,
+                                                   const Widths& widths) {
+  const int drop = widths.plane_fraction - guard_bits;  // F - l
+  return {static_cast<Lane>(round_shift(anchor, drop)),
+          static_cast<Lane>(round_shift(plane.step_x, drop - widths.grid_bits)),
+          static_cast<Lane>(round_shift(plane.step_y, drop - widths.grid_bits))};
+}
+
+/// The same for a plane of codes: with what makes decode() a shift.
 template <class Lane>
 [[nodiscard]] inline LocalPlane<Lane> local_plane(PlaneValue anchor, const Plane& plane,
                                                   const LocalFormat<Lane>& format, const Widths& widths) {
-  const int drop = widths.plane_fraction - format.guard_bits;  // F - l
-  const Lane half = Lane{1} << (format.guard_bits - 1);
-  return {static_cast<Lane>(static_cast<Lane>(round_shift(anchor, drop)) + format.offset() + half),
-          static_cast<Lane>(round_shift(plane.step_x, drop - widths.grid_bits)),
-          static_cast<Lane>(round_shift(plane.step_y, drop - widths.grid_bits))};
+  LocalPlane<Lane> local = narrow_plane<Lane>(anchor, plane, format.guard_bits, widths);
+  local.anchor = static_cast<Lane>(local.anchor + format.offset() + (Lane{1} << (format.guard_bits - 1)));
+  return local;
 }
 
 /// The rounded code of an accumulated local value, clamped to [low, high]. SignedLane: signed type of the lane's size.
@@ -52,6 +60,13 @@ template <class SignedLane, class Lane>
                     static_cast<SignedLane>(SignedLane{1} << (format.bits - 1));
   return code < low ? low : code > high ? high : code;
 }
+
+/// Where a pixel is: its tile, and how many pixels it lies from the tile's anchor, modulo 2^64.
+struct PixelPlace {
+  TileOffset tile;
+  std::uint64_t i, j;
+};
+[[nodiscard]] PixelPlace place_of(const TriangleSetup& setup, const Widths& widths, int x, int y);
 
 /// Every plane at one pixel.
 struct Interpolated {

@@ -1,8 +1,9 @@
 // Tile cache: the on-chip depth and colour of a few tiles, written back to memory, and the flags of fast-cleared tiles.
 //
 // In: accesses to tiles, writes, fast clears, flushes, in program order. Out: memory requests in program order: on a
-// miss the old tile's dirty planes, then the new tile's reads. A tile whose plane is flagged as cleared is filled on the
-// chip; the flag falls when that plane goes to memory. What moves is for tile_directory.hpp to say; here is the data.
+// miss the stamps of the old tile that were written, with a strobe a sample, then reads of the new tile's depth. Where a
+// plane is flagged as cleared the tile begins with the clear value, and all of it goes to memory: then the flag falls. What
+// moves is for tile_directory.hpp to say; here is the data.
 #pragma once
 
 #include <span>
@@ -19,9 +20,6 @@ class TileCache {
   /// Makes the fragment's tile resident. Returns the depth codes under it.
   std::span<const std::uint32_t> access(const FragmentPacket& fragment, MemoryPort& memory, CounterPacket& counters);
 
-  /// The codes of one stamp of a resident tile.
-  [[nodiscard]] std::span<const std::uint32_t> stored(TilePlane plane, int tile_x, int tile_y, int stamp) const;
-
   /// Writes what came of a fragment into its tile, which is resident.
   void write(const FragmentPacket& fragment, const WritePacket& packet);
 
@@ -34,14 +32,21 @@ class TileCache {
  private:
   struct DataMover;
 
-  [[nodiscard]] std::size_t first_lane(std::size_t line, int stamp) const;
-  [[nodiscard]] std::span<std::uint32_t> lanes(TilePlane plane, std::size_t line, int stamp);
+  [[nodiscard]] std::size_t stamp_index(std::size_t line, int stamp) const {
+    return line * static_cast<std::size_t>(stamps_) + static_cast<std::size_t>(stamp);
+  }
+  [[nodiscard]] std::span<std::uint32_t> lanes(TilePlane plane, std::size_t line, int stamp) {
+    const auto samples = static_cast<std::size_t>(widths_.samples);
+    return {lanes_[static_cast<std::size_t>(plane)].data() + stamp_index(line, stamp) * samples, samples};
+  }
 
-  int stamps_, samples_;                    ///< of a tile, of a stamp
-  std::array<std::uint32_t, 2> code_mask_;  ///< bits of a code of each plane
+  Widths widths_;
+  int stamps_;               ///< of a tile
+  std::uint32_t code_mask_;  ///< bits of a depth code
   std::array<std::uint32_t, 2> clear_value_{};
   TileDirectory directory_;
   std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
+  std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that were written since the tile came in
 };
 
 }  // namespace halfplane

@@ -1,21 +1,24 @@
-// Tile directory: which tiles are on the chip, which of their planes are dirty, which tiles a fast clear has flagged. It
-// decides what moves between chip and memory, and in what order; a mover moves it: tile_cache.hpp the data, the cycle
+// Tile directory: which tiles are on the chip, which of their stamps have been written, which tiles a fast clear has flagged.
+// It decides what moves between chip and memory, and in what order; a mover moves it: tile_cache.hpp the data, the cycle
 // model the time.
 //
-// Direct mapped: a line holds both planes of one tile. A mover has, called in the order in which the hardware works:
-//   look_at_line()                  a line without a dirty plane is looked at (the walks of clears and flushes)
-//   write_back(line, address)       a dirty plane goes to memory
-//   fill(line, x, y, is_cleared)    both planes of a tile come in, each from memory or from the clear value
-//   mark_tile()                     a fast clear flags one tile
-//   look_at_tile()                  a flush finds no flag left at a tile
-//   write_clear_value(address)      a flush writes the clear value of a flagged plane
+// Direct mapped: a line holds both planes of one tile. Depth is fetched with the tile, colour is only ever written. A mover
+// has, called in the order in which the hardware works:
+//   look_at_line()                         a line without a dirty plane is looked at (the walks of clears and flushes)
+//   write_back(line, address, rows, fills) these stamps of a dirty plane go to memory, all of them where it is garbage
+//   fill(line, x, y, is_cleared)           a tile comes in: its depth from memory or from the clear value
+//   mark_words(words)                      a fast clear sets flags, a word at a time
+//   write_flags(plane, word, words, y, bits) a flush writes a word of flags, of so many in its row
+//   look_at_tile()                         a flush looks at the flag of a tile's colour
+//   write_clear_value(address, rows)       it is set: a flush writes the clear value
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "../packets.hpp"
+#include "clear_flags.hpp"
 
 namespace halfplane {
 
@@ -25,21 +28,33 @@ struct TileAddress {
   std::uint16_t tile_x, tile_y;
 };
 
+/// A bit for each stamp of each row of stamps of a tile.
+using StampRows = std::array<std::uint32_t, 32>;
+
+/// Stamps of the burst that a request for `stamp` begins or goes on with: the rest of a plane that moves whole; otherwise those
+/// in `rows` that follow it in its row without a gap.
+[[nodiscard]] inline int run_of(const StampRows& rows, bool is_whole, int stamp, const Widths& widths) {
+  const int per_row = widths.stamps.stamps_per_row;
+  if (is_whole) return widths.stamps.stamps() - stamp;
+  return std::countr_one(rows[static_cast<std::size_t>(stamp / per_row)] >> stamp % per_row);
+}
+
 class TileDirectory {
  public:
   TileDirectory(const Config& config, const Widths& widths)
-      : line_x_bits_(widths.line_x_bits),
-        line_y_bits_(widths.line_y_bits),
-        tiles_x_(static_cast<std::size_t>(widths.tiles_x)),
-        lines_(static_cast<std::size_t>(config.cache_lines)) {
-    for (auto& plane : is_cleared_) plane.resize(tiles_x_ * static_cast<std::size_t>(widths.tiles_y));
+      : widths_(widths),
+        resolves_(config.frame_clears == FrameClears::resolve),
+        lines_(static_cast<std::size_t>(config.cache_lines)),
+        flags_(widths) {
+    for (int row = 0; row < widths.stamps.stamps_per_row; ++row)
+      all_[static_cast<std::size_t>(row)] = ~0U >> (32 - widths.stamps.stamps_per_row);
   }
 
   [[nodiscard]] std::size_t lines() const { return lines_.size(); }
 
   [[nodiscard]] std::size_t line_of(int tile_x, int tile_y) const {
     const auto low = [](int value, int bits) { return static_cast<std::size_t>(value & ((1 << bits) - 1)); };
-    return low(tile_y, line_y_bits_) << line_x_bits_ | low(tile_x, line_x_bits_);
+    return low(tile_y, widths_.line_y_bits) << widths_.line_x_bits | low(tile_x, widths_.line_x_bits);
   }
 
   /// Makes the tile resident. Returns whether it was.
@@ -47,83 +62,74 @@ class TileDirectory {
   bool access(int tile_x, int tile_y, Mover&& mover, CounterPacket& counters) {
     const std::size_t n = line_of(tile_x, tile_y);
     Line& line = lines_[n];
-    if (line.is_valid && line.tile_x == tile_x && line.tile_y == tile_y) return true;
+    const BlockAddress tile{static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y)};
+    if (line.is_valid && line.tile == tile) return true;
     write_back(n, mover, counters);
-    const auto x = static_cast<std::uint16_t>(tile_x), y = static_cast<std::uint16_t>(tile_y);
-    std::array<bool, 2> cleared;
-    for (const TilePlane plane : kTilePlanes) {
-      cleared[number(plane)] = is_cleared({plane, x, y}) != 0;
-      ++(cleared[number(plane)] ? counters.tile_clears : counters.tile_fills);
-    }
+    const std::array<bool, 2> cleared{flags_.is_set(TilePlane::depth, tile), flags_.is_set(TilePlane::color, tile)};
+    (cleared[0] ? counters.tile_clears : counters.tile_fills) += stamps();
     mover.fill(n, tile_x, tile_y, cleared);
-    line = {true, x, y, {}};
+    line = {true, tile, {}, {}};
     return false;
   }
 
-  /// Planes of a resident tile have been written.
-  void wrote(int tile_x, int tile_y, bool depth, bool color) {
+  /// Samples of a stamp of a resident tile have been written.
+  void wrote(int tile_x, int tile_y, int stamp, bool depth, bool color) {
     Line& line = lines_[line_of(tile_x, tile_y)];
-    line.is_dirty[0] = line.is_dirty[0] || depth;
-    line.is_dirty[1] = line.is_dirty[1] || color;
+    const auto row = static_cast<std::size_t>(stamp / widths_.stamps.stamps_per_row);
+    for (const TilePlane plane : kTilePlanes) {
+      if (!(plane == TilePlane::depth ? depth : color)) continue;
+      line.is_dirty[number(plane)] = true;
+      line.dirty[number(plane)][row] |= 1U << stamp % widths_.stamps.stamps_per_row;
+    }
   }
 
-  /// Of the planes in `clears`, tiles (0, 0) to (last_x, last_y).
+  /// Of the planes in `clears`, tiles (0, 0) to (last_x, last_y), and those that share a word of flags with them.
   template <class Mover>
   void fast_clear(int last_x, int last_y, const std::array<bool, 2>& clears, Mover&& mover, CounterPacket& counters) {
     // What the cleared plane's lines hold is dead, but writing it back keeps this simple.
     if (!(clears[0] && clears[1])) write_back_all(mover, counters);
     for (Line& line : lines_) line = {};
-    for_each_tile(last_x, last_y, [&](std::uint16_t x, std::uint16_t y) {
-      mover.mark_tile();
-      for (const TilePlane plane : kTilePlanes)
-        if (clears[number(plane)]) is_cleared({plane, x, y}) = 1;
-    });
+    const int word = widths_.blocks.flag_word;
+    mover.mark_words((last_x / word + 1) * (last_y + 1));
+    flags_.mark(last_x | (word - 1), last_y, clears);
   }
 
-  /// Writes everything back: dirty planes, then the clear value of the tiles that are still flagged.
+  /// Writes everything back: dirty stamps, then the flags, or the clear colour of the tiles that are still flagged. Nothing
+  /// is on the chip behind it.
   template <class Mover>
   void flush(int last_x, int last_y, Mover&& mover, CounterPacket& counters) {
+    const int flag_word = widths_.blocks.flag_word;
     write_back_all(mover, counters);
-    for_each_tile(last_x, last_y, [&](std::uint16_t x, std::uint16_t y) {
-      for (const TilePlane plane : kTilePlanes) {
-        const TileAddress address{plane, x, y};
-        if (is_cleared(address) == 0) continue;
-        mover.write_clear_value(address);
-        ++counters.tile_evictions;
-        is_cleared(address) = 0;
-      }
-      mover.look_at_tile();
-    });
+    for (Line& line : lines_) line = {};
+    for (const TilePlane plane : kTilePlanes)
+      if (plane == TilePlane::depth || !resolves_)
+        flags_.for_each_word(plane, last_x | (flag_word - 1), last_y, [&](int word, int y, std::uint64_t bits) {
+          mover.write_flags(plane, word, last_x / flag_word + 1, y, bits);
+        });
+    if (resolves_) resolve(last_x, last_y, mover, counters);
   }
 
  private:
   struct Line {
     bool is_valid = false;
-    std::uint16_t tile_x = 0, tile_y = 0;
-    std::array<bool, 2> is_dirty{};
+    BlockAddress tile;
+    std::array<bool, 2> is_dirty{};    ///< by plane
+    std::array<StampRows, 2> dirty{};  ///< likewise: stamps that have been written
   };
 
   [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-  [[nodiscard]] std::uint8_t& is_cleared(const TileAddress& address) {
-    return is_cleared_[number(address.plane)][address.tile_y * tiles_x_ + address.tile_x];
-  }
-
-  template <class Visit>
-  static void for_each_tile(int last_x, int last_y, Visit&& visit) {
-    for (int y = 0; y <= last_y; ++y)
-      for (int x = 0; x <= last_x; ++x) visit(static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y));
-  }
+  [[nodiscard]] std::uint32_t stamps() const { return static_cast<std::uint32_t>(widths_.stamps.stamps()); }
 
   template <class Mover>
   void write_back(std::size_t n, Mover&& mover, CounterPacket& counters) {
     Line& line = lines_[n];
     for (const TilePlane plane : kTilePlanes) {
-      if (!line.is_valid || !line.is_dirty[number(plane)]) continue;
-      const TileAddress address{plane, line.tile_x, line.tile_y};
-      mover.write_back(n, address);
-      ++counters.tile_evictions;
-      is_cleared(address) = 0;
-      line.is_dirty[number(plane)] = false;
+      if (!line.is_dirty[number(plane)]) continue;
+      const bool fills = flags_.is_set(plane, line.tile);
+      const StampRows& rows = fills ? all_ : line.dirty[number(plane)];
+      mover.write_back(n, {plane, line.tile.x, line.tile.y}, rows, fills);
+      for (const std::uint32_t row : rows) counters.tile_evictions += static_cast<std::uint32_t>(std::popcount(row));
+      flags_.fall(plane, line.tile);
     }
   }
 
@@ -135,10 +141,24 @@ class TileDirectory {
     }
   }
 
-  int line_x_bits_, line_y_bits_;
-  std::size_t tiles_x_;
+  template <class Mover>
+  void resolve(int last_x, int last_y, Mover&& mover, CounterPacket& counters) {
+    for (int y = 0; y <= last_y; ++y)
+      for (int x = 0; x <= last_x; ++x) {
+        const BlockAddress tile{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+        mover.look_at_tile();
+        if (!flags_.is_set(TilePlane::color, tile)) continue;
+        mover.write_clear_value({TilePlane::color, tile.x, tile.y}, all_);
+        counters.tile_evictions += stamps();
+        flags_.fall(TilePlane::color, tile);
+      }
+  }
+
+  Widths widths_;
+  bool resolves_;    ///< frame.clears
+  StampRows all_{};  ///< of a tile
   std::vector<Line> lines_;
-  std::array<std::vector<std::uint8_t>, 2> is_cleared_;  ///< by plane and tile: memory holds garbage
+  ClearFlags flags_;
 };
 
 }  // namespace halfplane

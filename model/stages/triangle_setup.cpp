@@ -8,29 +8,39 @@
 namespace halfplane {
 namespace {
 
-/// What the planes of one triangle share.
-struct PlaneFrame {
-  std::int64_t ax, ay, bx, by;  ///< v1 - v0 and v2 - v0, subpixels
-  std::int64_t dx, dy;          ///< from v0 to the anchor, subpixels
-  int fraction;                 ///< F
-};
-
 PlaneValue gradient(std::int64_t numerator, const Reciprocal& reciprocal, int fraction) {
   const int128 product = static_cast<int128>(numerator) * static_cast<int128>(reciprocal.value);
   return static_cast<PlaneValue>(round_shift(product, reciprocal.shift - fraction));  // modulo 2^64
 }
 
-void setup_plane(Plane& plane, std::int64_t c0, std::int64_t c1, std::int64_t c2, const PlaneFrame& f,
-                 const Reciprocal& r, int bits) {
-  const std::int64_t ac = c1 - c0, bc = c2 - c0;
+}  // namespace
+
+PlaneFrame plane_frame(const SnappedVertex& base, const SnappedVertex& next, const SnappedVertex& last, int first_x,
+                       int first_y, int tile_size, const Widths& widths) {
+  const int s = widths.grid_bits;
+  const auto anchor = [&](int first) {  // centre of pixel first + T/2, subpixels
+    return (std::int64_t{first + tile_size / 2} << s) + (std::int64_t{1} << (s - 1));
+  };
+  return {std::int64_t{next.x} - base.x, std::int64_t{next.y} - base.y, std::int64_t{last.x} - base.x,
+          std::int64_t{last.y} - base.y, anchor(first_x) - base.x,      anchor(first_y) - base.y,
+          widths.plane_fraction};
+}
+
+Plane setup_plane(std::int64_t base, std::int64_t next, std::int64_t last, const PlaneFrame& f, const Reciprocal& r,
+                  int bits) {
+  const std::int64_t ac = next - base, bc = last - base;
   const auto wrap = [bits](std::uint64_t value) { return wrap_signed(static_cast<std::int64_t>(value), bits); };
+  Plane plane;
   plane.step_x = wrap(static_cast<std::uint64_t>(gradient(ac * f.by - bc * f.ay, r, f.fraction)));
   plane.step_y = wrap(static_cast<std::uint64_t>(gradient(f.ax * bc - f.bx * ac, r, f.fraction)));
   // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is a residue of that.
-  plane.value = wrap((static_cast<std::uint64_t>(c0) << f.fraction) +
+  plane.value = wrap((static_cast<std::uint64_t>(base) << f.fraction) +
                      static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(f.dx) +
                      static_cast<std::uint64_t>(plane.step_y) * static_cast<std::uint64_t>(f.dy));
+  return plane;
 }
+
+namespace {
 
 /// Everything that follows from the vertices in canonical order, their area and the box.
 void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Config& config,
@@ -44,19 +54,14 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
     setup.edge[i] = {to.x - from.x, to.y - from.y, edge_function(from, to, first_x, first_y, s)};
   }
 
-  const auto anchor = [&](int first) {  // centre of pixel first + T/2, subpixels
-    return (std::int64_t{first + config.tile_size / 2} << s) + (std::int64_t{1} << (s - 1));
-  };
-  const PlaneFrame frame{std::int64_t{v[1].x} - v[0].x, std::int64_t{v[1].y} - v[0].y, std::int64_t{v[2].x} - v[0].x,
-                         std::int64_t{v[2].y} - v[0].y, anchor(first_x) - v[0].x,      anchor(first_y) - v[0].y,
-                         widths.plane_fraction};
+  const PlaneFrame frame = plane_frame(v[0], v[1], v[2], first_x, first_y, config.tile_size, widths);
   const int significant_bits = widths.reciprocal_bits();
   const AreaQuotient quotient = area_quotient(setup.area, significant_bits);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const std::uint32_t c0 = v[0].code[p], c1 = v[1].code[p], c2 = v[2].code[p];
     const AttributeWidths& attribute = widths.of_plane(p);
-    setup_plane(setup.plane[p], c0, c1, c2, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()),
-                attribute.plane.bits);
+    setup.plane[p] = setup_plane(
+        c0, c1, c2, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()), attribute.plane.bits);
     std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({c0, c1, c2});
   }
 }

@@ -66,6 +66,20 @@ struct Reciprocal {
   return {round_shift(quotient.value >> dropped, 1), quotient.shift - dropped};
 }
 
+/// What the planes of one triangle share.
+struct PlaneFrame {
+  std::int64_t ax, ay, bx, by;  ///< from the base vertex to the other two, subpixels
+  std::int64_t dx, dy;          ///< from the base vertex to the anchor, subpixels
+  int fraction;                 ///< F
+};
+/// The frame of planes that start at `base`; `next` and `last` follow it in the triangle's order, which has positive area.
+/// The anchor is that of the tile with pixel (first_x, first_y) as its first.
+[[nodiscard]] PlaneFrame plane_frame(const SnappedVertex& base, const SnappedVertex& next, const SnappedVertex& last,
+                                     int first_x, int first_y, int tile_size, const Widths& widths);
+/// The plane through three codes, in the order of the frame's vertices, modulo 2^bits. Codes may have a sign.
+[[nodiscard]] Plane setup_plane(std::int64_t base, std::int64_t next, std::int64_t last, const PlaneFrame& frame,
+                                const Reciprocal& reciprocal, int bits);
+
 /// The whole setup. Zero area gives an empty box.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths,
                                            const Rect& rect);

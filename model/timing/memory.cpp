@@ -14,79 +14,44 @@ class FixedMemory final : public MemoryTiming {
  public:
   explicit FixedMemory(int latency) : latency_(static_cast<Cycle>(latency)) {}
   [[nodiscard]] Cycle room() const override { return 0; }
-  Cycle accept(const MemoryAccess&, Cycle cycle) override { return cycle + latency_; }
-  [[nodiscard]] Cycle fixed_latency() const override { return latency_; }
+  BurstAnswer accept(const MemoryBurst&, Cycle cycle) override { return {cycle + latency_, 1, 1, 0}; }
 
  private:
   Cycle latency_;
-};
-
-/// Where a request lies: tiles of the widest target one after the other, all depth before all colour, then the words of
-/// either plane's flags, row by row.
-class AddressMap {
- public:
-  explicit AddressMap(const Config& config) : widths_(derive_widths(config)) {
-    for (const bool is_color : {false, true})
-      bytes_[is_color] = static_cast<std::uint64_t>(stamp_bytes(config, is_color));
-  }
-  [[nodiscard]] std::uint64_t bytes(const MemoryAccess& a) const {
-    return is_flags(a) ? flag_bytes() : bytes_[a.plane == TilePlane::color];
-  }
-  [[nodiscard]] std::uint64_t address(const MemoryAccess& a) const {
-    const auto stamps = static_cast<std::uint64_t>(widths_.stamps.stamps());
-    const auto tiles_x = static_cast<std::uint64_t>(widths_.tiles_x),
-               tiles_y = static_cast<std::uint64_t>(widths_.tiles_y);
-    const std::uint64_t tile = static_cast<std::uint64_t>(a.tile_y) * tiles_x + static_cast<std::uint64_t>(a.tile_x);
-    const auto plane = [&](bool is_color) {
-      return (tiles_x * tiles_y * stamps * bytes_[is_color] + kPlane - 1) / kPlane * kPlane;
-    };
-    if (is_flags(a)) {
-      const auto per_tile = static_cast<std::uint64_t>(widths_.blocks.per_tile),
-                 word = static_cast<std::uint64_t>(widths_.blocks.flag_word);
-      const std::uint64_t row = (tiles_x * per_tile + word - 1) / word, rows = tiles_y * per_tile;
-      const std::uint64_t y = static_cast<std::uint64_t>(a.tile_y) * per_tile + static_cast<std::uint64_t>(a.stamp);
-      const std::uint64_t first = a.plane == TilePlane::color_flags ? rows * row : 0;
-      return plane(false) + plane(true) + (first + y * row + static_cast<std::uint64_t>(a.tile_x)) * flag_bytes();
-    }
-    const bool is_color = a.plane == TilePlane::color;
-    return (is_color ? plane(false) : 0) + (tile * stamps + static_cast<std::uint64_t>(a.stamp)) * bytes_[is_color];
-  }
-
- private:
-  [[nodiscard]] static bool is_flags(const MemoryAccess& a) {
-    return a.plane == TilePlane::depth_flags || a.plane == TilePlane::color_flags;
-  }
-  [[nodiscard]] std::uint64_t flag_bytes() const { return static_cast<std::uint64_t>(flag_word_bytes(widths_)); }
-  static constexpr std::uint64_t kPlane = 4096;  ///< a plane begins at a multiple of it: no stamp lies in two rows
-  Widths widths_;
-  std::array<std::uint64_t, 2> bytes_{};
 };
 
 /// What all memories with a clock of their own have: a short queue, and time in picoseconds.
 class ClockedMemory : public MemoryTiming {
  public:
   ClockedMemory(const Config& config, int mhz, Picoseconds clock)
-      : map_(config), cycle_(1'000'000 / static_cast<Picoseconds>(mhz)), clock_(clock) {}
+      : port_bytes_(static_cast<std::uint64_t>(config.memory_port_bits / 8)),
+        cycle_(1'000'000 / static_cast<Picoseconds>(mhz)),
+        clock_(clock) {}
 
   [[nodiscard]] Cycle room() const final { return queue_.room(); }
-  Cycle accept(const MemoryAccess& access, Cycle cycle) final {
+  BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) final {
     const Picoseconds arrives = round_up((cycle + 1) * cycle_);  // it has gone through a register
-    const Picoseconds done = serve(access.is_write, map_.address(access), map_.bytes(access), arrives);
-    const Cycle done_cycle = (done + cycle_ - 1) / cycle_;
-    queue_.leave(done_cycle);
-    return done_cycle + 1;
+    const auto beats = static_cast<std::uint64_t>(burst.beats);
+    const Served served = serve(burst.is_write, burst.address, beats * port_bytes_, arrives);
+    queue_.leave((served.last + cycle_ - 1) / cycle_);
+    const Picoseconds step = port_bytes_ * served.byte;
+    return {burst.is_write ? served.last : served.last - (beats - 1) * step, step, cycle_, 1};
   }
 
  protected:
+  /// When the last byte of a burst has moved, and how long one takes.
+  struct Served {
+    Picoseconds last, byte;
+  };
   /// The edge of the memory's clock at or after `time`.
   [[nodiscard]] Picoseconds round_up(Picoseconds time) const { return (time + clock_ - 1) / clock_ * clock_; }
   [[nodiscard]] Picoseconds clock() const { return clock_; }
-  /// When the last byte of a request that comes at `arrives` has moved.
-  virtual Picoseconds serve(bool is_write, std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) = 0;
+  /// A burst, all of which is here in `arrives`.
+  virtual Served serve(bool is_write, std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) = 0;
 
  private:
-  static constexpr int kQueue = 8;  ///< requests
-  AddressMap map_;
+  static constexpr int kQueue = 8;  ///< bursts
+  std::uint64_t port_bytes_;
   Picoseconds cycle_, clock_;
   Station queue_{kQueue, 0, 1};
 };
@@ -113,7 +78,7 @@ constexpr DramTiming kSdram{6'000, 4, 1024, 2, 1, 3, 0, 18'000, 18'000, 42'000, 
 constexpr DramTiming kDdr3{2'500,  8,      2048,   4,      4,      6,       5,        13'750,
                            13'750, 35'000, 48'750, 15'000, 10'000, 160'000, 7'800'000};
 
-/// In order, rows left open; a request's column command goes out when its row is open and the data bus will be free.
+/// In order, rows left open; a burst's column command goes out when its row is open and the data bus will be free.
 class Dram final : public ClockedMemory {
  public:
   Dram(const Config& config, int mhz, const DramTiming& timing)
@@ -130,7 +95,18 @@ class Dram final : public ClockedMemory {
     Picoseconds may_precharge = 0;
   };
 
-  Picoseconds serve(bool is_write, std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) override {
+  Served serve(bool is_write, std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) override {
+    Picoseconds last = 0;
+    for (std::uint64_t left = bytes; left != 0;) {  // row by row
+      const std::uint64_t piece = std::min(left, t_.row_bytes - address % t_.row_bytes);
+      last = serve_in_row(is_write, address, piece, arrives);
+      address += piece;
+      left -= piece;
+    }
+    return {last, t_.clock / t_.bytes_per_clock};
+  }
+
+  Picoseconds serve_in_row(bool is_write, std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) {
     while (arrives >= next_refresh_ || bus_free_ >= next_refresh_) refresh();
     const std::uint64_t row = address / (t_.row_bytes * t_.banks);
     Bank& bank = banks_[address / t_.row_bytes % t_.banks];
@@ -149,7 +125,9 @@ class Dram final : public ClockedMemory {
     const Picoseconds bus = bus_free_ + (is_write != last_was_write_ ? t_.clock : 0);  // the bus turns round
     if (bus > latency * t_.clock) column = std::max(column, bus - latency * t_.clock);
     column = round_up(column);
-    const std::uint64_t clocks = std::max(t_.burst_clocks, (bytes + t_.bytes_per_clock - 1) / t_.bytes_per_clock);
+    // The memory moves whole bursts of its own.
+    const std::uint64_t unit = t_.burst_clocks * t_.bytes_per_clock;
+    const std::uint64_t clocks = ((address + bytes - 1) / unit - address / unit + 1) * t_.burst_clocks;
     const Picoseconds done = column + (latency + clocks) * t_.clock;
     command_free_ = column + t_.clock;
     bus_free_ = done;
@@ -176,8 +154,8 @@ class Dram final : public ClockedMemory {
   bool last_was_write_ = false;
 };
 
-/// AP Memory APS6404L-3SQR, 64 Mbit, QPI at 84 MHz: data sheet "QSPI PSRAM", 38h quad write and EBh quad read. Every
-/// request has a command of its own; it refreshes itself while it is not selected.
+/// AP Memory APS6404L-3SQR, 64 Mbit, QPI at 84 MHz: data sheet "QSPI PSRAM", 38h quad write and EBh quad read. Every burst
+/// has a command of its own; it refreshes itself while it is not selected, so a long one is cut (tCEM).
 class Psram final : public ClockedMemory {
  public:
   Psram(const Config& config, int mhz) : ClockedMemory(config, mhz, kClock) {}
@@ -185,11 +163,18 @@ class Psram final : public ClockedMemory {
  private:
   static constexpr Picoseconds kClock = 11'905, kDeselected = 18'000;        // tCPH
   static constexpr std::uint64_t kCommand = 2, kAddress = 6, kReadWait = 6;  // clocks
-  Picoseconds serve(bool is_write, std::uint64_t, std::uint64_t bytes, Picoseconds arrives) override {
-    const Picoseconds begins = round_up(std::max(arrives, free_));
-    const Picoseconds done = begins + (kCommand + kAddress + (is_write ? 0 : kReadWait) + 2 * bytes) * clock();
-    free_ = done + kDeselected;
-    return done;
+  static constexpr std::uint64_t kClocksPerByte = 2;
+  static constexpr std::uint64_t kLongest = 256;  // bytes: 6.3 us, where tCEM is 8 us
+  Served serve(bool is_write, std::uint64_t, std::uint64_t bytes, Picoseconds arrives) override {
+    Picoseconds last = 0;
+    for (std::uint64_t left = bytes; left != 0;) {
+      const std::uint64_t piece = std::min(left, kLongest);
+      const Picoseconds begins = round_up(std::max(arrives, free_));
+      last = begins + (kCommand + kAddress + (is_write ? 0 : kReadWait) + kClocksPerByte * piece) * clock();
+      free_ = last + kDeselected;
+      left -= piece;
+    }
+    return {last, kClocksPerByte * clock()};
   }
   Picoseconds free_ = 0;
 };
@@ -201,14 +186,6 @@ MemoryKind memory_kind(std::string_view name) {
     if (kMemoryKinds[i] == name) return static_cast<MemoryKind>(i);
   throw InputError("no memory '" + std::string(name) + "'; give fixed, sram, sdram, psram or ddr3");
 }
-
-int stamp_bytes(const Config& config, bool is_color) {
-  const int depth = config.depth_bits <= 8 ? 1 : config.depth_bits <= 16 ? 2 : 4;
-  const int color = config.color_format == ColorFormat::rgb565 ? 2 : 4;
-  return config.stamp_size * config.stamp_size * (is_color ? color : depth);
-}
-
-int flag_word_bytes(const Widths& widths) { return (widths.blocks.flag_word + 7) / 8; }
 
 std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config) {
   switch (settings.kind) {

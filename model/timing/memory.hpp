@@ -7,28 +7,36 @@
 #include <memory>
 #include <string_view>
 
-#include "../packets.hpp"
+#include "../config.hpp"
 #include "stalls.hpp"
 
 namespace halfplane {
 
-/// One stamp of one plane of one tile, or a word of flags (MemoryRequest).
-struct MemoryAccess {
+/// What a burst moves (MemoryBeat).
+struct MemoryBurst {
   bool is_write = false;
-  TilePlane plane = TilePlane::depth;
-  int tile_x = 0, tile_y = 0, stamp = 0;
+  std::uint64_t address = 0;  ///< of its first byte
+  int beats = 1;
 };
 
-/// Requests come in order, at most one a cycle; reads are answered in order.
+/// When the answers to a burst are there: beat by beat what is read, or once that all is written.
+struct BurstAnswer {
+  std::uint64_t first = 0, step = 1;  ///< of the first beat, and from beat to beat, in units
+  std::uint64_t unit = 1;             ///< of a cycle
+  Cycle behind = 0;                   ///< cycles on top
+  [[nodiscard]] Cycle at(int beat) const {
+    return (first + static_cast<std::uint64_t>(beat) * step + unit - 1) / unit + behind;
+  }
+};
+
+/// Bursts come in order, at most a beat a cycle, and are answered in order, at most one answer a cycle.
 class MemoryTiming {
  public:
   virtual ~MemoryTiming() = default;
-  /// The first cycle in which the next request can be taken.
+  /// The first cycle in which the first beat of the next burst can be taken; the others are taken whenever they come.
   [[nodiscard]] virtual Cycle room() const = 0;
-  /// Takes the next request in `cycle` >= room(). Returns the first cycle in which the answer of a read is there.
-  virtual Cycle accept(const MemoryAccess& access, Cycle cycle) = 0;
-  /// Answers every read so many cycles later and takes a request in every cycle; 0: it does not.
-  [[nodiscard]] virtual Cycle fixed_latency() const { return 0; }
+  /// The last beat of the next burst is taken in `cycle` (the only one of a burst that reads).
+  virtual BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) = 0;
 };
 
 enum class MemoryKind : std::uint8_t {
@@ -50,11 +58,7 @@ struct MemorySettings {
 /// The kind of that name. Throws InputError when there is none.
 [[nodiscard]] MemoryKind memory_kind(std::string_view name);
 
-/// After its power-up. Tile-major, depth before colour, each row of a memory filled before the next bank's.
+/// After its power-up. Each row of a memory is filled before the next bank's.
 [[nodiscard]] std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config);
-
-/// Bytes of one request's data: of a stamp, of a word of flags.
-[[nodiscard]] int stamp_bytes(const Config& config, bool is_color);
-[[nodiscard]] int flag_word_bytes(const Widths& widths);
 
 }  // namespace halfplane

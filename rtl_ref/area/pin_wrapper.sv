@@ -11,7 +11,7 @@ module pin_wrapper (
 );
 
   localparam int LINE = raster_pkg::LINE_SETUP_BITS;  // at the end of the register: gone with the unit of lines
-  localparam int IN = raster_pkg::PRIMITIVE_PACKET_BITS + raster_pkg::MEMORY_RESPONSE_BITS + LINE + 2;
+  localparam int IN = raster_pkg::PRIMITIVE_PACKET_BITS + raster_pkg::MEMORY_RESPONSE_BITS + LINE + 3;
   localparam int OUT = raster_pkg::MEMORY_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS + 5;
 
   logic [IN-1:0] in_q;
@@ -40,6 +40,7 @@ module pin_wrapper (
       .response_valid_i (in_q[1]),
       .response_ready_o (out[2]),
       .response_i       (in_q[2+raster_pkg::PRIMITIVE_PACKET_BITS+:raster_pkg::MEMORY_RESPONSE_BITS]),
+      .counters_hold_i  (in_q[2+raster_pkg::PRIMITIVE_PACKET_BITS+raster_pkg::MEMORY_RESPONSE_BITS]),
       .counters_o       (out[OUT-1-:raster_pkg::COUNTER_PACKET_BITS]),
       .idle_o           (out[3])
   );

@@ -50,8 +50,8 @@ mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is trunca
   [=[B'(step_x[NARROW-1])]=] [=[i == 0 ? B'(0) : B'(step_x[NARROW-1])]=])
 mutant(21 stages/coarse_raster.sv "counter: rectangles count as triangles"
   [=[steps && is_triangle]=] [=[steps]=])
-mutant(22 stages/coarse_raster.sv "context: a fifth primitive takes a slot that is still read"
-  [=[used_q != (SLOT + 1)'(SLOTS)]=] [=[used_q != (SLOT + 1)'(SLOTS + 1)]=])
+mutant(22 stages/coarse_raster.sv "context: the last slot is never given"
+  [=[used_q != (SLOT + 1)'(SLOTS)]=] [=[used_q != (SLOT + 1)'(SLOTS - 1)]=])
 
 # fine_raster
 mutant(23 stages/fine_raster.sv "tie rule: samples on an edge are outside"
@@ -66,12 +66,12 @@ mutant(26 stages/fine_raster.sv "dropped stall: a row moves on before its stamps
 # interpolate
 mutant(27 stages/interpolate.sv "clamp: nothing is clamped from below"
   [=[code < $signed((B + 2)'(low))]=] [=[1'b0]=])
-mutant(28 stages/interpolate.sv "dropped stall: a slot is given back on every cycle that its last stamp waits"
-  [=[context_valid_q && x_ready && context_stamp_q.ends_primitive]=] [=[context_valid_q && context_stamp_q.ends_primitive]=])
+mutant(28 stages/interpolate.sv "dropped stall: a stamp enters without a place for its fragment"
+  [=[used_q != USED'(ROOM)]=] [=[used_q != '1]=])
 mutant(29 stages/interpolate.sv "sign: rows of stamps above the tile's centre count as below"
   [=[PIXEL'(row) << STAMP_SHIFT]=] [=[PIXEL'(row[PER_ROW_BITS-2:0]) << STAMP_SHIFT]=])
-mutant_text(30 lib/skid_buffer.sv "dropped stall: a full buffer takes one more"
-  [=[assign ready_o = !tail_valid_q;]=] [=[assign ready_o = !tail_valid_q || raster_cosim.mutant_q == 16'd30;]=])
+mutant(30 lib/fifo.sv "dropped stall: a full queue takes one more"
+  [=[head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}})]=] [=[1'b1]=])
 
 # depth_test and rop
 mutant(31 stages/depth_test.sv "hazard: the mask of the stamp ahead is ignored, its depth is not seen"
@@ -91,9 +91,29 @@ mutant(35 stages/depth_test.sv "counter: samples count as written with both mask
 mutant(36 stages/framebuffer.sv "write back: colour is always taken for dirty"
   [=[valid_q[line] && dirty_color_q[line]]=] [=[valid_q[line]]=])
 mutant(37 stages/framebuffer.sv "fast clear: the flag of a plane outlives its write back"
-  [=[{2{is_write_back && ends_plane}} & {plane_q, !plane_q}]=] [=[{2{state_q == CLEAR && ends_plane}} & {plane_q, !plane_q}]=])
+  [=[{2{(state_q == EVICT || is_resolve) && ends_plane}} & {plane_q, !plane_q}]=]
+  [=[{2{is_resolve && ends_plane}} & {plane_q, !plane_q}]=])
 mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
   [=[tag_y == access_i.key.tile_y >> LINE_Y]=] [=[1'b1]=])
+
+mutant(121 stages/framebuffer.sv "write back: a plane ends with the first row of stamps that has none to write"
+  [=[row_q == (ROW_BITS + 1)'(ROWS) && is_free]=] [=[row_q != '0 && is_free]=])
+mutant(122 stages/framebuffer.sv "fill: what was not drawn into keeps what the colour RAM had"
+  [=[fill_steps && flag_color]=] [=[1'b0]=])
+mutant(123 stages/framebuffer.sv "fill: the stamps that the tile before had written count as written"
+  [=[{2 * ROWS{is_fill}}]=] [=[{2 * ROWS{1'b0}}]=])
+mutant(124 stages/framebuffer.sv "fast clear, flush: the walk over the flags ends with the first row of tiles"
+  [=[ends_row && walk_y_q == access_i.key.tile_y]=] [=[ends_row]=])
+mutant(125 stages/framebuffer.sv "flags: with that of a tile those of its word fall"
+  [=[state_q == MARK ? '1 : WORD'(1) << bit_x]=] [=[{WORD{1'b1}}]=])
+mutant(126 stages/framebuffer.sv "run of stamps: a row comes before the last one has been read"
+  [=[(steps && left == one)]=] [=[steps]=])
+mutant(127 stages/framebuffer.sv "write back: of a plane that memory has as garbage only what was written"
+  [=[state_q != EVICT || (plane_q ? flag_color : flag_depth)]=] [=[state_q != EVICT]=])
+mutant(128 stages/framebuffer.sv "write back: the stamps of depth stand for those of colour"
+  [=[plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES]]=] [=[dirty_rows[0+:ROWS*SAMPLES]]=])
+mutant(129 stages/framebuffer.sv "flush: a tile whose colour is cleared counts as resolved"
+  [=[(resolves ? !flag_color : request_ready_i)]=] [=[(resolves || request_ready_i)]=])
 
 # reset
 mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"
@@ -114,7 +134,7 @@ mutant(44 stages/line_raster.sv "start: a pixel before the line's start shows an
 mutant(45 stages/line_raster.sv "depth: only steps to the next row change it"
   [=[value_q + line_q.step[LINE+:W]]=] [=[value_q + (moves || p != 0 ? line_q.step[LINE+:W] : '0)]=])
 mutant(46 stages/line_raster.sv "dropped stall: the next line is taken while the last pixel waits"
-  [=[!valid_q || (pixel_ready_i && is_last)]=] [=[!valid_q || is_last]=])
+  [=[!valid_q]=] [=[!valid_q || is_last]=])
 
 # primitive_join
 mutant(47 stages/primitive_join.sv "mask: row and column of the sample are swapped"
@@ -154,7 +174,7 @@ mutant(58 stages/cull.sv "no sample: a third row of samples is overlooked"
 mutant(59 stages/cull.sv "no sample: the fourth sample is looked for in the first column"
   [=[below - NV'(edge_y_q)]=] [=[below]=])
 mutant(60 stages/triangle_setup.sv "dropped stall: a part hands over to one that is not free"
-  [=[at_q[i*STEPS+STEPS-1] && ready[i+1]]=] [=[at_q[i*STEPS+STEPS-1]]=])
+  [=[at_q[i*STEPS+STEPS-1] && ready_q[i+1]]=] [=[at_q[i*STEPS+STEPS-1]]=])
 mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes a phase late"
   [=[flows[NUMERATOR] || flows[NUMERATOR+1]]=] [=[flows[NUMERATOR+1]]=])
 
@@ -177,10 +197,10 @@ mutant(64 stages/hiz.sv "fast clear: what earlier visits had to say comes behind
 
 # framebuffer of blocks
 mutant(70 stages/cache_tags.sv "tag: only the block's column is compared"
-  [=[line_valid && tag_x == TAG_X'(block_x >> LINE_X) && tag_y == TAG_Y'(block_y >> LINE_Y)]=]
-  [=[line_valid && tag_x == TAG_X'(block_x >> LINE_X)]=])
+  [=[line_read[STATE-4-:TAG_X+TAG_Y] == {TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y)}]=]
+  [=[line_read[STATE-4-:TAG_X] == TAG_X'(block_x >> LINE_X)]=])
 mutant(71 stages/cache_tags.sv "fast clear: the flag of a block outlives its eviction"
-  [=[fills & {2{valid_q && falls && fall_q == 2'd1}}]=] [=[2'b00]=])
+  [=[fills & {2{writes_flag}}]=] [=[2'b00]=])
 mutant(72 stages/cache_tags.sv "order: a block on its way to memory is read as memory has it"
   [=[!is_access || hits]=] [=[1'b1]=])
 mutant(73 stages/cache_tags.sv "tags: a line that is read while it is written is seen as it was"
@@ -199,3 +219,46 @@ mutant(79 stages/block_cache.sv "fill: what was not drawn into keeps what the co
   [=[dirty ? color : clear_color & {COLOR{c_fills_q}}]=] [=[color]=])
 mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])
+
+# memory_port
+mutant(101 lib/beat_bytes.sv "length: a burst of several stamps is a beat short"
+  [=[LENGTH'(run_i) << (SHIFT - PORT)]=] [=[(LENGTH'(run_i) << (SHIFT - PORT)) - LENGTH'(run_i[raster_pkg::RUN_BITS-1:1] != '0)]=])
+mutant(102 lib/beat_bytes.sv "strobes: every byte of a stamp is written"
+  [=[{SAMPLE_BYTES{strobe_i[s]}}]=] [=[{SAMPLE_BYTES{1'b1}}]=])
+mutant_text(103 stages/memory_port.sv "carry: the column of a tile is not added to its row, but ored"
+  [=[layout_i.row_stride[STRIDE-1:TILE]) +]=]
+  [=[layout_i.row_stride[STRIDE-1:TILE]) + (raster_cosim.mutant_q != 16'd103 ? '0 : (ADDRESS - TILE)'(0) -
+      (((ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE])) &
+       (ADDRESS - TILE)'(request_i.tile_x))) +]=])
+mutant(104 stages/memory_port.sv "answers: stamps are counted, not bursts"
+  [=[8'(takes && begins)]=] [=[8'(takes && request_i.is_write)]=])
+mutant(105 stages/memory_port.sv "idle: taken is as good as written"
+  [=[!discards && reads_q == '0 && writes_q == '0]=] [=[!discards && reads_q == '0]=])
+mutant(106 stages/memory_port.sv "reset: answers to what was asked for before it are handed on"
+  [=[is_read && is_whole && !discards]=] [=[is_read && is_whole]=])
+mutant(107 stages/memory_port.sv "reset: a burst that it cuts is never ended"
+  [=[in_burst_q && length_q != '0]=] [=[1'b0]=])
+mutant(108 stages/block_cache.sv "runs: a gap counts as a stamp"
+  [=[(gaps & ((STAMPS'(2) << i) - 1'b1)) == '0]=] [=[1'b1]=])
+mutant(109 lib/stamp_bytes.sv "answers: of those that share a beat always the first stamp"
+  [=[(32'(sub_i) & 32'((1 << SHARED) - 1))]=] [=[32'd0]=])
+# clock and area
+mutant(111 raster_top.sv "counters: those that are held go on"
+  [=[!counters_hold_i]=] [=[1'b1]=])
+mutant(112 stages/hiz.sv "HiZ: two groups of tiles share their bounds"
+  [=[WORD'({y, x} >> GROUP)]=] [=[WORD'(({y, x} >> GROUP) | (TX + TY)'(1))]=])
+mutant(113 stages/triangle_setup.sv "phases: a part is free when its triangle is in the last phase, whether it goes on or not"
+  [=[at_d[i*STEPS+STEPS-1] && ready_d[i+1]]=] [=[at_d[i*STEPS+STEPS-1]]=])
+# binned order
+mutant(91 stages/cache_tags.sv "bins: once lost, depth is lost in frames that store it too"
+  [=[drops_depth && is_clear]=] [=[drops_depth_q || (drops_depth && is_clear)]=])
+mutant(92 stages/cache_tags.sv "bins: the flag of a block falls though its depth is lost"
+  [=[{line_colored != '0, line_depth != '0}]=] [=[{line_colored != '0, line_has_depth}]=])
+mutant(93 stages/cache_tags.sv "bins: a block begins with the depths of the one that was lost"
+  [=[hits ? line_known : '0]=] [=[hits || drops_depth_q ? line_known : '0]=])
+mutant(94 stages/cache_tags.sv "flush: the flags of depth that is lost are written"
+  [=[!is_clear && drops_depth_q]=] [=[1'b0]=])
+mutant(95 stages/cache_tags.sv "flush: the depth of the last blocks is stored whatever it says"
+  [=[is_clear ? drops_depth_q : drops_depth]=] [=[drops_depth_q]=])
+mutant(96 stages/cache_tags.sv "flags: the word of a block that comes is taken for that of the one that leaves"
+  [=[is_access && word_of(line_x, line_y) == word_of(block_x, block_y)]=] [=[is_access]=])

@@ -8,6 +8,7 @@
 module raster_cosim (
     input logic clk_i,
     input logic rst_ni,
+    input logic power_on_ni,
 
     input logic [raster_pkg::STALL_BITS-1:0] stall_i,  // bit raster_pkg::STALL_X: arrow X moves nothing in this cycle
     input logic [15:0] mutant_i,  // which mutation is active, 0: none; mutated sources read raster_cosim.mutant_q
@@ -22,13 +23,15 @@ module raster_cosim (
     input  raster_pkg::line_setup_t line_i,
 
     // To and from the memory
-    output logic                         request_valid_o,
-    input  logic                         request_ready_i,
-    output raster_pkg::memory_request_t  request_o,
-    input  logic                         response_valid_i,
-    output logic                         response_ready_o,
-    input  raster_pkg::memory_response_t response_i,
+    input  raster_pkg::memory_layout_t layout_i,
+    output logic                       beat_valid_o,
+    input  logic                       beat_ready_i,
+    output raster_pkg::memory_beat_t   beat_o,
+    input  logic                       answer_valid_i,
+    output logic                       answer_ready_o,
+    input  raster_pkg::memory_answer_t answer_i,
 
+    input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
     output logic                        idle_o,
     output logic                        moves_tiles_o,  // the framebuffer is busy with memory or a clear
@@ -40,26 +43,34 @@ module raster_cosim (
 
   logic [raster_pkg::STALL_BITS-1:0] stall_q;
   logic [15:0]                   mutant_q;
-  logic                          primitive_valid_q, line_valid_q, request_ready_q, response_valid_q;
+  /* verilator lint_off SYNCASYNCNET */  // memory_port recovers from it
+  logic                          reset_nq;
+  /* verilator lint_on SYNCASYNCNET */
+  logic                          primitive_valid_q, line_valid_q, beat_ready_q, answer_valid_q, counters_hold_q;
   raster_pkg::primitive_packet_t primitive_q;
   raster_pkg::line_setup_t       line_q;
-  raster_pkg::memory_response_t  response_q;
+  raster_pkg::memory_answer_t    answer_q;
+  raster_pkg::memory_layout_t    layout_q;
 
   always_ff @(posedge clk_i) begin
     stall_q           <= stall_i;
     mutant_q          <= mutant_i;
+    reset_nq          <= rst_ni;
     primitive_valid_q <= primitive_valid_i;
     primitive_q       <= primitive_i;
     line_valid_q      <= line_valid_i;
     line_q            <= line_i;
-    request_ready_q   <= request_ready_i;
-    response_valid_q  <= response_valid_i;
-    response_q        <= response_i;
+    layout_q          <= layout_i;
+    beat_ready_q      <= beat_ready_i;
+    answer_valid_q    <= answer_valid_i;
+    answer_q          <= answer_i;
+    counters_hold_q   <= counters_hold_i;
   end
 
   raster_top u_raster (
       .clk_i,
-      .rst_ni,
+      .rst_ni(reset_nq),
+      .power_on_ni,
       .stall_i(stall_q),
       .primitive_valid_i(primitive_valid_q),
       .primitive_ready_o,
@@ -67,12 +78,14 @@ module raster_cosim (
       .line_valid_i(line_valid_q),
       .line_ready_o,
       .line_i(line_q),
-      .request_valid_o,
-      .request_ready_i(request_ready_q),
-      .request_o,
-      .response_valid_i(response_valid_q),
-      .response_ready_o,
-      .response_i(response_q),
+      .layout_i(layout_q),
+      .beat_valid_o,
+      .beat_ready_i(beat_ready_q),
+      .beat_o,
+      .answer_valid_i(answer_valid_q),
+      .answer_ready_o,
+      .answer_i(answer_q),
+      .counters_hold_i(counters_hold_q),
       .counters_o,
       .idle_o
   );

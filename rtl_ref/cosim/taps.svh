@@ -2,12 +2,12 @@
 //
 // For raster_cosim.sv. An arrow X of the graph is X_data in raster_top, with X_valid and X_ready if it waits, with
 // X_valid if it does not. X_o is its packet, valid while its bit of fire_o is set; fire_o, from bit 0:
-//  triangle setup context tile edges stamp line_pixel fragment write retire.
-// stream_valid_o, stream_ready_o, from bit 0: triangle setup tile stamp line_pixel fragment.
+//  triangle setup context tile edges stamp line_pixel fragment write retire request response.
+// stream_valid_o, stream_ready_o, from bit 0: triangle setup tile stamp line_pixel fragment request response.
 `define RASTER_TAP_PORTS \
-    output logic [9:0] fire_o, \
-    output logic [5:0] stream_valid_o, \
-    output logic [5:0] stream_ready_o, \
+    output logic [11:0] fire_o, \
+    output logic [7:0] stream_valid_o, \
+    output logic [7:0] stream_ready_o, \
     output raster_pkg::triangle_packet_t triangle_o, \
     output raster_pkg::setup_packet_t setup_o, \
     output raster_pkg::context_packet_t context_o, \
@@ -17,7 +17,9 @@
     output raster_pkg::line_pixel_t line_pixel_o, \
     output raster_pkg::fragment_packet_t fragment_o, \
     output raster_pkg::write_packet_t write_o, \
-    output raster_pkg::retire_packet_t retire_o
+    output raster_pkg::retire_packet_t retire_o, \
+    output raster_pkg::memory_request_t request_o, \
+    output raster_pkg::memory_response_t response_o
 
 `define RASTER_TAPS \
   logic triangle_fire; \
@@ -30,6 +32,8 @@
   logic fragment_fire; \
   logic write_fire; \
   logic retire_fire; \
+  logic request_fire; \
+  logic response_fire; \
   assign triangle_fire = u_raster.triangle_valid && u_raster.triangle_ready; \
   assign setup_fire = u_raster.setup_valid && u_raster.setup_ready; \
   assign context_fire = u_raster.setup_valid && u_raster.setup_ready; \
@@ -40,9 +44,11 @@
   assign fragment_fire = u_raster.fragment_valid && u_raster.fragment_ready; \
   assign write_fire = u_raster.write_valid; \
   assign retire_fire = u_raster.retire_valid; \
-  assign fire_o = {retire_fire, write_fire, fragment_fire, line_pixel_fire, stamp_fire, edges_fire, tile_fire, context_fire, setup_fire, triangle_fire}; \
-  assign stream_valid_o = {u_raster.fragment_valid, u_raster.line_pixel_valid, u_raster.stamp_valid, u_raster.tile_valid, u_raster.setup_valid, u_raster.triangle_valid}; \
-  assign stream_ready_o = {u_raster.fragment_ready, u_raster.line_pixel_ready, u_raster.stamp_ready, u_raster.tile_ready, u_raster.setup_ready, u_raster.triangle_ready}; \
+  assign request_fire = u_raster.request_valid && u_raster.request_ready; \
+  assign response_fire = u_raster.response_valid && u_raster.response_ready; \
+  assign fire_o = {response_fire, request_fire, retire_fire, write_fire, fragment_fire, line_pixel_fire, stamp_fire, edges_fire, tile_fire, context_fire, setup_fire, triangle_fire}; \
+  assign stream_valid_o = {u_raster.response_valid, u_raster.request_valid, u_raster.fragment_valid, u_raster.line_pixel_valid, u_raster.stamp_valid, u_raster.tile_valid, u_raster.setup_valid, u_raster.triangle_valid}; \
+  assign stream_ready_o = {u_raster.response_ready, u_raster.request_ready, u_raster.fragment_ready, u_raster.line_pixel_ready, u_raster.stamp_ready, u_raster.tile_ready, u_raster.setup_ready, u_raster.triangle_ready}; \
   assign triangle_o = u_raster.triangle_data; \
   assign setup_o = u_raster.setup_data; \
   assign context_o = u_raster.context_data; \
@@ -52,4 +58,6 @@
   assign line_pixel_o = u_raster.line_pixel_data; \
   assign fragment_o = u_raster.fragment_data; \
   assign write_o = u_raster.write_data; \
-  assign retire_o = u_raster.retire_data;
+  assign retire_o = u_raster.retire_data; \
+  assign request_o = u_raster.request_data; \
+  assign response_o = u_raster.response_data;

@@ -5,8 +5,7 @@
 // share them.
 module edge_offset #(
     parameter int WIDTH  = 1,  // bits of a value; the caller has proven that the sum fits, or wants a residue
-    parameter int OFFSET = 1,  // bits of x and y, pixels
-    parameter int SIGNED = 0   // 1: the highest bit of x and y counts negative
+    parameter int OFFSET = 1   // bits of x and y, pixels
 ) (
     input  logic signed [WIDTH-1:0]  value_i,
     input  logic signed [WIDTH-1:0]  step_x_i,
@@ -22,8 +21,7 @@ module edge_offset #(
     moved = value;
     for (int b = OFFSET - 1; b >= 0; b--) begin
       term  = offset[b] ? step : '0;
-      moved = (((SIGNED != 0 && b == OFFSET - 1) ? (moved >>> b) - term : (moved >>> b) + term) <<< b) |
-              (moved & WIDTH'((1 << b) - 1));
+      moved = (((moved >>> b) + term) <<< b) | (moved & WIDTH'((1 << b) - 1));
     end
   endfunction
 

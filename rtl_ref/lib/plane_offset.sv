@@ -1,4 +1,4 @@
-// Plane offset for the smallest parts (elsewhere: edge_offset): value + offset * step modulo 2^WIDTH, by shifts and adds;
+// Plane offset, from the centre of a tile to either side: value + offset * step modulo 2^WIDTH, by shifts and adds;
 // offset is two's complement. Its two highest bits together are one digit out of -2, -1, 0, 1: three bits, two adders.
 module plane_offset #(
     parameter int WIDTH  = 4,

@@ -9,6 +9,7 @@ module sram #(
     /* verilator lint_off UNUSEDPARAM */   // for synthesis only
     parameter bit READS_OLD = 1,
     parameter bit BLOCK = 0,               // 1: in block RAM even where it fills little of it
+    parameter int WHOLE = 1024,            // words up to which it is one RAM in any case
     /* verilator lint_on UNUSEDPARAM */
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
@@ -23,15 +24,44 @@ module sram #(
     input logic [WIDTH-1:0]   data_i
 );
 
-  (* no_rw_check = !READS_OLD, ram_style = BLOCK ? "block" : "auto" *)
-  logic [WIDTH-1:0] memory_q[0:DEPTH-1];
-  logic [WIDTH-1:0] data_q;
+  // A few words more than a power of two are a RAM of their own: otherwise all of it would be made of smaller blocks, with
+  // a multiplexer behind them.
+  localparam int LOW = 1 << (ADDRESS - 1);
+  localparam int HIGH = DEPTH - LOW;  // words from LOW on
+  localparam int HIGH_ADDRESS = HIGH < 2 ? 1 : $clog2(HIGH);
 
-  assign data_o = data_q;
+  generate
+    if (DEPTH > WHOLE && HIGH <= LOW / 8) begin : gen_parts
+      (* no_rw_check = !READS_OLD, ram_style = BLOCK ? "block" : "auto" *)
+      logic [WIDTH-1:0] low_q[0:LOW-1];
+      (* no_rw_check = !READS_OLD, ram_style = "block" *)
+      logic [WIDTH-1:0] high_q[0:HIGH-1];
+      logic [WIDTH-1:0] low_data_q, high_data_q;
+      logic             is_high_q;
 
-  always_ff @(posedge clk_i) begin
-    if (read_i) data_q <= memory_q[read_address_i];
-    if (write_i) memory_q[write_address_i] <= data_i;
-  end
+      assign data_o = is_high_q ? high_data_q : low_data_q;
+
+      always_ff @(posedge clk_i) begin
+        if (read_i) begin
+          is_high_q   <= read_address_i[ADDRESS-1];
+          low_data_q  <= low_q[read_address_i[ADDRESS-2:0]];
+          high_data_q <= high_q[read_address_i[HIGH_ADDRESS-1:0]];
+        end
+        if (write_i && !write_address_i[ADDRESS-1]) low_q[write_address_i[ADDRESS-2:0]] <= data_i;
+        if (write_i && write_address_i[ADDRESS-1]) high_q[write_address_i[HIGH_ADDRESS-1:0]] <= data_i;
+      end
+    end else begin : gen_whole
+      (* no_rw_check = !READS_OLD, ram_style = BLOCK ? "block" : "auto" *)
+      logic [WIDTH-1:0] memory_q[0:DEPTH-1];
+      logic [WIDTH-1:0] data_q;
+
+      assign data_o = data_q;
+
+      always_ff @(posedge clk_i) begin
+        if (read_i) data_q <= memory_q[read_address_i];
+        if (write_i) memory_q[write_address_i] <= data_i;
+      end
+    end
+  endgenerate
 
 endmodule

@@ -30,7 +30,7 @@ module block_cache (
     input raster_pkg::write_packet_t write_i,
     /* verilator lint_on UNUSEDSIGNAL */
 
-    // Memory
+    // To and from memory_port
     output logic                         request_valid_o,
     input  logic                         request_ready_i,
     output raster_pkg::memory_request_t  request_o,
@@ -70,10 +70,7 @@ module block_cache (
   localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + BLOCK_X + BLOCK_Y + 2 * STAMPS + 2;
   localparam int ORDER = WRITES + 1 + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS + INDEX;
 
-  localparam logic [1:0] SOURCE_NONE = 2'd0;
-  localparam logic [1:0] SOURCE_CHIP = 2'd1;
-  localparam logic [1:0] SOURCE_CLEAR = 2'd2;
-  localparam logic [1:0] SOURCE_MEMORY = 2'd3;
+  localparam int RUN = raster_pkg::RUN_BITS;
 
   function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
     lowest = set & (~set + 1'b1);
@@ -83,12 +80,22 @@ module block_cache (
     for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
   endfunction
 
+  // Of the lowest one, how many follow each other without a gap.
+  function automatic [RUN-1:0] run_of(input [STAMPS-1:0] set);
+    logic [STAMPS-1:0] gaps;  // above the lowest, from the first one that is missing on
+    gaps   = ~set & ~(lowest(set) - 1'b1);
+    run_of = '0;
+    for (int i = 0; i < STAMPS; i++)
+      if (set[i] && (gaps & ((STAMPS'(2) << i) - 1'b1)) == '0) run_of = run_of + 1'b1;
+  endfunction
+
   // ------------------------------------------------------------------------------------------------ tags, items, orders
   logic                             made_valid, made_ready, made_starts_color, made_evicts;
   raster_pkg::fragment_packet_t made;
   logic [LINE-1:0]                  made_line;
   logic [STAMP-1:0]                 made_stamp;
-  logic [1:0]                       made_source, made_fills;
+  raster_pkg::depth_source_t        made_source;
+  logic [1:0]                       made_fills;
   logic [BLOCK_X-1:0]               made_x;
   logic [BLOCK_Y-1:0]               made_y;
   logic [STAMPS-1:0]                made_depth, made_color;
@@ -144,7 +151,8 @@ module block_cache (
   raster_pkg::fragment_packet_t item;
   logic [LINE-1:0]                  item_line;
   logic [STAMP-1:0]                 item_stamp;
-  logic [1:0]                       source, fills;
+  logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] source;
+  logic [1:0]                       fills;
   logic [BLOCK_X-1:0]               evicts_x;
   logic [BLOCK_Y-1:0]               evicts_y;
   logic [STAMPS-1:0]                evicts_depth, evicts_color;
@@ -201,7 +209,7 @@ module block_cache (
   );
 
   // --------------------------------------------------------------------------------------------------- X: the depth test
-  logic              reads_victim, slot_free, goes, hazard, leaves_line;
+  logic              on_chip, in_memory, reads_victim, slot_free, goes, hazard, leaves_line;
   logic [STAMPS-1:0] left_q, left, next, item_bit;  // stamps of the last eviction that are still to be read
   logic [LINE-1:0]   left_line_q;
   logic [VICTIM:0]   taken_q;   // slots of victims that X has given away
@@ -212,7 +220,7 @@ module block_cache (
   logic               x1_valid_q, x1_starts_color_q, x1_evicts_q;
   logic [LINE-1:0]    x1_line_q;
   logic [STAMP-1:0]   x1_stamp_q;
-  logic [1:0]         x1_source_q;
+  logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] x1_source_q;
   logic               x1_fills_q;
   logic [STAMPS-1:0]  x1_color_q;
   logic [SAMPLES-1:0] x1_writes_q;  // samples of the RAM that may be written
@@ -220,17 +228,19 @@ module block_cache (
 
   assign slot_free    = taken_q != (VICTIM + 1)'(VICTIMS);
   assign item_bit     = STAMPS'(1) << item_stamp;
-  assign hazard       = x1_valid_q && source == SOURCE_CHIP && x1_line_q == item_line && x1_stamp_q == item_stamp &&
+  assign on_chip      = source == raster_pkg::DEPTH_SOURCE_CHIP;
+  assign in_memory    = source == raster_pkg::DEPTH_SOURCE_MEMORY;
+  assign hazard       = x1_valid_q && on_chip && x1_line_q == item_line && x1_stamp_q == item_stamp &&
                         (x1_writes_q & item.mask) != '0;
   assign leaves_line  = x1_valid_q && x1_line_q == item_line && x1_writes_q != '0;
   assign goes         = item_valid && (!evicts || (left_q == '0 && slot_free && !leaves_line)) &&
-                        (source != SOURCE_CHIP || left_q == '0) && (source != SOURCE_MEMORY || answer_valid) && !hazard &&
+                        (!on_chip || left_q == '0) && (!in_memory || answer_valid) && !hazard &&
                         (behind_q != 2'd2 || colors_done);
   assign left         = goes && evicts ? evicts_depth : left_q;
   assign next         = goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0 ? item_bit : lowest(left);
   assign reads_victim = left != '0;
   assign takes_item      = goes;
-  assign takes_answer    = goes && source == SOURCE_MEMORY;
+  assign takes_answer    = goes && in_memory;
   assign tested_valid_o  = goes;
   assign tested_o        = item;
 
@@ -259,8 +269,8 @@ module block_cache (
     x1_color_q        <= evicts_color;
     answer_q          <= answer;
     if (item.mask == '0) x1_writes_q <= '0;
-    else if (source == SOURCE_CHIP) x1_writes_q <= item.mask & {SAMPLES{item.state.depth_write}};
-    else x1_writes_q <= {SAMPLES{source != SOURCE_NONE || item.state.depth_write}};
+    else if (on_chip) x1_writes_q <= item.mask & {SAMPLES{item.state.depth_write}};
+    else x1_writes_q <= {SAMPLES{source != raster_pkg::DEPTH_SOURCE_NONE || item.state.depth_write}};
   end
 
   // The depth RAM: of each sample its code, and whether memory does not have it.
@@ -289,6 +299,8 @@ module block_cache (
     v_last_q  <= left == next;
   end
 
+  logic x1_on_chip;
+  assign x1_on_chip = x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP;
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_depth
@@ -296,9 +308,12 @@ module block_cache (
       logic            dirty, writes, strobe;
       logic [CODE:0]   word;
       assign response_depth[s*CODE+:CODE] = response_i.data[s*LANE+:CODE];
-      assign stored = x1_source_q == SOURCE_CHIP ? code : (x1_source_q == SOURCE_CLEAR ? clear_depth : answer_q[s*CODE+:CODE]);
-      assign writes = x1_source_q == SOURCE_CHIP ? write_i.write_depth[s] :
-                      x1_source_q != SOURCE_NONE || write_i.write_depth[s];
+      always_comb begin
+        stored = answer_q[s*CODE+:CODE];
+        if (x1_source_q == raster_pkg::DEPTH_SOURCE_CLEAR) stored = clear_depth;
+        if (x1_on_chip) stored = code;
+      end
+      assign writes = write_i.write_depth[s] || (!x1_on_chip && x1_source_q != raster_pkg::DEPTH_SOURCE_NONE);
       assign written = write_i.write_depth[s] ? write_i.depth[s*CODE+:CODE] : stored;
       assign word = {write_i.write_depth[s], written};
       assign stored_depth_o[s*CODE+:CODE] = stored;
@@ -516,7 +531,9 @@ module block_cache (
     request_o.tile_x   = order_x;
     request_o.tile_y   = order_y;
     request_o.stamp    = order_stamp;
+    request_o.run      = RUN'(1);
     if (sends) begin
+      request_o.run    = run_of(is_color ? color_left : depth_left);
       request_o.tile_x = sent_tile_x;
       request_o.tile_y = sent_tile_y;
       request_o.stamp  = sent_index;

@@ -2,8 +2,8 @@
 // a fragment needs while those before it are still on their way.
 //
 // In: fragments, in program order. Out: items for the test, each with what the tags have found, and orders: so many evicted
-// blocks go to memory, then a stamp of depth is read. A fragment takes two cycles to become an item, one a cycle; two more
-// where the flag of a cleared block falls. Tokens stay until all they ask for is done: a walk over the lines that evicts
+// blocks go to memory, then a stamp of depth is read. A fragment takes two cycles to become an item, one a cycle; one or
+// two more where the flag of a cleared block falls. Tokens stay until all they ask for is done: a walk over the lines that evicts
 // what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
 // Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
@@ -30,7 +30,7 @@ module cache_tags #(
     output raster_pkg::fragment_packet_t item_o,
     output logic [LINE-1:0]              item_line_o,
     output logic [STAMP-1:0]             item_stamp_o,
-    output logic [1:0]                   item_source_o,  // of the stored depth: 0 none, 1 chip, 2 clear value, 3 memory
+    output raster_pkg::depth_source_t    item_source_o,
     output logic                         item_starts_color_o,
     // The block that leaves the line
     output logic                         evicts_o,
@@ -74,6 +74,7 @@ module cache_tags #(
   localparam int TAG_X = (BLOCK_X > LINE_X) ? BLOCK_X - LINE_X : 1;
   localparam int TAG_Y = (BLOCK_Y > LINE_Y) ? BLOCK_Y - LINE_Y : 1;
   localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
+  localparam int RUN = raster_pkg::RUN_BITS;
   localparam int VICTIMS = raster_pkg::CACHE_VICTIMS;
   localparam int VICTIM = $clog2(VICTIMS);
   localparam int WORD = raster_pkg::FLAG_WORD;
@@ -81,7 +82,7 @@ module cache_tags #(
   localparam int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1;  // bits of a word's number in its row
   localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
   localparam int FLAG = $clog2(FLAGS);
-  localparam int STATE = 1 + TAG_X + TAG_Y + 2 * STAMPS + 3;  // of a line
+  localparam int STATE = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;  // of a line
   localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
   localparam logic [LINE-1:0] LINE_Y_MASK = LINE'((1 << LINE_Y) - 1);
 
@@ -94,11 +95,6 @@ module cache_tags #(
   localparam logic [3:0] SEND = 4'd6;     // it goes to memory
   localparam logic [3:0] RESOLVE = 4'd7;  // its blocks do
   localparam logic [3:0] DONE = 4'd8;
-
-  localparam logic [1:0] SOURCE_NONE = 2'd0;
-  localparam logic [1:0] SOURCE_CHIP = 2'd1;
-  localparam logic [1:0] SOURCE_CLEAR = 2'd2;
-  localparam logic [1:0] SOURCE_MEMORY = 2'd3;
 
   logic [3:0] state_q, state_d;
 
@@ -138,7 +134,7 @@ module cache_tags #(
   // The fragment, or line of a walk, whose line has been read.
   logic                             valid_q, walks_q;
   raster_pkg::fragment_packet_t fragment_q;
-  logic [1:0]                       fall_q;  // a flag falls: 0 its word is read, 1 written, 2 done
+  logic [1:0]                       fall_q;  // a flag falls: 0 its word is read, unless it is here, 1 written, 2 done
   logic [LINE-1:0]                  walk_q;  // line of a token's walk
   logic                             leaves, looks;
 
@@ -165,7 +161,7 @@ module cache_tags #(
   /* verilator lint_on UNUSEDSIGNAL */
   logic [BLOCK_X-1:0] block_x, line_x;
   logic [BLOCK_Y-1:0] block_y, line_y;
-  logic               line_valid, line_has_depth;
+  logic               line_valid, line_dirty, line_falls, line_has_depth;
   logic [TAG_X-1:0]   tag_x;
   logic [TAG_Y-1:0]   tag_y;
   logic [STAMPS-1:0]  line_known, line_colored;
@@ -206,7 +202,8 @@ module cache_tags #(
     end
   end
   assign line_state = is_forwarded_q ? forward_q : line_read;
-  assign {line_valid, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state;
+  // What follows from the rest stands in it as well, known at once: the line may have been written; its flags fall then.
+  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state;
   assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line) & BLOCK_X'((1 << LINE_X) - 1));
   assign line_above_x = line >> LINE_X;
   assign line_y = (BLOCK_Y'(tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
@@ -247,18 +244,30 @@ module cache_tags #(
   );
 
   // What the tags find. The flags of a block that comes are looked at before those of the one that leaves.
-  logic              is_access, hits, evicts, falls, is_full, is_known, starts_color, uses;
-  logic [1:0]        cleared, cleared_q, fills, source;
+  logic is_access, read_hits, forward_hits, hits, is_dirty, may_fall, leaves_line, evicts, falls, is_full, is_known;
+  logic starts_color, uses, stores_depth;
+  logic [1:0]        cleared, cleared_q, fills;
+  raster_pkg::depth_source_t source;
   logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;
+  logic              drops_depth_q;  // depth that leaves the chip is lost, and its flag stays
 
   assign is_access  = valid_q && !walks_q && fragment_q.mask != '0;
   assign is_full    = fragment_q.mask == '1;
   assign stamp_bit  = STAMPS'(1) << stamp;
-  assign hits       = line_valid && tag_x == TAG_X'(block_x >> LINE_X) && tag_y == TAG_Y'(block_y >> LINE_Y);
-  assign line_depth = line_has_depth ? line_known : '0;
-  assign evicts     = line_valid && (line_has_depth || line_colored != '0) && (walks_q || (is_access && !hits));
-  assign fills      = line_cleared & {line_colored != '0, line_depth != '0};
-  assign falls      = evicts && fills != '0;
+  // The tag is compared on either way that the line may come, before one of the two is taken.
+  assign read_hits    = line_read[STATE-1] &&
+                        line_read[STATE-4-:TAG_X+TAG_Y] == {TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y)};
+  assign forward_hits = forward_q[STATE-1] &&
+                        forward_q[STATE-4-:TAG_X+TAG_Y] == {TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y)};
+  assign hits         = is_forwarded_q ? forward_hits : read_hits;
+  assign stores_depth = line_has_depth && !drops_depth_q;
+  assign line_depth   = stores_depth ? line_known : '0;
+  assign is_dirty     = line_valid && (drops_depth_q ? line_colored != '0 : line_dirty);
+  assign may_fall     = is_dirty && (drops_depth_q ? fills[1] : line_falls);  // known before the tag is compared
+  assign leaves_line  = walks_q || (is_access && !hits);
+  assign evicts       = is_dirty && leaves_line;
+  assign fills        = line_cleared & {line_colored != '0, line_depth != '0};
+  assign falls        = may_fall && leaves_line;
 
   assign cleared      = hits ? line_cleared : (fall_q == '0 ? {word_color[bit_of(block_x)], word_depth[bit_of(block_x)]} : cleared_q);
   assign known        = hits ? line_known : '0;
@@ -266,21 +275,24 @@ module cache_tags #(
   assign is_known     = (known & stamp_bit) != '0;
   assign starts_color = is_access && fragment_q.state.color_write && (colored & stamp_bit) == '0;
   always_comb begin
-    source = SOURCE_NONE;
-    if (is_known) source = SOURCE_CHIP;
+    source = raster_pkg::DEPTH_SOURCE_NONE;
+    if (is_known) source = raster_pkg::DEPTH_SOURCE_CHIP;
     else if (fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full)
-      source = cleared[0] ? SOURCE_CLEAR : SOURCE_MEMORY;
-    if (!is_access) source = SOURCE_NONE;
+      source = cleared[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY;
+    if (!is_access) source = raster_pkg::DEPTH_SOURCE_NONE;
   end
-  assign uses = source != SOURCE_NONE || fragment_q.state.depth_write;
+  assign uses = source != raster_pkg::DEPTH_SOURCE_NONE || fragment_q.state.depth_write;
 
-  assign line_writes = (leaves && (is_access || walks_q)) || state_q == MARK;
+  logic [STAMPS-1:0] known_new, colored_new;
+  logic              has_depth_new;
+  assign known_new     = known | (uses ? stamp_bit : '0);
+  assign colored_new   = colored | (fragment_q.state.color_write ? stamp_bit : '0);
+  assign has_depth_new = (hits && line_has_depth) || fragment_q.state.depth_write;
+  assign line_writes   = (leaves && (is_access || walks_q)) || state_q == MARK;
   always_comb begin
     line_new = {
-      1'b1, TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y),
-      known | (uses ? stamp_bit : '0),
-      colored | (fragment_q.state.color_write ? stamp_bit : '0),
-      (hits && line_has_depth) || fragment_q.state.depth_write, cleared
+      1'b1, has_depth_new || colored_new != '0, (cleared & {colored_new != '0, has_depth_new && known_new != '0}) != '0,
+      TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y), known_new, colored_new, has_depth_new, cleared
     };
     if (walks_q || state_q == MARK) line_new[STATE-1] = 1'b0;
   end
@@ -323,16 +335,17 @@ module cache_tags #(
     end
   end
 
-  // Items and orders leave together.
+  // Items and orders leave together, when there is room for both, whatever is to leave.
+  logic has_word, falls_now, writes_flag;  // of the flag that falls: the word that was looked at has it; it is read; written
   logic is_item, is_order, is_settled;
-  assign is_settled     = valid_q && (!falls || fall_q == 2'd2);
+  assign is_settled     = valid_q && !(may_fall && fall_q != 2'd2 && leaves_line);
   assign is_item        = !walks_q || evicts;
-  assign is_order       = writes != '0 || source == SOURCE_MEMORY;
-  assign item_valid_o   = is_settled && is_item && (!is_order || order_ready_i);
-  assign order_valid_o  = state_q == ORDER ? waiting_q != '0 : is_settled && is_order && (!is_item || item_ready_i);
-  assign leaves         = is_settled && (!is_item || item_ready_i) && (!is_order || order_ready_i);
+  assign is_order       = writes != '0 || source == raster_pkg::DEPTH_SOURCE_MEMORY;
+  assign item_valid_o   = is_settled && is_item && order_ready_i;
+  assign order_valid_o  = state_q == ORDER ? waiting_q != '0 : is_settled && is_order && item_ready_i;
+  assign leaves         = is_settled && item_ready_i && order_ready_i;
   assign order_writes_o = writes;
-  assign order_reads_o  = source == SOURCE_MEMORY;
+  assign order_reads_o  = source == raster_pkg::DEPTH_SOURCE_MEMORY;
   assign order_tile_x_o = fragment_q.key.tile_x;
   assign order_tile_y_o = fragment_q.key.tile_y;
   assign order_stamp_o  = fragment_q.stamp;
@@ -354,12 +367,13 @@ module cache_tags #(
   assign evicts_depth_o      = line_depth;
   assign evicts_color_o      = line_colored;
   assign evicts_fills_o      = fills;
-  assign is_cleared_o        = leaves && source == SOURCE_CLEAR;
+  assign is_cleared_o        = leaves && source == raster_pkg::DEPTH_SOURCE_CLEAR;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) fall_q <= '0;
     else if (leaves) fall_q <= '0;
-    else if (valid_q && falls && fall_q != 2'd2) fall_q <= fall_q + 1'b1;
+    else if (writes_flag) fall_q <= 2'd2;
+    else if (falls_now) fall_q <= 2'd1;
   end
   always_ff @(posedge clk_i) if (fall_q == '0) cleared_q <= {word_color[bit_of(block_x)], word_depth[bit_of(block_x)]};
 
@@ -422,7 +436,7 @@ module cache_tags #(
       words_done_q <= 1'b0;
       word_x_q     <= '0;
       word_y_q     <= '0;
-      plane_q      <= 1'b0;
+      plane_q      <= !is_clear && drops_depth_q;  // a flush that drops depth writes no flags of it
     end else begin
       if ((walks_q && leaves) || state_q == MARK) begin
         walk_q <= walk_q + 1'b1;
@@ -442,13 +456,23 @@ module cache_tags #(
     if (state_q == MARK && fragment_i.state.depth_write) clear_depth_q <= fragment_i.code[0+:CODE];
     if (state_q == MARK && fragment_i.state.color_write) clear_color_q <= color;
   end
+
+  // A fast clear says what becomes of depth from then on, a flush of what it finds on the chip.
+  logic drops_depth;
+  assign drops_depth = fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) drops_depth_q <= 1'b0;
+    else if (begins) drops_depth_q <= is_clear ? drops_depth_q : drops_depth;
+    else if (state_q == DONE) drops_depth_q <= drops_depth && is_clear;
+  end
   assign clear_depth_o = clear_depth_q;
   assign clear_color_o = clear_color_q;
 
   // Which word is read and written: of a block that is wanted, of one that leaves, of the walks.
   logic [BLOCK_X-1:0] resolve_x_q;  // of the flag that is bit 0 of bits_q
-  logic               falls_now;
-  assign falls_now  = valid_q && falls && fall_q == '0;
+  assign has_word    = is_access && word_of(line_x, line_y) == word_of(block_x, block_y);
+  assign falls_now   = valid_q && falls && fall_q == '0 && !has_word;
+  assign writes_flag = valid_q && falls && (fall_q == 2'd1 || (fall_q == '0 && has_word));
   assign flag_reads = takes_fragment || falls_now || state_q == READ;
   always_comb begin
     flag_x = fragment_x;
@@ -462,7 +486,7 @@ module cache_tags #(
       flag_y = word_y_q;
     end
     flag_write_address = word_of(line_x, line_y);
-    flag_writes        = fills & {2{valid_q && falls && fall_q == 2'd1}};
+    flag_writes        = fills & {2{writes_flag}};
     word_depth_new     = word_depth & ~(WORD'(1) << bit_of(line_x));
     word_color_new     = word_color & ~(WORD'(1) << bit_of(line_x));
     if (state_q == MARK || state_q == RESOLVE) begin
@@ -496,6 +520,7 @@ module cache_tags #(
     request_o          = '0;
     request_o.is_write = 1'b1;
     request_o.strobe   = '1;
+    request_o.run      = RUN'(STAMPS) - RUN'(stamp_q);
     request_o.tile_y   = resolve_tile_y;  // of a word of flags the same: that of its row of blocks
     if (state_q == RESOLVE) begin
       request_o.plane  = raster_pkg::TILE_PLANE_COLOR;
@@ -504,6 +529,7 @@ module cache_tags #(
       for (int s = 0; s < SAMPLES; s++) request_o.data[s*LANE+:LANE] = LANE'(clear_color_q);
     end else begin
       request_o.plane          = plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS;
+      request_o.run            = RUN'(last_word) - RUN'(word_x_q) + 1'b1;
       request_o.tile_x         = raster_pkg::TILE_X_BITS'(word_x_q);
       request_o.stamp          = INDEX'(word_y_q) & INDEX'((1 << TILE_BITS) - 1);
       request_o.data[WORD-1:0] = word;

@@ -64,7 +64,7 @@ module cull_serial (
       case (state_q)
         IDLE: if (takes) state_q <= SORT;
         SORT: if (count_q == COUNT'(5)) state_q <= BOX;
-        BOX: if (count_q == COUNT'(3)) state_q <= is_triangle ? AREA : OFFER;
+        BOX: if (count_q == COUNT'(4)) state_q <= is_triangle ? AREA : OFFER;
         AREA: if (product_ends) state_q <= JUDGE;
         JUDGE:
         if (is_dropped) state_q <= leaves ? IDLE : JUDGE;
@@ -78,7 +78,7 @@ module cull_serial (
 
   always_ff @(posedge clk_i) begin
     if (state_q == IDLE || state_q == JUDGE || state_q == FLIP || product_ends) count_q <= '0;
-    else if (state_q == SORT ? count_q == COUNT'(5) : !multiplies && count_q == COUNT'(3)) count_q <= '0;
+    else if (state_q == SORT ? count_q == COUNT'(5) : !multiplies && count_q == COUNT'(4)) count_q <= '0;
     else count_q <= count_q + COUNT'(1);
     if (state_q != EDGES) edge_q <= 2'd0;
     else if (product_ends) edge_q <= edge_q + 2'd1;
@@ -95,7 +95,7 @@ module cull_serial (
   assign key0 = {~y0_q[C-1], y0_q[0+:C-1], ~x0_q[C-1], x0_q[0+:C-1], code0_q[0+:Z]};
   assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1], code1_q[0+:Z]};
 
-  assign turns = (state_q == SORT && count_q[1]) || (state_q == BOX && count_q != COUNT'(3)) || state_q == FLIP ||
+  assign turns = (state_q == SORT && count_q[1]) || (state_q == BOX && count_q < COUNT'(3)) || state_q == FLIP ||
                  (state_q == EDGES && product_ends);
   assign swaps = (state_q == SORT && !count_q[1] && count_q[0] && is_1_first_q) || (state_q == JUDGE && is_negative_q && !is_dropped);
 
@@ -115,8 +115,8 @@ module cull_serial (
   end
 
   // -------------------------------------------------------------------------------------------------------------- box
-  // The first and the last pixel whose centre is not before, not behind a vertex, no farther than the scissor. The box is
-  // from the smallest first to the largest last of the three vertices.
+  // The first and the last pixel whose centre is not before, not behind a vertex. The box is from the smallest first to the
+  // largest last of the three vertices, cut by the scissor; a cycle a vertex, one for the scissor, one to see what is left.
   localparam int B = C + 1;      // a coordinate plus half a pixel
   localparam int N = C - S + 1;  // a pixel in the guard band, or one outside of it
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
@@ -138,20 +138,26 @@ module cull_serial (
   assign scissor_top    = N'(primitive_i.box.top);
   assign scissor_right  = N'(primitive_i.box.right);
   assign scissor_bottom = N'(primitive_i.box.bottom);
-  assign left           = is_triangle && first_x > scissor_left ? first_x : scissor_left;
-  assign top            = is_triangle && first_y > scissor_top ? first_y : scissor_top;
-  assign right          = is_triangle && last_x < scissor_right ? last_x : scissor_right;
-  assign bottom         = is_triangle && last_y < scissor_bottom ? last_y : scissor_bottom;
+  assign left           = is_triangle && left_q > scissor_left ? left_q : scissor_left;
+  assign top            = is_triangle && top_q > scissor_top ? top_q : scissor_top;
+  assign right          = is_triangle && right_q < scissor_right ? right_q : scissor_right;
+  assign bottom         = is_triangle && bottom_q < scissor_bottom ? bottom_q : scissor_bottom;
   assign is_first       = count_q == '0;
   assign is_empty       = left_q > right_q || top_q > bottom_q;
 
   always_ff @(posedge clk_i) begin
-    is_empty_q <= is_empty;  // the fourth cycle of BOX is for this
-    if (state_q == BOX && count_q != COUNT'(3)) begin
-      if (is_first || left < left_q) left_q <= left;
-      if (is_first || right > right_q) right_q <= right;
-      if (is_first) top_q <= top;  // vertex 0 is the highest
-      if (is_first || bottom > bottom_q) bottom_q <= bottom;
+    is_empty_q <= is_empty;
+    if (state_q == BOX && count_q < COUNT'(3)) begin
+      if (is_first || first_x < left_q) left_q <= first_x;
+      if (is_first || last_x > right_q) right_q <= last_x;
+      if (is_first) top_q <= first_y;  // vertex 0 is the highest
+      if (is_first || last_y > bottom_q) bottom_q <= last_y;
+    end
+    if (state_q == BOX && count_q == COUNT'(3)) begin
+      left_q   <= left;
+      right_q  <= right;
+      top_q    <= top;
+      bottom_q <= bottom;
     end
   end
 

@@ -161,8 +161,8 @@ module depth_test (
       logic [HIZ-1:0]        max_q;
       logic                  is_full, any_passed, covers_tile;
       logic [HIZ-1:0]        max;
-      raster_pkg::hiz_update_t update, update_q;
-      logic [HIZ-1:0]        code_q;
+      logic                  sets, clears, sets_q, clears_q;  // the visit sets its tile's bound, clears it
+      logic [HIZ-1:0]        max_of_visit_q;
 
       assign is_full     = passed == '1;
       assign any_passed  = any_passed_q || passed != '0;
@@ -187,13 +187,9 @@ module depth_test (
         assign is_right  = fragment_q.stamp[STAMP_BITS/2-1];
         assign corner    = is_bottom ? (is_right ? corner_11 : corner_10) : (is_right ? corner_01 : corner_00);
       end
-      assign max = corner > max_q ? corner : max_q;
-
-      always_comb begin
-        update = raster_pkg::HIZ_UPDATE_NONE;
-        if (fragment_q.state.depth_write && covers_tile) update = raster_pkg::HIZ_UPDATE_SET;
-        else if (fragment_q.state.depth_write && greater_passes && any_passed) update = raster_pkg::HIZ_UPDATE_CLEAR;
-      end
+      assign max    = corner > max_q ? corner : max_q;
+      assign sets   = fragment_q.state.depth_write && covers_tile;
+      assign clears = fragment_q.state.depth_write && greater_passes && any_passed;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) begin
@@ -212,11 +208,13 @@ module depth_test (
       end
 
       always_ff @(posedge clk_i) begin
-        update_q <= update;
-        code_q   <= update == raster_pkg::HIZ_UPDATE_SET ? max : {HIZ{update == raster_pkg::HIZ_UPDATE_CLEAR}};
+        sets_q         <= sets;
+        clears_q       <= clears;
+        max_of_visit_q <= max;
       end
-      assign retire_o.update   = update_q;
-      assign retire_o.hiz_code = code_q;
+      assign retire_o.update   = sets_q ? raster_pkg::HIZ_UPDATE_SET :
+                                 clears_q ? raster_pkg::HIZ_UPDATE_CLEAR : raster_pkg::HIZ_UPDATE_NONE;
+      assign retire_o.hiz_code = sets_q ? max_of_visit_q : {HIZ{clears_q}};
     end
   endgenerate
 

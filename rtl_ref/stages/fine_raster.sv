@@ -56,7 +56,7 @@ module fine_raster (
   assign covered      = in_box & ({ROW{tile_q.is_inside}} | ~(outside[0+:ROW] | outside[ROW+:ROW] | outside[2*ROW+:ROW]));
   assign row_is_sent  = covered != '0 || is_last_row;
   assign row_leaves   = row_valid_q && (stamps_ready || !row_is_sent);
-  assign tile_ready_o = !row_valid_q || (row_leaves && is_last_row);
+  assign tile_ready_o = !row_valid_q || (stamps_ready && is_last_row);  // the last row is sent in any case
   assign takes_tile   = tile_valid_i && tile_ready_o;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -1,15 +1,16 @@
-// Framebuffer: the tiles on the chip, a direct-mapped write-back cache of the depth and colour planes in memory.
+// Framebuffer of tiles: depth and colour of a few tiles on the chip, a direct-mapped write-back cache of the planes in memory.
 //
 // In: accesses of depth_test (a stamp, or a token: fast clear, flush) and its writes. Out: the stored depth codes of
 // the stamp one cycle after the access, and requests to memory, in program order. A hit takes one cycle. A miss writes
-// back what is dirty, then brings in the tile: a plane cleared since it was last written back is filled on the chip.
+// back the stamps that were written, then brings in the tile: its depth from memory, or both planes from the clear value
+// where a fast clear came after their last write back; colour is only ever written.
 // The write of an access comes in the cycle after it, when the next access waits at the earliest: so whatever is looked
 // at from the second cycle of a miss on is settled. Specification: model/stages/tile_cache.hpp.
 module framebuffer (
     input logic clk_i,
     input logic rst_ni,
 
-    /* verilator lint_off UNUSEDSIGNAL */  // of both packets only some fields matter here
+    /* verilator lint_off UNUSEDSIGNAL */  // of the packets only some fields matter here
     // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0
     input  logic                                                       access_valid_i,
     output logic                                                       access_ready_o,
@@ -20,17 +21,17 @@ module framebuffer (
     // From depth_test: the write of the access of the cycle before
     input logic                      write_valid_i,
     input raster_pkg::write_packet_t write_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
-    // Memory
+    // To and from memory_port
     output logic                         request_valid_o,
     input  logic                         request_ready_i,
     output raster_pkg::memory_request_t  request_o,
     input  logic                         response_valid_i,
     output logic                         response_ready_o,
     input  raster_pkg::memory_response_t response_i,
+    /* verilator lint_on UNUSEDSIGNAL */
 
-    // Planes of tiles that this cycle adds to the counters
+    // Stamps that this cycle adds to the counters
     output logic [1:0] fill_o,
     output logic [1:0] evict_o,
     output logic [1:0] clear_o,
@@ -46,41 +47,41 @@ module framebuffer (
   localparam int TILE_X = raster_pkg::TILE_X_BITS;
   localparam int TILE_Y = raster_pkg::TILE_Y_BITS;
   localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
+  localparam int RUN = raster_pkg::RUN_BITS;
+  localparam int ROWS = raster_pkg::STAMPS_PER_ROW;  // of stamps in a tile, and stamps in a row; a power of two
+  localparam int ROW_BITS = $clog2(ROWS);
   localparam int LINES = raster_pkg::CACHE_LINES;
   localparam int LINE_X = raster_pkg::LINE_X_BITS;  // may be 0, or more than TILE_X
   localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
   localparam int LINE = (LINES == 1) ? 1 : LINE_X + LINE_Y;
   localparam int ADDRESS = LINE + STAMP_BITS;  // of a stamp in the RAMs
-  localparam int FLAGS = (raster_pkg::TILES_Y == 1 ? 2 : raster_pkg::TILES_Y) << TILE_X;  // addressed {tile y, tile x}
-  localparam logic [STAMP_BITS-1:0] LAST_STAMP =
-      STAMP_BITS'(raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW - 1);  // a power of two less 1
+  localparam int ROW_ADDRESS = LINE + ROW_BITS;  // of a row of stamps
+  localparam int WORD = raster_pkg::FLAG_WORD;
+  localparam int BIT = $clog2(WORD);
+  localparam int WORD_X = (TILE_X > BIT) ? TILE_X - BIT : 1;  // bits of a word's number in its row
+  localparam int FLAGS = (raster_pkg::TILES_Y == 1 ? 2 : raster_pkg::TILES_Y) << WORD_X;  // addressed {tile y, word}
+  localparam logic [STAMP_BITS-1:0] LAST_STAMP = STAMP_BITS'(ROWS * ROWS - 1);
+  localparam logic [STAMP_BITS-1:0] COLUMN_MASK = STAMP_BITS'(ROWS - 1);
   localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
   localparam logic [LINE-1:0] LINE_Y_MASK = LINE'((1 << LINE_Y) - 1);
 
-  localparam logic [2:0] SERVE = 3'd0;  // accesses that hit
-  localparam logic [2:0] CHECK = 3'd1;  // is line_q dirty?
-  localparam logic [2:0] EVICT = 3'd2;  // write back a plane of line_q
-  localparam logic [2:0] FILL = 3'd3;   // bring in both planes of the tile
-  localparam logic [2:0] MARK = 3'd4;   // fast clear: set the flags of a tile a cycle
-  localparam logic [2:0] LOOK = 3'd5;   // flush: read the flags of a tile
-  localparam logic [2:0] TEST = 3'd6;   // flush: are they set?
-  localparam logic [2:0] CLEAR = 3'd7;  // flush: write a cleared plane to memory
+  localparam logic [2:0] SERVE = 3'd0;    // accesses that hit
+  localparam logic [2:0] CHECK = 3'd1;    // is line_q dirty?
+  localparam logic [2:0] EVICT = 3'd2;    // write back a plane of line_q
+  localparam logic [2:0] FILL = 3'd3;     // bring in the tile
+  localparam logic [2:0] MARK = 3'd4;     // fast clear: set a word of flags a cycle
+  localparam logic [2:0] READ = 3'd5;     // flush: read a word of flags; the end of any walk
+  localparam logic [2:0] SEND = 3'd6;     // flush: it goes to memory; or is the tile's flag set?
+  localparam logic [2:0] RESOLVE = 3'd7;  // flush: write the clear colour of a tile
 
-  function automatic [STAMP_BITS-1:0] after(input [STAMP_BITS-1:0] stamp);
-    after = (stamp + 1'b1) & LAST_STAMP;
-  endfunction
-
-  logic [2:0]            state_q, state_d;
-  logic [LINE-1:0]       line_q;       // under eviction or fill
-  logic [STAMP_BITS-1:0] stamp_q;      // of the request; rests at the last, so that the next is 0
-  logic                  plane_q;      // 1: colour; in a fill the second plane that is read
-  logic                  requested_q;  // fill: every request has been taken
-  logic [STAMP_BITS-1:0] fill_stamp_q;  // next to be filled
-  logic                  fill_plane_q;
-  logic [TILE_X-1:0]     walk_x_q;     // tile of a fast clear's or flush's walk
-  logic [TILE_Y-1:0]     walk_y_q;
-  logic [CODE-1:0]       clear_depth_q;
-  logic [COLOR-1:0]      clear_color_q;
+  logic [2:0]        state_q, state_d;
+  logic [LINE-1:0]   line_q;    // under eviction or fill
+  logic              plane_q;   // of an eviction or walk; 1: colour
+  logic [TILE_X-1:0] walk_x_q;  // tile of a fast clear's or flush's walk
+  logic [TILE_Y-1:0] walk_y_q;
+  logic              walked_q;  // the walk is through
+  logic [CODE-1:0]   clear_depth_q;
+  logic [COLOR-1:0]  clear_color_q;
 
   // Tags; those and the dirty bits of a line that is not valid mean nothing.
   logic [LINES-1:0]  valid_q;
@@ -89,29 +90,25 @@ module framebuffer (
   logic              dirty_depth_q[0:LINES-1];
   logic              dirty_color_q[0:LINES-1];
 
-  logic is_clear, is_token, clears_all, hits;
+  logic is_clear, is_token, clears_all, hits, is_fill, is_resolve;
   logic [LINE-1:0] access_line, write_line, line;
   logic [TILE_X-1:0] tag_x;
   logic [TILE_Y-1:0] tag_y;
   logic line_depth_dirty, line_color_dirty, is_last_line;
-  logic flag_depth, flag_color;  // the plane in memory is garbage: its value is the last fast clear's
-  logic walk_ends_row, walk_ends, tile_done, walks;
-  logic is_fill, is_write_back, takes_request, starts_plane, ends_plane, more_requests;
-  logic fill_steps, fills_last, fill_ends, reads_both;
-  logic sets_dirty_depth, sets_dirty_color;
-  logic [LINE-1:0]   dirty_line;
   /* verilator lint_off UNUSEDSIGNAL */  // wider than a tile's y where the cache is larger than the target
   logic [LINE-1:0]   line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [TILE_X-1:0] tile_x;
   logic [TILE_Y-1:0] tile_y;
-  logic [1:0]        flag_write;  // colour, depth
+  logic flag_depth, flag_color;  // the plane of the tile in memory is garbage: its value is the last fast clear's
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
   assign clears_all  = is_clear && access_i.state.depth_write && access_i.state.color_write;
   assign access_line = (LINE'(access_i.key.tile_x) & LINE_X_MASK) | ((LINE'(access_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
   assign write_line  = (LINE'(write_i.key.tile_x) & LINE_X_MASK) | ((LINE'(write_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
+  assign is_fill     = state_q == FILL;
+  assign is_resolve  = state_q == RESOLVE;
 
   // One look-up: of the access while it is served, of line_q after that.
   assign line  = state_q == SERVE ? access_line : line_q;
@@ -122,124 +119,149 @@ module framebuffer (
   assign line_color_dirty = valid_q[line] && dirty_color_q[line];
   assign is_last_line     = line_q == LINE'(LINES - 1);
 
-  assign walk_ends_row = walk_x_q == access_i.key.tile_x;
-  assign walk_ends     = walk_ends_row && walk_y_q == access_i.key.tile_y;
-  assign tile_done     = state_q == MARK || (state_q == TEST && !flag_depth && !flag_color);
-  assign walks         = tile_done && (!walk_ends || access_valid_i);
+  // The walk of a token: words of flags, or tile by tile where colours are resolved.
+  logic resolves, walks, ends_row, ends_walk, sends;
+  logic ends_plane, fill_ends;  // the last stamp of a plane has been taken; the tile is here
+  assign resolves  = raster_pkg::FRAME_CLEARS == 0 && plane_q;
+  assign sends     = state_q == SEND && !resolves;
+  assign ends_row  = resolves ? walk_x_q == access_i.key.tile_x : walk_x_q >> BIT == access_i.key.tile_x >> BIT;
+  assign ends_walk = ends_row && walk_y_q == access_i.key.tile_y;
+  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !flag_color : request_ready_i)) ||
+                     (is_resolve && ends_plane);
 
-  assign access_ready_o = state_q == SERVE ? !is_token && hits : tile_done && walk_ends;
+  assign access_ready_o = state_q == SERVE ? !is_token && hits : walked_q;
   assign moves_tiles_o  = state_q != SERVE || (access_valid_i && !access_ready_o);
   assign idle_o         = state_q == SERVE && !access_valid_i;
 
   always_comb begin
     state_d = state_q;
     case (state_q)
-      SERVE: if (access_valid_i && !access_ready_o) state_d = is_token && clears_all ? MARK : CHECK;
+      SERVE: if (access_valid_i && !access_ready_o) state_d = clears_all ? MARK : CHECK;
       CHECK:
       if (line_depth_dirty || line_color_dirty) state_d = EVICT;
       else if (!is_token) state_d = FILL;
-      else if (is_last_line) state_d = is_clear ? MARK : LOOK;
+      else if (is_last_line) state_d = is_clear ? MARK : READ;
       EVICT: if (ends_plane) state_d = CHECK;
       FILL: if (fill_ends) state_d = SERVE;
-      MARK: if (walks && walk_ends) state_d = SERVE;
-      LOOK: state_d = TEST;
-      TEST:
-      if (!tile_done) state_d = CLEAR;
-      else if (walks) state_d = walk_ends ? SERVE : LOOK;
-      default: if (ends_plane) state_d = LOOK;
+      MARK: if (ends_walk) state_d = READ;
+      READ: if (!walked_q) state_d = SEND;
+      else if (access_valid_i) state_d = SERVE;
+      default: if (walks) state_d = READ;
+      else if (resolves) state_d = RESOLVE;
     endcase
   end
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) state_q <= SERVE;
-    else state_q <= state_d;
+    if (!rst_ni) begin
+      state_q  <= SERVE;
+      walk_x_q <= '0;
+      walk_y_q <= '0;
+      walked_q <= 1'b0;
+    end else begin
+      state_q  <= state_d;
+      walked_q <= state_d != SERVE && (walked_q || (walks && ends_walk && (is_clear || plane_q)));
+      if (walks) begin
+        walk_x_q <= ends_row ? '0 : walk_x_q + (resolves ? TILE_X'(1) : TILE_X'(WORD));
+        if (ends_row) walk_y_q <= ends_walk ? '0 : walk_y_q + 1'b1;
+      end
+    end
   end
 
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE) line_q <= is_token ? '0 : access_line;
     else if (state_q == CHECK && state_d == CHECK) line_q <= line_q + 1'b1;
-  end
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      walk_x_q <= '0;
-      walk_y_q <= '0;
-    end else if (walks) begin
-      walk_x_q <= walk_ends_row ? '0 : walk_x_q + 1'b1;
-      if (walk_ends_row) walk_y_q <= walk_ends ? '0 : walk_y_q + 1'b1;
-    end
-  end
-
-  always_ff @(posedge clk_i) begin
+    if (state_q == SERVE || state_q == CHECK) plane_q <= state_q == CHECK && !line_depth_dirty && line_color_dirty;
+    else if (walks && ends_walk) plane_q <= 1'b1;
     if (state_q == MARK && access_i.state.depth_write) clear_depth_q <= access_i.code[0+:CODE];
     if (state_q == MARK && access_i.state.color_write) clear_color_q <= access_color_i;
   end
 
-  // Requests: a plane is a run of stamps. Those of a fill may run ahead of the answers.
-  assign is_fill         = state_q == FILL;
-  assign is_write_back   = state_q == EVICT || state_q == CLEAR;
-  assign request_valid_o = is_write_back || (is_fill && !requested_q && !(flag_depth && flag_color));
-  assign takes_request   = request_valid_o && request_ready_i;
-  assign ends_plane      = takes_request && stamp_q == LAST_STAMP;
-  assign reads_both      = !flag_depth && !flag_color;
-  assign more_requests   = is_fill && reads_both && !plane_q;  // after this plane
-  assign starts_plane    = (state_q == CHECK && (state_d == EVICT || state_d == FILL)) ||
-                           (state_q == TEST && !tile_done);
-
-  always_ff @(posedge clk_i) begin
-    if (state_q == SERVE) stamp_q <= LAST_STAMP;
-    else if (starts_plane || (takes_request && (!ends_plane || more_requests))) stamp_q <= after(stamp_q);
-
-    if (state_q == CHECK) plane_q <= !line_depth_dirty && line_color_dirty;
-    else if (state_q == TEST) plane_q <= !flag_depth;
-    else if (is_fill && ends_plane) plane_q <= 1'b1;
-
-    if (state_q == SERVE) requested_q <= 1'b0;
-    else if (ends_plane && is_fill && !more_requests) requested_q <= 1'b1;
-  end
-
-  // The tile that is moved, marked or looked at.
-  assign line_above_x = line_q >> LINE_X;
+  // Stamps of a tile, in order: those of a row that are still to come are samples of stamps_q, the next row is read ahead.
+  // A stamp is read out of the RAMs and is on offer in the cycle after that. A plane that memory has as garbage is written
+  // whole, and so is what a flush resolves: one burst; otherwise stamps that follow each other in a row are one. A fill
+  // asks for its stamps of depth at once.
+  logic                    offers_q;  // stamp_q is on offer
+  logic [STAMP_BITS-1:0]   stamp_q, stamp;
+  logic [SAMPLES-1:0]      strobe_q, strobe;
+  logic [ROWS*SAMPLES-1:0] stamps_q, dirty_row;
+  logic [2*ROWS*SAMPLES-1:0] dirty_rows;  // colour, depth
+  logic [ROW_BITS:0]       row_q, row;    // the next one
+  logic [ROWS-1:0]         left, one;
+  logic [RUN-1:0]          run, run_q;    // stamps of the burst from this one on
+  logic                    gap;
+  logic                    runs, is_free, steps, loads, begins_fill, takes_all;
   always_comb begin
-    tile_x = is_token ? walk_x_q : access_i.key.tile_x;
-    tile_y = is_token ? walk_y_q : access_i.key.tile_y;
-    if (state_q == EVICT) begin
-      tile_x = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
-      tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
+    left = '0;
+    for (int i = 0; i < ROWS; i++) left[i] = stamps_q[i*SAMPLES+:SAMPLES] != '0;
+    one    = left & (~left + 1'b1);
+    stamp  = is_fill ? '0 : (STAMP_BITS'(row_q) - 1'b1) << ROW_BITS;
+    strobe = '0;
+    for (int i = 0; i < ROWS; i++) begin
+      if (one[i]) stamp = stamp | STAMP_BITS'(i);
+      if (one[i]) strobe = strobe | stamps_q[i*SAMPLES+:SAMPLES];
+    end
+    run = '0;
+    gap = 1'b0;
+    for (int i = 0; i < ROWS; i++) begin
+      if (left[i] && !gap) run = run + 1'b1;
+      if (!left[i] && run != '0) gap = 1'b1;
+    end
+    if (takes_all) run = RUN'(ROWS * ROWS) - RUN'(stamp);
+  end
+  assign runs      = state_q == EVICT || is_resolve || (is_fill && !flag_depth);
+  assign is_free   = !offers_q || request_ready_i;
+  assign steps     = runs && left != '0 && is_free;
+  assign loads     = runs ? row_q != (ROW_BITS + 1)'(ROWS) && (left == '0 || (steps && left == one)) :
+                     state_q != state_d && (state_d == FILL || state_d == RESOLVE);
+  assign takes_all = state_q != EVICT || (plane_q ? flag_color : flag_depth);
+  assign dirty_row = plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES];
+  assign begins_fill = loads && state_d == FILL && !is_fill;
+  assign row       = begins_fill ? (ROW_BITS + 1)'(ROWS) : (runs ? row_q : '0) + (ROW_BITS + 1)'(loads);
+  assign ends_plane      = left == '0 && row_q == (ROW_BITS + 1)'(ROWS) && is_free;
+  assign request_valid_o = offers_q || sends;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      stamps_q <= '0;
+      offers_q <= 1'b0;
+    end else begin
+      offers_q <= steps || !is_free;
+      if (loads) stamps_q <= begins_fill ? (ROWS * SAMPLES)'(1) : (takes_all ? '1 : dirty_row);
+      else if (!runs) stamps_q <= '0;
+      else if (steps) for (int i = 0; i < ROWS; i++) if (one[i]) stamps_q[i*SAMPLES+:SAMPLES] <= '0;
     end
   end
 
-  assign request_o.is_write = is_write_back;
-  assign request_o.plane    = plane_q || (is_fill && flag_depth) ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
-  assign request_o.strobe   = {SAMPLES{is_write_back}};
-  assign request_o.tile_x   = tile_x;
-  assign request_o.tile_y   = tile_y;
-  assign request_o.stamp    = stamp_q;
-
-  // The answers: room for all that was asked for. A plane that is cleared rides along with one that is read.
-  assign response_ready_o = 1'b1;
-  assign fill_steps       = is_fill && ((flag_depth && flag_color) || response_valid_i);
-  assign fills_last       = fill_plane_q || !reads_both;
-  assign fill_ends        = fill_steps && fills_last && fill_stamp_q == LAST_STAMP;
-
   always_ff @(posedge clk_i) begin
-    if (!is_fill) begin
-      fill_stamp_q <= '0;
-      fill_plane_q <= 1'b0;
-    end else if (fill_steps) begin
-      fill_stamp_q <= after(fill_stamp_q);
-      if (fill_stamp_q == LAST_STAMP) fill_plane_q <= 1'b1;
+    row_q <= row;
+    if (steps) begin
+      stamp_q  <= stamp;
+      strobe_q <= strobe;
+      run_q    <= run;
     end
+  end
+
+  // Answers: room for all that was asked for. A tile that was cleared is filled without any.
+  logic [STAMP_BITS-1:0] fill_stamp_q;
+  logic                  fill_steps;
+  assign response_ready_o = 1'b1;
+  assign fill_steps       = is_fill && (flag_depth || response_valid_i);
+  assign fill_ends        = fill_steps && fill_stamp_q == LAST_STAMP;
+  always_ff @(posedge clk_i) begin
+    if (!is_fill) fill_stamp_q <= '0;
+    else if (fill_steps) fill_stamp_q <= fill_stamp_q + 1'b1;
   end
 
   // Tags and dirty bits.
+  logic [LINE-1:0] dirty_line;
+  logic            sets_dirty_depth, sets_dirty_color;
   assign dirty_line       = state_q == SERVE ? write_line : line_q;
   assign sets_dirty_depth = state_q == SERVE && write_valid_i && write_i.write_depth != '0;
   assign sets_dirty_color = state_q == SERVE && write_valid_i && write_i.write_color != '0;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
-    else if (state_q == MARK && walk_ends) valid_q <= '0;
+    else if (walked_q) valid_q <= '0;
     else if (fill_ends) valid_q <= valid_q | LINES'(1) << line_q;
   end
 
@@ -261,62 +283,105 @@ module framebuffer (
       evict_o <= '0;
       clear_o <= '0;
     end else begin
-      fill_o  <= fill_ends ? {reads_both, flag_depth ^ flag_color} : '0;
-      evict_o <= {1'b0, is_write_back && ends_plane};
-      clear_o <= fill_ends ? {flag_depth && flag_color, flag_depth ^ flag_color} : '0;
+      fill_o  <= {1'b0, is_fill && !flag_depth && fill_steps};
+      evict_o <= {1'b0, !is_fill && offers_q && request_ready_i};
+      clear_o <= {1'b0, is_fill && flag_depth};
     end
   end
 
-  // One bit a tile and plane.
-  assign flag_write = (state_q == MARK) ? {access_i.state.color_write, access_i.state.depth_write}
-                                        : {2{is_write_back && ends_plane}} & {plane_q, !plane_q};
+  // The tile that is moved, marked or looked at: of a line that is dirty, the one that leaves.
+  assign line_above_x = line_q >> LINE_X;
+  always_comb begin
+    tile_x = is_token ? walk_x_q : access_i.key.tile_x;
+    tile_y = is_token ? walk_y_q : access_i.key.tile_y;
+    if (state_q == EVICT || (state_q == CHECK && (line_depth_dirty || line_color_dirty))) begin
+      tile_x = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
+      tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
+    end
+  end
 
-  sram #(
-      .WIDTH(1),
+  // Flags: a bit a tile and plane, in words of a row of tiles. Those beyond the target's right side mean nothing.
+  logic [WORD-1:0]    word_depth, word_color, flag_bit;
+  logic [BIT-1:0]     bit_x;
+  logic [1:0]         flag_write;  // colour, depth
+  /* verilator lint_off UNUSEDSIGNAL */  // no bits are left where a word is a row
+  logic [TILE_X-1:0]  word_x, last_word;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [TILE_Y+WORD_X-1:0] flag_address;
+  assign bit_x      = BIT'(tile_x);
+  assign word_x     = tile_x >> BIT;
+  assign last_word  = access_i.key.tile_x >> BIT;
+  assign flag_address = {tile_y, word_x[WORD_X-1:0]};
+  assign flag_depth = word_depth[bit_x];
+  assign flag_color = word_color[bit_x];
+  assign flag_bit   = state_q == MARK ? '1 : WORD'(1) << bit_x;
+  assign flag_write = (state_q == MARK) ? {access_i.state.color_write, access_i.state.depth_write}
+                                        : {2{(state_q == EVICT || is_resolve) && ends_plane}} & {plane_q, !plane_q};
+
+  masked_sram #(
+      .WIDTH(WORD),
       .DEPTH(FLAGS)
   ) u_flag_depth (
       .clk_i,
-      .read_i         (state_q == CHECK || state_q == LOOK),
-      .read_address_i ({tile_y, tile_x}),
-      .data_o         (flag_depth),
-      .write_i        (flag_write[0]),
-      .write_address_i({tile_y, tile_x}),
-      .data_i         (state_q == MARK)
+      .read_i         (state_q == CHECK || state_q == READ),
+      .read_address_i (flag_address),
+      .data_o         (word_depth),
+      .write_i        (flag_bit & {WORD{flag_write[0]}}),
+      .write_address_i(flag_address),
+      .data_i         ({WORD{state_q == MARK}})
   );
-  sram #(
-      .WIDTH(1),
+  masked_sram #(
+      .WIDTH(WORD),
       .DEPTH(FLAGS)
   ) u_flag_color (
       .clk_i,
-      .read_i         (state_q == CHECK || state_q == LOOK),
-      .read_address_i ({tile_y, tile_x}),
-      .data_o         (flag_color),
-      .write_i        (flag_write[1]),
-      .write_address_i({tile_y, tile_x}),
-      .data_i         (state_q == MARK)
+      .read_i         (state_q == CHECK || state_q == READ),
+      .read_address_i (flag_address),
+      .data_o         (word_color),
+      .write_i        (flag_bit & {WORD{flag_write[1]}}),
+      .write_address_i(flag_address),
+      .data_i         ({WORD{state_q == MARK}})
   );
 
-  // The RAMs: one a sample and plane. While a plane is written back, the word behind the one on offer is read when that
-  // one is taken. A word that is read while it is written is not looked at: depth_test keeps such stamps apart.
-  logic [ADDRESS-1:0] read_address, write_address;
-  logic               reads, fill_depth, fill_color;
-  logic [LANE-1:0]    clear_lane;
-  assign reads         = state_q == SERVE || state_q == CHECK || takes_request;
-  assign read_address  = {line, state_q == SERVE ? access_i.stamp : after(stamp_q)};
-  assign write_address = is_fill ? {line_q, fill_stamp_q} : {write_line, write_i.stamp};
-  assign fill_depth    = fill_steps && !fill_plane_q;
-  assign fill_color    = fill_steps && fills_last;
-  assign clear_lane    = plane_q ? LANE'(clear_color_q) : LANE'(clear_depth_q);
+  // The RAMs: one a sample and plane. A word that is read while it is written is not looked at: depth_test keeps such
+  // stamps apart.
+  logic                  reads;
+  logic [ADDRESS-1:0]    read_address;
+  logic [LINE-1:0]       new_line;  // what is written
+  logic [STAMP_BITS-1:0] new_stamp;
+  /* verilator lint_off UNUSEDSIGNAL */  // high bits, which are 0
+  logic [STAMP_BITS-1:0] new_row;
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign reads        = state_q == SERVE || steps;
+  assign read_address = {line, state_q == SERVE ? access_i.stamp : stamp};
+  assign new_line     = is_fill ? line_q : write_line;
+  assign new_stamp    = is_fill ? fill_stamp_q : write_i.stamp;
+  assign new_row      = new_stamp >> ROW_BITS;
 
-  genvar s;
+  // Beside them a bit for each sample and plane: written since the tile came in. A word is a row of stamps.
+  logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address;
+  logic [ROWS-1:0]        column;  // of the stamp that is written
+  assign dirty_read_address  = (ROW_ADDRESS'(line_q) << ROW_BITS) | (ROW_ADDRESS'(row) & ROW_ADDRESS'(ROWS - 1));
+  assign dirty_write_address = (ROW_ADDRESS'(new_line) << ROW_BITS) | ROW_ADDRESS'(new_row);
+  always_comb
+    for (int i = 0; i < ROWS; i++) column[i] = (write_i.stamp & COLUMN_MASK) == STAMP_BITS'(i);
+
+  logic [SAMPLES*LANE-1:0] data;
+  genvar s, c;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
-      logic [CODE-1:0]  depth, depth_new, depth_fill;
-      logic [COLOR-1:0] color, color_new, color_fill;
-      assign depth_fill = flag_depth ? clear_depth_q : response_i.data[s*LANE+:CODE];
-      assign color_fill = flag_color ? clear_color_q : response_i.data[s*LANE+:COLOR];
-      assign depth_new  = is_fill ? depth_fill : write_i.depth[s*CODE+:CODE];
-      assign color_new  = is_fill ? color_fill : write_i.color[s*COLOR+:COLOR];
+      logic              writes_depth, writes_color, is_here;
+      logic [CODE-1:0]   depth, depth_new;
+      logic [COLOR-1:0]  color, color_new;
+      logic [2*ROWS-1:0] dirty, writes_dirty;  // colour, depth
+      assign writes_depth = is_fill ? fill_steps : write_valid_i && write_i.write_depth[s];
+      assign writes_color = is_fill ? fill_steps && flag_color : write_valid_i && write_i.write_color[s];
+      assign writes_dirty = {2 * ROWS{is_fill}} | {column & {ROWS{writes_color}}, column & {ROWS{writes_depth}}};
+      always_comb begin
+        depth_new = write_i.depth[s*CODE+:CODE];
+        if (is_fill) depth_new = flag_depth ? clear_depth_q : response_i.data[s*LANE+:CODE];
+        color_new = is_fill ? clear_color_q : write_i.color[s*COLOR+:COLOR];
+      end
 
       sram #(
           .WIDTH    (CODE),
@@ -327,8 +392,8 @@ module framebuffer (
           .read_i         (reads),
           .read_address_i (read_address),
           .data_o         (depth),
-          .write_i        (is_fill ? fill_depth : write_valid_i && write_i.write_depth[s]),
-          .write_address_i(write_address),
+          .write_i        (writes_depth),
+          .write_address_i({new_line, new_stamp}),
           .data_i         (depth_new)
       );
       sram #(
@@ -340,18 +405,50 @@ module framebuffer (
           .read_i         (reads),
           .read_address_i (read_address),
           .data_o         (color),
-          .write_i        (is_fill ? fill_color : write_valid_i && write_i.write_color[s]),
-          .write_address_i(write_address),
+          .write_i        (writes_color),
+          .write_address_i({new_line, new_stamp}),
           .data_i         (color_new)
       );
+      masked_sram #(
+          .WIDTH(2 * ROWS),
+          .DEPTH(1 << ROW_ADDRESS)
+      ) u_dirty (
+          .clk_i,
+          .read_i         (1'b1),
+          .read_address_i (dirty_read_address),
+          .data_o         (dirty),
+          .write_i        (writes_dirty),
+          .write_address_i(dirty_write_address),
+          .data_i         ({2 * ROWS{!is_fill}})
+      );
+      for (c = 0; c < 2 * ROWS; c++) begin : gen_dirty
+        assign dirty_rows[c*SAMPLES+s] = dirty[c];
+      end
 
       assign stored_depth_o[s*CODE+:CODE] = depth;
-      always_comb begin
-        request_o.data[s*LANE+:LANE] = plane_q ? LANE'(color) : LANE'(depth);
-        if (state_q == CLEAR) request_o.data[s*LANE+:LANE] = clear_lane;
-        if (is_fill) request_o.data[s*LANE+:LANE] = '0;
-      end
+      assign is_here = state_q == EVICT && strobe_q[s];
+      assign data[s*LANE+:LANE] = is_resolve ? LANE'(clear_color_q) : (plane_q ? LANE'(color) : LANE'(depth)) & {LANE{is_here}};
     end
   endgenerate
+
+  // The request: a stamp, or a word of flags.
+  always_comb begin
+    request_o.is_write = !is_fill;
+    request_o.plane    = plane_q ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
+    request_o.strobe   = is_fill ? '0 : strobe_q;
+    request_o.tile_x   = tile_x;
+    request_o.tile_y   = tile_y;
+    request_o.stamp    = stamp_q;
+    request_o.run      = run_q;
+    request_o.data     = data;
+    if (sends) begin
+      request_o.plane          = plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS;
+      request_o.strobe         = '1;
+      request_o.tile_x         = word_x;
+      request_o.stamp          = '0;
+      request_o.run            = RUN'(last_word) - RUN'(word_x) + 1'b1;
+      request_o.data[WORD-1:0] = plane_q ? word_color : word_depth;
+    end
+  end
 
 endmodule

@@ -122,7 +122,17 @@ module hiz (
                             retire_i.update != raster_pkg::HIZ_UPDATE_NONE})
       );
 
-      localparam int WORD = raster_pkg::TILES_Y << (TX - GROUP) == 1 ? 1 : $clog2(raster_pkg::TILES_Y << (TX - GROUP));
+      // A word is a group of a row of tiles. Rows follow each other without the groups beyond the target where that halves
+      // the RAM.
+      localparam int ROW = (raster_pkg::TILES_X + (1 << GROUP) - 1) >> GROUP;
+      localparam int BEYOND = (1 << (TX - GROUP)) - ROW;
+      localparam int GAP = $clog2(raster_pkg::TILES_Y * ROW) < $clog2(raster_pkg::TILES_Y * (ROW + BEYOND)) ? BEYOND : 0;
+      localparam int WORDS = raster_pkg::TILES_Y * (ROW + BEYOND - GAP);
+      localparam int WORD = WORDS == 1 ? 1 : $clog2(WORDS);
+      function automatic [WORD-1:0] word_of(input [TY-1:0] y, input [TX-1:0] x);
+        word_of = WORD'({y, x} >> GROUP);
+        for (int b = 0; b < TX; b++) if (GAP[b]) word_of = word_of - WORD'({{TX{1'b0}}, y} << b);
+      endfunction
       // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
       logic [Z-1:0]   depth_min;
       logic [HIZ-1:0] bound;
@@ -130,21 +140,26 @@ module hiz (
       logic [(HIZ<<GROUP)-1:0] bounds;  // of the tiles of a group, each in a RAM of its own
       logic [GROUP-1:0]        read_q;  // which of them was asked for
       always_ff @(posedge clk_i) if (reads_i) read_q <= read_x_i[GROUP-1:0];
-      assign bound = bounds[HIZ*read_q+:HIZ];
+      always_comb begin
+        bound = bounds[0+:HIZ];
+        for (int i = 1; i < 1 << GROUP; i++) if (read_q == GROUP'(i)) bound = bounds[HIZ*i+:HIZ];
+      end
+      logic [WORD-1:0]         write_word;
+      assign write_word = clears_i ? word_of(tile_y_i, tile_x_i) : word_of(update_y, update_x);
 
       genvar t;
       for (t = 0; t < 1 << GROUP; t++) begin : gen_tile
         sram #(
             .WIDTH    (HIZ),
-            .DEPTH    (raster_pkg::TILES_Y << (TX - GROUP) == 1 ? 2 : raster_pkg::TILES_Y << (TX - GROUP)),
+            .DEPTH    (WORDS == 1 ? 2 : WORDS),
             .READS_OLD(0)  // no bound is looked at that was read while another was written
         ) u_bound (
             .clk_i,
             .read_i         (reads_i),
-            .read_address_i (WORD'({read_y_i, read_x_i} >> GROUP)),
+            .read_address_i (word_of(read_y_i, read_x_i)),
             .data_o         (bounds[HIZ*t+:HIZ]),
             .write_i        (clears_i || (sees && has_news && update_x[GROUP-1:0] == GROUP'(t))),
-            .write_address_i(WORD'((clears_i ? {tile_y_i, tile_x_i} : {update_y, update_x}) >> GROUP)),
+            .write_address_i(write_word),
             .data_i         (clears_i ? depth_min[Z-1-:HIZ] : update_code)
         );
       end

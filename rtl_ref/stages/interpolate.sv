@@ -2,12 +2,13 @@
 //
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; then its code, clamped to
-// the range of the vertices. Latency 5 cycles, one stamp per cycle; each step holds one stamp and passes it on when the
-// next step is free:
+// the range of the vertices. Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a
+// place for its fragment in the FIFO at the end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
 //   samples  from there to each sample
 //   codes    read back and clamped
+//   FIFO     where fragments wait
 // Specification: model/stages/interpolate.hpp.
 module interpolate (
     input logic clk_i,
@@ -50,16 +51,15 @@ module interpolate (
   raster_pkg::context_packet_t x_context_q, y_context_q, samples_context_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q, codes_valid_q;
-  logic context_ready, x_ready, y_ready, samples_ready, codes_ready;
 
-  assign codes_ready   = !codes_valid_q || fragment_ready_i;
-  assign samples_ready = !samples_valid_q || codes_ready;
-  assign y_ready       = !y_valid_q || samples_ready;
-  assign x_ready       = !x_valid_q || y_ready;
-  assign context_ready = !context_valid_q || x_ready;
-  assign stamp_ready_o = context_ready;
-
-  assign context_read_o = stamp_valid_i && stamp_ready_o;
+  localparam int ROOM = 8;  // fragments on their way and in the FIFO, a power of two
+  localparam int USED = $clog2(ROOM) + 1;
+  logic [USED-1:0] used_q;
+  logic            takes, leaves;
+  assign stamp_ready_o  = used_q != USED'(ROOM);
+  assign takes          = stamp_valid_i && stamp_ready_o;
+  assign leaves         = fragment_valid_o && fragment_ready_i;
+  assign context_read_o = takes;
   assign context_slot_o = stamp_i.slot;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -70,30 +70,26 @@ module interpolate (
       samples_valid_q <= 1'b0;
       codes_valid_q   <= 1'b0;
       slot_free_o     <= 1'b0;
+      used_q          <= '0;
     end else begin
-      if (context_ready) context_valid_q <= stamp_valid_i;
-      if (x_ready) x_valid_q <= context_valid_q;
-      if (y_ready) y_valid_q <= x_valid_q;
-      if (samples_ready) samples_valid_q <= y_valid_q;
-      if (codes_ready) codes_valid_q <= samples_valid_q;
-      slot_free_o <= context_valid_q && x_ready && context_stamp_q.ends_primitive;
+      context_valid_q <= takes;
+      x_valid_q       <= context_valid_q;
+      y_valid_q       <= x_valid_q;
+      samples_valid_q <= y_valid_q;
+      codes_valid_q   <= samples_valid_q;
+      slot_free_o     <= context_valid_q && context_stamp_q.ends_primitive;
+      used_q          <= used_q + USED'(takes) - USED'(leaves);
     end
   end
 
   always_ff @(posedge clk_i) begin
-    if (context_read_o) context_stamp_q <= stamp_i;
-    if (x_ready) begin
-      x_stamp_q   <= context_stamp_q;
-      x_context_q <= context_i;
-    end
-    if (y_ready) begin
-      y_stamp_q   <= x_stamp_q;
-      y_context_q <= x_context_q;
-    end
-    if (samples_ready) begin
-      samples_stamp_q   <= y_stamp_q;
-      samples_context_q <= y_context_q;
-    end
+    context_stamp_q   <= stamp_i;
+    x_stamp_q         <= context_stamp_q;
+    x_context_q       <= context_i;
+    y_stamp_q         <= x_stamp_q;
+    y_context_q       <= x_context_q;
+    samples_stamp_q   <= y_stamp_q;
+    samples_context_q <= y_context_q;
   end
 
   // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
@@ -133,33 +129,29 @@ module interpolate (
 
       // x, then y; the stamp lies on either side of the centre.
       logic signed [W-1:0] x_value, y_value;
-      edge_offset #(
+      plane_offset #(
           .WIDTH (W),
           .OFFSET(PIXEL),
-          .SIGNED(1)
+          .LOWEST(STAMP_SHIFT)
       ) u_x (
           .value_i (anchor),
-          .step_x_i(context_step_x),
-          .step_y_i('0),
-          .x_i     (to_x),
-          .y_i     ('0),
+          .step_i  (context_step_x),
+          .offset_i(to_x),
           .value_o (x_value)
       );
-      edge_offset #(
+      plane_offset #(
           .WIDTH (W),
           .OFFSET(PIXEL),
-          .SIGNED(1)
+          .LOWEST(STAMP_SHIFT)
       ) u_y (
           .value_i (x_value_q),
-          .step_x_i('0),
-          .step_y_i(x_step_y),
-          .x_i     ('0),
-          .y_i     (to_y),
+          .step_i  (x_step_y),
+          .offset_i(to_y),
           .value_o (y_value)
       );
       always_ff @(posedge clk_i) begin
-        if (x_ready) x_value_q <= x_value;
-        if (y_ready) y_value_q <= y_value;
+        x_value_q <= x_value;
+        y_value_q <= y_value;
       end
 
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
@@ -180,11 +172,11 @@ module interpolate (
             .y_i     (PIXEL'(s / STAMP)),
             .value_o (value)
         );
-        always_ff @(posedge clk_i) if (samples_ready) value_q <= value;
+        always_ff @(posedge clk_i) value_q <= value;
 
         assign code    = $signed({1'b0, value_q[W-1:L]}) - $signed((B + 2)'(1) << (B - 1));
         assign clamped = code < $signed((B + 2)'(low)) ? low : code > $signed((B + 2)'(high)) ? high : code[B-1:0];
-        always_ff @(posedge clk_i) if (codes_ready) code_q[s*CODES+CODE+:B] <= clamped;
+        always_ff @(posedge clk_i) code_q[s*CODES+CODE+:B] <= clamped;
       end
     end
   endgenerate
@@ -194,20 +186,35 @@ module interpolate (
   raster_pkg::context_packet_t codes_context_q;
   /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i) begin
-    if (codes_ready) begin
-      codes_stamp_q   <= samples_stamp_q;
-      codes_context_q <= samples_context_q;
-    end
+    codes_stamp_q   <= samples_stamp_q;
+    codes_context_q <= samples_context_q;
   end
 
-  assign fragment_valid_o          = codes_valid_q;
-  assign fragment_o.kind           = codes_stamp_q.kind;
-  assign fragment_o.ends_visit     = codes_stamp_q.ends_visit;
-  assign fragment_o.ends_primitive = codes_stamp_q.ends_primitive;
-  assign fragment_o.key            = codes_stamp_q.key;
-  assign fragment_o.stamp          = codes_stamp_q.stamp;
-  assign fragment_o.mask           = codes_stamp_q.mask;
-  assign fragment_o.state          = codes_context_q.state;
-  assign fragment_o.code           = code_q;
+  raster_pkg::fragment_packet_t made;
+  assign made.kind           = codes_stamp_q.kind;
+  assign made.ends_visit     = codes_stamp_q.ends_visit;
+  assign made.ends_primitive = codes_stamp_q.ends_primitive;
+  assign made.key            = codes_stamp_q.key;
+  assign made.stamp          = codes_stamp_q.stamp;
+  assign made.mask           = codes_stamp_q.mask;
+  assign made.state          = codes_context_q.state;
+  assign made.code           = code_q;
+
+  /* verilator lint_off UNUSEDSIGNAL */  // there is a place
+  logic made_ready;
+  /* verilator lint_on UNUSEDSIGNAL */
+  fifo #(
+      .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS),
+      .DEPTH(ROOM)
+  ) u_fragments (
+      .clk_i,
+      .rst_ni,
+      .valid_i(codes_valid_q),
+      .ready_o(made_ready),
+      .data_i (made),
+      .valid_o(fragment_valid_o),
+      .ready_i(fragment_ready_i),
+      .data_o (fragment_o)
+  );
 
 endmodule

@@ -41,14 +41,14 @@ module line_raster (
 
   logic is_last, takes, moves;
   assign is_last       = remaining_q == '0;
-  assign line_ready_o  = !valid_q || (pixel_ready_i && is_last);
+  assign line_ready_o  = !valid_q;  // so that nothing in here waits for what is behind it
   assign takes         = line_valid_i && line_ready_o;
   assign pixel_valid_o = valid_q;
   assign moves         = error_q >= 0;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= 1'b0;
-    else if (line_ready_o) valid_q <= line_valid_i;
+    else valid_q <= takes || (valid_q && !(pixel_ready_i && is_last));
   end
 
   logic signed [E-1:0] step_stay, step_move;

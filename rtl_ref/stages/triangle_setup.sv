@@ -76,30 +76,36 @@ module triangle_setup (
   localparam int LAST_PART = OFFER / STEPS;
   localparam int PARTS = LAST_PART + 1;
 
-  logic [OFFER:0]     at_q;   // a triangle is in the phase
-  logic [OFFER-1:0]   moves;  // and goes on
-  logic [PARTS-1:0]   ready;
+  logic [OFFER:0]     at_q, at_d;  // a triangle is in the phase
+  logic [OFFER-1:0]   moves;       // and goes on
+  logic [PARTS-1:0]   ready_q, ready_d;
   logic [SUM:DELTA]   flows;  // some plane goes on: from this phase if it is plane 0
   logic               leaves;
 
-  // The last part is free a cycle after its setup was taken: so no path goes from setup_ready_i through the parts.
+  // A part is ready when nobody is in it, or when who is in its last phase goes on. The last part is free a cycle after its
+  // setup was taken: so it is known a cycle ahead which parts will be ready.
   always_comb begin
-    moves            = at_q[OFFER-1:0];
-    ready            = '0;
-    ready[LAST_PART] = at_q[OFFER:LAST_PART*STEPS] == '0;
-    for (int i = LAST_PART - 1; i >= 0; i--) begin
-      moves[i*STEPS+STEPS-1] = at_q[i*STEPS+STEPS-1] && ready[i+1];
-      ready[i]               = at_q[i*STEPS+:STEPS] == '0 || moves[i*STEPS+STEPS-1];
-    end
+    moves = at_q[OFFER-1:0];
+    for (int i = 0; i < LAST_PART; i++) moves[i*STEPS+STEPS-1] = at_q[i*STEPS+STEPS-1] && ready_q[i+1];
     for (int i = DELTA; i <= SUM; i++) flows[i] = moves[i+:STEPS] != '0;
+    at_d               = {moves, triangle_valid_i && triangle_ready_o} | (at_q & ~{leaves, moves});
+    ready_d            = '0;
+    ready_d[LAST_PART] = at_d[OFFER:LAST_PART*STEPS] == '0;
+    for (int i = LAST_PART - 1; i >= 0; i--)
+      ready_d[i] = at_d[i*STEPS+:STEPS] == '0 || (at_d[i*STEPS+STEPS-1] && ready_d[i+1]);
   end
-  assign triangle_ready_o = ready[0];
+  assign triangle_ready_o = ready_q[0];
   assign setup_valid_o    = at_q[OFFER];
   assign leaves           = setup_valid_o && setup_ready_i;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) at_q <= '0;
-    else at_q <= {moves, triangle_valid_i && triangle_ready_o} | (at_q & ~{leaves, moves});
+    if (!rst_ni) begin
+      at_q    <= '0;
+      ready_q <= '1;
+    end else begin
+      at_q    <= at_d;
+      ready_q <= ready_d;
+    end
   end
 
   /* verilator lint_off UNUSEDSIGNAL */  // what a part does not look at ends in the part before
@@ -112,8 +118,8 @@ module triangle_setup (
   assign anchor_packet = packets_q[(MOVE-1)/STEPS*T+:T];
   assign last_packet   = packets_q[LAST_PART*T+:T];
   always_ff @(posedge clk_i) begin
-    if (ready[0]) packets_q[0+:T] <= triangle_i;
-    for (int i = 1; i < PARTS; i++) if (ready[i]) packets_q[i*T+:T] <= packets_q[(i-1)*T+:T];
+    if (ready_q[0]) packets_q[0+:T] <= triangle_i;
+    for (int i = 1; i < PARTS; i++) if (ready_q[i]) packets_q[i*T+:T] <= packets_q[(i-1)*T+:T];
   end
 
   // ----------------------------------------------------------------------------------------------------------- divide
@@ -278,7 +284,7 @@ module triangle_setup (
       high_q <= {high, high_q[(PLANES-1)*Z-1:Z]};
     end
     for (int i = DELTA_PART + 1; i < PARTS; i++) begin
-      if (ready[i]) begin
+      if (ready_q[i]) begin
         if (i == DELTA_PART + 1) ranges_q[0+:RANGES] <= {high, high_q, low, low_q};
         else ranges_q[(i-DELTA_PART-1)*RANGES+:RANGES] <= ranges_q[(i-DELTA_PART-2)*RANGES+:RANGES];
       end
@@ -335,7 +341,7 @@ module triangle_setup (
   logic [(PARTS-EDGE_PART)*6*D-1:0] edges_q;
   always_ff @(posedge clk_i) begin
     for (int i = EDGE_PART; i < PARTS; i++) begin
-      if (ready[i]) begin
+      if (ready_q[i]) begin
         if (i == EDGE_PART) edges_q[0+:6*D] <= {-by_q, by_q - ay_q, ay_q, -bx_q, bx_q - ax_q, ax_q};
         else edges_q[(i-EDGE_PART)*6*D+:6*D] <= edges_q[(i-EDGE_PART-1)*6*D+:6*D];
       end
@@ -364,7 +370,7 @@ module triangle_setup (
 
   always_ff @(posedge clk_i) begin
     if (moves[0]) log2_q[0+:M] <= log2_area;
-    for (int i = 1; i <= LOG2_PART; i++) if (ready[i]) log2_q[i*M+:M] <= log2_q[(i-1)*M+:M];
+    for (int i = 1; i <= LOG2_PART; i++) if (ready_q[i]) log2_q[i*M+:M] <= log2_q[(i-1)*M+:M];
     if (moves[SHIFT-1]) shift_q <= SHIFT_BITS'(log2_q[LOG2_PART*M+:M]) + SHIFT_BITS'(SHIFT_BASE);
     if (flows[PRODUCT]) begin
       product_x_q <= numerator_x * $signed({1'b0, reciprocal_q});

@@ -59,7 +59,7 @@ Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut
     const double done = static_cast<double>(before) + fraction * static_cast<double>(primitives - before);
     return progress.goes_on(done / total, static_cast<std::uint64_t>(done));
   };
-  return run_session(dut, config, lockstep, counted);
+  return run_session(dut, config, lockstep, counted, options.random != 0 ? HostOrders::drawn : HostOrders::configured);
 }
 
 Json session_json(const CosimOptions& options, const Config& config, const DutFactory& factory,
@@ -82,6 +82,10 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["arrows"] = arrows;
   result["memory_stamps"] = r.memory_compared;
   result["counters"] = r.counters_compared;
+  result["frame"] = nullptr;  // of random scenes each has an order of its own
+  if (options.random == 0)
+    result["frame"] = {
+        {"order", result["config"]["frame.order"]}, {"bins", session.counters.bins}, {"pairs", session.counters.pairs}};
   result["triangles"] = r.triangles;
   result["lines"] = r.lines;
   result["points"] = r.points;
@@ -201,7 +205,7 @@ int run(const CosimOptions& options) {
   Json result = session_json(options, config, factory, session);
   std::optional<SavedFinding> saved;
   if (session.failed) {
-    saved = save_finding(options, config, *dut, *session.failed, *session.result.mismatch, kReduceSeconds);
+    saved = save_finding(options, session.config, *dut, *session.failed, *session.result.mismatch, kReduceSeconds);
     result["first_mismatch"] = mismatch_json(
         *session.result.mismatch,
         options.scene == "-" ? saved->repeat : repeat_command(options, config, "", lockstep_options(options)));

@@ -53,6 +53,9 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
+  app.add_option("--resets", options.resets, "times that each scene is begun and cut by a reset before it is run")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   add_file_option(
       app, "--trace", options.trace_path,
       "waveform, .fst: around a mismatch (default beside the saved capture); cosim: of a run without one, too");
@@ -86,6 +89,7 @@ LockstepOptions lockstep_options(const CosimOptions& options) {
   lockstep.stall_probability = options.stalls;
   lockstep.memory = options.memory;
   lockstep.compares_cycles = true;
+  lockstep.resets = options.resets;
   lockstep.mutant = static_cast<std::uint16_t>(options.mutant);
   return lockstep;
 }
@@ -108,6 +112,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
   command += " --seed " + std::to_string(lockstep.seed);
   if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);
   command += memory_arguments(lockstep.memory);
+  if (lockstep.resets != 0) command += " --resets " + std::to_string(lockstep.resets);
   if (lockstep.mutant != 0) command += " --mutant " + std::to_string(lockstep.mutant);
   return command;
 }
@@ -138,7 +143,8 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   // A capture on stdout can only be repeated from where the caller puts it, the scene on stdin likewise.
   const bool has_capture = saved.failure.empty() && (saved.finding.reduced || options.random == 0) &&
                            (saved.capture != "-" || options.scene == "-");
-  saved.repeat = repeat_command(options, config, has_capture ? saved.capture : std::string(),
+  saved.repeat = repeat_command(options, has_capture ? config : effective_config(options),
+                                has_capture ? saved.capture : std::string(),
                                 has_capture ? saved.finding.lockstep : lockstep_options(options));
   return saved;
 }

@@ -12,7 +12,7 @@ namespace halfplane {
 struct CosimOptions : CommonOptions {
   std::uint64_t random = 0;  ///< triangles; 0: a scene
   double stalls = 0;
-  int mutant = 0;
+  int mutant = 0, resets = 0;
   MemorySettings memory;
   std::string junit_path, trace_path, save_path;
   std::string trace_cycles;  ///< FIRST:LAST

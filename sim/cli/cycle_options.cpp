@@ -152,8 +152,10 @@ void vary(const CommonOptions& common, const CycleCommandOptions& options, const
     RenderOptions render;
     render.progress = part;
     const CycleRendering other = run_cycles(scene, changed, render, cycle);
+    const bool has_depth =
+        hardware.config.frame_store == FrameStore::all && changed.config.frame_store == FrameStore::all;
     const bool same = color_hash(other.rendering.frame, changed.config.color_format) == color &&
-                      depth_hash(other.rendering.frame) == depth;
+                      (!has_depth || depth_hash(other.rendering.frame) == depth);
     result.rows.push_back({all[i].first, all[i].second, other.run, milliseconds(other.run.cycles, changed),
                            traffic(other.run, changed.config).total(), same});
   }
@@ -229,7 +231,7 @@ Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
 
 CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOptions& options, const Scene& scene,
                              const Config& config, RenderOptions render) {
-  CycleResult result{hardware_of(options, config), options.stalls, {}, {}, {}, false, {}};
+  CycleResult result{hardware_of(options, config), options.stalls, {}, {}, {}, {}, false, {}};
   const Hardware& hardware = result.hardware;
   PrimitiveSpans spans;
   Timeline timeline(Json(common.scene + ", " + label(config)).dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -258,7 +260,9 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
     Progress progress(common, "trying what would relieve it");
     try {
       result.reliefs =
-          try_reliefs(scene, hardware, cycle.stalls, run.cycles, [&](double fraction) { progress(0.8 * fraction); });
+          try_reliefs(scene, hardware, cycle.stalls, run.cycles, [&](double fraction) { progress(0.6 * fraction); });
+      result.orders =
+          try_orders(scene, hardware, cycle.stalls, [&](double fraction) { progress(0.6 + 0.2 * fraction); });
       result.savings = measure_savings(scene, hardware, cycle.stalls, run.cycles,
                                        [&](double fraction) { progress(0.8 + 0.2 * fraction); });
     } catch (const Interrupted&) {  // half an explanation would mislead
@@ -309,6 +313,12 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
       reliefs.push_back({{"key", trial.key}, {"value", trial.value}, {"cycles", trial.cycles}});
     for (const Saving& saving : cycle.savings) saved[std::string(saving.name)] = saving.cycles;
     result["reliefs"] = reliefs;
+    Json orders = Json::array();
+    for (const OrderTrial& trial : cycle.orders)
+      orders.push_back(
+          {{"order", trial.order}, {"store", trial.store}, {"cycles", trial.cycles}, {"bytes", trial.bytes}});
+    result["orders"] = {{"tried", orders},
+                        {"recommended", orders.empty() ? Json(nullptr) : Json(recommended(cycle.orders))}};
     result["saved_cycles"] = saved;
   }
   Json rows = Json::array();
@@ -362,6 +372,13 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
       << "            back faces " << with_commas(s.backface) << ", zero area " << with_commas(s.zero_area)
       << ", empty " << with_commas(s.empty) << ", no sample " << with_commas(s.no_sample) << ": nothing behind cull\n"
       << "bottleneck  " << bottleneck(cycle) << '\n';
+  if (!cycle.orders.empty()) {
+    out << "order       ";
+    for (const OrderTrial& trial : cycle.orders)
+      out << trial.order << (trial.store == "color" ? ", frame.store=color: " : ": ") << with_commas(trial.cycles)
+          << " cycles, " << kilobytes(trial.bytes) << "; ";
+    out << "recommended: frame.order=" << recommended(cycle.orders) << '\n';
+  }
   if (cycle.rows.empty()) return;
   out << "\nwhat if                            cycles    change          ms     moving tiles      memory\n";
   const auto line = [&](const std::string& what, const CycleRun& other, double ms, std::uint64_t moved, bool same) {

@@ -36,8 +36,9 @@ struct CycleResult {
   Hardware hardware;
   double stalls = 0;
   CycleRendering frame;
-  std::vector<Trial> reliefs;   ///< only when explained
-  std::vector<Saving> savings;  ///< likewise
+  std::vector<Trial> reliefs;      ///< only when explained
+  std::vector<Saving> savings;     ///< likewise
+  std::vector<OrderTrial> orders;  ///< likewise, of blocks
   bool is_explained = false;
   struct Row {
     std::string key, value;

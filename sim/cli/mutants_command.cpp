@@ -61,7 +61,8 @@ std::optional<Mismatch> elsewhere(const LockstepOptions& options, const DutFacto
     if (!factory.has_mutants || factory.name == here.name) continue;
     const std::unique_ptr<Dut> dut = make_dut(factory);
     const auto scenes = random_scenes(factory.config, options.seed, random);
-    if (const Session session = run_session(*dut, factory.config, options, scenes); session.result.mismatch)
+    if (const Session session = run_session(*dut, factory.config, options, scenes, HostOrders::drawn);
+        session.result.mismatch)
       return session.result.mismatch;
   }
   return {};
@@ -77,7 +78,8 @@ Verdict judge(const MutantsCommand& options, const DutFactory& factory, Dut& dut
     return true;
   };
   lockstep.mutant = static_cast<std::uint16_t>(mutant.id);
-  const Session session = run_session(dut, config, lockstep, random_scenes(config, options.seed, options.random));
+  const Session session =
+      run_session(dut, config, lockstep, random_scenes(config, options.seed, options.random), HostOrders::drawn);
   Verdict verdict{mutant, session.result.mismatch, {}};
   if (!verdict.mismatch) verdict.mismatch = elsewhere(lockstep, factory, options.random);
   for (const ModelPicture& picture : pictures) {

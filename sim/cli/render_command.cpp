@@ -104,6 +104,8 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
+  if (!options.depth_path.empty() && config.frame_store == FrameStore::color)
+    throw InputError("--depth: with frame.store=color no depth is stored; leave out --depth, or use frame.store=all");
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, stored_format(config).bits);
   check_distinct({options.scene, options.json, options.color_path, options.depth_path, options.count_path,
                   options.ids_path, options.draws_path, options.cycle.primitives_path, options.cycle.trace_path,
@@ -215,6 +217,8 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
         << with_commas(objects["primitives_skipped"].get<std::uint64_t>()) << " primitives skipped\n";
   if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
   for (const std::string& bound : given_up_bounds(study_rules(options.study))) out << "given up    " << bound << '\n';
+  if (config.frame_order == FrameOrder::bins && result.contains("frame"))
+    out << "bins        " << with_commas(c.pairs) << " primitives sent in " << with_commas(c.bins) << " bins\n";
   if (options.engine == "rtl")
     out << "cycles      " << with_commas(facts.rtl.cycles) << " in all, " << with_commas(facts.rtl.raster_cycles)
         << " from the first primitive to the last write, " << with_commas(facts.rtl.tile_cycles)
@@ -225,7 +229,7 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
         << fixed(1e3 * result["frame_s"]["median"].get<double>(), 2) << " ms of "
         << result["frame_s"].value("frames", options.repeat) << '\n';
   out << "hashes      colour " << result["color_hash"].get<std::string>() << ", depth "
-      << result["depth_hash"].get<std::string>() << '\n';
+      << (result["depth_hash"].is_null() ? "not stored" : result["depth_hash"].get<std::string>()) << '\n';
 }
 
 int run(const RenderCommand& options) {
@@ -255,6 +259,10 @@ int run(const RenderCommand& options) {
   if (options.engine == "golden") result["clipping"] = options.study.clipping;
   result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
+  if (options.engine == "cycle" || options.engine == "rtl")
+    result["frame"] = {{"order", result["config"]["frame.order"]},
+                       {"bins", rendering.counters.bins},
+                       {"pairs", rendering.counters.pairs}};
   if (options.engine == "rtl") {
     result["cycles"] = facts.rtl.cycles;
     result["raster_cycles"] = facts.rtl.raster_cycles;
@@ -264,7 +272,7 @@ int run(const RenderCommand& options) {
   if (facts.cycle) add_cycle_json(result, *facts.cycle);
   if (options.repeat > 0) result["frame_s"] = measure(options, scene, config);
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
-  result["depth_hash"] = depth_hash(rendering.frame);
+  result["depth_hash"] = config.frame_store == FrameStore::color ? Json(nullptr) : Json(depth_hash(rendering.frame));
   const StudyRules rules = study_rules(options.study);
   const std::string title =
       rules.clipping == Clipping::homogeneous ? "clipping homogeneous, engine " + options.engine

@@ -19,7 +19,7 @@ namespace halfplane {
 /// What the design shows in one cycle, before the clock edge.
 struct DutOutputs {
   std::uint32_t fired = 0;  ///< bit i: a packet of arrow kTapped[i] moves now
-  bool primitive_ready = false, line_ready = false, request_valid = false, response_ready = false, idle = false;
+  bool primitive_ready = false, line_ready = false, beat_valid = false, answer_ready = false, idle = false;
   bool moves_tiles = false;                          ///< the framebuffer is busy with memory or a clear
   std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit i: kStreams[i]
   std::array<const void*, kArrows> packet{};  ///< little-endian bytes of what the RTL sends, rounded up; by Arrow
@@ -34,12 +34,18 @@ class Dut {
   /// A new instance with registers of random content from `seed`, reset. Nothing is offered to it. `mutant`: the fault in
   /// it, 0 for none.
   virtual void reset(std::uint64_t seed, std::uint16_t mutant) = 0;
+  /// Pulls the reset from now on, or lets go of it: without that of power_on_ni the memory port recovers.
+  virtual void hold_reset(bool holds) = 0;
+  /// Where the planes lie in memory, from now on.
+  virtual void set_layout(const std::uint32_t* words) = 0;
   /// Offers a packet from now on; null takes the offer back. The words are copied.
   virtual void set_primitive(const std::uint32_t* words) = 0;
   virtual void set_line(const std::uint32_t* words) = 0;
-  virtual void set_response(const std::uint32_t* words) = 0;
+  virtual void set_answer(const std::uint32_t* words) = 0;
+  /// While held, the counters that the design shows stay as they are.
+  virtual void set_counters_hold(bool holds) = 0;
   /// Settles this cycle's outputs; they stay valid until clock().
-  virtual const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) = 0;
+  virtual const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready) = 0;
   virtual void clock() = 0;
   [[nodiscard]] virtual bool can_trace() const { return false; }
   /// Records a waveform from here to close_trace(); false when the design was built without. Closing flushes the file.

@@ -56,6 +56,8 @@ constexpr Mutant kMutants[] = {
 
 bool same_hardware(const Config& a, Config b) {
   b.preset = a.preset;
+  b.frame_order = a.frame_order;  // the host's
+  b.frame_store = a.frame_store;
   b.depth_mapping = a.depth_mapping;  // host side; check_hardware_scene() refuses what is not
   b.depth_format = a.depth_format;
   return a == b;

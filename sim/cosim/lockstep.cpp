@@ -6,12 +6,15 @@
 #include <utility>
 
 #include "model/stages/rop.hpp"
+#include "sim/scene/random.hpp"
 
 namespace halfplane {
 namespace {
 
 constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
+constexpr std::uint64_t kCountingCycles = 8;   // after the end, until everything is counted and shown
 constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
+constexpr std::uint64_t kMostCyclesBeforeReset = 6000;
 constexpr std::uint64_t kReportCycles = 1 << 16;
 constexpr std::uint32_t kWrites = tap_bit(Arrow::write);
 
@@ -89,6 +92,11 @@ ExpectedPackets::ExpectedPackets(const Widths& widths) : widths_(widths) {
     }));
 }
 
+void ExpectedPackets::clear() {
+  for (PacketQueue& queue : queue_)
+    while (!queue.empty()) queue.pop();
+}
+
 bool ExpectedPackets::empty() const {
   for (const PacketQueue& queue : queue_)
     if (!queue.empty()) return false;
@@ -103,35 +111,80 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       threshold_(stall_threshold(options_.stall_probability)),
       bytes_(packet_bytes(widths_)),
       expected_(widths_),
-      model_(config_, expected_),
-      memory_(config_, widths_, options_.memory),
+      memory_(config_, widths_, options_.memory, options_.layout.value_or(default_layout(widths_))),
+      counter_bytes_(static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
       lines_(words_of(packet_bits<LineSetup>(widths_))),
-      held_(words_of(packet_bits<MemoryRequest>(widths_))) {
-  if (options_.compares && options_.compares_cycles && !options_.drains_clears) {
-    CycleOptions cycles;
-    cycles.stalls = {options_.seed, threshold_};
-    cycles.parameters = options_.parameters;
-    cycles.sink = &expected_cycles_;
-    model_memory_ = make_memory(options_.model_memory.value_or(options_.memory), config_);
-    cycle_model_ = make_cycle_model(config_, *model_memory_, cycles);
-  }
+      held_(words_of(packet_bits<MemoryBeat>(widths_))) {
   dut_.reset(options_.seed, options_.mutant);
+  dut_.set_layout(packed(memory_.tiles().layout(), widths_).data());
+  start_models(memory_.tiles());
+}
+
+/// As after a reset, in front of `memory`.
+void Lockstep::start_models(TileMemory memory) {
+  expected_.clear();
+  expected_cycles_ = {};
+  is_first_ = true;
+  model_.emplace(config_, expected_, std::move(memory));
+  if (!options_.compares || !options_.compares_cycles || options_.drains_clears) return;
+  CycleOptions cycles;
+  cycles.stalls = {options_.seed, threshold_};
+  cycles.parameters = options_.parameters;
+  cycles.sink = &expected_cycles_;
+  cycles.layout = options_.layout;
+  model_memory_ = make_memory(options_.model_memory.value_or(options_.memory), config_);
+  cycle_model_ = make_cycle_model(config_, *model_memory_, cycles);
 }
 
 Lockstep::~Lockstep() {
   if (is_tracing_) dut_.close_trace();
 }
 
-LockstepResult Lockstep::run(const Scene& scene) {
-  HostStream host(scene, config_);
+void Lockstep::begin(const Scene& scene) {
   result_ = {};
   sent_.clear();
   all_sent_ = false;
+  snapshot_.clear();
+  dut_.set_counters_hold(false);
   last_moved_ = cycle_;
   last_drawn_ = ~0ULL;
-  const std::uint64_t start = cycle_;
   if (cycle_model_) cycle_model_->begin(scene.width, scene.height, cycle_);
+}
+
+/// A part of a scene, and then a reset in the middle of it, which the memory knows nothing of. Behind it the model begins as
+/// after power-up, with what the memory holds then.
+void Lockstep::run_and_reset(const Scene& scene, std::uint64_t cycles) {
+  HostStream host(scene, config_);
+  begin(scene);
+  for (const std::uint64_t end = cycle_ + cycles; cycle_ != end && !result_.mismatch;) step(host);
+  // A cycle of reset, nothing on offer any more. Then the memory answers, and nobody listens.
+  options_.compares = false;
+  dut_.hold_reset(true);
+  dut_.set_primitive(nullptr);
+  dut_.set_line(nullptr);
+  has_primitive_ = has_line_ = false;
+  all_sent_ = true;
+  while (!lines_.empty()) lines_.pop();
+  step(host);
+  dut_.hold_reset(false);
+  was_idle_ = false;
+  for (const std::uint64_t limit = cycle_ + kHangCycles; !(was_idle_ && memory_.is_idle()) && cycle_ != limit;)
+    step(host);
+  options_.compares = true;
+  memory_.rest(make_memory(options_.memory, config_));
+  start_models(memory_.tiles());
+}
+
+LockstepResult Lockstep::run(const Scene& scene, const Config& host_config) {
+  Random random(options_.seed + cycle_);
+  for (int n = 0; n < options_.resets; ++n) {
+    run_and_reset(scene, 1 + random.next() % kMostCyclesBeforeReset);
+    if (result_.mismatch) return result_;
+  }
+  HostStream host(scene, host_config);
+  begin(scene);
+  const std::uint64_t start = cycle_;
   // Clearing and flushing visit the flags of every tile, a few cycles each, and move no packet meanwhile.
   const auto tiles = static_cast<std::uint64_t>((scene.width >> widths_.tile_shift) + 1) *
                      static_cast<std::uint64_t>((scene.height >> widths_.tile_shift) + 1);
@@ -195,6 +248,8 @@ void Lockstep::offer_primitive(HostStream& host) {
   if (!next) {
     all_sent_ = true;
     dut_.set_primitive(nullptr);
+    dut_.set_counters_hold(true);  // while there is still something to count
+    snapshot_at_ = cycle_ + kCountingCycles;
     return;
   }
   if (const std::string fault = stream_fault(*next, is_first_); !fault.empty()) {
@@ -213,9 +268,9 @@ void Lockstep::offer_primitive(HostStream& host) {
   if (next->line) pack_words(*next->line, widths_, lines_.push(0));
   if (options_.compares) {
     expected_.set_sequence(static_cast<std::uint32_t>(sent_.size()));
-    model_.run(next->packet, next->line);
+    model_->run(next->packet, next->line);
     if (cycle_model_) cycle_model_->run(*next);
-  } else if (next->packet.kind == PrimitiveKind::triangle) {
+  } else if (next->packet.kind == PrimitiveKind::triangle && !next->is_part) {
     CounterPacket ignored;  // pieces of one input triangle follow each other
     if (cull(next->packet, widths_, ignored) && std::exchange(last_drawn_, next->primitive) != next->primitive)
       ++result_.drawn;
@@ -226,14 +281,16 @@ void Lockstep::offer_primitive(HostStream& host) {
 void Lockstep::step(HostStream& host) {
   trace();
   offer(host);
-  if (!has_response_) {
+  if (!has_answer_) {
     const std::uint32_t* due = memory_.due(cycle_);
-    dut_.set_response(due);  // here and not when it is taken: the clock edge must still see it
-    has_response_ = due != nullptr;
+    dut_.set_answer(due);  // here and not when it is taken: the clock edge must still see it
+    has_answer_ = due != nullptr;
   }
   const std::uint32_t stalls = stall_bits(options_.seed, cycle_, threshold_);
-  const bool request_ready = memory_.is_ready(cycle_) && !is_stalled(options_.seed, kMemoryStall, cycle_, threshold_);
-  const DutOutputs& out = dut_.evaluate(stalls, request_ready);
+  const bool beat_ready = memory_.is_ready(cycle_) && !is_stalled(options_.seed, kMemoryStall, cycle_, threshold_);
+  const DutOutputs& out = dut_.evaluate(stalls, beat_ready);
+
+  if (all_sent_ && cycle_ == snapshot_at_) snapshot_ = words_from(out.counters, counter_bytes_);
 
   bool moved = out.fired != 0;
   if (options_.compares)
@@ -242,25 +299,25 @@ void Lockstep::step(HostStream& host) {
       compare(arrow, out.packet[index(arrow)]);
       if (is_boundary(arrow)) compare_cycle(arrow);
     }
-  if (out.request_valid || has_held_) {
-    const bool taken = out.request_valid && request_ready;
-    if (threshold_ != 0) watch_request(out, stalls, taken);
+  if (out.beat_valid || has_held_) {
+    const bool taken = out.beat_valid && beat_ready;
+    if (threshold_ != 0) watch_beat(out, stalls, taken);
     if (taken && !result_.mismatch) {
-      const void* request = out.packet[index(Arrow::request)];
+      const void* beat = out.packet[index(Arrow::beat)];
       if (options_.compares) {
-        compare(Arrow::request, request);
-        compare_cycle(Arrow::request);
+        compare(Arrow::beat, beat);
+        compare_cycle(Arrow::beat);
       }
-      std::memcpy(held_.data(), request, bytes_[index(Arrow::request)]);
+      std::memcpy(held_.data(), beat, bytes_[index(Arrow::beat)]);
       memory_.accept(held_.data(), cycle_);
       moved = true;
     }
   }
-  if (has_response_ && out.response_ready) {
+  if (has_answer_ && out.answer_ready) {
     memory_.pop();
-    has_response_ = false;
+    has_answer_ = false;
     moved = true;
-    compare_cycle(Arrow::response);
+    compare_cycle(Arrow::answer);
   }
   const bool taken = has_primitive_ && out.primitive_ready;
   if (taken) {
@@ -281,6 +338,8 @@ void Lockstep::step(HostStream& host) {
     result_.raster_cycles = cycle_ - first_taken_ + 1;
     result_.tile_cycles = tile_cycles_;
   }
+  if (out.idle && !memory_.is_idle())
+    fail_protocol(std::string(info(Stage::memory_port).name), "idle_o is high before memory has answered");
   was_idle_ = out.idle && !taken;  // what is taken now is not yet under way
   if (moved) last_moved_ = cycle_;
   if (!options_.compares) count_use(out);
@@ -320,7 +379,7 @@ void Lockstep::compare(Arrow arrow, const void* rtl) {
 
 /// An item crosses `boundary` in this cycle.
 void Lockstep::compare_cycle(Arrow boundary) {
-  if (!cycle_model_ || result_.mismatch) return;
+  if (!cycle_model_ || !options_.compares || result_.mismatch) return;
   auto& queue = expected_cycles_[boundary];
   ++result_.cycles_compared[index(boundary)];
   if (!queue.empty() && queue.front() == cycle_) {
@@ -347,19 +406,19 @@ Mismatch Lockstep::cycle_mismatch(Arrow boundary, std::vector<FieldPair> fields,
   return m;
 }
 
-/// Under back-pressure a request must wait unchanged. A cycle that stalls the stream itself shows no offer.
-void Lockstep::watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken) {
-  const void* request = out.packet[index(Arrow::request)];
-  const std::size_t bytes = bytes_[index(Arrow::request)];
-  const bool is_hidden = (stalls & stall_bit(Arrow::request)) != 0;
+/// Under back-pressure a beat must wait unchanged. A cycle that stalls the stream itself shows no offer.
+void Lockstep::watch_beat(const DutOutputs& out, std::uint32_t stalls, bool taken) {
+  const void* beat = out.packet[index(Arrow::beat)];
+  const std::size_t bytes = bytes_[index(Arrow::beat)];
+  const bool is_hidden = (stalls & stall_bit(Arrow::beat)) != 0;
   if (has_held_ && !is_hidden) {
-    if (!out.request_valid)
-      fail_protocol(std::string(info(Stage::framebuffer).name), "request_valid_o fell before the request was taken");
-    else if (std::memcmp(held_.data(), request, bytes) != 0)
-      fail_protocol(std::string(info(Stage::framebuffer).name), "request_o changed before the request was taken");
+    if (!out.beat_valid)
+      fail_protocol(std::string(info(Stage::memory_port).name), "beat_valid_o fell before the beat was taken");
+    else if (std::memcmp(held_.data(), beat, bytes) != 0)
+      fail_protocol(std::string(info(Stage::memory_port).name), "beat_o changed before the beat was taken");
   }
-  if (out.request_valid && !taken) std::memcpy(held_.data(), request, bytes);
-  has_held_ = (has_held_ || out.request_valid) && !taken;
+  if (out.beat_valid && !taken) std::memcpy(held_.data(), beat, bytes);
+  has_held_ = (has_held_ || out.beat_valid) && !taken;
 }
 
 void Lockstep::count_use(const DutOutputs& out) {
@@ -407,10 +466,14 @@ void Lockstep::fail_protocol(const std::string& stage, const std::string& hint) 
   result_.mismatch = std::move(m);
 }
 
+std::vector<std::uint32_t> Lockstep::shown_counters() {
+  for (std::uint64_t cycle = 1; cycle < kCountingCycles; ++cycle) (void)dut_.evaluate(0, false);
+  return words_from(dut_.evaluate(0, false).counters, counter_bytes_);
+}
+
 CounterPacket Lockstep::counters() {
-  const DutOutputs& out = dut_.evaluate(0, false);
-  const auto bytes = static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8;
-  return unpack_words<CounterPacket>(words_from(out.counters, bytes).data(), widths_);
+  dut_.set_counters_hold(false);
+  return unpack_words<CounterPacket>(shown_counters().data(), widths_);
 }
 
 }  // namespace halfplane

@@ -32,6 +32,9 @@ struct LockstepOptions {
   bool compares = true;        ///< false: the design alone, for its image and counters
   /// With `compares`, and without `drains_clears`: the cycle of every crossing of every boundary against the cycle model.
   bool compares_cycles = false;
+  int resets =
+      0;  ///< with `compares`: so often each scene is begun and cut by a reset at a random cycle, before it is run
+  std::optional<MemoryLayout> layout;          ///< of the planes in memory; default_layout() unless given
   TimingParameters parameters;                 ///< of the cycle model; the default is the RTL
   std::optional<MemorySettings> model_memory;  ///< likewise: `memory` unless given
   std::string trace;                           ///< FST file, empty: none; holds the cycles of the window
@@ -71,6 +74,7 @@ class ExpectedPackets final : public EveryPacket<ExpectedPackets> {
   void set_sequence(std::uint32_t sequence) { sequence_ = sequence; }
   [[nodiscard]] PacketQueue& operator[](Arrow arrow) { return queue_[index(arrow)]; }
   [[nodiscard]] bool empty() const;
+  void clear();
 
   template <Arrow A>
   void take_any(const PacketOf<A>& packet) {
@@ -104,14 +108,19 @@ class Lockstep {
 
   /// One scene, to its flush, without a reset before it. Not after a run that has failed or was stopped. Throws
   /// InputError for a scene that the hardware cannot take.
-  [[nodiscard]] LockstepResult run(const Scene& scene);
+  [[nodiscard]] LockstepResult run(const Scene& scene) { return run(scene, config_); }
+  /// `host` may differ from the configuration in what is the host's: frame.order and frame.store.
+  [[nodiscard]] LockstepResult run(const Scene& scene, const Config& host);
 
   [[nodiscard]] const TileMemory& memory() const { return memory_.tiles(); }  ///< the RTL's
-  [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, in this cycle
+  [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, of all that was done
   [[nodiscard]] const Counters& host_counters() const { return host_counters_; }
   [[nodiscard]] bool has_traced() const { return has_traced_; }  ///< the waveform's file was opened
 
  private:
+  void start_models(TileMemory memory);
+  void begin(const Scene& scene);
+  void run_and_reset(const Scene& scene, std::uint64_t cycles);
   void offer(HostStream& host);
   void offer_primitive(HostStream& host);
   void step(HostStream& host);
@@ -120,12 +129,13 @@ class Lockstep {
   void report_missing_cycle();
   [[nodiscard]] Mismatch cycle_mismatch(Arrow boundary, std::vector<FieldPair> fields, const std::string& hint) const;
   void count_taken();
-  void watch_request(const DutOutputs& out, std::uint32_t stalls, bool taken);
+  void watch_beat(const DutOutputs& out, std::uint32_t stalls, bool taken);
   void count_use(const DutOutputs& out);
   void trace();
   [[nodiscard]] bool has_finished() const;
   void report_missing();
   void explain_standstill(Mismatch& mismatch);
+  [[nodiscard]] std::vector<std::uint32_t> shown_counters();
   void compare_counters();
   void compare_memory();
   Mismatch packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::uint32_t* model, const std::uint32_t* rtl,
@@ -139,19 +149,22 @@ class Lockstep {
   std::uint64_t threshold_;  // of the stalls
   std::array<std::size_t, kArrows> bytes_{};
   ExpectedPackets expected_;
-  HardwareModel model_;
   MemoryModel memory_;
+  std::optional<HardwareModel> model_;
   ExpectedCycles expected_cycles_;
   std::unique_ptr<MemoryTiming> model_memory_;  // and the model in front of it: only when cycles are compared
   std::unique_ptr<CycleModel> cycle_model_;
   Counters host_counters_;
+  std::vector<std::uint32_t> snapshot_;  // counters of the RTL, held since the last primitive was taken
+  std::uint64_t snapshot_at_ = 0;        // when they are looked at
+  std::size_t counter_bytes_;            // of their packet
 
   LockstepResult result_;                 // of the run at work
   std::vector<HostPrimitive> sent_;       // of the run at work, without their packets: tags index it
   std::vector<std::uint32_t> primitive_;  // words of the primitive on offer
   PacketQueue lines_;                     // of the primitives in sent_, not yet taken: a stream of its own
-  std::vector<std::uint32_t> held_;       // words of a request on offer
-  bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_response_ = false, has_held_ = false;
+  std::vector<std::uint32_t> held_;       // words of a beat on offer
+  bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_answer_ = false, has_held_ = false;
   bool is_first_ = true;  // no primitive since reset
   bool is_tracing_ = false, has_traced_ = false, was_idle_ = false, drains_ = false;
   std::uint64_t cycle_ = 0;           // since reset

@@ -1,4 +1,6 @@
 // What a lock-step run looks at when it ends: packets and crossings that never came, counters, memory.
+#include <algorithm>
+
 #include "sim/cosim/lockstep.hpp"
 
 namespace halfplane {
@@ -40,7 +42,9 @@ void Lockstep::report_missing() {
 }
 
 void Lockstep::compare_counters() {
-  const auto model = packed(model_.counters(), widths_), rtl = packed(counters(), widths_);
+  if (config_.counter_units == 0) return;
+  if (!snapshot_.empty() && snapshot_ != shown_counters()) return fail_protocol("raster_top", "held counters count");
+  const auto model = packed(as_counted(model_->counters(), widths_), widths_), rtl = packed(counters(), widths_);
   Mismatch m;
   m.kind = Mismatch::Kind::counters;
   m.fields = field_pairs<CounterPacket>(widths_, model.data(), rtl.data());
@@ -60,32 +64,25 @@ void Lockstep::compare_counters() {
 }
 
 void Lockstep::compare_memory() {
-  const TileMemory &model = model_.memory(), &rtl = memory_.tiles();
-  for (const bool is_color : {false, true})
-    for (int y = 0; y < rtl.tiles_y(); ++y)
-      for (int x = 0; x < rtl.tiles_x(); ++x) {
-        if (!model.is_written(is_color, x, y) && !rtl.is_written(is_color, x, y)) continue;
-        for (int stamp = 0; stamp < rtl.stamps(); ++stamp) {
-          MemoryRequest a, b;
-          model.read(is_color, x, y, stamp, a.data);
-          rtl.read(is_color, x, y, stamp, b.data);
-          ++result_.memory_compared;
-          if (a.data == b.data) continue;
-          for (MemoryRequest* r : {&a, &b}) {
-            r->plane = is_color ? TilePlane::color : TilePlane::depth;
-            r->tile_x = static_cast<std::uint16_t>(x);
-            r->tile_y = static_cast<std::uint16_t>(y);
-            r->stamp = static_cast<std::uint16_t>(stamp);
-          }
-          result_.mismatch = packet_mismatch(Mismatch::Kind::memory, Arrow::request, packed(a, widths_).data(),
-                                             packed(b, widths_).data(), ~0U);
-          result_.mismatch->arrow = "memory";
-          return;
-        }
-      }
-  for (const bool is_color : {false, true})
-    if (model.flags(is_color) != rtl.flags(is_color) && !result_.mismatch)
-      fail_protocol(std::string(info(Stage::framebuffer).name), "the flags of cleared blocks in memory differ");
+  const TileMemory &model = model_->memory(), &rtl = memory_.tiles();
+  constexpr std::uint32_t kPage = TileMemory::kPage;
+  const auto beats = kPage / static_cast<std::uint32_t>(widths_.port_bytes);
+  for (std::size_t page = 0; page < rtl.pages(); ++page) {
+    if (model.page(page).empty() && rtl.page(page).empty()) continue;
+    result_.memory_compared += kPage >> widths_.memory.stamp[0];
+    if (std::ranges::equal(model.page(page), rtl.page(page))) continue;
+    for (std::uint32_t n = 0; n < beats; ++n) {
+      MemoryBeat a, b;
+      a.address = b.address = static_cast<std::uint32_t>(page) * kPage + (n << widths_.memory.port);
+      model.read(a.address, a.data);
+      rtl.read(b.address, b.data);
+      if (a.data == b.data) continue;
+      result_.mismatch = packet_mismatch(Mismatch::Kind::memory, Arrow::beat, packed(a, widths_).data(),
+                                         packed(b, widths_).data(), ~0U);
+      result_.mismatch->arrow = "memory";
+      return;
+    }
+  }
 }
 
 }  // namespace halfplane

@@ -11,28 +11,37 @@ namespace halfplane {
 
 class MemoryModel {
  public:
-  MemoryModel(const Config& config, const Widths& widths, const MemorySettings& settings)
+  MemoryModel(const Config& config, const Widths& widths, const MemorySettings& settings, const MemoryLayout& layout)
       : widths_(widths),
-        tiles_(config),
+        tiles_(config, layout),
         timing_(make_memory(settings, config)),
-        answers_(words_of(packet_bits<MemoryResponse>(widths))) {}
+        answers_(words_of(packet_bits<MemoryAnswer>(widths))) {}
 
-  /// Whether a request can be taken in this cycle.
-  [[nodiscard]] bool is_ready(std::uint64_t cycle) const { return timing_->room() <= cycle; }
+  /// Whether a beat can be taken in this cycle.
+  [[nodiscard]] bool is_ready(std::uint64_t cycle) const { return left_ != 0 || timing_->room() <= cycle; }
 
+  /// A faulty design may ask for what is not there: nothing is kept of it. Or cut a burst: that one is never answered.
   void accept(const std::uint32_t* words, std::uint64_t cycle) {
-    const auto request = unpack_words<MemoryRequest>(words, widths_);
-    const bool is_inside = tiles_.has(request);  // a faulty design may ask for what is not there: nothing is kept of it
-    const Cycle due =
-        timing_->accept({request.is_write, request.plane, request.tile_x, request.tile_y, request.stamp}, cycle);
-    if (request.is_write) {
-      if (is_inside) tiles_.write(request);
+    const auto beat = unpack_words<MemoryBeat>(words, widths_);
+    const bool is_inside = tiles_.has(beat);
+    if (beat.is_first) {
+      left_ = beat.length;
+      burst_ = {beat.is_write, beat.address, beat.length};
+    }
+    if (!beat.is_write) {
+      left_ = 0;
+      const BurstAnswer due = timing_->accept(burst_, cycle);
+      MemoryBeat next = beat;
+      for (int n = 0; n < beat.length; ++n, next.address += static_cast<std::uint32_t>(widths_.port_bytes)) {
+        MemoryAnswer answer;
+        if (tiles_.has(next)) tiles_.read(next.address, answer.data);
+        push(answer, due.at(n));
+      }
       return;
     }
-    MemoryResponse response;
-    if (is_inside)
-      tiles_.read(request.plane == TilePlane::color, request.tile_x, request.tile_y, request.stamp, response.data);
-    pack_words(response, widths_, answers_.push(static_cast<std::uint32_t>(due)));
+    if (is_inside) tiles_.write(beat);
+    if (left_ == 0) return;
+    if (--left_ == 0) push({true, {}}, timing_->accept(burst_, cycle).at(0));
   }
 
   /// The answer that is due in this cycle, or null.
@@ -42,15 +51,27 @@ class MemoryModel {
     return late < 1U << 31 ? answers_.front() : nullptr;
   }
   void pop() { answers_.pop(); }
-  [[nodiscard]] bool is_idle() const { return answers_.empty(); }
+  [[nodiscard]] bool is_idle() const { return answers_.empty() && left_ == 0; }
+  /// As after a long rest: forgets what was under way, not what it holds.
+  void rest(std::unique_ptr<MemoryTiming> timing) {
+    timing_ = std::move(timing);
+    while (!answers_.empty()) answers_.pop();
+    left_ = 0;
+  }
   [[nodiscard]] const TileMemory& tiles() const { return tiles_; }
   [[nodiscard]] TileMemory& tiles() { return tiles_; }
 
  private:
+  void push(const MemoryAnswer& answer, Cycle due) {
+    pack_words(answer, widths_, answers_.push(static_cast<std::uint32_t>(due)));
+  }
+
   const Widths& widths_;
   TileMemory tiles_;
   std::unique_ptr<MemoryTiming> timing_;
   PacketQueue answers_;
+  MemoryBurst burst_;  ///< the one that is being written
+  int left_ = 0;       ///< beats of it
 };
 
 }  // namespace halfplane

@@ -351,7 +351,9 @@ Scene window_scene(const Scene& scene, const Config& config) {
   const Widths widths = derive_widths(config);
   const double grid = std::ldexp(1.0, std::max(1, config.subpixel_bits));
   const double largest = std::ldexp(1.0, config.depth_bits) - 1;
-  HostStream host(scene, config);
+  Config in_program_order = config;  // each primitive once
+  in_program_order.frame_order = FrameOrder::program;
+  HostStream host(scene, in_program_order);
   Items items;
   while (const auto sent = host.next()) {
     const PrimitivePacket& p = sent->packet;

@@ -17,6 +17,12 @@ constexpr std::uint64_t kLargestChunk = 2000;                  // primitives
 constexpr std::uint64_t kTraceBefore = 200, kTraceAfter = 20;  // cycles around the mismatch
 constexpr std::uint64_t kQuickTrace = 200'000;                 // cycles that a user who has pressed Ctrl-C waits for
 
+void draw_order(Random& random, Config& config) {
+  const std::uint64_t drawn = random.next();
+  config.frame_order = (drawn & 1) != 0 ? FrameOrder::bins : FrameOrder::program;
+  config.frame_store = (drawn & 2) != 0 ? FrameStore::color : FrameStore::all;
+}
+
 }  // namespace
 
 SceneSource single_scene(Scene scene) {
@@ -33,13 +39,20 @@ SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_
   };
 }
 
-Session run_session(Dut& dut, const Config& config, const LockstepOptions& options, const SceneSource& next) {
+Session run_session(Dut& dut, const Config& config, const LockstepOptions& options, const SceneSource& next,
+                    HostOrders orders) {
   const auto start = std::chrono::steady_clock::now();
   Session session;
+  session.config = config;
   Lockstep lockstep(dut, config, options);
+  Random random(options.seed);
+  const bool draws = orders == HostOrders::drawn && config.cache_kind == CacheKind::blocks &&
+                     config.frame_order == FrameOrder::program && config.frame_store == FrameStore::all;
   while (auto scene = next()) {
-    const LockstepResult result = lockstep.run(*scene);
+    if (draws) draw_order(random, session.config);
+    const LockstepResult result = lockstep.run(*scene, session.config);
     session.result.add(result);
+    session.counters = lockstep.host_counters();
     ++session.scenes;
     if (result.mismatch) session.failed = std::move(*scene);
     if (result.mismatch || result.is_stopped) break;

@@ -19,9 +19,15 @@ using SceneSource = std::function<std::optional<Scene>()>;
 /// `count` random triangles, lines and points, in scenes of up to 2,000 so that a failing one is small. The first are smaller still.
 [[nodiscard]] SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count);
 
+/// In which order a session's scenes are sent, and which planes they store: as configured; or, where the hardware has a
+/// choice and the configuration makes none, one of the four for each scene, by the seed.
+enum class HostOrders { configured, drawn };
+
 struct Session {
   LockstepResult result;        ///< of all scenes together
   std::optional<Scene> failed;  ///< the scene with the mismatch
+  Config config;                ///< with which the last scene was sent
+  Counters counters;            ///< the host's, of that scene
   std::uint64_t scenes = 0;
   bool has_trace = false;  ///< `options.trace` has been written
   double seconds = 0;      ///< the model's work included
@@ -30,7 +36,7 @@ struct Session {
 /// Runs all scenes without a reset between them, up to the first mismatch. `options.progress` gets the part of the scene
 /// at work.
 [[nodiscard]] Session run_session(Dut& dut, const Config& config, const LockstepOptions& options,
-                                  const SceneSource& next);
+                                  const SceneSource& next, HostOrders orders = HostOrders::configured);
 
 /// A failing scene made small, with its waveform.
 struct Finding {

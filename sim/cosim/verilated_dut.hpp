@@ -39,24 +39,29 @@ class VerilatedDut final : public Dut {
     top_->line_valid_i = words != nullptr;
     if (words != nullptr) std::memcpy(first_word(top_->line_i), words, sizeof top_->line_i);
   }
-  void set_response(const std::uint32_t* words) override {
-    top_->response_valid_i = words != nullptr;
-    if (words != nullptr) std::memcpy(first_word(top_->response_i), words, sizeof top_->response_i);
+  void set_answer(const std::uint32_t* words) override {
+    top_->answer_valid_i = words != nullptr;
+    if (words != nullptr) std::memcpy(first_word(top_->answer_i), words, sizeof top_->answer_i);
   }
+  void set_layout(const std::uint32_t* words) override {
+    std::memcpy(first_word(top_->layout_i), words, sizeof top_->layout_i);
+  }
+  void hold_reset(bool holds) override { top_->rst_ni = !holds; }
+  void set_counters_hold(bool holds) override { top_->counters_hold_i = holds; }
 
   /// raster_cosim registers its inputs, so the edge that ends the last cycle is the one at which they are taken over.
-  const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) override {
+  const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready) override {
     if (top_->clk_i != 0) fall();  // a cycle more that nobody counts, as for the counters after the last
     top_->stall_i = static_cast<std::remove_reference_t<decltype(top_->stall_i)>>(stalls);
-    top_->request_ready_i = request_ready;
+    top_->beat_ready_i = beat_ready;
     top_->clk_i = 1;
     top_->eval();
     dump();
     out_.fired = top_->fire_o;
     out_.primitive_ready = top_->primitive_ready_o != 0;
     out_.line_ready = top_->line_ready_o != 0;
-    out_.request_valid = top_->request_valid_o != 0;
-    out_.response_ready = top_->response_ready_o != 0;
+    out_.beat_valid = top_->beat_valid_o != 0;
+    out_.answer_ready = top_->answer_ready_o != 0;
     out_.idle = top_->idle_o != 0;
     out_.moves_tiles = top_->moves_tiles_o != 0;
     out_.stream_valid = top_->stream_valid_o;
@@ -107,21 +112,23 @@ class VerilatedDut final : public Dut {
     top_->clk_i = 0;
     top_->mutant_i = mutant;
     top_->stall_i = 0;
-    top_->request_ready_i = 0;
+    top_->beat_ready_i = 0;
+    top_->counters_hold_i = 0;
     std::memset(first_word(top_->primitive_i), 0, sizeof top_->primitive_i);
     std::memset(first_word(top_->line_i), 0, sizeof top_->line_i);
-    std::memset(first_word(top_->response_i), 0, sizeof top_->response_i);
+    std::memset(first_word(top_->answer_i), 0, sizeof top_->answer_i);
+    std::memset(first_word(top_->layout_i), 0, sizeof top_->layout_i);
     set_primitive(nullptr);
     set_line(nullptr);
-    set_response(nullptr);
-    top_->rst_ni = 1;
+    set_answer(nullptr);
+    top_->rst_ni = top_->power_on_ni = 1;
     top_->eval();
-    top_->rst_ni = 0;
+    top_->rst_ni = top_->power_on_ni = 0;
     for (int i = 0; i < 4; ++i) {
       (void)evaluate(0, false);
       clock();
     }
-    top_->rst_ni = 1;
+    top_->rst_ni = top_->power_on_ni = 1;
     top_->eval();
     time_ = 0;  // so that cycle c begins at time 2 c
 #define HALFPLANE_CONNECT(name, ...) \

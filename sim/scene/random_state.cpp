@@ -6,7 +6,7 @@ namespace halfplane {
 
 StateValue random_value(const DrawState& row, const Chooser& choose, Refused refused) {
   StateValue value{row.words.size(), {}};
-  const bool has_numbers = !row.numbers.empty();
+  const bool has_numbers = !row.numbers.empty() && row.numbers.front().random_count > 0;
   if (!row.words.empty() && (!has_numbers || choose(2) == 0)) {
     const auto out = static_cast<std::size_t>(std::ranges::find(row.words, row.refused) - row.words.begin());
     const bool is_short = refused == Refused::left_out && out < row.words.size();

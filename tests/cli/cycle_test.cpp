@@ -36,6 +36,45 @@ TEST_F(CycleCommand, ResultHasCyclesStagesTrafficAndTheFunctionalEnginesPicture)
   EXPECT_TRUE(cycle["saved_cycles"].contains("fast_clear"));
 }
 
+TEST_F(CycleCommand, BinsGiveTheSamePictureAndSayHowManyPrimitivesWereSent) {
+  const Arguments common{"render", "city:12", "--size", "160x120", "--engine", "cycle"};
+  const auto with = [&](Arguments more) {
+    more.insert(more.begin(), common.begin(), common.end());
+    return result(more);
+  };
+  const Json program = with({}), bins = with({"--set", "frame.order=bins"});
+  const Json color = with({"--set", "frame.order=bins", "--set", "frame.store=color"});
+  EXPECT_EQ(program["frame"]["order"], "program");
+  EXPECT_EQ(program["frame"]["bins"], 1);
+  EXPECT_EQ(bins["frame"]["order"], "bins");
+  EXPECT_EQ(bins["frame"]["bins"], 4);
+  EXPECT_EQ(bins["frame"], color["frame"]);
+  EXPECT_EQ(bins["depth_hash"], program["depth_hash"]);
+  EXPECT_TRUE(color["depth_hash"].is_null());
+  for (const Json& other : {bins, color})
+    for (const char* key : {"color_hash", "primitives"}) EXPECT_EQ(other[key], program[key]) << key;
+  EXPECT_EQ(bins["fragments"]["written"], program["fragments"]["written"]);
+  EXPECT_EQ(color["traffic_bytes"]["evict"]["depth"], 0);
+  EXPECT_EQ(color["traffic_bytes"]["clear"]["depth"], 0);
+}
+
+TEST_F(CycleCommand, WithoutStoredDepthThereIsNoDepthToWriteAndACacheOfTilesHasNoBins) {
+  expect_refused({"render", "triangle", "--set", "frame.store=color", "--depth", "d.npy"}, "frame.store=all");
+  expect_refused({"render", "triangle", "--config", "small", "--set", "frame.order=bins"}, "cache.kind=blocks");
+  expect_refused({"render", "triangle", "--config", "small", "--set", "frame.store=color"}, "cache.kind=blocks");
+}
+
+TEST_F(CycleCommand, ExplainRunsBothOrdersAndRecommendsOne) {
+  const Json json = result({"render", "city:12", "--size", "160x120", "--engine", "cycle", "--explain"});
+  const Json& tried = json["orders"]["tried"];
+  ASSERT_EQ(tried.size(), 3u);
+  EXPECT_EQ(tried[0]["cycles"], json["cycles"]);
+  const Json bins =
+      result({"render", "city:12", "--size", "160x120", "--engine", "cycle", "--set", "frame.order=bins"});
+  EXPECT_EQ(tried[1]["cycles"], bins["cycles"]);
+  EXPECT_EQ(json["orders"]["recommended"], bins["cycles"] < json["cycles"] ? "bins" : "program");
+}
+
 // Each relief is a what-if that anybody can repeat.
 TEST_F(CycleCommand, WhatIsSaidToRelieveItDoesSoWhenTried) {
   const Json explained = result({"render", "city:12", "--size", "160x120", "--engine", "cycle", "--explain"});
@@ -179,7 +218,8 @@ TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   };
   expect_refused(cycle({"--memory", "hbm"}), "--memory: no memory 'hbm'; give fixed, sram, sdram, psram or ddr3");
   expect_refused(cycle({"--what-if", "queue.tile"}), "--what-if: 'queue.tile' is not KEY=VALUE");
-  expect_refused(cycle({"--what-if", "queue.stamp=2,"}), "--what-if: queue.stamp: '' is no number in its range; give 1...1024");
+  expect_refused(cycle({"--what-if", "queue.stamp=2,"}),
+                 "--what-if: queue.stamp: '' is no number in its range; give 1...1024");
   expect_refused(cycle({"--what-if", "queue.stamp=0"}), "'0' is no number in its range; give 1...1024");
   expect_refused(cycle({"--what-if", "cash.lines=4"}), "no setting 'cash.lines'");
   expect_refused(cycle({"--what-if", "cache.lines=3"}), "cache.lines");

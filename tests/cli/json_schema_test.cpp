@@ -50,7 +50,8 @@ TEST_F(JsonSchema, RenderIsDescribed) {
   expect_results("render", {"triangle --size 16x16", "triangle --size 16x16 --engine scalar",
                             "teapot:2 --size 16x16 --engine golden --config full",
                             "triangle --size 16x16 --engine cycle --what-if cache.lines=1,4 --repeat 2",
-                            "triangle --size 16x16 --engine cycle --memory sdram --stalls 0.2"});
+                            "triangle --size 16x16 --engine cycle --memory sdram --stalls 0.2",
+                            "triangle --size 16x16 --engine cycle --set frame.order=bins --set frame.store=color"});
 }
 
 TEST_F(JsonSchema, CompareIsDescribed) {
@@ -98,7 +99,8 @@ class RtlJsonSchema : public JsonSchema {
 
 TEST_F(RtlJsonSchema, CosimIsDescribed) {
   expect_results("cosim", {"triangle --size 16x16", "--random 20 --memory sdram"});
-  expect_results("render", {"triangle --size 16x16 --engine rtl"});
+  expect_results("render",
+                 {"triangle --size 16x16 --engine rtl", "triangle --size 16x16 --engine rtl --set frame.order=bins"});
 }
 
 TEST_F(RtlJsonSchema, MismatchesAreDescribed) {

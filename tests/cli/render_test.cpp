@@ -220,14 +220,14 @@ TEST_F(RenderCommand, ThreadsChangeNoImage) {
   for (const char* key : {"color_hash", "depth_hash", "fragments"}) EXPECT_EQ(one[key], four[key]);
 }
 
-TEST_F(RenderCommand, GoldenEnginesDrawWhatTheModelDoesNot) {
+TEST_F(RenderCommand, EnginesDrawWhatTheHardwareDoesNot) {
   write("perspective.hpt",
         "halfplane 1\ntarget 8 8\nclear color 0 0 0 255 depth 1\nstate color_interp perspective\n"
         "v -1 -1 0 1 255 0 0 255\nv 1 -1 0 1 0 255 0 255\nv 0 1 0 1 0 0 255 255\nt 0 1 2\n");
-  for (const char* engine : {"golden", "golden32"})
+  for (const char* engine : {"golden", "golden32", "scalar", "functional"})
     EXPECT_GT(result({"render", "perspective.hpt", "--engine", engine})["fragments"]["written"], 0u) << engine;
-  for (const char* engine : {"functional", "scalar"})
-    expect_refused({"render", "perspective.hpt", "--engine", engine}, "state color_interp perspective");
+  expect_refused({"render", "perspective.hpt", "--engine", "cycle"}, "state color_interp perspective");
+  expect_refused({"compare", "perspective.hpt"}, "colours over w");
 }
 
 TEST_F(RenderCommand, WhatTheModelHasNotYetIsNamed) {

@@ -2,7 +2,7 @@
   // No stamp is tested while the one before it writes it, and depth_test never waits: tags have known since the fragment
   // before that the stamp is on the chip (cache_tags_data), and a stamp has one place.
   always_comb if (runs_q && tested_valid_o && x1_valid_q && tested_q.mask != '0 && item.mask != '0 && is_same) begin
-    assume (source == SOURCE_CHIP && item_line == x1_line_q && item_stamp == x1_stamp_q);
+    assume (source == raster_pkg::DEPTH_SOURCE_CHIP && item_line == x1_line_q && item_stamp == x1_stamp_q);
     assert (!(tested_q.state.depth_write && (tested_q.mask & item.mask) != '0));
   end
   logic is_same;
@@ -12,10 +12,10 @@
   assign x1_mask = x1_valid_q ? tested_q.mask : '0;
   always_comb if (runs_q) begin
     assert (x1_valid_q == tested_valid_q);
-    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == SOURCE_NONE && !x1_starts_color_q && x1_writes_q == '0);
+    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == raster_pkg::DEPTH_SOURCE_NONE && !x1_starts_color_q && x1_writes_q == '0);
     if (x1_valid_q && tested_q.mask != '0)
-      assert (x1_writes_q == (x1_source_q == SOURCE_CHIP ? tested_q.mask & {SAMPLES{tested_q.state.depth_write}} :
-                              {SAMPLES{x1_source_q != SOURCE_NONE || tested_q.state.depth_write}}));
+      assert (x1_writes_q == (x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP ? tested_q.mask & {SAMPLES{tested_q.state.depth_write}} :
+                              {SAMPLES{x1_source_q != raster_pkg::DEPTH_SOURCE_NONE || tested_q.state.depth_write}}));
   end
 
   // One place of the RAMs, any: a sample m of a stamp of a line.
@@ -93,7 +93,7 @@
                                                                             stored_depth_o[m*CODE+:CODE]});
           if (p == 1 && writes) assert (stored[BITS] == w_dirty[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
           // The test sees what was written last.
-          if (p == 0 && x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask[m] &&
+          if (p == 0 && x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask[m] &&
               {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
             assert (read_is_it_q && !collided_q && read_word_q == word_q);
             assert (stored_depth_o[m*CODE+:CODE] == CODE'(word_q));
@@ -133,5 +133,5 @@
   always_comb if (runs_q) begin
     cover (gen_plane[0].is_begun && gen_plane[0].is_line_q && gen_plane[0].gen_truth[0].owes && sends_any && !is_color);
     cover (gen_plane[1].is_begun && gen_plane[1].is_line_q && gen_plane[1].is_here_q && gen_plane[1].fills_q && sends_any && is_color);
-    cover (x1_valid_q && x1_source_q == SOURCE_CHIP && tested_q.mask != '0 && item_valid && hazard);
+    cover (x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 && item_valid && hazard);
   end

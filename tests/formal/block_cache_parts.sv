@@ -3,8 +3,8 @@
   // skid_buffer_stream prove. One slot of the victims, any.
   (* anyconst *) logic [VICTIM-1:0] any_slot;
   always_comb if (runs_q) begin
-    if (item_valid && evicts) assume (source != SOURCE_CHIP);
-    if (item_valid && item.mask == '0) assume (source == SOURCE_NONE && !starts_color);
+    if (item_valid && evicts) assume (source != raster_pkg::DEPTH_SOURCE_CHIP);
+    if (item_valid && item.mask == '0) assume (source == raster_pkg::DEPTH_SOURCE_NONE && !starts_color);
     // A clear and what a flush writes go behind all items and orders (cache_tags_stream: DRAIN).
     if (flush_valid) assume (!order_valid && !item_valid && taken_q == '0 && behind_q == '0);
     if (clear_before_q != {clear_color, clear_depth}) assume (taken_q == '0 && behind_q == '0);

@@ -1,12 +1,12 @@
 
   // The start of a bounded proof is behind a token: no line is valid, and either memory holds everything or, where a flush
   // leaves flags (frame.clears=flags), nothing but what is flagged. Lines are the words whose width is theirs.
-  localparam int LINE_STATE = 1 + 2 + 2 * raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE + 3;
+  localparam int LINE_STATE = 3 + 2 + 2 * raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE + 3;
   logic starts_q = 1'b1;
   always_ff @(posedge clk_i) starts_q <= 1'b0;
   always_comb if (starts_q) begin
     for (int i = 0; i < DEPTH; i++) begin
-      if (WIDTH == LINE_STATE) assume (!memory_q[i][WIDTH-1]);
-      if (WIDTH == raster_pkg::FLAG_WORD) assume (memory_q[i] == {WIDTH{raster_pkg::FRAME_CLEARS != 0}});
+      if (WIDTH == LINE_STATE) assume (!gen_whole.memory_q[i][WIDTH-1]);
+      if (WIDTH == raster_pkg::FLAG_WORD) assume (gen_whole.memory_q[i] == {WIDTH{raster_pkg::FRAME_CLEARS != 0}});
     end
   end

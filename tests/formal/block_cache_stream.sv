@@ -108,7 +108,7 @@
   // for stamps that it reads, and then only for a slot or an answer; memory's next waits only for data on their way from X and W.
   always_comb if (runs_q) begin
     if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
-      assert ((evicts && !slot_free) || (source == SOURCE_MEMORY && !answer_valid));
+      assert ((evicts && !slot_free) || (source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));
     if (order_valid && !request_valid_o) assert (skips || !is_ready);
     if (taken_q != '0 && left_q == '0 && w_left_q == '0 && !v_valid_q && !c_valid_q && behind_q == '0) assert (is_ready);
     cover (reader_waits_q && !unwritten_q && place_q == '0 && wants_read && order_writes != '0);
@@ -119,6 +119,10 @@
     if ($past(x1_valid_q && !goes)) assert (!x1_valid_q);
     if ($past(w_valid && !colors_done)) assert (w_left_q < $past(w_left_q) || (w_started_q && !$past(w_started_q)));
     if ($past(v_valid_q)) assert (left_q != '0 || !v_valid_q || v_last_q);
+    // A run of writes is one behind the other in its block, each with what is left of it.
+    if ($past(sends && takes_request) && $past(request_o.run) != RUN'(1))
+      assert (sends && request_o.run == $past(request_o.run) - 1'b1 && request_o.plane == $past(request_o.plane) &&
+              sent_stamp == $past(sent_stamp) + 1'b1);
     if ($past(sends && takes_request && !ends_victim))
       assert (oldest_q == $past(oldest_q) && {depth_left, color_left} < $past({depth_left, color_left}));
   end

@@ -11,15 +11,18 @@
   logic [STAMPS-1:0] known_q, colored_q;
   logic [1:0]        flag_q;      // colour, depth: memory holds garbage
   logic [WRITES-1:0] age_q;       // of the newest eviction of it that waits: so many older ones do
-  logic              is_dirty, evicts_it, pending, is_looked_at;
+  logic              drops_q;     // the last fast clear says that depth which leaves is lost
+  logic              drops, stores_depth, is_dirty, evicts_it, pending, is_looked_at;
   logic [1:0]        fills_it;
   logic [WRITES-1:0] age;
   assign any_line     = line_of(any_x, any_y);
   assign is_it        = is_access && block_x == any_x && block_y == any_y;
   assign empties_it   = valid_q && line == any_line && (walks_q || (is_access && !is_it));
-  assign is_dirty     = has_depth_q || colored_q != '0;
+  assign drops        = is_token && !is_clear && state_q != SERVE ? fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER : drops_q;
+  assign stores_depth = has_depth_q && !drops;  // a flush speaks for what it finds
+  assign is_dirty     = stores_depth || colored_q != '0;
   assign evicts_it    = here_q && is_dirty && empties_it;
-  assign fills_it     = flag_q & {colored_q != '0, has_depth_q && known_q != '0};
+  assign fills_it     = flag_q & {colored_q != '0, stores_depth && known_q != '0};
   assign pending      = pending_q && age_q >= writes;
   assign age          = age_q - writes;
   assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || fragment_q.mask != '1;
@@ -42,32 +45,35 @@
       pending_q <= pending || (leaves && evicts_it);
       age_q     <= leaves && evicts_it ? waiting_q - writes : age;
     end
+    if (takes_token) drops_q <= is_clear && fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER;
     if (takes_token && is_clear) begin
       here_q <= 1'b0;
       flag_q <= flag_q | {fragment_i.state.color_write, fragment_i.state.depth_write};
     end
     if (takes_token && !is_clear && raster_pkg::FRAME_CLEARS == 0) flag_q[1] <= 1'b0;
-    if (!rst_ni) {here_q, pending_q} <= '0;
+    if (!rst_ni) {here_q, pending_q, drops_q} <= '0;
   end
 
   always_comb if (runs_q && is_known_q) begin
     // A fragment of it.
     if (leaves && is_it) begin
-      assert (item_source_o == (here_q && known_q[stamp] ? SOURCE_CHIP : !is_looked_at ? SOURCE_NONE :
-                                flag_q[0] ? SOURCE_CLEAR : SOURCE_MEMORY));
+      assert (item_source_o == (here_q && known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP : !is_looked_at ? raster_pkg::DEPTH_SOURCE_NONE :
+                                flag_q[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY));
       assert (item_starts_color_o == (fragment_q.state.color_write && !(here_q && colored_q[stamp])));
-      assert (order_reads_o == (item_source_o == SOURCE_MEMORY));
+      assert (order_reads_o == (item_source_o == raster_pkg::DEPTH_SOURCE_MEMORY));
       assert (!pending);  // what it asks memory for is behind the writes of all that has left the chip of it
     end
     // It leaves when another block comes, or a token walks by, and only then; with all of it.
     if (leaves) assert ((evicts_o && evicts_x_o == any_x && evicts_y_o == any_y) == evicts_it);
     if (leaves && evicts_it) begin
-      assert (evicts_depth_o == (has_depth_q ? known_q : '0) && evicts_color_o == colored_q && evicts_fills_o == fills_it);
+      assert (evicts_depth_o == (stores_depth ? known_q : '0) && evicts_color_o == colored_q && evicts_fills_o == fills_it);
       assert (item_line_o == any_line);
     end
     if (takes_token) assert (!pending_q && (!here_q || clears_all));
     cover (leaves && is_it && order_reads_o && order_writes_o != '0);
     cover (leaves && evicts_it && fills_it == 2'b11);
+    cover (leaves && evicts_it && has_depth_q && drops);
+    cover (leaves && empties_it && here_q && has_depth_q && !evicts_it);
     cover (takes_token && !is_clear && flag_q != '0);
     // Where the specification is in the hardware. The word of the line is old while the write of it is under way.
     if (!is_marking) begin
@@ -81,7 +87,7 @@
 
   // The line's word, and that of the flags. What is read in the cycle of a write of it is not looked at.
   logic [STATE-1:0]   word_q, read_word_q;
-  logic               word_valid, word_has_depth, is_marking, read_is_it_q, collided_q, line_stays_q, flags_stay_q;
+  logic               word_valid, word_dirty, word_falls, word_has_depth, is_marking, read_is_it_q, collided_q, line_stays_q, flags_stay_q;
   logic [TAG_X-1:0]   word_tag_x;
   logic [TAG_Y-1:0]   word_tag_y;
   logic [STAMPS-1:0]  word_known, word_colored;
@@ -91,7 +97,7 @@
   logic               flag_is_it, flag_reads_it, flag_read_is_it_q;
   logic [STATE-1:0]   line_before_q;
   logic [WORD-1:0]    depth_before_q, color_before_q;
-  assign {word_valid, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q;
+  assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q;
   assign word_x        = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
   assign word_y        = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
   assign is_marking    = state_q == MARK || (state_q == DONE && is_clear);
@@ -134,6 +140,7 @@
   assign lines_passed = lines_done_q || walk_q > any_line;
   always_comb if (runs_q) begin
     assert (state_q <= DONE);
+    assert (drops_depth_q == drops);
     assert (waiting_q <= WRITES'(VICTIMS) && writes <= waiting_q);
     if (state_q != SERVE) assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)));
     if (state_q == SERVE) assert (!valid_q || !walks_q);
@@ -152,6 +159,10 @@
       assert (read_is_it_q && (is_forwarded_q == collided_q));
       assert (line_state == word_q);
     end
+    if (is_known_q && word_valid) begin
+      assert (word_dirty == (word_has_depth || word_colored != '0));
+      assert (word_falls == ((word_cleared & {word_colored != '0, word_has_depth && word_known != '0}) != '0));
+    end
     // Tokens: lines are empty behind the walk, flags are set and reset behind it.
     if (state_q == LOOK ? lines_passed : state_q > LOOK && (!clears_all || (state_q >= MARK && lines_passed))) assert (!word_valid);
     if (state_q == DONE) assert (words_done_q && (is_clear ? lines_done_q : plane_q));
@@ -164,7 +175,8 @@
   end
   always_comb if (runs_q && is_known_q) begin
     assert (flag_ram_q == flag_now);
-    if (valid_q && fall_q == 2'd0 && is_it && !hits) assert (flag_read_is_it_q && flag_read_q == flag_ram_q);
+    if (valid_q && !walks_q && fall_q == 2'd0 && word_of(block_x, block_y) == word_of(any_x, any_y))
+      assert (flag_read_is_it_q && flag_read_q == flag_ram_q);
     if (valid_q && fall_q == 2'd1) assert (flag_read_is_it_q == flag_is_it && flag_read_q == flag_ram_q);
     if (valid_q && fall_q != 2'd0 && is_it && !hits) assert (cleared_q == flag_ram_q);
     if (state_q == SEND || state_q == RESOLVE)
@@ -178,7 +190,7 @@
         assert (pending_q && WRITES'(a) <= age_q);
   end
 
-  // A flush writes the words of the flags, each once, and, where colours are resolved, every stamp of a block whose colours
+  // A flush writes the words of the flags, each once (of depth only where it is not lost), and, where colours are resolved, every stamp of a block whose colours
   // are still flagged.
   logic [INDEX-1:0] any_index;
   logic [1:0]       flags_sent_q;
@@ -208,9 +220,11 @@
     end
     if (request_valid_o && state_q == RESOLVE) assert (request_o.plane == raster_pkg::TILE_PLANE_COLOR);
     if (takes_token && !is_clear)
-      assert (raster_pkg::FRAME_CLEARS == 0 ? flags_sent_q[0] && is_sent_q == flag_q[1] : flags_sent_q == 2'b11);
+      assert (flags_sent_q[0] == !drops &&
+              (raster_pkg::FRAME_CLEARS == 0 ? is_sent_q == flag_q[1] : flags_sent_q[1]));
     if (state_q == READ || state_q == SEND || state_q == RESOLVE || (state_q == DONE && !is_clear)) begin
-      assert (flags_sent_q[0] == (plane_q || words_are_behind));
+      assert (flags_sent_q[0] == (!drops && (plane_q || words_are_behind)));
+      assert (plane_q == (words_done_q || drops));
       if (raster_pkg::FRAME_CLEARS != 0) assert (flags_sent_q[1] == (plane_q && words_are_behind));
       assert (is_sent_q == has_sent);
     end

@@ -9,8 +9,8 @@
     if (item_valid_o && item_ready_i && is_order) assert (order_valid_o && order_ready_i);  // together
     if (!walks_q && item_valid_o) assert (item_o == fragment_q);
     if (walks_q && item_valid_o) assert (item_o.mask == '0 && !item_o.ends_visit && evicts_o && !order_reads_o);
-    if (valid_q && item_valid_o && item_o.mask == '0) assert (item_source_o == SOURCE_NONE && !item_starts_color_o);
-    if (item_source_o == SOURCE_CHIP) assert (!evicts_o);
+    if (valid_q && item_valid_o && item_o.mask == '0) assert (item_source_o == raster_pkg::DEPTH_SOURCE_NONE && !item_starts_color_o);
+    if (item_source_o == raster_pkg::DEPTH_SOURCE_CHIP) assert (!evicts_o);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(takes_fragment)) assert (valid_q && !walks_q && fragment_q == $past(fragment_i));
@@ -100,7 +100,7 @@
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(others_do && valid_q && fall_q == 2'd2)) assert ($past(leaves));
     if ($past(others_do && valid_q && !falls)) assert ($past(leaves));
-    if ($past(valid_q && !leaves && others_do)) assert (fall_q == $past(fall_q) + 1'b1);
+    if ($past(valid_q && !leaves && others_do)) assert (fall_q > $past(fall_q));
     if ($past(others_do && state_q != SERVE && state_q != DONE)) assert (left < $past(left));
     if ($past(state_q != SERVE && state_q != DONE)) assert (left <= $past(left));
     if ($past(state_q == DONE)) assert (state_q == SERVE && $past(takes_token));

@@ -51,11 +51,11 @@
       if (32'(done) > PER_ROW - 1) assert (gen_hiz.max_q >= h01);
       if (32'(done) > LAST - (PER_ROW - 1)) assert (gen_hiz.max_q >= h10);
     end
-    if (valid_q && fragment_q.ends_visit && gen_hiz.update == raster_pkg::HIZ_UPDATE_SET)
+    if (valid_q && fragment_q.ends_visit && gen_hiz.sets)
       assert (gen_hiz.max >= h00 && gen_hiz.max >= h01 && gen_hiz.max >= h10 && gen_hiz.max >= h11);
     // A visit that can raise a depth without setting the bound clears it.
     if (valid_q && fragment_q.ends_visit && fragment_q.state.depth_write && greater_passes && (passed != '0 || gen_hiz.any_passed_q))
-      assert (gen_hiz.update == raster_pkg::HIZ_UPDATE_SET || gen_hiz.update == raster_pkg::HIZ_UPDATE_CLEAR);
-    if (gen_hiz.update_q == raster_pkg::HIZ_UPDATE_CLEAR) assert (gen_hiz.code_q == '1);
+      assert (gen_hiz.sets || gen_hiz.clears);
+    if (retire_o.update == raster_pkg::HIZ_UPDATE_CLEAR) assert (retire_o.hiz_code == '1);
     assert (done <= (STAMP_BITS + 1)'(STAMPS));
   end

@@ -4,7 +4,7 @@
   function automatic [WIDTH-1:0] sum(input [WIDTH-1:0] value, input [OFFSET-1:0] n, input [WIDTH-1:0] step);
     sum = value;
     for (int b = OFFSET - 1; b >= 0; b--)
-      sum = (SIGNED != 0 && b == OFFSET - 1) ? sum - (n[b] ? step << b : '0) : sum + (n[b] ? step << b : '0);
+      sum = sum + (n[b] ? step << b : '0);
   endfunction
   always_comb begin
     if (y_i == '0) assert ($unsigned(value_o) == sum(value_i, x_i, step_x_i));

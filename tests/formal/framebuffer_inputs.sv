@@ -7,7 +7,8 @@
   // for what sram_word proves: they stay until the next read.
   logic token;  // fast clear, flush
   assign token = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
-  logic access_waits_q, access_taken_q;
+  logic access_waits_q, access_taken_q, takes_request;
+  assign takes_request = request_valid_o && request_ready_i;
   raster_pkg::fragment_packet_t       access_before_q;
   logic [COLOR-1:0]                       access_color_before_q;
   logic [STAMP_BITS+1:0]                  unanswered_q;
@@ -16,7 +17,7 @@
     access_taken_q        <= rst_ni && access_valid_i && access_ready_o && access_i.mask != '0;
     access_before_q       <= access_i;
     access_color_before_q <= access_color_i;
-    unanswered_q          <= rst_ni ? unanswered_q + (STAMP_BITS + 2)'(takes_request && !request_o.is_write) -
+    unanswered_q          <= rst_ni ? unanswered_q + (takes_request && !request_o.is_write ? (STAMP_BITS + 2)'(request_o.run) : '0) -
                                       (STAMP_BITS + 2)'(response_valid_i) : '0;
   end
   always_comb if (runs_q) begin
@@ -30,14 +31,15 @@
       assume ((write_i.write_depth & access_i.mask) == '0);
     if (response_valid_i) assume (unanswered_q != '0);
   end
-  logic flag_depth_before_q, flag_color_before_q, flags_stay_q, words_stay_q;
+  logic [WORD-1:0] word_depth_before_q, word_color_before_q;
+  logic            flags_stay_q, words_stay_q;
   always_ff @(posedge clk_i) begin
-    flag_depth_before_q <= flag_depth;
-    flag_color_before_q <= flag_color;
-    flags_stay_q        <= !(state_q == CHECK || state_q == LOOK);
+    word_depth_before_q <= word_depth;
+    word_color_before_q <= word_color;
+    flags_stay_q        <= !(state_q == CHECK || state_q == READ);
     words_stay_q        <= !reads;
   end
-  always_comb if (runs_q && flags_stay_q) assume (flag_depth == flag_depth_before_q && flag_color == flag_color_before_q);
+  always_comb if (runs_q && flags_stay_q) assume (word_depth == word_depth_before_q && word_color == word_color_before_q);
   genvar r;
   generate
     for (r = 0; r < SAMPLES; r++) begin : gen_word
@@ -54,32 +56,52 @@
 
   // What the walks and the runs of stamps rest on.
   logic walks_tiles;
-  assign walks_tiles = state_q == MARK || state_q == LOOK || state_q == TEST || state_q == CLEAR;
+  assign walks_tiles = state_q == MARK || state_q == READ || state_q == SEND || is_resolve;
   localparam int STAMPS = 32'(LAST_STAMP) + 1;
   localparam int ASK = STAMP_BITS + 2;
-  logic [ASK-1:0] asked, answered;  // reads of this fill, and their answers
-  assign asked    = requested_q ? (reads_both ? ASK'(2 * STAMPS) : ASK'(STAMPS)) : (plane_q ? ASK'(STAMPS) : '0) + ASK'(stamp_q);
-  assign answered = (fill_plane_q ? ASK'(STAMPS) : '0) + ASK'(fill_stamp_q);
+  logic [ASK-1:0] next, asked, answered;  // stamp behind the last that was read out; of a fill: reads taken, their answers
+  always_comb begin
+    next = ASK'(row_q) << ROW_BITS;
+    for (int i = ROWS - 1; i >= 0; i--) if (left[i]) next = (ASK'(row_q) << ROW_BITS) - ASK'(ROWS - i);
+  end
+  assign asked    = left == '0 && !offers_q ? ASK'(STAMPS) : '0;  // all at once
+  assign answered = ASK'(fill_stamp_q);
   always_comb if (runs_q) begin
     assert (access_waits_q || state_q == SERVE);
-    assert (stamp_q <= LAST_STAMP && fill_stamp_q <= LAST_STAMP);
-    if (state_q == CHECK || state_q == LOOK || state_q == TEST) assert (stamp_q == LAST_STAMP);
-    if (walks_tiles) assert (token && walk_x_q <= access_i.key.tile_x && walk_y_q <= access_i.key.tile_y);
-    else assert (walk_x_q == '0 && walk_y_q == '0);
+    if (walks_tiles) begin
+      assert (token && walk_y_q <= access_i.key.tile_y);
+      if (resolves) assert (walk_x_q <= access_i.key.tile_x);
+      else assert (walk_x_q >> BIT <= access_i.key.tile_x >> BIT && walk_x_q >> BIT << BIT == walk_x_q);
+    end else assert (walk_x_q == '0 && walk_y_q == '0);
+    if (walked_q) assert (state_q == READ && walk_x_q == '0 && walk_y_q == '0 && (is_clear || plane_q));
     if (state_q == MARK) assert (is_clear);
-    else if (walks_tiles) assert (!is_clear);
+    else if (walks_tiles && !walked_q) assert (!is_clear);
     if (state_q == CHECK || state_q == EVICT || is_fill) assert (token || line_q == access_line);
     if (state_q == CHECK || state_q == EVICT) assert (!(token && clears_all));
     if (state_q == EVICT) assert (plane_q ? line_color_dirty : line_depth_dirty);
-    if (state_q == CLEAR) assert (plane_q ? flag_color && !flag_depth : flag_depth);
+    if (state_q == MARK || is_fill) assert (!plane_q);
+    if (is_resolve) assert (resolves && flag_color);
     if (is_fill) assert (!token && !line_depth_dirty && !line_color_dirty);
+    // A run of stamps: none twice, none left out, each with its samples.
+    assert (row_q <= (ROW_BITS + 1)'(ROWS) || !runs);
+    if (runs) begin
+      if (left != '0) assert (row_q != '0);
+      if (offers_q) assert (ASK'(stamp_q) < next && strobe_q != '0);
+      if (is_fill) begin
+        assert (row_q == (ROW_BITS + 1)'(ROWS) && stamps_q <= (ROWS * SAMPLES)'(1));
+        if (offers_q) assert (left == '0 && stamp_q == '0 && run_q == RUN'(STAMPS));
+      end else if (takes_all) begin
+        if (offers_q) assert (run_q == RUN'(STAMPS) - RUN'(stamp_q));
+        assert (row_q != '0 || (state_q == EVICT && !offers_q));
+        if (offers_q) assert (ASK'(stamp_q) + 1'b1 == next && strobe_q == '1);
+        for (int i = 0; i < ROWS; i++) assert (stamps_q[i*SAMPLES+:SAMPLES] == '0 || stamps_q[i*SAMPLES+:SAMPLES] == '1);
+        for (int i = 1; i < ROWS; i++) if (left[i-1]) assert (left[i]);
+      end
+    end else begin
+      assert (!offers_q);
+      if (!is_fill) assert (stamps_q == '0);
+    end
     // A fill: what was asked for, what came back, what is to come.
-    if (state_q == CHECK || state_q == EVICT) assert (!requested_q && fill_stamp_q == '0 && !fill_plane_q);
-    if (is_fill) begin
-      assert (asked <= ASK'(2 * STAMPS) && answered <= asked || (flag_depth && flag_color));
-      assert (ASK'(unanswered_q) == (flag_depth && flag_color ? '0 : asked - answered));
-      if (!reads_both) assert (!fill_plane_q && plane_q == requested_q);
-      if (flag_depth && flag_color) assert (!requested_q);
-      if (requested_q) assert (plane_q && stamp_q == LAST_STAMP);
-    end else assert (unanswered_q == '0);
+    if (is_fill && !flag_depth) assert (asked <= ASK'(STAMPS) && answered <= asked && ASK'(unanswered_q) == asked - answered);
+    else assert (unanswered_q == '0);
   end

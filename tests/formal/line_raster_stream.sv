@@ -22,7 +22,7 @@
       assert (n_q <= g_q.remaining && remaining_q == g_q.remaining - n_q && line_q.primitive_id == g_q.primitive_id);
     end
     if (pixel_ready_i) assert (sends || line_ready_o);  // no deadlock
-    cover (sends && pixel_o.is_last && n_q == COUNT'(3) && takes);
+    cover (sends && pixel_o.is_last && n_q == COUNT'(3));
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q) && $past(pixel_valid_o && !pixel_ready_i)) begin
     assert (pixel_valid_o && pixel_o == $past(pixel_o));

@@ -1,6 +1,7 @@
 
   // A word, any: a read gives what was written last in an earlier cycle, and the answer stays until the next read.
   (* anyconst *) logic [ADDRESS-1:0] any_address;
+  always_comb assume (32'(any_address) < DEPTH && 32'(read_address_i) < DEPTH && 32'(write_address_i) < DEPTH);
   logic             was_written_q = 1'b0, was_read_q = 1'b0;
   logic [WIDTH-1:0] word_q, answer_q;
   always_ff @(posedge clk_i) begin
@@ -13,8 +14,16 @@
       answer_q   <= word_q;
     end
   end
+  logic [WIDTH-1:0] held;
+  generate
+    if (DEPTH > WHOLE && HIGH <= LOW / 8) begin : gen_held_in_parts
+      assign held = any_address[ADDRESS-1] ? gen_parts.high_q[any_address[HIGH_ADDRESS-1:0]] : gen_parts.low_q[any_address[ADDRESS-2:0]];
+    end else begin : gen_held
+      assign held = gen_whole.memory_q[any_address];
+    end
+  endgenerate
   always_comb begin
-    if (was_written_q) assert (memory_q[any_address] == word_q);
+    if (was_written_q) assert (held == word_q);
     if (was_read_q) assert (data_o == answer_q);
   end
   // So it does whatever was read.

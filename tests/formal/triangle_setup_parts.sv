@@ -45,6 +45,11 @@
     assert (inside_q == (it_at_q != '0) && (it_at_q & (it_at_q - 1'b1)) == '0 && (it_at_q & ~at_q) == '0);
     if (inside_q) assert (ahead_q == ones(at_q & ~(it_at_q | (it_at_q - 1'b1))) && !done_q);
   end
+  // A part is ready when nobody is in it, or when who is in its last phase goes on.
+  always_comb if (runs_q) begin
+    assert (ready_q[LAST_PART] == (at_q[OFFER:LAST_PART*STEPS] == '0));
+    for (int i = 0; i < LAST_PART; i++) assert (ready_q[i] == (at_q[i*STEPS+:STEPS] == '0 || moves[i*STEPS+STEPS-1]));
+  end
   // A part holds one, and it is never a step behind the one in the part before; in the last it may wait for long.
   genvar m, n;
   generate

@@ -178,29 +178,77 @@ struct WholeFrame {
   std::uint64_t cycles, bytes;
 };
 
-TEST(WholeFrames, TakeNoMoreCyclesAndBytesThanTheirBounds) {
-  const Config config = with("embedded", {{"frame.clears", "flags"}});
-  for (const WholeFrame& bound : {WholeFrame{"teapot", 128, 674},
-                                  {"city", 125, 951},
-                                  {"ball", 820, 1050},
-                                  {"knot", 159, 518},
-                                  {"walk", 188, 1417}}) {
+void expect_bounds(const Config& config, std::initializer_list<WholeFrame> bounds) {
+  for (const WholeFrame& bound : bounds) {
     const Scene scene = make_builtin(bound.scene, 640, 480, {}, 1);
     const CycleRun run = render(scene, config).run;
     const std::uint64_t bytes = traffic(run, config).total();
     EXPECT_LE(run.cycles, bound.cycles * 1000) << bound.scene;
     EXPECT_LE(bytes, bound.bytes * 1024) << bound.scene;
-    std::printf("%s: %llu cycles, %llu bytes\n", bound.scene, static_cast<unsigned long long>(run.cycles),
-                static_cast<unsigned long long>(bytes));
   }
 }
 
+TEST(WholeFrames, TakeNoMoreCyclesAndBytesThanTheirBounds) {
+  expect_bounds(
+      with("embedded", {{"frame.clears", "flags"}}),
+      {{"teapot", 128, 674}, {"city", 125, 951}, {"ball", 820, 1050}, {"knot", 159, 518}, {"walk", 188, 1417}});
+}
+
+TEST(WholeFrames, InBinsTakeNoMoreCyclesAndBytesThanTheirBounds) {
+  expect_bounds(with("embedded", {{"frame.clears", "flags"}, {"frame.order", "bins"}, {"frame.store", "color"}}),
+                {{"teapot", 112, 179}, {"city", 79, 186}, {"ball", 363, 348}, {"knot", 93, 239}, {"walk", 127, 650}});
+}
+
+// 16 bits are a quarter of the bandwidth.
+TEST(WholeFrames, TakeNoMoreCyclesThanTheirBoundsOnANarrowPort) {
+  const MemorySettings slow{MemoryKind::fixed, 12, 50};
+  const Config config = with("embedded", {{"frame.clears", "flags"}, {"memory.port_bits", "16"}});
+  const Config bins = with("embedded", {{"frame.clears", "flags"},
+                                        {"memory.port_bits", "16"},
+                                        {"frame.order", "bins"},
+                                        {"frame.store", "color"}});
+  for (const auto& [name, in_order, in_bins] : {std::tuple{"teapot", 360U, 158U},
+                                                {"city", 480U, 122U},
+                                                {"ball", 1110U, 380U},
+                                                {"knot", 292U, 135U},
+                                                {"walk", 710U, 336U}}) {
+    const Scene scene = make_builtin(name, 640, 480, {}, 1);
+    EXPECT_LE(render(scene, config, {}, slow).run.cycles, in_order * 1000U) << name;
+    EXPECT_LE(render(scene, bins, {}, slow).run.cycles, in_bins * 1000U) << name;
+  }
+}
+
+TEST(WholeFrames, OfTilesTakeNoMoreCyclesAndBytesThanTheirBounds) {  // 16 of them on the chip
+  expect_bounds(with("embedded", {{"frame.clears", "flags"}, {"cache.kind", "tiles"}, {"cache.lines", "16"}}),
+                {{"teapot", 338, 1160}, {"city", 348, 1325}, {"ball", 846, 2060}, {"knot", 266, 890}, {"walk", 426, 1555}});
+}
+
 /// A quad over the whole target: a clear, two triangles, a flush.
-TEST(WholeFrames, AFullScreenQuadTakesAtMost55HundredthsOfACyclePerPixel) {
+double cycles_per_pixel_of_a_quad(const Config& config) {
   SceneBuilder builder(640, 480);
   builder.triangle(at(0, 0), at(640, 0), at(0, 480)).triangle(at(640, 0), at(640, 480), at(0, 480));
-  const CycleRun run = render(builder.scene, with("embedded", {{"frame.clears", "flags"}})).run;
-  EXPECT_LE(static_cast<double>(run.cycles) / (640 * 480), 0.55);
+  return static_cast<double>(render(builder.scene, config).run.cycles) / (640 * 480);
+}
+
+TEST(WholeFrames, AFullScreenQuadTakesAtMost55HundredthsOfACyclePerPixelAnd36InBins) {
+  EXPECT_LE(cycles_per_pixel_of_a_quad(with("embedded", {{"frame.clears", "flags"}})), 0.55);
+  EXPECT_LE(cycles_per_pixel_of_a_quad(
+                with("embedded", {{"frame.clears", "flags"}, {"frame.order", "bins"}, {"frame.store", "color"}})),
+            0.36);
+}
+
+TEST(WholeFrames, TheRecommendedOrderIsTheFasterOfTheTwo) {
+  const Hardware hardware{with("embedded", {{"frame.clears", "flags"}}), {}, {}};
+  const auto orders = try_orders(make_builtin("city", 320, 240, {}, 1), hardware, {}, {});
+  ASSERT_EQ(orders.size(), 3u);
+  EXPECT_LT(orders[1].cycles, orders[0].cycles);
+  EXPECT_LT(orders[1].bytes, orders[0].bytes);
+  EXPECT_LT(orders[2].bytes, orders[1].bytes);
+  EXPECT_EQ(recommended(orders), "bins");
+  EXPECT_EQ(recommended({{"program", "all", 100, 20}, {"bins", "all", 100, 20}}), "program");
+  EXPECT_EQ(recommended({{"program", "all", 100, 20}, {"bins", "all", 100, 19}}), "bins");
+  EXPECT_EQ(recommended({{"program", "all", 100, 20}, {"bins", "all", 101, 1}}), "program");
+  EXPECT_TRUE(try_orders(make_builtin("city", 64, 48, {}, 1), {preset("small"), {}, {}}, {}, {}).empty());
 }
 
 TEST(WholeFrames, OneTriangleOfOnePixelTakesAtMost10000CyclesAndResolved80000) {

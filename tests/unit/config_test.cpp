@@ -158,6 +158,10 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
       config.cache_kind = CacheKind::tiles;
     else if (std::holds_alternative<FrameClears Config::*>(setting.member))
       config.frame_clears = FrameClears::flags;
+    else if (std::holds_alternative<FrameOrder Config::*>(setting.member))
+      config.frame_order = FrameOrder::bins;
+    else if (std::holds_alternative<FrameStore Config::*>(setting.member))
+      config.frame_store = FrameStore::color;
     else if (!setting.is_hardware())
       set(config, setting.key, setting.key == "depth.mapping" ? "rev" : "f16");
     else

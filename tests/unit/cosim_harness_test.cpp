@@ -19,7 +19,7 @@ namespace {
 
 /// What a faulty design does with packet `number` of `arrow`.
 struct Fault {
-  enum class Kind { none, flip, lose, repeat, stop, counter, withdraw, busy } kind = Kind::none;
+  enum class Kind { none, flip, lose, repeat, stop, counter, release, withdraw, busy } kind = Kind::none;
   Arrow arrow = Arrow::stamp;
   std::uint64_t number = 0;
   int bit = 0;
@@ -39,7 +39,8 @@ class FakeDut final : public Dut {
     model_ = std::make_unique<HardwareModel>(config_, *expected_);
     sent_ = {};
     fault_ = planned_;
-    withdrawn_ = false;
+    withdrawn_ = is_answered_ = false;
+    unanswered_ = 0;
     offered_.clear();
     line_.reset();
     lines_.clear();
@@ -52,9 +53,12 @@ class FakeDut final : public Dut {
     offered_.clear();
     if (words != nullptr) offered_.assign(words, words + words_of(packet_bits<PrimitivePacket>(widths_)));
   }
-  void set_response(const std::uint32_t*) override {}
+  void set_answer(const std::uint32_t* words) override { is_answered_ = words != nullptr; }
+  void set_layout(const std::uint32_t*) override {}
+  void hold_reset(bool) override {}
+  void set_counters_hold(bool holds) override { holds_counters_ = holds; }
 
-  const DutOutputs& evaluate(std::uint32_t stalls, bool request_ready) override;
+  const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready) override;
   void clock() override;
 
  private:
@@ -75,7 +79,8 @@ class FakeDut final : public Dut {
   std::array<std::vector<std::uint32_t>, kArrows> words_;
   std::vector<std::uint32_t> counters_;
   DutOutputs out_;
-  bool takes_request_ = false, withdrawn_ = false;
+  bool takes_beat_ = false, is_answered_ = false, withdrawn_ = false, holds_counters_ = false;
+  int unanswered_ = 0;  // beats that were read, bursts that were written
 };
 
 const std::uint32_t* FakeDut::content(Arrow arrow) {
@@ -91,7 +96,7 @@ const std::uint32_t* FakeDut::content(Arrow arrow) {
   return words.data();
 }
 
-const DutOutputs& FakeDut::evaluate(std::uint32_t stalls, bool request_ready) {
+const DutOutputs& FakeDut::evaluate(std::uint32_t stalls, bool beat_ready) {
   out_ = {};
   for (const Arrow arrow : kCompared) {
     const Arrow leader = info(arrow).flow.rides_with.value_or(arrow);
@@ -100,30 +105,39 @@ const DutOutputs& FakeDut::evaluate(std::uint32_t stalls, bool request_ready) {
     const void*& packet = out_.packet[index(arrow)];
     packet = content(arrow);
     if (packet == nullptr) continue;
-    if (arrow == Arrow::request)
-      out_.request_valid = true;
+    if (arrow == Arrow::beat)
+      out_.beat_valid = true;
     else
       out_.fired |= tap_bit(arrow);
   }
-  if (fault_.kind == Fault::Kind::withdraw && out_.request_valid && !request_ready) {
+  if (fault_.kind == Fault::Kind::withdraw && out_.beat_valid && !beat_ready) {
     fault_.kind = Fault::Kind::none;
     withdrawn_ = true;
-  } else if (withdrawn_ && out_.request_valid) {
-    withdrawn_ = out_.request_valid = false;
+  } else if (withdrawn_ && out_.beat_valid) {
+    withdrawn_ = out_.beat_valid = false;
   }
-  takes_request_ = out_.request_valid && request_ready;
-  out_.response_ready = out_.line_ready = true;
+  takes_beat_ = out_.beat_valid && beat_ready;
+  out_.answer_ready = out_.line_ready = true;
   out_.primitive_ready = expected_->empty() && (stalls & 1) == 0;
-  out_.idle = expected_->empty() && offered_.empty() && fault_.kind != Fault::Kind::busy;
-  counters_ = packed(model_->counters(), widths_);
-  if (fault_.kind == Fault::Kind::counter) ++counters_[2];
+  out_.idle = expected_->empty() && offered_.empty() && unanswered_ == 0 && fault_.kind != Fault::Kind::busy;
+  if (!holds_counters_) counters_ = packed(model_->counters(), widths_);
+  if (fault_.kind == (holds_counters_ ? Fault::Kind::release : Fault::Kind::counter)) {
+    auto wrong = unpack_words<CounterPacket>(counters_.data(), widths_);
+    ++wrong.tile_fills;
+    counters_ = packed(wrong, widths_);
+  }
   out_.counters = counters_.data();
   return out_;
 }
 
 void FakeDut::clock() {
+  if (takes_beat_) {
+    const auto beat = unpack_words<MemoryBeat>(words_[index(Arrow::beat)].data(), widths_);
+    unanswered_ += beat.is_write ? (beat.length == 1 ? 1 : 0) : beat.length;
+  }
+  unanswered_ -= is_answered_ ? 1 : 0;
   for (const Arrow arrow : kCompared) {
-    const bool moves = arrow == Arrow::request ? takes_request_ : (out_.fired & tap_bit(arrow)) != 0;
+    const bool moves = arrow == Arrow::beat ? takes_beat_ : (out_.fired & tap_bit(arrow)) != 0;
     if (!moves) continue;
     if (hits(arrow, Fault::Kind::repeat)) {
       fault_.kind = Fault::Kind::none;
@@ -214,6 +228,20 @@ TEST_P(CosimHarness, AWrongCounterIsNamed) {
   ASSERT_TRUE(result.mismatch.has_value());
   EXPECT_EQ(result.mismatch->arrow, "counters");
   EXPECT_EQ(result.mismatch->differing(), std::vector<std::string>{"tile_fills"});
+}
+
+TEST_P(CosimHarness, CountersThatMoveWhileTheyAreHeldBreakTheProtocol) {
+  const LockstepResult result = run(config, {Fault::Kind::release, {}, 0, 0}, {});
+  ASSERT_TRUE(result.mismatch.has_value());
+  EXPECT_EQ(result.mismatch->hint, "held counters count");
+}
+
+TEST(CosimCounters, AreNotComparedWhereThereAreNone) {
+  const Config config = preset("small");
+  ASSERT_EQ(config.counter_units, 0);
+  const LockstepResult result = run(config, {Fault::Kind::counter, {}, 0, 0}, {});
+  EXPECT_FALSE(result.mismatch.has_value());
+  EXPECT_EQ(result.counters_compared, 0u);
 }
 
 TEST_P(CosimHarness, ARequestThatIsTakenBackBreaksTheProtocol) {

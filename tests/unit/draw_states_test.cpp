@@ -29,10 +29,11 @@ namespace {
 std::vector<StateValue> values_of(const DrawState& row) {
   std::vector<StateValue> values;
   for (std::size_t word = 0; word < row.words.size(); ++word) values.push_back({word, {}});
-  if (row.numbers.empty()) return values;
+  if (row.numbers.empty() || row.numbers.front().random_count == 0) return values;  // names of textures: texture_test
   StateValue value{row.words.size(), {}};
   for (std::size_t i = 0; i < row.numbers.size(); ++i)
-    value.numbers[i] = row.numbers[i].random_low + 3 * row.numbers[i].random_step;
+    value.numbers[i] =
+        row.numbers[i].random_low + std::min(3U, row.numbers[i].random_count - 1) * row.numbers[i].random_step;
   values.push_back(value);
   return values;
 }
@@ -57,7 +58,7 @@ TEST(DrawStates, EveryValueIsReadBackFromACapture) {
       row.set(state, value);
       std::string line = &row == &capture_space() ? "" : "state ";
       line += row.name;
-      write_state_value(state, row, line);
+      write_state_value(state, row, {}, line);
       const std::string text = "halfplane 1\nv 0 0 0\n" + line + "\np 0\n";
       EXPECT_EQ(read_capture(text, "test.hpt").states.at(0), state) << line;
     }
@@ -73,6 +74,12 @@ TEST(DrawStates, WhatRidesWithThePrimitiveIsWhatItsPacketHas) {
   }
 }
 
+std::string words_of(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view word : words) text += (text.empty() ? "`" : " `") + std::string(word) + "`";
+  return text;
+}
+
 /// "x, y: −5 to 5": the names in `form` with the same bounds together.
 std::string bounds_of(const DrawState& row) {
   std::istringstream words{std::string(row.form)};
@@ -80,6 +87,8 @@ std::string bounds_of(const DrawState& row) {
   for (const StateNumber& number : row.numbers) {
     std::string name, bounds;
     words >> name;
+    if (number.is_texture) return "the name of a `texture` line";
+    if (!number.words.empty()) return "each " + words_of(number.words);
     const auto append = [&](double value) {
       if (number.is_whole || std::abs(value) < 1e7)
         bounds += std::to_string(static_cast<long>(value));
@@ -105,7 +114,7 @@ std::string markdown(const DrawState& row) {
     text += std::string(row.words.empty() ? "" : ", or") + " `" + std::string(row.form) + "`" +
             (row.unit.empty() ? "" : " in " + std::string(row.unit)) + " (" + bounds_of(row) + ")";
   std::string value;
-  write_state_value(State{}, row, value);
+  write_state_value(State{}, row, {}, value);
   return text + " | `" + value.substr(1) + "` | " + std::string(row.purpose) + " | " +
          (row.home == StateHome::host        ? "host"
           : row.home == StateHome::primitive ? "primitive"
@@ -186,12 +195,17 @@ class Seen {
   [[nodiscard]] std::string missing(const StateRows& rows) const {
     std::string text;
     for (const DrawState* row : rows)
-      for (std::size_t word = 0; word < row->words.size() + (row->numbers.empty() ? 0 : 1); ++word) {
+      for (std::size_t word = 0; word < choices(*row); ++word) {
         const bool is_refused = word < row->words.size() && row->words[word] == row->refused;
         if (count_.contains({row->name, word}) == is_refused)
           text += std::string(row->name) + " " + std::to_string(word) + (is_refused ? " is refused, " : ", ");
       }
     return text;
+  }
+
+  /// Words, and numbers as one more, that a generator may choose.
+  static std::size_t choices(const DrawState& row) {
+    return row.words.size() + (row.numbers.empty() || row.numbers.front().random_count == 0 ? 0 : 1);
   }
 
  private:
@@ -208,6 +222,7 @@ TEST(DrawStates, RandomStatesHaveEveryValue) {
 TEST(DrawStates, RandomNumbersAreWithinTheirBounds) {
   for (const DrawState& row : draw_states())
     for (const StateNumber& number : row.numbers) {
+      if (number.random_count == 0) continue;
       const double highest = number.random_low + (number.random_count - 1) * number.random_step;
       EXPECT_GE(number.random_low, number.low) << number.what;
       EXPECT_LE(highest, number.high) << number.what;

@@ -218,6 +218,7 @@ TEST(Engines, WhatTheEngineDoesNotHaveIsNamed) {
   SceneBuilder builder(16, 16);
   State state = SceneBuilder::window_state();
   state.color_interp = ColorInterp::perspective;
+  state.polygon_mode = PolygonMode::line;
   builder.with_state(state).triangle(at(1, 1), at(9, 1), at(1, 9));
   try {
     (void)render_functional(builder.scene, preset("embedded"));

@@ -99,7 +99,7 @@ TEST(HardwareLines, APointIsCountedButItsTilesAreNot) {
 }
 
 /// How many tiles HiZ skips of a triangle behind others, with a line between them.
-std::uint32_t tiles_skipped(DepthFunc line_func, bool clears_again) {
+std::uint64_t tiles_skipped(DepthFunc line_func, bool clears_again) {
   const Config config = preset("embedded");
   const Widths widths = derive_widths(config);
   PacketSink nobody;

@@ -215,7 +215,8 @@ TEST(Hardware, EveryMemberHoldsItsFieldInTheWidestConfiguration) {
     config.tile_size = std::max(4, stamp);
     validate(config);
     expect_all_wide_enough<PrimitivePacket, TrianglePacket, SetupPacket, ContextPacket, FragmentPacket, WritePacket,
-                           RetirePacket, MemoryRequest, MemoryResponse, CounterPacket>(derive_widths(config));
+                           RetirePacket, MemoryRequest, MemoryResponse, MemoryBeat, MemoryAnswer, CounterPacket>(
+        derive_widths(config));
   }
 }
 

@@ -87,6 +87,8 @@ TEST(PipelineGraph, AStallKeepsItsNumber) {
   constexpr std::array kByNumber{Arrow::primitive, Arrow::triangle, Arrow::setup,    Arrow::tile, Arrow::stamp,
                                  Arrow::fragment,  Arrow::request,  Arrow::response, Arrow::line, Arrow::line_pixel};
   for (std::size_t i = 0; i < kByNumber.size(); ++i) EXPECT_EQ(stall_bit(kByNumber[i]), 1U << i);
+  EXPECT_EQ(stall_bit(Arrow::beat), 1U << 11);
+  EXPECT_EQ(stall_bit(Arrow::answer), 1U << 12);
 }
 
 }  // namespace

@@ -125,64 +125,106 @@ TEST(Hiz, DepthThatCanRiseTakesTheBoundAway) {
   }
 }
 
-/// `embedded` with a cache of so many tiles.
-Config tiles(const char* lines) { return with("embedded", {{"cache.lines", lines}, {"cache.kind", "tiles"}}); }
+/// `embedded` with a cache of so many tiles of 16 stamps.
+Config tiles(const char* lines, const char* clears = "resolve") {
+  return with("embedded", {{"cache.lines", lines}, {"cache.kind", "tiles"}, {"frame.clears", clears}});
+}
+
+/// Requests of a plane, by whether they write.
+std::size_t count(const Recorder& sink, TilePlane plane, bool is_write) {
+  return static_cast<std::size_t>(std::ranges::count_if(sink.requests, [&](const MemoryRequest& request) {
+    return request.plane == plane && (request.is_write != 0) == is_write;
+  }));
+}
 
 TEST(TileCache, FastClearedSceneThatFitsReadsNoMemory) {
-  const Config config = tiles("16");
   SceneBuilder builder(32, 32);  // 4 x 4 tiles, 16 lines
   for (int n = 0; n < 5; ++n) fill_target(builder, 0.1 * n);
   Recorder sink;
-  const CounterPacket counters = run_scene(builder.scene, config, sink);
+  const CounterPacket counters = run_scene(builder.scene, tiles("16"), sink);
   for (const MemoryRequest& request : sink.requests) EXPECT_EQ(request.is_write, 1);
-  EXPECT_EQ(sink.requests.size(), 32u * 32u / 4 * 2) << "each plane of each tile is written once";
+  EXPECT_EQ(count(sink, TilePlane::depth, true), 32u * 32u / 4) << "each stamp of each plane is written once";
+  EXPECT_EQ(count(sink, TilePlane::color, true), 32u * 32u / 4);
+  EXPECT_EQ(count(sink, TilePlane::depth_flags, true), 4u) << "a word for each row of tiles";
   EXPECT_EQ(counters.tile_fills, 0u);
-  EXPECT_EQ(counters.tile_clears, 32u);
-  EXPECT_EQ(counters.tile_evictions, 32u);
+  EXPECT_EQ(counters.tile_clears, 32u * 32u / 4);
+  EXPECT_EQ(counters.tile_evictions, 2u * 32u * 32u / 4);
 }
 
-TEST(TileCache, TileNobodyTouchesIsWrittenOnlyAtTheFlush) {
-  const Config config = tiles("16");
+TEST(TileCache, OfATileThatNobodyTouchesAFlushWritesTheColourOrNothing) {
   SceneBuilder builder(64, 8);
   builder.triangle(at(1, 1), at(7, 1), at(1, 7));
-  Recorder sink;
-  const CounterPacket counters = run_scene(builder.scene, config, sink);
-  EXPECT_EQ(counters.tile_clears, 2u);
-  EXPECT_EQ(counters.tile_evictions, 2u * 8u);
-  ASSERT_EQ(sink.requests.size(), 2u * 8u * 16u);
-  for (std::size_t n = 0; n < sink.requests.size(); ++n) {  // the dirty line, then the flags, depth before colour
-    EXPECT_EQ(sink.requests[n].tile_x, n / 32);
-    EXPECT_EQ(sink.requests[n].plane, n / 16 % 2 == 0 ? TilePlane::depth : TilePlane::color);
-    EXPECT_EQ(sink.requests[n].stamp, n % 16);
+  for (const char* clears : {"resolve", "flags"}) {
+    Recorder sink;
+    const CounterPacket counters = run_scene(builder.scene, tiles("16", clears), sink);
+    const bool resolves = std::string_view(clears) == "resolve";
+    EXPECT_EQ(counters.tile_clears, 16u);
+    EXPECT_EQ(counters.tile_evictions, 32u + (resolves ? 7u * 16u : 0u));
+    ASSERT_EQ(sink.requests.size(), 32u + 1u + (resolves ? 7u * 16u : 1u));
+    for (std::size_t n = 0; n < 32; ++n) {  // the dirty line, depth before colour
+      EXPECT_EQ(sink.requests[n].tile_x, 0);
+      EXPECT_EQ(sink.requests[n].plane, n < 16 ? TilePlane::depth : TilePlane::color);
+      EXPECT_EQ(sink.requests[n].stamp, n % 16);
+    }
+    const std::uint64_t flags = ~std::uint64_t{1};  // of all tiles of the word but the first
+    EXPECT_EQ(sink.requests[32].plane, TilePlane::depth_flags);
+    EXPECT_EQ(flag_word(sink.requests[32], derive_widths(tiles("16"))), flags);
+    if (!resolves) {
+      EXPECT_EQ(sink.requests[33].plane, TilePlane::color_flags);
+      EXPECT_EQ(flag_word(sink.requests[33], derive_widths(tiles("16"))), flags);
+      continue;
+    }
+    for (std::size_t n = 33; n < sink.requests.size(); ++n) {
+      EXPECT_EQ(sink.requests[n].tile_x, (n - 33) / 16 + 1);
+      EXPECT_EQ(sink.requests[n].plane, TilePlane::color);
+    }
   }
 }
 
 TEST(TileCache, SecondReadOfATileIsAHit) {
   // Two tiles that share a line take it from each other; staying in one costs nothing.
-  const Config config = tiles("1");
-  const auto fills = [&config](std::initializer_list<double> xs) {
+  const auto fills = [](std::initializer_list<double> xs) {
     SceneBuilder builder(64, 8);
     for (const double x : xs) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
     Recorder sink;
-    return run_scene(builder.scene, config, sink).tile_fills;
+    const CounterPacket counters = run_scene(builder.scene, tiles("1"), sink);
+    EXPECT_EQ(16 * count(sink, TilePlane::depth, false), counters.tile_fills) << "one request for all stamps";
+    EXPECT_EQ(count(sink, TilePlane::color, false), 0u) << "nobody reads colours";
+    return counters.tile_fills;
   };
   EXPECT_EQ(fills({0, 0, 0}), 0u);
   EXPECT_EQ(fills({0, 8}), 0u);
-  EXPECT_EQ(fills({0, 8, 0}), 2u);
-  EXPECT_EQ(fills({0, 8, 0, 0, 8}), 4u);
+  EXPECT_EQ(fills({0, 8, 0}), 16u);
+  EXPECT_EQ(fills({0, 8, 0, 0, 8}), 32u);
 }
 
 TEST(TileCache, PlaneThatNobodyWroteIsNotWrittenBack) {
-  const Config config = tiles("1");
   State state = SceneBuilder::window_state();
   state.depth_write = false;
   SceneBuilder builder(16, 8, state);
   for (const double x : {0.0, 8.0, 0.0}) builder.triangle(at(x + 1, 1), at(x + 7, 1), at(x + 1, 7));
   Recorder sink;
-  const CounterPacket counters = run_scene(builder.scene, config, sink);
-  EXPECT_EQ(counters.tile_fills, 1u) << "colour of the first tile, when it comes back";
-  EXPECT_EQ(counters.tile_clears, 5u) << "three times depth, twice colour";
-  EXPECT_EQ(counters.tile_evictions, 5u) << "three times colour; depth of both tiles at the flush";
+  const CounterPacket counters = run_scene(builder.scene, tiles("1"), sink);
+  EXPECT_EQ(count(sink, TilePlane::depth, true), 0u);
+  EXPECT_EQ(counters.tile_fills, 0u) << "the flag of depth stays";
+  EXPECT_EQ(counters.tile_clears, 3u * 16u);
+}
+
+TEST(TileCache, OnlySamplesThatWereWrittenGoToMemoryAgain) {
+  SceneBuilder builder(64, 8);
+  // The first tile, one that takes its line from it, and the first again: one pixel of it.
+  for (const double x : {0.0, 8.0, 0.0}) builder.triangle(at(x + 4, 2), at(x + 5.2, 2), at(x + 4, 3.2));
+  Recorder sink;
+  (void)run_scene(builder.scene, tiles("1", "flags"), sink);
+  for (const TilePlane plane : {TilePlane::depth, TilePlane::color}) {
+    EXPECT_EQ(count(sink, plane, true), 16u + 16u + 1u);
+    const auto last =
+        std::ranges::find_if(sink.requests.rbegin(), sink.requests.rend(),
+                             [plane](const MemoryRequest& r) { return r.is_write != 0 && r.plane == plane; });
+    EXPECT_EQ(last->strobe.bits(), 1u);
+    EXPECT_EQ(last->stamp, 6);
+    EXPECT_EQ(last->data[1], 0u);
+  }
 }
 
 TEST(TileCache, ClearOfOnePlaneKeepsTheOther) {
@@ -192,25 +234,19 @@ TEST(TileCache, ClearOfOnePlaneKeepsTheOther) {
   builder.triangle(at(1, 1, 0.75, {255, 0, 0, 255}), at(20, 1, 0.75, {255, 0, 0, 255}),
                    at(1, 30, 0.75, {255, 0, 0, 255}));
   builder.scene.commands.push_back(Clear{0, std::array<double, 4>{0, 255, 0, 255}, std::nullopt});
-  for (const char* lines : {"1", "4", "64"}) {
-    const Config config = tiles(lines);
-    const Rendering expected = render_functional(builder.scene, config),
-                    hardware = render_hardware(builder.scene, config);
-    EXPECT_EQ(hardware.frame.depth, expected.frame.depth) << lines;
-    EXPECT_EQ(hardware.frame.color, expected.frame.color) << lines;
-  }
+  for (const char* lines : {"1", "4", "64"})
+    for (const char* clears : {"flags", "resolve"}) {
+      const Config config = tiles(lines, clears);
+      const Rendering expected = render_functional(builder.scene, config),
+                      hardware = render_hardware(builder.scene, config);
+      EXPECT_EQ(hardware.frame.depth, expected.frame.depth) << lines << clears;
+      EXPECT_EQ(hardware.frame.color, expected.frame.color) << lines << clears;
+    }
 }
 
 /// `embedded` with a cache of so many blocks of 4x4 pixels.
 Config blocks(const char* lines, const char* clears = "flags") {
   return with("embedded", {{"cache.kind", "blocks"}, {"cache.lines", lines}, {"frame.clears", clears}});
-}
-
-/// Requests of a plane, by whether they write.
-std::size_t count(const Recorder& sink, TilePlane plane, bool is_write) {
-  return static_cast<std::size_t>(std::ranges::count_if(sink.requests, [&](const MemoryRequest& request) {
-    return request.plane == plane && (request.is_write != 0) == is_write;
-  }));
 }
 
 TEST(BlockCache, AFragmentOnAClearedTargetReadsNothingAndWritesItsBlock) {
@@ -331,26 +367,33 @@ TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
   const Config config = preset("embedded");
   const Widths widths = derive_widths(config);
   TileMemory memory(config);
-  std::array<std::uint32_t, 64> data{}, back{};
-  for (std::uint32_t s = 0; s < 4; ++s) data[s] = s + 1;
-  MemoryRequest request;
-  request.plane = TilePlane::color;
-  request.tile_x = 2;
-  request.tile_y = 3;
-  request.stamp = 5;
-  request.strobe = SampleMask(0b1101);
-  request.data = data;
-  memory.write(request);
-  data[1] = memory_garbage(true, 2, 3, 5, 1, widths);
+  MemoryBeat beat;
+  beat.is_write = true;
+  beat.address = byte_address(TilePlane::color, 2, 3, 5, memory.layout(), widths);
+  beat.strobe = 0b11110011;  // not sample 1
+  for (std::size_t n = 0; n < 8; ++n) beat.data[n] = static_cast<std::uint8_t>(n + 1);
+  memory.write(beat);
+  std::array<std::uint32_t, 64> back{};
   memory.read(true, 2, 3, 5, back);
-  EXPECT_EQ(back, data);
-  memory.read(true, 2, 3, 6, back);
-  for (int s = 0; s < 4; ++s) EXPECT_EQ(back[static_cast<std::size_t>(s)], memory_garbage(true, 2, 3, 6, s, widths));
-  EXPECT_TRUE(memory.is_written(true, 2, 3));
-  EXPECT_FALSE(memory.is_written(false, 2, 3));
-  memory.read(false, 2, 3, 5, back);
-  EXPECT_EQ(back[0], memory_garbage(false, 2, 3, 5, 0, widths));
-  EXPECT_NE(memory_garbage(false, 2, 3, 5, 0, widths), memory_garbage(false, 2, 3, 5, 1, widths));
+  const auto garbage = [](std::uint32_t address) {
+    return std::uint32_t{memory_garbage(address)} | std::uint32_t{memory_garbage(address + 1)} << 8;
+  };
+  EXPECT_EQ(back[0], 0x0201u);
+  EXPECT_EQ(back[1], garbage(beat.address + 2));
+  EXPECT_EQ(back[2], 0x0605u);
+  EXPECT_EQ(back[3], 0x0807u);
+  MemoryBeat::Bytes bytes{};
+  memory.read(beat.address, bytes);
+  EXPECT_EQ(bytes[7], 8);
+  EXPECT_EQ(bytes[2], memory_garbage(beat.address + 2));
+  memory.read(false, 0, 0, 0, back);
+  EXPECT_EQ(back[0], garbage(0));
+  EXPECT_NE(garbage(0), garbage(2));
+  EXPECT_FALSE(memory.page(beat.address / TileMemory::kPage).empty());
+  EXPECT_TRUE(memory.page(0).empty());
+  EXPECT_TRUE(memory.has(beat));
+  beat.address = ~0U - 7;
+  EXPECT_FALSE(memory.has(beat));
 }
 
 TEST(HostStream, BeginsWithAClearOfBothPlanesAndEndsWithAFlush) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -11,10 +12,10 @@
 
 #include "../../stages/cache_tags.hpp"
 #include "../../stages/tile_directory.hpp"
-#include "../../timing/memory.hpp"
 #include "../../timing/station.hpp"
 #include "../../timing/stream.hpp"
 #include "block_timing.hpp"
+#include "port_timing.hpp"
 #include "streams.hpp"
 
 namespace halfplane {
@@ -40,9 +41,8 @@ struct TimingTotals {
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kStages> works{};
-  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> stamps{};  ///< moved, by MoveCause and plane
-  std::array<std::uint64_t, 2> flag_words{};                              ///< written, by plane
-  bool has_primitive = false;                                             ///< first_primitive has been seen
+  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> beats{};  ///< on the memory port, by MoveCause and plane
+  bool has_primitive = false;                                            ///< first_primitive has been seen
 
   /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
   [[nodiscard]] std::uint64_t raster_cycles() const {
@@ -56,16 +56,16 @@ class BackTiming {
   BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
       : stalls_(stalls),
         streams_(streams_of(stalls)),
-        memory_(memory),
+        port_(widths, stalls, memory, streams_, sink),
         sink_(sink),
         widths_(widths),
-        stamps_(static_cast<Cycle>(widths.stamps.stamps())),
-        moves_in_bursts_(sink == nullptr && stalls.threshold == 0 && memory.fixed_latency() != 0),
-        line_raster_(1, 1, 0),
+        line_raster_(1, 1, 1),
         resolves_(config.frame_clears == FrameClears::resolve) {
     if (config.cache_kind == CacheKind::blocks) blocks_.emplace(config, widths);
   }
 
+  /// Where the planes lie in memory, unless it is default_layout().
+  void set_layout(const MemoryLayout& layout) { port_.set_layout(layout); }
   [[nodiscard]] const TimingTotals& totals() const { return totals_; }
   /// When the last fragment moved.
   [[nodiscard]] Cycle last_fragment() const { return last_fragment_; }
@@ -164,8 +164,7 @@ class BackTiming {
     const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams(), offered);
     Mover mover{*this, begins + 1};
     walk(mover);
-    // The last tile of the walk stays until the token may move.
-    const Cycle moved = stream(Arrow::fragment).transfer(offered, mover.cycle - 1);
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, mover.cycle);
     count_moves(begins, moved + 1);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
@@ -173,32 +172,35 @@ class BackTiming {
     return moved;
   }
 
-  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes in `clears`, of tiles (0, 0) to
+  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes that `state` writes, of tiles (0, 0) to
   /// (last_x, last_y).
-  Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const std::array<bool, 2>& clears, int last_x,
+  Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const PrimitiveState& state, int last_x,
                    int last_y) {
-    const auto ask = [this](Cycle cycle, TilePlane plane, const StampAddress& at, bool is_write) {
-      return ask_of_block(cycle, plane, at, is_write ? MoveCause::evict : MoveCause::fill);
-    };
+    const std::array<bool, 2> clears{state.depth_write, state.color_write};
+    const BlockPort ask{*this};
     const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams(), std::max(offered, blocks_->is_empty()));
     Cycle cycle = begins + 1;
+    if (!is_clear) directory.drop_depth(state.drops_depth());
     if (!(is_clear && clears[0] && clears[1]))
       directory.evict_all([&](const TagResult& tags) { cycle = blocks_->walk(cycle, tags, ask); });
     const Cycle drained = blocks_->drain(cycle, directory.write_all(), ask) + 1;
     cycle = drained;
+    const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);  // of a row
     if (is_clear) {
-      const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);
       directory.mark(last_x, last_y, clears);
       cycle += std::max<Cycle>(directory.lines(),
                                static_cast<Cycle>(words) * static_cast<Cycle>((last_y + 1) * widths_.blocks.per_tile));
     } else {
-      for (const TilePlane plane : kTilePlanes)
+      for (const TilePlane plane : kTilePlanes) {
+        if (plane == TilePlane::depth && directory.drops_depth()) continue;
         directory.for_each_flag_word(plane, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
           cycle = plane == TilePlane::color && resolves_ ? resolve_word(cycle + 2, word, y, bits)
-                                                         : write_flag_word(cycle + 1, plane, word, y);
+                                                         : write_flag_word(cycle + 1, plane, word, words, y);
         });
+      }
       if (resolves_) directory.resolve(TilePlane::color, last_x, last_y);
     }
+    directory.drop_depth(is_clear && state.drops_depth());
     const Cycle moved = stream(Arrow::fragment).transfer(offered, cycle);
     count_moves(drained, moved + 1);
     note(Arrow::fragment, moved);
@@ -237,9 +239,7 @@ class BackTiming {
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
     const std::uint64_t hazards = blocks_->hazards();
-    blocks_->take(moved, tags, item, [this](Cycle cycle, TilePlane plane, const StampAddress& at, bool is_write) {
-      return ask_of_block(cycle, plane, at, is_write ? MoveCause::evict : MoveCause::fill);
-    });
+    blocks_->take(moved, tags, item, BlockPort{*this});
     totals_.hazard_cycles += blocks_->hazards() - hazards;
     if (!item.mask.any()) return moved;
     totals_.last_write = blocks_->tested() + 1;
@@ -248,37 +248,41 @@ class BackTiming {
     return moved;
   }
 
-  /// A request of a framebuffer of blocks. Returns when it was taken, and when its answer came.
-  std::pair<Cycle, Cycle> ask_of_block(Cycle cycle, TilePlane plane, const StampAddress& at, MoveCause cause) {
-    const bool is_flags = plane == TilePlane::depth_flags || plane == TilePlane::color_flags;
-    const std::size_t p = plane == TilePlane::color || plane == TilePlane::color_flags ? 1 : 0;
-    ++(is_flags ? totals_.flag_words[p] : totals_.stamps[static_cast<std::size_t>(cause)][p]);
-    const Cycle asked = ask({cause != MoveCause::fill, plane, at.tile_x, at.tile_y, at.stamp}, cycle);
+  /// A request, in `cycle` at the earliest.
+  PortTimes ask(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
+    const bool is_read = cause == MoveCause::fill;
+    const std::uint64_t beats = port_.beats();
+    const PortTimes times = port_.take({!is_read, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle);
+    totals_.beats[static_cast<std::size_t>(cause)][is_of_color(plane) ? 1 : 0] += port_.beats() - beats;
+    totals_.memory_cycles += times.asked - cycle;
+    totals_.last = std::max(totals_.last, port_.last());
+    work(Stage::memory_port, port_.beats() - beats);
+    return times;
+  }
+
+  /// What BlockTiming asks memory through.
+  struct BlockPort {
+    BackTiming& timing;
+
+    PortTimes operator()(Cycle cycle, TilePlane plane, const StampAddress& at, int run, bool is_write) const {
+      return timing.ask_of_block(cycle, plane, at, run, is_write ? MoveCause::evict : MoveCause::fill);
+    }
+  };
+
+  /// The same of a framebuffer of blocks.
+  PortTimes ask_of_block(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
+    const PortTimes times = ask(cycle, plane, at, run, cause);
     if (sink_ != nullptr)
-      sink_->move(cause, p != 0, at.tile_x, at.tile_y, asked,
-                  cause == MoveCause::fill ? last_response_ + 1 : asked + 1);
-    return {asked, last_response_};
+      sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, times.asked,
+                  std::max(times.asked, times.answered) + 1);
+    return times;
   }
 
-  /// A request, in `cycle` at the earliest. Returns when it was taken; last_response_ is when its answer came.
-  Cycle ask(const MemoryAccess& access, Cycle cycle) {
-    const Cycle asked = stream(Arrow::request).transfer(cycle, memory_.room());
-    note(Arrow::request, asked);
-    totals_.memory_cycles += asked - cycle;
-    const Cycle answer = memory_.accept(access, asked);
-    if (access.is_write) return asked;
-    last_response_ = stream(Arrow::response).transfer(std::max(answer, last_response_ + 1), 0);
-    note(Arrow::response, last_response_);
-    return asked;
-  }
-
-  /// A flush's requests for one word of flags, in `cycle` at the earliest. Both return when the next word can be read.
-  Cycle write_flag_word(Cycle cycle, TilePlane plane, int word, int y) {
-    const TilePlane flags = plane == TilePlane::color ? TilePlane::color_flags : TilePlane::depth_flags;
-    const int per_tile = widths_.blocks.per_tile;
-    const StampAddress at{static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
-                          static_cast<std::uint16_t>(y % per_tile)};
-    return ask_of_block(cycle, flags, at, MoveCause::clear).first + 1;
+  /// A flush's requests for one word of flags, of `words` in its row, in `cycle` at the earliest. Both return when the next
+  /// word can be read.
+  Cycle write_flag_word(Cycle cycle, TilePlane plane, int word, int words, int y) {
+    const StampAddress at = flag_word_address(word, y, widths_);
+    return ask_of_block(cycle, flags_of(plane), at, words - word, MoveCause::clear).asked + 1;
   }
   Cycle resolve_word(Cycle cycle, int word, int y, std::uint64_t bits) {
     if (bits == 0) ++cycle;
@@ -286,8 +290,9 @@ class BackTiming {
       if ((bits & 1) == 0) ++cycle;
       for (int stamp = 0; (bits & 1) != 0 && stamp < widths_.blocks.stamps(); ++stamp) {
         const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-        cycle =
-            ask_of_block(cycle, TilePlane::color, stamp_address({block, stamp}, widths_), MoveCause::clear).first + 1;
+        const StampAddress at = stamp_address({block, stamp}, widths_);
+        const int run = widths_.blocks.stamps() - stamp;
+        cycle = ask_of_block(cycle, TilePlane::color, at, run, MoveCause::clear).asked + 1;
       }
     }
     return cycle;
@@ -299,19 +304,21 @@ class BackTiming {
     Cycle cycle;
 
     void look_at_line() { ++cycle; }
-    void write_back(std::size_t, const TileAddress& address) {
-      ++cycle;  // the look that found it dirty
-      timing.move_plane(cycle, address, MoveCause::evict);
+    void write_back(std::size_t, const TileAddress& address, const StampRows& rows, bool fills) {
+      cycle += 2;  // the look that found it dirty, and one for its first row of stamps
+      timing.write_stamps(cycle, address, rows, fills, MoveCause::evict);
     }
     void fill(std::size_t, int x, int y, const std::array<bool, 2>& is_cleared) {
       ++cycle;  // the look that found nothing dirty
-      timing.fill(cycle, x, y, is_cleared);
+      timing.fill(cycle, x, y, is_cleared[0]);
     }
-    void mark_tile() { ++cycle; }
+    void mark_words(int words) { cycle += static_cast<Cycle>(words); }
+    void write_flags(TilePlane plane, int word, int words, int y, std::uint64_t) {
+      cycle = timing.write_flag_word(cycle + 1, plane, word, words, y);
+    }
     void look_at_tile() { cycle += 2; }
-    void write_clear_value(const TileAddress& address) {
-      cycle += 2;
-      timing.move_plane(cycle, address, MoveCause::clear);
+    void write_clear_value(const TileAddress& address, const StampRows& rows) {
+      timing.write_stamps(cycle, address, rows, true, MoveCause::clear);
     }
   };
 
@@ -339,45 +346,40 @@ class BackTiming {
     return moved;
   }
 
-  /// Requests for all stamps of a plane, the first one in `cycle` at the earliest, and the answers if they are reads.
-  /// `cycle` becomes the one behind the last request.
-  void move_plane(Cycle& cycle, const TileAddress& address, MoveCause cause) {
-    const bool is_write = cause != MoveCause::fill;
-    totals_.stamps[static_cast<std::size_t>(cause)][static_cast<std::size_t>(address.plane)] += stamps_;
-    if (moves_in_bursts_) {
-      const Cycle last = cycle + stamps_ - 1;
-      stream(Arrow::request).pass(stamps_);
-      cycle = last + 1;
-      if (!is_write) {
-        last_response_ = last + memory_.fixed_latency();  // the answers before were to earlier requests
-        stream(Arrow::response).pass(stamps_);
+  /// Writes of these stamps of a tile: a stamp is read out of the RAMs, from `cycle` on, and offered in the cycle after
+  /// that; the next one is read when it is taken. A row without one takes a cycle, the last row none. `cycle` becomes the
+  /// one behind the last request and row.
+  void write_stamps(Cycle& cycle, const TileAddress& address, const StampRows& rows, bool is_whole, MoveCause cause) {
+    const int per_row = widths_.stamps.stamps_per_row;
+    Cycle first = 0, taken = 0;
+    for (int row = 0; row < per_row; ++row) {
+      std::uint32_t left = rows[static_cast<std::size_t>(row)];
+      if (left == 0 && row + 1 < per_row) ++cycle;
+      for (; left != 0; left &= left - 1) {
+        const int stamp = row * per_row + std::countr_zero(left);
+        const StampAddress at{address.tile_x, address.tile_y, static_cast<std::uint16_t>(stamp)};
+        cycle = std::max(cycle, taken) + 1;
+        taken = ask(cycle, address.plane, at, run_of(rows, is_whole, stamp, widths_), cause).asked;
+        if (first == 0) first = taken;
       }
-      totals_.last = std::max(totals_.last, is_write ? last : last_response_);
-      return;
     }
-    MemoryAccess access{is_write, address.plane, address.tile_x, address.tile_y, 0};
-    Cycle first = 0;
-    for (; access.stamp < static_cast<int>(stamps_); ++access.stamp) {
-      const Cycle asked = ask(access, cycle);
-      if (access.stamp == 0) first = asked;
-      cycle = asked + 1;
-    }
+    cycle = std::max(cycle, taken) + 1;
     if (sink_ != nullptr)
-      sink_->move(cause, access.plane == TilePlane::color, access.tile_x, access.tile_y, first,
-                  is_write ? cycle : last_response_ + 1);
+      sink_->move(cause, address.plane == TilePlane::color, address.tile_x, address.tile_y, first, cycle);
   }
 
-  /// Both planes of a tile, from memory or from the clear value. A plane that is cleared rides along with one that is read.
-  void fill(Cycle& cycle, int x, int y, const std::array<bool, 2>& is_cleared) {
-    if (is_cleared[0] && is_cleared[1]) {
-      cycle += stamps_;
+  /// The depth of a tile, from memory in one burst or from the clear value.
+  void fill(Cycle& cycle, int x, int y, bool is_cleared) {
+    const int stamps = widths_.stamps.stamps();
+    if (is_cleared) {
+      cycle += static_cast<Cycle>(stamps);
       return;
     }
-    for (const TilePlane plane : kTilePlanes)
-      if (!is_cleared[static_cast<std::size_t>(plane)])
-        move_plane(cycle, {plane, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, MoveCause::fill);
-    totals_.memory_cycles += last_response_ + 1 - cycle;
-    cycle = last_response_ + 1;
+    const StampAddress at{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0};
+    const PortTimes times = ask(cycle + 1, TilePlane::depth, at, stamps, MoveCause::fill);
+    if (sink_ != nullptr) sink_->move(MoveCause::fill, false, x, y, times.asked, times.answered + 1);
+    totals_.memory_cycles += times.answered - times.asked;
+    cycle = times.answered + 1;
   }
 
   void count_moves(Cycle from, Cycle to) {
@@ -404,15 +406,13 @@ class BackTiming {
   }
 
   Streams streams_;
-  MemoryTiming& memory_;
+  PortTiming port_;
   TransferSink* sink_;
   Widths widths_;
-  Cycle stamps_;          ///< of a tile
-  bool moves_in_bursts_;  ///< nobody looks at single requests, and none of them ever waits
   Station line_raster_;
   bool resolves_;                      ///< frame.clears
   std::optional<BlockTiming> blocks_;  ///< of cache.kind blocks
-  Cycle next_line_ = 0, first_pixel_ = 0, last_response_ = 0;
+  Cycle next_line_ = 0, first_pixel_ = 0;
   FragmentPlace last_place_;
   std::uint64_t moving_ = 0;                           ///< cycles since the first primitive in which tiles moved
   std::vector<std::pair<Cycle, Cycle>> moved_before_;  ///< tile moves before the first primitive

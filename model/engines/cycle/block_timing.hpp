@@ -3,7 +3,7 @@
 // T looks a fragment up, X tests it, W writes its colours; between T and X the fragments wait for memory, in order. Every
 // wait is for an earlier fragment or eviction, so the time of one is a maximum over those before it:
 //
-//   t(m) = max(moved + 1, t(m-1) + 1, x(m-queue) + 1), two more where a flag falls
+//   t(m) = max(moved + 1, t(m-1) + 1, x(m-queue) + 1, room for an order), one or two more where a flag falls
 //   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
 //   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2))
 //   w(m) = max(x + 2, w(m-1) + 1)
@@ -48,13 +48,13 @@ class BlockTiming {
   /// A fragment was tested one cycle late because it needs what the one before wrote.
   [[nodiscard]] std::uint64_t hazards() const { return hazards_; }
 
-  /// A fragment that T took in `moved`, or a line that it read then. ask(cycle, access): a request, in `cycle` at the
-  /// earliest; returns {when it was taken, when its answer came}.
+  /// A fragment that T took in `moved`, or a line that it read then. ask(cycle, plane, stamp, run, is_write): a request, in
+  /// `cycle` at the earliest; returns PortTimes.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, is_order = reads || tags.writes > 0;
-    Cycle t = std::max(moved + (tags.clears_flag() ? 3 : 1), items_.room());
-    if (is_order) t = std::max(t, orders_.room());
+    const Cycle t =
+        std::max({moved + 1 + static_cast<Cycle>(tags.flag_cycles), items_.room(), orders_.room()});
     left_ = t;
     const Cycle answer = is_order ? order(t, tags.writes, reads ? &item : nullptr, tags, ask) : 0;
     Cycle x = std::max({items_.ready(t), tested_ + 1, behind_.room()});
@@ -85,7 +85,7 @@ class BlockTiming {
     if (tags.eviction)
       take(cycle, tags, {}, ask);
     else
-      left_ = cycle + 1;
+      left_ = std::max({cycle + 1, items_.room(), orders_.room()});
     return left_ + 1;
   }
 
@@ -140,8 +140,9 @@ class BlockTiming {
       Cycle behind = cycle + 1;  // nothing to write is found in a cycle too
       for (const TilePlane plane : kTilePlanes)
         for (std::uint64_t left = v.stamps[static_cast<std::size_t>(plane)]; left != 0; left &= left - 1) {
-          const StampAddress at = stamp_address({v.block, std::countr_zero(left)}, widths_);
-          behind = ask(cycle, plane, at, true).first + 1;
+          const int stamp = std::countr_zero(left);
+          const StampAddress at = stamp_address({v.block, stamp}, widths_);
+          behind = ask(cycle, plane, at, std::countr_one(left >> stamp), true).asked + 1;
           cycle = behind;
         }
       cycle = behind;
@@ -150,7 +151,7 @@ class BlockTiming {
     }
     if (item != nullptr) {
       const auto [asked, answered] =
-          ask(cycle, TilePlane::depth, stamp_address({tags.block, item->stamp}, widths_), false);
+          ask(cycle, TilePlane::depth, stamp_address({tags.block, item->stamp}, widths_), 1, false);
       cycle = asked + 1;
       answer = answered;
     }

@@ -51,9 +51,13 @@ class CycleModelOf final : public CycleModel {
         options_(options),
         timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink),
         hiz_(config_, widths_, options.parameters.untested_tiles),
-        directory_(config_, widths_),
-        blocks_(config_, widths_),
-        has_blocks_(config_.cache_kind == CacheKind::blocks) {}
+        has_blocks_(config_.cache_kind == CacheKind::blocks) {
+    if (has_blocks_)
+      blocks_.emplace(config_, widths_);
+    else
+      tiles_.emplace(config_, widths_);
+    if (options.layout) timing_.set_layout(*options.layout);
+  }
 
   void begin(int width, int height, Cycle cycle) override {
     rendering_ = {};
@@ -69,8 +73,10 @@ class CycleModelOf final : public CycleModel {
 
   void run(const HostPrimitive& host) override {
     std::optional<PrimitivePacket> drawn_clear;
-    if (host.packet.kind == PrimitiveKind::fast_clear && options_.parameters.fast_clear == 0)
+    if (host.packet.kind == PrimitiveKind::fast_clear && options_.parameters.fast_clear == 0) {
       drawn_clear.emplace(host.packet).kind = PrimitiveKind::rectangle;
+      drawn_clear->state.depth_test = DepthFunc::always;
+    }
     const PrimitivePacket& primitive = drawn_clear ? *drawn_clear : host.packet;
     if (options_.sink != nullptr) options_.sink->primitive(host);
     const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
@@ -124,9 +130,9 @@ class CycleModelOf final : public CycleModel {
     if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
-      if (has_blocks_) return timing_.pass_token(offered, blocks_, true, planes, last_x, last_y);
+      if (has_blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
       return timing_.pass_token(offered,
-                                [&](auto& mover) { directory_.fast_clear(last_x, last_y, planes, mover, counters_); });
+                                [&](auto& mover) { tiles_->fast_clear(last_x, last_y, planes, mover, counters_); });
     });
   }
 
@@ -148,8 +154,8 @@ class CycleModelOf final : public CycleModel {
   void flush(const SetupPacket& packet) {
     const int last_x = packet.box.right >> widths_.tile_shift, last_y = packet.box.bottom >> widths_.tile_shift;
     timing_.end_token([&](Cycle offered) {
-      if (has_blocks_) return timing_.pass_token(offered, blocks_, false, {}, last_x, last_y);
-      return timing_.pass_token(offered, [&](auto& mover) { directory_.flush(last_x, last_y, mover, counters_); });
+      if (has_blocks_) return timing_.pass_token(offered, *blocks_, false, packet.state, last_x, last_y);
+      return timing_.pass_token(offered, [&](auto& mover) { tiles_->flush(last_x, last_y, mover, counters_); });
     });
   }
 
@@ -171,8 +177,8 @@ class CycleModelOf final : public CycleModel {
       return !pixel.is_last;
     };
     const auto look_up = [&](auto& mover) {
-      const bool hits = directory_.access(place.tile_x, place.tile_y, mover, counters_);
-      if (passed) directory_.wrote(place.tile_x, place.tile_y, state.depth_write, state.color_write);
+      const bool hits = tiles_->access(place.tile_x, place.tile_y, mover, counters_);
+      if (passed) tiles_->wrote(place.tile_x, place.tile_y, place.stamp, state.depth_write, state.color_write);
       return hits;
     };
     const auto look_up_block = [&](BlockItem& item) { return block_access(place, state, passed, item); };
@@ -190,7 +196,7 @@ class CycleModelOf final : public CycleModel {
   TagResult block_access(const FragmentPlace& place, const PrimitiveState& state, bool passed, BlockItem& item) {
     const StampAddress at{static_cast<std::uint16_t>(place.tile_x), static_cast<std::uint16_t>(place.tile_y),
                           static_cast<std::uint16_t>(place.stamp)};
-    const TagResult tags = blocks_.access(at, state, place.mask == SampleMask::all(widths_.samples));
+    const TagResult tags = blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
     item = {place.mask,        block_stamp(at, widths_).stamp, state.depth_write,
             state.color_write, passed && state.depth_write,    passed && state.color_write};
     return tags;
@@ -272,7 +278,7 @@ class CycleModelOf final : public CycleModel {
                 [&](int j, const Mask& covered_lanes, const Mask& passed_lanes) {
                   const std::uint32_t row = kernel.to_bits(covered_lanes);
                   covered_rows[static_cast<std::size_t>(j)] = row;
-                  if (has_blocks_) passed_rows[static_cast<std::size_t>(j)] = kernel.to_bits(passed_lanes);
+                  passed_rows[static_cast<std::size_t>(j)] = kernel.to_bits(passed_lanes);
                   work.columns[static_cast<std::size_t>(j / size)] |= row;  // pixels so far
                   covered_count += covered_lanes;
                   passed_count += passed_lanes;
@@ -309,17 +315,18 @@ class CycleModelOf final : public CycleModel {
         return SampleMask(bits);
       };
       place.mask = samples(covered_rows);
+      const bool passes = samples(passed_rows).any();
       if (has_blocks_) {
         BlockItem item;
-        const TagResult tags = block_access(place, packet.state, samples(passed_rows).any(), item);
+        const TagResult tags = block_access(place, packet.state, passes, item);
         return timing_.access(offered, tags, item);
       }
-      return timing_.access(offered, place, [&](auto& mover) {
-        return is_resident || ((is_resident = true), directory_.access(tile_x, tile_y, mover, counters_));
+      const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
+        return is_resident || ((is_resident = true), tiles_->access(tile_x, tile_y, mover, counters_));
       });
+      if (passes) tiles_->wrote(tile_x, tile_y, place.stamp, packet.state.depth_write, packet.state.color_write);
+      return moved;
     });
-    if (passed != 0 && !has_blocks_)
-      directory_.wrote(tile_x, tile_y, packet.state.depth_write, packet.state.color_write);
     retire(packet, tile_x, tile_y, passed);
     if (!options_.want_cost) return;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before);
@@ -370,9 +377,9 @@ class CycleModelOf final : public CycleModel {
   Timing timing_;
   CounterPacket counters_;
   Hiz hiz_;
-  TileDirectory directory_;
-  CacheTags blocks_;
   bool has_blocks_;
+  std::optional<TileDirectory> tiles_;  ///< one of them, by cache.kind
+  std::optional<CacheTags> blocks_;
   Rendering rendering_;
   std::vector<float> cost_;
 };
@@ -413,7 +420,7 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
   DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
-    const std::uint32_t dropped_before = drawn.dropped(model->counters());
+    const std::uint64_t dropped_before = drawn.dropped(model->counters());
     model->run(*primitive);
     drawn.add(*primitive, drawn.dropped(model->counters()) == dropped_before);
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());

@@ -19,6 +19,7 @@ struct CycleOptions {
   Stalls stalls;                              ///< injected back-pressure
   TimingParameters parameters;                ///< sizes of buffers; the default is the RTL
   TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
+  std::optional<MemoryLayout> layout;         ///< of the planes in memory; default_layout() unless given
   bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
 };

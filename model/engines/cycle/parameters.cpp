@@ -12,7 +12,7 @@ std::span<const TimingSetting> timing_settings() {
                     true},
       TimingSetting{"queue.setup", "setups that wait in front of coarse_raster", 0, 1024, &P::setup_queue, true},
       TimingSetting{"queue.tile", "tiles that wait in front of fine_raster", 0, 1024, &P::tile_queue, true},
-      TimingSetting{"queue.stamp", "stamps in the buffer behind fine_raster", 1, 1024, &P::stamp_queue, false},
+      TimingSetting{"queue.stamp", "stamps in the buffer behind interpolate", 1, 1024, &P::stamp_queue, false},
       TimingSetting{"queue.fragment", "fragments that wait in front of depth_test", 0, 1024, &P::fragment_queue, true},
       TimingSetting{"divide.bits", "quotient bits that triangle_setup makes in a cycle", 1, 64, &P::divide_bits, true},
       TimingSetting{"hiz.untested", "a triangle of at most so many tiles in x and y reads no HiZ bound", 0, 64,

@@ -22,8 +22,7 @@ class PipelinedTiming : public BackTiming {
         offer_setup_(1, setup_.last, 1),
         slots_(config.context_slots, 0, 2),
         visits_(config.hiz_lag, 0, kVisitIsSeen),
-        skid_(parameters.stamp_queue, 1, 1),
-        interpolate_(kSteps, kSteps, 0),
+        interpolate_(kSteps + parameters.stamp_queue, kSteps, 1),
         triangle_queue_(parameters.triangle_queue),
         setup_queue_(parameters.setup_queue),
         tile_queue_(parameters.tile_queue),
@@ -158,24 +157,16 @@ class PipelinedTiming : public BackTiming {
  private:
   static constexpr int kSteps = PipelinedCycles::interpolate_steps;
 
-  /// A stamp on offer by fine_raster from `offered` on, through the skid buffer and interpolate. Returns when it enters the
-  /// buffer.
+  /// A stamp on offer by fine_raster from `offered` on, through interpolate and its FIFO. Returns when it moves.
   template <class Shade>
   Cycle send(Cycle offered, bool ends_primitive, Shade&& shade) {
-    const Cycle enters = std::max(offered, skid_.room());
-    const Cycle taken =
-        stream(Arrow::stamp).transfer(std::max(skid_.ready(enters), last_stamp_ + 1), interpolate_.room());
-    skid_.leave(taken);
-    last_stamp_ = taken;
+    const Cycle taken = stream(Arrow::stamp).transfer(offered, interpolate_.room());
     note(Arrow::stamp, taken);
     work(Stage::interpolate, 1);
-    if (ends_primitive) slots_.leave(std::max(taken + 1, context_.room()));  // leaves the first step
-    const Cycle leaves =
-        fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
-    last_left_ = leaves;
-    interpolate_.leave(leaves);
-    context_.leave(leaves);
-    return enters;
+    if (ends_primitive) slots_.leave(taken + 1);
+    last_left_ = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
+    interpolate_.leave(last_left_);
+    return taken;
   }
 
   Station sort_{1, PipelinedCycles::cull_sort, 0}, decide_{1, PipelinedCycles::cull_decide, 0};
@@ -183,10 +174,9 @@ class PipelinedTiming : public BackTiming {
   std::vector<Station> parts_;  ///< of triangle_setup, but for the last
   Station offer_setup_;         ///< the last
   Station coarse_{1, 0, 0}, slots_, visits_;
-  Station rows_{1, 1, 0}, stamps_{1, 1, 0}, skid_, interpolate_;
-  Station context_{kSteps - 1, 0, 0};  ///< the steps of interpolate behind the one that reads the context
+  Station rows_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
-  Cycle offer_ = 0, walk_ = 0, last_stamp_ = 0, last_left_ = 0;
+  Cycle offer_ = 0, walk_ = 0, last_left_ = 0;
   bool has_bound_ = false;  ///< the primitive reads bounds
 };
 

@@ -1,5 +1,7 @@
 #include "stage_table.hpp"
 
+#include "port_timing.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -11,15 +13,14 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
   if (config.setup_kind == SetupKind::pipelined) {
     const SetupCycles setup(widths, parameters.divide_bits);
     const int sort = PipelinedCycles::cull_sort, decide = PipelinedCycles::cull_decide;
-    const std::string steps = number(PipelinedCycles::interpolate_steps);
     return {{Stage::cull, number(sort + decide), number(std::max(sort, decide)), "2"},
             {Stage::triangle_setup, number(setup.latency), number(setup.part), number(setup.parts + 1)},
             {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
              "1 a tile, 3 for a visit where HiZ bounds are read",
              number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
-            {Stage::fine_raster, "2, then 1 in the buffer", "1 a stamp or row of stamps without one",
-             "2 rows, and " + stamps + " stamps in the buffer"},
-            {Stage::interpolate, steps, "1", steps}};
+            {Stage::fine_raster, "2", "1 a stamp or row of stamps without one", "2 rows"},
+            {Stage::interpolate, number(PipelinedCycles::interpolate_steps), "1",
+             number(PipelinedCycles::interpolate_steps + parameters.stamp_queue)}};
   }
   const SerialCycles serial(widths);
   const Cycle start = SerialCycles::sort + SerialCycles::box + 1, product = static_cast<Cycle>(serial.product);
@@ -37,32 +38,48 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
            number(SerialCycles::interpolate_steps) + ", and " + stamps + " in the buffer"}};
 }
 
+StageRow framebuffer_of(const Config& config, const Widths& widths) {
+  const auto stamps = static_cast<std::uint64_t>(widths.stamps.stamps());
+  if (config.cache_kind == CacheKind::blocks) {
+    const auto block = static_cast<std::uint64_t>(widths.blocks.stamps());
+    return {Stage::framebuffer,
+            "2 to the test where nothing is read, for a stamp of depth from memory 3 and the memory port's latency",
+            "1; a flag that falls 1 or 2 more; of the memory port 1 a stamp: a block that leaves at most " +
+                text(2 * block) + ", beside what follows",
+            text(static_cast<std::uint64_t>(config.cache_lines)) + " blocks, " +
+                text(static_cast<std::uint64_t>(config.cache_queue)) + " fragments, " +
+                text(static_cast<std::uint64_t>(config.cache_victims)) + " blocks on their way to memory"};
+  }
+  return {Stage::framebuffer, "1 where the tile is on the chip",
+          "1; a miss 2, for a dirty plane 3 and its stamps, at most " + text(stamps + 3) +
+              ", for a tile that was cleared " + text(stamps) + ", for its depth from memory " + text(stamps + 2) +
+              " and the memory port's latency",
+          text(static_cast<std::uint64_t>(config.cache_lines)) + " tiles"};
+}
+
+StageRow memory_port_of(const Config& config, const Widths& widths) {
+  const int depth = widths.memory.stamp[0] - widths.memory.port, color = widths.memory.stamp[1] - widths.memory.port;
+  const auto beats = [](int shift) {
+    return shift < 0 ? "1 for " + text(std::uint64_t{1} << -shift) : text(std::uint64_t{1} << shift);
+  };
+  return {Stage::memory_port, "1, and the memory's",
+          "1 a beat of " + text(static_cast<std::uint64_t>(config.memory_port_bits)) + " bits: for a stamp of depth " +
+              beats(depth) + ", of colour " + beats(color),
+          "1 stamp or beat, " + text(PortTiming::kUnanswered) + " bursts that are being written"};
+}
+
 }  // namespace
 
 std::vector<StageRow> stage_table(const Config& config) {
   const Widths widths = derive_widths(config);
   std::vector<StageRow> rows = front_of(config, widths, {});
-  const auto stamps = static_cast<std::uint64_t>(widths.stamps.stamps());
-  if (config.line_units != 0) rows.push_back({Stage::line_raster, "1", "1 a pixel", "1 line"});
+  if (config.line_units != 0) rows.push_back({Stage::line_raster, "1", "1 a pixel, 1 more a line", "1 line"});
   if (config.line_units != 0) rows.push_back({Stage::primitive_join, "0", "1", "0"});
   rows.push_back({Stage::depth_test, "1 to the write, 2 to the retired visit",
                   "1; 2 where a fragment needs the depth of the one before", "2"});
   rows.push_back({Stage::rop, "0", "1", "0"});
-  if (config.cache_kind == CacheKind::blocks) {
-    const auto block = static_cast<std::uint64_t>(widths.blocks.stamps());
-    rows.push_back({Stage::framebuffer,
-                    "2 to the test where nothing is read, for a stamp of depth from memory 3 and the memory's latency",
-                    "1; a flag that falls 2 more; on the memory port 1 a stamp: a block that leaves at most " +
-                        text(2 * block) + ", beside what follows",
-                    text(static_cast<std::uint64_t>(config.cache_lines)) + " blocks, " +
-                        text(static_cast<std::uint64_t>(config.cache_queue)) + " fragments, " +
-                        text(static_cast<std::uint64_t>(config.cache_victims)) + " blocks on their way to memory"});
-    return rows;
-  }
-  rows.push_back({Stage::framebuffer, "1 where the tile is on the chip",
-                  "1; a miss 2, for a dirty plane " + text(stamps + 1) + ", for a tile that was cleared " +
-                      text(stamps) + ", for a plane from memory " + text(stamps) + " and once the memory's latency",
-                  text(static_cast<std::uint64_t>(config.cache_lines)) + " tiles"});
+  rows.push_back(framebuffer_of(config, widths));
+  rows.push_back(memory_port_of(config, widths));
   return rows;
 }
 

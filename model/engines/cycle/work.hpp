@@ -19,7 +19,7 @@ struct PipelinedCycles {
   static constexpr int cull_sort = 4, cull_decide = 4;  ///< the two parts of cull: from a primitive in to its hand-over
   static constexpr Cycle walk_begins = 2;               ///< coarse_raster: from a setup to its first tile
   static constexpr Cycle verdict = 1, read_again = 1;  ///< where bounds are read: before a visit's offer, and behind it
-  static constexpr int interpolate_steps = 5;          ///< each holds one stamp
+  static constexpr int interpolate_steps = 6;          ///< each holds one stamp, the last one is the FIFO
 };
 
 /// A primitive on its way through cull and triangle_setup.
@@ -55,7 +55,7 @@ struct SetupCycles {
 
 /// Cycles of the serial stages: bit-serial products, so they follow from widths.
 struct SerialCycles {
-  static constexpr Cycle sort = 6, box = 4;    ///< of cull
+  static constexpr Cycle sort = 6, box = 5;    ///< of cull
   static constexpr Cycle turn = 4;             ///< of coarse_raster: the edges go round once
   static constexpr int interpolate_steps = 2;  ///< each holds one stamp
   int product;                                 ///< of one cross product in cull

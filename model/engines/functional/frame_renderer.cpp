@@ -11,6 +11,8 @@
 #include <limits>
 #include <utility>
 
+#include "../../stages/surface.hpp"
+
 namespace halfplane::functional {
 namespace {
 
@@ -77,6 +79,7 @@ void add(Counters& sum, const Counters& c) {
 bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
   if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
+  if (std::ranges::any_of(scene.states, has_surface)) return false;
   const Widths widths = derive_widths(config);
   // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
   return widths.depth().local.bits <= 32 && widths.color().local.bits <= 16 && config.depth_bits <= 30 &&

@@ -1,5 +1,7 @@
 #include "tiles.hpp"
 
+#include <optional>
+
 #include "../commands.hpp"
 #include "../tile_kernel.hpp"
 
@@ -25,17 +27,18 @@ class TileRaster {
     const TriangleSetup setup = setup_triangle(triangle, config_, widths_, context_.rect);
     if (setup.is_empty()) return;
     const TriangleLanes<T, Lane> lanes(setup, widths_);
+    const std::optional<Surface> surface = surface_of(context_, triangle, setup, widths_);
     const int shift = widths_.tile_shift;
     for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y)
       for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x)
-        visit(setup, lanes, index, tile_x, tile_y);
+        visit(setup, lanes, surface, index, tile_x, tile_y);
   }
 
  private:
   using Mask = typename TileKernel<T, Lane>::Mask;
 
-  void visit(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, std::uint32_t index, int tile_x,
-             int tile_y) {
+  void visit(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, const std::optional<Surface>& surface,
+             std::uint32_t index, int tile_x, int tile_y) {
     Counters& counters = out_.counters;
     ++counters.tiles_visited;
     const EdgeValues edges = edges_at_tile(setup, tile_x, tile_y, widths_);
@@ -54,6 +57,7 @@ class TileRaster {
                  [&](int j, const Mask& covered, const Mask& passed) {
                    covered_count += covered;
                    passed_count += passed;
+                   if (surface) color_row(*surface, tile_x * T, tile_y * T + j, kernel_.to_bits(passed));
                    if (!wants_bits_) return;
                    bits[static_cast<std::size_t>(j)] = kernel_.to_bits(covered);
                    note_row(setup, index, tile_x * T, tile_y * T + j, kernel_.to_bits(covered),
@@ -69,6 +73,15 @@ class TileRaster {
     counters.depth_passed += passed;
     if (options_.skip.fragments_early_z) counters.skipped.fragments_early_z += covered - passed;
     if (writes_) counters.written += passed;
+  }
+
+  /// The surface's colours where the row's samples have passed, in place of those of its planes.
+  void color_row(const Surface& surface, int x, int y, std::uint32_t passed) {
+    if (!context_.state.color_write) return;
+    for (; passed != 0; passed &= passed - 1) {
+      const int at = x + std::countr_zero(passed);
+      out_.frame.color[out_.frame.at(at, y)] = pack_color(config_.color_format, surface_channels(surface, at, y));
+    }
   }
 
   /// Counts and owners of a row of a tile that begins at pixel (x, y), for whoever asked.

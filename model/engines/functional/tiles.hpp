@@ -1,5 +1,6 @@
 // The functional engine's plain path: one triangle after the other, every tile of it. It has what the fast path has not:
-// counts, ids, taps, every tile size, more depth and reciprocal bits, and depth formats.
+// counts, ids, taps, every tile size, more depth and reciprocal bits, depth formats, and
+// surfaces: textures and colours over w.
 #pragma once
 
 #include "../render.hpp"

@@ -10,6 +10,8 @@ package raster_pkg;
   localparam int DEPTH_BITS = 24;  // bits B of an interpolated depth, and of its stored code
   localparam int PLANE_LOCAL_GUARD_BITS = 6;  // fraction bits of a plane stepped inside one tile
   localparam int RECIPROCAL_EXTRA_BITS = 4;  // significant bits of 1/area beyond depth.bits
+  localparam int PERSPECTIVE_BITS = 26;  // bits N of 1/w, and of what is interpolated over w
+  localparam int PERSPECTIVE_MANTISSA_BITS = 18;  // bits k of 1/w that a pixel's reciprocal looks at
   localparam int COLOR_FORMAT = 1;  // 0 rgb565, 1 rgba8888: layout of a stored colour
   localparam int TILE_SIZE = 8;  // side of a tile: 4, 8, 16 or 32
   localparam int STAMP_SIZE = 4;  // side of the stamp tested in one clock: 1, 2, 4 or 8
@@ -21,10 +23,13 @@ package raster_pkg;
   localparam int CACHE_LINES = 256;  // tiles or blocks that the on-chip depth and colour RAM holds; a power of two
   localparam int CACHE_QUEUE = 32;  // blocks: between tags and depth test; a power of two
   localparam int CACHE_VICTIMS = 8;  // blocks: evicted and not yet written; a power of two
-  localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: blocks: what a flush writes of cleared blocks: colours, or flags
+  localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: what a flush writes of cleared blocks or tiles: colours, or flags
+  localparam int MEMORY_PORT_BITS = 512;  // data that the memory port moves in a cycle; a power of two
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
-  localparam logic [63:0] CONFIG_ID = 64'hfc614098c876abab;  // hash of the above
+  localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
+  localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
+  localparam logic [63:0] CONFIG_ID = 64'h6cdfa8be5ed9bc7f;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 8;  // s: fraction bits of a coordinate, at least 1
@@ -44,6 +49,11 @@ package raster_pkg;
   localparam int BLOCK_SIDE = 1;  // stamps along the side of a block
   localparam int BLOCKS_PER_ROW = 2;  // blocks along the side of a tile
   localparam int FLAG_WORD = 64;  // flags of cleared blocks in a word, those of a row of blocks
+  localparam int PORT_SHIFT = 6;  // log2 of the bytes of a beat
+  localparam int DEPTH_SAMPLE_BYTES = 4;  // of a stored depth
+  localparam int COLOR_SAMPLE_BYTES = 4;  // of a stored colour
+  localparam int PLANE_SHIFT = 8;  // log2 of the bytes of a plane of a tile
+  localparam int FLAG_ROW_SHIFT = 7;  // log2 of the bytes from one row of flags to the next
 
   // Bits of raster_top's stall_i.
   localparam int STALL_PRIMITIVE = 0;
@@ -55,8 +65,10 @@ package raster_pkg;
   localparam int STALL_LINE_PIXEL = 9;
   localparam int STALL_FRAGMENT = 5;
   localparam int STALL_REQUEST = 6;
+  localparam int STALL_BEAT = 11;
+  localparam int STALL_ANSWER = 12;
   localparam int STALL_RESPONSE = 7;
-  localparam int STALL_BITS = 10;
+  localparam int STALL_BITS = 13;
 
   // Derived widths, each with its bound.
   localparam int COORDINATE_BITS = 22;  // guard band g * 2^s
@@ -101,8 +113,15 @@ package raster_pkg;
   localparam int HIZ_CODE_BITS = 16;  // hiz.bits, at most depth.bits, at least 1
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
   localparam int TILE_PLANE_BITS = 2;  // TilePlane
+  localparam int DEPTH_SOURCE_BITS = 2;  // DepthSource
   localparam int MEMORY_LANE_BITS = 32;  // a depth code or a stored colour
-  localparam int COUNTER_BITS = 32;  // modulo 2^32
+  localparam int COUNTER_BITS = 32;  // counters.bits
+  localparam int RUN_BITS = 5;  // stamps of a tile, words of a row of flags
+  localparam int ADDRESS_BITS = 32;  // bytes
+  localparam int ROW_STRIDE_BITS = 19;  // bytes from one row of tiles to the next, up to twice those of the widest target
+  localparam int BURST_LENGTH_BITS = 5;  // beats of a plane of a tile, of a row of flags
+  localparam int PORT_STROBE_BITS = 64;  // one bit a byte of memory.port_bits
+  localparam int PORT_BYTE_BITS = 8;  // 8 bits
   localparam int LINE_NUMERATOR_BITS = 32;  // f D + d o - 1, f < 2^s
   localparam int LINE_POSITION_BITS = 38;  // (line numerator >> s) + d n, n columns: d n <= L^2 / 2^s
   localparam int LINE_PRODUCT_BITS = 53;  // depth delta * reciprocal
@@ -178,6 +197,13 @@ package raster_pkg;
     TILE_PLANE_COLOR_FLAGS = 2'd3
   } tile_plane_t;
 
+  typedef enum logic [DEPTH_SOURCE_BITS-1:0] {
+    DEPTH_SOURCE_NONE = 2'd0,
+    DEPTH_SOURCE_CHIP = 2'd1,
+    DEPTH_SOURCE_CLEAR = 2'd2,
+    DEPTH_SOURCE_MEMORY = 2'd3
+  } depth_source_t;
+
   // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.
   typedef struct packed {
     logic [PIXEL_X_BITS-1:0] left;
@@ -215,6 +241,14 @@ package raster_pkg;
     logic [ALL_CODE_BITS-1:0] low;
     logic [ALL_CODE_BITS-1:0] high;
   } code_range_t;
+
+  typedef struct packed {
+    logic [ADDRESS_BITS-1:0] depth_base;
+    logic [ADDRESS_BITS-1:0] color_base;
+    logic [ADDRESS_BITS-1:0] depth_flags_base;
+    logic [ADDRESS_BITS-1:0] color_flags_base;
+    logic [ROW_STRIDE_BITS-1:0] row_stride;
+  } memory_layout_t;
 
   // Packets.
   typedef struct packed {
@@ -356,10 +390,27 @@ package raster_pkg;
     logic [TILE_X_BITS-1:0] tile_x;
     logic [TILE_Y_BITS-1:0] tile_y;
     logic [STAMP_INDEX_BITS-1:0] stamp;
+    logic [RUN_BITS-1:0] run;
     logic [SAMPLE_MASK_BITS-1:0] strobe;
     logic [16*MEMORY_LANE_BITS-1:0] data;
   } memory_request_t;
-  localparam int MEMORY_REQUEST_BITS = 551;  // of the struct above
+  localparam int MEMORY_REQUEST_BITS = 556;  // of the struct above
+
+  typedef struct packed {
+    logic [FLAG_BITS-1:0] is_write;
+    logic [FLAG_BITS-1:0] is_first;
+    logic [ADDRESS_BITS-1:0] address;
+    logic [BURST_LENGTH_BITS-1:0] length;
+    logic [PORT_STROBE_BITS-1:0] strobe;
+    logic [64*PORT_BYTE_BITS-1:0] data;
+  } memory_beat_t;
+  localparam int MEMORY_BEAT_BITS = 615;  // of the struct above
+
+  typedef struct packed {
+    logic [FLAG_BITS-1:0] is_write;
+    logic [64*PORT_BYTE_BITS-1:0] data;
+  } memory_answer_t;
+  localparam int MEMORY_ANSWER_BITS = 513;  // of the struct above
 
   typedef struct packed {
     logic [16*MEMORY_LANE_BITS-1:0] data;
@@ -367,6 +418,7 @@ package raster_pkg;
   localparam int MEMORY_RESPONSE_BITS = 512;  // of the struct above
 
   typedef struct packed {
+    logic [FLAG_BITS-1:0] overflow;
     logic [COUNTER_BITS-1:0] primitives_in;
     logic [COUNTER_BITS-1:0] zero_area;
     logic [COUNTER_BITS-1:0] backface;
@@ -384,6 +436,6 @@ package raster_pkg;
     logic [COUNTER_BITS-1:0] tile_evictions;
     logic [COUNTER_BITS-1:0] tile_clears;
   } counter_packet_t;
-  localparam int COUNTER_PACKET_BITS = 512;  // of the struct above
+  localparam int COUNTER_PACKET_BITS = 513;  // of the struct above
 
 endpackage

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <utility>
 #include <vector>
 
 #include "sim/nearest_word.hpp"
@@ -26,14 +27,19 @@ const Setting* find_setting(std::string_view key) {
 }
 
 /// `progress` gets the part `index` of `count`.
-std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
-                        const std::function<void(double)>& progress, std::size_t index, std::size_t count) {
+CycleRun run_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                const std::function<void(double)>& progress, std::size_t index, std::size_t count) {
   CycleOptions options;
   options.stalls = stalls;
   RenderOptions render;
   if (progress)
     render.progress = [&](double part) { progress((static_cast<double>(index) + part) / static_cast<double>(count)); };
-  return run_cycles(scene, hardware, render, options).run.cycles;
+  return run_cycles(scene, hardware, render, options).run;
+}
+
+std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                        const std::function<void(double)>& progress, std::size_t index, std::size_t count) {
+  return run_of(scene, hardware, stalls, progress, index, count).cycles;
 }
 
 std::uint64_t part(std::uint64_t whole, std::uint64_t taken) { return whole > taken ? whole - taken : 0; }
@@ -106,7 +112,7 @@ std::vector<StageTime> stage_times(const CycleRun& run) {
   std::vector<StageTime> stages;
   for (const Arrow out : kElastic) {
     const Stage sender = info(out).from;
-    if (!info(sender).is_timed) continue;
+    if (!info(sender).is_timed || out == Arrow::response) continue;  // of memory_port the beats count
     StageTime stage{info(sender).name, run.use[index(out)], t.works[index(sender)], 0, {}};
     if (stage.use.busy == 0 && stage.works == 0) continue;  // it is not there, or had nothing to do
     std::uint64_t waited = 0;
@@ -128,15 +134,11 @@ std::uint64_t Traffic::total() const {
 }
 
 Traffic traffic(const CycleRun& run, const Config& config) {
-  const Widths widths = derive_widths(config);
   Traffic traffic;
   for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
     for (const bool is_color : {false, true})
       traffic.bytes[cause][is_color] =
-          run.totals.stamps[cause][is_color] * static_cast<std::uint64_t>(stamp_bytes(config, is_color));
-  for (const bool is_color : {false, true})
-    traffic.bytes[static_cast<std::size_t>(MoveCause::clear)][is_color] +=
-        run.totals.flag_words[is_color] * static_cast<std::uint64_t>(flag_word_bytes(widths));
+          run.totals.beats[cause][is_color] * static_cast<std::uint64_t>(config.memory_port_bits / 8);
   return traffic;
 }
 
@@ -174,6 +176,29 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
   }
   std::stable_sort(helped.begin(), helped.end(), [](const Trial& a, const Trial& b) { return a.cycles < b.cycles; });
   return helped;
+}
+
+std::vector<OrderTrial> try_orders(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                                   const std::function<void(double)>& progress) {
+  const std::string store = value_of(hardware, "frame.store");
+  std::vector<OrderTrial> trials;
+  if (hardware.config.cache_kind == CacheKind::tiles) return trials;
+  trials = {{"program", store}, {"bins", store}};
+  if (store == "all") trials.push_back({"bins", "color"});
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    Hardware changed = hardware;
+    change(changed, "frame.order", trials[i].order);
+    change(changed, "frame.store", trials[i].store);
+    const CycleRun run = run_of(scene, changed, stalls, progress, i, trials.size());
+    trials[i].cycles = run.cycles;
+    trials[i].bytes = traffic(run, changed.config).total();
+  }
+  return trials;
+}
+
+const std::string& recommended(const std::vector<OrderTrial>& orders) {
+  const auto cost = [&orders](std::size_t i) { return std::pair{orders[i].cycles, orders[i].bytes}; };
+  return orders[cost(1) < cost(0) ? 1 : 0].order;
 }
 
 std::vector<Saving> measure_savings(const Scene& scene, const Hardware& hardware, const Stalls& stalls,

@@ -67,6 +67,20 @@ struct Trial {
 [[nodiscard]] std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
                                              std::uint64_t cycles, const std::function<void(double)>& progress);
 
+/// A frame in one order of its primitives: frame.order and frame.store.
+struct OrderTrial {
+  std::string order, store;
+  std::uint64_t cycles = 0, bytes = 0;
+};
+
+/// Program order and bins, both with what `hardware` stores; where that is all, also bins that store colour alone. None for
+/// a cache of tiles.
+[[nodiscard]] std::vector<OrderTrial> try_orders(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
+                                                 const std::function<void(double)>& progress);
+
+/// Of the first two of these the one with fewer cycles; if they are equal, with fewer bytes.
+[[nodiscard]] const std::string& recommended(const std::vector<OrderTrial>& orders);
+
 /// A thing that hardware skips, and the cycles more that a frame takes when it does not. Negative: finding out costs more.
 struct Saving {
   std::string_view name;  ///< "tiles_hiz", "tiles_outside", "fast_clear"

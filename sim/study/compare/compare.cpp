@@ -15,6 +15,7 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact_line.hpp"
 #include "model/stages/depth_encode.hpp"
+#include "model/stages/surface.hpp"
 
 namespace halfplane {
 namespace {
@@ -286,6 +287,10 @@ Rendering draw_fragments(const Scene& scene, const Config& config, const Compare
 }  // namespace
 
 Comparison compare(const Scene& scene, const Config& config, const CompareOptions& options) {
+  if (std::ranges::any_of(scene.states, has_surface))
+    throw InputError(scene.name +
+                     ": textures and colours over w have no parts of an error here yet; render it with "
+                     "--engine golden and --engine scalar, and look at the pictures");
   Comparison result;
   CoverageLog log(config.tile_size);
   RenderOptions render_options;

@@ -12,10 +12,11 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array kByConstruction{&Widths::primitive_id, &Widths::slot,     &Widths::stored_color,
-                                     &Widths::kind,         &Widths::flag,     &Widths::depth_func,
-                                     &Widths::cull_mode,    &Widths::hiz_code, &Widths::hiz_update,
-                                     &Widths::tile_plane,   &Widths::memory_lane, &Widths::counter};
+constexpr std::array kByConstruction{
+    &Widths::primitive_id, &Widths::slot,         &Widths::stored_color, &Widths::kind,       &Widths::flag,
+    &Widths::depth_func,   &Widths::cull_mode,    &Widths::hiz_code,     &Widths::hiz_update, &Widths::tile_plane,
+    &Widths::memory_lane,  &Widths::counter,      &Widths::depth_source, &Widths::run,        &Widths::address,
+    &Widths::row_stride,   &Widths::burst_length, &Widths::port_strobe,  &Widths::port_byte};
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::logic_error(std::string("the width observer and the stage disagree: ") + what);

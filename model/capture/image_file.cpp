@@ -1,0 +1,58 @@
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "../config.hpp"
+#include "capture_textures.hpp"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wuseless-cast"
+#pragma GCC diagnostic ignored "-Wcast-qual"
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#pragma GCC diagnostic ignored "-Wimplicit-fallthrough"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wshadow"
+#define STB_IMAGE_STATIC  // ours stays in this file, whatever other libraries bring along
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#include <stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace halfplane {
+
+TexelImage read_image(std::string_view bytes, const std::string& what) {
+  int width = 0, height = 0, channels = 0;
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const auto size = static_cast<int>(std::min<std::size_t>(bytes.size(), 1U << 30));
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
+    throw InputError(what + ": no PNG or JPEG image (" + stbi_failure_reason() + ")");
+  if (width > kLargestTexture || height > kLargestTexture)
+    throw InputError(what + ": " + std::to_string(width) + "x" + std::to_string(height) +
+                     " texels; give an image of at most 4096x4096");
+  stbi_uc* texels = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
+  if (texels == nullptr) throw InputError(what + ": the image is damaged (" + stbi_failure_reason() + ")");
+  TexelImage image{width, height, {}};
+  const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  image.texel.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    image.texel[i] = {texels[4 * i], texels[4 * i + 1], texels[4 * i + 2], texels[4 * i + 3]};
+  stbi_image_free(texels);
+  return image;
+}
+
+TexelImage read_image_file(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": this is a folder; give an image file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": the image cannot be opened");
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return read_image(bytes, path);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,145 @@
+// The time of the memory port: rtl_ref/stages/memory_port.sv, and the memory behind it.
+//
+// One register holds a stamp on its way out, or the part of a beat that has come; it takes the next one in the cycle in which
+// its last beat moves. Reads wait for nothing else; a burst that writes waits until at most so many are unanswered. An answer
+// goes through without a register: a stamp is handed on in the cycle in which its last beat comes.
+//
+//   request(n) = max(offered, last beat of n-1, for a new burst that writes: answer of the 255th before + 1)
+//   beat       = max(request + 1, beat before + 1, for a new burst: memory has room)
+//   answer     = max(memory has it, answer before + 1)
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "../../pipeline_graph.hpp"
+#include "../../stages/memory_port.hpp"
+#include "../../timing/memory.hpp"
+#include "../../timing/station.hpp"
+#include "../../timing/stream.hpp"
+#include "streams.hpp"
+
+namespace halfplane {
+
+/// What a request is about (MemoryRequest).
+struct PortRequest {
+  bool is_write = false;
+  TilePlane plane = TilePlane::depth;
+  int tile_x = 0, tile_y = 0, stamp = 0, run = 1;
+};
+
+/// When a request was taken, and when the last response to it came.
+struct PortTimes {
+  Cycle asked = 0, answered = 0;
+};
+
+class PortTiming {
+ public:
+  static constexpr int kUnanswered = 255;  ///< bursts that write
+
+  /// `memory`, `streams` by Arrow and `sink`, which may be null, must outlive this.
+  PortTiming(const Widths& widths, const Stalls& stalls, MemoryTiming& memory, std::array<Stream, kArrows>& streams,
+             TransferSink* sink)
+      : widths_(widths),
+        layout_(default_layout(widths)),
+        stalls_(stalls),
+        memory_(memory),
+        streams_(streams),
+        sink_(sink),
+        unanswered_(kUnanswered, 0, 1) {}
+
+  void set_layout(const MemoryLayout& layout) { layout_ = layout; }
+  /// Beats that have moved, of writes and of what was read.
+  [[nodiscard]] std::uint64_t beats() const { return beats_; }
+  /// The last cycle in which something crossed.
+  [[nodiscard]] Cycle last() const { return last_; }
+
+  /// On offer from `cycle` on.
+  PortTimes take(const PortRequest& request, Cycle cycle) {
+    const int shift = item_shift(request.plane, widths_.memory);
+    const std::uint32_t address =
+        byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
+    const BeatShare share(shift, widths_.memory.port, address >> shift);
+    return request.is_write ? write(request, share, address, cycle) : read(request, share, address, cycle);
+  }
+
+ private:
+  PortTimes write(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
+    const bool begins = left_ == 0;
+    if (begins) {
+      left_ = request.run;
+      burst_ = {true, address >> widths_.memory.port << widths_.memory.port, share.beats(request.run)};
+      has_sent_ = false;
+    }
+    const Cycle asked = moves(Arrow::request, cycle, begins ? std::max(room_, unanswered_.room()) : room_);
+    room_ = asked + 1;
+    --left_;
+    if (left_ != 0 && share.first != share.per_beat - 1) return {asked, 0};  // the beat is not complete
+    Cycle beat = asked;
+    for (int n = 0; n < share.per_stamp; ++n) {
+      beat = moves(Arrow::beat, beat + 1, has_sent_ ? 0 : memory_.room());
+      has_sent_ = true;
+    }
+    room_ = beat;
+    beats_ += static_cast<std::uint64_t>(share.per_stamp);
+    if (left_ == 0) {
+      answered_ = moves(Arrow::answer, std::max(memory_.accept(burst_, beat).at(0), answered_ + 1), 0);
+      unanswered_.leave(answered_);
+    }
+    return {asked, 0};
+  }
+
+  PortTimes read(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
+    const Cycle asked = moves(Arrow::request, cycle, room_);
+    room_ = moves(Arrow::beat, asked + 1, memory_.room());
+    const MemoryBurst burst{false, address >> widths_.memory.port << widths_.memory.port, share.beats(request.run)};
+    const BurstAnswer answer = memory_.accept(burst, room_);
+    beats_ += static_cast<std::uint64_t>(burst.beats);
+    const unsigned both = streams_[index(Arrow::answer)].streams() | streams_[index(Arrow::response)].streams();
+    int stamps = request.run, next = share.first;
+    for (int n = 0; n < burst.beats; ++n) {
+      const Cycle due = std::max(answer.at(n), answered_ + 1);
+      if ((n + 1) % share.per_stamp != 0) {  // the stamp is not complete
+        answered_ = moves(Arrow::answer, due, 0);
+        continue;
+      }
+      for (Cycle from = due; stamps > 0 && next < share.per_beat; ++next, --stamps, from = answered_ + 1) {
+        answered_ = stalls_.next_free(both, from);
+        count(Arrow::response, from, answered_);
+      }
+      next = 0;
+      count(Arrow::answer, due, answered_);
+    }
+    return {asked, answered_};
+  }
+
+  Cycle moves(Arrow arrow, Cycle offered, Cycle room) {
+    const Cycle moved = streams_[index(arrow)].transfer(offered, room);
+    note(arrow, moved);
+    return moved;
+  }
+  void count(Arrow arrow, Cycle offered, Cycle moved) {
+    streams_[index(arrow)].count(offered, moved);
+    note(arrow, moved);
+  }
+  void note(Arrow arrow, Cycle cycle) {
+    last_ = std::max(last_, cycle);
+    if (sink_ != nullptr) sink_->transfer(arrow, cycle);
+  }
+
+  Widths widths_;
+  MemoryLayout layout_;
+  Stalls stalls_;
+  MemoryTiming& memory_;
+  std::array<Stream, kArrows>& streams_;
+  TransferSink* sink_;
+  Station unanswered_;     ///< bursts that write
+  MemoryBurst burst_;      ///< the one that is being written
+  int left_ = 0;           ///< stamps of it that have not come
+  bool has_sent_ = false;  ///< a beat of it
+  Cycle room_ = 0, answered_ = 0;
+  std::uint64_t beats_ = 0;
+  Cycle last_ = 0;
+};
+
+}  // namespace halfplane

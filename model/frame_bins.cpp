@@ -1,0 +1,136 @@
+#include "frame_bins.hpp"
+
+#include <algorithm>
+
+#include "stages/edge_function.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr std::uint64_t kFewSamples = 16;  ///< of which each is looked at
+
+PixelBounds intersection(const PixelBounds& a, const PixelBounds& b) {
+  return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
+}
+
+/// Whether a triangle of positive area may cover a sample of `box`: exact where the box is small, otherwise by the corner
+/// that lies farthest inside of each edge.
+bool touches(const std::array<SnappedVertex, 3>& v, const PixelBounds& box, int grid_bits) {
+  const auto edge = [&](std::size_t i, int x, int y) { return edge_function(v[i], v[(i + 1) % 3], x, y, grid_bits); };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
+    if (edge(i, to.y < from.y ? box.right : box.left, to.x > from.x ? box.bottom : box.top) < 0) return false;
+  }
+  if (box.samples() > kFewSamples) return true;
+  for (int y = box.top; y <= box.bottom; ++y)
+    for (int x = box.left; x <= box.right; ++x)
+      if (edge(0, x, y) >= 0 && edge(1, x, y) >= 0 && edge(2, x, y) >= 0) return true;
+  return false;
+}
+
+std::optional<LineSetup> setup_in(const WholeLine& line, const PixelBounds& bin, const Widths& widths) {
+  return setup_line(line.start, line.end, line.rule, line.drops_last, intersection(line.limit, bin), widths);
+}
+
+/// Pixels that the line may cover, one more on each side for its rule's sake.
+PixelBounds bounds_of(const WholeLine& line, int grid_bits) {
+  const auto [left, right] = std::minmax({line.start.x >> grid_bits, line.end.x >> grid_bits});
+  const auto [top, bottom] = std::minmax({line.start.y >> grid_bits, line.end.y >> grid_bits});
+  return intersection({left - 1, top - 1, right + 1, bottom + 1}, line.limit);
+}
+
+}  // namespace
+
+FrameBins::FrameBins(const Widths& widths, int width, int height) : widths_(widths) {
+  const int block = (1 << widths.tile_shift) / widths.blocks.per_tile;  // pixels along its side
+  width_ = block << widths.line_x_bits;
+  height_ = block << widths.line_y_bits;
+  const auto count = [](int pixels, int of_bin) { return static_cast<std::size_t>((pixels + of_bin - 1) / of_bin); };
+  columns_ = count(width, width_);
+  bin_.resize(columns_ * count(height, height_));
+}
+
+PixelBounds FrameBins::box_of(std::size_t bin) const {
+  const int left = static_cast<int>(bin % columns_) * width_, top = static_cast<int>(bin / columns_) * height_;
+  return {left, top, left + width_ - 1, top + height_ - 1};
+}
+
+/// Adds the item that comes next to the bins of `box` of which touches(bounds) says so. Returns whether there is one.
+template <class Touches>
+bool FrameBins::add_to_bins(const PixelBounds& box, Touches&& touches) {
+  bool is_seen = false;
+  for (int y = box.top / height_; y <= box.bottom / height_; ++y)
+    for (int x = box.left / width_; x <= box.right / width_; ++x) {
+      const std::size_t bin = static_cast<std::size_t>(y) * columns_ + static_cast<std::size_t>(x);
+      if (!touches(box_of(bin))) continue;
+      bin_[bin].push_back(static_cast<std::uint32_t>(items_.size()));
+      is_seen = true;
+    }
+  return is_seen;
+}
+
+bool FrameBins::add(const HostPrimitive& primitive) {
+  const PrimitivePacket& packet = primitive.packet;
+  const int s = widths_.grid_bits;
+  bool is_seen = false;
+  if (packet.kind == PrimitiveKind::triangle) {
+    auto v = to_snapped(packet.vertex);
+    v = canonical(v, signed_area(v[0], v[1], v[2]));
+    const PixelBounds box = pixel_bounds(v, to_bounds(packet.box), s);
+    is_seen = add_to_bins(box, [&](const PixelBounds& bin) { return touches(v, intersection(box, bin), s); });
+  } else {
+    is_seen = add_to_bins(to_bounds(packet.box), [](const PixelBounds&) { return true; });
+  }
+  if (is_seen) items_.push_back({packet, primitive.primitive, primitive.command});
+  return is_seen;
+}
+
+void FrameBins::add(const HostPrimitive& primitive, const WholeLine& line) {
+  add_to_bins(bounds_of(line, widths_.grid_bits),
+              [&](const PixelBounds& bin) { return setup_in(line, bin, widths_).has_value(); });
+  items_.push_back(
+      {primitive.packet, primitive.primitive, primitive.command, static_cast<std::uint32_t>(lines_.size())});
+  lines_.push_back(line);
+}
+
+void FrameBins::close(bool drops_depth) {
+  is_closed_ = true;
+  bin_next_ = item_next_ = 0;
+  const auto is_unseen = [&](std::uint32_t item) {  // a clear of depths behind everything that looks at them
+    const PrimitivePacket& packet = items_[item].packet;
+    return drops_depth && packet.kind == PrimitiveKind::rectangle && !packet.state.color_write;
+  };
+  for (auto& bin : bin_) {
+    while (!bin.empty() && is_unseen(bin.back())) bin.pop_back();
+    bins_ += bin.empty() ? 0 : 1;
+    pairs_ += static_cast<std::uint64_t>(
+        std::ranges::count_if(bin, [&](std::uint32_t item) { return is_counted(items_[item].packet.kind); }));
+  }
+}
+
+std::optional<HostPrimitive> FrameBins::next() {
+  if (!is_closed_) return std::nullopt;
+  for (; bin_next_ < bin_.size(); ++bin_next_, item_next_ = 0)
+    if (item_next_ < bin_[bin_next_].size()) return part(items_[bin_[bin_next_][item_next_++]], box_of(bin_next_));
+  is_closed_ = false;
+  for (auto& bin : bin_) bin.clear();
+  items_.clear();
+  lines_.clear();
+  return std::nullopt;
+}
+
+/// What of a primitive lies in a bin.
+HostPrimitive FrameBins::part(const Item& item, const PixelBounds& bin) const {
+  HostPrimitive out{item.packet, {}, item.primitive, item.command, true};
+  if (item.line == kNoLine) {
+    out.packet.box = to_box(intersection(to_bounds(item.packet.box), bin));
+    return out;
+  }
+  out.line = setup_in(lines_[item.line], bin, widths_);
+  out.line->primitive_id = item.packet.primitive_id;
+  const auto x = static_cast<std::uint16_t>(out.line->x), y = static_cast<std::uint16_t>(out.line->y);
+  out.packet.box = {x, y, x, y};
+  return out;
+}
+
+}  // namespace halfplane

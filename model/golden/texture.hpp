@@ -1,0 +1,96 @@
+// Golden texture mapping: OpenGL's filtering (OpenGL 4.6 core profile, 8.14), with real coordinates, derivatives, levels of
+// detail and weights. Only the texels have 8 bits.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "../scene.hpp"
+
+namespace halfplane::golden {
+
+/// Where a sample lies on a texture: 0 and 1 are its sides; and how that changes from pixel to pixel.
+struct TextureCoordinates {
+  double u = 0, v = 0;
+  double u_x = 0, u_y = 0, v_x = 0, v_y = 0;
+};
+
+/// R, G, B, A, 0...255.
+using Color = std::array<double, 4>;
+
+/// The level of detail before bias and bounds: the base-2 logarithm of the larger extent, in texels, of a pixel's side.
+[[nodiscard]] inline double level_of_detail(const Texture& texture, const TextureCoordinates& at) {
+  const double width = texture.width(), height = texture.height();
+  return std::log2(std::max(std::hypot(at.u_x * width, at.v_x * height), std::hypot(at.u_y * width, at.v_y * height)));
+}
+
+/// The texel that a whole number stands for, `size` of them along the axis.
+[[nodiscard]] inline int wrapped(double texel, int size, TextureWrap wrap) {
+  const auto modulo = [texel](double period) { return texel - std::floor(texel / period) * period; };
+  if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(texel, 0.0, static_cast<double>(size - 1)));
+  if (wrap == TextureWrap::repeat) return static_cast<int>(modulo(size));
+  const int i = static_cast<int>(modulo(2.0 * size));
+  return i < size ? i : 2 * size - 1 - i;
+}
+
+[[nodiscard]] inline Color texel_at(const Texture& texture, const State& state, int n, double x, double y) {
+  const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
+  const Texel t =
+      texture.texel(n, wrapped(x, level.width, state.texture_wrap[0]), wrapped(y, level.height, state.texture_wrap[1]));
+  return {static_cast<double>(t[0]), static_cast<double>(t[1]), static_cast<double>(t[2]), static_cast<double>(t[3])};
+}
+
+[[nodiscard]] inline Color between(const Color& a, const Color& b, double part) {
+  Color c;
+  for (std::size_t i = 0; i < c.size(); ++i) c[i] = a[i] + part * (b[i] - a[i]);
+  return c;
+}
+
+/// One level: its nearest texel, or the four around the place by their distances.
+[[nodiscard]] inline Color filtered_level(const Texture& texture, const State& state, const TextureCoordinates& at,
+                                          int n, bool is_linear) {
+  const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
+  const double half = is_linear ? 0.5 : 0.0, x = at.u * level.width - half, y = at.v * level.height - half;
+  const double left = std::floor(x), top = std::floor(y);
+  const auto texel = [&](int i, int j) { return texel_at(texture, state, n, left + i, top + j); };
+  if (!is_linear) return texel(0, 0);
+  return between(between(texel(0, 0), texel(1, 0), x - left), between(texel(0, 1), texel(1, 1), x - left), y - top);
+}
+
+/// The texture's colour at a sample.
+[[nodiscard]] inline Color filtered(const Texture& texture, const State& state, const TextureCoordinates& at) {
+  const auto [bias, least, largest] = state.texture_lod;
+  const double lod = std::clamp(level_of_detail(texture, at) + bias, least, std::max(least, largest));
+  const TextureMin min = state.texture_min;
+  const bool is_nearest = min == TextureMin::nearest || min == TextureMin::nearest_mipmap_nearest ||
+                          min == TextureMin::nearest_mipmap_linear;
+  const bool has_levels = min != TextureMin::nearest && min != TextureMin::linear;
+  // Where a nearest level would switch from a linear image at once, OpenGL magnifies half a level longer.
+  const double magnified = state.texture_mag == TextureMag::linear && is_nearest && has_levels ? 0.5 : 0;
+  if (!(lod > magnified)) return filtered_level(texture, state, at, 0, state.texture_mag == TextureMag::linear);
+  if (!has_levels) return filtered_level(texture, state, at, 0, !is_nearest);
+  const auto held = [&texture](double n) { return static_cast<int>(std::min<double>(n, texture.last_level())); };
+  if (min == TextureMin::nearest_mipmap_nearest || min == TextureMin::linear_mipmap_nearest)
+    return filtered_level(texture, state, at, held(std::ceil(lod + 0.5) - 1), !is_nearest);
+  const double lower = std::floor(lod);
+  return between(filtered_level(texture, state, at, held(lower), !is_nearest),
+                 filtered_level(texture, state, at, held(lower + 1), !is_nearest), lod - lower);
+}
+
+/// The primitive's colour and the texture's together: OpenGL ES 1.1's table 3.17, alpha as it is where the format has none.
+[[nodiscard]] inline Color combined(const Color& color, const Color& texel, TextureCombine combine, bool has_alpha) {
+  Color c = color;
+  for (std::size_t i = 0; i < 3; ++i) switch (combine) {
+      case TextureCombine::modulate: c[i] = color[i] * texel[i] / 255; break;
+      case TextureCombine::replace: c[i] = texel[i]; break;
+      case TextureCombine::decal: c[i] = color[i] + (texel[i] - color[i]) * texel[3] / 255; break;
+      case TextureCombine::add: c[i] = std::min(color[i] + texel[i], 255.0); break;
+    }
+  if (combine == TextureCombine::modulate || combine == TextureCombine::add) c[3] = color[3] * texel[3] / 255;
+  if (combine == TextureCombine::replace && has_alpha) c[3] = texel[3];
+  return c;
+}
+
+}  // namespace halfplane::golden

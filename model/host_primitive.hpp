@@ -1,0 +1,21 @@
+// A primitive on its way from the host to the hardware.
+#pragma once
+
+#include <optional>
+
+#include "packets.hpp"
+
+namespace halfplane {
+
+/// The packet, and where it came from.
+struct HostPrimitive {
+  static constexpr std::uint32_t kNoCommand = ~0U;
+
+  PrimitivePacket packet;
+  std::optional<LineSetup> line;  ///< beside a packet of kind line
+  std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise: of the next one
+  std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
+  bool is_part = false;                ///< what lies in one bin: the host has counted the whole
+};
+
+}  // namespace halfplane

@@ -1,0 +1,109 @@
+#include "surface.hpp"
+
+#include <algorithm>
+
+#include "cull.hpp"
+
+namespace halfplane {
+
+PerspectiveFormat perspective_format(const Config& config) {
+  const int bits = config.perspective_bits, mantissa = config.perspective_mantissa_bits;
+  constexpr int kGuardBits = 4, kShortMantissa = 16;
+  return {bits,
+          kGuardBits,
+          mantissa,
+          bits - 2,
+          {bits, mantissa - 1, mantissa < kShortMantissa ? 6 : 8, true},
+          {std::min(bits, 18), 13, 0, false}};
+}
+
+Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
+                 const Config& config, const Widths& widths)
+    : setup_(setup), widths_(widths), format_(perspective_format(config)) {
+  order_ = canonical_order(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
+  for (std::size_t i = 0; i < 3; ++i) vertex_[i] = triangle.v[order_[i]];
+  if (state.color_interp == ColorInterp::perspective) {
+    std::array<double, 3> w{};
+    for (std::size_t i = 0; i < 3; ++i) w[i] = triangle.surface[order_[i]].w;
+    color_divisor_ = make_divisor(w);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c) {
+      const std::size_t p = kColorPlane + c;
+      const std::array value{static_cast<double>(vertex_[0].code[p]), static_cast<double>(vertex_[1].code[p]),
+                             static_cast<double>(vertex_[2].code[p])};
+      color_[c] = make_attribute(value, *color_divisor_, format_.color);
+    }
+  }
+  if (texture != nullptr) set_texture(triangle, state, *texture);
+}
+
+void Surface::set_texture(const Triangle& triangle, const State& state, const Texture& texture) {
+  sampler_ = Sampler(texture, state);
+  combine_ = state.texture_combine;
+  const bool is_affine = state.texture_interp == TextureInterp::affine;
+  std::array<double, 3> w{1, 1, 1};
+  std::array<std::array<double, 3>, 2> uv{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SurfaceVertex& vertex = triangle.surface[order_[i]];
+    if (!is_affine) w[i] = vertex.w;
+    uv[0][i] = vertex.u * texture.width();
+    uv[1][i] = vertex.v * texture.height();
+  }
+  texture_divisor_ = make_divisor(w);
+  for (const std::size_t axis : {0U, 1U}) {
+    coordinate_[axis] = make_attribute(uv[axis], *texture_divisor_, format_.coordinate);
+    reference_[axis] = wrapped_reference(coordinate_[axis].over_w.reference, sampler_.axes[axis]);
+  }
+  lod_ = setup_lod(vertex_, setup_.area, texture_divisor_->q, uv, format_.guard_bits, widths_.grid_bits);
+}
+
+Surface::Divisor Surface::make_divisor(const std::array<double, 3>& w) const {
+  Divisor divisor;
+  divisor.q = quantize_q(w, format_.q_bits);
+  divisor.frame = perspective_frame(vertex_, base_vertex(divisor.q), setup_, format_, widths_);
+  divisor.plane = setup_q(divisor.q, divisor.frame, format_, widths_);
+  return divisor;
+}
+
+Surface::Attribute Surface::make_attribute(const std::array<double, 3>& value, const Divisor& divisor,
+                                           const OverWFormat& attribute) const {
+  const OverW over_w = quantize_over_w(value, divisor.q, attribute);
+  return {over_w, setup_over_w(over_w, divisor.frame, attribute, widths_)};
+}
+
+std::uint64_t Surface::q_of(const Divisor& divisor, const PixelPlace& place) const {
+  return q_at(divisor.plane, place, format_, widths_);
+}
+
+std::int64_t Surface::value_of(const Attribute& attribute, const OverWFormat& of, const PixelReciprocal& q,
+                               const PixelPlace& place) const {
+  return over_q(p_at(attribute.plane, place, of, format_, widths_), q, attribute.over_w, of, format_);
+}
+
+Texel Surface::color(int x, int y) const {
+  const PixelPlace place = place_of(setup_, widths_, x, y);
+  Texel color{0, 0, 0, 255};
+  const auto channels = static_cast<std::size_t>(widths_.color_planes);
+  if (color_divisor_) {
+    const PixelReciprocal q = divide_by_q(q_of(*color_divisor_, place), format_);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const std::size_t p = kColorPlane + c;
+      color[c] = static_cast<std::uint8_t>(
+          color_over_q(value_of(color_[c], format_.color, q, place), setup_.range.low[p], setup_.range.high[p]));
+    }
+  } else {
+    for (std::size_t c = 0; c < channels; ++c)
+      color[c] = static_cast<std::uint8_t>(plane_at(setup_, kColorPlane + c, widths_, x, y).code);
+  }
+  if (!texture_divisor_) return color;
+  const std::uint64_t q = q_of(*texture_divisor_, place);
+  const PixelReciprocal reciprocal = divide_by_q(q, format_);
+  TexturePlace at;
+  at.fraction_bits = format_.coordinate.fraction_bits;
+  for (const std::size_t axis : {0U, 1U})
+    at.coordinate[axis] = texture_coordinate(value_of(coordinate_[axis], format_.coordinate, reciprocal, place),
+                                             reference_[axis], at.fraction_bits, sampler_.axes[axis]);
+  const Texel texel = sample(sampler_, at, level_of_detail(lod_, q, x, y));
+  return combined(color, texel, combine_, has_alpha(sampler_.texture->format));
+}
+
+}  // namespace halfplane

@@ -1,0 +1,198 @@
+// Texture filter: from a coordinate and a level to a texel colour, and that together with the primitive's own.
+//
+// A coordinate counts texels of level 0 with f fraction bits; texel i holds [i, i + 1), its middle is i + 1/2. On its level
+// it has 8 fraction bits: cut off where one texel is looked for, rounded where they are weights, which halves what they lose.
+//   nearest    the texel that holds it
+//   linear     the four whose middles surround it, weights (256 - a, a) (256 - b, b): the 8 bits behind u - 1/2 and v - 1/2
+//   trilinear  linear on two levels, each kept to 8 fraction bits of a channel, then (256 - c, c)
+// A sum is rounded once, (sum + 2^15) >> 16; between two levels twice, which costs 2^-9 of a code and saves a multiplier of
+// 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "../fixed.hpp"
+#include "../scene.hpp"
+#include "level_of_detail.hpp"
+
+namespace halfplane {
+
+inline constexpr int kTexelFraction = 8;  ///< fraction bits of a coordinate on its level, and bits of a weight
+
+/// Texels along one axis of an image: 1 to 4096, any number.
+struct TextureAxis {
+  int size = 1;
+  TextureWrap wrap = TextureWrap::repeat;
+
+  [[nodiscard]] constexpr bool is_power_of_two() const { return std::has_single_bit(static_cast<unsigned>(size)); }
+  /// After so many texels the image comes again. Not for clamp.
+  [[nodiscard]] constexpr std::int64_t period() const {
+    return wrap == TextureWrap::mirror ? std::int64_t{2} * size : std::int64_t{size};
+  }
+  [[nodiscard]] constexpr TextureAxis at_level(int level) const { return {std::max(1, size >> level), wrap}; }
+};
+
+/// value modulo period, not negative.
+[[nodiscard]] constexpr std::int64_t floor_modulo(std::int64_t value, std::int64_t period) {
+  const std::int64_t rest = value % period;
+  return rest < 0 ? rest + period : rest;
+}
+
+/// u_ref as the hardware gets it: modulo the period; or, with clamp, where no coordinate of the triangle can tell the
+/// difference. Host.
+[[nodiscard]] inline std::int32_t wrapped_reference(double reference, const TextureAxis& axis) {
+  if (axis.wrap == TextureWrap::clamp) {
+    const double limit = std::ldexp(1.0, kMaxReach + 2);  // twice what U can be
+    return static_cast<std::int32_t>(std::clamp(reference, -limit, limit));
+  }
+  const auto period = static_cast<double>(axis.period());
+  return static_cast<std::int32_t>(reference - std::floor(reference / period) * period);
+}
+
+/// U + u_ref, 2^-f texels; modulo the period where there is one.
+[[nodiscard]] constexpr std::int64_t texture_coordinate(std::int64_t u, std::int32_t reference, int fraction_bits,
+                                                        const TextureAxis& axis) {
+  const std::int64_t sum = u + reference * (std::int64_t{1} << fraction_bits);
+  return axis.wrap == TextureWrap::clamp ? sum : floor_modulo(sum, axis.period() << fraction_bits);
+}
+
+/// A coordinate of level 0, f fraction bits, on another level, 8 fraction bits: coordinate size_n / size, cut off.
+[[nodiscard]] constexpr std::int64_t at_level(std::int64_t coordinate, int fraction_bits, const TextureAxis& axis,
+                                              int level) {
+  const std::int64_t fine = coordinate << (kTexelFraction - fraction_bits);
+  if (axis.is_power_of_two()) return fine >> std::min(level, floor_log2(static_cast<unsigned>(axis.size)));
+  const std::int64_t scaled = fine * axis.at_level(level).size;
+  return (scaled - floor_modulo(scaled, axis.size)) / axis.size;
+}
+
+/// The same rounded: cut off with a bit more, which is then rounded by.
+[[nodiscard]] constexpr std::int64_t rounded_at_level(std::int64_t coordinate, int fraction_bits,
+                                                      const TextureAxis& axis, int level) {
+  return round_shift(at_level(2 * coordinate, fraction_bits, axis, level), 1);
+}
+
+/// The texel of the image that number i stands for.
+[[nodiscard]] constexpr int wrapped_texel(std::int64_t i, const TextureAxis& axis) {
+  const std::int64_t last = axis.size - 1;
+  if (axis.wrap == TextureWrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, last));
+  const std::int64_t period = axis.period();
+  const std::int64_t rest = axis.is_power_of_two() ? i & (period - 1) : floor_modulo(i, period);
+  return static_cast<int>(rest > last ? period - 1 - rest : rest);  // beyond the last one: mirrored
+}
+
+/// A sample's place on a texture: coordinates of level 0 with f fraction bits.
+struct TexturePlace {
+  std::array<std::int64_t, 2> coordinate{};
+  int fraction_bits = kTexelFraction;
+};
+/// Along u and v, of level 0.
+using TextureAxes = std::array<TextureAxis, 2>;
+
+/// What one axis of a linear filter looks at: two texels, and how much of the second there is, in 256ths.
+struct TexelPair {
+  int first = 0, second = 0;
+  std::uint32_t part = 0;
+};
+[[nodiscard]] constexpr TexelPair texels_around(const TexturePlace& place, const TextureAxes& axes, std::size_t axis,
+                                                int level) {
+  const std::int64_t from_middle =
+      rounded_at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level) - (1 << (kTexelFraction - 1));
+  const std::int64_t first = from_middle >> kTexelFraction;
+  const TextureAxis on_level = axes[axis].at_level(level);
+  return {wrapped_texel(first, on_level), wrapped_texel(first + 1, on_level),
+          static_cast<std::uint32_t>(from_middle & 255)};
+}
+
+template <class Fetch>
+[[nodiscard]] Texel filter_nearest(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place, int level) {
+  const auto texel = [&](std::size_t axis) {
+    return wrapped_texel(at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level) >> kTexelFraction,
+                         axes[axis].at_level(level));
+  };
+  return fetch(level, texel(0), texel(1));
+}
+
+/// The sums of a linear filter, 16 fraction bits.
+template <class Fetch>
+[[nodiscard]] std::array<std::uint32_t, 4> linear_sums(Fetch&& fetch, const TextureAxes& axes,
+                                                       const TexturePlace& place, int level) {
+  const TexelPair x = texels_around(place, axes, 0, level), y = texels_around(place, axes, 1, level);
+  const std::array<Texel, 4> texel{fetch(level, x.first, y.first), fetch(level, x.second, y.first),
+                                   fetch(level, x.first, y.second), fetch(level, x.second, y.second)};
+  const std::array weight{(256 - x.part) * (256 - y.part), x.part * (256 - y.part), (256 - x.part) * y.part,
+                          x.part * y.part};
+  std::array<std::uint32_t, 4> sum{};
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t t = 0; t < 4; ++t) sum[c] += weight[t] * texel[t][c];
+  return sum;
+}
+
+template <class Fetch>
+[[nodiscard]] Texel filter_linear(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place, int level) {
+  const auto sum = linear_sums(fetch, axes, place, level);
+  Texel result{};
+  for (std::size_t c = 0; c < 4; ++c) result[c] = static_cast<std::uint8_t>(round_shift(sum[c], 16));
+  return result;
+}
+
+/// Two colours with 8 fraction bits each, and how much of the second there is, in 256ths.
+[[nodiscard]] constexpr std::uint8_t blend_levels(std::uint32_t lower, std::uint32_t upper, std::uint32_t part) {
+  return static_cast<std::uint8_t>(round_shift(lower * (256 - part) + upper * part, 16));
+}
+
+/// Linear on two levels (linear_mipmap_linear).
+template <class Fetch>
+[[nodiscard]] Texel filter_trilinear(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place,
+                                     const LevelPair& levels) {
+  const auto lower = linear_sums(fetch, axes, place, levels.lower),
+             upper = linear_sums(fetch, axes, place, levels.upper);
+  Texel result{};
+  for (std::size_t c = 0; c < 4; ++c)
+    result[c] = blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), levels.part);
+  return result;
+}
+
+/// Nearest on two levels (nearest_mipmap_linear).
+template <class Fetch>
+[[nodiscard]] Texel filter_between_nearest(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place,
+                                           const LevelPair& levels) {
+  const Texel lower = filter_nearest(fetch, axes, place, levels.lower),
+              upper = filter_nearest(fetch, axes, place, levels.upper);
+  Texel result{};
+  for (std::size_t c = 0; c < 4; ++c)
+    result[c] = blend_levels(std::uint32_t{lower[c]} << 8, std::uint32_t{upper[c]} << 8, levels.part);
+  return result;
+}
+
+/// floor(value / 255 + 1/2), 0 <= value <= 255^2.
+[[nodiscard]] constexpr std::uint8_t divide_by_255(std::uint32_t value) {
+  const std::uint32_t t = value + 128;
+  return static_cast<std::uint8_t>((t + (t >> 8)) >> 8);
+}
+
+/// The primitive's colour and the texture's together: OpenGL ES 1.1, table 3.17. A format without alpha leaves that of the
+/// primitive as it is; its texels have 255 there.
+[[nodiscard]] constexpr Texel combined(const Texel& color, const Texel& texel, TextureCombine combine, bool has_alpha) {
+  const auto product = [](std::uint32_t a, std::uint32_t b) { return divide_by_255(a * b); };
+  Texel result = color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    switch (combine) {
+      case TextureCombine::modulate: result[c] = product(color[c], texel[c]); break;
+      case TextureCombine::replace: result[c] = texel[c]; break;
+      case TextureCombine::decal:
+        result[c] = divide_by_255(std::uint32_t{color[c]} * (255U - texel[3]) + std::uint32_t{texel[c]} * texel[3]);
+        break;
+      case TextureCombine::add: result[c] = static_cast<std::uint8_t>(std::min(color[c] + texel[c], 255)); break;
+    }
+  }
+  if (combine == TextureCombine::modulate || combine == TextureCombine::add) result[3] = product(color[3], texel[3]);
+  if (combine == TextureCombine::replace && has_alpha) result[3] = texel[3];
+  return result;
+}
+
+}  // namespace halfplane

@@ -1,0 +1,55 @@
+// Texture sample: a triangle's sampler state, and the texture's colour at a place and a level of detail.
+//
+// Where a pixel holds more than a texel, texture_min counts, else texture_mag; the border is a level of 0, or of 1/2 where
+// a linear image meets nearest ones (OpenGL 4.6, 8.14.3).
+#pragma once
+
+#include "../scene.hpp"
+#include "texture_filter.hpp"
+
+namespace halfplane {
+
+struct Sampler {
+  const Texture* texture = nullptr;
+  TextureAxes axes{};
+  TextureMin min = TextureMin::nearest;
+  TextureMag mag = TextureMag::nearest;
+  Lod bias = 0, least = 0, largest = 0;
+
+  Sampler() = default;
+  Sampler(const Texture& texture_, const State& state)
+      : texture(&texture_),
+        axes{TextureAxis{texture_.width(), state.texture_wrap[0]},
+             TextureAxis{texture_.height(), state.texture_wrap[1]}},
+        min(state.texture_min),
+        mag(state.texture_mag),
+        bias(to_lod(state.texture_lod[0])),
+        least(to_lod(state.texture_lod[1])),
+        largest(std::max(least, to_lod(state.texture_lod[2]))) {}
+
+ private:
+  [[nodiscard]] static Lod to_lod(double level) { return static_cast<Lod>(std::floor(level * 256 + 0.5)); }
+};
+
+/// The texture's colour. `lod`: level_of_detail(), without bias and bounds.
+[[nodiscard]] inline Texel sample(const Sampler& s, const TexturePlace& place, Lod lod) {
+  const auto fetch = [&s](int level, int x, int y) { return s.texture->texel(level, x, y); };
+  const auto filtered = [&](int level, bool is_linear) {
+    return is_linear ? filter_linear(fetch, s.axes, place, level) : filter_nearest(fetch, s.axes, place, level);
+  };
+  const bool is_nearest = s.min == TextureMin::nearest || s.min == TextureMin::nearest_mipmap_nearest ||
+                          s.min == TextureMin::nearest_mipmap_linear;
+  const bool has_levels = s.min != TextureMin::nearest && s.min != TextureMin::linear;
+  const Lod level = std::clamp(lod + s.bias, s.least, s.largest);
+  const Lod magnified = s.mag == TextureMag::linear && is_nearest && has_levels ? 128 : 0;
+  if (level <= magnified) return filtered(0, s.mag == TextureMag::linear);
+  if (!has_levels) return filtered(0, !is_nearest);
+  const int last = s.texture->last_level();
+  if (s.min == TextureMin::nearest_mipmap_nearest || s.min == TextureMin::linear_mipmap_nearest)
+    return filtered(nearest_level(level, last), !is_nearest);
+  const LevelPair levels = levels_around(level, last);
+  return is_nearest ? filter_between_nearest(fetch, s.axes, place, levels)
+                    : filter_trilinear(fetch, s.axes, place, levels);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,36 @@
+// Stamp bytes: a stamp out of what memory has answered. Combinational. Specification: unpack() of
+// model/stages/memory_port.hpp.
+module stamp_bytes #(
+    parameter int SAMPLE_BYTES = 2,  // of a sample in memory
+    parameter int WORD = 8,          // bytes of word_i
+    parameter int SHARED = 0,        // log2 of the stamps in a beat
+    parameter int PART = 1
+) (
+    /* verilator lint_off UNUSEDSIGNAL */  // of a wider word the last beats matter; of what fills beats all of it
+    input  logic [8*WORD-1:0] word_i,  // the last beats, the newest on top
+    input  logic [PART-1:0]   sub_i,   // number of the stamp in its beat
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] data_o
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
+  localparam int BYTES = SAMPLES * SAMPLE_BYTES;
+  localparam int TAKEN = (LANE < 8 * SAMPLE_BYTES) ? LANE : 8 * SAMPLE_BYTES;
+
+  /* verilator lint_off UNUSEDSIGNAL */  // bits above a code
+  logic [8*BYTES-1:0] bytes;
+  /* verilator lint_on UNUSEDSIGNAL */
+  genvar s;
+  generate
+    if (SHARED == 0) begin : gen_whole
+      assign bytes = word_i[8*WORD-1-:8*BYTES];
+    end else begin : gen_shared
+      assign bytes = (8 * BYTES)'(word_i >> ((32'(sub_i) & 32'((1 << SHARED) - 1)) * (8 * BYTES)));
+    end
+    for (s = 0; s < SAMPLES; s++) begin : gen_sample
+      assign data_o[s*LANE+:LANE] = LANE'(bytes[8*SAMPLE_BYTES*s+:TAKEN]);
+    end
+  endgenerate
+
+endmodule

@@ -1,0 +1,318 @@
+// Memory port: what the framebuffer asks for, stamp by stamp, becomes bursts of beats, and what memory answers becomes stamps.
+//
+//   request -> address -> [word] -> beat          a word is a stamp, or what shares a beat
+//   response <- [beats of a stamp] <- answer
+//
+// In: requests, in program order; a run of them is a burst, and the first one says how long it is. Out: beats, each with its
+// byte address and the beats that are left of its burst. A request waits a cycle in a register, which takes the next one in the
+// cycle in which its last beat moves. Answers come in the order of the bursts: each beat that was read, and one word for each
+// burst that was written. Those are counted, so idle_o means written, not taken.
+//
+// Reset: power_on_ni resets the port, rst_ni everything in front of it at any time, for a cycle at least. A burst under way is
+// then ended with beats that write nothing, and the answers that are still to come are dropped; only then requests are taken.
+// Specification: model/stages/memory_port.hpp; the times are those of model/engines/cycle/port_timing.hpp.
+module memory_port (
+    input logic clk_i,
+    input logic power_on_ni,
+    /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
+    input logic rst_ni,
+    /* verilator lint_on SYNCASYNCNET */
+
+    /* verilator lint_off UNUSEDSIGNAL */  // bits below a plane's bytes, which are 0; of flags, without any
+    input raster_pkg::memory_layout_t layout_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // From the framebuffer
+    input  logic                        request_valid_i,
+    output logic                        request_ready_o,
+    input  raster_pkg::memory_request_t request_i,
+
+    // To the framebuffer
+    output logic                         response_valid_o,
+    input  logic                         response_ready_i,
+    output raster_pkg::memory_response_t response_o,
+
+    // To memory
+    output logic                     beat_valid_o,
+    input  logic                     beat_ready_i,
+    output raster_pkg::memory_beat_t beat_o,
+
+    // From memory
+    input  logic                       answer_valid_i,
+    output logic                       answer_ready_o,
+    input  raster_pkg::memory_answer_t answer_i,
+
+    output logic idle_o  // all has been answered
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
+  localparam int PORT = raster_pkg::PORT_SHIFT;
+  localparam int BYTES = 1 << PORT;  // of a beat
+  localparam int HAS_BLOCKS = raster_pkg::CACHE_KIND;
+  localparam int DEPTH_SHIFT = $clog2(SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES);  // log2 of the bytes of a stamp
+  localparam int COLOR_SHIFT = $clog2(SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES);
+  localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
+  localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
+  localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;
+  localparam int LARGEST = (FLAG_SHIFT > STAMP_SHIFT) ? FLAG_SHIFT : STAMP_SHIFT;
+  localparam int WORD = 1 << ((LARGEST > PORT) ? LARGEST : PORT);  // bytes
+  localparam int PLANE = raster_pkg::PLANE_SHIFT;
+  localparam int TILE = PLANE + 1;
+  localparam int ROW = raster_pkg::FLAG_ROW_SHIFT;
+  localparam int LENGTH = raster_pkg::BURST_LENGTH_BITS;
+  localparam int RUN = raster_pkg::RUN_BITS;
+  localparam int ADDRESS = raster_pkg::ADDRESS_BITS;
+  localparam int STRIDE = raster_pkg::ROW_STRIDE_BITS;
+
+  // ---------------------------------------------------------------------------------------------------------- the way out
+  // Where the stamp lies in its plane of a tile: block by block.
+  localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
+  localparam int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE);
+  localparam int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW);
+  localparam logic [15:0] SIDE_MASK = 16'((1 << SIDE_BITS) - 1);
+  logic [15:0] column, row, place;
+  assign column = 16'(request_i.stamp) & 16'((1 << ROW_BITS) - 1);
+  assign row    = 16'(request_i.stamp) >> ROW_BITS;
+  assign place  = ((((row >> SIDE_BITS) << TILE_BITS) | (column >> SIDE_BITS)) << (2 * SIDE_BITS)) |
+                  ((row & SIDE_MASK) << SIDE_BITS) | (column & SIDE_MASK);
+
+  // The address: base, row of tiles, tile, stamp.
+  logic                     is_color, is_flags;
+  /* verilator lint_off UNUSEDSIGNAL */  // inside a beat it is the place that counts
+  logic [ADDRESS-1:0]       address;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [ADDRESS-PLANE-1:0] base, planes;  // planes of tiles up to this one
+  logic [PLANE-1:0]         offset;
+  assign is_color = request_i.plane[0];
+  assign is_flags = request_i.plane[1];
+  assign base     = is_color ? layout_i.color_base[ADDRESS-1:PLANE] : layout_i.depth_base[ADDRESS-1:PLANE];
+  assign planes   = base + {(ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]) +
+                            (ADDRESS - TILE)'(request_i.tile_x), 1'b0};
+  assign offset   = is_color ? PLANE'(place) << COLOR_SHIFT : PLANE'(place) << DEPTH_SHIFT;
+
+  // The bytes, and the beats that they take.
+  logic [8*WORD-1:0] depth_word, color_word, flag_word, word;
+  logic [WORD-1:0]   depth_strobe, color_strobe, flag_strobe, strobe;
+  logic [7:0]        depth_more, color_more, flag_more, more;
+  logic [LENGTH-1:0] depth_length, color_length, flag_length, length;
+  logic              depth_ends, color_ends, flag_ends, ends;
+  beat_bytes #(
+      .SAMPLES     (SAMPLES),
+      .LANE        (LANE),
+      .SAMPLE_BYTES(raster_pkg::DEPTH_SAMPLE_BYTES),
+      .WORD        (WORD)
+  ) u_depth_bytes (
+      .data_i  (request_i.data),
+      .strobe_i(request_i.strobe),
+      .place_i (place),
+      .run_i   (request_i.run),
+      .word_o  (depth_word),
+      .strobe_o(depth_strobe),
+      .more_o  (depth_more),
+      .length_o(depth_length),
+      .ends_o  (depth_ends)
+  );
+  beat_bytes #(
+      .SAMPLES     (SAMPLES),
+      .LANE        (LANE),
+      .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
+      .WORD        (WORD)
+  ) u_color_bytes (
+      .data_i  (request_i.data),
+      .strobe_i(request_i.strobe),
+      .place_i (place),
+      .run_i   (request_i.run),
+      .word_o  (color_word),
+      .strobe_o(color_strobe),
+      .more_o  (color_more),
+      .length_o(color_length),
+      .ends_o  (color_ends)
+  );
+  logic [ADDRESS-ROW-1:0] flag_base, rows;  // of flags up to this one
+  assign flag_base = is_color ? layout_i.color_flags_base[ADDRESS-1:ROW] : layout_i.depth_flags_base[ADDRESS-1:ROW];
+  assign rows      = flag_base + ((ADDRESS - ROW)'(request_i.tile_y) << TILE_BITS) +
+                     (ADDRESS - ROW)'(request_i.stamp);
+  assign address   = is_flags ? {rows, ROW'(request_i.tile_x) << FLAG_SHIFT} : {planes, offset};
+  beat_bytes #(
+      .SAMPLES     (1),
+      .LANE        (raster_pkg::FLAG_WORD),
+      .SAMPLE_BYTES(FLAG_BYTES),
+      .WORD        (WORD)
+  ) u_flag_bytes (
+      .data_i  (request_i.data[raster_pkg::FLAG_WORD-1:0]),
+      .strobe_i(request_i.is_write),
+      .place_i (16'(request_i.tile_x)),
+      .run_i   (request_i.run),
+      .word_o  (flag_word),
+      .strobe_o(flag_strobe),
+      .more_o  (flag_more),
+      .length_o(flag_length),
+      .ends_o  (flag_ends)
+  );
+  assign word   = is_flags ? flag_word : (is_color ? color_word : depth_word);
+  assign strobe = is_flags ? flag_strobe : (is_color ? color_strobe : depth_strobe);
+  assign more   = is_flags ? flag_more : (is_color ? color_more : depth_more);
+  assign length = is_flags ? flag_length : (is_color ? color_length : depth_length);
+  assign ends   = !request_i.is_write || request_i.run == RUN'(1) ||
+                  (is_flags ? flag_ends : (is_color ? color_ends : depth_ends));
+
+  // The word on its way out. While it gathers, it is not complete and not on offer.
+  logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
+  logic [ADDRESS-1:PORT] address_q;
+  logic [LENGTH-1:0]  length_q;  // beats that are left of the burst
+  logic [7:0]         more_q;    // of the word behind the one on offer
+  logic [8*WORD-1:0]  data_q;
+  logic [WORD-1:0]    strobe_q;
+  logic [7:0]         writes_q;  // bursts without an answer
+  logic               takes, sends, discards, begins, owes, is_done;
+
+  assign discards        = recovers_q || !rst_ni;
+  assign begins          = request_i.is_write && !in_burst_q;
+  assign request_ready_o = !discards && (!valid_q || (beat_ready_i && more_q == '0)) && !(begins && writes_q == '1);
+  assign takes           = request_valid_i && request_ready_o;
+  assign sends           = valid_q && beat_ready_i;
+  assign owes            = in_burst_q && length_q != '0;  // beats of a burst whose stamps will not come
+
+  always_ff @(posedge clk_i or negedge power_on_ni) begin
+    if (!power_on_ni) begin
+      valid_q    <= 1'b0;
+      gathers_q  <= 1'b0;
+      in_burst_q <= 1'b0;
+      recovers_q <= 1'b0;
+    end else begin
+      if (takes) valid_q <= ends;
+      else if (sends) valid_q <= more_q != '0;
+      else if (recovers_q && !valid_q) valid_q <= gathers_q || owes;
+      if (takes) gathers_q <= !ends;
+      else if (recovers_q) gathers_q <= 1'b0;
+      if (takes && request_i.is_write) in_burst_q <= request_i.run != RUN'(1);
+      else if (recovers_q && is_done) in_burst_q <= 1'b0;
+      recovers_q <= !rst_ni || (recovers_q && !is_done);
+    end
+  end
+
+  // Behind the last beat of a word there are no strobes: so end the bursts that a reset has cut.
+  always_ff @(posedge clk_i) begin
+    if (takes) begin
+      data_q   <= gathers_q ? data_q | word : word;
+      strobe_q <= gathers_q ? strobe_q | strobe : strobe;
+      more_q   <= request_i.is_write ? more : '0;
+      if (!gathers_q) begin
+        is_write_q <= request_i.is_write;
+        is_first_q <= !in_burst_q;
+        address_q  <= address[ADDRESS-1:PORT];
+        length_q   <= length;
+      end
+    end else if (sends) begin
+      data_q     <= data_q >> (8 * BYTES);
+      strobe_q   <= strobe_q >> BYTES;
+      more_q     <= more_q - 8'(more_q != '0);
+      is_first_q <= 1'b0;
+      address_q  <= address_q + 1'b1;
+      length_q   <= length_q - 1'b1;
+    end
+  end
+
+  assign beat_valid_o    = valid_q;
+  assign beat_o.is_write = is_write_q;
+  assign beat_o.is_first = is_first_q;
+  assign beat_o.address  = {address_q, PORT'(0)};
+  assign beat_o.length   = length_q;
+  assign beat_o.strobe   = strobe_q[BYTES-1:0];
+  assign beat_o.data     = data_q[8*BYTES-1:0];
+
+  // ---------------------------------------------------------------------------------------------------------- the way back
+  localparam int DEPTH_BEATS = (DEPTH_SHIFT > PORT) ? 1 << (DEPTH_SHIFT - PORT) : 1;  // of a stamp
+  localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
+  localparam int DEPTH_SHARED = (DEPTH_SHIFT < PORT) ? PORT - DEPTH_SHIFT : 0;  // log2 of the stamps in a beat
+  localparam int DEPTH_STAMPS = (STAMPS < (1 << DEPTH_SHARED)) ? STAMPS : 1 << DEPTH_SHARED;  // read with it
+  localparam int PART = (DEPTH_SHIFT > PORT) ? DEPTH_SHIFT - PORT : 1;
+  localparam int PARTS = (PART > DEPTH_SHARED) ? PART : DEPTH_SHARED;
+  localparam int READ_WORD = (DEPTH_SHIFT > PORT) ? 1 << DEPTH_SHIFT : BYTES;
+  localparam int MOST = DEPTH_BEATS * ((HAS_BLOCKS != 0) ? raster_pkg::CACHE_QUEUE : STAMPS);  // that are read at a time
+  localparam int READS = $clog2(MOST + 1);
+  localparam int TAKEN = (READS < LENGTH) ? READS : LENGTH;
+
+  logic [PARTS-1:0]       part_q;  // beats of the next stamp that have come, or stamps of the beat that have gone
+  logic [PARTS-1:0]       sub;     // number of the next stamp in its beat
+  logic [READS-1:0]       reads_q;
+  logic [8*READ_WORD-1:0] beats;   // the newest on top
+  logic                   answers, is_read, responds, is_whole, is_last;
+
+  assign is_read           = answer_valid_i && !answer_i.is_write;
+  assign is_whole          = DEPTH_SHARED != 0 || part_q == PARTS'(DEPTH_BEATS - 1);
+  assign response_valid_o  = is_read && is_whole && !discards;
+  assign responds          = response_valid_o && response_ready_i;
+  assign answer_ready_o    = answer_i.is_write || discards || !is_whole || (is_last && response_ready_i);
+  assign answers           = answer_valid_i && answer_ready_o;
+
+  generate
+    if (READ_WORD > BYTES) begin : gen_kept
+      logic [8*(READ_WORD-BYTES)-1:0] kept_q;
+      assign beats = {answer_i.data, kept_q};
+      always_ff @(posedge clk_i) if (answers) kept_q <= beats[8*READ_WORD-1:8*BYTES];
+    end else begin : gen_one
+      assign beats = answer_i.data;
+    end
+    if (HAS_BLOCKS == 0) begin : gen_planes
+      assign sub     = part_q;  // whole planes are read
+      assign is_last = DEPTH_SHARED == 0 || part_q == PARTS'(DEPTH_STAMPS - 1);
+    end else begin : gen_stamps
+      assign is_last = 1'b1;  // single stamps are read
+      if (DEPTH_SHARED != 0) begin : gen_subs
+        /* verilator lint_off UNUSEDSIGNAL */  // there is one for each answer, and room: the framebuffer waits for no more
+        logic sub_valid, sub_ready;
+        /* verilator lint_on UNUSEDSIGNAL */
+        logic [DEPTH_SHARED-1:0] place_in_beat;
+        assign place_in_beat = place[DEPTH_SHARED-1:0];
+        fifo #(
+            .WIDTH(DEPTH_SHARED),
+            .DEPTH(raster_pkg::CACHE_QUEUE)
+        ) u_subs (
+            .clk_i,
+            .rst_ni,
+            .valid_i(takes && !request_i.is_write),
+            .ready_o(sub_ready),
+            .data_i (place_in_beat),
+            .valid_o(sub_valid),
+            .ready_i(responds),
+            .data_o (sub[DEPTH_SHARED-1:0])
+        );
+        if (PARTS > DEPTH_SHARED) begin : gen_rest
+          assign sub[PARTS-1:DEPTH_SHARED] = '0;
+        end
+      end else begin : gen_no_subs
+        assign sub = '0;
+      end
+    end
+  endgenerate
+  stamp_bytes #(
+      .SAMPLE_BYTES(raster_pkg::DEPTH_SAMPLE_BYTES),
+      .WORD        (READ_WORD),
+      .SHARED      (DEPTH_SHARED),
+      .PART        (PARTS)
+  ) u_depth_stamp (
+      .word_i(beats),
+      .sub_i (sub),
+      .data_o(response_o.data)
+  );
+
+  always_ff @(posedge clk_i or negedge power_on_ni) begin
+    if (!power_on_ni) begin
+      part_q   <= '0;
+      reads_q  <= '0;
+      writes_q <= '0;
+    end else begin
+      if (discards) part_q <= '0;
+      else if (is_read && (is_whole ? responds : answers))
+        part_q <= is_last && is_whole ? '0 : part_q + 1'b1;
+      reads_q  <= reads_q + (takes && !request_i.is_write ? READS'(length[TAKEN-1:0]) : '0) - READS'(answers && is_read);
+      writes_q <= writes_q + 8'(takes && begins) - 8'(answers && answer_i.is_write);
+    end
+  end
+
+  assign is_done = !valid_q && !gathers_q && !owes && reads_q == '0 && writes_q == '0;
+  assign idle_o  = !discards && reads_q == '0 && writes_q == '0;  // what has not been sent has not been answered
+
+endmodule
