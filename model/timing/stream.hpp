@@ -32,8 +32,6 @@ class Stream {
     ++items_;
     waited_ += moved - offered;
   }
-  /// Accounts for `items` that moved without waiting.
-  void pass(std::uint64_t items) { items_ += items; }
 
   [[nodiscard]] unsigned streams() const { return streams_; }
   [[nodiscard]] StreamUse use(Cycle cycles) const { return {items_, waited_, cycles - items_ - waited_}; }

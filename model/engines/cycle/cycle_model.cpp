@@ -50,9 +50,8 @@ class CycleModelOf final : public CycleModel {
         widths_(derive_widths(config)),
         options_(options),
         timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink),
-        hiz_(config_, widths_, options.parameters.untested_tiles),
-        has_blocks_(config_.cache_kind == CacheKind::blocks) {
-    if (has_blocks_)
+        hiz_(config_, widths_, options.parameters.untested_tiles) {
+    if (config_.cache_kind == CacheKind::blocks)
       blocks_.emplace(config_, widths_);
     else
       tiles_.emplace(config_, widths_);
@@ -130,7 +129,7 @@ class CycleModelOf final : public CycleModel {
     if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
-      if (has_blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
+      if (blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
       return timing_.pass_token(offered,
                                 [&](auto& mover) { tiles_->fast_clear(last_x, last_y, planes, mover, counters_); });
     });
@@ -154,7 +153,7 @@ class CycleModelOf final : public CycleModel {
   void flush(const SetupPacket& packet) {
     const int last_x = packet.box.right >> widths_.tile_shift, last_y = packet.box.bottom >> widths_.tile_shift;
     timing_.end_token([&](Cycle offered) {
-      if (has_blocks_) return timing_.pass_token(offered, *blocks_, false, packet.state, last_x, last_y);
+      if (blocks_) return timing_.pass_token(offered, *blocks_, false, packet.state, last_x, last_y);
       return timing_.pass_token(offered, [&](auto& mover) { tiles_->flush(last_x, last_y, mover, counters_); });
     });
   }
@@ -184,8 +183,8 @@ class CycleModelOf final : public CycleModel {
     const auto look_up_block = [&](BlockItem& item) { return block_access(place, state, passed, item); };
     const Cycle before = timing_.last_fragment();
     timing_.end_token([&](Cycle offered) {
-      return has_blocks_ ? timing_.take_block_pixels(offered, step, look_up_block)
-                         : timing_.take_pixels(offered, place, step, look_up);
+      return blocks_ ? timing_.take_block_pixels(offered, step, look_up_block)
+                     : timing_.take_pixels(offered, place, step, look_up);
     });
     if (!options_.want_cost) return;
     const float cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(line.remaining + 1);
@@ -316,7 +315,7 @@ class CycleModelOf final : public CycleModel {
       };
       place.mask = samples(covered_rows);
       const bool passes = samples(passed_rows).any();
-      if (has_blocks_) {
+      if (blocks_) {
         BlockItem item;
         const TagResult tags = block_access(place, packet.state, passes, item);
         return timing_.access(offered, tags, item);
@@ -377,7 +376,6 @@ class CycleModelOf final : public CycleModel {
   Timing timing_;
   CounterPacket counters_;
   Hiz hiz_;
-  bool has_blocks_;
   std::optional<TileDirectory> tiles_;  ///< one of them, by cache.kind
   std::optional<CacheTags> blocks_;
   Rendering rendering_;
