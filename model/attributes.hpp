@@ -27,7 +27,7 @@ struct Attribute {
   std::string_view name;                 ///< of its widths: "depth code", "local depth"
   std::array<std::string_view, 4> part;  ///< what its planes are called
   int planes;                            ///< 1 to 4
-  int bits;                              ///< of a code
+  int bits;                              ///< of a code, with its sign
   std::string_view symbol;               ///< what docs/spec.md calls `bits` in a bound
   int reciprocal_bits;                   ///< r: significant bits of the reciprocal that its gradients are made with
   int guard_bits;                        ///< l: fraction bits inside a tile
@@ -38,8 +38,11 @@ struct Attribute {
   StoredAs stored = StoredAs::nothing;
 };
 
-inline constexpr int kMaxAttributes = 4, kMaxPlanes = 6;
+inline constexpr int kMaxAttributes = 4, kMaxPlanes = 8;
 inline constexpr std::size_t kDepthPlane = 0, kColorPlane = 1;  ///< the first colour: red; green, blue and alpha behind
+
+/// What the planes over w share, whatever the configuration: l, and how many bits less than Q the reciprocal of the area has.
+inline constexpr int kPerspectiveGuardBits = 4, kPerspectiveReciprocalLess = 2;
 
 /// One value for each plane. Elements from plane_count() on are nobody's.
 template <class T>
@@ -83,7 +86,34 @@ struct AttributeList {
             .reciprocal_bits = 8 + config.reciprocal_extra_bits,
             .guard_bits = config.local_guard_bits,
             .stored = StoredAs::color});
+  if (config.texture_unit == TextureUnitKind::off) return list;
+  const int bits = config.perspective_bits;
+  list.add({.name = "reciprocal w",
+            .part = {"q"},
+            .planes = 1,
+            .bits = bits,
+            .symbol = "N",
+            .reciprocal_bits = bits - kPerspectiveReciprocalLess,
+            .guard_bits = kPerspectiveGuardBits,
+            .is_clamped = false,
+            .base = BaseVertex::smallest_q});
+  list.add({.name = "coordinate",
+            .part = {"u", "v"},
+            .planes = 2,
+            .bits = bits + 1,
+            .symbol = "N_P + 1",
+            .reciprocal_bits = bits - kPerspectiveReciprocalLess,
+            .guard_bits = kPerspectiveGuardBits,
+            .is_signed = true,
+            .is_clamped = false,
+            .interpolation = Interpolation::over_w,
+            .base = BaseVertex::smallest_q});
   return list;
+}
+
+/// Whether the list has what a texture unit looks at.
+[[nodiscard]] constexpr bool has_texture_planes(const Config& config) {
+  return config.texture_unit != TextureUnitKind::off;
 }
 
 /// How many planes there are.
@@ -102,6 +132,13 @@ struct AttributeList {
 [[nodiscard]] constexpr int color_planes(const AttributeList& list) {
   int count = 0;
   for (const Attribute& attribute : list) count += attribute.stored == StoredAs::color ? attribute.planes : 0;
+  return count;
+}
+
+/// The planes whose codes are linear in the window, depth and colour: those that lines have too. They come first.
+[[nodiscard]] constexpr int affine_planes(const AttributeList& list) {
+  int count = 0;
+  for (const Attribute& attribute : list) count += attribute.is_clamped ? attribute.planes : 0;
   return count;
 }
 

@@ -16,6 +16,7 @@ constexpr std::array<std::string_view, 2> kFrameClearsNames{"resolve", "flags"};
 constexpr std::array<std::string_view, 2> kFrameOrderNames{"program", "bins"};
 constexpr std::array<std::string_view, 2> kFrameStoreNames{"all", "color"};
 constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
+constexpr std::array<std::string_view, 3> kTextureUnitNames{"off", "nearest", "bilinear"};
 
 const std::array kSettings{
     Setting{"subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12, &Config::subpixel_bits},
@@ -63,6 +64,13 @@ const std::array kSettings{
             &Config::frame_store},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
             &Config::setup_kind},
+    Setting{"texture.unit", "off|nearest|bilinear", "what the RTL's texture unit can do; off: it has none", 0, 0,
+            &Config::texture_unit},
+    Setting{"texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64,
+            &Config::texture_cache_kb},
+    Setting{"texture.queue", "samples",
+            "between their coordinates and their texels in the texture unit; a power of two", 8, 128,
+            &Config::texture_queue},
     Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
             &Config::line_units},
     Setting{"counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0, 1,
@@ -193,6 +201,8 @@ std::string get(const Config& config, const Setting& setting) {
     return std::string(kFrameOrderNames[static_cast<std::size_t>(config.**order)]);
   if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
     return std::string(kFrameStoreNames[static_cast<std::size_t>(config.**store)]);
+  if (const auto* unit = std::get_if<TextureUnitKind Config::*>(&setting.member))
+    return std::string(kTextureUnitNames[static_cast<std::size_t>(config.**unit)]);
   const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
   return std::string(kSetupKindNames[static_cast<std::size_t>(kind)]);
 }
@@ -223,6 +233,8 @@ void set(Config& config, std::string_view key, std::string_view value) {
       config.** order = static_cast<FrameOrder>(parse_name(key, value, kFrameOrderNames));
     else if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
       config.** store = static_cast<FrameStore>(parse_name(key, value, kFrameStoreNames));
+    else if (const auto* unit = std::get_if<TextureUnitKind Config::*>(&setting.member))
+      config.** unit = static_cast<TextureUnitKind>(parse_name(key, value, kTextureUnitNames));
     else if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
       config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
     else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))
@@ -248,6 +260,14 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.cache_queue), "cache.queue must be a power of two");
   refuse_unless(is_power_of_two(config.cache_victims), "cache.victims must be a power of two");
   refuse_unless(is_power_of_two(config.memory_port_bits), "memory.port_bits must be 16, 32, 64, 128, 256 or 512");
+  refuse_unless(is_power_of_two(config.texture_cache_kb), "texture.cache_kb must be a power of two");
+  refuse_unless(is_power_of_two(config.texture_queue), "texture.queue must be a power of two");
+  if (config.texture_unit != TextureUnitKind::off) {
+    refuse_unless(config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined,
+                  "a texture unit stands behind the depth test of blocks, and its planes want the pipelined setup: use "
+                  "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
+    refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
+  }
   refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
                 "a cache of tiles holds at most 256: lower cache.lines");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_order == FrameOrder::program,

@@ -38,6 +38,9 @@ enum class FrameStore : int { all, color };
 /// How the RTL does triangle setup: several multipliers and a triangle every few cycles, or one shared multiplier. Same bits.
 enum class SetupKind : int { pipelined, serial };
 
+/// What the RTL's texture unit can do: nothing, as it is not there; nearest texels; linear filters of four as well.
+enum class TextureUnitKind : int { off, nearest, bilinear };
+
 /// A hardware configuration. The default is the `embedded` preset.
 struct Config {
   std::string preset = "embedded";  ///< the preset the values started from
@@ -66,9 +69,12 @@ struct Config {
   FrameStore frame_store = FrameStore::all;      ///< likewise: a bit of fast clears and flushes says it
   int memory_port_bits = 64;                     ///< data of one beat of the memory port; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
-  int line_units = 1;  ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
-  int counter_units = 1;   ///< 1: the RTL counts its work; 0: its counters are left out
-  int counter_bits = 32;   ///< of each of them
+  TextureUnitKind texture_unit = TextureUnitKind::off;
+  int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two
+  int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
+  int line_units = 1;        ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
+  int counter_units = 1;     ///< 1: the RTL counts its work; 0: its counters are left out
+  int counter_bits = 32;     ///< of each of them
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
   DepthFormat depth_format;                               ///< the RTL has `plane` alone
 
@@ -86,7 +92,8 @@ struct Setting {
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
   std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, FrameOrder Config::*,
-               FrameStore Config::*, SetupKind Config::*, DepthMapping Config::*, DepthFormat Config::*>
+               FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, DepthMapping Config::*,
+               DepthFormat Config::*>
       member;
 
   /// Whether the RTL depends on it.

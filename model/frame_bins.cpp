@@ -81,7 +81,7 @@ bool FrameBins::add(const HostPrimitive& primitive) {
   } else {
     is_seen = add_to_bins(to_bounds(packet.box), [](const PixelBounds&) { return true; });
   }
-  if (is_seen) items_.push_back({packet, primitive.primitive, primitive.command});
+  if (is_seen) items_.push_back({packet, primitive.primitive, primitive.command, kNoLine, primitive.texture_state});
   return is_seen;
 }
 
@@ -121,7 +121,7 @@ std::optional<HostPrimitive> FrameBins::next() {
 
 /// What of a primitive lies in a bin.
 HostPrimitive FrameBins::part(const Item& item, const PixelBounds& bin) const {
-  HostPrimitive out{item.packet, {}, item.primitive, item.command, true};
+  HostPrimitive out{item.packet, {}, item.primitive, item.command, true, item.texture_state};
   if (item.line == kNoLine) {
     out.packet.box = to_box(intersection(to_bounds(item.packet.box), bin));
     return out;

@@ -52,6 +52,7 @@ class FrameBins {
     PrimitivePacket packet;
     std::uint32_t primitive = 0, command = 0;
     std::uint32_t line = kNoLine;  ///< index into lines_
+    std::uint64_t texture_state = 0;
   };
 
   [[nodiscard]] PixelBounds box_of(std::size_t bin) const;

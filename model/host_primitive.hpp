@@ -16,6 +16,7 @@ struct HostPrimitive {
   std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise: of the next one
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
   bool is_part = false;                ///< what lies in one bin: the host has counted the whole
+  std::uint64_t texture_state = 0;     ///< of a triangle: what the texture unit must be set to (TextureState)
 };
 
 }  // namespace halfplane

@@ -1,7 +1,10 @@
 #include "host_stream.hpp"
 
+#include <utility>
+
 #include "fragment_ops.hpp"
 #include "stages/surface.hpp"
+#include "stages/texture_packets.hpp"
 
 namespace halfplane {
 namespace {
@@ -31,6 +34,28 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
   return clear != nullptr && clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height} ? clear : nullptr;
 }
 
+/// What of a textured draw, or one with colours over w, the hardware lacks; empty: nothing.
+std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
+  if (state.color_interp == ColorInterp::perspective)
+    return "color_interp perspective: this hardware divides no colours by w";
+  if (!state.texture) return "";
+  if (config.texture_unit == TextureUnitKind::off)
+    return "texture: this hardware has no texture unit; use --set texture.unit=nearest";
+  const bool is_linear = state.texture_min == TextureMin::linear && state.texture_mag == TextureMag::linear;
+  if (is_linear && config.texture_unit != TextureUnitKind::bilinear)
+    return "texture_min and texture_mag: this texture unit takes nearest texels alone; use nearest, or --set "
+           "texture.unit=bilinear";
+  if (!is_linear && (state.texture_min != TextureMin::nearest || state.texture_mag != TextureMag::nearest))
+    return "texture_min and texture_mag: this texture unit knows no levels, nor which of the two counts; make both "
+           "nearest "
+           "or both linear";
+  const Texture& texture = scene.textures[*state.texture];
+  if (!TextureAxis{texture.width()}.is_power_of_two() || !TextureAxis{texture.height()}.is_power_of_two())
+    return "texture: " + texture.name + " has " + std::to_string(texture.width()) + "x" +
+           std::to_string(texture.height()) + " texels, and this texture unit takes powers of two";
+  return "";
+}
+
 bool clears_depth(const Scene& scene, const Command& command) {
   const Clear* clear = whole_clear(scene, command);
   return clear != nullptr && clear->depth;
@@ -52,6 +77,7 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   validate(config);
   check_hardware_scene(scene, config);
   widths_ = derive_widths(config);
+  if (has_texture_planes(config)) textures_.emplace(scene);
   if (config.frame_order == FrameOrder::bins) {
     bins_.emplace(widths_, scene.width, scene.height);
     counters_.bins = 0;
@@ -66,6 +92,27 @@ HostStream::HostStream(const Scene& scene, const Config& config)
 }
 
 std::optional<HostPrimitive> HostStream::next() {
+  std::optional<HostPrimitive> primitive = held_ ? std::exchange(held_, std::nullopt) : next_primitive();
+  if (!textures_ || !primitive || primitive->packet.kind != PrimitiveKind::triangle) return primitive;
+  if (has_set_texture_ && primitive->texture_state == texture_state_) return primitive;
+  held_ = std::move(primitive);
+  return set_texture(held_->texture_state);
+}
+
+/// What the texture unit does from here on. The first one of a scene drops what is left of another one's texels.
+HostPrimitive HostStream::set_texture(std::uint64_t state) {
+  texture_state_ = state;
+  PrimitivePacket packet;
+  packet.kind = PrimitiveKind::texture;
+  TextureState next = TextureState::unpack(state);
+  next.invalidates = !std::exchange(has_set_texture_, true);
+  for (auto& code : packet.vertex.code) set_texture_word(code, next.pack(), widths_);
+  HostPrimitive out = host_primitive(packet, held_->primitive);
+  out.command = held_->command;
+  return out;
+}
+
+std::optional<HostPrimitive> HostStream::next_primitive() {
   while (pending_first_ == pending_.size()) {
     if (bins_)
       if (auto part = bins_->next()) return part;
@@ -179,7 +226,32 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   packet.cull = is_culled ? Cull::none : state.cull;
   packet.front_cw = state.front == FrontFace::cw;
   set_vertices(packet.vertex, triangle.v);
-  send(host_primitive(packet, triangle.primitive));
+  HostPrimitive out = host_primitive(packet, triangle.primitive);
+  if (textures_ && state.texture) set_coordinates(triangle, out);
+  send(out);
+}
+
+/// Q and P of the vertices, how to read them back, and what the texture unit must be set to.
+void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) const {
+  const State& state = context_->state;
+  require_positive_w(*context_, triangle);
+  const Texture& texture = scene_.textures[*state.texture];
+  const PerspectiveFormat format = perspective_format(config_);
+  const TextureCoordinates coordinates = texture_coordinates(triangle.surface, state, texture, format);
+  PrimitivePacket& packet = out.packet;
+  for (std::size_t i = 0; i < 3; ++i) packet.vertex.code[i][widths_.q_plane] = coordinates.q[i];
+  for (const std::size_t axis : {0U, 1U}) {
+    const OverW& over_w = coordinates.over_w[axis];
+    const std::size_t p = widths_.q_plane + 1 + axis;
+    for (std::size_t i = 0; i < 3; ++i)
+      packet.vertex.code[i][p] = static_cast<std::uint32_t>(
+          wrap_unsigned(static_cast<std::uint64_t>(over_w.p[i]), widths_.of_plane(p).code.bits));
+    const OverWScale scale = over_w_scale(over_w, format.coordinate);
+    packet.coordinates.shift[axis] = scale.shift;
+    packet.coordinates.reach[axis] = scale.reach;
+    packet.coordinates.origin[axis] = coordinates.reference[axis];
+  }
+  out.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
 }
 
 /// Of the whole target; of no plane so far.
@@ -236,10 +308,10 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
     const auto* draw = std::get_if<Draw>(&command);
     if (draw == nullptr) continue;
     const State& state = scene.states[draw->state];
-    if (has_surface(state) && drawn_as(state, draw->topology) == PrimitiveType::triangle)
-      throw InputError(place_of_draw(scene.name, draw->line) + ": state " +
-                       (state.texture ? "texture" : "color_interp perspective") +
-                       ": this hardware has no attributes over w; use the functional, scalar or golden engine");
+    if (drawn_as(state, draw->topology) == PrimitiveType::triangle)
+      if (const std::string fault = surface_fault(scene, state, config); !fault.empty())
+        throw InputError(place_of_draw(scene.name, draw->line) + ": state " + fault +
+                         "; or use the functional, scalar or golden engine");
     if (config.line_units == 0 && drawn_as(state, draw->topology) == PrimitiveType::line)
       throw InputError(place_of_draw(scene.name, draw->line) +
                        ": lines, but this hardware has no unit that draws them; use --set lines.unit=1");

@@ -16,6 +16,7 @@
 #include "host_primitive.hpp"
 #include "pipeline.hpp"
 #include "stages/line_setup.hpp"
+#include "texture_memory.hpp"
 
 namespace halfplane {
 
@@ -44,6 +45,9 @@ class HostStream {
   void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
+  void set_coordinates(const Triangle& triangle, HostPrimitive& out) const;
+  [[nodiscard]] HostPrimitive set_texture(std::uint64_t state);
+  [[nodiscard]] std::optional<HostPrimitive> next_primitive();
   void send_line(const LinePrimitive& line);
   [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
   [[nodiscard]] PrimitivePacket fast_clear() const;
@@ -66,6 +70,10 @@ class HostStream {
   std::optional<FrameBins> bins_;              ///< of frame.order bins: what waits for the frame to be complete
   std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
   std::size_t pending_first_ = 0;
+  std::optional<TextureMemory> textures_;  ///< with a texture unit
+  std::uint64_t texture_state_ = 0;        ///< what the unit was last set to
+  bool has_set_texture_ = false;           ///< it was, since the scene began
+  std::optional<HostPrimitive> held_;      ///< waits for that
 };
 
 /// What the hardware relies on and cannot see: behind reset a fast clear of both planes, without which the flags of tiles are

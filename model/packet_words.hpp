@@ -45,7 +45,7 @@ constexpr void for_each_value_in_order(Packet& packet, const Widths& widths, Vis
   constexpr auto fields = std::remove_const_t<Packet>::fields();
   const auto planes = [&](auto& values, Width AttributeWidths::*width) {
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
-      visit(values[p], widths.of_plane(p).*width);
+      if ((widths.of_plane(p).*width).bits != 0) visit(values[p], widths.of_plane(p).*width);
   };
   const auto elements = [&](auto& member, const Width& width, std::size_t count) {
     if constexpr (kArraySize<std::remove_cvref_t<decltype(member)>> != 0)

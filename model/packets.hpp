@@ -128,13 +128,17 @@ enum class PrimitiveKind : std::uint8_t {
   fast_clear = 2,  ///< a clear of the whole target: marks tiles, writes no pixel
   flush = 3,       ///< writes back all that is on the chip; the box is the whole target
   point = 4,       ///< a rectangle that is counted
-  line = 6         ///< the place of a line in program order; its pixels come from line_raster
+  line = 6,        ///< the place of a line in program order; its pixels come from line_raster
+  texture = 7      ///< what the texture unit does from here on: a word, spread over the codes (TextureState)
 };
 
 /// What the counters count; clears and flushes are the host's own.
 [[nodiscard]] constexpr bool is_counted(PrimitiveKind kind) {
   return kind == PrimitiveKind::triangle || kind == PrimitiveKind::point || kind == PrimitiveKind::line;
 }
+
+/// What visits no tile on its way to depth_test.
+[[nodiscard]] constexpr bool is_token(PrimitiveKind kind) { return (static_cast<unsigned>(kind) & 2U) != 0; }
 
 /// What the end of a tile visit does to the tile's HiZ bound.
 enum class HizUpdate : std::uint8_t { none, set, clear };
@@ -166,7 +170,8 @@ struct WireEnum<PrimitiveKind> {
   static constexpr Enumerator<PrimitiveKind> all[] = {
       {PrimitiveKind::triangle, "triangle"},     {PrimitiveKind::rectangle, "rectangle"},
       {PrimitiveKind::fast_clear, "fast_clear"}, {PrimitiveKind::flush, "flush"},
-      {PrimitiveKind::point, "point"},           {PrimitiveKind::line, "line"}};
+      {PrimitiveKind::point, "point"},           {PrimitiveKind::line, "line"},
+      {PrimitiveKind::texture, "texture"}};
 };
 template <>
 struct WireEnum<DepthFunc> {
@@ -267,9 +272,20 @@ struct TriangleVertices {
 /// The range of the vertices' codes, to which the final ones are clamped.
 struct CodeRange {
   PACKET(CodeRange, "code_range");
-  FIELD(PerPlane<std::uint32_t>, low, &AttributeWidths::code)
-  FIELD(PerPlane<std::uint32_t>, high, &AttributeWidths::code)
+  FIELD(PerPlane<std::uint32_t>, low, &AttributeWidths::affine_code)
+  FIELD(PerPlane<std::uint32_t>, high, &AttributeWidths::affine_code)
   PACKET_END
+};
+
+/// How a triangle's texture coordinates are read back, u and v (stages/perspective.hpp). Only with a texture unit.
+struct CoordinateFrame {
+  PACKET(CoordinateFrame, "coordinate_frame");
+  using Pair = std::array<std::int32_t, 2>;
+  FIELD(Pair, shift, &Widths::coordinate_shift, &Widths::coordinates)  ///< c = 1 + x - sp - k_P: P goes right by e + c
+  FIELD(Pair, reach, &Widths::coordinate_reach, &Widths::coordinates)  ///< x
+  FIELD(Pair, origin, &Widths::coordinate_reference, &Widths::coordinates)  ///< u_ref, texels: wrapped_reference()
+  PACKET_END
+  bool operator==(const CoordinateFrame&) const = default;
 };
 
 /// Where the host has put the planes in memory: bytes. It stays as it is while anything is under way. Bases of tiles and the
@@ -301,6 +317,7 @@ struct PrimitivePacket {
   FIELD(Cull, cull, &Widths::cull_mode)
   FIELD(bool, front_cw, &Widths::flag)  ///< clockwise is the front
   FIELD(TriangleVertices, vertex, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
   PACKET_END
 };
 
@@ -312,6 +329,7 @@ struct TrianglePacket {
   FIELD(PixelBox, box, Nested{})  ///< pixel centres of the triangle inside the scissor
   FIELD(PrimitiveState, state, Nested{})
   FIELD(TriangleVertices, vertex, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
   FIELD(std::uint64_t, area, &Widths::area)           ///< twice the area, square subpixels; 0 for other kinds
   FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< at the first pixel of the first tile; 0 for other kinds
   PACKET_END
@@ -331,6 +349,7 @@ struct SetupPacket {
   FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::plane)  ///< per subpixel
   FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::plane)
   FIELD(CodeRange, range, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
   PACKET_END
 };
 
@@ -341,6 +360,7 @@ struct ContextPacket {
   FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::local)  ///< LocalPlane steps
   FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::local)
   FIELD(CodeRange, range, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
   PACKET_END
 };
 
@@ -393,7 +413,8 @@ struct FragmentPacket {
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
   FIELD(SampleMask, mask, &Widths::sample_mask)
   FIELD(PrimitiveState, state, Nested{})
-  FIELD(Codes, code, &AttributeWidths::code, &Widths::samples)  ///< of each sample, clamped to the vertices' range
+  FIELD(CoordinateFrame, coordinates, Nested{})
+  FIELD(Codes, code, &AttributeWidths::fragment, &Widths::samples)  ///< of each sample: clamped codes, local Q and P
   PACKET_END
 };
 
@@ -406,8 +427,8 @@ struct WritePacket {
   FIELD(SampleMask, passed, &Widths::sample_mask)       ///< samples that passed the depth test
   FIELD(SampleMask, write_depth, &Widths::sample_mask)  ///< of those, the ones to write
   FIELD(SampleMask, write_color, &Widths::sample_mask)
-  FIELD(Codes, depth, kDepthCode, &Widths::samples)             ///< codes; also of samples that are not written
-  FIELD(Codes, color, &Widths::stored_color, &Widths::samples)  ///< stored colours; likewise
+  FIELD(Codes, depth, kDepthCode, &Widths::samples)              ///< codes; also of samples that are not written
+  FIELD(Codes, color, &Widths::written_color, &Widths::samples)  ///< as it is stored or before the texture; likewise
   PACKET_END
 };
 
@@ -438,8 +459,8 @@ struct LineSetup {
   FIELD(std::int64_t, step_move, &Widths::line_move)    ///< d - D, added to p after a step along both
   FIELD(PerPlane<std::uint64_t>, value,
         &AttributeWidths::line)  ///< 2^-G' LSB at the first pixel's major coordinate, plus 1/2 LSB
-  FIELD(PerPlane<std::uint64_t>, step, &AttributeWidths::line)   ///< per pixel
-  FIELD(PerPlane<std::uint32_t>, start, &AttributeWidths::code)  ///< codes of the start
+  FIELD(PerPlane<std::uint64_t>, step, &AttributeWidths::line)          ///< per pixel
+  FIELD(PerPlane<std::uint32_t>, start, &AttributeWidths::affine_code)  ///< codes of the start
   PACKET_END
 };
 
@@ -450,7 +471,7 @@ struct LinePixel {
   FIELD(std::int32_t, x, &Widths::pixel_x)
   FIELD(std::int32_t, y, &Widths::pixel_y)
   FIELD(bool, is_last, &Widths::flag)  ///< the line ends here
-  FIELD(PerPlane<std::uint32_t>, code, &AttributeWidths::code)
+  FIELD(PerPlane<std::uint32_t>, code, &AttributeWidths::affine_code)
   PACKET_END
   bool operator==(const LinePixel&) const = default;
 };
@@ -503,11 +524,35 @@ struct MemoryAnswer {
   PACKET_END
 };
 
+/// texture_unit -> texture_memory: a read of a line of 4x4 texels.
+struct TextureRequest {
+  PACKET(TextureRequest, "texture_request");
+  FIELD(std::uint32_t, address, &Widths::address)      ///< bytes
+  FIELD(std::uint16_t, beats, &Widths::texture_beats)  ///< of it
+  PACKET_END
+};
+
+/// texture_memory -> texture_unit: a beat of a line, in the order of the requests.
+struct TexelBeat {
+  PACKET(TexelBeat, "texel_beat");
+  using Bytes = std::array<std::uint8_t, 8>;
+  FIELD(Bytes, data, &Widths::texture_byte, &Widths::texture_port_bytes)
+  PACKET_END
+};
+
+/// texture_unit, rop -> framebuffer: the colours of a stamp that writes any; of other samples they are 0.
+struct ColorPacket {
+  PACKET(ColorPacket, "color_packet");
+  FIELD(SampleMask, mask, &Widths::sample_mask)                              ///< samples whose colour is written
+  FIELD(WritePacket::Codes, color, &Widths::stored_color, &Widths::samples)  ///< 0 where none is written
+  PACKET_END
+};
+
 /// The performance counters of the hardware: items since reset; the RTL has them modulo
 /// 2^counters.bits. Names as in Counters (counters.hpp).
 struct CounterPacket {
   PACKET(CounterPacket, "counter_packet");
-  FIELD(bool, overflow, &Widths::flag)  ///< one of the others has passed its largest value in the RTL
+  FIELD(bool, overflow, &Widths::flag)                   ///< one of the others has passed its largest value in the RTL
   FIELD(std::uint64_t, primitives_in, &Widths::counter)  ///< triangles, points and lines that came to cull
   FIELD(std::uint64_t, zero_area, &Widths::counter)
   FIELD(std::uint64_t, backface, &Widths::counter)

@@ -280,6 +280,14 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       frustum(view_volume_planes(state.clip_z, viewport, 1)),
       depth_encode(config_, scene_.planes) {}
 
+void require_positive_w(const DrawContext& context, const Triangle& triangle) {
+  if (std::ranges::all_of(triangle.surface, [](const SurfaceVertex& v) { return v.w > 0; })) return;
+  throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": triangle " +
+                   std::to_string(triangle.primitive) +
+                   " has a vertex with w <= 0, by which its attributes cannot be divided; give w > 0, or state "
+                   "texture_interp and color_interp affine and w 1");
+}
+
 const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {
   if (is_ring_) next_ = (next_ + 1) % entries_.size();
   Entry& entry = entries_[is_ring_ ? next_ : index];
@@ -363,7 +371,10 @@ bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::
   if (polygon.size < 3) return false;
   apply_polygon_offset(polygon, context);
   if (!projected.is_cut) {
-    out.push_back({primitive, context.command, {polygon.v[0], polygon.v[1], polygon.v[2]}, {}});
+    out.push_back({primitive,
+                   context.command,
+                   {polygon.v[0], polygon.v[1], polygon.v[2]},
+                   {polygon.surface_at(0), polygon.surface_at(1), polygon.surface_at(2)}});
     return false;
   }
   const std::int64_t area = total_area(polygon);

@@ -35,6 +35,10 @@ struct DrawContext {
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
 };
 
+/// Throws InputError for a triangle with a vertex that is not in front of the eye, as only window space can give one: its
+/// attributes cannot be divided by w.
+void require_positive_w(const DrawContext& context, const Triangle& triangle);
+
 /// A vertex that several triangles share is projected once.
 class VertexCache {
  public:

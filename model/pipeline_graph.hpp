@@ -18,6 +18,9 @@
 //                                                                              beat v  ^ answer
 //   memory:                                                                        memory
 //
+// With a texture unit, colours go to the framebuffer through it: depth_test -- write --> texture_unit ---> rop -- color -->
+// framebuffer, and it has a memory of its own: texture v ^ texel. It stands inside the framebuffer of blocks.
+//
 // A stage is a pair of files of its name: model/stages/NAME.hpp is the specification of what it computes, and
 // rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither). Of framebuffer the
 // model's part is in tile_directory.hpp and tile_cache.hpp. What an arrow carries is a packet: its fields are in
@@ -60,7 +63,9 @@ enum class Side : std::uint8_t { host, rtl, memory };
   STAGE(rop,                rtl,    false, "colour -> stored colour")                                       \
   STAGE(framebuffer,        rtl,    true,  "passed samples -> tiles on the chip, requests for memory")      \
   STAGE(memory_port,        rtl,    true,  "requests -> bursts; answers -> responses")                      \
-  STAGE(memory,             memory, false, "bursts -> the two images, answers")
+  STAGE(memory,             memory, false, "bursts -> the two images, answers")                              \
+  STAGE(texture_unit,       rtl,    true,  "passed samples -> texels at their coordinates, combined")       \
+  STAGE(texture_memory,     memory, false, "lines of texels asked for -> texels")
 
 /// ARROW(name, packet, from, via, to, flow). Via: a stage without registers that the packet passes on its way, or none.
 /// Flow: see below. The number of an elastic arrow is its bit of raster_top's stall_i, and goes into the hash of injected
@@ -82,7 +87,10 @@ enum class Side : std::uint8_t { host, rtl, memory };
   ARROW(request,    MemoryRequest,   framebuffer,    none,           memory_port,    elastic(6))           \
   ARROW(beat,       MemoryBeat,      memory_port,    none,           memory,         elastic(11))          \
   ARROW(answer,     MemoryAnswer,    memory,         none,           memory_port,    elastic(12))          \
-  ARROW(response,   MemoryResponse,  memory_port,    none,           framebuffer,    elastic(7))
+  ARROW(response,   MemoryResponse,  memory_port,    none,           framebuffer,    elastic(7))           \
+  ARROW(texture,    TextureRequest,  texture_unit,   none,           texture_memory, elastic(13))          \
+  ARROW(texel,      TexelBeat,       texture_memory, none,           texture_unit,   elastic(14))          \
+  ARROW(color,      ColorPacket,     texture_unit,   rop,            framebuffer,    handshake())
 // clang-format on
 
 /// The stall stream of the memory itself, which then takes no request: it has a number among those of the arrows.
@@ -141,6 +149,10 @@ inline constexpr std::size_t kStages = kStageInfo.size(), kArrows = kArrowInfo.s
 }
 /// Its crossings have cycles of their own, which the cycle model says.
 [[nodiscard]] constexpr bool is_boundary(Arrow arrow) { return !info(arrow).flow.rides_with; }
+/// Only hardware with a texture unit has it.
+[[nodiscard]] constexpr bool is_of_texture_unit(Arrow arrow) {
+  return info(arrow).from == Stage::texture_unit || info(arrow).to == Stage::texture_unit;
+}
 /// It can be stalled.
 [[nodiscard]] constexpr bool is_elastic(Arrow arrow) { return info(arrow).flow.stall >= 0; }
 /// Elastic and inside the RTL: raster_cosim shows its valid and ready.

@@ -9,6 +9,7 @@
 #include "packet_words.hpp"
 #include "pipeline_graph.hpp"
 #include "raster_taps.hpp"
+#include "stages/surface.hpp"
 
 namespace halfplane {
 namespace {
@@ -34,6 +35,8 @@ constexpr PlaneTable kPlaneTables[] = {{"CODE", &AttributeWidths::code, "codes"}
                                        {"RECIPROCAL", &AttributeWidths::reciprocal, "reciprocals of the area"},
                                        {"PLANE", &AttributeWidths::plane, "values and gradients"},
                                        {"LOCAL", &AttributeWidths::local, "values and gradients inside a tile"},
+                                       {"FRAGMENT", &AttributeWidths::fragment, "values of a sample"},
+                                       {"AFFINE_CODE", &AttributeWidths::affine_code, "codes that are clamped"},
                                        {"LINE", &AttributeWidths::line, "values along a line"}};
 
 std::string all_bits(Width AttributeWidths::*width) {
@@ -80,7 +83,7 @@ void print_field(std::ostream& out, const Field<Packet, Member, Place>& field, c
     out << "    logic " << (is_signed ? "signed " : "") << "[" << bits << "-1:0] " << field.name << ";\n";
   };
   if constexpr (std::is_same_v<Place, Nested>) {
-    out << "    " << Member::name << "_t " << field.name << ";\n";
+    if (packet_bits<Member>(widths) != 0) out << "    " << Member::name << "_t " << field.name << ";\n";
   } else if constexpr (std::is_enum_v<Member>) {
     out << "    " << WireEnum<Member>::name << "_t " << field.name << ";\n";
   } else if constexpr (std::is_same_v<Place, Width AttributeWidths::*>) {
@@ -104,6 +107,7 @@ void print_field(std::ostream& out, const Field<Packet, Member, Place>& field, c
 
 template <class Packet>
 void print_struct(std::ostream& out, const Widths& widths) {
+  if (packet_bits<Packet>(widths) == 0) return;
   out << "\n  typedef struct packed {\n";
   std::apply([&](const auto&... field) { (print_field(out, field, widths), ...); }, Packet::fields());
   out << "  } " << Packet::name << "_t;\n";
@@ -152,6 +156,9 @@ std::string raster_pkg(const Config& config) {
     else if (std::holds_alternative<FrameClears Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.frame_clears),
                      "0 resolve, 1 flags: " + std::string(setting.meaning));
+    else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
+      print_constant(out, constant_name(setting.key), static_cast<int>(config.texture_unit),
+                     "0 off, 1 nearest, 2 bilinear: " + std::string(setting.meaning));
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
                      "0 pipelined, 1 serial: " + std::string(setting.meaning));
@@ -169,6 +176,13 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "STAMPS_PER_ROW", widths.stamps.stamps_per_row, "stamps along the side of a tile");
   print_constant(out, "PLANES", widths.planes, "that are interpolated: depth, the colours and what follows them");
   print_constant(out, "COLOR_PLANES", widths.color_planes, "of the stored colour: plane 1 and the next ones");
+  print_constant(out, "AFFINE_PLANES", widths.affine_planes,
+                 "linear in the window: depth and colours, which come first");
+  print_constant(out, "COORDINATES", widths.coordinates, "of a texture, planes behind that of 1/w");
+  print_constant(out, "PERSPECTIVE_GUARD_BITS", kPerspectiveGuardBits, "l: fraction bits of those inside a tile");
+  print_constant(out, "COORDINATE_FRACTION", perspective_format(config).coordinate.fraction_bits,
+                 "f: of a texture coordinate, texels");
+  print_constant(out, "TEXTURE_PORT_BITS", 8 * widths.texture_port_bytes, "data of a beat of texels");
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
   print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
   print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
@@ -206,6 +220,9 @@ std::string raster_pkg(const Config& config) {
   print_struct<TileKey>(out, widths);
   print_struct<TriangleVertices>(out, widths);
   print_struct<CodeRange>(out, widths);
+  print_struct<CoordinateFrame>(out, widths);
+  print_constant(out, "COORDINATE_FRAME_BITS", packet_bits<CoordinateFrame>(widths),
+                 "of the struct above; none without a texture unit");
   print_struct<MemoryLayout>(out, widths);
   out << "\n  // Packets.";
   std::set<std::string_view> printed;

@@ -1,5 +1,5 @@
-// Conventions that can be chosen for study: never the default, and only the scalar engine has them. docs/rules.md and
-// docs/numerics.md show what each does.
+// Conventions that can be chosen for study: never the default, and only the scalar engine has them. docs/rules.md,
+// docs/numerics.md and docs/texture.md show what each does.
 #pragma once
 
 #include <array>
@@ -42,12 +42,19 @@ enum class Accumulator {
   saturate  ///< stays at the end of the range, gradients likewise
 };
 
+/// How many bits a weight of a linear texture filter has. Fewer than eight are a fault.
+enum class Weights {
+  eight,  ///< the pipeline's own
+  four    ///< rounded to sixteenths
+};
+
 /// By enumerator, as typed on the command line and printed in results.
 inline constexpr std::array<std::string_view, 3> kFillRuleNames{"top_left", "offset_point", "inclusive"};
 inline constexpr std::array<std::string_view, 4> kTraversalNames{"tiled", "bbox", "scanline", "brute"};
 inline constexpr std::array<std::string_view, 2> kClippingNames{"polygon", "homogeneous"};
 inline constexpr std::array<std::string_view, 3> kGradientsNames{"one_reciprocal", "two_reciprocals", "truncated"};
 inline constexpr std::array<std::string_view, 2> kAccumulatorNames{"wrap", "saturate"};
+inline constexpr std::array<std::string_view, 2> kWeightsNames{"8", "4"};
 
 [[nodiscard]] constexpr std::string_view name_of(FillRule rule) {
   return kFillRuleNames[static_cast<std::size_t>(rule)];
@@ -65,6 +72,10 @@ inline constexpr std::array<std::string_view, 2> kAccumulatorNames{"wrap", "satu
   return kAccumulatorNames[static_cast<std::size_t>(accumulator)];
 }
 
+[[nodiscard]] constexpr std::string_view name_of(Weights weights) {
+  return kWeightsNames[static_cast<std::size_t>(weights)];
+}
+
 /// What is studied.
 struct StudyRules {
   Traversal traversal = Traversal::tiled;
@@ -72,6 +83,7 @@ struct StudyRules {
   Clipping clipping = Clipping::polygon;  ///< the golden has both
   Gradients gradients = Gradients::one_reciprocal;
   Accumulator accumulator = Accumulator::wrap;
+  Weights weights = Weights::eight;
   bool operator==(const StudyRules&) const = default;
 };
 

@@ -35,23 +35,30 @@ Width residue(std::string name, std::string bound, int bits) {
 /// "2^B - 1", "modulo 2^(B + 1 + F)": `symbol` stands for the bits of a code.
 std::string with_symbol(std::string text, std::string_view symbol) { return text.replace(text.find('#'), 1, symbol); }
 
-/// The planes of one attribute. The numerator is twice an area in a box of `side` subpixels by 2^bits - 1 codes.
+/// The planes of one attribute. The numerator is twice an area in a box of `side` subpixels by the range of the codes.
 AttributeWidths derive_attribute(const Attribute& a, int128 side, const Widths& w, const Config& config) {
-  if (a.is_signed || !a.is_clamped || a.interpolation != Interpolation::affine || a.base != BaseVertex::canonical ||
-      a.guard_bits != config.local_guard_bits)
+  if (a.is_clamped != (a.base == BaseVertex::canonical) || (a.is_clamped && a.guard_bits != config.local_guard_bits))
     throw std::logic_error("no stage interpolates an attribute like " + std::string(a.name) + " yet");
   const std::string name(a.name);
-  const int128 max = (int128{1} << a.bits) - 1;
+  const int128 max = (int128{1} << (a.bits - (a.is_signed ? 1 : 0))) - 1, range = a.is_signed ? 2 * max : max;
   const auto bound = [&a](const char* text) { return with_symbol(text, a.symbol); };
   AttributeWidths d;
-  d.code = exact(name + " code", bound("2^# - 1"), {0, max});
-  d.delta = exact(name + " delta", "code - code", symmetric(max));
-  d.numerator = exact(name + " numerator", bound("L * (2^# - 1)"), symmetric(side * max));
-  d.reciprocal = exact(name + " reciprocal", bound("2^(m+r) / A, r = # + extra"), {0, int128{1} << a.reciprocal_bits});
+  d.code = a.is_signed ? exact(name + " code", "+-(2^N_P - 1)", symmetric(max))
+                       : exact(name + " code", bound("2^# - 1"), {0, max});
+  d.delta = exact(name + " delta", "code - code", symmetric(range));
+  d.numerator =
+      exact(name + " numerator", a.is_signed ? "L * 2 (2^N_P - 1)" : bound("L * (2^# - 1)"), symmetric(side * range));
+  d.reciprocal = exact(name + " reciprocal",
+                       a.is_clamped ? bound("2^(m+r) / A, r = # + extra") : std::string("2^(m+r) / A, r = N - 2"),
+                       {0, int128{1} << a.reciprocal_bits});
   d.product = exact(name + " product", name + " numerator * reciprocal", d.numerator.range * d.reciprocal.range);
   d.plane = modular(name + " plane", bound("modulo 2^(# + 1 + F)"), a.bits + 1 + w.plane_fraction);
   d.local = modular("local " + name, bound("modulo 2^(# + 1 + l)"), a.bits + 1 + a.guard_bits);
-  d.line = residue("line " + name, bound("modulo 2^(# + G')"), a.bits + w.line_guard_bits);
+  d.fragment = a.is_clamped ? d.code : d.local;
+  if (a.is_clamped) {
+    d.line = residue("line " + name, bound("modulo 2^(# + G')"), a.bits + w.line_guard_bits);
+    d.affine_code = d.code;
+  }
   return d;
 }
 
@@ -60,6 +67,7 @@ void derive_attributes(Widths& w, const Config& config, int128 side) {
   w.planes = plane_count(w.attributes);
   if (w.planes > kMaxPlanes) throw std::logic_error("more planes than kMaxPlanes");
   w.color_planes = color_planes(w.attributes);
+  w.affine_planes = affine_planes(w.attributes);
   w.line_guard_bits = ceil_log2(static_cast<uint128>(int128{2} * config.guard_band)) + 2;
   int r = 0;
   for (const Attribute& a : w.attributes) r = std::max(r, a.reciprocal_bits);
@@ -71,7 +79,7 @@ void derive_attributes(Widths& w, const Config& config, int128 side) {
     w.attribute[index] = derive_attribute(a, side, w, config);
     for (int i = 0; i < a.planes; ++i, ++plane) {
       w.attribute_of[plane] = static_cast<std::uint8_t>(index);
-      w.line_mask[plane] = ~0ULL >> (64 - w.attribute[index].line.bits);
+      if (a.is_clamped) w.line_mask[plane] = ~0ULL >> (64 - w.attribute[index].line.bits);
     }
     ++index;
   }
@@ -86,13 +94,33 @@ void derive_line_widths(Widths& w, const Config& config) {
   w.line_numerator = exact("line numerator", "f D + d o - 1, f < 2^s", {-pixel / 2 * side - 1, (2 * pixel - 1) * side});
   w.line_position = exact("line position", "(line numerator >> s) + d n, n columns: d n <= L^2 / 2^s",
                           (w.line_numerator.range >> w.grid_bits) + (Interval{0, side * side} >> w.grid_bits));
-  const Width& longest = widest(w, &AttributeWidths::delta);
+  const Width& longest = w.depth().delta.bits > w.color().delta.bits ? w.depth().delta : w.color().delta;
   w.line_product = exact("line product", longest.name + " * reciprocal", longest.range * w.reciprocal.range);
   w.line_stay = exact("line stay", "d, 0 <= d <= D <= L", {0, side});
   w.line_move = exact("line move", "d - D", {-side, 0});
   w.line_error = exact("line error", "d - D <= p < d", {-side, side - 1});
   w.line_count = exact("line count", "longer side of the target, less the first pixel",
                        {0, std::max(config.target_width, config.target_height) - 1});
+}
+
+/// What a texture unit takes besides planes; a bit each where there is none, and no element of the arrays over coordinates.
+void derive_texture(Widths& w, const Config& config) {
+  const bool has_unit = has_texture_planes(config);
+  w.coordinates = has_unit ? 2 : 0;
+  w.q_plane = static_cast<std::size_t>(w.affine_planes);
+  const int narrow_bits = config.perspective_mantissa_bits - 1;  // k_P
+  w.coordinate_shift = exact("coordinate shift", "c = 1 + x - sp - k_P, 0 <= x - sp <= 1 + N_P",
+                             {1 - narrow_bits, 2 + config.perspective_bits - narrow_bits});
+  w.coordinate_reach = exact("coordinate reach", "x <= 20", {0, 20});
+  w.coordinate_reference =
+      exact("coordinate reference", "u_ref: +-2^22, beyond which no clamp can tell", symmetric(int128{1} << 22));
+  w.written_color = w.stored_color;
+  if (has_unit) w.written_color = w.vertex_color;
+  w.written_color.name = "written color";
+  w.written_color.bound = "a stored colour, or with a texture unit the primitive's";
+  w.texture_port_bytes = std::min(config.memory_port_bits, 64) / 8;
+  w.texture_beats = exact("texture beats", "of a line of 4x4 texels of 4 bytes, of 16 bits at least", {0, 32});
+  w.texture_byte = exact("texture byte", "8 bits", {0, 255});
 }
 
 /// Log2 of the bytes that hold so many bits of a sample: 1, 2 or 4.
@@ -200,6 +228,7 @@ Widths derive_widths(const Config& config) {
   while (w.blocks.flag_word < 64 && 2 * w.blocks.flag_word <= w.samples * w.memory_lane.bits) w.blocks.flag_word *= 2;
   derive_line_widths(w, config);
   derive_memory(w, config);
+  derive_texture(w, config);
   return w;
 }
 
@@ -273,12 +302,15 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&primitive_id, &slot,          &tile_x,        &tile_y,       &tile_pixel,   &stamp_index,  &sample_mask,
-       &stored_color, &kind,          &flag,          &depth_func,   &cull_mode,    &pixel_x,      &pixel_y,
-       &vertex_color, &hiz_code,      &hiz_update,    &tile_plane,   &depth_source, &memory_lane,  &counter,
-       &run,          &address,       &row_stride,    &burst_length, &port_strobe,  &port_byte,    &line_numerator,
-       &line_position, &line_product, &line_error,    &line_stay,    &line_move,    &line_count});
-  add_of_attributes({&A::line});
+  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &written_color, &texture_byte, &texture_beats});
+  add({&primitive_id,  &slot,         &tile_x,     &tile_y,       &tile_pixel,   &stamp_index, &sample_mask,
+       &stored_color,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,     &pixel_y,
+       &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane, &counter,
+       &run,           &address,      &row_stride, &burst_length, &port_strobe,  &port_byte,   &line_numerator,
+       &line_position, &line_product, &line_error, &line_stay,    &line_move,    &line_count});
+  for (int a = 0; a < attributes.attributes; ++a)
+    if (attributes.attribute[static_cast<std::size_t>(a)].is_clamped)
+      list.push_back(&attribute[static_cast<std::size_t>(a)].line);
   return list;
 }
 

@@ -45,7 +45,9 @@ struct Width {
 
 /// What each plane of an attribute takes.
 struct AttributeWidths {
-  Width code, delta, numerator, reciprocal, product, plane, local, line;
+  Width code, delta, numerator, reciprocal, product, plane, local;
+  Width fragment;           ///< what a fragment has of it: the code, or without a clamp the local value
+  Width line, affine_code;  ///< along a line, and a code that is clamped; no bits where the attribute has none
 
   /// r: significant bits of the reciprocal.
   [[nodiscard]] int reciprocal_bits() const { return reciprocal.bits - 1; }
@@ -86,6 +88,9 @@ struct Widths {
   MemoryGrid memory;
   int port_bytes = 0;                    ///< of a beat on the memory port
   int planes = 0;                        ///< of all attributes together
+  int affine_planes = 0;                 ///< depth and colour, which come first
+  int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
+  std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow
   int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
   int samples = 0;                       ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
@@ -106,6 +111,9 @@ struct Widths {
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane,
       depth_source, memory_lane, counter;
   // The memory port.
+  Width coordinate_shift, coordinate_reach, coordinate_reference;  // of the texture unit
+  Width written_color, texture_byte, texture_beats;
+  int texture_port_bytes = 0;  ///< of a beat of the texture unit's port
   Width run, address, row_stride, burst_length, port_strobe, port_byte;
   // Lines.
   Width line_numerator, line_position, line_product;   // line_setup

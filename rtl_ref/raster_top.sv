@@ -6,6 +6,8 @@
 //                                                                                                               ^ v
 //                                                                                                             memory
 //
+// With a texture unit, which stands inside the framebuffer of blocks, a second memory answers it.
+//
 // Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i holds
 // arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
 // finds them. Nothing in here depends on when packets come, only on what they say.
@@ -41,6 +43,16 @@ module raster_top (
     input  logic                       answer_valid_i,
     output logic                       answer_ready_o,
     input  raster_pkg::memory_answer_t answer_i,
+
+    // To the memory of textures: reads of lines, answered beat by beat in their order
+    /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
+    output logic                         texture_valid_o,
+    input  logic                         texture_ready_i,
+    output raster_pkg::texture_request_t texture_o,
+    input  logic                         texel_valid_i,
+    output logic                         texel_ready_o,
+    input  raster_pkg::texel_beat_t      texel_i,
+    /* verilator lint_on UNUSEDSIGNAL */
 
     // The counters of one cycle: while hold is high they stay, to be read word by word, and counting goes on
     input  logic                        counters_hold_i,
@@ -284,6 +296,13 @@ module raster_top (
   logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth;
   logic [COUNT-1:0]                                           covered, passed, written;
   logic [1:0]                                                 fill, evict, clear;
+  /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
+  logic                                                       color_valid, color_ready;
+  raster_pkg::color_packet_t                                  color_data;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic                                                       texture_offered, texel_accepted;
+  assign texture_valid_o = texture_offered && !stall_i[raster_pkg::STALL_TEXTURE];
+  assign texel_ready_o   = texel_accepted && !stall_i[raster_pkg::STALL_TEXEL];
   logic                                                       framebuffer_idle, port_idle;
   depth_test u_depth_test (
       .clk_i,
@@ -333,11 +352,18 @@ module raster_top (
           .moves_tiles_o   (moves_tiles),
           .idle_o          (framebuffer_idle)
       );
+      assign color_valid     = 1'b0;
+      assign color_ready     = 1'b0;
+      assign color_data      = '0;
+      assign texture_offered = 1'b0;
+      assign texture_o       = '0;
+      assign texel_accepted  = 1'b0;
     end else begin : gen_blocks
       assign access_ready = 1'b1;
 
       block_cache u_framebuffer (
           .clk_i,
+          .power_on_ni,
           .rst_ni,
           .fragment_valid_i(fragment_valid),
           .fragment_ready_o(fragment_accepted),
@@ -353,6 +379,15 @@ module raster_top (
           .response_valid_i(response_valid),
           .response_ready_o(response_accepted),
           .response_i      (response_data),
+          .texture_valid_o (texture_offered),
+          .texture_ready_i (texture_ready_i && !stall_i[raster_pkg::STALL_TEXTURE]),
+          .texture_o,
+          .texel_valid_i   (texel_valid_i && !stall_i[raster_pkg::STALL_TEXEL]),
+          .texel_ready_o   (texel_accepted),
+          .texel_i,
+          .color_valid_o   (color_valid),
+          .color_ready_o   (color_ready),
+          .color_o         (color_data),
           .fill_o          (fill),
           .evict_o         (evict),
           .clear_o         (clear),

@@ -50,12 +50,13 @@ TILES = tuple((name, number, 'embedded') for name, number in
 BLOCKS = (('CACHE_KIND', 1), ('CACHE_LINES', 2), ('LINE_X_BITS', 1), ('LINE_Y_BITS', 0), ('CACHE_QUEUE', 4), ('CACHE_VICTIMS', 2),
           ('BLOCK_SIDE', 2), ('BLOCKS_PER_ROW', 1), ('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2), ('FLAG_WORD', 2),
           ('TILES_X', 2), ('TILES_Y', 2), ('TILE_X_BITS', 1), ('TILE_Y_BITS', 1), ('PRIMITIVE_ID_BITS', 1), ('COLOR_FORMAT', 1),
-          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('ALL_CODE_BITS', 2), ('MEMORY_LANE_BITS', 2),
+          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('WRITTEN_COLOR_BITS', 1),
+          ('ALL_CODE_BITS', 2), ('ALL_FRAGMENT_BITS', 2), ('MEMORY_LANE_BITS', 2),
           ('FRAGMENT_PACKET_BITS', 18, 'tiny'), ('FRAGMENT_PACKET_BITS', 27, 'embedded'))
 # The same with two by two of them in a tile, and flags that outlive a flush.
 BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAMP_INDEX_BITS', 4), ('FRAME_CLEARS', 1),
                    ('FRAGMENT_PACKET_BITS', 20, 'tiny'), ('FRAGMENT_PACKET_BITS', 29, 'embedded'))
-QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*')
+QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*', '*colored_stamps*')
 
 PROOFS = [
     Proof('edge_offset_step', 'a', 'lib/edge_offset.sv', 'value + x step_x + y step_y', is_combinational=True,

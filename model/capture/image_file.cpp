@@ -20,12 +20,13 @@ TexelImage read_image(std::string_view bytes, const std::string& what) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const auto size = static_cast<int>(std::min<std::size_t>(bytes.size(), 1U << 30));
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
-    throw InputError(what + ": no PNG or JPEG image (" + stbi_failure_reason() + ")");
+    throw InputError(what + ": no PNG or JPEG image (" + stbi_failure_reason() + "); give one");
   if (width > kLargestTexture || height > kLargestTexture)
     throw InputError(what + ": " + std::to_string(width) + "x" + std::to_string(height) +
                      " texels; give an image of at most 4096x4096");
   stbi_uc* texels = stbi_load_from_memory(data, size, &width, &height, &channels, 4);
-  if (texels == nullptr) throw InputError(what + ": the image is damaged (" + stbi_failure_reason() + ")");
+  if (texels == nullptr)
+    throw InputError(what + ": the image is damaged (" + stbi_failure_reason() + "); save it again");
   TexelImage image{width, height, {}};
   const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   image.texel.resize(count);

@@ -42,11 +42,7 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
                                                        const TriangleSetup& setup, const Widths& widths) {
   const State& state = context.state;
   if (!has_surface(state)) return std::nullopt;
-  if (!has_positive_w(triangle))
-    throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": triangle " +
-                     std::to_string(triangle.primitive) +
-                     " has a vertex with w <= 0, by which its attributes cannot be divided; give w > 0, or state "
-                     "texture_interp and color_interp affine and w 1");
+  require_positive_w(context, triangle);
   const Texture* texture = state.texture ? &context.scene.textures[*state.texture] : nullptr;
   return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.config, widths);
 }
@@ -83,7 +79,7 @@ inline void tap_line(const LinePrimitive& line, const Widths& widths, std::uint3
     };
     fragment.x = pixel.x;
     fragment.y = pixel.y;
-    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
       fragment.plane[p] = sample(state.value[p], pixel.code[p]);
     tap(fragment);
     if (state.remaining == 0) return;

@@ -13,6 +13,8 @@
 #include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
 #include "../stages/rop.hpp"
+#include "../stages/surface.hpp"
+#include "../stages/texture_packets.hpp"
 #include "../stages/triangle_setup.hpp"
 
 namespace halfplane {
@@ -125,6 +127,7 @@ HardwareModel::HardwareModel(const Config& config, PacketSink& sink, TileMemory 
       memory_(std::move(memory)),
       port_(widths_, memory_.layout()) {
   if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
+  if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths_), perspective_format(config));
 }
 
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
@@ -173,6 +176,7 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     case PrimitiveKind::flush:
       std::visit([&](auto& cache) { cache.flush(fragment, *this, counters_); }, cache_);
       return;
+    case PrimitiveKind::texture: texture_->set(TextureState::unpack(texture_word(fragment, widths_))); return;
     case PrimitiveKind::triangle:
     case PrimitiveKind::rectangle:
     case PrimitiveKind::point:
@@ -180,8 +184,9 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   }
   if (fragment.mask.any()) {
     const auto stored = std::visit([&](auto& cache) { return cache.access(fragment, *this, counters_); }, cache_);
-    const WritePacket packet = rop(fragment, depth_test(fragment, stored, widths_), config_, widths_);
+    WritePacket packet = rop(fragment, depth_test(fragment, stored, widths_), config_, widths_);
     sink_.take(on<Arrow::write>, packet);
+    if (texture_) texture(fragment, packet);
     std::visit([&](auto& cache) { cache.write(fragment, packet); }, cache_);
     if (fragment.kind != PrimitiveKind::line) visit_.add(fragment, packet.passed, widths_);
     if (is_counted(fragment.kind)) {
@@ -197,6 +202,39 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     hiz_.retire(retired);
     visit_ = {};
   }
+}
+
+/// texture_unit, and rop behind it: the colours of `packet` become what is stored.
+void HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
+  std::array<TextureSample, kMaxSamples> sample;
+  std::array<Texel, kMaxSamples> color;
+  const SampleMask live = packet.write_color;
+  live.for_each([&](std::size_t s) {
+    sample[s] = texture_sample(fragment.code[s], widths_);
+    for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(packet.color[s] >> 8 * c);
+  });
+  if (texture_->is_textured(fragment.kind == PrimitiveKind::triangle, live))
+    texture_->take(live, sample, texture_frame(fragment.coordinates), color,
+                   [this](std::uint32_t address, int beats) { return read_texels(address, beats); });
+  packet.color = {};
+  live.for_each([&](std::size_t s) {
+    packet.color[s] = pack_color(config_.color_format, {color[s][0], color[s][1], color[s][2], color[s][3]});
+  });
+  if (live.any()) sink_.take(on<Arrow::color>, ColorPacket{live, packet.color});
+}
+
+/// A line of texels.
+TextureLine HardwareModel::read_texels(std::uint32_t address, int beats) {
+  sink_.take(on<Arrow::texture>, TextureRequest{address, static_cast<std::uint16_t>(beats)});
+  TextureLine line{};
+  const auto bytes = static_cast<std::size_t>(widths_.texture_port_bytes);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(beats); ++n) {
+    TexelBeat beat;
+    texels_.read(address + static_cast<std::uint32_t>(n * bytes), std::span(beat.data).first(bytes));
+    std::copy_n(beat.data.begin(), bytes, line.begin() + static_cast<std::ptrdiff_t>(n * bytes));
+    sink_.take(on<Arrow::texel>, beat);
+  }
+  return line;
 }
 
 void HardwareModel::request(const MemoryRequest& request) {
@@ -261,6 +299,7 @@ Rendering render_hardware(const Scene& scene, const Config& config, const Render
   PacketSink nobody;
   HostStream host(scene, config);
   HardwareModel hardware(config, nobody);
+  hardware.hold_textures(scene);
   DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {

@@ -14,7 +14,9 @@
 #include "../stages/depth_test.hpp"
 #include "../stages/hiz.hpp"
 #include "../stages/memory_port.hpp"
+#include "../stages/texture_unit.hpp"
 #include "../stages/tile_cache.hpp"
+#include "../texture_memory.hpp"
 #include "render.hpp"
 
 namespace halfplane {
@@ -71,6 +73,8 @@ class HardwareModel final : private MemoryPort {
   HardwareModel(const Config& config, PacketSink& sink);
   /// With a memory that may hold something already.
   HardwareModel(const Config& config, PacketSink& sink, TileMemory memory);
+  /// From now on the memory of textures holds those of `scene`.
+  void hold_textures(const Scene& scene) { texels_ = TextureMemory(scene); }
   /// One primitive, to its last write: every packet that follows from it. `line`: there if and only if its kind is line.
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);
   [[nodiscard]] const CounterPacket& counters() const { return counters_; }
@@ -81,6 +85,8 @@ class HardwareModel final : private MemoryPort {
   void shade(const FragmentPacket& fragment);
   void request(const MemoryRequest& request) override;
   const MemoryResponse& response() override;
+  void texture(const FragmentPacket& fragment, WritePacket& packet);
+  [[nodiscard]] TextureLine read_texels(std::uint32_t address, int beats);
 
   Config config_;
   Widths widths_;
@@ -90,6 +96,8 @@ class HardwareModel final : private MemoryPort {
   TileVisit visit_;  ///< what the stamps of the current tile visit have done so far
   std::variant<TileCache, BlockCache> cache_;
   TileMemory memory_;
+  std::optional<TextureUnit> texture_;
+  TextureMemory texels_;
   PortStage port_;
   std::deque<MemoryResponse> responses_;  ///< to what has been asked for
   MemoryResponse response_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "../rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
+#include "../stages/surface.hpp"
 
 namespace halfplane {
 
@@ -39,6 +41,7 @@ struct TappedFragment {
   int x = 0, y = 0;                              ///< pixels
   int guard_bits = 0;                            ///< l of its planes; of a line's G'
   PerPlane<PlaneSample> plane{};
+  std::optional<SurfaceSample> surface{};  ///< of triangles whose colour is more than their planes
 };
 
 /// Called for every fragment in program order.

@@ -41,9 +41,17 @@ struct NumberedTriangle {
 void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Surface* surface, const Widths& widths,
                   const RenderOptions& options, const NumberedTriangle& t, int x, int y, Rendering& rendering) {
   const Interpolated value = interpolate_by_rules(setup, options.rules, widths, x, y);
-  if (options.fragment_tap)
-    options.fragment_tap(tapped(value, t.triangle, t.index, context.config.local_guard_bits, x, y));
-  const auto color = [&] { return surface != nullptr ? surface_channels(*surface, x, y) : color_channels(value.code); };
+  const int weight_bits = options.rules.weights == Weights::four ? 4 : kTexelFraction;
+  if (options.fragment_tap) {
+    TappedFragment fragment = tapped(value, t.triangle, t.index, context.config.local_guard_bits, x, y);
+    if (surface != nullptr) fragment.surface = surface->at(x, y, weight_bits);
+    options.fragment_tap(fragment);
+  }
+  const auto color = [&]() -> std::array<std::uint32_t, 4> {
+    if (surface == nullptr) return color_channels(value.code);
+    const Texel c = surface->at(x, y, weight_bits).color;
+    return {c[0], c[1], c[2], c[3]};
+  };
   shade_sample(context, options, x, y, value.code[kDepthPlane], color, setup.primitive,
                static_cast<std::int32_t>(t.index), rendering);
 }
@@ -188,8 +196,8 @@ void check_options(const RenderOptions& options) {
   if (rules.clipping == Clipping::polygon) return;
   if (rules != StudyRules{.clipping = rules.clipping})
     throw InputError(
-        "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients and "
-        "--accumulator");
+        "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients, "
+        "--accumulator and --weights");
   if (options.keeps_triangles())
     throw InputError("--clipping homogeneous has no snapped triangles to keep: use --clipping polygon");
 }

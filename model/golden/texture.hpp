@@ -28,7 +28,10 @@ using Color = std::array<double, 4>;
 
 /// The texel that a whole number stands for, `size` of them along the axis.
 [[nodiscard]] inline int wrapped(double texel, int size, TextureWrap wrap) {
-  const auto modulo = [texel](double period) { return texel - std::floor(texel / period) * period; };
+  const auto modulo = [texel](double period) {
+    const double rest = std::fmod(texel, period);  // exact, as a quotient would not be
+    return rest < 0 ? rest + period : rest;
+  };
   if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(texel, 0.0, static_cast<double>(size - 1)));
   if (wrap == TextureWrap::repeat) return static_cast<int>(modulo(size));
   const int i = static_cast<int>(modulo(2.0 * size));
@@ -48,21 +51,34 @@ using Color = std::array<double, 4>;
   return c;
 }
 
+/// Texels of level 0.
+struct TexelPlace {
+  double x = 0, y = 0;
+};
+
 /// One level: its nearest texel, or the four around the place by their distances.
-[[nodiscard]] inline Color filtered_level(const Texture& texture, const State& state, const TextureCoordinates& at,
-                                          int n, bool is_linear) {
+[[nodiscard]] inline Color filtered_level(const Texture& texture, const State& state, const TexelPlace& at, int n,
+                                          bool is_linear) {
   const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
-  const double half = is_linear ? 0.5 : 0.0, x = at.u * level.width - half, y = at.v * level.height - half;
+  const auto on_level = [is_linear](double texels, int size, int whole) {
+    const double place = texels * size / whole - (is_linear ? 0.5 : 0.0);
+    return std::isfinite(place) ? place : 0;  // what has left binary64 is nowhere
+  };
+  const double x = on_level(at.x, level.width, texture.width()), y = on_level(at.y, level.height, texture.height());
   const double left = std::floor(x), top = std::floor(y);
   const auto texel = [&](int i, int j) { return texel_at(texture, state, n, left + i, top + j); };
   if (!is_linear) return texel(0, 0);
   return between(between(texel(0, 0), texel(1, 0), x - left), between(texel(0, 1), texel(1, 1), x - left), y - top);
 }
 
-/// The texture's colour at a sample.
-[[nodiscard]] inline Color filtered(const Texture& texture, const State& state, const TextureCoordinates& at) {
+/// A level of detail with bias and bounds.
+[[nodiscard]] inline double bounded_level(const State& state, double lod) {
   const auto [bias, least, largest] = state.texture_lod;
-  const double lod = std::clamp(level_of_detail(texture, at) + bias, least, std::max(least, largest));
+  return std::clamp(lod + bias, least, std::max(least, largest));
+}
+
+/// The texture's colour at a place; `lod`: with bias and bounds.
+[[nodiscard]] inline Color filtered(const Texture& texture, const State& state, const TexelPlace& at, double lod) {
   const TextureMin min = state.texture_min;
   const bool is_nearest = min == TextureMin::nearest || min == TextureMin::nearest_mipmap_nearest ||
                           min == TextureMin::nearest_mipmap_linear;
@@ -77,6 +93,12 @@ using Color = std::array<double, 4>;
   const double lower = std::floor(lod);
   return between(filtered_level(texture, state, at, held(lower), !is_nearest),
                  filtered_level(texture, state, at, held(lower + 1), !is_nearest), lod - lower);
+}
+
+/// The texture's colour at a sample.
+[[nodiscard]] inline Color filtered(const Texture& texture, const State& state, const TextureCoordinates& at) {
+  return filtered(texture, state, TexelPlace{at.u * texture.width(), at.v * texture.height()},
+                  bounded_level(state, level_of_detail(texture, at)));
 }
 
 /// The primitive's colour and the texture's together: OpenGL ES 1.1's table 3.17, alpha as it is where the format has none.

@@ -44,6 +44,7 @@ ContextPacket make_context(const SetupPacket& setup, const Widths& widths) {
   ContextPacket context;
   context.state = setup.state;
   context.range = setup.range;
+  context.coordinates = setup.coordinates;
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const Width &plane = widths.of_plane(p).plane, &local = widths.of_plane(p).local;
     const auto per_pixel = [&](std::int64_t step) {  // rounded

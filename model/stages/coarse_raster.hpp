@@ -182,7 +182,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
     emit(packet);
   };
   const PrimitiveKind kind = setup.kind;
-  if (kind == PrimitiveKind::fast_clear || kind == PrimitiveKind::flush || kind == PrimitiveKind::line) {
+  if (is_token(kind)) {
     if (kind == PrimitiveKind::fast_clear && setup.state.depth_write)
       hiz.clear(last_x, last_y, setup.range.high[kDepthPlane]);
     if (kind == PrimitiveKind::line) hiz.pass_line(setup);

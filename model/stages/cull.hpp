@@ -129,6 +129,7 @@ template <class Box>
     out.kind = in.kind;
     out.primitive_id = in.primitive_id;
     out.state = in.state;
+    out.coordinates = in.coordinates;
     out.box = box;
     return out;
   };

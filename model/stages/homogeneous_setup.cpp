@@ -175,7 +175,7 @@ void set_perspective(HomogeneousSetup& setup, const Lines& e, const Corners& v, 
     return LinearFunction{round(line.a), round(line.b), round(line.at(box.left + 0.5, box.top + 0.5))};
   };
   setup.weight = scaled([](const Corner&) { return 1.0; });
-  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(frame.widths.planes); ++p)
+  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(frame.widths.affine_planes); ++p)
     setup.code_weight[p] = scaled([p](const Corner& corner) { return static_cast<double>(corner.code[p]); });
 }
 
@@ -183,7 +183,7 @@ void set_perspective(HomogeneousSetup& setup, const Lines& e, const Corners& v, 
 void set_attributes(HomogeneousSetup& setup, const Lines& e, const Corners& v, double determinant,
                     const HomogeneousFrame& frame) {
   TriangleSetup& triangle = setup.triangle;
-  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(frame.widths.planes); ++p) {
+  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(frame.widths.affine_planes); ++p) {
     std::tie(triangle.range.low[p], triangle.range.high[p]) = std::minmax({v[0].code[p], v[1].code[p], v[2].code[p]});
     if (!setup.is_perspective)
       triangle.plane[p] = to_plane(blend(e, v, [&](const Corner& c) { return c.w / determinant * c.code[p]; }),
@@ -246,7 +246,7 @@ Interpolated interpolate_at(const HomogeneousSetup& setup, const Widths& widths,
   if (!setup.is_perspective) return result;
   const int i = x - triangle.left, j = y - triangle.top;
   const std::int64_t weight = std::max<std::int64_t>(1, setup.weight.at(i, j));  // positive but for its rounding
-  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.planes); ++p) {
+  for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
     const std::int64_t code = std::max<std::int64_t>(0, setup.code_weight[p].at(i, j));
     result.code[p] = static_cast<std::uint32_t>(
         std::clamp<std::int64_t>((2 * code + weight) / (2 * weight), triangle.range.low[p], triangle.range.high[p]));

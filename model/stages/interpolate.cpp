@@ -34,7 +34,7 @@ PlaneSample plane_at(const TriangleSetup& setup, std::size_t p, const Widths& wi
 Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y) {
   const PixelPlace place = place_of(setup, widths, x, y);
   Interpolated result;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
     const PlaneSample sample = sample_at(setup, p, widths, place);
     result.unrounded[p] = sample.unrounded;
     result.code[p] = sample.code;
@@ -51,6 +51,7 @@ FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& contex
   fragment.stamp = stamp.stamp;
   fragment.mask = stamp.mask;
   fragment.state = context.state;
+  fragment.coordinates = context.coordinates;
   const PixelOffset origin = widths.stamps.origin_of(stamp.stamp);
   const int half_tile = 1 << (widths.tile_shift - 1);
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
@@ -61,6 +62,10 @@ FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& contex
       const std::uint64_t value = static_cast<std::uint64_t>(stamp.anchor[p]) +
                                   i * static_cast<std::uint64_t>(context.step_x[p]) +
                                   j * static_cast<std::uint64_t>(context.step_y[p]);
+      if (static_cast<int>(p) >= widths.affine_planes) {  // Q and P as they are: the texture unit divides
+        fragment.code[s][p] = static_cast<std::uint32_t>(wrap_unsigned(value, widths.of_plane(p).local.bits));
+        continue;
+      }
       const LocalFormat<std::uint64_t> format(widths.of_plane(p));
       fragment.code[s][p] =
           static_cast<std::uint32_t>(decode<std::int64_t>(value, format, context.range.low[p], context.range.high[p]));

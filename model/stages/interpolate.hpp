@@ -68,13 +68,13 @@ struct PixelPlace {
 };
 [[nodiscard]] PixelPlace place_of(const TriangleSetup& setup, const Widths& widths, int x, int y);
 
-/// Every plane at one pixel.
+/// Every affine plane at one pixel.
 struct Interpolated {
   PerPlane<std::int64_t> unrounded{};  ///< as in PlaneSample
   PerPlane<std::uint32_t> code{};
 };
 
-/// Plane `p` of a triangle at pixel (x, y), and all of them: the specification that every engine must match.
+/// Affine plane `p` of a triangle at pixel (x, y), and all of them: the specification that every engine must match.
 [[nodiscard]] PlaneSample plane_at(const TriangleSetup& setup, std::size_t p, const Widths& widths, int x, int y);
 [[nodiscard]] Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, int x, int y);
 

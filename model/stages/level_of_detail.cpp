@@ -47,12 +47,15 @@ LodLine to_line(double value, double slope, int position, double scale, int grid
 LodSetup setup_lod(const std::array<SnappedVertex, 3>& v, std::int64_t area, const QCodes& q,
                    const std::array<std::array<double, 3>, 2>& uv, int guard_bits, int grid_bits) {
   const std::array<Numerators, 2> n{numerators(v, q, uv[0]), numerators(v, q, uv[1])};
-  double largest = 0;
+  double largest = 0, sum = 0;
   for (const Numerators& of : n)
-    for (std::size_t i = 0; i < 3; ++i) largest = std::max({largest, std::abs(of.row[i]), std::abs(of.column[i])});
+    for (std::size_t i = 0; i < 3; ++i) {
+      largest = std::max({largest, std::abs(of.row[i]), std::abs(of.column[i])});
+      sum += std::abs(of.row[i]) + std::abs(of.column[i]);
+    }
   LodSetup setup;
-  if (!(largest > 0)) {  // one texel all over
-    setup.offset = -(64 << kLodFraction);
+  if (!std::isfinite(sum) || largest == 0) {  // more texels than binary64 counts, or one all over
+    setup.offset = (largest == 0 ? -64 : 64) * (1 << kLodFraction);
     return setup;
   }
   // N a pixel is N a subpixel times 2^s.

@@ -26,7 +26,7 @@ struct LineState {
 /// The pixel that the registers stand for.
 [[nodiscard]] inline LinePixel pixel_of(const LineState& state, const LineSetup& line, const Widths& widths) {
   LinePixel pixel{line.primitive_id, state.x, state.y, state.remaining == 0, {}};
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
     pixel.code[p] =
         state.is_before_start ? line.start[p] : static_cast<std::uint32_t>(state.value[p] >> widths.line_guard_bits);
   return pixel;
@@ -40,7 +40,7 @@ inline void advance(LineState& state, const LineSetup& line, const Widths& width
   state.error += moves ? line.step_move : line.step_stay;
   --state.remaining;
   state.is_before_start = false;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
     state.value[p] = (state.value[p] + line.step[p]) & widths.line_mask[p];
 }
 

@@ -182,7 +182,7 @@ std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVer
 
   Slope slope{{}, q.offset + (steps.low << s), s, widths.line_guard_bits};
   slope.reciprocal = reciprocal(line.a1 - line.a0, widths.reciprocal_bits());
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
     setup_attribute(start.code[p], end.code[p], slope, widths.of_plane(p).line.bits, out.value[p], out.step[p]);
   out.start = start.code;
   return out;

@@ -122,16 +122,15 @@ PixelReciprocal divide_by_q(std::uint64_t q, const PerspectiveFormat& format) {
   return {e, mantissa_reciprocal(static_cast<std::uint32_t>(mantissa), k)};
 }
 
-std::int64_t narrow_p(std::int64_t p, const PixelReciprocal& q, const OverW& over_w, const OverWFormat& attribute) {
+std::int64_t narrow_p(std::int64_t p, const PixelReciprocal& q, const OverWScale& scale, const OverWFormat& attribute) {
   const std::int64_t limit = std::int64_t{1} << attribute.narrow_bits;
-  const int drop = q.exponent + 1 + over_w.reach - over_w.exponent - attribute.narrow_bits;
-  return std::clamp(round_shift(p, drop), -limit, limit - 1);
+  return std::clamp(round_shift(p, q.exponent + scale.shift), -limit, limit - 1);
 }
 
-std::int64_t over_q(std::int64_t p, const PixelReciprocal& q, const OverW& over_w, const OverWFormat& attribute,
+std::int64_t over_q(std::int64_t p, const PixelReciprocal& q, const OverWScale& scale, const OverWFormat& attribute,
                     const PerspectiveFormat& format) {
-  const int drop = format.mantissa_bits + attribute.narrow_bits - 1 - over_w.reach - attribute.fraction_bits;
-  return round_shift(narrow_p(p, q, over_w, attribute) * q.reciprocal, drop);
+  const int drop = format.mantissa_bits + attribute.narrow_bits - 1 - scale.reach - attribute.fraction_bits;
+  return round_shift(narrow_p(p, q, scale, attribute) * q.reciprocal, drop);
 }
 
 }  // namespace halfplane

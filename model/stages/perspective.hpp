@@ -139,13 +139,30 @@ struct PixelReciprocal {
 /// Precondition: q > 0, as at every covered sample.
 [[nodiscard]] PixelReciprocal divide_by_q(std::uint64_t q, const PerspectiveFormat& format);
 
+/// Where an attribute's binary points are, as hardware gets it: c = 1 + x - sp - k_P, and x. P is narrowed by 2^-(e+c);
+/// c >= 1 - k_P where P has the bits of Q, as coordinates have.
+struct OverWScale {
+  int shift = 0, reach = 0;
+};
+[[nodiscard]] constexpr OverWScale over_w_scale(const OverW& over_w, const OverWFormat& attribute) {
+  return {1 + over_w.reach - over_w.exponent - attribute.narrow_bits, over_w.reach};
+}
+
 /// Pn: P normalised by Q, in [-2^k_P, 2^k_P). Only where |u'| exceeds 2^x is anything held.
-[[nodiscard]] std::int64_t narrow_p(std::int64_t p, const PixelReciprocal& q, const OverW& over_w,
+[[nodiscard]] std::int64_t narrow_p(std::int64_t p, const PixelReciprocal& q, const OverWScale& scale,
                                     const OverWFormat& attribute);
+[[nodiscard]] inline std::int64_t narrow_p(std::int64_t p, const PixelReciprocal& q, const OverW& over_w,
+                                           const OverWFormat& attribute) {
+  return narrow_p(p, q, over_w_scale(over_w, attribute), attribute);
+}
 
 /// U: the attribute less u_ref, in 2^-f. |U| <= 2^(x+1+f).
-[[nodiscard]] std::int64_t over_q(std::int64_t p, const PixelReciprocal& q, const OverW& over_w,
+[[nodiscard]] std::int64_t over_q(std::int64_t p, const PixelReciprocal& q, const OverWScale& scale,
                                   const OverWFormat& attribute, const PerspectiveFormat& format);
+[[nodiscard]] inline std::int64_t over_q(std::int64_t p, const PixelReciprocal& q, const OverW& over_w,
+                                         const OverWFormat& attribute, const PerspectiveFormat& format) {
+  return over_q(p, q, over_w_scale(over_w, attribute), attribute, format);
+}
 
 /// A colour's code, held to the range of the vertices' codes.
 [[nodiscard]] constexpr std::uint32_t color_over_q(std::int64_t u, std::uint32_t low, std::uint32_t high) {

@@ -94,7 +94,7 @@ void set_planes(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, con
                                ? std::min(config.local_guard_bits + s, widths.plane_fraction)
                                : widths.plane_fraction,
                    .rules = rules};
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
     const AttributeWidths& attribute = widths.of_plane(p);
     set_reciprocals(frame, setup.area, attribute.reciprocal_bits());
     setup.plane[p] = plane_by_rules(v[0].code[p], v[1].code[p], v[2].code[p], frame, attribute.plane.bits);
@@ -105,7 +105,7 @@ Interpolated interpolate_by_rules(const TriangleSetup& setup, const StudyRules& 
                                   int y) {
   if (rules.accumulator == Accumulator::wrap) return interpolate_at(setup, widths, x, y);
   Interpolated result;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
     const PlaneSample sample = saturated_at(setup, p, widths, x, y);
     result.unrounded[p] = sample.unrounded;
     result.code[p] = sample.code;

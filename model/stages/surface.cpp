@@ -1,6 +1,7 @@
 #include "surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cull.hpp"
 
@@ -8,13 +9,33 @@ namespace halfplane {
 
 PerspectiveFormat perspective_format(const Config& config) {
   const int bits = config.perspective_bits, mantissa = config.perspective_mantissa_bits;
-  constexpr int kGuardBits = 4, kShortMantissa = 16;
+  constexpr int kShortMantissa = 16;
   return {bits,
-          kGuardBits,
+          kPerspectiveGuardBits,
           mantissa,
-          bits - 2,
+          bits - kPerspectiveReciprocalLess,
           {bits, mantissa - 1, mantissa < kShortMantissa ? 6 : 8, true},
           {std::min(bits, 18), 13, 0, false}};
+}
+
+TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surface, const State& state,
+                                       const Texture& texture, const PerspectiveFormat& format) {
+  const bool is_affine = state.texture_interp == TextureInterp::affine;
+  TextureCoordinates result;
+  std::array<double, 3> w{1, 1, 1};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!is_affine) w[i] = surface[i].w;
+    result.texels[0][i] = surface[i].u * texture.width();
+    result.texels[1][i] = surface[i].v * texture.height();
+  }
+  result.q = quantize_q(w, format.q_bits);
+  const TextureAxes axes{TextureAxis{texture.width(), state.texture_wrap[0]},
+                         TextureAxis{texture.height(), state.texture_wrap[1]}};
+  for (const std::size_t axis : {0U, 1U}) {
+    result.over_w[axis] = quantize_over_w(result.texels[axis], result.q, format.coordinate);
+    result.reference[axis] = wrapped_reference(result.over_w[axis].reference, axes[axis]);
+  }
+  return result;
 }
 
 Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
@@ -25,7 +46,7 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
   if (state.color_interp == ColorInterp::perspective) {
     std::array<double, 3> w{};
     for (std::size_t i = 0; i < 3; ++i) w[i] = triangle.surface[order_[i]].w;
-    color_divisor_ = make_divisor(w);
+    color_divisor_ = make_divisor(quantize_q(w, format_.q_bits));
     for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c) {
       const std::size_t p = kColorPlane + c;
       const std::array value{static_cast<double>(vertex_[0].code[p]), static_cast<double>(vertex_[1].code[p]),
@@ -39,26 +60,20 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
 void Surface::set_texture(const Triangle& triangle, const State& state, const Texture& texture) {
   sampler_ = Sampler(texture, state);
   combine_ = state.texture_combine;
-  const bool is_affine = state.texture_interp == TextureInterp::affine;
-  std::array<double, 3> w{1, 1, 1};
-  std::array<std::array<double, 3>, 2> uv{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const SurfaceVertex& vertex = triangle.surface[order_[i]];
-    if (!is_affine) w[i] = vertex.w;
-    uv[0][i] = vertex.u * texture.width();
-    uv[1][i] = vertex.v * texture.height();
-  }
-  texture_divisor_ = make_divisor(w);
-  for (const std::size_t axis : {0U, 1U}) {
-    coordinate_[axis] = make_attribute(uv[axis], *texture_divisor_, format_.coordinate);
-    reference_[axis] = wrapped_reference(coordinate_[axis].over_w.reference, sampler_.axes[axis]);
-  }
-  lod_ = setup_lod(vertex_, setup_.area, texture_divisor_->q, uv, format_.guard_bits, widths_.grid_bits);
+  TextureCoordinates coordinates = texture_coordinates(
+      {triangle.surface[order_[0]], triangle.surface[order_[1]], triangle.surface[order_[2]]}, state, texture, format_);
+  texture_divisor_ = make_divisor(coordinates.q);
+  for (const std::size_t axis : {0U, 1U})
+    coordinate_[axis] = {coordinates.over_w[axis],
+                         setup_over_w(coordinates.over_w[axis], texture_divisor_->frame, format_.coordinate, widths_)};
+  reference_ = coordinates.reference;
+  lod_ =
+      setup_lod(vertex_, setup_.area, texture_divisor_->q, coordinates.texels, format_.guard_bits, widths_.grid_bits);
 }
 
-Surface::Divisor Surface::make_divisor(const std::array<double, 3>& w) const {
+Surface::Divisor Surface::make_divisor(const QCodes& q) const {
   Divisor divisor;
-  divisor.q = quantize_q(w, format_.q_bits);
+  divisor.q = q;
   divisor.frame = perspective_frame(vertex_, base_vertex(divisor.q), setup_, format_, widths_);
   divisor.plane = setup_q(divisor.q, divisor.frame, format_, widths_);
   return divisor;
@@ -79,8 +94,7 @@ std::int64_t Surface::value_of(const Attribute& attribute, const OverWFormat& of
   return over_q(p_at(attribute.plane, place, of, format_, widths_), q, attribute.over_w, of, format_);
 }
 
-Texel Surface::color(int x, int y) const {
-  const PixelPlace place = place_of(setup_, widths_, x, y);
+Texel Surface::primitive_color(int x, int y, const PixelPlace& place) const {
   Texel color{0, 0, 0, 255};
   const auto channels = static_cast<std::size_t>(widths_.color_planes);
   if (color_divisor_) {
@@ -94,16 +108,28 @@ Texel Surface::color(int x, int y) const {
     for (std::size_t c = 0; c < channels; ++c)
       color[c] = static_cast<std::uint8_t>(plane_at(setup_, kColorPlane + c, widths_, x, y).code);
   }
-  if (!texture_divisor_) return color;
-  const std::uint64_t q = q_of(*texture_divisor_, place);
+  return color;
+}
+
+SurfaceSample Surface::at(int x, int y, int weight_bits) const {
+  const PixelPlace pixel = place_of(setup_, widths_, x, y);
+  SurfaceSample s;
+  s.primitive = s.color = primitive_color(x, y, pixel);
+  if (!texture_divisor_) return s;
+  const std::uint64_t q = q_of(*texture_divisor_, pixel);
   const PixelReciprocal reciprocal = divide_by_q(q, format_);
-  TexturePlace at;
-  at.fraction_bits = format_.coordinate.fraction_bits;
-  for (const std::size_t axis : {0U, 1U})
-    at.coordinate[axis] = texture_coordinate(value_of(coordinate_[axis], format_.coordinate, reciprocal, place),
-                                             reference_[axis], at.fraction_bits, sampler_.axes[axis]);
-  const Texel texel = sample(sampler_, at, level_of_detail(lod_, q, x, y));
-  return combined(color, texel, combine_, has_alpha(sampler_.texture->format));
+  s.place.fraction_bits = format_.coordinate.fraction_bits;
+  s.place.weight_bits = weight_bits;
+  for (const std::size_t axis : {0U, 1U}) {
+    const std::int64_t u = value_of(coordinate_[axis], format_.coordinate, reciprocal, pixel);
+    s.coordinate[axis] =
+        std::ldexp(static_cast<double>(u), -s.place.fraction_bits) + coordinate_[axis].over_w.reference;
+    s.place.coordinate[axis] = texture_coordinate(u, reference_[axis], s.place.fraction_bits, sampler_.axes[axis]);
+  }
+  s.lod = level_of_detail(lod_, q, x, y);
+  s.texel = sample(sampler_, s.place, s.lod);
+  s.color = combined(s.primitive, s.texel, combine_, has_alpha(sampler_.texture->format));
+  return s;
 }
 
 }  // namespace halfplane

@@ -25,16 +25,28 @@ namespace halfplane {
   return state.texture.has_value() || state.color_interp == ColorInterp::perspective;
 }
 
+/// What a textured triangle sends to setup, vertices in the order of `surface`; every w > 0. Host.
+struct TextureCoordinates {
+  QCodes q{};
+  std::array<std::array<double, 3>, 2> texels{};  ///< u and v of each vertex
+  std::array<OverW, 2> over_w{};
+  std::array<std::int32_t, 2> reference{};  ///< u_ref: wrapped_reference()
+};
+[[nodiscard]] TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surface, const State& state,
+                                                     const Texture& texture, const PerspectiveFormat& format);
+
+/// A surface at a covered sample, step by step.
+struct SurfaceSample {
+  Texel primitive{};                   ///< its own colour
+  std::array<double, 2> coordinate{};  ///< u and v, texels of level 0, before they wrap; 0 without a texture
+  TexturePlace place;                  ///< the same as the filter gets it
+  Lod lod = 0;                         ///< without bias and bounds
+  Texel texel{};                       ///< the texture's colour; without one 0
+  Texel color{};                       ///< R, G, B, A: both together
+};
+
 class Surface {
  public:
-  /// `setup` of `triangle`, not empty; `texture`: that of the state, or none. Every w > 0 (has_positive_w).
-  Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-          const Config& config, const Widths& widths);
-
-  /// R, G, B, A at a covered sample.
-  [[nodiscard]] Texel color(int x, int y) const;
-
- private:
   /// Q over the triangle, and the frame of the planes that are divided by it.
   struct Divisor {
     QCodes q{};
@@ -46,9 +58,30 @@ class Surface {
     Plane plane;
   };
 
-  [[nodiscard]] Divisor make_divisor(const std::array<double, 3>& w) const;
+  /// `setup` of `triangle`, not empty; `texture`: that of the state, or none. Every w > 0 (require_positive_w).
+  Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
+          const Config& config, const Widths& widths);
+
+  [[nodiscard]] SurfaceSample at(int x, int y, int weight_bits = kTexelFraction) const;
+  /// R, G, B, A at a covered sample.
+  [[nodiscard]] Texel color(int x, int y) const { return at(x, y).color; }
+
+  // What color() is made of, for who does the same in lanes.
+  [[nodiscard]] const PerspectiveFormat& format() const { return format_; }
+  [[nodiscard]] const std::optional<Divisor>& color_divisor() const { return color_divisor_; }
+  [[nodiscard]] const std::optional<Divisor>& texture_divisor() const { return texture_divisor_; }
+  [[nodiscard]] const Attribute& channel(std::size_t c) const { return color_[c]; }
+  [[nodiscard]] const Attribute& coordinate(std::size_t axis) const { return coordinate_[axis]; }
+  [[nodiscard]] std::int32_t reference(std::size_t axis) const { return reference_[axis]; }
+  [[nodiscard]] const LodSetup& lod() const { return lod_; }
+  [[nodiscard]] const Sampler& sampler() const { return sampler_; }
+  [[nodiscard]] TextureCombine combine() const { return combine_; }
+
+ private:
+  [[nodiscard]] Divisor make_divisor(const QCodes& q) const;
   [[nodiscard]] Attribute make_attribute(const std::array<double, 3>& value, const Divisor& divisor,
                                          const OverWFormat& attribute) const;
+  [[nodiscard]] Texel primitive_color(int x, int y, const PixelPlace& place) const;
   [[nodiscard]] std::uint64_t q_of(const Divisor& divisor, const PixelPlace& place) const;
   [[nodiscard]] std::int64_t value_of(const Attribute& attribute, const OverWFormat& of, const PixelReciprocal& q,
                                       const PixelPlace& place) const;
@@ -57,9 +90,9 @@ class Surface {
   const TriangleSetup& setup_;
   const Widths& widths_;
   PerspectiveFormat format_;
-  std::array<std::size_t, 3> order_{};     ///< canonical
-  std::array<SnappedVertex, 3> vertex_{};  ///< in that order
-  std::optional<Divisor> color_divisor_, texture_divisor_;
+  std::array<std::size_t, 3> order_{};                      ///< canonical
+  std::array<SnappedVertex, 3> vertex_{};                   ///< in that order
+  std::optional<Divisor> color_divisor_, texture_divisor_;  ///< none: affine colours, no texture
   std::array<Attribute, 4> color_{};
   std::array<Attribute, 2> coordinate_{};  ///< u and v, texels
   std::array<std::int32_t, 2> reference_{};
@@ -67,10 +100,5 @@ class Surface {
   Sampler sampler_;
   TextureCombine combine_ = TextureCombine::modulate;
 };
-
-/// Whether a division by w has a meaning all over the triangle.
-[[nodiscard]] constexpr bool has_positive_w(const Triangle& triangle) {
-  return triangle.surface[0].w > 0 && triangle.surface[1].w > 0 && triangle.surface[2].w > 0;
-}
 
 }  // namespace halfplane

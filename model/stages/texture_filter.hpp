@@ -51,7 +51,8 @@ struct TextureAxis {
     return static_cast<std::int32_t>(std::clamp(reference, -limit, limit));
   }
   const auto period = static_cast<double>(axis.period());
-  return static_cast<std::int32_t>(reference - std::floor(reference / period) * period);
+  const double rest = std::fmod(reference, period);  // exact, as a quotient would not be
+  return static_cast<std::int32_t>(rest < 0 ? rest + period : rest);
 }
 
 /// U + u_ref, 2^-f texels; modulo the period where there is one.
@@ -89,6 +90,7 @@ struct TextureAxis {
 struct TexturePlace {
   std::array<std::int64_t, 2> coordinate{};
   int fraction_bits = kTexelFraction;
+  int weight_bits = kTexelFraction;  ///< of a linear filter's weights; fewer to study what that costs
 };
 /// Along u and v, of level 0.
 using TextureAxes = std::array<TextureAxis, 2>;
@@ -104,8 +106,9 @@ struct TexelPair {
       rounded_at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level) - (1 << (kTexelFraction - 1));
   const std::int64_t first = from_middle >> kTexelFraction;
   const TextureAxis on_level = axes[axis].at_level(level);
+  const int dropped = kTexelFraction - place.weight_bits;
   return {wrapped_texel(first, on_level), wrapped_texel(first + 1, on_level),
-          static_cast<std::uint32_t>(from_middle & 255)};
+          static_cast<std::uint32_t>(round_shift(from_middle & 255, dropped) << dropped)};
 }
 
 template <class Fetch>

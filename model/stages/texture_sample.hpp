@@ -31,25 +31,37 @@ struct Sampler {
   [[nodiscard]] static Lod to_lod(double level) { return static_cast<Lod>(std::floor(level * 256 + 0.5)); }
 };
 
-/// The texture's colour. `lod`: level_of_detail(), without bias and bounds.
-[[nodiscard]] inline Texel sample(const Sampler& s, const TexturePlace& place, Lod lod) {
-  const auto fetch = [&s](int level, int x, int y) { return s.texture->texel(level, x, y); };
-  const auto filtered = [&](int level, bool is_linear) {
-    return is_linear ? filter_linear(fetch, s.axes, place, level) : filter_nearest(fetch, s.axes, place, level);
-  };
+/// What a sample reads of its texture.
+struct SampleFilter {
+  bool is_linear = false;   ///< on each level; else its nearest texel
+  bool is_between = false;  ///< two levels; else `levels.lower` alone
+  LevelPair levels;
+};
+
+/// `lod`: level_of_detail(), without bias and bounds.
+[[nodiscard]] inline SampleFilter filter_of(const Sampler& s, Lod lod) {
   const bool is_nearest = s.min == TextureMin::nearest || s.min == TextureMin::nearest_mipmap_nearest ||
                           s.min == TextureMin::nearest_mipmap_linear;
   const bool has_levels = s.min != TextureMin::nearest && s.min != TextureMin::linear;
   const Lod level = std::clamp(lod + s.bias, s.least, s.largest);
   const Lod magnified = s.mag == TextureMag::linear && is_nearest && has_levels ? 128 : 0;
-  if (level <= magnified) return filtered(0, s.mag == TextureMag::linear);
-  if (!has_levels) return filtered(0, !is_nearest);
+  if (level <= magnified) return {s.mag == TextureMag::linear, false, {}};
+  if (!has_levels) return {!is_nearest, false, {}};
   const int last = s.texture->last_level();
   if (s.min == TextureMin::nearest_mipmap_nearest || s.min == TextureMin::linear_mipmap_nearest)
-    return filtered(nearest_level(level, last), !is_nearest);
-  const LevelPair levels = levels_around(level, last);
-  return is_nearest ? filter_between_nearest(fetch, s.axes, place, levels)
-                    : filter_trilinear(fetch, s.axes, place, levels);
+    return {!is_nearest, false, {nearest_level(level, last), 0, 0}};
+  return {!is_nearest, true, levels_around(level, last)};
+}
+
+/// The texture's colour; `lod` as above.
+[[nodiscard]] inline Texel sample(const Sampler& s, const TexturePlace& place, Lod lod) {
+  const auto fetch = [&s](int level, int x, int y) { return s.texture->texel(level, x, y); };
+  const auto [is_linear, is_between, levels] = filter_of(s, lod);
+  if (is_between)
+    return is_linear ? filter_trilinear(fetch, s.axes, place, levels)
+                     : filter_between_nearest(fetch, s.axes, place, levels);
+  return is_linear ? filter_linear(fetch, s.axes, place, levels.lower)
+                   : filter_nearest(fetch, s.axes, place, levels.lower);
 }
 
 }  // namespace halfplane

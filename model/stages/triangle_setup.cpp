@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "cull.hpp"
+#include "perspective.hpp"
 
 namespace halfplane {
 namespace {
@@ -42,6 +43,12 @@ Plane setup_plane(std::int64_t base, std::int64_t next, std::int64_t last, const
 
 namespace {
 
+/// The code of a plane at a vertex as a number.
+std::int64_t code_value(const SnappedVertex& v, std::size_t p, const Widths& widths) {
+  const Width& code = widths.of_plane(p).code;
+  return code.is_signed ? wrap_signed(v.code[p], code.bits) : std::int64_t{v.code[p]};
+}
+
 /// Everything that follows from the vertices in canonical order, their area and the box.
 void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Config& config,
                   const Widths& widths) {
@@ -57,19 +64,29 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
   const PlaneFrame frame = plane_frame(v[0], v[1], v[2], first_x, first_y, config.tile_size, widths);
   const int significant_bits = widths.reciprocal_bits();
   const AreaQuotient quotient = area_quotient(setup.area, significant_bits);
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
     const std::uint32_t c0 = v[0].code[p], c1 = v[1].code[p], c2 = v[2].code[p];
     const AttributeWidths& attribute = widths.of_plane(p);
     setup.plane[p] = setup_plane(
         c0, c1, c2, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()), attribute.plane.bits);
     std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({c0, c1, c2});
   }
+  if (widths.coordinates == 0) return;
+  const std::size_t q = widths.q_plane, base = base_vertex({v[0].code[q], v[1].code[q], v[2].code[q]});
+  const SnappedVertex &from = v[base], &next = v[(base + 1) % 3], &last = v[(base + 2) % 3];
+  const PlaneFrame over_w = plane_frame(from, next, last, first_x, first_y, config.tile_size, widths);
+  for (std::size_t p = q; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const AttributeWidths& attribute = widths.of_plane(p);
+    setup.plane[p] =
+        setup_plane(code_value(from, p, widths), code_value(next, p, widths), code_value(last, p, widths), over_w,
+                    reciprocal(quotient, significant_bits - attribute.reciprocal_bits()), attribute.plane.bits);
+  }
 }
 
 /// The constants of a primitive that has one code a plane and no edges.
 void finish_flat_setup(TriangleSetup& setup, const SnappedVertex& v, const Widths& widths) {
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
-    const std::uint64_t value = std::uint64_t{v.code[p]} << widths.plane_fraction;
+    const auto value = static_cast<std::uint64_t>(code_value(v, p, widths)) << widths.plane_fraction;
     setup.plane[p] = {wrap_signed(static_cast<std::int64_t>(value), widths.of_plane(p).plane.bits), 0, 0};
   }
   setup.range.low = setup.range.high = v.code;
@@ -115,6 +132,7 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
 std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths) {
   const int guard_bits = attribute.guard_bits();        // l, at least 1
   const int drop = widths.plane_fraction - guard_bits;  // F - l, at least 2
+  if (attribute.affine_code.bits == 0) return std::uint64_t{1} << (drop - 1);
   const std::uint64_t to_window = std::uint64_t{1} << (attribute.code.bits - 1 + guard_bits),
                       half = std::uint64_t{1} << (guard_bits - 1);
   return (std::uint64_t{1} << (drop - 1)) + ((to_window + half) << drop);
@@ -161,6 +179,7 @@ SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, 
   SetupPacket packet = to_setup_packet(setup_primitive(primitive, config, widths), widths);
   packet.state = primitive.state;
   packet.kind = primitive.kind;
+  packet.coordinates = primitive.coordinates;
   return packet;
 }
 

@@ -11,8 +11,15 @@ module pin_wrapper (
 );
 
   localparam int LINE = raster_pkg::LINE_SETUP_BITS;  // at the end of the register: gone with the unit of lines
-  localparam int IN = raster_pkg::PRIMITIVE_PACKET_BITS + raster_pkg::MEMORY_RESPONSE_BITS + LINE + 3;
-  localparam int OUT = raster_pkg::MEMORY_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS + 5;
+  localparam int PRIMITIVE = 5;  // where each input begins; below them the five that say something is ready or there
+  localparam int ANSWER = PRIMITIVE + raster_pkg::PRIMITIVE_PACKET_BITS;
+  localparam int TEXEL = ANSWER + raster_pkg::MEMORY_ANSWER_BITS;
+  localparam int LAYOUT = TEXEL + raster_pkg::TEXEL_BEAT_BITS;
+  localparam int LAYOUTS = 4 * raster_pkg::ADDRESS_BITS + raster_pkg::ROW_STRIDE_BITS;
+  localparam int IN = LAYOUT + LAYOUTS + LINE;
+  localparam int BEAT = 7;
+  localparam int TEXTURE = BEAT + raster_pkg::MEMORY_BEAT_BITS;
+  localparam int OUT = TEXTURE + raster_pkg::TEXTURE_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS;
 
   logic [IN-1:0] in_q;
   logic          valid_q, shift_q, data_q;
@@ -27,22 +34,30 @@ module pin_wrapper (
   raster_top u_core (
       .clk_i,
       .rst_ni,
+      .power_on_ni      (rst_ni),
       .stall_i          ('0),
       .primitive_valid_i(valid_q),
       .primitive_ready_o(out[0]),
-      .primitive_i      (in_q[2+:raster_pkg::PRIMITIVE_PACKET_BITS]),
+      .primitive_i      (in_q[PRIMITIVE+:raster_pkg::PRIMITIVE_PACKET_BITS]),
       .line_valid_i     (valid_q),
-      .line_ready_o     (out[4]),
+      .line_ready_o     (out[1]),
       .line_i           (in_q[IN-1-:LINE]),
-      .request_valid_o  (out[1]),
-      .request_ready_i  (in_q[0]),
-      .request_o        (out[5+:raster_pkg::MEMORY_REQUEST_BITS]),
-      .response_valid_i (in_q[1]),
-      .response_ready_o (out[2]),
-      .response_i       (in_q[2+raster_pkg::PRIMITIVE_PACKET_BITS+:raster_pkg::MEMORY_RESPONSE_BITS]),
-      .counters_hold_i  (in_q[2+raster_pkg::PRIMITIVE_PACKET_BITS+raster_pkg::MEMORY_RESPONSE_BITS]),
+      .layout_i         (in_q[LAYOUT+:LAYOUTS]),
+      .beat_valid_o     (out[2]),
+      .beat_ready_i     (in_q[0]),
+      .beat_o           (out[BEAT+:raster_pkg::MEMORY_BEAT_BITS]),
+      .answer_valid_i   (in_q[1]),
+      .answer_ready_o   (out[3]),
+      .answer_i         (in_q[ANSWER+:raster_pkg::MEMORY_ANSWER_BITS]),
+      .texture_valid_o  (out[4]),
+      .texture_ready_i  (in_q[2]),
+      .texture_o        (out[TEXTURE+:raster_pkg::TEXTURE_REQUEST_BITS]),
+      .texel_valid_i    (in_q[3]),
+      .texel_ready_o    (out[5]),
+      .texel_i          (in_q[TEXEL+:raster_pkg::TEXEL_BEAT_BITS]),
+      .counters_hold_i  (in_q[4]),
       .counters_o       (out[OUT-1-:raster_pkg::COUNTER_PACKET_BITS]),
-      .idle_o           (out[3])
+      .idle_o           (out[6])
   );
 
   // Parity in registered layers of four-input gates.

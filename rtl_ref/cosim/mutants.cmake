@@ -158,7 +158,7 @@ mutant(53 stages/depth_test.sv "counter: samples of points and lines are left ou
   [=[(fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || fragment_q.kind[2])]=]
   [=[fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=])
 mutant(54 stages/cull.sv "counter: points and lines do not count as primitives"
-  [=[d_is_triangle || kind_q[2]]=] [=[d_is_triangle]=])
+  [=[d_is_triangle || (kind_q[2] && !kind_q[0])]=] [=[d_is_triangle]=])
 mutant(55 stages/framebuffer.sv "token: pixels of a line are taken for a fast clear"
   [=[access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR]=]
   [=[access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_LINE]=])
@@ -262,3 +262,41 @@ mutant(95 stages/cache_tags.sv "flush: the depth of the last blocks is stored wh
   [=[is_clear ? drops_depth_q : drops_depth]=] [=[drops_depth_q]=])
 mutant(96 stages/cache_tags.sv "flags: the word of a block that comes is taken for that of the one that leaves"
   [=[is_access && word_of(line_x, line_y) == word_of(block_x, block_y)]=] [=[is_access]=])
+
+# a texture unit and what feeds it
+mutant(141 stages/triangle_setup.sv "texture: planes over w start at vertex 0"
+  [=[{is_2_less, is_1_less && !is_2_less}]=] [=[2'b00]=])
+mutant(142 stages/triangle_setup.sv "texture: planes over w have the window of codes"
+  [=[sums_over_w ? HALVES_OVER_W : HALVES]=] [=[HALVES]=])
+mutant(143 stages/triangle_setup.sv "texture: the way to the anchor is that of vertex 0"
+  [=[moves_over_w ? to_base_x_q : to_anchor_x_q]=] [=[to_anchor_x_q]=])
+mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the one that comes"
+  [=[raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q)]=] [=[raster_pkg::COORDINATE_FRAME_BITS'(p_q.coordinates)]=])
+mutant(145 lib/colored_stamps.sv "texture: points and clears have it too"
+  [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[fragment_i.kind != raster_pkg::PRIMITIVE_KIND_TEXTURE]=])
+mutant(146 stages/block_cache.sv "texture: samples that fail the depth test are looked up"
+  [=[{SAMPLES{write_valid_i}} & write_i.write_color]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
+mutant(147 stages/block_cache.sv "texture: idle though its memory has not answered what was asked for before a reset"
+  [=[tags_are_idle && drained && texture_is_idle]=] [=[tags_are_idle && drained]=])
+mutant(148 stages/block_cache.sv "texture: one stamp more goes in than there is room for"
+  [=[behind_q != BEHIND'(PLACES)]=] [=[behind_q <= BEHIND'(PLACES)]=])
+mutant(149 stages/texture_cache.sv "texture: of the tag the lowest bits"
+  [=[tag == t_address_q]=] [=[tag[5:0] == t_address_q[5:0]]=])
+mutant(150 stages/texture_cache.sv "texture: an answer of before a reset is taken"
+  [=[answer_valid_i && !discards]=] [=[answer_valid_i]=])
+mutant(151 stages/texture_cache.sv "texture: a line that is still to be read is overwritten"
+  [=[NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group)]=] [=[1'b0]=])
+mutant(152 stages/texture_cache.sv "texture: a sample does not wait for its line"
+  [=[(!is_miss || has_come)]=] [=[1'b1]=])
+mutant(153 stages/texture_cache.sv "texture: another texture begins with the lines of the one before"
+  [=[drop_i || (sweeps_q && sweep_q != '1)]=] [=[sweeps_q && sweep_q != '1]=])
+mutant(154 lib/texture_axis.sv "texture: P is cut off"
+  [=[(NARROW + 1)'(shifted_q[0])]=] [=[(NARROW + 1)'(1'b0)]=])
+mutant(155 lib/texture_axis.sv "texture: mirror repeats"
+  [=[is_mirrored && turn != '0]=] [=[1'b0]=])
+mutant(156 lib/texture_combine.sv "texture: add does not hold"
+  [=[{8{sum[8]}}]=] [=[8'd0]=])
+mutant(157 stages/texture_unit.sv "texture: the frame of a triangle goes with its first sample"
+  [=[INDEX'(splits && is_last)]=] [=[INDEX'(splits)]=])
+mutant(158 stages/texture_unit.sv "texture: rows of blocks are one shorter in the widest"
+  [=[(22'(block_y) << row_q)]=] [=[(22'(block_y) << (row_q - 4'(row_q == 4'd4)))]=])

@@ -30,6 +30,12 @@ module raster_cosim (
     input  logic                       answer_valid_i,
     output logic                       answer_ready_o,
     input  raster_pkg::memory_answer_t answer_i,
+    output logic                         texture_valid_o,
+    input  logic                         texture_ready_i,
+    output raster_pkg::texture_request_t texture_o,
+    input  logic                         texel_valid_i,
+    output logic                         texel_ready_o,
+    input  raster_pkg::texel_beat_t      texel_i,
 
     input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
@@ -47,6 +53,8 @@ module raster_cosim (
   logic                          reset_nq;
   /* verilator lint_on SYNCASYNCNET */
   logic                          primitive_valid_q, line_valid_q, beat_ready_q, answer_valid_q, counters_hold_q;
+  logic                          texture_ready_q, texel_valid_q;
+  raster_pkg::texel_beat_t       texel_q;
   raster_pkg::primitive_packet_t primitive_q;
   raster_pkg::line_setup_t       line_q;
   raster_pkg::memory_answer_t    answer_q;
@@ -64,6 +72,9 @@ module raster_cosim (
     beat_ready_q      <= beat_ready_i;
     answer_valid_q    <= answer_valid_i;
     answer_q          <= answer_i;
+    texture_ready_q   <= texture_ready_i;
+    texel_valid_q     <= texel_valid_i;
+    texel_q           <= texel_i;
     counters_hold_q   <= counters_hold_i;
   end
 
@@ -85,6 +96,12 @@ module raster_cosim (
       .answer_valid_i(answer_valid_q),
       .answer_ready_o,
       .answer_i(answer_q),
+      .texture_valid_o,
+      .texture_ready_i(texture_ready_q),
+      .texture_o,
+      .texel_valid_i(texel_valid_q),
+      .texel_ready_o,
+      .texel_i(texel_q),
       .counters_hold_i(counters_hold_q),
       .counters_o,
       .idle_o

@@ -2,10 +2,10 @@
 //
 // For raster_cosim.sv. An arrow X of the graph is X_data in raster_top, with X_valid and X_ready if it waits, with
 // X_valid if it does not. X_o is its packet, valid while its bit of fire_o is set; fire_o, from bit 0:
-//  triangle setup context tile edges stamp line_pixel fragment write retire request response.
+//  triangle setup context tile edges stamp line_pixel fragment write retire request response color.
 // stream_valid_o, stream_ready_o, from bit 0: triangle setup tile stamp line_pixel fragment request response.
 `define RASTER_TAP_PORTS \
-    output logic [11:0] fire_o, \
+    output logic [12:0] fire_o, \
     output logic [7:0] stream_valid_o, \
     output logic [7:0] stream_ready_o, \
     output raster_pkg::triangle_packet_t triangle_o, \
@@ -19,7 +19,8 @@
     output raster_pkg::write_packet_t write_o, \
     output raster_pkg::retire_packet_t retire_o, \
     output raster_pkg::memory_request_t request_o, \
-    output raster_pkg::memory_response_t response_o
+    output raster_pkg::memory_response_t response_o, \
+    output raster_pkg::color_packet_t color_o
 
 `define RASTER_TAPS \
   logic triangle_fire; \
@@ -34,6 +35,7 @@
   logic retire_fire; \
   logic request_fire; \
   logic response_fire; \
+  logic color_fire; \
   assign triangle_fire = u_raster.triangle_valid && u_raster.triangle_ready; \
   assign setup_fire = u_raster.setup_valid && u_raster.setup_ready; \
   assign context_fire = u_raster.setup_valid && u_raster.setup_ready; \
@@ -46,7 +48,8 @@
   assign retire_fire = u_raster.retire_valid; \
   assign request_fire = u_raster.request_valid && u_raster.request_ready; \
   assign response_fire = u_raster.response_valid && u_raster.response_ready; \
-  assign fire_o = {response_fire, request_fire, retire_fire, write_fire, fragment_fire, line_pixel_fire, stamp_fire, edges_fire, tile_fire, context_fire, setup_fire, triangle_fire}; \
+  assign color_fire = u_raster.color_valid && u_raster.color_ready; \
+  assign fire_o = {color_fire, response_fire, request_fire, retire_fire, write_fire, fragment_fire, line_pixel_fire, stamp_fire, edges_fire, tile_fire, context_fire, setup_fire, triangle_fire}; \
   assign stream_valid_o = {u_raster.response_valid, u_raster.request_valid, u_raster.fragment_valid, u_raster.line_pixel_valid, u_raster.stamp_valid, u_raster.tile_valid, u_raster.setup_valid, u_raster.triangle_valid}; \
   assign stream_ready_o = {u_raster.response_ready, u_raster.request_ready, u_raster.fragment_ready, u_raster.line_pixel_ready, u_raster.stamp_ready, u_raster.tile_ready, u_raster.setup_ready, u_raster.triangle_ready}; \
   assign triangle_o = u_raster.triangle_data; \
@@ -60,4 +63,5 @@
   assign write_o = u_raster.write_data; \
   assign retire_o = u_raster.retire_data; \
   assign request_o = u_raster.request_data; \
-  assign response_o = u_raster.response_data;
+  assign response_o = u_raster.response_data; \
+  assign color_o = u_raster.color_data;

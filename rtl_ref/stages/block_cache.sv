@@ -1,7 +1,7 @@
 // Framebuffer of blocks: the depth and colour of blocks of 4x4 pixels on the chip, a direct-mapped write-back cache of the
 // planes in memory whose misses nobody waits for.
 //
-//   fragment -> cache_tags -> items -> [X: depth RAM] <-> depth_test -> [W: colour RAM]
+//   fragment -> cache_tags -> items -> [X: depth RAM] <-> depth_test -> (texture_unit) -> [W: colour RAM]
 //                   '------ orders -> requests <- victims -----'------------'
 //
 // cache_tags looks fragments up as they come and orders what they need from memory; up to CACHE_QUEUE of them wait here for
@@ -12,6 +12,9 @@
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module block_cache (
     input logic clk_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
+    input logic power_on_ni,
+    /* verilator lint_on UNUSEDSIGNAL */
     input logic rst_ni,
 
     // From primitive_join
@@ -39,6 +42,21 @@ module block_cache (
     /* verilator lint_off UNUSEDSIGNAL */  // lanes wider than a depth code
     input  raster_pkg::memory_response_t response_i,
     /* verilator lint_on UNUSEDSIGNAL */
+
+    // To and from the memory of textures, where there is a texture unit
+    output logic                         texture_valid_o,
+    output raster_pkg::texture_request_t texture_o,
+    output logic                         texel_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */
+    input  logic                         texture_ready_i,
+    input  logic                         texel_valid_i,
+    input  raster_pkg::texel_beat_t      texel_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // What W takes from the texture unit, for the co-simulation
+    output logic                      color_valid_o,
+    output logic                      color_ready_o,
+    output raster_pkg::color_packet_t color_o,
 
     // Stamps that this cycle adds to the counters
     output logic [1:0] fill_o,
@@ -70,6 +88,8 @@ module block_cache (
   localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + BLOCK_X + BLOCK_Y + 2 * STAMPS + 2;
   localparam int ORDER = WRITES + 1 + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS + INDEX;
 
+  localparam int PLACES = raster_pkg::COORDINATES == 0 ? 2 : raster_pkg::TEXTURE_QUEUE / 2;  // between X and W
+  localparam int BEHIND = $clog2(PLACES + 1);
   localparam int RUN = raster_pkg::RUN_BITS;
 
   function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
@@ -213,7 +233,7 @@ module block_cache (
   logic [STAMPS-1:0] left_q, left, next, item_bit;  // stamps of the last eviction that are still to be read
   logic [LINE-1:0]   left_line_q;
   logic [VICTIM:0]   taken_q;   // slots of victims that X has given away
-  logic [1:0]        behind_q;  // items between X and W: as many as the buffer holds
+  logic [BEHIND-1:0] behind_q;  // items between X and W: as many as the buffer holds
   logic              colors_done;  // W takes an item
   logic              finishes;     // an eviction is in memory
 
@@ -235,7 +255,7 @@ module block_cache (
   assign leaves_line  = x1_valid_q && x1_line_q == item_line && x1_writes_q != '0;
   assign goes         = item_valid && (!evicts || (left_q == '0 && slot_free && !leaves_line)) &&
                         (!on_chip || left_q == '0) && (!in_memory || answer_valid) && !hazard &&
-                        (behind_q != 2'd2 || colors_done);
+                        (behind_q != BEHIND'(PLACES) || (colors_done && raster_pkg::COORDINATES == 0));
   assign left         = goes && evicts ? evicts_depth : left_q;
   assign next         = goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0 ? item_bit : lowest(left);
   assign reads_victim = left != '0;
@@ -254,7 +274,7 @@ module block_cache (
       left_q     <= left & ~next;
       x1_valid_q <= goes;
       taken_q    <= taken_q + (VICTIM + 1)'(goes && evicts) - (VICTIM + 1)'(finishes);
-      behind_q   <= behind_q + 2'(goes) - 2'(colors_done);
+      behind_q   <= behind_q + BEHIND'(goes) - BEHIND'(colors_done);
     end
   end
 
@@ -337,29 +357,49 @@ module block_cache (
   endgenerate
 
   // ----------------------------------------------------------------------------------------------------------- W: colours
-  localparam int COLORED = LINE + STAMP + 2 * SAMPLES + SAMPLES * COLOR + 1 + 1 + STAMPS;
+  localparam int CARRIED = LINE + STAMP + 2 * SAMPLES + 1 + 1 + STAMPS;
   logic                     w_valid, w_evicts, w_fills;
   logic [LINE-1:0]          w_line;
   logic [STAMP-1:0]         w_stamp;
   logic [SAMPLES-1:0]       w_writes, w_dirty;
   logic [SAMPLES*COLOR-1:0] w_color;
   logic [STAMPS-1:0]        w_stamps;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
-  logic                     w_ready;
+  logic [CARRIED-1:0]       x1_carried, w_carried;
+  /* verilator lint_off UNUSEDSIGNAL */  // what a texture unit looks at, if there is one
+  raster_pkg::fragment_packet_t x1_item_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  skid_buffer #(
-      .WIDTH(COLORED)
+  always_ff @(posedge clk_i) x1_item_q <= item;
+  logic                     texture_is_idle;
+  assign x1_carried = {x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),
+                       write_i.write_color, x1_evicts_q, x1_fills_q, x1_color_q};
+  assign {w_line, w_stamp, w_writes, w_dirty, w_evicts, w_fills, w_stamps} = w_carried;
+  colored_stamps #(
+      .CARRIED(CARRIED),
+      .PLACES (PLACES)
   ) u_colored (
       .clk_i,
+      .power_on_ni,
       .rst_ni,
-      .valid_i(x1_valid_q),
-      .ready_o(w_ready),
-      .data_i ({x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),
-                write_i.write_color, write_i.color, x1_evicts_q, x1_fills_q, x1_color_q}),
-      .valid_o(w_valid),
-      .ready_i(colors_done),
-      .data_o ({w_line, w_stamp, w_writes, w_dirty, w_color, w_evicts, w_fills, w_stamps})
+      .stamp_valid_i  (x1_valid_q),
+      .carried_i      (x1_carried),
+      .writes_i       ({SAMPLES{write_valid_i}} & write_i.write_color),
+      .color_i        (write_i.color),
+      .fragment_i     (x1_item_q),
+      .stamp_valid_o  (w_valid),
+      .stamp_ready_i  (colors_done),
+      .carried_o      (w_carried),
+      .color_o        (w_color),
+      .texture_valid_o,
+      .texture_ready_i,
+      .texture_o,
+      .texel_valid_i,
+      .texel_ready_o,
+      .texel_i,
+      .packet_valid_o (color_valid_o),
+      .packet_o       (color_o),
+      .texture_is_idle_o(texture_is_idle)
   );
+  assign color_ready_o = colors_done;
 
   logic              w_started_q, w_starts, w_reads, w_hits;
   logic [STAMPS-1:0] w_left_q, w_left, w_next, w_own;
@@ -548,7 +588,7 @@ module block_cache (
   end
 
   assign drained = !item_valid && behind_q == '0 && !order_valid;
-  assign idle_o  = tags_are_idle && drained;
+  assign idle_o  = tags_are_idle && drained && texture_is_idle;
   assign fill_o  = {1'b0, wants_read && takes_request};
   assign evict_o = {1'b0, (sends && takes_request) || is_resolved};
   assign clear_o = {1'b0, is_cleared};

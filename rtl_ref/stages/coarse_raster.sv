@@ -61,7 +61,6 @@ module coarse_raster (
   localparam int S = raster_pkg::GRID_BITS;
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
-  localparam int NARROW = raster_pkg::GUARD_BITS - raster_pkg::PLANE_LOCAL_GUARD_BITS;  // bits a local step loses
 
   localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, OFFER = 3'd3, END = 3'd4, CLEAR = 3'd5;
   logic [2:0] state_q;
@@ -79,7 +78,7 @@ module coarse_raster (
   logic is_outside, is_inside, is_behind, is_settled, visits_are_done;
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
-  assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line)
+  assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line, texture)
   assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
   assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
   assign setup_ready_o  = (state_q == IDLE || finishes) && used_q != (SLOT + 1)'(SLOTS);
@@ -250,6 +249,7 @@ module coarse_raster (
       localparam int B = LOCAL_BITS_OF[32*i+:32];
       localparam int LOCAL = LOCAL_AT[32*i+:32];
       localparam int M = P - TS - S;  // a tile's step leaves the bits below as they are
+      localparam int NARROW = P - B - S;  // bits that a local step loses
       /* verilator lint_off UNUSEDSIGNAL */  // those bits
       logic [P-1:0] value;
       /* verilator lint_on UNUSEDSIGNAL */
@@ -280,6 +280,11 @@ module coarse_raster (
   endgenerate
   assign context_o.state = setup_i.state;
   assign context_o.range = setup_i.range;
+  generate
+    if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
+      assign context_o.coordinates = setup_i.coordinates;
+    end
+  endgenerate
 
   // --- Visits under way, and what is known of the depths of a tile
   logic          starts_visit, reads_bound;

@@ -300,7 +300,7 @@ module cull (
   // --- The last step: on offer, or dropped.
   logic is_negative, is_front;
   assign d_is_triangle = kind_q == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
-  assign is_counted    = d_is_triangle || kind_q[2];  // point, line
+  assign is_counted    = d_is_triangle || (kind_q[2] && !kind_q[0]);  // point, line
   assign is_negative   = area_q < 0;
   assign is_zero       = d_is_triangle && area_q == 0;
   assign is_front      = is_negative != front_cw_q;  // positive area: clockwise as seen
@@ -334,6 +334,14 @@ module cull (
       is_no_sample_o <= leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless;
     end
   end
+
+  generate
+    if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
+      logic [raster_pkg::COORDINATE_FRAME_BITS-1:0] coordinates_q;
+      always_ff @(posedge clk_i) if (decide_ready) coordinates_q <= p_q.coordinates;
+      assign triangle_o.coordinates = raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q);
+    end
+  endgenerate
 
   assign triangle_valid_o        = decide_busy_q && decide_step_q == 2'd3 && !is_dropped;
   assign triangle_o.kind         = kind_q;

@@ -37,9 +37,9 @@ module depth_test (
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a sample; the lowest is its depth, above that its colours
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample; the lowest is its depth, above that its colours
   localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
-  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int COLOR = raster_pkg::WRITTEN_COLOR_BITS;
   localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
@@ -65,7 +65,7 @@ module depth_test (
                      (fragment_q.mask & fragment_i.mask) != '0;
   assign access_valid_o   = fragment_valid_i && needs_access && !must_wait;
   assign access_o         = fragment_i;
-  assign access_color_o   = color[0+:COLOR];
+  assign access_color_o   = raster_pkg::STORED_COLOR_BITS'(color[0+:COLOR]);
   assign fragment_ready_o = !needs_access || (access_ready_i && !must_wait);
   assign takes_fragment   = fragment_valid_i && fragment_ready_o;
 
@@ -100,10 +100,14 @@ module depth_test (
       assign passed[s] = fragment_q.mask[s] &&
                          (is_less ? less_passes : (is_equal ? equal_passes : greater_passes));
 
-      rop u_rop (
-          .rgba_i (fragment_i.code[s*CODES+CODE+:COLORS]),
-          .color_o(color[s*COLOR+:COLOR])
-      );
+      if (raster_pkg::COORDINATES == 0) begin : gen_rop
+        rop u_rop (
+            .rgba_i (fragment_i.code[s*CODES+CODE+:COLORS]),
+            .color_o(color[s*COLOR+:COLOR])
+        );
+      end else begin : gen_textured  // packed behind the texture unit
+        assign color[s*COLOR+:COLOR] = fragment_i.code[s*CODES+CODE+:COLORS];
+      end
     end
   endgenerate
 

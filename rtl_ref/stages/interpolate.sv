@@ -2,7 +2,7 @@
 //
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; then its code, clamped to
-// the range of the vertices. Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a
+// the range of the vertices. Planes behind depth and colours, 1/w and what lies over it, stay as they are. Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a
 // place for its fragment in the FIFO at the end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
@@ -35,11 +35,11 @@ module interpolate (
   localparam int STAMP_SHIFT = $clog2(STAMP);
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int PLANES = raster_pkg::PLANES;
-  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
-  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = raster_pkg::FRAGMENT_BITS_OF;
+  localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a sample
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
@@ -114,18 +114,15 @@ module interpolate (
     for (p = 0; p < PLANES; p++) begin : gen_plane
       localparam int W = LOCAL_BITS_OF[32*p+:32];
       localparam int LOCAL = LOCAL_AT[32*p+:32];
-      localparam int B = CODE_BITS_OF[32*p+:32];
-      localparam int CODE = CODE_AT[32*p+:32];
+      localparam int B = FRAGMENT_BITS_OF[32*p+:32];
+      localparam int CODE = FRAGMENT_AT[32*p+:32];  // and in ranges, whose planes come first
       logic signed [W-1:0] anchor, context_step_x, x_step_y, y_step_x, y_step_y;  // modulo 2^W signs do not matter
       logic signed [W-1:0] x_value_q, y_value_q;
-      logic [B-1:0] low, high;
       assign anchor         = context_stamp_q.anchor[LOCAL+:W];
       assign context_step_x = context_i.step_x[LOCAL+:W];
       assign x_step_y       = x_context_q.step_y[LOCAL+:W];
       assign y_step_x       = y_context_q.step_x[LOCAL+:W];
       assign y_step_y       = y_context_q.step_y[LOCAL+:W];
-      assign low            = samples_context_q.range.low[CODE+:B];
-      assign high           = samples_context_q.range.high[CODE+:B];
 
       // x, then y; the stamp lies on either side of the centre.
       logic signed [W-1:0] x_value, y_value;
@@ -159,8 +156,6 @@ module interpolate (
         logic signed [W-1:0] value;
         logic [W-1:0]        value_q;
         /* verilator lint_on UNUSEDSIGNAL */
-        logic signed [B+1:0] code;  // of the window [-2^(B-1), 3 * 2^(B-1))
-        logic [B-1:0]        clamped;
         edge_offset #(
             .WIDTH (W),
             .OFFSET(PIXEL)
@@ -174,9 +169,17 @@ module interpolate (
         );
         always_ff @(posedge clk_i) value_q <= value;
 
-        assign code    = $signed({1'b0, value_q[W-1:L]}) - $signed((B + 2)'(1) << (B - 1));
-        assign clamped = code < $signed((B + 2)'(low)) ? low : code > $signed((B + 2)'(high)) ? high : code[B-1:0];
-        always_ff @(posedge clk_i) code_q[s*CODES+CODE+:B] <= clamped;
+        if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
+          logic signed [B+1:0] code;  // of the window [-2^(B-1), 3 * 2^(B-1))
+          logic [B-1:0]        low, high, clamped;
+          assign low     = samples_context_q.range.low[CODE+:B];
+          assign high    = samples_context_q.range.high[CODE+:B];
+          assign code    = $signed({1'b0, value_q[W-1:L]}) - $signed((B + 2)'(1) << (B - 1));
+          assign clamped = code < $signed((B + 2)'(low)) ? low : code > $signed((B + 2)'(high)) ? high : code[B-1:0];
+          always_ff @(posedge clk_i) code_q[s*CODES+CODE+:B] <= clamped;
+        end else begin : gen_over_w
+          always_ff @(posedge clk_i) code_q[s*CODES+CODE+:B] <= value_q;
+        end
       end
     end
   endgenerate
@@ -199,6 +202,11 @@ module interpolate (
   assign made.mask           = codes_stamp_q.mask;
   assign made.state          = codes_context_q.state;
   assign made.code           = code_q;
+  generate
+    if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
+      assign made.coordinates = codes_context_q.coordinates;
+    end
+  endgenerate
 
   /* verilator lint_off UNUSEDSIGNAL */  // there is a place
   logic made_ready;

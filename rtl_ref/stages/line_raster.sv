@@ -24,8 +24,8 @@ module line_raster (
   localparam int E = raster_pkg::LINE_ERROR_BITS;
   localparam int COUNT = raster_pkg::LINE_COUNT_BITS;
   localparam int PLANES = raster_pkg::PLANES;
-  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
-  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
+  localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::AFFINE_CODE_BITS_OF;
+  localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::AFFINE_CODE_AT;
   localparam logic [32*PLANES-1:0] LINE_BITS_OF = raster_pkg::LINE_BITS_OF;
   localparam logic [32*PLANES-1:0] LINE_AT = raster_pkg::LINE_AT;
 
@@ -83,7 +83,7 @@ module line_raster (
 
   genvar p;
   generate
-    for (p = 0; p < PLANES; p++) begin : gen_plane
+    for (p = 0; p < raster_pkg::AFFINE_PLANES; p++) begin : gen_plane
       localparam int W = LINE_BITS_OF[32*p+:32];
       localparam int LINE = LINE_AT[32*p+:32];
       localparam int B = CODE_BITS_OF[32*p+:32];

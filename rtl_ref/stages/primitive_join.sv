@@ -62,7 +62,9 @@ module primitive_join (
       fragment_o.key.tile_y     = TY'(pixel_i.y >> TS);
       fragment_o.stamp          = stamp;
       fragment_o.mask           = mask;
-      fragment_o.code           = {SAMPLES{pixel_i.code}};
+      for (int i = 0; i < SAMPLES; i++)  // nothing behind the colours
+        fragment_o.code[i*raster_pkg::ALL_FRAGMENT_BITS+:raster_pkg::ALL_FRAGMENT_BITS] =
+            raster_pkg::ALL_FRAGMENT_BITS'(pixel_i.code);
     end
   end
 

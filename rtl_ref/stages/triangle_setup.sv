@@ -50,10 +50,23 @@ module triangle_setup (
   localparam int R = raster_pkg::RECIPROCAL_BITS;
   localparam int F = raster_pkg::PLANE_FRACTION;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
+  localparam int AFFINE = raster_pkg::AFFINE_PLANES;  // the planes behind them start at the vertex of the smallest 1/w
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
+
+  // The vertex of the smallest 1/w, the first of several: 2, 1, none of the two.
+  /* verilator lint_off UNUSEDSIGNAL */
+  function automatic [1:0] base_of(input [3*CODES-1:0] code);
+    localparam int AT = raster_pkg::CODE_AT[32*(PLANES>AFFINE?AFFINE:0)+:32];
+    localparam int B = CODE_BITS_OF[32*(PLANES>AFFINE?AFFINE:0)+:32];
+    logic is_1_less, is_2_less;
+    is_1_less = code[CODES+AT+:B] < code[AT+:B];
+    is_2_less = code[2*CODES+AT+:B] < (is_1_less ? code[CODES+AT+:B] : code[AT+:B]);
+    base_of   = {is_2_less, is_1_less && !is_2_less};
+  endfunction
+  /* verilator lint_on UNUSEDSIGNAL */
 
   // ----------------------------------------------------------------------------------------------------------- phases
   // Phase 0 finds the highest bit. The quotient has one bit before the point and R after it, one more than is kept, for
@@ -217,9 +230,12 @@ module triangle_setup (
 
   // ------------------------------------------------------------------------------------------------------- differences
   // One plane a step: its code at each vertex, the differences from vertex 0, the range.
-  logic [PLANES*Z-1:0]     codes_0, codes_1, codes_2;
+  localparam int CZ = Z + 1;  // with a sign
+  logic [PLANES*CZ-1:0]    codes_0, codes_1, codes_2;
   logic [PLANES*(Z+1)-1:0] starts;
-  logic [Z-1:0]            c0, c1, c2, low, high;
+  /* verilator lint_off UNUSEDSIGNAL */  // ranges are of codes without a sign
+  logic signed [CZ-1:0]    c0, c1, c2, low, high;
+  /* verilator lint_on UNUSEDSIGNAL */
   logic [Z:0]              start;
   logic signed [DC-1:0]    ac, bc;
   logic                    is_1_below_0, is_2_below_0, is_2_below_1;
@@ -227,24 +243,34 @@ module triangle_setup (
     for (p = 0; p < PLANES; p++) begin : gen_codes
       localparam int B = CODE_BITS_OF[32*p+:32];
       localparam int AT = CODE_AT[32*p+:32];
-      logic [B-1:0] code;
-      assign code                 = delta_packet.vertex.code[AT+:B];
-      assign codes_0[p*Z+:Z]      = Z'(code);
-      assign codes_1[p*Z+:Z]      = Z'(delta_packet.vertex.code[CODES+AT+:B]);
-      assign codes_2[p*Z+:Z]      = Z'(delta_packet.vertex.code[2*CODES+AT+:B]);
-      assign starts[p*(Z+1)+:Z+1] = (Z + 1)'({code[B-1], !code[B-1], code[0+:B-1]});  // see values
+      localparam bit SIGNED = p > AFFINE;  // u and v
+      logic [B-1:0] code_0, code_1, code_2;
+      assign code_0             = delta_packet.vertex.code[AT+:B];
+      assign code_1             = delta_packet.vertex.code[CODES+AT+:B];
+      assign code_2             = delta_packet.vertex.code[2*CODES+AT+:B];
+      assign codes_0[p*CZ+:CZ] = {{(CZ - B) {SIGNED && code_0[B-1]}}, code_0};
+      assign codes_1[p*CZ+:CZ] = {{(CZ - B) {SIGNED && code_1[B-1]}}, code_1};
+      assign codes_2[p*CZ+:CZ] = {{(CZ - B) {SIGNED && code_2[B-1]}}, code_2};
+      if (p < AFFINE) begin : gen_start  // see values
+        assign starts[p*(Z+1)+:Z+1] = (Z + 1)'({code_0[B-1], !code_0[B-1], code_0[0+:B-1]});
+      end else begin : gen_start_over_w
+        logic [1:0] base;
+        assign base = base_of(delta_packet.vertex.code);
+        assign starts[p*(Z+1)+:Z+1] = base[1] ? codes_2[p*CZ+:CZ] : base[0] ? codes_1[p*CZ+:CZ] :
+                                      codes_0[p*CZ+:CZ];
+      end
     end
   endgenerate
   always_comb begin
-    c0    = codes_0[0+:Z];
-    c1    = codes_1[0+:Z];
-    c2    = codes_2[0+:Z];
+    c0    = codes_0[0+:CZ];
+    c1    = codes_1[0+:CZ];
+    c2    = codes_2[0+:CZ];
     start = starts[0+:Z+1];
     for (int i = 1; i < PLANES; i++) begin
       if (at_q[DELTA+i]) begin
-        c0    = codes_0[i*Z+:Z];
-        c1    = codes_1[i*Z+:Z];
-        c2    = codes_2[i*Z+:Z];
+        c0    = codes_0[i*CZ+:CZ];
+        c1    = codes_1[i*CZ+:CZ];
+        c2    = codes_2[i*CZ+:CZ];
         start = starts[i*(Z+1)+:Z+1];
       end
     end
@@ -280,12 +306,12 @@ module triangle_setup (
   logic [(PARTS-DELTA_PART-1)*RANGES-1:0] ranges_q;
   always_ff @(posedge clk_i) begin
     if (flows[DELTA]) begin
-      low_q  <= {low, low_q[(PLANES-1)*Z-1:Z]};
-      high_q <= {high, high_q[(PLANES-1)*Z-1:Z]};
+      low_q  <= {low[Z-1:0], low_q[(PLANES-1)*Z-1:Z]};
+      high_q <= {high[Z-1:0], high_q[(PLANES-1)*Z-1:Z]};
     end
     for (int i = DELTA_PART + 1; i < PARTS; i++) begin
       if (ready_q[i]) begin
-        if (i == DELTA_PART + 1) ranges_q[0+:RANGES] <= {high, high_q, low, low_q};
+        if (i == DELTA_PART + 1) ranges_q[0+:RANGES] <= {high[Z-1:0], high_q, low[Z-1:0], low_q};
         else ranges_q[(i-DELTA_PART-1)*RANGES+:RANGES] <= ranges_q[(i-DELTA_PART-2)*RANGES+:RANGES];
       end
     end
@@ -391,13 +417,42 @@ module triangle_setup (
   assign anchor_y = $signed((C + 1)'({anchor_packet.box.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) +
                     $signed((C + 1)'(1 << (S - 1)));
 
+  // The same from the vertex of the smallest 1/w, for the planes over it.
+  logic                sums_over_w, moves_over_w;  // such a plane is in the phase
+  logic signed [D-1:0] to_base_x_q, to_base_y_q, to_x, to_y;
+  assign to_x = moves_over_w ? to_base_x_q : to_anchor_x_q;
+  assign to_y = moves_over_w ? to_base_y_q : to_anchor_y_q;
+  generate
+    if (PLANES > AFFINE) begin : gen_over_w
+      logic [1:0]          base;
+      logic signed [C-1:0] base_x, base_y;
+      assign base         = base_of(anchor_packet.vertex.code);
+      assign base_x       = base[1] ? anchor_packet.vertex.x[2*C+:C] : base[0] ? anchor_packet.vertex.x[C+:C] : anchor_packet.vertex.x[0+:C];
+      assign base_y       = base[1] ? anchor_packet.vertex.y[2*C+:C] : base[0] ? anchor_packet.vertex.y[C+:C] : anchor_packet.vertex.y[0+:C];
+      assign sums_over_w  = at_q[SUM+AFFINE+:PLANES-AFFINE] != '0;
+      assign moves_over_w = at_q[MOVE+AFFINE+:PLANES-AFFINE] != '0;
+      always_ff @(posedge clk_i) begin
+        if (moves[MOVE-1]) begin
+          to_base_x_q <= D'(anchor_x) - D'(base_x);
+          to_base_y_q <= D'(anchor_y) - D'(base_y);
+        end
+      end
+    end else begin : gen_affine
+      assign sums_over_w  = 1'b0;
+      assign moves_over_w = 1'b0;
+      assign to_base_x_q  = '0;
+      assign to_base_y_q  = '0;
+    end
+  endgenerate
+
   // A plane at vertex 0: its code with F fraction bits, half a unit of the local plane's last place, and the offset of its
   // window (LocalFormat), 2^(B-1), so that a tile's anchor is a shift.
   localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
+  localparam logic [F-1:0] HALVES_OVER_W = F'(1) << (F - raster_pkg::PERSPECTIVE_GUARD_BITS - 1);  // has no window
   logic [P-1:0]        move_x_q, move_y_q, start_value, sum;  // modulo 2^P
   logic [PLANES*P-1:0] steps_x_q, steps_y_q;  // the newest is the highest
   logic [(PLANES-1)*P-1:0] sums_q;            // likewise
-  assign start_value = P'({start_q[(TO_SUM-1)*(Z+1)+:Z+1], HALVES});
+  assign start_value = P'({start_q[(TO_SUM-1)*(Z+1)+:Z+1], sums_over_w ? HALVES_OVER_W : HALVES});
   assign sum         = start_value + move_x_q + move_y_q;
   always_ff @(posedge clk_i) begin
     if (moves[MOVE-1]) begin
@@ -405,8 +460,8 @@ module triangle_setup (
       to_anchor_y_q <= D'(anchor_y) - D'($signed(anchor_packet.vertex.y[0+:C]));
     end
     if (flows[MOVE]) begin
-      move_x_q  <= $signed(step_x_q) * to_anchor_x_q;
-      move_y_q  <= $signed(step_y_q) * to_anchor_y_q;
+      move_x_q  <= $signed(step_x_q) * to_x;
+      move_y_q  <= $signed(step_y_q) * to_y;
       steps_x_q <= {step_x_q, steps_x_q[PLANES*P-1:P]};
       steps_y_q <= {step_y_q, steps_y_q[PLANES*P-1:P]};
     end
@@ -443,8 +498,13 @@ module triangle_setup (
       assign setup_o.value[AT+:B]         = setup_values_q[p*P+:B];
       assign setup_o.step_x[AT+:B]        = setup_steps_x_q[p*P+:B];
       assign setup_o.step_y[AT+:B]        = setup_steps_y_q[p*P+:B];
-      assign setup_o.range.low[CODE+:CB]  = ranges_q[RANGE+p*Z+:CB];
-      assign setup_o.range.high[CODE+:CB] = ranges_q[RANGE+(PLANES+p)*Z+:CB];
+      if (p < AFFINE) begin : gen_range
+        assign setup_o.range.low[CODE+:CB]  = ranges_q[RANGE+p*Z+:CB];
+        assign setup_o.range.high[CODE+:CB] = ranges_q[RANGE+(PLANES+p)*Z+:CB];
+      end
+    end
+    if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
+      assign setup_o.coordinates = last_packet.coordinates;
     end
   endgenerate
 

@@ -68,6 +68,7 @@ std::map<std::string, Completion> known_completions() {
       {"--clipping", {Kind::words, words_of(kClippingNames), {}}},
       {"--gradients", {Kind::words, words_of(kGradientsNames), {}}},
       {"--accumulator", {Kind::words, words_of(kAccumulatorNames), {}}},
+      {"--weights", {Kind::words, words_of(kWeightsNames), {}}},
       {"--memory", {Kind::words, words_of(kMemoryKinds), {}}},
       {"--mapping", {Kind::list, mappings, {}}},
       {"--format", {Kind::list, {"u16", "u24", "u32", "bins16", "bins24", "f16", "f32", "uf4.12", "uf5.11"}, {}}},

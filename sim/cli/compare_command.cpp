@@ -1,5 +1,6 @@
 #include "sim/study/compare/compare.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -45,6 +46,20 @@ Json stats_json(const ErrorStats& s) {
   return json;
 }
 
+Json texture_json(const TextureErrors& t) {
+  return {{"pixels", t.pixels},
+          {"coordinate",
+           {{"texels", part_json(t.coordinate)},
+            {"footprints", part_json(t.footprints)},
+            {"of_bound", t.coordinate_of_bound}}},
+          {"level_of_detail", moments_json(t.level)},
+          {"parts",
+           {{"coordinate", part_json(t.part_coordinate)},
+            {"level_of_detail", part_json(t.part_level)},
+            {"weights", part_json(t.part_weights)},
+            {"rounding", part_json(t.part_rounding)}}}};
+}
+
 Json comparison_json(const Comparison& c) {
   Json json{{"compared_pixels", c.compared_pixels},
             {"coverage",
@@ -73,8 +88,10 @@ Json comparison_json(const Comparison& c) {
               {"line_depth_lsb", moments_json(c.line_datapath)},
               {"depth_bias", figure_of(c.datapath_bias, c.datapath_bias.mean)},
               {"color_lsb", moments_json(c.color_datapath)},
+              {"color_over_w_lsb", part_json(c.color_over_w)},
               {"color_bias", figure_of(c.color_datapath_bias, c.color_datapath_bias.mean)},
-              {"stage_mismatches", c.stage_mismatches}}}};
+              {"stage_mismatches", c.stage_mismatches}}},
+            {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)}};
   return json;
 }
 
@@ -125,7 +142,16 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
       row("depth datapath", c.datapath)};
   if (c.line_datapath.count > 0) lines.push_back(row("lines, points: depth", c.line_datapath));
   lines.insert(lines.end(), {row("colour, all channels", c.color_lsb), row("colour datapath", c.color_datapath),
-                             row("affine - perspective", c.affine), ""});
+                             row("affine - perspective", c.affine)});
+  if (c.color_over_w.count > 0) lines.push_back(row("colour over w", c.color_over_w));
+  if (c.texture) {
+    const TextureErrors& t = *c.texture;
+    lines.insert(lines.end(), {row("texel, model - exact", t.total), row("  coordinate", t.part_coordinate),
+                               row("  level of detail", t.part_level), row("  weights", t.part_weights),
+                               row("  rounding", t.part_rounding), row("coordinate, texels", t.coordinate),
+                               row("coordinate, footprints", t.footprints), row("level of detail, levels", t.level)});
+  }
+  lines.emplace_back();
   lines.insert(lines.end(), bounds.begin(), bounds.end());
   return lines;
 }
@@ -147,6 +173,21 @@ void print_lines(std::ostream& out, const std::vector<std::string>& lines) {
   }
 }
 
+/// As kTexturePanelNames has them.
+std::vector<Panel> texture_panels(const TextureErrors& t, int width, int height) {
+  const auto panel = [&](const char* caption, const std::vector<float>& errors, const char* unit, bool diverging,
+                         const std::string& note) {
+    return error_panel(caption, width, height, errors, unit, diverging, note);
+  };
+  return {panel("texture coordinate error", t.picture.coordinate, "texels", false, figures(t.coordinate)),
+          panel("texture coordinate error", t.picture.footprints, "footprints", false, figures(t.footprints)),
+          panel("level of detail error", t.picture.level, "levels", true, figures(t.level)),
+          panel("filter weights, worst channel", t.picture.weights, "LSB", false,
+                figures(t.part_weights) + " of all channels"),
+          panel("texel rounding, worst channel", t.picture.rounding, "LSB", false,
+                figures(t.part_rounding) + " of all channels")};
+}
+
 ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config& config, const std::string& title,
                            std::vector<std::string> summary) {
   ComparisonSheet sheet;
@@ -161,6 +202,7 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
   sheet.depth_figures = figures(c.depth_lsb) + "  mean\u00a0" + fixed(c.depth_lsb.mean, 4);
   sheet.color_figures = figures(c.color_lsb) + " of all channels";
   sheet.summary = std::move(summary);
+  if (c.texture) sheet.texture = texture_panels(*c.texture, scene.width, scene.height);
   return sheet;
 }
 
@@ -185,6 +227,9 @@ int run(const CompareCommand& options) {
     compare_options.progress = [&progress](double fraction) { progress(fraction); };
     c = compare(scene, config, compare_options);
   }
+  for (const std::string& name : options.panels)
+    if (!c.texture && std::ranges::find(kTexturePanelNames, name) != kTexturePanelNames.end())
+      throw InputError("--panels: " + name + " is about textures, and no pixel shows one; leave it out");
   const std::vector<std::string> broken = broken_bounds(c, config);
   const std::vector<std::string> given_up = given_up_bounds(rules);
   const auto lines = summary_lines(c, bound_lines(broken, given_up));
@@ -243,7 +288,7 @@ void add_compare_command(CLI::App& app, Action& selected) {
                   "one sheet: model, golden, coverage, depth and colour difference, .png");
   command->add_option("--panels", options->panels, "which panels of the sheet, and their order: model,depth")
       ->delimiter(',')
-      ->check(CLI::IsMember(std::vector<std::string>(kPanelNames.begin(), kPanelNames.end())));
+      ->check(CLI::IsMember(panel_names()));
   add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");
   add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");

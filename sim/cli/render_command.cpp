@@ -274,11 +274,13 @@ int run(const RenderCommand& options) {
   result["color_hash"] = color_hash(rendering.frame, config.color_format);
   result["depth_hash"] = config.frame_store == FrameStore::color ? Json(nullptr) : Json(depth_hash(rendering.frame));
   const StudyRules rules = study_rules(options.study);
-  const std::string title =
-      rules.clipping == Clipping::homogeneous ? "clipping homogeneous, engine " + options.engine
-      : rules.gradients != Gradients::one_reciprocal || rules.accumulator != Accumulator::wrap ? study_text(result)
-      : rules != StudyRules{} ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
-                              : "engine " + options.engine;
+  const std::string title = rules.clipping == Clipping::homogeneous ? "clipping homogeneous, engine " + options.engine
+                            : rules.gradients != Gradients::one_reciprocal || rules.accumulator != Accumulator::wrap ||
+                                    rules.weights != Weights::eight
+                                ? study_text(result)
+                            : rules != StudyRules{}
+                                ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
+                                : "engine " + options.engine;
   write_files(options, rendering, config, title);
   result["wall_s"] = seconds_since(start);
   const bool is_partial = is_interrupted();

@@ -36,6 +36,10 @@ void add_study_options(CLI::App& app, StudyOptions& options) {
                  "study, scalar engine: what a plane does beyond the range of its register; saturate is a fault")
       ->check(CLI::IsMember(as_strings(kAccumulatorNames)))
       ->capture_default_str();
+  app.add_option("--weights", options.weights,
+                 "study, scalar engine: bits of a linear texture filter's weights; 4 is a fault")
+      ->check(CLI::IsMember(as_strings(kWeightsNames)))
+      ->capture_default_str();
 }
 
 void add_clipping_option(CLI::App& app, StudyOptions& options) {
@@ -51,15 +55,16 @@ StudyRules study_rules(const StudyOptions& options) {
           enumerator<FillRule>(kFillRuleNames, options.fill_rule),
           enumerator<Clipping>(kClippingNames, options.clipping),
           enumerator<Gradients>(kGradientsNames, options.gradients),
-          enumerator<Accumulator>(kAccumulatorNames, options.accumulator)};
+          enumerator<Accumulator>(kAccumulatorNames, options.accumulator),
+          enumerator<Weights>(kWeightsNames, options.weights)};
 }
 
 void check_study_rules(const StudyRules& rules, const std::string& engine) {
   if (rules.clipping != Clipping::polygon) {
     if (rules != StudyRules{.clipping = rules.clipping})
       throw InputError(
-          "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients and "
-          "--accumulator");
+          "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients, "
+          "--accumulator and --weights");
     if (engine != "scalar" && engine != "golden")
       throw InputError("--clipping " + std::string(name_of(rules.clipping)) + ": the engine " + engine +
                        " does not have it; add --engine scalar or --engine golden");
@@ -75,6 +80,7 @@ void check_study_rules(const StudyRules& rules, const std::string& engine) {
     throw InputError("--gradients " + std::string(name_of(rules.gradients)) + rest);
   if (rules.accumulator != Accumulator::wrap)
     throw InputError("--accumulator " + std::string(name_of(rules.accumulator)) + rest);
+  if (rules.weights != Weights::eight) throw InputError("--weights " + std::string(name_of(rules.weights)) + rest);
 }
 
 void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config) {
@@ -83,6 +89,7 @@ void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, c
   result["clipping"] = name_of(rules.clipping);
   result["gradients"] = name_of(rules.gradients);
   result["accumulator"] = name_of(rules.accumulator);
+  result["weights"] = name_of(rules.weights);
   result["double_draws"] = count_double_draws(scene, config, rules);
 }
 
@@ -95,7 +102,8 @@ std::string study_text(const Json& result) {
                                {"fill_rule", "fill rule", name_of(FillRule::top_left)},
                                {"clipping", "clipping", name_of(Clipping::polygon)}};
   constexpr Rule kPlanes[] = {{"gradients", "gradients", name_of(Gradients::one_reciprocal)},
-                              {"accumulator", "accumulator", name_of(Accumulator::wrap)}};
+                              {"accumulator", "accumulator", name_of(Accumulator::wrap)},
+                              {"weights", "weights", name_of(Weights::eight)}};
   std::vector<std::string> parts;
   const auto add_unusual = [&](const auto& rules) {
     for (const Rule& rule : rules)

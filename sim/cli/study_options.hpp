@@ -15,9 +15,10 @@ struct StudyOptions {
   std::string clipping{name_of(Clipping::polygon)};
   std::string gradients{name_of(Gradients::one_reciprocal)};
   std::string accumulator{name_of(Accumulator::wrap)};
+  std::string weights{name_of(Weights::eight)};
 };
 
-/// Adds --traversal, --fill-rule, --gradients and --accumulator.
+/// Adds --traversal, --fill-rule, --gradients, --accumulator and --weights.
 void add_study_options(CLI::App& app, StudyOptions& options);
 
 /// Adds --clipping: for commands that need no snapped triangles.
@@ -28,7 +29,7 @@ void add_clipping_option(CLI::App& app, StudyOptions& options);
 /// Throws InputError, naming the option, when an engine is asked for what it does not have.
 void check_study_rules(const StudyRules& rules, const std::string& engine);
 
-/// Adds {traversal, fill_rule, clipping, gradients, accumulator, double_draws} to a result.
+/// Adds {traversal, fill_rule, clipping, gradients, accumulator, weights, double_draws} to a result.
 void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config);
 
 /// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, without what is as usual, from what

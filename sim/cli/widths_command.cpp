@@ -1,6 +1,7 @@
 #include "sim/cli/widths_command.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -11,6 +12,8 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/show/image/whole_file.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
+#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/study.hpp"
 
 namespace halfplane {
@@ -94,6 +97,25 @@ Json row_json(const WidthRow& row, const Config& config) {
   return json;
 }
 
+constexpr std::array kTextureSides{256, 1024, 4096};
+
+Json ratio_json(const std::optional<double>& ratio) { return ratio ? Json(*ratio) : Json(nullptr); }
+
+/// To which ratio of w over a triangle errors over w are proven.
+Json over_w_json(const Config& config) {
+  const PerspectiveFormat format = perspective_format(config);
+  Json coordinate = Json::array();
+  for (const int texels : kTextureSides)
+    coordinate.push_back({{"texels", texels},
+                          {"error_texels", kProvenTexels},
+                          {"w_ratio", ratio_json(proven_w_ratio(texels, format, config.tile_size))}});
+  return {{"coordinate", coordinate},
+          {"color",
+           {{"error_lsb", kProvenColor},
+            {"w_ratio", ratio_json(proven_w_ratio(255, kProvenColor, format, format.color, config.tile_size))}}},
+          {"level_of_detail", {{"error_levels", 0.1}, {"w_ratio", largest_level_w_ratio(format)}}}};
+}
+
 Json study_json(const WidthStudy& study, const Config& config) {
   Json widths = Json::array(), order = Json::array(), homogeneous = Json::array();
   for (const WidthRow& row : study.rows) widths.push_back(row_json(row, config));
@@ -107,7 +129,8 @@ Json study_json(const WidthStudy& study, const Config& config) {
           {"error_bounds",
            {{"depth_lsb", depth_error_bound(config)},
             {"line_depth_lsb", line_depth_error_bound(config)},
-            {"homogeneous_edge_pixels", homogeneous_edge_bound(config)}}}};
+            {"homogeneous_edge_pixels", homogeneous_edge_bound(config)},
+            {"over_w", over_w_json(config)}}}};
 }
 
 /// "=" where the end is attained.
@@ -179,6 +202,19 @@ void print_overflows(std::ostream& out, const WidthStudy& study, const Config& c
   if (!spare.empty()) out << "nothing seen overflows with a bit less: " << spare << '\n';
 }
 
+void print_over_w(std::ostream& out, const Config& config) {
+  const PerspectiveFormat format = perspective_format(config);
+  const auto ratio = [](const std::optional<double>& r) {
+    return r ? with_commas(static_cast<std::uint64_t>(*r)) : std::string("none");
+  };
+  out << "proven over w, for ratios of w over a triangle up to: a coordinate to 1/16 texel,";
+  for (const int texels : kTextureSides)
+    out << ' ' << ratio(proven_w_ratio(texels, format, config.tile_size)) << " (" << texels << " texels),";
+  out << " a colour to 2 LSB, " << ratio(proven_w_ratio(255, kProvenColor, format, format.color, config.tile_size))
+      << ", a level of detail to 0.1, " << ratio(largest_level_w_ratio(format))
+      << "; beyond, the bound says how much\n";
+}
+
 void print_bounds(std::ostream& out, const Config& config) {
   out << "\nerror bounds that the widths keep: depth " << fixed(depth_error_bound(config), 4) << " LSB, along lines "
       << fixed(line_depth_error_bound(config), 4) << " LSB\n"
@@ -191,6 +227,7 @@ void print_bounds(std::ostream& out, const Config& config) {
     separator = ", ";
   }
   out << '\n';
+  print_over_w(out, config);
 }
 
 void write_captures(const std::string& folder, const WidthStudy& study, const Config& config) {
@@ -287,6 +324,11 @@ void add_widths_command(CLI::App& app, Action& selected) {
       ->add_option("--color-error", options->color_error,
                    "with --smallest: at most so much from the exact plane: '0.75lsb' of the stored colour")
       ->needs(smallest);
+  command
+      ->add_option("--texture-error", options->texture_error,
+                   "with --smallest: texture coordinates at most so many texels from the exact ones: '0.0625'")
+      ->needs(smallest)
+      ->type_name("TEXELS");
   command->footer(
       "\nExample:\n  halfplane widths --config tiny\n  halfplane widths --smallest --scene teapot --size 160x120 "
       "--depth-error 1lsb");

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <iostream>
 
+#include "model/stages/surface.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/widths_command.hpp"
+#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/smallest.hpp"
 
 namespace halfplane {
@@ -49,8 +51,13 @@ ErrorBounds parse_bounds(const WidthsCommand& options, const Config& start) {
       throw InputError("--coverage-error: '" + text + "' is no number of pixels; give a whole one, as in 100");
     bounds.coverage = pixels;
   }
-  if (!bounds.depth && !bounds.color && !bounds.coverage)
-    throw InputError("--smallest: no bound; give --depth-error, --color-error or --coverage-error");
+  if (!options.texture_error.empty()) {
+    bounds.texture = positive(options.texture_error);
+    if (!bounds.texture)
+      throw InputError("--texture-error: '" + options.texture_error + "' is no bound; give texels, as in 0.0625");
+  }
+  if (!bounds.depth && !bounds.color && !bounds.coverage && !bounds.texture)
+    throw InputError("--smallest: no bound; give --depth-error, --color-error, --coverage-error or --texture-error");
   return bounds;
 }
 
@@ -58,29 +65,30 @@ Json errors_json(const SceneErrors& errors, const Config& config) {
   return {{"depth", errors.depth},
           {"depth_lsb", errors.depth / one_lsb(config)},
           {"coverage", errors.coverage},
-          {"color_lsb", errors.color}};
+          {"color_lsb", errors.color},
+          {"texture_texels", errors.texture}};
 }
 
 Json bits_json(const HardwareBits& bits) {
-  return {{"total", bits.total()},
-          {"packets", bits.packets},
-          {"context", bits.context},
-          {"products", bits.products},
-          {"tiles", bits.tiles}};
+  return {{"total", bits.total()},     {"packets", bits.packets}, {"context", bits.context},
+          {"products", bits.products}, {"tiles", bits.tiles},     {"over_w", bits.over_w}};
 }
 
-Json trial_json(const TriedConfig& trial, const std::vector<std::string>& names) {
+Json trial_json(const TriedConfig& trial, const std::vector<std::string>& names, bool has_over_w) {
   Json scenes = Json::array();
   for (std::size_t i = 0; i < trial.scenes.size(); ++i) {
     Json scene{{"scene", names[i]}};
     scene.update(errors_json(trial.scenes[i], trial.config));
     scenes.push_back(scene);
   }
+  const auto ratio = proven_w_ratio(1024, perspective_format(trial.config), trial.config.tile_size);
   return {{"config", label(trial.config)},
-          {"bits", bits_json(hardware_bits(trial.config))},
+          {"bits", bits_json(hardware_bits(trial.config, has_over_w))},
           {"scenes", scenes},
           {"proven",
-           {{"depth_lsb", depth_error_bound(trial.config)}, {"line_depth_lsb", line_depth_error_bound(trial.config)}}},
+           {{"depth_lsb", depth_error_bound(trial.config)},
+            {"line_depth_lsb", line_depth_error_bound(trial.config)},
+            {"coordinate_w_ratio", ratio ? Json(*ratio) : Json(nullptr)}}},
           {"broken", trial.broken.empty() ? Json(nullptr) : Json(trial.broken)}};
 }
 
@@ -102,7 +110,7 @@ std::string start_options(const WidthsCommand& options) {
 void print_bits(std::ostream& out, const char* name, const HardwareBits& bits) {
   const auto cell = [](long n) { return right_aligned(with_commas(static_cast<std::uint64_t>(n)), 10); };
   out << left_aligned(name, 10) << cell(bits.total()) << cell(bits.packets) << cell(bits.context) << cell(bits.products)
-      << cell(bits.tiles) << '\n';
+      << cell(bits.tiles) << (bits.over_w != 0 ? cell(bits.over_w) : "") << '\n';
 }
 
 std::string part_text(double part) {
@@ -112,14 +120,15 @@ std::string part_text(double part) {
 }
 
 void print_found(std::ostream& out, const Smallest& smallest, const Config& start, const ErrorBounds& bounds,
-                 const WidthsCommand& options) {
+                 bool has_over_w, const WidthsCommand& options) {
   const TriedConfig& found = *smallest.found;
   out << start_options(options) << set_options(found.config, start) << "\n\n";
-  out << "bits           total   packets   context  products     tiles\n";
-  print_bits(out, "start", hardware_bits(start));
-  print_bits(out, "smallest", hardware_bits(found.config));
+  out << "bits           total   packets   context  products     tiles" << (has_over_w ? "    over w" : "") << '\n';
+  print_bits(out, "start", hardware_bits(start, has_over_w));
+  print_bits(out, "smallest", hardware_bits(found.config, has_over_w));
   out << "packets: a register for each packet between stages; context: the context RAM; products: the multipliers'\n"
-         "outputs, two of each; tiles: the on-chip depth and colour\n\n";
+         "outputs, two of each; tiles: the on-chip depth and colour"
+      << (has_over_w ? ";\nover w: planes in the context RAM, and the products of their divisions" : "") << "\n\n";
   const SceneErrors worst = found.worst();
   const double lsb = one_lsb(found.config);
   char line[160];
@@ -136,9 +145,15 @@ void print_found(std::ostream& out, const Smallest& smallest, const Config& star
   std::snprintf(line, sizeof line, "colour          %10.3f %12s   LSB\n", worst.color,
                 bounds.color ? fixed(*bounds.color, 3).c_str() : "-");
   out << line;
-  if (!smallest.one_less.empty()) out << "\nOne bit less of              what breaks\n";
+  if (bounds.texture) {
+    const auto ratio = proven_w_ratio(1024, perspective_format(found.config), found.config.tile_size);
+    std::snprintf(line, sizeof line, "coordinate      %10.4f %12.4f   texels; 1/16 of 1024 proven to a w ratio of %s\n",
+                  worst.texture, *bounds.texture, ratio ? fixed(*ratio, 0).c_str() : "none");
+    out << line;
+  }
+  if (!smallest.one_less.empty()) out << "\nOne bit less of                what breaks\n";
   for (const OneLess& less : smallest.one_less)
-    out << left_aligned(std::string(less.key) + " = " + std::to_string(less.value), 29)
+    out << left_aligned(std::string(less.key) + " = " + std::to_string(less.value), 31)
         << (less.is_fixed         ? "not searched: no given bound speaks of it"
             : less.broken.empty() ? "nothing on these scenes"
                                   : less.broken)
@@ -164,6 +179,8 @@ int run_smallest(const WidthsCommand& options) {
     double load_s = 0;
     scenes.push_back(load_scene(scene_options, start, load_s));
   }
+  const bool has_over_w =
+      std::ranges::any_of(scenes, [](const Scene& scene) { return std::ranges::any_of(scene.states, has_surface); });
   Smallest smallest;
   {
     Progress progress(options, "measuring", "configurations");
@@ -178,11 +195,12 @@ int run_smallest(const WidthsCommand& options) {
   result["measured"] = true;  // on these scenes; not proven
   result["bounds"] = {{"depth", bounds.depth ? Json(*bounds.depth) : Json(nullptr)},
                       {"coverage", bounds.coverage ? Json(*bounds.coverage) : Json(nullptr)},
-                      {"color_lsb", bounds.color ? Json(*bounds.color) : Json(nullptr)}};
+                      {"color_lsb", bounds.color ? Json(*bounds.color) : Json(nullptr)},
+                      {"texture_texels", bounds.texture ? Json(*bounds.texture) : Json(nullptr)}};
   result["trials"] = smallest.trials;
-  result["start_bits"] = bits_json(hardware_bits(start));
-  result["widest"] = smallest.trials > 0 ? trial_json(smallest.widest, options.scenes) : Json(nullptr);
-  result["smallest"] = smallest.found ? trial_json(*smallest.found, options.scenes) : Json(nullptr);
+  result["start_bits"] = bits_json(hardware_bits(start, has_over_w));
+  result["widest"] = smallest.trials > 0 ? trial_json(smallest.widest, options.scenes, has_over_w) : Json(nullptr);
+  result["smallest"] = smallest.found ? trial_json(*smallest.found, options.scenes, has_over_w) : Json(nullptr);
   if (smallest.found) result["smallest"]["set"] = start_options(options) + set_options(smallest.found->config, start);
   Json one_less = Json::array();
   for (const OneLess& less : smallest.one_less)
@@ -203,7 +221,7 @@ int run_smallest(const WidthsCommand& options) {
   out << "the smallest configuration for " << names << ", measured and not proven: another scene may need more\n"
       << smallest.trials << " configurations measured, from " << label(start) << "; seed " << options.seed << '\n';
   if (is_partial) {
-    if (smallest.found) print_found(out, smallest, start, bounds, options);
+    if (smallest.found) print_found(out, smallest, start, bounds, has_over_w, options);
     print_partial(out);
     return exit_interrupted;
   }
@@ -212,7 +230,7 @@ int run_smallest(const WidthsCommand& options) {
         << smallest.widest.broken << '\n';
     return exit_mismatch;
   }
-  print_found(out, smallest, start, bounds, options);
+  print_found(out, smallest, start, bounds, has_over_w, options);
   return exit_ok;
 }
 

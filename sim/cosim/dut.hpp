@@ -20,6 +20,7 @@ namespace halfplane {
 struct DutOutputs {
   std::uint32_t fired = 0;  ///< bit i: a packet of arrow kTapped[i] moves now
   bool primitive_ready = false, line_ready = false, beat_valid = false, answer_ready = false, idle = false;
+  bool texture_valid = false, texel_ready = false;
   bool moves_tiles = false;                          ///< the framebuffer is busy with memory or a clear
   std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit i: kStreams[i]
   std::array<const void*, kArrows> packet{};  ///< little-endian bytes of what the RTL sends, rounded up; by Arrow
@@ -42,10 +43,11 @@ class Dut {
   virtual void set_primitive(const std::uint32_t* words) = 0;
   virtual void set_line(const std::uint32_t* words) = 0;
   virtual void set_answer(const std::uint32_t* words) = 0;
+  virtual void set_texel(const std::uint32_t* words) = 0;
   /// While held, the counters that the design shows stay as they are.
   virtual void set_counters_hold(bool holds) = 0;
   /// Settles this cycle's outputs; they stay valid until clock().
-  virtual const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready) = 0;
+  virtual const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready, bool texture_ready) = 0;
   virtual void clock() = 0;
   [[nodiscard]] virtual bool can_trace() const { return false; }
   /// Records a waveform from here to close_trace(); false when the design was built without. Closing flushes the file.

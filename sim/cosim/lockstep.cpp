@@ -12,7 +12,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
-constexpr std::uint64_t kCountingCycles = 8;   // after the end, until everything is counted and shown
+constexpr std::uint64_t kCountingCycles = 8;    // after the end, until everything is counted and shown
 constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
 constexpr std::uint64_t kMostCyclesBeforeReset = 6000;
 constexpr std::uint64_t kReportCycles = 1 << 16;
@@ -112,6 +112,7 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       bytes_(packet_bytes(widths_)),
       expected_(widths_),
       memory_(config_, widths_, options_.memory, options_.layout.value_or(default_layout(widths_))),
+      textures_(widths_, make_memory(options_.memory, config_)),
       counter_bytes_(static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
       lines_(words_of(packet_bits<LineSetup>(widths_))),
@@ -134,6 +135,7 @@ void Lockstep::start_models(TileMemory memory) {
   cycles.sink = &expected_cycles_;
   cycles.layout = options_.layout;
   model_memory_ = make_memory(options_.model_memory.value_or(options_.memory), config_);
+  cycles.textures = options_.model_memory.value_or(options_.memory);
   cycle_model_ = make_cycle_model(config_, *model_memory_, cycles);
 }
 
@@ -149,7 +151,12 @@ void Lockstep::begin(const Scene& scene) {
   dut_.set_counters_hold(false);
   last_moved_ = cycle_;
   last_drawn_ = ~0ULL;
-  if (cycle_model_) cycle_model_->begin(scene.width, scene.height, cycle_);
+  textures_.hold(scene);
+  model_->hold_textures(scene);
+  if (cycle_model_) {
+    cycle_model_->hold_textures(scene);
+    cycle_model_->begin(scene.width, scene.height, cycle_);
+  }
 }
 
 /// A part of a scene, and then a reset in the middle of it, which the memory knows nothing of. Behind it the model begins as
@@ -169,10 +176,12 @@ void Lockstep::run_and_reset(const Scene& scene, std::uint64_t cycles) {
   step(host);
   dut_.hold_reset(false);
   was_idle_ = false;
-  for (const std::uint64_t limit = cycle_ + kHangCycles; !(was_idle_ && memory_.is_idle()) && cycle_ != limit;)
+  for (const std::uint64_t limit = cycle_ + kHangCycles;
+       !(was_idle_ && memory_.is_idle() && textures_.is_idle()) && cycle_ != limit;)
     step(host);
   options_.compares = true;
   memory_.rest(make_memory(options_.memory, config_));
+  textures_.rest(make_memory(options_.memory, config_));
   start_models(memory_.tiles());
 }
 
@@ -211,7 +220,7 @@ LockstepResult Lockstep::run(const Scene& scene, const Config& host_config) {
     if (!result_.mismatch) report_missing_cycle();
   }
   for (; result_.mismatch && is_tracing_ && cycle_ <= options_.trace_last; ++cycle_) {  // what the fault leads to
-    (void)dut_.evaluate(0, true);
+    (void)dut_.evaluate(0, true, true);
     dut_.clock();
   }
   host_counters_ = host.counters();
@@ -226,7 +235,7 @@ LockstepResult Lockstep::run(const Scene& scene, const Config& host_config) {
 }
 
 bool Lockstep::has_finished() const {
-  return all_sent_ && was_idle_ && lines_.empty() && memory_.is_idle() && expected_.empty();
+  return all_sent_ && was_idle_ && lines_.empty() && memory_.is_idle() && textures_.is_idle() && expected_.empty();
 }
 
 /// Keeps a primitive and a line on offer, and lets the model run it before the design can have seen it.
@@ -288,7 +297,13 @@ void Lockstep::step(HostStream& host) {
   }
   const std::uint32_t stalls = stall_bits(options_.seed, cycle_, threshold_);
   const bool beat_ready = memory_.is_ready(cycle_) && !is_stalled(options_.seed, kMemoryStall, cycle_, threshold_);
-  const DutOutputs& out = dut_.evaluate(stalls, beat_ready);
+  if (!has_texel_) {
+    const std::uint32_t* due = textures_.due(cycle_);
+    dut_.set_texel(due);
+    has_texel_ = due != nullptr;
+  }
+  const bool texture_ready = textures_.is_ready(cycle_);
+  const DutOutputs& out = dut_.evaluate(stalls, beat_ready, texture_ready);
 
   if (all_sent_ && cycle_ == snapshot_at_) snapshot_ = words_from(out.counters, counter_bytes_);
 
@@ -319,6 +334,21 @@ void Lockstep::step(HostStream& host) {
     moved = true;
     compare_cycle(Arrow::answer);
   }
+  if (out.texture_valid && texture_ready && !result_.mismatch) {
+    const void* request = out.packet[index(Arrow::texture)];
+    if (options_.compares) {
+      compare(Arrow::texture, request);
+      compare_cycle(Arrow::texture);
+    }
+    textures_.accept(words_from(request, bytes_[index(Arrow::texture)]).data(), cycle_);
+    moved = true;
+  }
+  if (has_texel_ && out.texel_ready) {
+    textures_.pop();
+    has_texel_ = false;
+    moved = true;
+    compare_cycle(Arrow::texel);
+  }
   const bool taken = has_primitive_ && out.primitive_ready;
   if (taken) {
     has_primitive_ = false;
@@ -338,6 +368,9 @@ void Lockstep::step(HostStream& host) {
     result_.raster_cycles = cycle_ - first_taken_ + 1;
     result_.tile_cycles = tile_cycles_;
   }
+  if (out.idle && !textures_.is_idle())
+    fail_protocol(std::string(info(Stage::texture_unit).name),
+                  "idle_o is high before the memory of textures has answered");
   if (out.idle && !memory_.is_idle())
     fail_protocol(std::string(info(Stage::memory_port).name), "idle_o is high before memory has answered");
   was_idle_ = out.idle && !taken;  // what is taken now is not yet under way
@@ -467,8 +500,8 @@ void Lockstep::fail_protocol(const std::string& stage, const std::string& hint) 
 }
 
 std::vector<std::uint32_t> Lockstep::shown_counters() {
-  for (std::uint64_t cycle = 1; cycle < kCountingCycles; ++cycle) (void)dut_.evaluate(0, false);
-  return words_from(dut_.evaluate(0, false).counters, counter_bytes_);
+  for (std::uint64_t cycle = 1; cycle < kCountingCycles; ++cycle) (void)dut_.evaluate(0, false, false);
+  return words_from(dut_.evaluate(0, false, false).counters, counter_bytes_);
 }
 
 CounterPacket Lockstep::counters() {

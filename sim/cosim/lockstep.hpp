@@ -150,6 +150,7 @@ class Lockstep {
   std::array<std::size_t, kArrows> bytes_{};
   ExpectedPackets expected_;
   MemoryModel memory_;
+  TextureModel textures_;
   std::optional<HardwareModel> model_;
   ExpectedCycles expected_cycles_;
   std::unique_ptr<MemoryTiming> model_memory_;  // and the model in front of it: only when cycles are compared
@@ -165,6 +166,7 @@ class Lockstep {
   PacketQueue lines_;                     // of the primitives in sent_, not yet taken: a stream of its own
   std::vector<std::uint32_t> held_;       // words of a beat on offer
   bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_answer_ = false, has_held_ = false;
+  bool has_texel_ = false;
   bool is_first_ = true;  // no primitive since reset
   bool is_tracing_ = false, has_traced_ = false, was_idle_ = false, drains_ = false;
   std::uint64_t cycle_ = 0;           // since reset

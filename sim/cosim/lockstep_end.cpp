@@ -16,7 +16,7 @@ void Lockstep::report_missing_cycle() {
 
 /// Says which streams hold a packet that nobody takes, and blames the stage behind the last of them.
 void Lockstep::explain_standstill(Mismatch& mismatch) {
-  const DutOutputs& out = dut_.evaluate(0, true);
+  const DutOutputs& out = dut_.evaluate(0, true, true);
   std::string waiting;
   for (std::size_t i = 0; i < kStreams.size(); ++i) {
     if ((out.stream_valid >> i & ~(out.stream_ready >> i) & 1) == 0) continue;

@@ -4,10 +4,18 @@
 #include <cstdint>
 
 #include "model/engines/hardware.hpp"
+#include "model/texture_memory.hpp"
 #include "model/timing/memory.hpp"
 #include "sim/cosim/packet_queue.hpp"
 
 namespace halfplane {
+
+/// The first of the answers if it is due in this cycle; a tag is the cycle in which it is, modulo 2^32.
+[[nodiscard]] inline const std::uint32_t* due_of(const PacketQueue& answers, std::uint64_t cycle) {
+  if (answers.empty()) return nullptr;
+  const std::uint32_t late = static_cast<std::uint32_t>(cycle) - answers.front_tag();
+  return late < 1U << 31 ? answers.front() : nullptr;
+}
 
 class MemoryModel {
  public:
@@ -45,11 +53,7 @@ class MemoryModel {
   }
 
   /// The answer that is due in this cycle, or null.
-  [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const {
-    if (answers_.empty()) return nullptr;
-    const std::uint32_t late = static_cast<std::uint32_t>(cycle) - answers_.front_tag();  // modulo 2^32
-    return late < 1U << 31 ? answers_.front() : nullptr;
-  }
+  [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty() && left_ == 0; }
   /// As after a long rest: forgets what was under way, not what it holds.
@@ -72,6 +76,41 @@ class MemoryModel {
   PacketQueue answers_;
   MemoryBurst burst_;  ///< the one that is being written
   int left_ = 0;       ///< beats of it
+};
+
+/// The same of textures, behind the texture unit: reads alone.
+class TextureModel {
+ public:
+  TextureModel(const Widths& widths, std::unique_ptr<MemoryTiming> timing)
+      : widths_(widths), timing_(std::move(timing)), answers_(words_of(packet_bits<TexelBeat>(widths))) {}
+
+  /// From now on it holds the scene's.
+  void hold(const Scene& scene) { texels_ = TextureMemory(scene); }
+  [[nodiscard]] bool is_ready(std::uint64_t cycle) const { return timing_->room() <= cycle; }
+  void accept(const std::uint32_t* words, std::uint64_t cycle) {
+    const auto request = unpack_words<TextureRequest>(words, widths_);
+    const BurstAnswer due = timing_->accept({false, request.address, request.beats}, cycle);
+    const auto bytes = static_cast<std::size_t>(widths_.texture_port_bytes);
+    for (std::uint32_t n = 0; n < request.beats; ++n) {
+      TexelBeat beat;
+      texels_.read(request.address + n * static_cast<std::uint32_t>(bytes), std::span(beat.data).first(bytes));
+      pack_words(beat, widths_, answers_.push(static_cast<std::uint32_t>(due.at(static_cast<int>(n)))));
+    }
+  }
+  /// As of MemoryModel.
+  [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
+  void pop() { answers_.pop(); }
+  [[nodiscard]] bool is_idle() const { return answers_.empty(); }
+  void rest(std::unique_ptr<MemoryTiming> timing) {
+    timing_ = std::move(timing);
+    while (!answers_.empty()) answers_.pop();
+  }
+
+ private:
+  const Widths& widths_;
+  std::unique_ptr<MemoryTiming> timing_;
+  TextureMemory texels_;
+  PacketQueue answers_;
 };
 
 }  // namespace halfplane

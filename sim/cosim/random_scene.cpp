@@ -1,6 +1,7 @@
 #include "sim/cosim/random_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,7 @@ class Generator {
       made += run;
     }
     set_newer();
+    if (has_texture_planes(config_)) set_textures();
     return std::move(scene_);
   }
 
@@ -77,6 +79,7 @@ class Generator {
   State state();
   void set_any(State& s, std::string_view name);
   void set_newer();
+  void set_textures();
   void clear();
   void line_and_point_state(State& s);
   void primitive(std::size_t corners, bool is_again);
@@ -138,6 +141,44 @@ void Generator::set_newer() {
   std::erase_if(rows, [](const DrawState* row) { return row->home == StateHome::host; });
   Random random(~seed_);
   for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
+}
+
+/// A few small textures, and triangles that show them: w ratios up to 2^10, coordinates from beside a texel's border to many
+/// repeats away. By random numbers of their own, as above.
+void Generator::set_textures() {
+  Random random(seed_ ^ 0x7e87u);
+  const auto below = [&random](std::uint64_t n) { return random.next() % n; };
+  const auto chance = [&random](double probability) { return random.uniform(0, 1) < probability; };
+  const std::size_t count = 1 + below(4);
+  for (std::size_t n = 0; n < count; ++n) {
+    TexelImage image{1 << below(7), 1 << below(7), {}};
+    image.texel.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    const bool has_few_colors = chance(0.5);
+    for (Texel& texel : image.texel)
+      for (std::uint8_t& channel : texel)
+        channel = static_cast<std::uint8_t>(has_few_colors ? 255 * below(2) : below(256));
+    const std::size_t formats = has_few_colors ? 8 : 6;  // a palette has no more
+    scene_.textures.push_back(
+        make_texture("random" + std::to_string(n), image, static_cast<TextureFormat>(below(formats)), Mips::none));
+  }
+  for (State& state : scene_.states) {
+    if (!chance(0.75)) continue;
+    state.texture = static_cast<std::uint32_t>(below(count));
+    state.texture_interp = chance(0.8) ? TextureInterp::perspective : TextureInterp::affine;
+    for (TextureWrap& wrap : state.texture_wrap) wrap = static_cast<TextureWrap>(below(3));
+    state.texture_combine = static_cast<TextureCombine>(below(4));
+    if (config_.texture_unit != TextureUnitKind::bilinear || chance(0.3)) continue;
+    state.texture_min = TextureMin::linear;
+    state.texture_mag = TextureMag::linear;
+  }
+  const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, repeats
+  for (Vertex& v : scene_.vertices) {
+    v.w = chance(0.3) ? 1.0 : std::exp2(random.uniform(-5, 5));
+    v.u = random.uniform(-reach, reach);
+    v.v = random.uniform(-reach, reach);
+    if (chance(0.3)) v.u = static_cast<double>(below(65)) / 64;
+    if (chance(0.3)) v.v = static_cast<double>(below(65)) / 64;
+  }
 }
 
 void Generator::line_and_point_state(State& s) {

@@ -43,6 +43,10 @@ class VerilatedDut final : public Dut {
     top_->answer_valid_i = words != nullptr;
     if (words != nullptr) std::memcpy(first_word(top_->answer_i), words, sizeof top_->answer_i);
   }
+  void set_texel(const std::uint32_t* words) override {
+    top_->texel_valid_i = words != nullptr;
+    if (words != nullptr) std::memcpy(first_word(top_->texel_i), words, sizeof top_->texel_i);
+  }
   void set_layout(const std::uint32_t* words) override {
     std::memcpy(first_word(top_->layout_i), words, sizeof top_->layout_i);
   }
@@ -50,10 +54,11 @@ class VerilatedDut final : public Dut {
   void set_counters_hold(bool holds) override { top_->counters_hold_i = holds; }
 
   /// raster_cosim registers its inputs, so the edge that ends the last cycle is the one at which they are taken over.
-  const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready) override {
+  const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready, bool texture_ready) override {
     if (top_->clk_i != 0) fall();  // a cycle more that nobody counts, as for the counters after the last
     top_->stall_i = static_cast<std::remove_reference_t<decltype(top_->stall_i)>>(stalls);
     top_->beat_ready_i = beat_ready;
+    top_->texture_ready_i = texture_ready;
     top_->clk_i = 1;
     top_->eval();
     dump();
@@ -62,6 +67,8 @@ class VerilatedDut final : public Dut {
     out_.line_ready = top_->line_ready_o != 0;
     out_.beat_valid = top_->beat_valid_o != 0;
     out_.answer_ready = top_->answer_ready_o != 0;
+    out_.texture_valid = top_->texture_valid_o != 0;
+    out_.texel_ready = top_->texel_ready_o != 0;
     out_.idle = top_->idle_o != 0;
     out_.moves_tiles = top_->moves_tiles_o != 0;
     out_.stream_valid = top_->stream_valid_o;
@@ -113,19 +120,22 @@ class VerilatedDut final : public Dut {
     top_->mutant_i = mutant;
     top_->stall_i = 0;
     top_->beat_ready_i = 0;
+    top_->texture_ready_i = 0;
     top_->counters_hold_i = 0;
     std::memset(first_word(top_->primitive_i), 0, sizeof top_->primitive_i);
     std::memset(first_word(top_->line_i), 0, sizeof top_->line_i);
     std::memset(first_word(top_->answer_i), 0, sizeof top_->answer_i);
+    std::memset(first_word(top_->texel_i), 0, sizeof top_->texel_i);
     std::memset(first_word(top_->layout_i), 0, sizeof top_->layout_i);
     set_primitive(nullptr);
     set_line(nullptr);
     set_answer(nullptr);
+    set_texel(nullptr);
     top_->rst_ni = top_->power_on_ni = 1;
     top_->eval();
     top_->rst_ni = top_->power_on_ni = 0;
     for (int i = 0; i < 4; ++i) {
-      (void)evaluate(0, false);
+      (void)evaluate(0, false, false);
       clock();
     }
     top_->rst_ni = top_->power_on_ni = 1;

@@ -50,6 +50,25 @@ Scene layers_scene(int width, int height, int layers, bool is_front_first) {
   return scene;
 }
 
+// The layers with a texture, seen in perspective: w is 1, 2 and 4 at their corners, and a texel about a pixel large.
+Scene textured_layers_scene(int width, int height, int layers, bool is_front_first, bool is_linear) {
+  constexpr int kSide = 256;  // texels
+  Scene scene = layers_scene(width, height, layers, is_front_first);
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
+    Vertex& v = scene.vertices[i];
+    v.u = (v.x + 1) / 2 * width / kSide;
+    v.v = (1 - v.y) / 2 * height / kSide;
+    const double w = static_cast<double>(1 << (i + i / 3) % 3);
+    v = {v.x * w, v.y * w, v.z * w, w, v.rgba, v.u, v.v};
+  }
+  scene.textures.push_back(
+      make_texture("grid", pattern_image(TexturePattern::grid, kSide, kSide), TextureFormat::rgba8888, Mips::none));
+  scene.states[0].texture = 0;
+  scene.states[0].texture_min = is_linear ? TextureMin::linear : TextureMin::nearest;
+  scene.states[0].texture_mag = is_linear ? TextureMag::linear : TextureMag::nearest;
+  return scene;
+}
+
 // 40 to 80 pixels long, whatever the target; ends may lie outside it.
 Scene scratches_scene(int width, int height, int count, std::uint64_t seed) {
   Scene scene = cleared_scene(width, height);
@@ -305,6 +324,10 @@ Scene make_work_scene(std::string_view name, int size, int width, int height, co
     return mesh_scene(mesh, merged(camera, own), width, height, cull);
   };
   if (name == "layers" || name == "layers_front") return layers_scene(width, height, size, name == "layers_front");
+  if (name == "layers_nearest" || name == "layers_nearest_front")
+    return textured_layers_scene(width, height, size, name == "layers_nearest_front", false);
+  if (name == "layers_linear" || name == "layers_linear_front")
+    return textured_layers_scene(width, height, size, name == "layers_linear_front", true);
   if (name == "scratches") return scratches_scene(width, height, size, seed);
   if (name == "dust") return dust_scene(width, height, size, seed);
   if (name == "objects") return view(objects_mesh(size, seed), objects_camera(aspect), Cull::back);

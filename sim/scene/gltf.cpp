@@ -6,18 +6,13 @@
 #include <unordered_map>
 
 #include "model/config.hpp"
+#include "sim/scene/gltf_materials.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
 namespace {
 
 using Rgba = std::array<double, 4>;
-
-struct Material {
-  Rgba base{1, 1, 1, 1};  // linear
-  bool is_two_sided = false;
-  bool is_lit = true;
-};
 
 // What one primitive reads from, all of the same count.
 struct Attributes {
@@ -56,7 +51,10 @@ const GltfAccessor* checked(const GltfAccessor& accessor, const JsonPlace& place
 class GltfMeshBuilder {
  public:
   GltfMeshBuilder(GltfFile& file, std::vector<std::string>& warnings, std::size_t most_triangles)
-      : file_(file), warnings_(warnings), left_(most_triangles) {}
+      : file_(file),
+        warnings_(warnings),
+        left_(most_triangles),
+        materials_(file, mesh_.textures, [this](const std::string& text) { warn(text); }) {}
 
   GltfModel run() {
     GltfNodes nodes = walk_nodes(file_, warnings_);
@@ -101,34 +99,10 @@ class GltfMeshBuilder {
                    way_without("KHR_draco_mesh_compression"));
       }
     }
-    material_ = read_material(place);
+    material_ = materials_.of(place);
     attributes_ = read_attributes(place, attributes);
     material_.is_lit = material_.is_lit && attributes_.color == nullptr;
     mode < 4 ? add_outline(place, mode) : add_triangles(place, mode);
-  }
-
-  Material read_material(const JsonPlace& primitive) {
-    Material result;
-    const std::optional<JsonPlace> index = primitive.find("material");
-    if (!index) return result;  // the format's default: white, back faces not seen
-    const JsonPlace place = file_.follow(*index, "materials");
-    result.is_two_sided = place.flag_or("doubleSided", false);
-    if (const auto extensions = place.find("extensions")) result.is_lit = !extensions->find("KHR_materials_unlit");
-    const std::string alpha = place.text_or("alphaMode", "OPAQUE");
-    if (alpha != "OPAQUE") warn("alphaMode " + in_quotes(alpha) + " is not read: everything is drawn opaque");
-    const std::optional<JsonPlace> shading = place.find("pbrMetallicRoughness");
-    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) warn_of_texture(place, key);
-    if (!shading) return result;
-    for (const char* key : {"baseColorTexture", "metallicRoughnessTexture"}) warn_of_texture(*shading, key);
-    if (const std::optional<JsonPlace> factor = shading->find("baseColorFactor")) {
-      if (factor->size() != 4) factor->fail(std::to_string(factor->size()) + " numbers", "write 4");
-      for (std::size_t i = 0; i < 4; ++i) result.base[i] = std::clamp((*factor)[i].number(), 0.0, 1.0);
-    }
-    return result;
-  }
-
-  void warn_of_texture(const JsonPlace& place, const char* key) {
-    if (place.find(key)) warn("textures are not in this version: base colours are shown without them");
   }
 
   Attributes read_attributes(const JsonPlace& primitive, const JsonPlace& list) {
@@ -147,7 +121,7 @@ class GltfMeshBuilder {
     result.position = read("POSITION", 3, 3);
     result.normal = read("NORMAL", 3, 3);
     result.color = read("COLOR_0", 3, 4);
-    result.uv = read("TEXCOORD_0", 2, 2);
+    result.uv = read(material_.uv_set.c_str(), 2, 2);
     if (result.color != nullptr && result.color->component != GltfComponent::f32 && !result.color->normalized) {
       list.at("COLOR_0").fail("colours of whole numbers that are not normalized", "add \"normalized\": true");
     }
@@ -175,8 +149,17 @@ class GltfMeshBuilder {
     }
     const std::uint64_t count = mode == 4 ? corners / 3 : corners - 2;
     spend(place, count);
-    mesh_.parts.push_back(
-        {object_, mesh_.triangles.size(), static_cast<std::size_t>(count), 0, material_.is_two_sided});
+    MeshPart& part = mesh_.parts.emplace_back();
+    part.object = object_;
+    part.first = mesh_.triangles.size();
+    part.count = static_cast<std::size_t>(count);
+    part.two_sided = material_.is_two_sided;
+    part.alpha = material_.alpha;
+    part.alpha_cutoff = material_.alpha_cutoff;
+    if (attributes_.uv != nullptr) part.sampler = materials_.sampler(material_);
+    if (attributes_.uv == nullptr && material_.texture) {
+      warn("primitives without " + material_.uv_set + " are shown without their texture");
+    }
     new_index_ = {};  // clear() would keep a table as long as the largest primitive
     for (std::uint64_t i = 0; i < count; ++i) {
       // A strip turns every other triangle round; a fan keeps its first vertex, as its last corner.
@@ -271,8 +254,13 @@ class GltfMeshBuilder {
     made.rgba[3] = std::clamp(color[3], 0.0, 1.0) * 255;  // opacity is linear in both worlds
     if (attributes_.uv != nullptr) {
       const Rgba uv = read_element(*attributes_.uv, i);
-      made.u = uv[0];
-      made.v = uv[1];
+      const auto& [to_u, to_v] = material_.uv_transform;
+      made.u = to_u[0] * uv[0] + to_u[1] * uv[1] + to_u[2];
+      made.v = to_v[0] * uv[0] + to_v[1] * uv[1] + to_v[2];
+      if (!(std::abs(made.u) <= kLargestCoordinate && std::abs(made.v) <= kLargestCoordinate)) {
+        throw InputError(attributes_.uv->place + ": element " + std::to_string(i) +
+                         " is beyond 1e30 on its texture; scale it down");
+      }
     }
     return made;
   }
@@ -284,8 +272,9 @@ class GltfMeshBuilder {
   std::set<std::string> warned_;
   std::unordered_map<std::string, std::uint32_t> object_numbers_;
   std::uint32_t object_ = 0;
-  Placing placing_;    // of the instance at hand
-  Material material_;  // of the primitive at hand, as are the next two
+  GltfMaterials materials_;
+  Placing placing_;        // of the instance at hand
+  GltfMaterial material_;  // of the primitive at hand, as are the next two
   Attributes attributes_;
   std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
 };

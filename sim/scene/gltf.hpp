@@ -1,5 +1,5 @@
-// glTF 2.0 files into meshes: positions, normals, colours, one set of texture coordinates, indices, triangle modes,
-// base colours, culling, node transforms, cameras. What is left out, and the colour space, is in docs/gltf.md.
+// glTF 2.0 files into meshes: positions, normals, colours, texture coordinates, indices, triangle modes, base colours
+// and their textures, culling, node transforms, cameras. What is left out, and the colour space, is in docs/gltf.md.
 //
 // Container, JSON, buffers and accessors are ours, on nlohmann-json: docs/adr/0008-own-gltf-reader.md says why.
 #pragma once
@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 25;
 [[nodiscard]] GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
                                    std::vector<std::string>& warnings, std::size_t most_triangles = kMostGltfTriangles);
 
-/// Reads a .gltf or .glb file (its first bytes decide which); external buffers are looked for beside it.
+/// Reads a .gltf or .glb file (its first bytes decide which); external buffers and images are looked for beside it.
 [[nodiscard]] GltfModel read_gltf_file(const std::string& path, std::vector<std::string>& warnings);
 
 /// A linear colour component of 0...1 (clamped) as an sRGB display code, 0...255, not rounded (IEC 61966-2-1).

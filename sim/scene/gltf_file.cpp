@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, 7> kKnownExtensions{
     "KHR_mesh_quantization",  "KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds",
     "KHR_node_selectability", "KHR_node_hoverability"};
-// Of materials base colour, sides and `unlit` are read, of textures and lights nothing.
+// Of materials base colour, sides and `unlit` are read, of textures their transform, of lights nothing.
 constexpr std::array<std::string_view, 5> kKnownFamilies{"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                          "KHR_lights_", "EXT_lights_"};
 // Its base colour stands in the extension alone.
@@ -154,30 +154,36 @@ const std::string& GltfFile::buffer(const JsonPlace& index) {
   if (known != buffers_.end()) return known->second;
   const JsonPlace place = item("buffers", number);
   const std::uint64_t length = place.at("byteLength").whole(std::uint64_t{1} << 40);
-  std::optional<std::string> data;
   const std::optional<JsonPlace> uri = place.find("uri");
-  if (!uri) {
-    if (number != 0 || !chunk_) place.fail("no uri, and no bytes for it in the file", "export the file again");
-    data = std::string(*chunk_);
-  } else if (const std::string text = uri->text(); text.substr(0, 5) == "data:") {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const std::string_view head = std::string_view(text).substr(0, comma);
-    if (comma < text.size() && head.size() >= 7 && head.substr(head.size() - 7) == ";base64") {
-      data = decode_base64(std::string_view(text).substr(comma + 1));
-    }
-    if (!data) uri->fail("a data: URI that is not base64", "export the file again, or with a .bin file");
-  } else {
-    const std::string file = percent_decoded(text);
-    if (!is_relative(file)) uri->fail(in_quotes(file) + " is no file beside this one", "give a relative name");
-    data = source_(file);
-    if (!data) uri->fail(in_quotes(file) + " cannot be read", "put it beside the glTF file");
+  if (!uri && (number != 0 || !chunk_)) {
+    place.fail("no uri, and no bytes for it in the file", "export the file again");
   }
-  if (data->size() < length) {
-    place.fail("byteLength " + std::to_string(length) + ", but there are " + std::to_string(data->size()) + " bytes",
+  std::string data = uri ? resource(*uri) : std::string(*chunk_);
+  if (data.size() < length) {
+    place.fail("byteLength " + std::to_string(length) + ", but there are " + std::to_string(data.size()) + " bytes",
                "export the file again; this one is cut off");
   }
-  data->resize(static_cast<std::size_t>(length));
-  return buffers_.emplace(number, std::move(*data)).first->second;
+  data.resize(static_cast<std::size_t>(length));
+  return buffers_.emplace(number, std::move(data)).first->second;
+}
+
+std::string GltfFile::resource(const JsonPlace& uri) const {
+  const std::string text = uri.text();
+  if (text.starts_with("data:")) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view head = std::string_view(text).substr(0, comma);
+    std::optional<std::string> data;
+    if (comma < text.size() && head.ends_with(";base64")) {
+      data = decode_base64(std::string_view(text).substr(comma + 1));
+    }
+    if (!data) uri.fail("a data: URI that is not base64", "export the file again, or with a file beside it");
+    return std::move(*data);
+  }
+  const std::string file = percent_decoded(text);
+  if (!is_relative(file)) uri.fail(in_quotes(file) + " is no file beside this one", "give a relative name");
+  std::optional<std::string> data = source_(file);
+  if (!data) uri.fail(in_quotes(file) + " cannot be read", "put it beside the glTF file");
+  return std::move(*data);
 }
 
 ByteSpan GltfFile::view(const JsonPlace& view_place) {

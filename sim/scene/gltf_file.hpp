@@ -17,7 +17,7 @@ namespace halfplane {
 
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// The bytes of an external buffer by its (decoded) relative name, or nothing when there is none.
+/// The bytes of a file beside this one, a buffer or an image, by its (decoded) relative name; nothing: there is none.
 using BufferSource = std::function<std::optional<std::string>(const std::string& name)>;
 
 /// The kinds of number in a buffer, by the codes of the file format.
@@ -63,13 +63,16 @@ class GltfFile {
   }
   /// The accessor that an index stands for. Buffers are loaded when first used. The reference holds as long as this.
   [[nodiscard]] const GltfAccessor& accessor(const JsonPlace& index);
+  /// The bytes of an entry of `bufferViews`. They hold as long as this.
+  [[nodiscard]] ByteSpan view(const JsonPlace& view_place);
+  /// The bytes that a `uri` stands for: those in it (data:), or those of a file beside this one.
+  [[nodiscard]] std::string resource(const JsonPlace& uri) const;
 
  private:
   void split_glb();
   void check_head() const;
   [[nodiscard]] GltfAccessor make_accessor(const JsonPlace& place);
   void add_sparse(GltfAccessor& accessor, const JsonPlace& place);
-  [[nodiscard]] ByteSpan view(const JsonPlace& view_place);
   [[nodiscard]] const std::string& buffer(const JsonPlace& index);
 
   std::string bytes_;  // the whole file

@@ -1,7 +1,9 @@
 // An indexed mesh in world space, with lines and points beside its triangles: what OBJ and glTF files and the built-in models become before a camera sees them.
 #pragma once
 
+#include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,18 @@ struct MeshVertex {
   bool operator==(const MeshVertex&) const = default;
 };
 
+/// A texture and how it is looked up.
+struct MeshSampler {
+  std::uint32_t texture = 0;  ///< index into Mesh::textures
+  TextureMin min = TextureMin::linear_mipmap_linear;
+  TextureMag mag = TextureMag::linear;
+  std::array<TextureWrap, 2> wrap{};  ///< along u and v
+  auto operator<=>(const MeshSampler&) const = default;
+};
+
+/// What a material says of its opacity. Everything is drawn opaque so far.
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+
 /// A run of triangles, or of indices of lines or points, that belong to one object.
 struct MeshPart {
   std::uint32_t object = 0;  ///< index into Mesh::objects
@@ -29,16 +43,20 @@ struct MeshPart {
   std::uint32_t line = 0;    ///< line of its first face in the file, 0 for none
   bool two_sided = true;     ///< false: its back faces are not seen
   Topology topology = Topology::triangles;
+  std::optional<MeshSampler> sampler{};  ///< of triangles
+  AlphaMode alpha = AlphaMode::opaque;
+  double alpha_cutoff = 0.5;  ///< of `mask`: opacity below it is not drawn
 };
 
 /// Invariants (kept by every maker): indices < vertices.size() (or kRestart in Mesh::indices), all numbers finite, parts
-/// cover all triangles in order.
+/// cover all triangles in order, textures as validate() wants them.
 struct Mesh {
   std::vector<MeshVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside, as far as the source knows
   std::vector<std::uint32_t> indices;                   ///< of the parts that are lines or points
   std::vector<MeshPart> parts;
   std::vector<std::string> objects;
+  std::vector<Texture> textures;
   bool lit = true;  ///< colours are materials, to be shaded by the header light; false: they are shown as they are
 };
 

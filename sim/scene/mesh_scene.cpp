@@ -1,6 +1,8 @@
 #include "sim/scene/mesh_scene.hpp"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "model/config.hpp"
 #include "sim/scene/object_cull.hpp"
@@ -16,6 +18,13 @@ double brightness(const Vec3& normal, const Vec3& to_light) {
   if (normal == Vec3{}) return 1;
   const double facing = std::min(std::abs(dot(normal, to_light)), 1.0);  // two-sided
   return kAmbient + (1 - kAmbient) * (facing + kWrap) / (1 + kWrap);
+}
+
+void look_up(State& state, const MeshSampler& sampler) {
+  state.texture = sampler.texture;
+  state.texture_min = sampler.min;
+  state.texture_mag = sampler.mag;
+  state.texture_wrap = sampler.wrap;
 }
 
 bool finite(const Vertex& v) {
@@ -68,21 +77,26 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     if (!name.empty()) scene.objects.push_back(name);
   }
   const Mat4 to_clip = product(projection, view);
+  scene.textures = mesh.textures;
+  std::map<std::pair<bool, std::optional<MeshSampler>>, std::uint32_t> states{{{false, std::nullopt}, 0}};
   std::vector<std::uint8_t> outside;
   for (const ObjectBounds& bounds : object_bounds(mesh)) outside.push_back(outside_view(bounds, to_clip));
   for (const MeshPart& part : mesh.parts) {
     const std::uint32_t object = numbers[part.object];
     const bool is_culled = !part.two_sided && cull == Cull::none;
-    if (is_culled && scene.states.size() == 1) {
-      scene.states.push_back(scene.states[0]);
-      scene.states[1].cull = Cull::back;
+    const auto [state, is_new] =
+        states.try_emplace({is_culled, part.sampler}, static_cast<std::uint32_t>(scene.states.size()));
+    if (is_new) {
+      State& made = scene.states.emplace_back(scene.states[0]);
+      if (is_culled) made.cull = Cull::back;
+      if (part.sampler) look_up(made, *part.sampler);
     }
     const bool is_filled = part.topology == Topology::triangles;
     const std::size_t first = is_filled ? part.first * 3 : corners + part.first;
     const std::size_t count = is_filled ? part.count * 3 : part.count;
     // Pixels of lines and points can reach beyond their vertices.
     const std::uint8_t is_outside = is_filled ? outside[part.object] : std::uint8_t{0};
-    scene.commands.push_back(Draw{is_culled ? 1U : 0U, object, part.topology, first, count, part.line, is_outside});
+    scene.commands.push_back(Draw{state->second, object, part.topology, first, count, part.line, is_outside});
   }
   return scene;
 }

@@ -10,7 +10,9 @@ namespace halfplane {
 /// Projects a mesh: one indexed draw for each part, depth_test less, a dark background and depth 1 cleared first.
 /// A lit mesh gets a light at the eye: ambient plus wrapped diffuse, two-sided, computed at the vertices in eye space.
 /// Objects that lie outside the view are marked (object_cull.hpp).
-/// `cull`: none where the winding is not known; a part that is not two-sided gets a state with Cull::back. Throws InputError if the camera throws a vertex out of binary64.
+/// `cull`: none where the winding is not known; a part that is not two-sided gets a state with Cull::back, one with a
+/// texture a state that looks it up, in perspective, times the colour. Throws InputError if the camera throws a vertex
+/// out of binary64.
 [[nodiscard]] Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height,
                                Cull cull = Cull::none);
 

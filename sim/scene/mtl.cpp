@@ -24,28 +24,70 @@ void read_diffuse(TextCursor& cursor, std::array<double, 4>& rgba) {
   rgba[2] = channel(cursor, "blue of Kd");
 }
 
+bool is_next_number(TextCursor cursor) { return parse_number(cursor.next_word()).has_value(); }
+
+// Behind -s, -o or -t: one to three numbers, of u, v and (unused) w.
+void read_pair(TextCursor& cursor, std::string_view option, std::array<double, 2>& pair) {
+  pair[0] = cursor.number("u of " + std::string(option), kLargestCoordinate);
+  if (is_next_number(cursor)) pair[1] = cursor.number("v", kLargestCoordinate);
+  if (is_next_number(cursor)) (void)cursor.next_word();
+}
+
+// Options, each a word and what follows it; then the file's name, which may hold blanks.
+MtlTexture read_map(TextCursor& cursor, std::string_view folder) {
+  MtlTexture map;
+  map.place = cursor.file() + ":" + std::to_string(cursor.line());
+  std::array<double, 2> unused{};
+  for (TextCursor ahead = cursor; ahead.more(); ahead = cursor) {
+    const std::string_view option = ahead.next_word();
+    if (!option.starts_with('-')) break;
+    cursor = ahead;
+    if (option == "-s" || option == "-o" || option == "-t") {
+      read_pair(cursor, option, option == "-s" ? map.scale : option == "-o" ? map.offset : unused);
+      continue;
+    }
+    const std::string_view value = cursor.next_word();
+    if (option == "-mm") (void)cursor.next_word();  // base and gain; all others have one word
+    if (option == "-clamp") map.wrap = value == "on" ? TextureWrap::clamp : TextureWrap::repeat;
+  }
+  std::string name(cursor.rest_of_line());
+  if (name.empty()) cursor.fail("map_Kd without a file", "write map_Kd FILE, or delete the line");
+  map.file = name.front() == '/' ? name : std::string(folder) + name;
+  std::ranges::replace(map.file, '\\', '/');  // written on Windows
+  return map;
+}
+
 }  // namespace
 
 void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials) {
+  TextCursor cursor(text, printable(file));
+  const std::string_view folder = std::string_view(file).substr(0, file.find_last_of("/\\") + 1);
   constexpr std::array<double, 4> kDefault{204, 204, 204, 255};  // a newmtl without Kd
-  TextCursor cursor(text, file);
-  std::array<double, 4>* current = nullptr;
+  MtlMaterial* current = nullptr;
+  bool has_color = false;
   while (cursor.next_line()) {
     const std::string_view key = cursor.next_word();
     if (key == "newmtl") {
       const std::string name(cursor.rest_of_line());
       if (name.empty()) cursor.fail("newmtl without a name", "write newmtl NAME");
-      current = &(materials[name] = kDefault);
-    } else if (key == "Kd" || key == "d" || key == "Tr") {
+      current = &(materials[name] = {kDefault, {}});
+      has_color = false;
+    } else if (key == "Kd" || key == "d" || key == "Tr" || key == "map_Kd") {
       if (current == nullptr) cursor.fail(in_quotes(key) + " before any newmtl", "start the material with newmtl NAME");
       if (key == "Kd") {
-        read_diffuse(cursor, *current);
+        read_diffuse(cursor, current->rgba);
+        has_color = true;
+        continue;
+      }
+      if (key == "map_Kd") {
+        current->texture = read_map(cursor, folder);
+        if (!has_color) std::fill_n(current->rgba.begin(), 3, 255.0);  // as it is
         continue;
       }
       TextCursor ahead = cursor;
       if (ahead.next_word() == "-halo") cursor = ahead;
       const double value = channel(cursor, key == "d" ? "opacity d" : "transparency Tr");
-      (*current)[3] = key == "d" ? value : 255 - value;
+      current->rgba[3] = key == "d" ? value : 255 - value;
     }
   }
 }

@@ -1,17 +1,34 @@
-// Material files (.mtl): the diffuse colour and the opacity of each name.
+// Material files (.mtl): the diffuse colour of each name, its texture, and its opacity.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 
+#include "model/scene.hpp"
+
 namespace halfplane {
 
-using MaterialTable = std::unordered_map<std::string, std::array<double, 4>>;  ///< name -> rgba, 0...255
+/// A map_Kd line: u and v on the image are scale times those of the face plus offset, v from the image's bottom up.
+struct MtlTexture {
+  std::string file;   ///< beside the OBJ, with /
+  std::string place;  ///< of the line, for messages: "a.mtl:4"
+  std::array<double, 2> scale{1, 1}, offset{0, 0};
+  TextureWrap wrap = TextureWrap::repeat;
+};
 
-/// Adds the materials of one file to `materials`: Kd (one number is a grey; clamped to 0...1), d, Tr = 1 - d. All else
-/// in a material is passed over. Throws InputError "file:line: what; the mend".
+struct MtlMaterial {
+  std::array<double, 4> rgba{};  ///< 0...255
+  std::optional<MtlTexture> texture;
+};
+
+using MaterialTable = std::unordered_map<std::string, MtlMaterial>;  ///< by name
+
+/// Adds the materials of one file to `materials`: Kd (one number is a grey; clamped to 0...1), map_Kd with -s, -o and
+/// -clamp, d, Tr = 1 - d. All else in a material is passed over. `file`: as the OBJ names it; images are beside it.
+/// Throws InputError "file:line: what; the mend".
 void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials);
 
 }  // namespace halfplane

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 
+#include "model/capture/capture_textures.hpp"
 #include "model/config.hpp"
+#include "sim/scene/mesh_textures.hpp"
 #include "sim/scene/obj_text.hpp"
 #include "sim/scene/polygon.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -29,7 +32,8 @@ struct CornerHash {
 
 class MeshBuilder {
  public:
-  MeshBuilder(const ObjText& in, std::vector<std::string>& warnings) : in_(in), warnings_(warnings) {}
+  MeshBuilder(const ObjText& in, const MaterialSource& source, std::vector<std::string>& warnings)
+      : in_(in), source_(source), warnings_(warnings) {}
 
   Mesh run() {
     if (in_.faces.empty()) {
@@ -51,10 +55,10 @@ class MeshBuilder {
     for (const auto& color : in_.colors) {
       for (const double value : color) color_scale_ = value > 1 ? 1 : color_scale_;  // the file counts to 255
     }
-    constexpr std::array<double, 4> kPlain{204, 204, 204, 255};  // no material: a light grey
+    const MtlMaterial plain{{204, 204, 204, 255}, {}};  // no material: a light grey
     for (const std::string& name : in_.material_names) {
       const auto found = in_.materials.find(name);
-      material_colors_.push_back(found == in_.materials.end() ? kPlain : found->second);
+      materials_.push_back(found == in_.materials.end() ? plain : found->second);
       material_known_.push_back(found != in_.materials.end() || name.empty());
     }
   }
@@ -98,7 +102,8 @@ class MeshBuilder {
   }
 
   void open_part(const ObjFace& face) {
-    if (part_object_ == face.object && !mesh_.parts.empty()) return;
+    const std::optional<MeshSampler> sampler = sampler_of(face);
+    if (!mesh_.parts.empty() && part_object_ == face.object && mesh_.parts.back().sampler == sampler) return;
     part_object_ = face.object;
     if (object_number_.empty()) object_number_.assign(in_.object_names.size(), kUnused);
     if (object_number_[face.object] == kUnused) {  // only objects with faces get into the mesh
@@ -106,6 +111,42 @@ class MeshBuilder {
       mesh_.objects.push_back(in_.object_names[face.object]);
     }
     mesh_.parts.push_back({object_number_[face.object], mesh_.triangles.size(), 0, face.line});
+    mesh_.parts.back().sampler = sampler;
+  }
+
+  // How a face's texture is looked up; nothing without one, or where a corner has no place on it.
+  std::optional<MeshSampler> sampler_of(const ObjFace& face) {
+    const std::optional<MtlTexture>& map = materials_[face.material].texture;
+    const auto corners = std::span(in_.corners).subspan(face.first, face.count);
+    if (!map || std::ranges::find(corners, kNoIndex, &ObjCorner::uv) != corners.end()) return std::nullopt;
+    const auto [place, is_new] = texture_of_file_.try_emplace(map->file);
+    if (is_new) place->second = load_texture(*map);
+    if (!place->second) return std::nullopt;
+    MeshSampler sampler{.texture = *place->second};
+    sampler.wrap = {map->wrap, map->wrap};
+    return sampler;
+  }
+
+  // An image that cannot be read is a warning, as a library is.
+  std::optional<std::uint32_t> load_texture(const MtlTexture& map) {
+    const std::string what = map.place + ": map_Kd " + in_quotes(map.file);
+    const std::optional<std::string> bytes = source_(map.file);
+    TexelImage image;
+    try {
+      if (!bytes) throw InputError(what + ": there is no such file");
+      image = read_image(*bytes, what);
+    } catch (const InputError& error) {
+      warnings_.push_back(std::string(error.what()) + "; the colour is shown alone");
+      return std::nullopt;
+    }
+    for (int top = 0, bottom = image.height - 1; top < bottom; ++top, --bottom) {  // v counts from the bottom
+      const auto row = [&image](int y) { return image.texel.begin() + std::ptrdiff_t{y} * image.width; };
+      std::swap_ranges(row(top), row(top + 1), row(bottom));
+    }
+    const std::uint32_t texture =
+        add_texture(mesh_.textures, image, std::filesystem::path(map.file).stem().string(), what);
+    add_mips_for(MeshSampler{}.min, mesh_.textures[texture]);
+    return texture;
   }
 
   // The mesh vertex of a corner: a known one if everything about it agrees.
@@ -120,8 +161,10 @@ class MeshBuilder {
     made.position = in_.positions[position];
     if (corner.normal != kNoIndex) made.normal = normalized(in_.normals[normal]);
     if (corner.uv != kNoIndex) {
-      made.u = in_.uvs[static_cast<std::size_t>(corner.uv)][0];
-      made.v = in_.uvs[static_cast<std::size_t>(corner.uv)][1];
+      const auto& [u, v] = in_.uvs[static_cast<std::size_t>(corner.uv)];
+      const std::optional<MtlTexture>& map = materials_[face.material].texture;
+      made.u = map ? u * map->scale[0] + map->offset[0] : u;
+      made.v = map ? v * map->scale[1] + map->offset[1] : v;
     }
     made.rgba = color(position, face.material);
     mesh_.vertices.push_back(made);
@@ -130,7 +173,7 @@ class MeshBuilder {
   }
 
   std::array<double, 4> color(std::uint32_t position, std::uint32_t material) const {
-    if (in_.colors.empty()) return material_colors_[material];
+    if (in_.colors.empty()) return materials_[material].rgba;
     std::array<double, 4> rgba{255, 255, 255, 255};
     if (position >= in_.colors.size()) return rgba;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -169,13 +212,15 @@ class MeshBuilder {
 
   static constexpr std::uint32_t kUnused = ~0U;
   const ObjText& in_;
+  const MaterialSource& source_;
   std::vector<std::string>& warnings_;
   Mesh mesh_;
   std::unordered_map<CornerKey, std::uint32_t, CornerHash> vertex_of_, normal_at_;
   std::vector<std::uint32_t> normal_of_;  // for each mesh vertex
   std::vector<Vec3> made_normals_;
-  std::vector<std::array<double, 4>> material_colors_;
+  std::vector<MtlMaterial> materials_;  // for each of in_.material_names
   std::vector<bool> material_known_;
+  std::unordered_map<std::string, std::optional<std::uint32_t>> texture_of_file_;
   std::vector<std::uint32_t> object_number_;
   double color_scale_ = 255;
   std::uint32_t part_object_ = 0, face_number_ = 0;
@@ -193,7 +238,7 @@ Mesh parse_obj(std::string_view text, const std::string& file, const MaterialSou
   if (std::max({parsed.positions.size(), parsed.normals.size(), parsed.corners.size()}) > kMost) {
     throw InputError(file + ":1: more than 2^31 entries; split the file");
   }
-  return MeshBuilder(parsed, warnings).run();
+  return MeshBuilder(parsed, materials, warnings).run();
 }
 
 Mesh read_obj_file(const std::string& path, std::vector<std::string>& warnings) {

@@ -19,17 +19,17 @@
 
 namespace halfplane {
 
-/// The text of a material library by the name that the OBJ uses, or nothing when there is none.
+/// The bytes of a material library or of an image by its name beside the OBJ, or nothing when there is none.
 using MaterialSource = std::function<std::optional<std::string>(const std::string& name)>;
 
 /// Reads a mesh from text. `file` is the name for messages. Materials give the colours unless the vertices have their
 /// own (then the mesh is not lit). Corners without a normal get one smoothed over the faces of their smoothing group,
 /// weighted by the angle at the corner; `s off` makes flat ones; without any `s` line the whole file is one group.
-/// A missing library or material is a warning. Throws InputError "file:line: what; the mend".
+/// A missing library, material or image is a warning. Throws InputError "file:line: what; the mend".
 [[nodiscard]] Mesh parse_obj(std::string_view text, const std::string& file, const MaterialSource& materials,
                              std::vector<std::string>& warnings);
 
-/// Reads an OBJ file; material libraries are looked for beside it.
+/// Reads an OBJ file; material libraries and images are looked for beside it.
 [[nodiscard]] Mesh read_obj_file(const std::string& path, std::vector<std::string>& warnings);
 
 }  // namespace halfplane

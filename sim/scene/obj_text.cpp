@@ -158,7 +158,7 @@ class ObjReader {
     if (const auto known = libraries_.find(name); known != libraries_.end()) return known->second;
     const std::optional<std::string> text = source_(name);
     libraries_.emplace(name, text.has_value());
-    if (text) parse_mtl(*text, printable(name), out_.materials);
+    if (text) parse_mtl(*text, name, out_.materials);
     return text.has_value();
   }
 

@@ -63,6 +63,10 @@ int main(int argc, char** argv) {
        [](const Counters& c) { return c.skipped.tiles_hiz; }},
       {"fragments that are tested one by one", "layers:16", with(Cull::none, DepthFunc::less), false,
        [](const Counters& c) { return c.covered; }},
+      {"fragments with nearest texels", "layers_nearest:16", with(Cull::none, DepthFunc::less), false,
+       [](const Counters& c) { return c.covered; }},
+      {"fragments with linear filter", "layers_linear:16", with(Cull::none, DepthFunc::less), false,
+       [](const Counters& c) { return c.covered; }},
       {"pixels of lines", "scratches:10000", with(Cull::none, DepthFunc::always), true,
        [](const Counters& c) { return c.covered; }},
   };

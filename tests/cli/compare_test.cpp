@@ -74,6 +74,24 @@ TEST_F(CompareCommand, ModelPictureIsTheRenderedOneAndSheetAndGoldenAreWritten) 
   }
 }
 
+TEST_F(CompareCommand, ATexturedSheetHasAPictureOfEachPartAndAnUntexturedOneHasNone) {
+  write("t.hpt",
+        "halfplane 1\ntarget 32 32\ntexture t pattern grid 16 16 mips box\nspace window\nstate texture t\n"
+        "state texture_min linear_mipmap_linear\nv 1 1 0.5 1 255 0 0 255 0 0\nv 30 2 0.5 4 0 255 0 255 9 0\n"
+        "v 5 30 0.5 2 0 0 255 255 0 9\nt 0 1 2\n");
+  const Json texture = result({"compare", "t.hpt", "-o", "all.png"})["texture"];
+  for (const char* part : {"coordinate", "level_of_detail", "weights", "rounding"})
+    EXPECT_GT(texture["parts"][part]["count"], 0) << part;
+  EXPECT_LE(texture["coordinate"]["of_bound"], 1);
+  EXPECT_EQ(
+      run({"compare", "t.hpt", "-o", "some.png", "--panels", "coordinate,footprints,level,weights,rounding"}).status,
+      0);
+  EXPECT_GT(read("all.png").size(), read("some.png").size());
+  EXPECT_TRUE(result({"compare", "triangle", "--size", "32x32"})["texture"].is_null());
+  expect_refused({"compare", "triangle", "--size", "32x32", "-o", "none.png", "--panels", "model,level"},
+                 "--panels: level is about textures");
+}
+
 TEST_F(CompareCommand, SinglePrecisionGoldenDiffersFromTheDoubleOne) {
   const Arguments base{"compare", "walk", "--size", "64x48", "--config", "full"};
   Arguments single = base;

@@ -7,6 +7,8 @@
 #include "sim/cosim/session.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/load.hpp"
+#include "sim/show/image/png.hpp"
+#include "tests/gltf_builder.hpp"
 
 namespace halfplane::cli {
 namespace {
@@ -43,6 +45,29 @@ TEST_F(ConvertCommand, AFileOfEveryKindDrawsTheSame) {
   expect_same("teapot:4", "--size 64x48 --convention d3d");
   expect_same("dust:300", "--size 64x48 --seed 5");
   expect_same("objects:20", "--size 64x48 --cull-objects both");
+}
+
+TEST_F(ConvertCommand, ATexturedMeshKeepsItsImagesInTheCapture) {
+  Picture image(5, 4);
+  for (int i = 0; i < 20; ++i) set_pixel(image, i % 5, i / 5, {static_cast<std::uint8_t>(12 * i), 90, 200});
+  write_png((folder_ / "a.png").string(), image);
+  write("a.mtl", "newmtl m\nmap_Kd -s 3 2 a.png\n");
+  write("a.obj", "mtllib a.mtl\nusemtl m\nv -1 0 2\nv 1 0 2\nv 0 0 -9\nvt 0 0\nvt 1 0\nvt 0 4\nf 1/1 2/2 3/3\n");
+  test::GltfBuilder builder = test::one_triangle();
+  Json& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = builder.accessor(test::GltfBuilder::f32, 2, {0, 0, 2, 0, 0, 3});
+  primitive["material"] = 0;
+  builder.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  builder.json["textures"] = {{{"source", 0}}};
+  builder.json["images"] = {{{"uri", "a.png"}}};
+  write("a.glb", builder.glb());
+  expect_same("a.obj", "--size 60x50 --camera eye=0,0.5,1;target=0,0,-3;near=0.1;far=20");  // clipped
+  expect_same("a.glb", "--size 60x50");
+  std::filesystem::remove(folder_ / "a.png");
+  expect_refused({"render", "a.glb"}, "images[0].uri: 'a.png' cannot be read; put it beside the glTF file");
+  const Outcome plain = run({"render", "a.obj", "--size", "20x20"});
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_NE(plain.err.find("a.mtl:2: map_Kd 'a.png': there is no such file"), std::string::npos) << plain.err;
 }
 
 TEST_F(ConvertCommand, ADepthMappingIsLeftToWhoDrawsTheCapture) {

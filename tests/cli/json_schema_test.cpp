@@ -55,6 +55,11 @@ TEST_F(JsonSchema, RenderIsDescribed) {
 }
 
 TEST_F(JsonSchema, CompareIsDescribed) {
+  write("t.hpt",
+        "halfplane 1\ntarget 32 32\ntexture t pattern grid 16 16\nspace window\nstate texture t\n"
+        "state color_interp perspective\nv 1 1 0.5 1 255 0 0 255 0 0\nv 30 2 0.5 4 0 255 0 255 1 0\n"
+        "v 5 30 0.5 2 0 0 255 255 0 1\nt 0 1 2\n");
+  expect_results("compare", {"t.hpt"});
   expect_results("compare", {"triangle --size 32x32", "teapot:2 --size 32x32", "wires --size 32x32",
                              "triangle --size 32x32 --traversal bbox"});
 }
@@ -76,8 +81,11 @@ TEST_F(JsonSchema, TheListOfStressCasesIsDescribed) {
 }
 
 TEST_F(JsonSchema, WidthsAreDescribed) {
-  expect_results("widths",
-                 {"--config tiny --samples 100", "--smallest --scene triangle --size 32x32 --depth-error 1lsb"});
+  write("t.hpt",
+        "halfplane 1\ntarget 16 16\ntexture t pattern grid 16 16\nspace window\nstate texture t\n"
+        "v 1 1 0.5 1 255 0 0 255 0 0\nv 15 2 0.5 4 0 255 0 255 1 0\nv 5 15 0.5 2 0 0 255 255 0 1\nt 0 1 2\n");
+  expect_results("widths", {"--smallest --scene t.hpt --config tiny --texture-error 0.1", "--config tiny --samples 100",
+                            "--smallest --scene triangle --size 32x32 --depth-error 1lsb"});
 }
 
 TEST_F(JsonSchema, BenchIsDescribed) {

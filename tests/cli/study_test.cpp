@@ -153,6 +153,37 @@ TEST_F(StudyRules, FaultsShowInTheResultAndCompareSaysThatTheBoundIsBroken) {
   EXPECT_EQ(both["accumulator"], "saturate");
 }
 
+TEST_F(StudyRules, WeightsOfFourBitsShowInTheResultAndBreakTheFiltersBound) {
+  write("t.hpt",
+        "halfplane 1\ntarget 32 32\ntexture t pattern chequer 8 8\nspace window\nstate texture t\n"
+        "state texture_mag linear\nv 0 0 0.5 1 255 255 255 255 0 0\nv 32 0 0.5 1 255 255 255 255 0.2 0\n"
+        "v 0 32 0.5 1 255 255 255 255 0 0.2\nt 0 1 2\n");
+  const Json usual = result({"compare", "t.hpt", "--config", "full"});
+  EXPECT_EQ(usual["weights"], "8");
+  EXPECT_EQ(usual["texture"]["parts"]["weights"]["max"], 0);
+  const Outcome outcome = run({"compare", "t.hpt", "--config", "full", "--weights", "4", "--quiet", "--json=r.json"});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  const Bytes bytes = read("r.json");
+  const Json coarse = Json::parse(bytes.begin(), bytes.end());
+  EXPECT_EQ(coarse["weights"], "4");
+  EXPECT_GT(coarse["texture"]["parts"]["weights"]["max"], 5);
+  EXPECT_LT(coarse["texture"]["parts"]["weights"]["max"], 16);
+  ASSERT_EQ(coarse["broken_bounds"].size(), 1u);
+  EXPECT_NE(coarse["broken_bounds"][0].get<std::string>().find("from the real filter"), std::string::npos);
+  EXPECT_NE(result({"render", "t.hpt", "--engine", "scalar", "--weights", "4"})["color_hash"],
+            result({"render", "t.hpt", "--engine", "scalar"})["color_hash"]);
+  expect_refused({"render", "t.hpt", "--weights", "4"}, "--weights 4: the engine functional does not have it");
+  expect_refused({"compare", "t.hpt", "--weights", "5"}, "8,4");
+}
+
+TEST_F(StudyRules, ThePagesScenesOfTexturesBreakNoBound) {
+  for (const char* name : {"floor", "road", "wall", "texels"}) {
+    const Json json = result({"compare", HALFPLANE_SOURCE_DIR "/docs/texture/" + std::string(name) + ".hpt"});
+    EXPECT_TRUE(json["broken_bounds"].empty()) << name;
+    EXPECT_GT(json["texture"]["pixels"], 10000) << name;
+  }
+}
+
 TEST_F(StudyRules, OtherEnginesAndHomogeneousTrianglesRefuseFaults) {
   for (const char* engine : {"functional", "cycle", "golden"}) {
     expect_refused({"render", "triangle", "--engine", engine, "--gradients", "truncated"}, "--gradients truncated");

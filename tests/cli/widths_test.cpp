@@ -39,6 +39,10 @@ TEST_F(WidthsCommandLine, JsonHasEveryWidthWithRangeAndWhatWasSeen) {
   EXPECT_FALSE(json["overflow_order"].empty());
   EXPECT_EQ(json["homogeneous"].size(), 7U);
   EXPECT_NEAR(json["error_bounds"]["depth_lsb"], 0.664, 0.001);
+  const Json& over_w = json["error_bounds"]["over_w"];
+  EXPECT_EQ(over_w["coordinate"][1]["texels"], 1024);
+  EXPECT_GT(over_w["coordinate"][1]["w_ratio"], 1024);
+  EXPECT_GT(over_w["color"]["w_ratio"], 400);
 }
 
 TEST_F(WidthsCommandLine, TableNamesEachWidthItsFormulaAndWhatOverflows) {
@@ -105,6 +109,9 @@ TEST_F(WidthsCommandLine, BadInputIsRefusedWithTheMend) {
     expect_refused(smallest("--depth-error", error), *error == 0 ? "no bound" : "--depth-error");
   for (const char* error : {"1", "lsb", "x", "-1lsb"})
     expect_refused(smallest("--color-error", error), "--color-error");
+  for (const char* error : {"-1", "0", "1lsb", "x"})
+    expect_refused(smallest("--texture-error", error), "--texture-error");
+  expect_refused(smallest("--texture-error", "0.1"), "no scene has a texture");
   for (const char* error : {"-1", "1.5", "many"})
     expect_refused(smallest("--coverage-error", error), "--coverage-error");
   expect_refused({"widths", "--smallest", "--scene", "nosuch", "--depth-error", "1lsb"}, "nosuch");

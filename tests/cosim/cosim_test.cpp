@@ -72,6 +72,20 @@ TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
   }
 }
 
+// What a texture unit asks for and what comes of it is compared too, where there is one.
+TEST(Cosim, TexturesAreLookedUpInRandomScenes) {
+  std::size_t units = 0;
+  for (const DutFactory& factory : verilated_duts()) {
+    if (!has_texture_planes(factory.config)) continue;
+    ++units;
+    const Session session = run(factory, {}, random_scenes(factory.config, 31, 3000));
+    EXPECT_EQ(describe(session), "");
+    EXPECT_GT(session.result.compared[index(Arrow::texture)], 200u);
+    EXPECT_GT(session.result.compared[index(Arrow::color)], 10000u);
+  }
+  EXPECT_GT(units, 0u);
+}
+
 TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
   for (const DutFactory& factory : verilated_duts())
     for (const MemoryKind kind :
@@ -234,10 +248,14 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
     const auto scenes = random_scenes(factory.config, options.seed, 6000);
     return run_session(*dut, factory.config, options, scenes, HostOrders::drawn).result.mismatch.has_value();
   };
-  const DutFactory &embedded = find_dut(preset("embedded")), &tiny = find_dut(preset("tiny"));
-  ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants);
+  Config with_textures = preset("embedded");
+  with_textures.texture_unit = TextureUnitKind::nearest;
+  const DutFactory &embedded = find_dut(preset("embedded")), &tiny = find_dut(preset("tiny")),
+                   &textured = find_dut(with_textures);
+  ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants && textured.has_mutants);
   for (const Mutant& mutant : mutants())  // `tiny` has the framebuffer of tiles
-    EXPECT_TRUE(is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
+    EXPECT_TRUE((mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
+                is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
                 is_caught(embedded, mutant, 0.2, true))
         << "mutant " << mutant.id << " of " << mutant.file << " is not caught: " << mutant.what;
 }

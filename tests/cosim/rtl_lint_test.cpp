@@ -29,12 +29,14 @@ Config random_config(Random& random) {
         if (setting.max > 64 && below(3) != 0) value = 1 << below(12);  // small targets, powers of two
         if (setting.key == "target.width" || setting.key == "target.height") value += static_cast<int>(below(2));
         if (setting.key.ends_with(".size") || setting.key.ends_with(".slots") || setting.key.ends_with(".lag") ||
-            setting.key.starts_with("cache."))
+            setting.key.starts_with("cache.") || setting.key.starts_with("texture."))
           value = 1 << below(7);
         config.** number = value;
-      } else {  // "rgb565|rgba8888": one of the two
-        const auto bar = setting.unit.find('|');
-        set(config, setting.key, below(2) == 0 ? setting.unit.substr(0, bar) : setting.unit.substr(bar + 1));
+      } else {  // "rgb565|rgba8888": one of them
+        std::string_view words = setting.unit;
+        for (auto bar = words.find('|'); bar != std::string_view::npos && below(2) == 0; bar = words.find('|'))
+          words.remove_prefix(bar + 1);
+        set(config, setting.key, words.substr(0, words.find('|')));
       }
     }
     try {

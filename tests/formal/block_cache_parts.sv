@@ -12,7 +12,8 @@
   logic [COLOR+CODE-1:0] clear_before_q;
   always_ff @(posedge clk_i) clear_before_q <= {clear_color, clear_depth};
 
-  // Between X and W: a queue of two.
+  // Between X and W: a queue of two (skid_buffer, in colored_stamps).
+  localparam int COLORED = CARRIED + SAMPLES * COLOR;
   logic [COLORED-1:0] first_q, second_q, entering;
   logic [1:0]         count_q;
   assign entering = {x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),

@@ -9,8 +9,8 @@
     for (k = 0; k < PLANES; k++) begin : gen_proof
       localparam int N = LOCAL_BITS_OF[32*k+:32];
       localparam int AT = LOCAL_AT[32*k+:32];
-      localparam int B = CODE_BITS_OF[32*k+:32];
-      localparam int CODE = CODE_AT[32*k+:32];
+      localparam int B = FRAGMENT_BITS_OF[32*k+:32];
+      localparam int CODE = FRAGMENT_AT[32*k+:32];
       function automatic [N-1:0] sum(input [N-1:0] value, input [PIXEL-1:0] offset, input [N-1:0] step);
         sum = value;
         for (int b = PIXEL - 1; b >= 0; b--)
@@ -37,7 +37,7 @@
                            (((n % STAMP) & 1) ? step_x_2 : '0);
         assign low  = samples_context_q.range.low[CODE+:B];
         assign high = samples_context_q.range.high[CODE+:B];
-        assign code = gen_plane[k].gen_sample[n].clamped;
+        assign code = gen_plane[k].gen_sample[n].gen_code.clamped;
         always_comb begin
           assert ($unsigned(gen_plane[k].gen_sample[n].value) == at_sample);
           if (low <= high) assert (low <= code && code <= high);

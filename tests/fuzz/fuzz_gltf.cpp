@@ -23,6 +23,7 @@ void check_mesh(const halfplane::Mesh& mesh) {
     std::size_t& named = part.topology == halfplane::Topology::triangles ? triangles : indices;
     require(part.first == named && part.object < mesh.objects.size());
     named += part.count;
+    require(!part.sampler || part.sampler->texture < mesh.textures.size());
   }
   require(triangles == mesh.triangles.size() && indices == mesh.indices.size() && triangles + indices > 0);
   for (const std::uint32_t index : mesh.indices) require(index < mesh.vertices.size());
@@ -38,6 +39,7 @@ void check_mesh(const halfplane::Mesh& mesh) {
 }
 
 void check_scene(const halfplane::Scene& scene) {
+  validate(scene);
   for (const auto& vertex : scene.vertices) {
     for (const double number : {vertex.x, vertex.y, vertex.z, vertex.w}) require(std::isfinite(number));
     for (const double number : vertex.rgba) require(number >= 0 && number <= 255);

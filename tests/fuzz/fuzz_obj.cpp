@@ -21,6 +21,7 @@ void check_mesh(const halfplane::Mesh& mesh) {
   for (const auto& part : mesh.parts) {
     require(part.first == covered && part.object < mesh.objects.size());
     covered += part.count;
+    require(!part.sampler || part.sampler->texture < mesh.textures.size());
   }
   require(covered == mesh.triangles.size() && covered > 0);
   for (const auto& triangle : mesh.triangles) {
@@ -34,6 +35,7 @@ void check_mesh(const halfplane::Mesh& mesh) {
 }
 
 void check_scene(const halfplane::Scene& scene) {
+  validate(scene);
   for (const auto& vertex : scene.vertices) {
     for (const double number : {vertex.x, vertex.y, vertex.z, vertex.w}) require(std::isfinite(number));
     for (const double number : vertex.rgba) require(number >= 0 && number <= 255);

@@ -143,6 +143,9 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   EXPECT_EQ(file_text("presets/tiny/raster_pkg.sv"), raster_pkg(preset("tiny")));
   EXPECT_EQ(file_text("presets/small/raster_pkg.sv"), raster_pkg(preset("small")));
   EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
+  Config textured;
+  textured.texture_unit = TextureUnitKind::nearest;
+  EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
 }
 
 TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("cosim/taps.svh"), raster_taps()); }
@@ -158,6 +161,8 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
       config.cache_kind = CacheKind::tiles;
     else if (std::holds_alternative<FrameClears Config::*>(setting.member))
       config.frame_clears = FrameClears::flags;
+    else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
+      config.texture_unit = TextureUnitKind::nearest;
     else if (std::holds_alternative<FrameOrder Config::*>(setting.member))
       config.frame_order = FrameOrder::bins;
     else if (std::holds_alternative<FrameStore Config::*>(setting.member))

@@ -53,12 +53,13 @@ class FakeDut final : public Dut {
     offered_.clear();
     if (words != nullptr) offered_.assign(words, words + words_of(packet_bits<PrimitivePacket>(widths_)));
   }
+  void set_texel(const std::uint32_t*) override {}
   void set_answer(const std::uint32_t* words) override { is_answered_ = words != nullptr; }
   void set_layout(const std::uint32_t*) override {}
   void hold_reset(bool) override {}
   void set_counters_hold(bool holds) override { holds_counters_ = holds; }
 
-  const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready) override;
+  const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready, bool texture_ready) override;
   void clock() override;
 
  private:
@@ -96,7 +97,7 @@ const std::uint32_t* FakeDut::content(Arrow arrow) {
   return words.data();
 }
 
-const DutOutputs& FakeDut::evaluate(std::uint32_t stalls, bool beat_ready) {
+const DutOutputs& FakeDut::evaluate(std::uint32_t stalls, bool beat_ready, bool /*texture_ready*/) {
   out_ = {};
   for (const Arrow arrow : kCompared) {
     const Arrow leader = info(arrow).flow.rides_with.value_or(arrow);
@@ -185,7 +186,8 @@ TEST_P(CosimHarness, AnEqualDesignPassesWithAndWithoutStallsAndEveryArrowIsCompa
     const LockstepResult& result = session.result;
     EXPECT_EQ(session.scenes, 2u);
     EXPECT_FALSE(result.mismatch.has_value()) << mismatch_report(*result.mismatch);
-    for (const Arrow arrow : kCompared) EXPECT_GT(result.compared[index(arrow)], 0u) << info(arrow).name;
+    for (const Arrow arrow : kCompared)
+      EXPECT_EQ(result.compared[index(arrow)] > 0, !is_of_texture_unit(arrow)) << info(arrow).name;
     EXPECT_GT(result.memory_compared, 0u);
     EXPECT_GT(result.counters_compared, 0u);
     EXPECT_GE(result.triangles, 100u);
@@ -195,6 +197,7 @@ TEST_P(CosimHarness, AnEqualDesignPassesWithAndWithoutStallsAndEveryArrowIsCompa
 TEST_P(CosimHarness, OneFlippedBitOnAnyArrowIsNamedWithItsField) {
   const Widths widths = derive_widths(config);
   for (const Arrow arrow : kCompared) {
+    if (is_of_texture_unit(arrow)) continue;
     const int size =
         with_packet_type(arrow, [&]<class Packet>(std::type_identity<Packet>) { return packet_bits<Packet>(widths); });
     for (const int bit : {0, size / 3, size - 1}) {
@@ -209,12 +212,14 @@ TEST_P(CosimHarness, OneFlippedBitOnAnyArrowIsNamedWithItsField) {
 }
 
 TEST_P(CosimHarness, ALostARepeatedAndANeverSentPacketAreNamedOnEveryArrow) {
-  for (const Arrow arrow : kCompared)
+  for (const Arrow arrow : kCompared) {
+    if (is_of_texture_unit(arrow)) continue;
     for (const auto kind : {Fault::Kind::lose, Fault::Kind::repeat, Fault::Kind::stop}) {
       const LockstepResult result = run(config, {kind, arrow, 20, 0}, with_stalls(0));
       ASSERT_TRUE(result.mismatch.has_value()) << info(arrow).name << " fault " << static_cast<int>(kind);
       EXPECT_EQ(result.mismatch->arrow, info(arrow).name);
     }
+  }
 }
 
 TEST_P(CosimHarness, AWrongContextIsBlamedOnCoarseRasterWhichMakesIt) {

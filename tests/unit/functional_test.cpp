@@ -7,11 +7,9 @@
 #include <string>
 #include <tuple>
 
+#include "../functional_case.hpp"
 #include "../scene_builder.hpp"
-#include "model/engines/functional.hpp"
 #include "model/engines/functional/frame_renderer.hpp"
-#include "model/engines/functional/kernels.hpp"
-#include "model/engines/scalar.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/depth_mapping.hpp"
@@ -19,45 +17,8 @@
 namespace halfplane {
 namespace {
 
-void expect_same(const Rendering& fast, const Rendering& scalar) {
-  ASSERT_EQ(fast.frame.depth, scalar.frame.depth);
-  ASSERT_EQ(fast.frame.color, scalar.frame.color);
-  EXPECT_EQ(fast.counters.depth_passed, scalar.counters.depth_passed);
-  EXPECT_EQ(fast.counters.written, scalar.counters.written);
-  EXPECT_EQ(fast.counters.primitives_in, scalar.counters.primitives_in);
-  EXPECT_EQ(fast.counters.primitives_in, fast.counters.culled + fast.counters.drawn);
-}
-
-/// Every kernel that this machine has, one and three threads, everything skipped and nothing; and fragments one by one.
-void expect_all_same(const Scene& scene, const Config& config) {
-  const Rendering scalar = render_scalar(scene, config);
-  const PreparedScene prepared(scene);
-  FunctionalEngine engine(config);
-  for (const functional::Kernels* kernels : functional::available_kernels())
-    for (const int threads : {1, 3})
-      for (const bool skips : {true, false}) {
-        SCOPED_TRACE(std::string(kernels->name) + ", threads " + std::to_string(threads) +
-                     (skips ? ", skip all" : ", skip none"));
-        RenderOptions options;
-        options.instruction_set = kernels->name;
-        options.threads = threads;
-        if (!skips) options.skip = skip_none();
-        const Rendering& fast = engine.render(prepared, options);
-        expect_same(fast, scalar);
-        if (!skips) {
-          EXPECT_EQ(fast.counters.covered, scalar.counters.covered);
-        }
-      }
-  for (const functional::Kernels* kernels : functional::available_kernels()) {
-    SCOPED_TRACE(std::string(kernels->name) + ", general fragments");
-    RenderOptions options;
-    options.instruction_set = kernels->name;
-    options.general_fragments = true;
-    const Rendering& fast = engine.render(prepared, options);
-    expect_same(fast, scalar);
-    EXPECT_EQ(fast.counters.covered, scalar.counters.covered);
-  }
-}
+using test::expect_all_same;
+using test::expect_same;
 
 Config config_of(const char* name, int depth_bits) {
   Config config = preset(name);

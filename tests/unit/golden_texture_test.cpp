@@ -90,6 +90,18 @@ TEST(GoldenTexture, BeyondTheImageItWrapsClampsOrTurns) {
 }
 
 // w is 1 at the top and 3 at the bottom: half way down the screen is a quarter of the way along the ground.
+TEST(GoldenTexture, FarAwayItStillWrapsExactly) {
+  // 10^17 = 33 * 3030303030303030 + 10; its neighbours in binary64 are 16 apart.
+  EXPECT_EQ(golden::wrapped(1e17, 33, TextureWrap::repeat), 10);
+  EXPECT_EQ(golden::wrapped(-1e17, 33, TextureWrap::repeat), 23);
+  EXPECT_EQ(golden::wrapped(1e17, 33, TextureWrap::mirror), std::fmod(1e17, 66) < 33 ? 10 : 22);
+  for (const double far : {1e30, -1e200, 1e308})
+    for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror}) {
+      const int texel = golden::wrapped(far, 33, wrap);
+      EXPECT_TRUE(texel >= 0 && texel < 33) << far;
+    }
+}
+
 TEST(GoldenTexture, PerspectiveDividesAndAffineDoesNot) {
   const Texture texture = gradient(256, 256);
   for (const TextureInterp interp : {TextureInterp::perspective, TextureInterp::affine}) {

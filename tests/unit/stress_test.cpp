@@ -33,6 +33,57 @@ TEST(CaseList, TheListIsCompleteAndEveryNameIsItsOwn) {
     items.insert(std::string(c.item));
   }
   for (int item = 1; item <= 24; ++item) EXPECT_TRUE(items.contains(std::to_string(item))) << item;
+  for (int item = 1; item <= 12; ++item) EXPECT_TRUE(items.contains("t" + std::to_string(item))) << item;
+}
+
+/// An engine that says of each surface what `damage` makes of it, and draws it as ever.
+Engine with_surfaces(std::function<void(SurfaceSample&)> damage) {
+  return [damage](const Scene& scene, const Config& config, const RenderOptions& asked) {
+    RenderOptions changed = asked;
+    if (asked.fragment_tap)
+      changed.fragment_tap = [&asked, &damage](const TappedFragment& fragment) {
+        TappedFragment copy = fragment;
+        if (copy.surface) damage(*copy.surface);
+        asked.fragment_tap(copy);
+      };
+    return draw(scene, config, changed);
+  };
+}
+
+/// The properties that fail in the first units of each textured case.
+void expect_textured_failures(const Engine& engine, std::string_view property) {
+  for (const Case& c : cases()) {
+    if (!c.item.starts_with('t')) continue;
+    const auto failed = [&](std::uint64_t unit) {
+      const Tally tally = run_one(c.name, engine, unit)[0].tally;
+      return tally.failures > 0 && tally.first->property == property;
+    };
+    bool is_found = false;
+    for (std::uint64_t unit = 0; unit < 12 && !is_found; ++unit) is_found = failed(unit);
+    EXPECT_TRUE(is_found) << c.name;
+  }
+}
+
+TEST(SuiteMustFail, ACoordinateFarFromItsPlaceFailsEveryTexturedCase) {
+  expect_textured_failures(with_surfaces([](SurfaceSample& s) { s.coordinate[1] += 3000; }), "coordinate");
+}
+
+TEST(SuiteMustFail, ALevelOfDetailOffByAQuarterFailsEveryTexturedCase) {
+  expect_textured_failures(with_surfaces([](SurfaceSample& s) { s.lod += 60; }), "level");
+}
+
+TEST(SuiteMustFail, ATexelOffByTwoCodesFailsEveryTexturedCase) {
+  expect_textured_failures(
+      with_surfaces([](SurfaceSample& s) { s.texel[0] = static_cast<std::uint8_t>(s.texel[0] ^ 2); }), "filter");
+}
+
+TEST(SuiteMustFail, AnotherPictureThanTheFragmentsFailsEveryTexturedCase) {
+  const Engine engine = [](const Scene& scene, const Config& config, const RenderOptions& asked) {
+    Rendering rendering = draw(scene, config, asked);
+    if (!asked.fragment_tap) rendering.frame.color[rendering.frame.at(3, 3)] ^= 1;
+    return rendering;
+  };
+  expect_textured_failures(engine, "image");
 }
 
 TEST(ConfigurationGrid, HoldsThePresetsAndTheRangesAndIsLegalThroughout) {

@@ -249,5 +249,20 @@ TEST(Surface, FormatsFollowTheirSettings) {
   EXPECT_EQ(perspective_format(preset("tiny")).color.bits, 16);
 }
 
+// As captures may have them: beyond what any place on a texture needs, and what products of them hold.
+TEST(Surface, CoordinatesOfAnySizeAreDrawn) {
+  for (const double far : {1e17, 1e30, 1e300})
+    for (const int size : {32, 33}) {
+      State state = SceneBuilder::window_state();
+      state.texture = 0;
+      state.texture_min = TextureMin::linear_mipmap_linear;
+      SceneBuilder builder(16, 16, state);
+      builder.triangle(corner(1, 1, far, 0), corner(15, 2, -far, far, 1e-6), corner(3, 15, 0.7 * far, -far, 1e6));
+      builder.scene.textures.push_back(pattern(TexturePattern::grid, size, size, Mips::box));
+      expect_engines_agree(builder.scene, with_colors("embedded"), std::to_string(far));
+      EXPECT_GT(golden::render(builder.scene, with_colors("embedded")).counters.written, 50U);
+    }
+}
+
 }  // namespace
 }  // namespace halfplane

@@ -6,7 +6,9 @@
 #include "model/capture/capture.hpp"
 #include "model/engines/scalar.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/scene/scene_builder.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/smallest.hpp"
 #include "sim/study/widths/study.hpp"
 
@@ -183,6 +185,22 @@ TEST(WidthStudy, CapturesSnapBackToTheProbe) {
     }
 }
 
+// ----------------------------------------------------------------------------------------------------------- over w
+
+TEST(ProvenOverW, IsWhereTheBoundReachesTheError) {
+  for (const std::string name : {"embedded", "full"}) {
+    const PerspectiveFormat format = perspective_format(preset(name));
+    for (const double texels : {256.0, 1024.0}) {
+      const double ratio = *proven_w_ratio(texels, format, 8);
+      EXPECT_LE(over_w_bound(texels, ratio, format, format.coordinate, 8), kProvenTexels);
+      EXPECT_GT(over_w_bound(texels, ratio * 1.0001, format, format.coordinate, 8), kProvenTexels);
+    }
+  }
+  EXPECT_GT(*proven_w_ratio(1024, perspective_format(preset("embedded")), 8), 64);  // what the contract promises
+  EXPECT_GT(*proven_w_ratio(1024, perspective_format(preset("full")), 8), 1024);
+  EXPECT_FALSE(proven_w_ratio(256, perspective_format(preset("tiny")), 8));
+}
+
 // ---------------------------------------------------------------------------------------------- smallest configuration
 
 Scene small_scene(const char* name) { return make_builtin(name, 16, 16, {}, 1); }
@@ -267,6 +285,48 @@ TEST(SmallestConfiguration, SeveralScenesAreAllKeptAndAnImpossibleBoundIsSaidToB
   const Smallest none = find_smallest(scenes, preset("tiny"), bounds);
   EXPECT_FALSE(none.found);
   EXPECT_NE(none.widest.broken.find("depth"), std::string::npos) << none.widest.broken;
+}
+
+/// A textured triangle with w from 1 to 8.
+Scene textured_scene() {
+  State state = SceneBuilder::window_state();
+  state.texture = 0;
+  SceneBuilder builder(16, 16, state);
+  std::array<Vertex, 3> v{at(1, 1), at(15, 2), at(3, 15)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    v[i].w = i == 0 ? 1 : 8;
+    v[i].u = static_cast<double>(i);
+    v[i].v = i == 1 ? 2 : -1;
+  }
+  builder.triangle(v[0], v[1], v[2]);
+  builder.scene.textures.push_back(
+      make_texture("t", pattern_image(TexturePattern::grid, 32, 32), TextureFormat::rgba8888, Mips::none));
+  return builder.scene;
+}
+
+TEST(SmallestConfiguration, BitsOverWAreThoseThatATextureNeeds) {
+  const Scene scene = textured_scene();
+  ErrorBounds bounds;
+  bounds.texture = 1.0 / 32;
+  const Config start = preset("tiny");
+  const Smallest smallest = find_smallest({scene}, start, bounds);
+  ASSERT_TRUE(smallest.found);
+  const Config& found = smallest.found->config;
+  const auto error = [&scene](Config config, int bits, int mantissa) {
+    config.perspective_bits += bits;
+    config.perspective_mantissa_bits += mantissa;
+    return compare(scene, config).texture->coordinate.max;
+  };
+  EXPECT_LE(error(found, 0, 0), *bounds.texture);
+  EXPECT_GT(error(found, -1, 0), *bounds.texture);
+  EXPECT_GT(error(found, 0, -1), *bounds.texture);
+  EXPECT_EQ(found.depth_bits, start.depth_bits);
+  EXPECT_GT(hardware_bits(found, true).over_w, 0);
+  EXPECT_EQ(hardware_bits(found).over_w, 0);
+  EXPECT_EQ(smallest.one_less.size(), 7u);
+  bounds.color = 1;  // no colour of it is over w: the bits are the texture's alone
+  EXPECT_EQ(find_smallest({scene}, start, bounds).found->config.perspective_bits, found.perspective_bits);
+  EXPECT_THROW((void)find_smallest({small_scene("triangle")}, start, bounds), InputError);
 }
 
 }  // namespace

@@ -6,12 +6,14 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "../../stages/cache_tags.hpp"
 #include "../../stages/tile_directory.hpp"
+#include "../../timing/memory.hpp"
 #include "../../timing/station.hpp"
 #include "../../timing/stream.hpp"
 #include "block_timing.hpp"
@@ -42,7 +44,9 @@ struct TimingTotals {
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kStages> works{};
   std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> beats{};  ///< on the memory port, by MoveCause and plane
-  bool has_primitive = false;                                            ///< first_primitive has been seen
+  /// Of a texture unit: samples looked up, lines asked for, beats of them.
+  std::uint64_t texture_samples = 0, texture_misses = 0, texel_beats = 0;
+  bool has_primitive = false;  ///< first_primitive has been seen
 
   /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
   [[nodiscard]] std::uint64_t raster_cycles() const {
@@ -53,7 +57,8 @@ struct TimingTotals {
 class BackTiming {
  public:
   /// `memory` and `sink`, which may be null, must outlive this.
-  BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink)
+  BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink,
+             const MemorySettings& textures)
       : stalls_(stalls),
         streams_(streams_of(stalls)),
         port_(widths, stalls, memory, streams_, sink),
@@ -62,6 +67,9 @@ class BackTiming {
         line_raster_(1, 1, 1),
         resolves_(config.frame_clears == FrameClears::resolve) {
     if (config.cache_kind == CacheKind::blocks) blocks_.emplace(config, widths);
+    if (!has_texture_planes(config)) return;
+    textures_ = make_memory(textures, config);
+    texture_port_.emplace(*textures_, stream(Arrow::texture), stream(Arrow::texel));
   }
 
   /// Where the planes lie in memory, unless it is default_layout().
@@ -241,6 +249,9 @@ class BackTiming {
     const std::uint64_t hazards = blocks_->hazards();
     blocks_->take(moved, tags, item, BlockPort{*this});
     totals_.hazard_cycles += blocks_->hazards() - hazards;
+    for (const TextureLookup& lookup : item.texture.lookups) totals_.texture_samples += lookup.ends ? 1 : 0;
+    work(Stage::texture_unit, item.texture.lookups.size());
+    if (textures_ && item.wrote_color) note(Arrow::color, blocks_->colored());
     if (!item.mask.any()) return moved;
     totals_.last_write = blocks_->tested() + 1;
     note(Arrow::write, totals_.last_write);
@@ -260,10 +271,23 @@ class BackTiming {
     return times;
   }
 
+  /// A line for the texture unit, which takes its beats as they come.
+  LineTimes ask_for_texels(Cycle cycle, std::uint32_t address, int beats) {
+    const LineTimes times =
+        texture_port_->ask(cycle, address, beats, [this](int, Cycle at) { note(Arrow::texel, at); });
+    note(Arrow::texture, times.asked);
+    ++totals_.texture_misses;
+    totals_.texel_beats += static_cast<std::uint64_t>(beats);
+    return times;
+  }
+
   /// What BlockTiming asks memory through.
   struct BlockPort {
     BackTiming& timing;
 
+    LineTimes texture(Cycle cycle, std::uint32_t address, int beats) const {
+      return timing.ask_for_texels(cycle, address, beats);
+    }
     PortTimes operator()(Cycle cycle, TilePlane plane, const StampAddress& at, int run, bool is_write) const {
       return timing.ask_of_block(cycle, plane, at, run, is_write ? MoveCause::evict : MoveCause::fill);
     }
@@ -410,8 +434,10 @@ class BackTiming {
   TransferSink* sink_;
   Widths widths_;
   Station line_raster_;
-  bool resolves_;                      ///< frame.clears
-  std::optional<BlockTiming> blocks_;  ///< of cache.kind blocks
+  bool resolves_;                           ///< frame.clears
+  std::optional<BlockTiming> blocks_;       ///< of cache.kind blocks
+  std::unique_ptr<MemoryTiming> textures_;  ///< with a texture unit: the memory behind it
+  std::optional<TexturePort> texture_port_;
   Cycle next_line_ = 0, first_pixel_ = 0;
   FragmentPlace last_place_;
   std::uint64_t moving_ = 0;                           ///< cycles since the first primitive in which tiles moved

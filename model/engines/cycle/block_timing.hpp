@@ -6,7 +6,7 @@
 //   t(m) = max(moved + 1, t(m-1) + 1, x(m-queue) + 1, room for an order), one or two more where a flag falls
 //   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
 //   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2))
-//   w(m) = max(x + 2, w(m-1) + 1)
+//   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between X and W texture_timing.hpp says when W has it
 //
 // An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own,
 // W writes where nothing is left to be read, and the next eviction waits.
@@ -16,11 +16,20 @@
 #include <array>
 #include <bit>
 #include <deque>
+#include <optional>
 
 #include "../../stages/cache_tags.hpp"
+#include "../../stages/texture_packets.hpp"
 #include "../../timing/station.hpp"
+#include "texture_timing.hpp"
 
 namespace halfplane {
+
+/// What a fragment is to a texture unit.
+struct TextureWork {
+  bool sets_state = false, invalidates = false;  ///< a token
+  std::span<const TextureLookup> lookups;        ///< of the samples that are textured
+};
 
 /// What the test made of a fragment.
 struct BlockItem {
@@ -28,6 +37,7 @@ struct BlockItem {
   int stamp = 0;                                  ///< in its block
   bool depth_write = false, color_write = false;  ///< by its state
   bool wrote_depth = false, wrote_color = false;  ///< any sample passed
+  TextureWork texture;                            ///< with a texture unit
 };
 
 class BlockTiming {
@@ -37,7 +47,9 @@ class BlockTiming {
         items_(config.cache_queue, 1, 1),
         orders_(config.cache_queue, 1, 1),
         slots_(static_cast<std::size_t>(config.cache_victims)),
-        dirty_(static_cast<std::size_t>(config.cache_lines)) {}
+        dirty_(static_cast<std::size_t>(config.cache_lines)) {
+    if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths));
+  }
 
   /// When T can take the next fragment.
   [[nodiscard]] Cycle room() const { return left_; }
@@ -45,6 +57,8 @@ class BlockTiming {
   [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
   /// When X was through with the last fragment.
   [[nodiscard]] Cycle tested() const { return tested_; }
+  /// When W took its colours.
+  [[nodiscard]] Cycle colored() const { return colored_; }
   /// A fragment was tested one cycle late because it needs what the one before wrote.
   [[nodiscard]] std::uint64_t hazards() const { return hazards_; }
 
@@ -53,11 +67,10 @@ class BlockTiming {
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, is_order = reads || tags.writes > 0;
-    const Cycle t =
-        std::max({moved + 1 + static_cast<Cycle>(tags.flag_cycles), items_.room(), orders_.room()});
+    const Cycle t = std::max({moved + 1 + static_cast<Cycle>(tags.flag_cycles), items_.room(), orders_.room()});
     left_ = t;
     const Cycle answer = is_order ? order(t, tags.writes, reads ? &item : nullptr, tags, ask) : 0;
-    Cycle x = std::max({items_.ready(t), tested_ + 1, behind_.room()});
+    Cycle x = std::max({items_.ready(t), tested_ + 1, texture_ ? texture_->room() : behind_.room()});
     if (reads) x = std::max(x, answer + 1);
     if (tags.source == DepthSource::chip || tags.eviction) x = std::max(x, depth_free_);
     if (tags.source == DepthSource::chip && last_line_ == tags.line && last_stamp_ == item.stamp &&
@@ -73,8 +86,8 @@ class BlockTiming {
     const Cycle depth_ready = depth_free_ + 1;
     items_.leave(x);
     tested_ = x;
-    const Cycle color_ready = color(tags, item);
-    behind_.leave(colored_);
+    const Cycle color_ready = color(tags, item, shaded(item.texture, ask));
+    texture_ ? texture_->leave(colored_) : behind_.leave(colored_);
     if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready)));
     note_writes(tags, item);
   }
@@ -107,14 +120,25 @@ class BlockTiming {
     Cycle ready;  ///< all of it is in the slot
   };
 
-  /// W: the colours of the item that X is through with. Returns when those of what it evicts are out of the RAM.
-  Cycle color(const TagResult& tags, const BlockItem& item) {
+  /// When the item that X is through with is on offer to W.
+  template <class Ask>
+  Cycle shaded(const TextureWork& work, Ask&& ask) {
+    if (!texture_) return tested_ + 2;
+    if (work.sets_state) return texture_->set(tested_, work.invalidates);
+    if (work.lookups.empty()) return texture_->pass(tested_);
+    return texture_->take(tested_, work.lookups, [&ask](Cycle cycle, std::uint32_t address, int beats) {
+      return ask.texture(cycle, address, beats);
+    });
+  }
+
+  /// W: the colours of that item, on offer from `offered` on. Returns when those of what it evicts are out of the RAM.
+  Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered) {
     const std::uint64_t own = item.wrote_color || tags.starts_color ? std::uint64_t{1} << item.stamp : 0;
     const auto read = [this](std::uint64_t wanted) {  // the stamp that is about to be written, or the lowest
       left_color_ &= ~(wanted != 0 ? wanted : left_color_ & (~left_color_ + 1));
       ++color_at_;
     };
-    Cycle w = std::max(tested_ + 2, colored_ + 1), ready = 0;
+    Cycle w = std::max(offered, colored_ + 1), ready = 0;
     if (tags.eviction) w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
     while (left_color_ != 0 && color_at_ < w) read(0);
     if (tags.eviction) {
@@ -188,7 +212,8 @@ class BlockTiming {
 
   Widths widths_;
   Station items_, orders_;
-  Station behind_{2, 0, 0};  ///< between X and W
+  Station behind_{2, 0, 0};  ///< between X and W; or there is a
+  std::optional<TextureTiming> texture_;
   Cycle left_ = 0, tested_ = 0, colored_ = 0,
         ordered_ = 0;             ///< when the last one left T, X, W; the last request's cycle
   Cycle depth_free_ = 0;          ///< when the depth RAM has been read for the last eviction

@@ -9,6 +9,8 @@
 #include "../../stages/depth_test.hpp"
 #include "../../stages/hiz.hpp"
 #include "../../stages/line_raster.hpp"
+#include "../../stages/surface.hpp"
+#include "../../stages/texture_packets.hpp"
 #include "../../stages/viewport.hpp"
 #include "../hardware.hpp"
 #include "../tile_kernel.hpp"
@@ -49,14 +51,17 @@ class CycleModelOf final : public CycleModel {
       : config_(config),
         widths_(derive_widths(config)),
         options_(options),
-        timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink),
+        timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink, options.textures),
         hiz_(config_, widths_, options.parameters.untested_tiles) {
     if (config_.cache_kind == CacheKind::blocks)
       blocks_.emplace(config_, widths_);
     else
       tiles_.emplace(config_, widths_);
     if (options.layout) timing_.set_layout(*options.layout);
+    if (has_texture_planes(config_)) texture_.emplace(texture_settings(config_, widths_), perspective_format(config_));
   }
+
+  void hold_textures(const Scene& scene) override { texels_ = TextureMemory(scene); }
 
   void begin(int width, int height, Cycle cycle) override {
     rendering_ = {};
@@ -88,6 +93,15 @@ class CycleModelOf final : public CycleModel {
     switch (triangle->kind) {
       case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
       case PrimitiveKind::flush: flush(packet); return;
+      case PrimitiveKind::texture:
+        timing_.end_token([&](Cycle offered) {
+          const TextureState state = token_state(*triangle);
+          texture_->set(state);
+          BlockItem item;
+          item.texture = {true, state.invalidates, {}};
+          return timing_.access(offered, TagResult{}, item);
+        });
+        return;
       case PrimitiveKind::line:
         hiz_.pass_line(packet);
         draw_line(packet.state, *host.line, host.primitive);
@@ -102,6 +116,7 @@ class CycleModelOf final : public CycleModel {
       packet.dx[i] = setup.edge[i].dx;
       packet.dy[i] = setup.edge[i].dy;
     }
+    frame_ = texture_frame(triangle->coordinates);
     walk(setup, packet, host.primitive);
   }
 
@@ -196,8 +211,13 @@ class CycleModelOf final : public CycleModel {
     const StampAddress at{static_cast<std::uint16_t>(place.tile_x), static_cast<std::uint16_t>(place.tile_y),
                           static_cast<std::uint16_t>(place.stamp)};
     const TagResult tags = blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
-    item = {place.mask,        block_stamp(at, widths_).stamp, state.depth_write,
-            state.color_write, passed && state.depth_write,    passed && state.color_write};
+    item = {place.mask,
+            block_stamp(at, widths_).stamp,
+            state.depth_write,
+            state.color_write,
+            passed && state.depth_write,
+            passed && state.color_write,
+            {}};
     return tags;
   }
 
@@ -318,6 +338,7 @@ class CycleModelOf final : public CycleModel {
       if (blocks_) {
         BlockItem item;
         const TagResult tags = block_access(place, packet.state, passes, item);
+        if (texture_ && item.wrote_color) shade_stamp(setup, packet.kind, place, samples(passed_rows), item);
         return timing_.access(offered, tags, item);
       }
       const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
@@ -335,6 +356,43 @@ class CycleModelOf final : public CycleModel {
           cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(box.samples());
         else if ((covered_rows[static_cast<std::size_t>(j)] >> i & 1) != 0)
           cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(covered);
+  }
+
+  /// The texture unit: the colours of the samples of a stamp that are written, and how they were looked up.
+  void shade_stamp(const TriangleSetup& setup, PrimitiveKind kind, const FragmentPlace& place, SampleMask live,
+                   BlockItem& item) {
+    if (!texture_->is_textured(kind == PrimitiveKind::triangle, live)) return;
+    std::array<TextureSample, kMaxSamples> sample;
+    std::array<Texel, kMaxSamples> color;
+    std::array<std::size_t, kMaxSamples> at;
+    const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
+    const std::size_t q = widths_.q_plane;
+    live.for_each([&](std::size_t s) {
+      const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
+      const int x = place.tile_x * T + origin.x + pixel.x, y = place.tile_y * T + origin.y + pixel.y;
+      at[s] = rendering_.frame.at(x, y);
+      const PixelPlace where = place_of(setup, widths_, x, y);
+      sample[s].q = q_at(setup.plane[q], where, perspective_, widths_);
+      for (const std::size_t i : {0U, 1U})
+        sample[s].p[i] = p_at(setup.plane[q + 1 + i], where, perspective_.coordinate, perspective_, widths_);
+      color[s] = {0, 0, 0, 255};
+      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
+        color[s][c] = static_cast<std::uint8_t>(plane_at(setup, kColorPlane + c, widths_, x, y).code);
+    });
+    item.texture.lookups = texture_->take(live, sample, frame_, color, [this](std::uint32_t address, int) {
+      TextureLine line;
+      texels_.read(address, line);
+      return line;
+    });
+    live.for_each([&](std::size_t s) {
+      rendering_.frame.color[at[s]] =
+          pack_color(config_.color_format, {color[s][0], color[s][1], color[s][2], color[s][3]});
+    });
+  }
+
+  /// The state that a token sets.
+  [[nodiscard]] TextureState token_state(const TrianglePacket& token) const {
+    return TextureState::unpack(texture_word(token.vertex.code[0], widths_));
   }
 
   /// The news of a visit for HiZ.
@@ -378,6 +436,10 @@ class CycleModelOf final : public CycleModel {
   Hiz hiz_;
   std::optional<TileDirectory> tiles_;  ///< one of them, by cache.kind
   std::optional<CacheTags> blocks_;
+  std::optional<TextureUnit> texture_;
+  PerspectiveFormat perspective_ = perspective_format(config_);
+  TextureFrame frame_;  ///< of the triangle at work
+  TextureMemory texels_;
   Rendering rendering_;
   std::vector<float> cost_;
 };
@@ -414,6 +476,7 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
   wanted.want_ids = render.want_ids;
   HostStream host(scene, config);
   const auto model = make_cycle_model(config, memory, wanted);
+  model->hold_textures(scene);
   model->begin(scene.width, scene.height, 0);
   DrawnCount drawn;
   std::uint32_t sent = 0;

@@ -20,6 +20,7 @@ struct CycleOptions {
   TimingParameters parameters;                ///< sizes of buffers; the default is the RTL
   TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
   std::optional<MemoryLayout> layout;         ///< of the planes in memory; default_layout() unless given
+  MemorySettings textures;                    ///< of the memory behind a texture unit, where there is one
   bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
 };
@@ -30,6 +31,8 @@ class CycleModel {
   virtual ~CycleModel() = default;
   /// A target of another size, cleared by the first primitive; the host offers its next primitive from `cycle` on.
   virtual void begin(int width, int height, Cycle cycle) = 0;
+  /// From now on the memory of textures holds those of `scene`.
+  virtual void hold_textures(const Scene& scene) = 0;
   /// One primitive, to its last write.
   virtual void run(const HostPrimitive& primitive) = 0;
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset

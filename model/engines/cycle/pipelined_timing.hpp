@@ -15,8 +15,8 @@ namespace halfplane {
 class PipelinedTiming : public BackTiming {
  public:
   PipelinedTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
-                  const TimingParameters& parameters, TransferSink* sink)
-      : BackTiming(config, widths, stalls, memory, sink),
+                  const TimingParameters& parameters, TransferSink* sink, const MemorySettings& textures)
+      : BackTiming(config, widths, stalls, memory, sink, textures),
         setup_(widths, parameters.divide_bits),
         parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
         offer_setup_(1, setup_.last, 1),

@@ -14,8 +14,8 @@ namespace halfplane {
 class SerialTiming : public BackTiming {
  public:
   SerialTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
-               const TimingParameters& parameters, TransferSink* sink)
-      : BackTiming(config, widths, stalls, memory, sink),
+               const TimingParameters& parameters, TransferSink* sink, const MemorySettings& textures)
+      : BackTiming(config, widths, stalls, memory, sink, textures),
         cycles_(widths),
         slots_(config.context_slots, 0, 2),
         visits_(config.hiz_lag, 0, kVisitIsSeen),

@@ -37,8 +37,9 @@ inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 
 /// What a draw asks of its fragments, and how they are shaded.
 struct SliceState : FragmentState {
-  bool is_flat = false;   ///< the colour is that of the first vertex
-  bool is_opaque = true;  ///< what passes replaces what is stored, what fails leaves no trace
+  bool is_flat = false;      ///< the colour is that of the first vertex
+  bool is_opaque = true;     ///< what passes replaces what is stored, what fails leaves no trace
+  bool has_surface = false;  ///< colours are those of surface.hpp
 };
 
 /// A vertex as this engine stores it, whatever a SnappedVertex looks like: what every draw needs of it is a row of four
@@ -110,8 +111,9 @@ struct Slice {
   std::uint32_t low_index = 0, high_index = 0;
   bool is_wide = false;
   std::vector<VertexRow> vertices;
-  std::vector<std::uint32_t> codes;  ///< kVolume and kSlow bits of each vertex
-  std::uint32_t any_code = 0;        ///< their union
+  std::vector<SurfaceVertex> surface;  ///< of each vertex, where the state has surfaces
+  std::vector<std::uint32_t> codes;    ///< kVolume and kSlow bits of each vertex
+  std::uint32_t any_code = 0;          ///< their union
   std::vector<Record> records;
   std::size_t record_count = 0;
   std::vector<LineSetup> lines;

@@ -74,12 +74,21 @@ void add(Counters& sum, const Counters& c) {
   s.clear += t.clear;
 }
 
+/// Whether surfaces are those of the fast path: opaque, and every w > 0. Which of a draw's triangles would be refused the
+/// plain path says.
+bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
+  if (options.general_fragments) return false;
+  const auto is_window = [](const State& s) { return has_surface(s) && s.space == Space::window; };
+  return std::ranges::none_of(scene.states, is_window) ||
+         std::ranges::all_of(scene.vertices, [](const Vertex& v) { return v.w > 0; });
+}
+
 }  // namespace
 
 bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
   if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
-  if (std::ranges::any_of(scene.states, has_surface)) return false;
+  if (std::ranges::any_of(scene.states, has_surface) && !has_plain_surfaces(scene, options)) return false;
   const Widths widths = derive_widths(config);
   // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
   return widths.depth().local.bits <= 32 && widths.color().local.bits <= 16 && config.depth_bits <= 30 &&
@@ -327,7 +336,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   Slice& slice = slices_[slice_count_++];
   const State& state = context.state;
   slice.context = &context;
-  slice.state = {fragment_state(state), state.shade == Shade::flat, is_opaque_};
+  slice.state = {fragment_state(state), state.shade == Shade::flat, is_opaque_, false};
   slice.parts.clear();
   slice.outlines.clear();
   slice.triangles = 0;
@@ -411,6 +420,7 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
       open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
       open_state_ = draw.state;
       open_->is_lines = is_lines;
+      open_->state.has_surface = !is_lines && has_surface(open_->context->state);
     }
     open_->parts.push_back({chunk.first, chunk.count, command, primitive_});
     open_->triangles += chunk.count;

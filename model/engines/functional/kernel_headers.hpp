@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "../../stages/triangle_setup.hpp"
 #include "frame.hpp"
 #include "kernels.hpp"
+#include "surface_constants.hpp"
 
 #define HALFPLANE_INLINE inline __attribute__((always_inline))
 #define HALFPLANE_NOINLINE __attribute__((noinline))

@@ -6,25 +6,31 @@ namespace {
 
 // Each room stands on those above it.
 // clang-format off
-#include "kernels/lanes.inl"        // vectors of a fixed number of lanes
-#include "kernels/lane_moves.inl"   // lanes to bits, to one number, to memory and back
-#include "kernels/leaf.inl"         // the leaf arithmetic of the stages
-#include "kernels/project.inl"      // vertices: viewport, snap, codes
-#include "kernels/cull.inl"         // triangles to records
-#include "kernels/cull_lines.inl"   // lines to records
-#include "kernels/small_setup.inl"  // sixteen small triangles through triangle_setup
-#include "kernels/line_setup.inl"   // sixteen lines through line_setup
-#include "kernels/bin.inl"          // the state of a bin
-#include "kernels/values.inl"       // depths and colours of a tile
-#include "kernels/tile_memory.inl"  // where a tile's pixels are, and their range
-#include "kernels/fragments.inl"    // what a draw needs of its fragments
-#include "kernels/setup.inl"        // one triangle through triangle_setup
-#include "kernels/small.inl"        // small triangles: blocks and samples
-#include "kernels/tiles.inl"        // large triangles: tiles
-#include "kernels/lines.inl"        // pixels of lines
-#include "kernels/general.inl"      // fragments one by one
-#include "kernels/finish.inl"       // the end of a bin
-#include "kernels/raster.inl"       // a bin's records in their order
+#include "kernels/lanes.inl"            // vectors of a fixed number of lanes
+#include "kernels/lane_moves.inl"       // lanes to bits, to one number, to memory and back
+#include "kernels/leaf.inl"             // the leaf arithmetic of the stages
+#include "kernels/project.inl"          // vertices: viewport, snap, codes
+#include "kernels/cull.inl"             // triangles to records
+#include "kernels/cull_lines.inl"       // lines to records
+#include "kernels/small_setup.inl"      // sixteen small triangles through triangle_setup
+#include "kernels/line_setup.inl"       // sixteen lines through line_setup
+#include "kernels/bin.inl"              // the state of a bin
+#include "kernels/values.inl"           // depths and colours of a tile
+#include "kernels/tile_memory.inl"      // where a tile's pixels are, and their range
+#include "kernels/fragments.inl"        // what a draw needs of its fragments
+#include "kernels/setup.inl"            // one triangle through triangle_setup
+#include "kernels/perspective.inl"      // attributes over w
+#include "kernels/level_of_detail.inl"  // how many texels a pixel spans
+#include "kernels/texture.inl"          // texels of sixteen pixels
+#include "kernels/surface.inl"          // colours of a tile's pixels from them
+#include "kernels/seen.inl"             // whose colours wait
+#include "kernels/samples.inl"          // small triangles: samples
+#include "kernels/small.inl"            // and blocks
+#include "kernels/tiles.inl"            // large triangles: tiles
+#include "kernels/lines.inl"            // pixels of lines
+#include "kernels/general.inl"          // fragments one by one
+#include "kernels/finish.inl"           // the end of a bin
+#include "kernels/raster.inl"           // a bin's records in their order
 // clang-format on
 
 }  // namespace

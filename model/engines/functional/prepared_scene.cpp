@@ -32,10 +32,20 @@ void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, st
   draw.has_box = true;
 }
 
+/// Whether a texture's texels may be mixed with those beside them.
+bool is_linear(const State& state) {
+  return state.texture_mag == TextureMag::linear || state.texture_min == TextureMin::linear ||
+         state.texture_min == TextureMin::linear_mipmap_nearest ||
+         state.texture_min == TextureMin::linear_mipmap_linear;
+}
+
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()), scene_(&scene) {
   validate(scene);
+  for (const Texture& texture : scene.textures) textures.emplace_back(texture);
+  for (const State& state : scene.states)
+    if (state.texture && is_linear(state)) textures[*state.texture].add_quads(state.texture_wrap);
   constexpr std::size_t kSpare = 16;
   const std::size_t vertices = scene.vertices.size();
   for (auto* attribute : {&x, &y, &z, &w}) attribute->resize(vertices + kSpare);

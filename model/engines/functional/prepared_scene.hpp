@@ -8,6 +8,7 @@
 
 #include "../../scene.hpp"
 #include "../../stages/primitive_assembly.hpp"
+#include "texel_blocks.hpp"
 
 namespace halfplane {
 
@@ -40,6 +41,7 @@ class PreparedScene {
   };
   std::vector<Chunk> chunks;
   std::vector<DrawChunks> draws;  ///< by command; empty for what is neither
+  std::vector<TexelBlocks> textures;
 
  private:
   const Scene* scene_;

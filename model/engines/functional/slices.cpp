@@ -46,9 +46,26 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
     if (box.is_empty()) continue;
     const auto first = static_cast<std::uint32_t>(slice.vertices.size());
     for (const SnappedVertex& v : piece.v) slice.vertices.push_back(row_of(v));
+    if (slice.state.has_surface) slice.surface.insert(slice.surface.end(), piece.surface.begin(), piece.surface.end());
     const auto [low, high] = std::minmax({piece.v[0].depth(), piece.v[1].depth(), piece.v[2].depth()});
     add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), slice.triangles);
   }
+}
+
+/// What of a slice's vertices lives over w.
+void find_surface_vertices(const FrameContext& frame, Slice& slice) {
+  const auto surface_of = [&scene = frame.prepared.scene()](std::size_t i) -> SurfaceVertex {
+    const Vertex& v = scene.vertices[i];
+    return {v.w, v.u, v.v};
+  };
+  slice.surface.clear();
+  if (!slice.is_wide)
+    for (std::size_t i = slice.low_index; i <= slice.high_index; ++i) slice.surface.push_back(surface_of(i));
+  else
+    for (const Slice::Part& part : slice.parts)
+      for (std::size_t t = part.first; t < part.first + part.count; ++t)
+        for (const auto& corner : frame.prepared.index) slice.surface.push_back(surface_of(corner[t]));
+  slice.surface.resize(slice.vertices.size());
 }
 
 /// The pixels of a line, as a box.
@@ -106,6 +123,7 @@ void FrameRenderer::build(Slice& slice) const {
     const std::size_t vertices = slice.is_wide ? corners : range;
     slice.vertices.resize(vertices + 16);
     slice.codes.resize(vertices + 16);
+    if (slice.state.has_surface) find_surface_vertices(frame, slice);
     if (slice.records.size() < slice.triangles) slice.records.resize(slice.triangles);
     // Polygon offset is a property of the triangle: no vertex has it.
     if (!slice.is_lines && slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {

@@ -1,6 +1,6 @@
 // The functional engine's plain path: one triangle after the other, every tile of it. It has what the fast path has not:
-// counts, ids, taps, every tile size, more depth and reciprocal bits, depth formats, and
-// surfaces: textures and colours over w.
+// counts, ids, taps, every tile size, more depth and reciprocal bits, depth formats, and vertices of surfaces that are not
+// in front of the eye.
 #pragma once
 
 #include "../render.hpp"

@@ -26,10 +26,13 @@ package raster_pkg;
   localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: what a flush writes of cleared blocks or tiles: colours, or flags
   localparam int MEMORY_PORT_BITS = 16;  // data that the memory port moves in a cycle; a power of two
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
+  localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear: what the RTL's texture unit can do; off: it has none
+  localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
+  localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 16;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'h240d09b7d5ef9a2b;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h8ebecdaedf9d0f92;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 2;  // s: fraction bits of a coordinate, at least 1
@@ -40,6 +43,11 @@ package raster_pkg;
   localparam int STAMPS_PER_ROW = 8;  // stamps along the side of a tile
   localparam int PLANES = 4;  // that are interpolated: depth, the colours and what follows them
   localparam int COLOR_PLANES = 3;  // of the stored colour: plane 1 and the next ones
+  localparam int AFFINE_PLANES = 4;  // linear in the window: depth and colours, which come first
+  localparam int COORDINATES = 0;  // of a texture, planes behind that of 1/w
+  localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of those inside a tile
+  localparam int COORDINATE_FRACTION = 6;  // f: of a texture coordinate, texels
+  localparam int TEXTURE_PORT_BITS = 16;  // data of a beat of texels
   localparam int SAMPLES = 1;  // samples of a stamp
   localparam int TILES_X = 2;  // tiles along the top of the widest target
   localparam int TILES_Y = 2;  // tiles along the side of the highest target
@@ -68,7 +76,9 @@ package raster_pkg;
   localparam int STALL_BEAT = 11;
   localparam int STALL_ANSWER = 12;
   localparam int STALL_RESPONSE = 7;
-  localparam int STALL_BITS = 13;
+  localparam int STALL_TEXTURE = 13;
+  localparam int STALL_TEXEL = 14;
+  localparam int STALL_BITS = 15;
 
   // Derived widths, each with its bound.
   localparam int COORDINATE_BITS = 8;  // guard band g * 2^s
@@ -95,6 +105,12 @@ package raster_pkg;
   localparam int COLOR_PLANE_BITS = 22;  // modulo 2^(8 + 1 + F)
   localparam int LOCAL_DEPTH_BITS = 15;  // modulo 2^(B + 1 + l), l local guard bits
   localparam int LOCAL_COLOR_BITS = 15;  // modulo 2^(8 + 1 + l)
+  localparam int COORDINATE_SHIFT_BITS = 5;  // c = 1 + x - sp - k_P, 0 <= x - sp <= 1 + N_P
+  localparam int COORDINATE_REACH_BITS = 5;  // x <= 20
+  localparam int COORDINATE_REFERENCE_BITS = 24;  // u_ref: +-2^22, beyond which no clamp can tell
+  localparam int WRITTEN_COLOR_BITS = 16;  // a stored colour, or with a texture unit the primitive's
+  localparam int TEXTURE_BYTE_BITS = 8;  // 8 bits
+  localparam int TEXTURE_BEATS_BITS = 6;  // of a line of 4x4 texels of 4 bytes, of 16 bits at least
   localparam int PRIMITIVE_ID_BITS = 16;  // modulo 2^key.primitive_bits
   localparam int SLOT_BITS = 2;  // context.slots
   localparam int TILE_X_BITS = 1;  // target width / T
@@ -124,7 +140,7 @@ package raster_pkg;
   localparam int PORT_BYTE_BITS = 8;  // 8 bits
   localparam int LINE_NUMERATOR_BITS = 12;  // f D + d o - 1, f < 2^s
   localparam int LINE_POSITION_BITS = 16;  // (line numerator >> s) + d n, n columns: d n <= L^2 / 2^s
-  localparam int LINE_PRODUCT_BITS = 21;  // depth delta * reciprocal
+  localparam int LINE_PRODUCT_BITS = 21;  // color delta * reciprocal
   localparam int LINE_ERROR_BITS = 9;  // d - D <= p < d
   localparam int LINE_STAY_BITS = 8;  // d, 0 <= d <= D <= L
   localparam int LINE_MOVE_BITS = 9;  // d - D
@@ -149,6 +165,14 @@ package raster_pkg;
   localparam logic [32*PLANES-1:0] LOCAL_AT = {32'd45, 32'd30, 32'd15, 32'd0};
   localparam int ALL_LOCAL_BITS = 60;  // of one for each plane
   localparam int MAX_LOCAL_BITS = 15;  // of the widest
+  localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd8};  // values of a sample
+  localparam logic [32*PLANES-1:0] FRAGMENT_AT = {32'd24, 32'd16, 32'd8, 32'd0};
+  localparam int ALL_FRAGMENT_BITS = 32;  // of one for each plane
+  localparam int MAX_FRAGMENT_BITS = 8;  // of the widest
+  localparam logic [32*PLANES-1:0] AFFINE_CODE_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd8};  // codes that are clamped
+  localparam logic [32*PLANES-1:0] AFFINE_CODE_AT = {32'd24, 32'd16, 32'd8, 32'd0};
+  localparam int ALL_AFFINE_CODE_BITS = 32;  // of one for each plane
+  localparam int MAX_AFFINE_CODE_BITS = 8;  // of the widest
   localparam logic [32*PLANES-1:0] LINE_BITS_OF = {32'd16, 32'd16, 32'd16, 32'd16};  // values along a line
   localparam logic [32*PLANES-1:0] LINE_AT = {32'd48, 32'd32, 32'd16, 32'd0};
   localparam int ALL_LINE_BITS = 64;  // of one for each plane
@@ -163,7 +187,8 @@ package raster_pkg;
     PRIMITIVE_KIND_FAST_CLEAR = 3'd2,
     PRIMITIVE_KIND_FLUSH = 3'd3,
     PRIMITIVE_KIND_POINT = 3'd4,
-    PRIMITIVE_KIND_LINE = 3'd6
+    PRIMITIVE_KIND_LINE = 3'd6,
+    PRIMITIVE_KIND_TEXTURE = 3'd7
   } primitive_kind_t;
 
   typedef enum logic [DEPTH_FUNC_BITS-1:0] {
@@ -238,9 +263,10 @@ package raster_pkg;
   } triangle_vertices_t;
 
   typedef struct packed {
-    logic [ALL_CODE_BITS-1:0] low;
-    logic [ALL_CODE_BITS-1:0] high;
+    logic [ALL_AFFINE_CODE_BITS-1:0] low;
+    logic [ALL_AFFINE_CODE_BITS-1:0] high;
   } code_range_t;
+  localparam int COORDINATE_FRAME_BITS = 0;  // of the struct above; none without a texture unit
 
   typedef struct packed {
     logic [ADDRESS_BITS-1:0] depth_base;
@@ -276,7 +302,7 @@ package raster_pkg;
     logic signed [LINE_MOVE_BITS-1:0] step_move;
     logic [ALL_LINE_BITS-1:0] value;
     logic [ALL_LINE_BITS-1:0] step;
-    logic [ALL_CODE_BITS-1:0] start;
+    logic [ALL_AFFINE_CODE_BITS-1:0] start;
   } line_setup_t;
   localparam int LINE_SETUP_BITS = 218;  // of the struct above
 
@@ -350,7 +376,7 @@ package raster_pkg;
     logic [PIXEL_X_BITS-1:0] x;
     logic [PIXEL_Y_BITS-1:0] y;
     logic [FLAG_BITS-1:0] is_last;
-    logic [ALL_CODE_BITS-1:0] code;
+    logic [ALL_AFFINE_CODE_BITS-1:0] code;
   } line_pixel_t;
   localparam int LINE_PIXEL_BITS = 57;  // of the struct above
 
@@ -362,7 +388,7 @@ package raster_pkg;
     logic [STAMP_INDEX_BITS-1:0] stamp;
     logic [SAMPLE_MASK_BITS-1:0] mask;
     primitive_state_t state;
-    logic [ALL_CODE_BITS-1:0] code;
+    logic [ALL_FRAGMENT_BITS-1:0] code;
   } fragment_packet_t;
   localparam int FRAGMENT_PACKET_BITS = 67;  // of the struct above
 
@@ -373,7 +399,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] write_depth;
     logic [SAMPLE_MASK_BITS-1:0] write_color;
     logic [1*DEPTH_CODE_BITS-1:0] depth;
-    logic [1*STORED_COLOR_BITS-1:0] color;
+    logic [1*WRITTEN_COLOR_BITS-1:0] color;
   } write_packet_t;
   localparam int WRITE_PACKET_BITS = 51;  // of the struct above
 
@@ -416,6 +442,23 @@ package raster_pkg;
     logic [1*MEMORY_LANE_BITS-1:0] data;
   } memory_response_t;
   localparam int MEMORY_RESPONSE_BITS = 16;  // of the struct above
+
+  typedef struct packed {
+    logic [ADDRESS_BITS-1:0] address;
+    logic [TEXTURE_BEATS_BITS-1:0] beats;
+  } texture_request_t;
+  localparam int TEXTURE_REQUEST_BITS = 38;  // of the struct above
+
+  typedef struct packed {
+    logic [2*TEXTURE_BYTE_BITS-1:0] data;
+  } texel_beat_t;
+  localparam int TEXEL_BEAT_BITS = 16;  // of the struct above
+
+  typedef struct packed {
+    logic [SAMPLE_MASK_BITS-1:0] mask;
+    logic [1*STORED_COLOR_BITS-1:0] color;
+  } color_packet_t;
+  localparam int COLOR_PACKET_BITS = 17;  // of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] overflow;

@@ -177,6 +177,12 @@ Panel log_panel(std::string_view caption, int width, int height, std::span<const
   return panel;
 }
 
+std::vector<std::string> panel_names() {
+  std::vector<std::string> names(kPanelNames.begin(), kPanelNames.end());
+  names.insert(names.end(), kTexturePanelNames.begin(), kTexturePanelNames.end());
+  return names;
+}
+
 Picture comparison_sheet(const ComparisonSheet& sheet) {
   const int width = sheet.width, height = sheet.height;
   const int factor = reduction(width, height);
@@ -197,10 +203,12 @@ Picture comparison_sheet(const ComparisonSheet& sheet) {
     text.lines = sheet.summary;
     panels.push_back(std::move(text));
   }
+  panels.insert(panels.end(), sheet.texture.begin(), sheet.texture.end());
   if (!sheet.panels.empty()) {
+    const std::vector<std::string> names = panel_names();
     std::vector<Panel> chosen;
     for (const std::string& name : sheet.panels) {
-      const auto at = std::find(kPanelNames.begin(), kPanelNames.end(), name) - kPanelNames.begin();
+      const auto at = std::find(names.begin(), names.end(), name) - names.begin();
       if (static_cast<std::size_t>(at) < panels.size()) chosen.push_back(panels[static_cast<std::size_t>(at)]);
     }
     return compose_sheet(sheet.title, chosen, std::min(3, static_cast<int>(chosen.size())));

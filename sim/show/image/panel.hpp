@@ -93,12 +93,18 @@ struct ComparisonSheet {
   std::vector<float> color_error;            ///< largest absolute error of the channels, LSB; NaN where not compared
   std::string depth_figures, color_figures;  ///< what `summary` says of the errors; empty: the pixels' own
   std::vector<std::string> summary;          ///< the sixth cell: figures and bounds, one per line; left out when empty
-  std::vector<std::string> panels;           ///< of kPanelNames, those to show, in this order; empty: all
+  std::vector<Panel> texture;                ///< as kTexturePanelNames has them; empty: nothing is textured
+  std::vector<std::string> panels;           ///< of panel_names(), those to show, in this order; empty: all
 };
 
-/// The panels of a comparison sheet.
+/// The panels of a comparison sheet, and those that it has besides where something is textured.
 inline constexpr std::array<std::string_view, 6> kPanelNames{"model", "golden", "coverage",
                                                              "depth", "color",  "summary"};
+inline constexpr std::array<std::string_view, 5> kTexturePanelNames{"coordinate", "footprints", "level", "weights",
+                                                                    "rounding"};
+
+/// All of them.
+[[nodiscard]] std::vector<std::string> panel_names();
 
 /// Colour picture and draws panel side by side.
 [[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);

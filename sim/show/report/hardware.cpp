@@ -103,6 +103,7 @@ CycleRendering run_cycles(const Scene& scene, const Hardware& hardware, const Re
                           CycleOptions options) {
   check(hardware);
   options.parameters = hardware.parameters;
+  options.textures = hardware.memory;
   const auto memory = make_memory(hardware.memory, hardware.config);
   return render_cycle(scene, hardware.config, *memory, render, options);
 }
@@ -130,7 +131,7 @@ std::vector<StageTime> stage_times(const CycleRun& run) {
 std::uint64_t Traffic::total() const {
   std::uint64_t sum = 0;
   for (const auto& cause : bytes) sum += cause[0] + cause[1];
-  return sum;
+  return sum + texels;
 }
 
 Traffic traffic(const CycleRun& run, const Config& config) {
@@ -139,6 +140,7 @@ Traffic traffic(const CycleRun& run, const Config& config) {
     for (const bool is_color : {false, true})
       traffic.bytes[cause][is_color] =
           run.totals.beats[cause][is_color] * static_cast<std::uint64_t>(config.memory_port_bits / 8);
+  traffic.texels = run.totals.texel_beats * static_cast<std::uint64_t>(derive_widths(config).texture_port_bytes);
   return traffic;
 }
 
@@ -153,6 +155,7 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
   times("stamp.size", 2);
   times("context.slots", 2);
   times("hiz.lag", 2);
+  if (has_texture_planes(hardware.config)) times("texture.cache_kb", 4);
   if (is_pipelined) {
     for (const char* key : {"queue.tile", "queue.stamp", "queue.fragment"}) trials.push_back({key, "16", 0});
     times("divide.bits", 2);

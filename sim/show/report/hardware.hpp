@@ -52,6 +52,7 @@ struct StageTime {
 /// Bytes between chip and memory, by cause and plane.
 struct Traffic {
   std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> bytes{};  ///< [MoveCause][depth, colour]
+  std::uint64_t texels = 0;                                              ///< read by a texture unit
   [[nodiscard]] std::uint64_t total() const;
 };
 [[nodiscard]] Traffic traffic(const CycleRun& run, const Config& config);

@@ -6,20 +6,40 @@
 #include <stdexcept>
 
 #include "model/config.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/pipeline.hpp"
+#include "sim/study/bench/mesa_texture.hpp"
 
 namespace halfplane {
 namespace {
 
-constexpr const char* kVertexSource =
-    "layout(location = 0) in vec4 position; layout(location = 1) in vec4 rgba;\n"
-    "void main() { gl_Position = position; color = rgba; }\n";
-constexpr const char* kFragmentSource = "out vec4 result; void main() { result = color; }\n";
+constexpr const char* kInputs = "layout(location = 0) in vec4 position; layout(location = 1) in vec4 rgba;\n";
 
 struct PeerVertex {
   std::array<float, 4> position;
   std::array<std::uint8_t, 4> rgba;
 };
+using PeerCoordinates = std::array<float, 2>;  // in a buffer of their own: who has no texture does not read them
+
+/// Vertex and fragment shader of a state.
+struct Shaders {
+  std::string vertex, fragment;
+};
+
+Shaders shaders_of(const State& state, bool has_texture, bool has_alpha) {
+  const std::string head = "#version 330 core\n";
+  const std::string color = state.shade == Shade::flat                  ? "flat"
+                            : state.color_interp == ColorInterp::affine ? "noperspective"
+                                                                        : "smooth";
+  if (!has_texture)
+    return {head + color + " out vec4 color;\n" + kInputs + "void main() { gl_Position = position; color = rgba; }\n",
+            head + color + " in vec4 color;\nout vec4 result; void main() { result = color; }\n"};
+  const std::string place = state.texture_interp == TextureInterp::affine ? "noperspective" : "smooth";
+  return {head + color + " out vec4 color; " + place + " out vec2 place;\n" + kInputs +
+              "layout(location = 2) in vec2 uv;\nvoid main() { gl_Position = position; color = rgba; place = uv; }\n",
+          head + color + " in vec4 color; " + place + " in vec2 place;\nuniform sampler2D image; out vec4 result;\n" +
+              "void main() { vec4 texel = texture(image, place); result = " +
+              gl::combine_source(state.texture_combine, has_alpha) + "; }\n"};
+}
 
 [[noreturn]] void refuse(const std::string& what) {
   throw InputError("llvmpipe: has no " + what + "; leave llvmpipe out for this scene");
@@ -84,7 +104,6 @@ gl::Enum mode_of(Topology topology) {
 MesaFrame::MesaFrame(int width, int height, int depth_bits)
     : gl_(gl::start_osmesa()), width_(width), height_(height), depth_bits_(depth_bits) {
   make_target();
-  make_programs();
   gl_.disable(gl::kDither);
   gl_.enable(gl::kDepthTest);
   gl_.primitive_restart_index(kRestart);
@@ -107,18 +126,18 @@ void MesaFrame::make_target() {
     throw std::runtime_error("llvmpipe: has no target of this size; give a smaller --size");
 }
 
-void MesaFrame::make_programs() {
-  const std::array<std::string, 3> kinds{"noperspective", "smooth", "flat"};
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    const std::string head = "#version 330 core\n" + kinds[i];
-    programs_[i] = gl_.create_program();
-    gl_.attach_shader(programs_[i], shader(gl_, gl::kVertexShader, head + " out vec4 color;\n" + kVertexSource));
-    gl_.attach_shader(programs_[i], shader(gl_, gl::kFragmentShader, head + " in vec4 color;\n" + kFragmentSource));
-    gl_.link_program(programs_[i]);
-    int is_linked = 0;
-    gl_.get_programiv(programs_[i], gl::kLinked, &is_linked);
-    if (is_linked == 0) throw std::runtime_error("llvmpipe: does not link GLSL 3.30; install Mesa 22.3 or newer");
-  }
+gl::Name MesaFrame::program_of(const State& state) {
+  const Shaders source = shaders_of(state, state.texture.has_value(), state.texture && have_alpha_[*state.texture]);
+  gl::Name& program = programs_[source.vertex + source.fragment];
+  if (program != 0) return program;
+  program = gl_.create_program();
+  gl_.attach_shader(program, shader(gl_, gl::kVertexShader, source.vertex));
+  gl_.attach_shader(program, shader(gl_, gl::kFragmentShader, source.fragment));
+  gl_.link_program(program);
+  int is_linked = 0;
+  gl_.get_programiv(program, gl::kLinked, &is_linked);
+  if (is_linked == 0) throw std::runtime_error("llvmpipe: does not link GLSL 3.30; install Mesa 22.3 or newer");
+  return program;
 }
 
 void MesaFrame::make_vertices(const Scene& scene, Space space) {
@@ -136,6 +155,15 @@ void MesaFrame::make_vertices(const Scene& scene, Space space) {
   gl_.vertex_attrib_pointer(1, 4, gl::kUnsignedByte, 1, kStride, offsetof(PeerVertex, rgba));
   gl_.enable_vertex_attrib_array(0);
   gl_.enable_vertex_attrib_array(1);
+  if (scene.textures.empty()) return;
+  std::vector<PeerCoordinates> coordinates;
+  for (const Vertex& v : scene.vertices) coordinates.push_back({static_cast<float>(v.u), static_cast<float>(v.v)});
+  gl_.gen_buffers(1, &buffer);
+  gl_.bind_buffer(gl::kArrayBuffer, buffer);
+  gl_.buffer_data(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(coordinates.size() * sizeof(PeerCoordinates)),
+                  coordinates.data(), gl::kStaticDraw);
+  gl_.vertex_attrib_pointer(2, 2, gl::kFloat, 0, sizeof(PeerCoordinates), 0);
+  gl_.enable_vertex_attrib_array(2);
 }
 
 void MesaFrame::add_draw(const Scene& scene, const Draw& draw) {
@@ -150,16 +178,22 @@ void MesaFrame::add_draw(const Scene& scene, const Draw& draw) {
     calls_.back().draw.count += draw.count;
     return;
   }
-  calls_.push_back({state, {}, draw, false, has_restart});
+  State drawn = state;
+  if (drawn_as(state, draw.topology) != PrimitiveType::triangle) drawn.texture.reset();
+  const gl::Name texture = drawn.texture ? textures_[*drawn.texture] : 0;
+  calls_.push_back({drawn, {}, draw, false, has_restart, program_of(drawn), texture});
 }
 
 void MesaFrame::upload(const Scene& scene) {
   calls_.clear();
+  textures_ = gl::make_textures(gl_, scene);
+  have_alpha_.clear();
+  for (const Texture& texture : scene.textures) have_alpha_.push_back(has_alpha(texture.format));
   for (const Command& command : scene.commands) {
     if (const auto* next = std::get_if<Clear>(&command)) {
       const State& state = scene.states[next->state];
       if (state.scissor && state.origin != Origin::top_left) refuse("origin bottom_left");
-      calls_.push_back({state, *next, {}, true, false});
+      calls_.push_back({state, *next, {}, true, false, 0, 0});
     }
     if (const auto* next = std::get_if<Draw>(&command)) add_draw(scene, *next);
   }
@@ -183,7 +217,8 @@ void MesaFrame::apply_target(const State& state) const {
   gl_.scissor(r.x, height_ - r.y - r.height, r.width, r.height);
 }
 
-void MesaFrame::apply(const State& state, Topology topology) const {
+void MesaFrame::apply(const Call& call) const {
+  const State& state = call.state;
   apply_target(state);
   const bool is_window = state.space == Space::window;
   const double width = width_, height = height_;
@@ -205,13 +240,14 @@ void MesaFrame::apply(const State& state, Topology topology) const {
                                       : state.polygon_mode == PolygonMode::line ? gl::kLine
                                                                                 : gl::kPoint);
   const bool has_offset =
-      primitive_type(topology) == PrimitiveType::triangle && state.polygon_offset != std::array<double, 2>{};
+      primitive_type(call.draw.topology) == PrimitiveType::triangle && state.polygon_offset != std::array<double, 2>{};
   for (const gl::Enum mode : {gl::kOffsetFill, gl::kOffsetLine, gl::kOffsetPoint})
     has_offset ? gl_.enable(mode) : gl_.disable(mode);
   gl_.polygon_offset(static_cast<float>(state.polygon_offset[0]), static_cast<float>(state.polygon_offset[1]));
   gl_.point_size(static_cast<float>(state.point_size));
   gl_.provoking_vertex(state.provoking == Provoking::first ? gl::kFirstVertex : gl::kLastVertex);
-  gl_.use_program(programs_[state.shade == Shade::flat ? 2 : state.color_interp == ColorInterp::affine ? 0 : 1]);
+  gl_.use_program(call.program);
+  if (call.texture != 0) gl::apply_texture(gl_, call.texture, state);
   gl_.bind_vertex_array(arrays_[static_cast<std::size_t>(state.space)]);
 }
 
@@ -234,7 +270,7 @@ void MesaFrame::render() {
       clear(call);
       continue;
     }
-    apply(call.state, call.draw.topology);
+    apply(call);
     call.has_restart ? gl_.enable(gl::kPrimitiveRestart) : gl_.disable(gl::kPrimitiveRestart);
     gl_.draw_elements(mode_of(call.draw.topology), static_cast<int>(call.draw.count), gl::kUnsignedInt,
                       call.draw.first * sizeof(std::uint32_t));

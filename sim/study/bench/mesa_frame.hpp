@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,20 +35,23 @@ class MesaFrame {
     Clear clear;  // where there is nothing to draw
     Draw draw;
     bool is_clear = false, has_restart = false;
+    gl::Name program = 0, texture = 0;
   };
 
   void make_target();
-  void make_programs();
+  [[nodiscard]] gl::Name program_of(const State& state);
   void make_vertices(const Scene& scene, Space space);
   void add_draw(const Scene& scene, const Draw& draw);
   void apply_target(const State& state) const;
-  void apply(const State& state, Topology topology) const;
+  void apply(const Call& call) const;
   void clear(const Call& call) const;
 
   gl::Functions gl_;
   int width_, height_, depth_bits_;
-  gl::Name programs_[3]{};  // smooth affine, smooth perspective, flat
-  gl::Name arrays_[2]{};    // of vertices that are given in clip space and in window space
+  std::map<std::string, gl::Name> programs_;  // by the source of their shaders
+  std::vector<gl::Name> textures_;            // of the scene
+  std::vector<bool> have_alpha_;              // likewise
+  gl::Name arrays_[2]{};                      // of vertices that are given in clip space and in window space
   std::vector<Call> calls_;
 };
 

@@ -63,6 +63,9 @@ void find_state_functions(const Finder& find, Functions& f) {
   find(f.clip_control, "glClipControl");
   find(f.primitive_restart_index, "glPrimitiveRestartIndex");
   find(f.use_program, "glUseProgram");
+  find(f.bind_texture, "glBindTexture");
+  find(f.tex_parameteri, "glTexParameteri");
+  find(f.tex_parameterf, "glTexParameterf");
 }
 
 void find_work_functions(const Finder& find, Functions& f) {
@@ -73,6 +76,8 @@ void find_work_functions(const Finder& find, Functions& f) {
   find(f.read_pixels, "glReadPixels");
   find(f.draw_elements, "glDrawElements");
   find(f.gen_buffers, "glGenBuffers");
+  find(f.gen_textures, "glGenTextures");
+  find(f.tex_image_2d, "glTexImage2D");
   find(f.bind_buffer, "glBindBuffer");
   find(f.buffer_data, "glBufferData");
   find(f.gen_vertex_arrays, "glGenVertexArrays");

@@ -23,6 +23,10 @@ inline constexpr Enum kOffsetPoint = 0x2a01, kOffsetLine = 0x2a02, kOffsetFill =
 inline constexpr Enum kFirstVertex = 0x8e4d, kLastVertex = 0x8e4e;                        // ProvokingVertex
 inline constexpr Enum kLowerLeft = 0x8ca1, kMinusOneToOne = 0x935e, kZeroToOne = 0x935f;  // ClipControl
 inline constexpr Enum kUnsignedByte = 0x1401, kUnsignedInt = 0x1405, kFloat = 0x1406, kRgba = 0x1908;
+inline constexpr Enum kTexture2d = 0xde1, kMagFilter = 0x2800, kMinFilter = 0x2801, kWrapS = 0x2802;
+inline constexpr Enum kMinLod = 0x813a, kMaxLod = 0x813b, kLodBias = 0x8501, kMaxLevel = 0x813d;  // TexParameter
+inline constexpr Enum kNearest = 0x2600, kLinear = 0x2601, kNearestMipmapNearest = 0x2700;  // three more follow it
+inline constexpr Enum kRepeat = 0x2901, kClampToEdge = 0x812f, kMirroredRepeat = 0x8370;
 inline constexpr Enum kRgba8 = 0x8058, kDepth16 = 0x81a5, kDepth24 = 0x81a6;
 inline constexpr Enum kRenderer = 0x1f01;
 inline constexpr Enum kArrayBuffer = 0x8892, kElementBuffer = 0x8893, kStaticDraw = 0x88e4;
@@ -56,6 +60,11 @@ struct Functions {
   void (*clear_color)(float, float, float, float);
   void (*clear_depth)(double);
   void (*clear)(Enum);
+  void (*gen_textures)(int, Name*);
+  void (*bind_texture)(Enum, Name);
+  void (*tex_image_2d)(Enum, int, int, int, int, int, Enum, Enum, const void*);
+  void (*tex_parameteri)(Enum, Enum, int);
+  void (*tex_parameterf)(Enum, Enum, float);
   void (*finish)();
   void (*read_pixels)(int, int, int, int, Enum, Enum, void*);
   void (*gen_buffers)(int, Name*);

@@ -15,7 +15,6 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact_line.hpp"
 #include "model/stages/depth_encode.hpp"
-#include "model/stages/surface.hpp"
 
 namespace halfplane {
 namespace {
@@ -53,11 +52,12 @@ struct ExactAndHardware {
 
 /// A pixel that the model owns, and what it must hold.
 struct OwnedPixel {
-  std::size_t p = 0;                   ///< y * width + x
-  std::size_t at = 0;                  ///< in a Framebuffer
-  std::uint32_t draw = 0;              ///< index into Scene::commands
-  bool is_line = false;                ///< or a point
-  PerPlane<ExactAndHardware> plane{};  ///< all that are judged
+  std::size_t p = 0;                       ///< y * width + x
+  std::size_t at = 0;                      ///< in a Framebuffer
+  std::uint32_t draw = 0;                  ///< index into Scene::commands
+  bool is_line = false;                    ///< or a point
+  PerPlane<ExactAndHardware> plane{};      ///< all that are judged
+  const SurfaceSample* surface = nullptr;  ///< what its colour is, where it is no plane's
 };
 
 /// The numbers of owned pixels, in the order in which errors are summed: by triangle, then by primitive of the lines,
@@ -105,7 +105,8 @@ class AttributeComparison {
         result_(result),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
         depth_encode_(config, scene.planes),
-        eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())) {}
+        eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())),
+        texture_(result.depth_error_lsb.size()) {}
 
   /// `progress` gets the part of the pixels done.
   void run(const std::function<void(double)>& progress) {
@@ -126,6 +127,8 @@ class AttributeComparison {
     result_.datapath = datapath_.stats();
     result_.line_datapath = line_datapath_.stats();
     result_.color_datapath = color_datapath_.stats();
+    result_.color_over_w = color_over_w_.stats();
+    if (has_texture_) result_.texture = std::move(texture_).result();
     result_.datapath_bias = datapath_bias_.stats();
     result_.color_datapath_bias = color_datapath_bias_.stats();
   }
@@ -140,8 +143,11 @@ class AttributeComparison {
     OwnedPixel pixel{p, made_.frame.at(f.x, f.y), f.draw, f.kind != PrimitiveKind::triangle, {}};
     if (!pixel.is_line && (!oracle_ || oracle_item_ != f.item)) {
       oracle_.emplace(made_.triangles[f.item], widths_.grid_bits);
+      surface_oracle_.reset();
+      if (f.surface) surface_oracle_.emplace(scene_, config_, made_.triangles[f.item]);
       oracle_item_ = f.item;
     }
+    if (f.surface) pixel.surface = &*f.surface;
     const exact::PlaneWeights weights = pixel.is_line ? exact::PlaneWeights{} : oracle_->weights_at(f.x, f.y);
     for (std::size_t i = 0; i < planes_.size(); ++i)
       pixel.plane[i] = {exact_value(f, weights, i), {f.plane[i].unrounded, int128{1} << f.guard_bits}};
@@ -201,14 +207,20 @@ class AttributeComparison {
     const auto max = golden::channel_max(config_.color_format);
     result_.stage_mismatches += stored != made_.frame.color[pixel.at] ? 1 : 0;
     double worst = 0;
+    const golden::Color surface = pixel.surface != nullptr ? exact_surface(pixel) : golden::Color{};
     for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
       const auto c = static_cast<std::size_t>(channel);
       Values v;
-      v.s = exact::on_grid(pixel.plane[kColorPlane + c].exact, max[c], 255);
-      v.h = exact::on_grid(pixel.plane[kColorPlane + c].hardware, max[c], 255);
       v.d = std::int64_t{golden::stored_channel(stored, config_.color_format, channel)} << exact::kGridBits;
-      color_datapath_.add(to_lsb(v.d - v.s));
-      color_datapath_bias_.add(to_lsb(v.h - v.s));
+      if (pixel.surface != nullptr) {
+        v.s = on_grid(surface[c] * max[c] / 255);
+        v.h = exact::on_grid({pixel.surface->color[c], 1}, max[c], 255);
+      } else {
+        v.s = exact::on_grid(pixel.plane[kColorPlane + c].exact, max[c], 255);
+        v.h = exact::on_grid(pixel.plane[kColorPlane + c].hardware, max[c], 255);
+        color_datapath_.add(to_lsb(v.d - v.s));
+        color_datapath_bias_.add(to_lsb(v.h - v.s));
+      }
       if (!same_visible) continue;
       v.u = on_grid(result_.golden.color[pixel.p][c] * max[c] / 255);
       color_parts_.add(v);
@@ -218,6 +230,16 @@ class AttributeComparison {
       if (std::abs(error) > std::abs(worst)) worst = error;
     }
     if (same_visible) result_.color_error_lsb[pixel.p] = static_cast<float>(worst);
+  }
+
+  /// What the surface of a pixel should show; its errors are gathered.
+  [[nodiscard]] golden::Color exact_surface(const OwnedPixel& pixel) {
+    const TappedFragment& f = frame_.shown(pixel.p);
+    const SurfaceErrors errors = surface_oracle_->errors(*pixel.surface, f.x, f.y);
+    if (std::isfinite(errors.color.bound)) color_over_w_.add(errors.color.value);
+    has_texture_ = has_texture_ || errors.has_texture;
+    if (errors.has_texture) texture_.add(pixel.p, errors);
+    return errors.exact;
   }
 
   const Scene& scene_;
@@ -232,9 +254,12 @@ class AttributeComparison {
   DepthEncode depth_encode_;
   std::vector<std::optional<EyeMapping>> eye_mappings_;
   std::optional<exact::TriangleOracle> oracle_;  // of the triangle at work
+  std::optional<SurfaceOracle> surface_oracle_;  // likewise
   std::uint32_t oracle_item_ = 0;                // its number
   ErrorSet depth_, color_, eye_;
-  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_;
+  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_;
+  TextureErrorSets texture_;
+  bool has_texture_ = false;
   PartSets depth_parts_, color_parts_;
   PartSet affine_;
 };
@@ -287,10 +312,6 @@ Rendering draw_fragments(const Scene& scene, const Config& config, const Compare
 }  // namespace
 
 Comparison compare(const Scene& scene, const Config& config, const CompareOptions& options) {
-  if (std::ranges::any_of(scene.states, has_surface))
-    throw InputError(scene.name +
-                     ": textures and colours over w have no parts of an error here yet; render it with "
-                     "--engine golden and --engine scalar, and look at the pictures");
   Comparison result;
   CoverageLog log(config.tile_size);
   RenderOptions render_options;

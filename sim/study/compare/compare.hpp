@@ -19,6 +19,7 @@
 #include "model/golden/golden.hpp"
 #include "model/scene.hpp"
 #include "statistics.hpp"
+#include "texture_errors.hpp"
 
 namespace halfplane {
 
@@ -53,16 +54,19 @@ struct Comparison {
   ErrorStats depth_lsb, color_lsb;
   std::optional<ErrorStats> depth_eye;  ///< eye-space units; none where no perspective projection is to be found
   std::uint64_t beyond_eye = 0;         ///< pixels left out of depth_eye: the stored code lies at or beyond infinity
-  ErrorParts parts, color_parts;        ///< colour parts refer to affine colour
+  ErrorParts parts, color_parts;        ///< of a colour, interpolation is all that comes before storage
   PartStats affine;                     ///< what affine colour costs: U less U with all colours perspective
 
-  // Against S, over every pixel that the model owns, whatever U shows there: the datapath alone.
+  // Against S, over every pixel that the model owns, whatever U shows there: the datapath alone. Colours of planes only:
+  // what a surface shows has bounds of its own.
   ErrorMoments datapath, color_datapath;
   // H - S as well: the storage rounding of a plane that climbs by halves has a mean of its own.
   ErrorMoments datapath_bias, color_datapath_bias;
-  ErrorMoments line_datapath;           ///< the depth of lines and points, whose bound is another; not in `datapath`
-  std::uint64_t visible_triangles = 0;  ///< of the model, behind those figures
-  std::uint64_t stage_mismatches = 0;   ///< stored values, and owners, that differ from what the fragments leave
+  ErrorMoments color_over_w;             ///< of surfaces: their primitive's own colour before a texture, LSB of 8 bits
+  ErrorMoments line_datapath;            ///< the depth of lines and points, whose bound is another; not in `datapath`
+  std::optional<TextureErrors> texture;  ///< of the pixels that show one; none: no pixel does
+  std::uint64_t visible_triangles = 0;   ///< of the model, behind those figures
+  std::uint64_t stage_mismatches = 0;    ///< stored values, and owners, that differ from what the fragments leave
 
   // Per pixel, width * height, rows from the top. NaN where not compared. Signed; of a colour, its worst channel.
   std::vector<float> depth_error_lsb, color_error_lsb;

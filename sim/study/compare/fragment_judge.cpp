@@ -19,6 +19,18 @@ double distance(std::int64_t value, int guard_bits, const exact::Rational& exact
 
 void raise(double& worst, double value) { worst = std::max(worst, value); }
 
+void raise(Held& worst, const Held& candidate) {
+  if (!(candidate.ratio() <= worst.ratio())) worst = candidate;
+}
+
+void raise(SurfaceVerdict& worst, const SurfaceErrors& errors) {
+  raise(worst.color, errors.color);
+  if (!errors.has_texture) return;
+  raise(worst.coordinate, errors.coordinate);
+  raise(worst.level, errors.level_size);
+  raise(worst.filter, errors.filter);
+}
+
 std::string line(std::string_view plane, const char* what, double value, double bound) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "fragments: %.*s %s by %.3f LSB (bound %.2f)", static_cast<int>(plane.size()),
@@ -45,8 +57,11 @@ void FragmentJudge::add_to_triangle(const TappedFragment& fragment) {
   if (!oracle_ || item_ != fragment.item) {
     finish_triangle();
     oracle_.emplace(*fragment.triangle, widths_.grid_bits, rule_);
+    surface_.reset();
+    if (fragment.surface) surface_.emplace(scene_, config_, *fragment.triangle);
     item_ = fragment.item;
   }
+  if (fragment.surface) raise(verdict_.surfaces, surface_->errors(*fragment.surface, fragment.x, fragment.y));
   const int shift = widths_.tile_shift, last = (1 << shift) - 1;
   std::uint32_t& row = tiles_[{fragment.y >> shift, fragment.x >> shift}][static_cast<std::size_t>(fragment.y & last)];
   const std::uint32_t bit = 1U << (fragment.x & last);
@@ -106,6 +121,16 @@ std::vector<std::string> broken_fragment_bounds(const FragmentVerdict& verdict, 
     if (!(v.worst_of_lines <= line_bound))
       broken.push_back(line(v.plane.name, "of lines is off the exact value", v.worst_of_lines, line_bound));
   }
+  const auto hold = [&broken](const Held& held, const char* format) {
+    if (held.holds()) return;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), format, held.value, held.bound);
+    broken.emplace_back(text.data());
+  };
+  hold(verdict.surfaces.color, "fragments: a colour over w is %.3f LSB from the exact quotient (bound %.3f)");
+  hold(verdict.surfaces.coordinate, "fragments: a texture coordinate is %.4f texels from the exact one (bound %.4f)");
+  hold(verdict.surfaces.level, "fragments: a level of detail is %.3f from the exact one (bound %.2f)");
+  hold(verdict.surfaces.filter, "fragments: a texel is %.3f LSB from the real filter at its place (bound %.2f)");
   return broken;
 }
 

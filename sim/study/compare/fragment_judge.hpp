@@ -13,6 +13,7 @@
 #include "line_coverage.hpp"
 #include "model/golden/exact.hpp"
 #include "planes.hpp"
+#include "surface_oracle.hpp"
 
 namespace halfplane {
 
@@ -23,8 +24,14 @@ struct PlaneVerdict {
   double worst_unrounded = 0;            ///< of triangles, before the final rounding
 };
 
+/// The samples of surfaces that are nearest to their bounds, or beyond them.
+struct SurfaceVerdict {
+  Held color, coordinate, level, filter;
+};
+
 struct FragmentVerdict {
   std::uint64_t fragments = 0;
+  SurfaceVerdict surfaces;
   OracleResult coverage;  ///< every sample of every primitive; a fragment that comes twice is a mismatch
   std::vector<PlaneVerdict> planes;
 };
@@ -53,6 +60,7 @@ class FragmentJudge {
   PixelLog pixels_;
   std::uint64_t repeated_ = 0;
   std::optional<exact::TriangleOracle> oracle_;    // of the triangle at work
+  std::optional<SurfaceOracle> surface_;           // likewise, if it has a surface
   std::uint32_t item_ = 0;                         // its number
   std::map<std::pair<int, int>, TileMask> tiles_;  // its samples: by tile row, column
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr int kParts = 3;  // quads along either side of a surface
 
 /// A plane: its eye depth on the ray with the tangent t is depth / (1 - slope (t - middle)).
-struct Surface {
+struct SlopingPlane {
   double depth, slope, middle;
   [[nodiscard]] double at(double tangent) const { return depth / (1 - slope * (tangent - middle)); }
 };
@@ -44,7 +44,7 @@ Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, dou
   const double pixel = view.pixel();
   const int count = cells(bound, z, view), side = std::min(view.width, view.height) / count;
   const int cell = side - 2;  // pixels
-  const auto add_surface = [&](const Surface& surface, double left, double top) {
+  const auto add_surface = [&](const SlopingPlane& surface, double left, double top) {
     const auto first = static_cast<std::uint32_t>(scene.vertices.size());
     for (int j = 0; j <= kParts; ++j)
       for (int i = 0; i <= kParts; ++i) {
@@ -68,7 +68,7 @@ Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, dou
       const auto tangent = [&](double x) { return (left + x - view.width / 2.0) * pixel; };
       // Anywhere within a few steps of storage: each pair at another place between two codes.
       const double jitter = 1 + random.uniform(0, 8) * step / z;
-      const Surface nearer{z * std::min(jitter, 1.05), view.slope, tangent(cell / 2.0)};
+      const SlopingPlane nearer{z * std::min(jitter, 1.05), view.slope, tangent(cell / 2.0)};
       // Along the screen a plane's 1/z, and so t, climbs evenly: one budget for all of it.
       const DepthBudget budget = bound.budget(bound.screen_slope(nearer.depth, view.slope, pixel), view.slope == 0);
       double ratio = 0;  // of the separation to the depth, where it is largest
@@ -76,7 +76,7 @@ Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, dou
         const double depth = nearer.at(tangent(x / 4.0));
         ratio = std::max(ratio, bound.separation(depth, budget).total() / depth);
       }
-      const Surface farther{nearer.depth * (1 + part * ratio), view.slope, nearer.middle};
+      const SlopingPlane farther{nearer.depth * (1 + part * ratio), view.slope, nearer.middle};
       const auto fits = [&](double x) {
         return nearer.at(tangent(x)) >= bound.scale().near() && farther.at(tangent(x)) <= bound.scale().far();
       };

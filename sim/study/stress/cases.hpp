@@ -60,6 +60,19 @@ void lines_octants(Unit& unit);
 void lines_long(Unit& unit);
 void polylines(Unit& unit);
 void wires(Unit& unit);
+// texture_cases.cpp
+void textured_w_ratio(Unit& unit);
+void textured_slivers(Unit& unit);
+void texel_borders(Unit& unit);
+void texture_repeats(Unit& unit);
+void texture_mirrors(Unit& unit);
+void texture_of_one_texel(Unit& unit);
+void constant_coordinate(Unit& unit);
+void equal_w(Unit& unit);
+void q_near_one(Unit& unit);
+void wrap_across_a_tile(Unit& unit);
+void levels_along_a_scanline(Unit& unit);
+void texture_viewport(Unit& unit);
 // engine_cases.cpp
 void traversals(Unit& unit);
 void fill_rules(Unit& unit);

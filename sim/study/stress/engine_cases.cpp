@@ -156,6 +156,7 @@ void stalls(Unit& unit) {
   const auto timing = make_memory(memory, unit.config);
   const Rendering functional = unit.engine(scene, unit.config, render_options());
   unit.count_triangles(functional.triangles.size());
+  options.textures = memory;
   const CycleRendering cycle = render_cycle(scene, unit.config, *timing, {}, options);
   expect_same_image(unit, scene, functional, cycle.rendering);
 }

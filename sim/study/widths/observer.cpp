@@ -12,11 +12,31 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array kByConstruction{
-    &Widths::primitive_id, &Widths::slot,         &Widths::stored_color, &Widths::kind,       &Widths::flag,
-    &Widths::depth_func,   &Widths::cull_mode,    &Widths::hiz_code,     &Widths::hiz_update, &Widths::tile_plane,
-    &Widths::memory_lane,  &Widths::counter,      &Widths::depth_source, &Widths::run,        &Widths::address,
-    &Widths::row_stride,   &Widths::burst_length, &Widths::port_strobe,  &Widths::port_byte};
+constexpr std::array kByConstruction{&Widths::primitive_id,
+                                     &Widths::slot,
+                                     &Widths::stored_color,
+                                     &Widths::kind,
+                                     &Widths::flag,
+                                     &Widths::depth_func,
+                                     &Widths::cull_mode,
+                                     &Widths::hiz_code,
+                                     &Widths::hiz_update,
+                                     &Widths::tile_plane,
+                                     &Widths::memory_lane,
+                                     &Widths::counter,
+                                     &Widths::depth_source,
+                                     &Widths::run,
+                                     &Widths::address,
+                                     &Widths::row_stride,
+                                     &Widths::burst_length,
+                                     &Widths::port_strobe,
+                                     &Widths::port_byte,
+                                     &Widths::coordinate_shift,
+                                     &Widths::coordinate_reach,
+                                     &Widths::coordinate_reference,
+                                     &Widths::written_color,
+                                     &Widths::texture_byte,
+                                     &Widths::texture_beats};
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::logic_error(std::string("the width observer and the stage disagree: ") + what);
@@ -55,8 +75,25 @@ WidthObserver::WidthObserver(const Config& config)
       is_observed_(all_.size(), true),
       seen_(all_.size()) {
   for (std::size_t i = 0; i < all_.size(); ++i) place_.emplace_back(all_[i], i);
+  for (int a = 0; a < widths_.attributes.attributes; ++a) {  // what is the same under another name
+    const AttributeWidths& w = widths_.attribute[static_cast<std::size_t>(a)];
+    const auto place = [this](const Width& width) {
+      return static_cast<std::size_t>(std::find(all_.begin(), all_.end(), &width) - all_.begin());
+    };
+    const bool is_affine = w.affine_code.bits != 0;
+    if (is_affine) place_.emplace_back(&w.affine_code, place(w.code));
+    place_.emplace_back(&w.fragment, place(is_affine ? w.code : w.local));
+  }
   std::sort(place_.begin(), place_.end());
   for (const auto member : kByConstruction) is_observed_[place_of(widths_.*member)] = false;
+  for (int a = 0; a < widths_.attributes.attributes; ++a) {  // planes over w: probes have none
+    const AttributeWidths& w = widths_.attribute[static_cast<std::size_t>(a)];
+    if (w.affine_code.bits != 0) continue;
+    for (const auto member :
+         {&AttributeWidths::code, &AttributeWidths::delta, &AttributeWidths::numerator, &AttributeWidths::reciprocal,
+          &AttributeWidths::product, &AttributeWidths::plane, &AttributeWidths::local})
+      is_observed_[place_of(w.*member)] = false;
+  }
 }
 
 std::size_t WidthObserver::place_of(const Width& width) const {
@@ -175,7 +212,7 @@ void WidthObserver::observe_planes(const TriangleStages& stages) {
   const Reciprocal widest = reciprocal(stages.setup.area, widths_.reciprocal_bits());
   see(widths_.reciprocal, static_cast<int128>(widest.value));
   see(widths_.reciprocal_shift, widest.shift);
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p) {
     const AttributeWidths& widths = widths_.of_plane(p);
     const Plane& result = stages.setup.plane[p];
     const Reciprocal r = reciprocal(stages.setup.area, widths.reciprocal_bits());
@@ -248,7 +285,7 @@ void WidthObserver::observe_sample(const TriangleStages& stages, const FragmentP
                        static_cast<std::uint64_t>(plane.step_y) * dy,
                    bits);
   };
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p) {
     const AttributeWidths& widths = widths_.of_plane(p);
     see(widths.plane, wide(setup.plane[p], widths.plane.bits));
     see(widths.local, at.unrounded[p]);
@@ -264,7 +301,7 @@ void WidthObserver::observe_sample(const TriangleStages& stages, const FragmentP
 void WidthObserver::observe_line(const Probe& probe) {
   for (std::size_t i = 0; i < 2; ++i) {
     for (const std::int32_t v : {probe.v[i].x, probe.v[i].y}) see(widths_.coordinate, v);
-    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p)
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p)
       see(widths_.of_plane(p).code, probe.v[i].code[p]);
   }
   // Nothing is cut away here: the pixels that a line in the guard band covers lie at most one outside of it.
@@ -328,7 +365,7 @@ void WidthObserver::observe_attributes(const Probe& probe, const LineSetup& line
   const Reciprocal r = reciprocal(a.to - a.from, widths_.reciprocal_bits());
   see(widths_.reciprocal, static_cast<int128>(r.value));
   see(widths_.reciprocal_shift, r.shift);
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p) {
     const int128 delta = int128{probe.v[1].code[p]} - probe.v[0].code[p],
                  product = delta * static_cast<int128>(r.value);
     see(widths_.of_plane(p).delta, delta);
@@ -345,7 +382,7 @@ void WidthObserver::observe_pixels(const LineSetup& line) {
     see(widths_.line_count, state.remaining);
     see_packet(pixel_of(state, line, widths_));
     if (state.is_before_start) return;  // it shows the start's codes
-    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p)
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p)
       see(widths_.of_plane(p).line, static_cast<int128>(state.value[p]));
   };
   LineState state = first_state(line);
@@ -355,7 +392,7 @@ void WidthObserver::observe_pixels(const LineSetup& line) {
     pixel(state);
   }
   if (state.remaining == 0) return;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p) {
     const Width& width = widths_.of_plane(p).line;
     see(width, static_cast<int128>(wrap_unsigned(state.value[p] + state.remaining * line.step[p], width.bits)));
   }

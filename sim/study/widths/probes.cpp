@@ -99,7 +99,7 @@ std::vector<Probe> extreme_probes(const Config& config) {
   const Widths widths = derive_widths(config);
   const auto vertex = [&widths](std::int32_t x, std::int32_t y, std::uint32_t z) {
     SnappedVertex v{x, y, {z}};
-    for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.planes); ++p)
+    for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.affine_planes); ++p)
       v.code[p] = z == 0 ? 0 : static_cast<std::uint32_t>(widths.of_plane(p).code.range.hi);
     return v;
   };

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "model/packet_words.hpp"
+#include "model/stages/surface.hpp"
 #include "model/widths.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/study/compare/compare.hpp"
@@ -19,10 +20,13 @@ struct Axis {
   int Config::*member;
   bool is_logarithm = false;
 };
-constexpr std::array kAxes{
-    Axis{"depth.bits", &Config::depth_bits}, Axis{"plane.local_guard_bits", &Config::local_guard_bits},
-    Axis{"reciprocal.extra_bits", &Config::reciprocal_extra_bits}, Axis{"subpixel.bits", &Config::subpixel_bits},
-    Axis{"guard.band", &Config::guard_band, true}};
+constexpr std::array kAxes{Axis{"depth.bits", &Config::depth_bits},
+                           Axis{"plane.local_guard_bits", &Config::local_guard_bits},
+                           Axis{"reciprocal.extra_bits", &Config::reciprocal_extra_bits},
+                           Axis{"subpixel.bits", &Config::subpixel_bits},
+                           Axis{"guard.band", &Config::guard_band, true},
+                           Axis{"perspective.bits", &Config::perspective_bits},
+                           Axis{"perspective.mantissa_bits", &Config::perspective_mantissa_bits}};
 using Point = std::array<int, kAxes.size()>;
 
 std::string refusal(const Config& config) {
@@ -44,7 +48,15 @@ class Search {
  public:
   Search(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
          const std::function<void(int)>& progress)
-      : scenes_(scenes), start_(start), bounds_(bounds), progress_(progress) {
+      : scenes_(scenes),
+        start_(start),
+        bounds_(bounds),
+        progress_(progress),
+        has_over_w_(is_any_state(scenes, has_surface)),
+        has_colors_over_w_(
+            is_any_state(scenes, [](const State& state) { return state.color_interp == ColorInterp::perspective; })) {
+    if (bounds.texture && !is_any_state(scenes, [](const State& state) { return state.texture.has_value(); }))
+      throw InputError("--texture-error: no scene has a texture; leave it out, or add a scene that has one");
     for (std::size_t a = 0; a < kAxes.size(); ++a) {
       const int value = value_of(start_, a);
       low_[a] = high_[a] = value;
@@ -65,7 +77,8 @@ class Search {
         raise_lower_ends();
         const Point found = cheapest();
         result.found = trial(found);
-        for (std::size_t a = 0; a < kAxes.size(); ++a) result.one_less.push_back(one_less(found, a));
+        for (std::size_t a = 0; a < kAxes.size(); ++a)
+          if (!is_over_w(a) || !is_fixed(a)) result.one_less.push_back(one_less(found, a));
       }
     } catch (const Interrupted&) {
       if (!result.found) result.found = cheapest_so_far();
@@ -75,13 +88,22 @@ class Search {
   }
 
  private:
+  template <class Has>
+  [[nodiscard]] static bool is_any_state(const std::vector<Scene>& scenes, Has&& has) {
+    return std::ranges::any_of(scenes, [&has](const Scene& scene) { return std::ranges::any_of(scene.states, has); });
+  }
+
+  [[nodiscard]] static bool is_over_w(std::size_t a) {
+    return kAxes[a].member == &Config::perspective_bits || kAxes[a].member == &Config::perspective_mantissa_bits;
+  }
+
+  [[nodiscard]] long cost(const Config& config) const { return hardware_bits(config, has_over_w_).total(); }
+
   /// None before the widest was measured.
   [[nodiscard]] std::optional<TriedConfig> cheapest_so_far() const {
     const TriedConfig* best = nullptr;
     for (const auto& [point, trial] : trials_)
-      if (trial.holds() &&
-          (best == nullptr || hardware_bits(trial.config).total() < hardware_bits(best->config).total()))
-        best = &trial;
+      if (trial.holds() && (best == nullptr || cost(trial.config) < cost(best->config))) best = &trial;
     return best == nullptr ? std::nullopt : std::optional(*best);
   }
 
@@ -92,6 +114,7 @@ class Search {
   [[nodiscard]] bool is_fixed(std::size_t a) const {
     if (kAxes[a].member == &Config::subpixel_bits) return !bounds_.coverage;
     if (kAxes[a].member == &Config::depth_bits) return !bounds_.depth;
+    if (is_over_w(a)) return !bounds_.texture && !(bounds_.color && has_colors_over_w_);
     if (kAxes[a].is_logarithm) return false;
     return !bounds_.depth && !bounds_.color;
   }
@@ -121,7 +144,8 @@ class Search {
     options.progress = [this](double) { report(); };
     const Comparison c = compare(scene, config, options);
     errors.depth = std::max(c.datapath.max, c.line_datapath.max) / (std::ldexp(1.0, config.depth_bits) - 1);
-    errors.color = c.color_datapath.max;
+    errors.color = std::max(c.color_datapath.max, c.color_over_w.max);
+    errors.texture = c.texture ? c.texture->coordinate.max : 0;
     errors.coverage = c.coverage.missing + c.coverage.extra;
     if (bounds_.depth && errors.depth > *bounds_.depth)
       return broken_line("depth", errors.depth, " of the range", *bounds_.depth);
@@ -130,6 +154,8 @@ class Search {
                          static_cast<double>(*bounds_.coverage));
     if (bounds_.color && errors.color > *bounds_.color)
       return broken_line("colour", errors.color, " LSB", *bounds_.color);
+    if (bounds_.texture && errors.texture > *bounds_.texture)
+      return broken_line("texture coordinate", errors.texture, " texels", *bounds_.texture);
     return "";
   }
 
@@ -173,7 +199,7 @@ class Search {
     std::vector<std::pair<long, Point>> points;
     Point point = low_;
     for (bool is_more = true; is_more;) {
-      if (refusal(at(point)).empty()) points.emplace_back(hardware_bits(at(point)).total(), point);
+      if (refusal(at(point)).empty()) points.emplace_back(cost(at(point)), point);
       is_more = false;
       for (std::size_t a = 0; a < kAxes.size() && !is_more; ++a) {  // an odometer
         is_more = point[a] < high_[a];
@@ -211,13 +237,14 @@ class Search {
   const Config& start_;
   const ErrorBounds& bounds_;
   const std::function<void(int)>& progress_;
+  const bool has_over_w_, has_colors_over_w_;
   Point low_{}, high_{};
   std::map<Point, TriedConfig> trials_;
 };
 
 }  // namespace
 
-HardwareBits hardware_bits(const Config& config) {
+HardwareBits hardware_bits(const Config& config, bool has_over_w) {
   const Widths w = derive_widths(config);
   HardwareBits bits;
   bits.packets = packet_bits<PrimitivePacket>(w) + packet_bits<TrianglePacket>(w) + packet_bits<SetupPacket>(w) +
@@ -229,6 +256,15 @@ HardwareBits hardware_bits(const Config& config) {
                        widest(w, &AttributeWidths::product).bits);
   bits.tiles =
       long{config.cache_lines} * config.tile_size * config.tile_size * (w.depth().code.bits + w.stored_color.bits);
+  if (has_over_w) {
+    const PerspectiveFormat format = perspective_format(config);
+    constexpr long kValues = 3, kCoordinates = 2;  // of a plane: anchor and two steps
+    const long planes = q_plane_bits(format, w) + kCoordinates * p_plane_bits(format.coordinate, w) +
+                        w.color_planes * p_plane_bits(format.color, w);
+    const long divisions = kCoordinates * (format.mantissa_bits + format.coordinate.narrow_bits + 1) +
+                           w.color_planes * (format.mantissa_bits + format.color.narrow_bits + 1L);
+    bits.over_w = config.context_slots * kValues * planes + divisions;
+  }
   return bits;
 }
 
@@ -237,6 +273,7 @@ SceneErrors TriedConfig::worst() const {
   for (const SceneErrors& scene : scenes) {
     worst.depth = std::max(worst.depth, scene.depth);
     worst.color = std::max(worst.color, scene.color);
+    worst.texture = std::max(worst.texture, scene.texture);
     worst.coverage = std::max(worst.coverage, scene.coverage);
   }
   return worst;

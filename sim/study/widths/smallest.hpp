@@ -17,12 +17,14 @@ namespace halfplane {
 struct ErrorBounds {
   std::optional<double> depth;  ///< against the exact plane through the snapped vertices; part of the depth range
   std::optional<std::uint64_t> coverage;  ///< pixels missing or extra against the scene as it is, before the snap
-  std::optional<double> color;            ///< against the exact plane, LSB of the stored colour
+  std::optional<double>
+      color;  ///< against the exact plane, LSB of the stored colour; over w, LSB of 8 bits before that
+  std::optional<double> texture;  ///< of texture coordinates against the exact ones, texels
 };
 
 /// What a configuration does on one scene, or the worst of several. Units as above.
 struct SceneErrors {
-  double depth = 0, color = 0;
+  double depth = 0, color = 0, texture = 0;
   std::uint64_t coverage = 0;
 };
 
@@ -32,9 +34,11 @@ struct HardwareBits {
   long context = 0;   ///< the context RAM: context.slots times what a primitive keeps there
   long products = 0;  ///< outputs of the multipliers of cull and triangle_setup, two of each kind
   long tiles = 0;     ///< depth and colour of cache.lines tiles
-  [[nodiscard]] long total() const { return packets + context + products + tiles; }
+  long over_w = 0;    ///< planes of Q, u, v and the colours over w in the context RAM, and their divisions' products
+  [[nodiscard]] long total() const { return packets + context + products + tiles + over_w; }
 };
-[[nodiscard]] HardwareBits hardware_bits(const Config& config);
+/// `has_over_w`: counts `over_w`, which scenes without textures and colours over w have no need of.
+[[nodiscard]] HardwareBits hardware_bits(const Config& config, bool has_over_w = false);
 
 /// A configuration and what was measured of it.
 struct TriedConfig {
@@ -60,10 +64,11 @@ struct Smallest {
   int trials = 0;  ///< configurations measured
 };
 
-/// Searches depth.bits, plane.local_guard_bits, reciprocal.extra_bits, guard.band (up to the start's), and subpixel.bits
-/// if coverage is bounded; the rest of `start` stays. Whatever bound says nothing about a setting leaves it as it is.
+/// Searches depth.bits, plane.local_guard_bits, reciprocal.extra_bits, guard.band (up to the start's), subpixel.bits if
+/// coverage is bounded, perspective.bits and perspective.mantissa_bits if textures are, or colours and there are some over
+/// w; the rest of `start` stays. Whatever bound says nothing about a setting leaves it as it is.
 /// Takes errors to fall as settings rise: a configuration below one that failed in every setting is not tried.
-/// Throws InputError when a scene cannot be drawn with `start` at all. `progress` is called with the configurations
+/// Throws InputError when textures are bounded and no scene has any, and when a scene cannot be drawn with `start` at all. `progress` is called with the configurations
 /// measured, also within one. Interrupted, thrown there, ends the search: found is then the cheapest that held so far.
 [[nodiscard]] Smallest find_smallest(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
                                      const std::function<void(int trials)>& progress = {});

@@ -83,6 +83,21 @@ struct BinTriangle {
   bool is_whole;                              ///< its edges alone say what it covers
   std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< likewise, channel by channel
   ColorSteps color;
+  std::int32_t surface;  ///< its number in BinMemory::seen, which then has its colours; 0: none
+};
+
+/// A surface of which colours are computed.
+struct DrawnSurface {
+  SurfaceConstants constants;
+  BinTriangle colors;                   ///< affine ones
+  std::unique_ptr<StageSurface> stage;  ///< where lanes have not all that it takes
+};
+
+/// A triangle whose surface pixels show.
+struct SeenSurface {
+  const Slice* slice;
+  const Record* record;
+  std::int32_t drawn;  ///< into BinMemory::drawn, when it is set up; else -1
 };
 
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
@@ -92,6 +107,10 @@ struct BinMemory {
   alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> narrow_depth;
   alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> color;
   alignas(64) std::array<BinTriangle, kPlanes> planes;
+  static constexpr std::size_t kSurfaces = 8192;  ///< that wait at most: no more pixels than half of that show one
+  alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> surface;  ///< into `seen`, 0: the colour is there
+  std::array<SeenSurface, kSurfaces> seen;                             ///< from 1 on
+  std::vector<DrawnSurface> drawn;
 
   static BinMemory& of_thread() {
     static thread_local BinMemory memory;
@@ -102,7 +121,8 @@ struct BinMemory {
 struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
-  static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3;
+  static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3,
+                                kSurfaces = -4;  ///< pixel by pixel: BinMemory::surface
 
   explicit Bin(BinJob& job_)
       : job(job_),
@@ -151,19 +171,22 @@ struct Bin {
   std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
   SliceState state;
+  [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
   static constexpr std::int32_t kOpen = 1 << 16;
   std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide this depth, and what is behind
   const LanePositions& position = lane_positions();
   SmallBatch small;
+  std::int32_t batch_surface = 0;     ///< the number of its first triangle's
   int small_run = 0;                  ///< records in a row that were small or medium
   LineBatch lines, cut_line;          ///< cut_line: one, in lane 0
   std::uint64_t line_tiles = 0;       ///< touched by lines since triangles last were drawn
   bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
-  bool is_range_old = true;     ///< low, high and lowest_high: found when somebody asks
-  std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
+  std::size_t surface_count = 0;  ///< of BinMemory::seen
+  bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
+  std::uint64_t in_memory = 0;    ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
   // What a clear leaves, to be read as if it were in memory: of a tile where 16 bits suffice, of a block.

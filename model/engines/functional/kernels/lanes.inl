@@ -274,6 +274,8 @@ using S16 = Pack<std::int16_t, 16>;  ///< the pixels of a block; wider registers
 using S64 = Pack<std::int16_t, 64>;  ///< the pixels of a tile, or the tiles of a bin
 using U64 = Pack<std::uint16_t, 64>;
 using B64 = Pack<std::uint8_t, 64>;  ///< the channels of a block
+using W16 = Pack<std::uint32_t, 16>;
+using F16 = Pack<float, 16>;
 using L16 = Pack<std::int64_t, 16>;
 using D16 = Pack<double, 16>;
 
@@ -332,6 +334,26 @@ HALFPLANE_INLINE I16 upper_halves(const L16& v) { return convert<std::int32_t>(s
 
 /// Two values of 16 bits in the halves of each lane.
 HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
+
+/// The upper halves of products of numbers without a sign.
+HALFPLANE_INLINE S32 multiply_upper(const S32& a, std::uint16_t b) {
+  S32 r;
+  const S32 factor(static_cast<std::int16_t>(b));
+#if HALFPLANE_ISA == 512
+  r.part[0] = (S32::Register)_mm512_mulhi_epu16((__m512i)a.part[0], (__m512i)factor.part[0]);
+#elif HALFPLANE_ISA == 256
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (S32::Register)_mm256_mulhi_epu16((__m256i)a.part[i], (__m256i)factor.part[i]);
+#elif defined(__x86_64__)
+  for (int i = 0; i < 4; ++i) r.part[i] = (S32::Register)_mm_mulhi_epu16((__m128i)a.part[i], (__m128i)factor.part[i]);
+#else
+  for (int i = 0; i < 32; ++i) {
+    const auto value = static_cast<std::uint16_t>(a.part[i / S32::kLanes][i % S32::kLanes]);
+    r.part[i / S32::kLanes][i % S32::kLanes] = static_cast<std::int16_t>((std::uint32_t{value} * b) >> 16);
+  }
+#endif
+  return r;
+}
 
 /// a.low b.low + a.high b.high, lane by lane, of 16-bit pairs.
 HALFPLANE_INLINE I16 multiply_add_pairs(const I16& a, const I16& b) {

@@ -1,5 +1,4 @@
-// Small and medium triangles: the blocks of 4 x 4 pixels that they cover; of those within two by two pixels, their
-// samples.
+// Small and medium triangles: the blocks of 4 x 4 pixels that they cover, or their samples.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
 /// Batches after which a tile's range is found anew.
@@ -20,12 +19,15 @@ HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
 /// They must be in memory, and their ranges are known no more. Every now and then finds a tile's range anew; says so.
 template <class Fragments>
 HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
+  const bool is_color = bin.state.color_write && !bin.state.has_surface;
   for (std::uint64_t rest = tiles & ~bin.in_memory; rest != 0; rest &= rest - 1) {
     const int at = std::countr_zero(rest);
     need_depth(bin, at);
-    if (bin.state.color_write) need_color(bin, at);
+    if (is_color) need_color(bin, at);
   }
-  if (bin.state.color_write) bin.in_memory |= tiles;
+  if (is_color) bin.in_memory |= tiles;
+  if (bin.sees_surfaces())
+    for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) need_numbers(bin, std::countr_zero(rest));
   if (!bin.state.depth_write) return false;
   bool is_changed = false;
   for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) {
@@ -243,9 +245,6 @@ static constexpr std::array<std::array<WindowBlock, Quad::kBlocks>, 16> kWindowB
   return blocks;
 }();
 
-/// What a block's colours are written as.
-enum class Writes { nothing, rgba8888, other };
-
 /// Colours of a block of lane i.
 template <Writes kColor>
 HALFPLANE_INLINE I16 small_colors(const Bin& bin, std::size_t i, const SmallBatch::Tile& tile,
@@ -268,6 +267,7 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   const LanePositions& position = bin.position;
   const Test test(bin);
   std::uint32_t* const colors = bin.memory.color.data();
+  std::uint16_t* const surfaces = bin.memory.surface.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
   const bool is_skipping = bin.skip.fragments_early_z;
   unsigned passed_pixels = 0;
@@ -288,6 +288,11 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
       if (count == 0 && is_skipping) continue;
       if (kDepth) test.store(at, test.choose(passed, depth, stored));
       if (kColor == Writes::nothing) continue;
+      if (kColor == Writes::surface) {
+        const I16 surface(bin.batch_surface + static_cast<std::int32_t>(i));
+        store_narrow(test.choose_color(passed, surface, load_narrow(surfaces + at)), surfaces + at);
+        continue;
+      }
       test.choose_color(passed, small_colors<kColor>(bin, i, tile, block, color_down), I16::load(colors + at))
           .store(colors + at);
     }
@@ -296,6 +301,7 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
 template <class Fragments, class Test, bool kDepth>
 HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   if (!bin.state.color_write) return draw_blocks<Fragments, Test, kDepth, Writes::nothing>(bin, covered);
+  if (bin.state.has_surface) return draw_blocks<Fragments, Test, kDepth, Writes::surface>(bin, covered);
   bin.config.color_format == ColorFormat::rgba8888
       ? draw_blocks<Fragments, Test, kDepth, Writes::rgba8888>(bin, covered)
       : draw_blocks<Fragments, Test, kDepth, Writes::other>(bin, covered);
@@ -306,149 +312,11 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
                         : draw_blocks<Fragments, Test, false>(bin, covered);
 }
 
-/// The samples of triangles that have few, round by round: of each triangle one more.
-struct SampleRounds {
-  static constexpr std::size_t kMost = 4;
-  std::size_t count = 0;
-  alignas(64) std::array<SmallBatch::Lane, kMost> to_x, to_y;   ///< FromOrigin of its tile's anchor
-  alignas(64) std::array<SmallBatch::Lane, kMost> column, row;  ///< from there, in both halves
-  alignas(64) std::array<SmallBatch::Lane, kMost> place, depth, color;
-
-  [[nodiscard]] HALFPLANE_INLINE FromOrigin to(std::size_t round) const {
-    return {I16::load(to_x[round].data()), I16::load(to_y[round].data())};
-  }
-};
-
-/// Where they are. As many rounds as one triangle has samples; who has none left has a place somewhere in the bin.
-HALFPLANE_INLINE void find_samples(const Bin& bin, const SmallCorners& corners, SampleRounds& rounds) {
-  const SmallBatch& batch = bin.small;
-  const I16 left = I16::load(batch.left.data()), top = I16::load(batch.top.data());
-  I16 rest = I16::load(batch.samples.data());
-  for (rounds.count = 0; is_any(rest != 0); ++rounds.count) {
-    const I16 sample = rest & -rest, is_last = shift_right_logical(sample, 3);  // 1 2 / 4 8
-    rest &= rest - 1;
-    const I16 x = left + ((shift_right_logical(sample, 1) & 1) | is_last),
-              y = top + ((shift_right_logical(sample, 2) & 1) | is_last);
-    const FromOrigin to = anchor_from_origin(corners, x, y, bin.widths.grid_bits, bin.first_x, bin.first_y);
-    const I16 column = (x & (kTileSize - 1)) - kTileSize / 2, row = (y & (kTileSize - 1)) - kTileSize / 2;
-    const std::size_t r = rounds.count;
-    to.x.store(rounds.to_x[r].data());
-    to.y.store(rounds.to_y[r].data());
-    pairs(column, column).store(rounds.column[r].data());
-    pairs(row, row).store(rounds.row[r].data());
-    place_of(x, y).store(rounds.place[r].data());
-  }
-}
-
-template <class Arithmetic>
-HALFPLANE_INLINE void sample_depths(const Bin& bin, const SmallPlanes<Arithmetic>& planes, SampleRounds& rounds) {
-  const LaneFormat& format = bin.depth_format;
-  const auto [x, y] = planes.depth_gradients(format);
-  const I16 step_x = local_step(x, format), step_y = local_step(y, format);
-  const I16 &low = planes.corners.z_low, &high = planes.corners.z_high;
-  for (std::size_t r = 0; r < rounds.count; ++r) {
-    const I16 anchor =
-        narrowed(plane_at(rounds.to(r), bin.widths.plane_fraction, planes.corners.origin.z, x, y, format), format);
-    const I16 column = I16::load(rounds.column[r].data()) >> 16, row = I16::load(rounds.row[r].data()) >> 16;
-    decode(column * step_x + row * step_y + anchor, format, low, high).store(rounds.depth[r].data());
-  }
-}
-
-/// A channel: half of a lane.
-template <class Step>
-struct SampleChannel {
-  I16 at_origin;
-  Step x, y;
-  I16 step_x, step_y;
-};
-
-/// Two channels of each round, centred, to `value`.
-template <class Arithmetic>
-HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>& planes, std::size_t pair,
-                                  const SampleRounds& rounds,
-                                  std::array<SmallBatch::Lane, SampleRounds::kMost>& value) {
-  const LaneFormat& format = bin.centred_color;
-  const PairCodes codes(planes.corners, pair, bin.state.is_flat);
-  const auto gradient = planes.color();
-  const auto channel = [&](std::size_t half) HALFPLANE_LAMBDA {
-    const auto of_half = [half](const I16& both) HALFPLANE_LAMBDA { return PairCodes::of_half(both, half); };
-    const auto [x, y] = channel_gradients(planes.corners, gradient, codes, half);
-    using Step = std::remove_const_t<decltype(x)>;
-    return SampleChannel<Step>{of_half(codes.at_origin), x, y, local_step(x, format), local_step(y, format)};
-  };
-  const auto first = channel(0), second = channel(1);
-  const auto step_x = as<S32>(pairs(first.step_x, second.step_x)), step_y = as<S32>(pairs(first.step_y, second.step_y));
-  for (std::size_t r = 0; r < rounds.count; ++r) {
-    const auto anchor = [&](const auto& half) HALFPLANE_LAMBDA {
-      return narrowed(plane_at(rounds.to(r), bin.widths.plane_fraction, half.at_origin, half.x, half.y, format),
-                      format);
-    };
-    const S32 at = S32::load(rounds.column[r].data()) * step_x + S32::load(rounds.row[r].data()) * step_y +
-                   as<S32>(pairs(anchor(first), anchor(second)));
-    (at >> format.down).store(value[r].data());
-  }
-}
-
-/// Depths and colours of the samples of a batch, from the planes at the anchors of their tiles.
-template <class Arithmetic>
-HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRounds& rounds) {
-  const SmallCorners corners = small_corners(bin.small, slice);
-  const SmallPlanes<Arithmetic> planes(corners, bin.widths);
-  find_samples(bin, corners, rounds);
-  sample_depths(bin, planes, rounds);
-  if (!bin.state.color_write) return;
-  alignas(64) std::array<SmallBatch::Lane, SampleRounds::kMost> red_green, blue_alpha;
-  sample_pair(bin, planes, 0, rounds, red_green);
-  sample_pair(bin, planes, 1, rounds, blue_alpha);
-  const ColorRange range(corners, bin.state.is_flat);
-  for (std::size_t r = 0; r < rounds.count; ++r) {
-    const B64 channels = turns_of_halves(saturated(S32::load(red_green[r].data()), S32::load(blue_alpha[r].data())));
-    const I16 rgba = ColorRange::clamped(channels, range.low, range.high);
-    (bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format))
-        .store(rounds.color[r].data());
-  }
-}
-
-/// Triangles whose few samples are known: their samples one by one, in their order. What is written, the state says.
-template <class Fragments, bool kDepth, bool kColor, class Depth>
-HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* depths) {
-  const SliceState state = bin.state;
-  std::uint32_t* const colors = bin.memory.color.data();
-  unsigned covered_pixels = 0, passed_pixels = 0;
-  for (std::uint32_t lanes = bin.small.live; lanes != 0; lanes &= lanes - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
-    const auto samples = static_cast<unsigned>(bin.small.samples[i]);
-    std::size_t round = 0;
-    for (unsigned rest = samples; rest != 0; rest &= rest - 1, ++round) {
-      const auto at = static_cast<std::uint32_t>(rounds.place[round][i]);
-      const std::int32_t depth = rounds.depth[round][i], stored = depths[at];
-      // Stored as it was where it fails: which do, nobody can foresee.
-      const bool passed = Fragments::passes_one(state, depth, stored);
-      passed_pixels += passed ? 1 : 0;
-      if (kDepth) depths[at] = static_cast<Depth>(passed ? depth : stored);
-      if (kColor) {
-        const std::uint32_t color = static_cast<std::uint32_t>(rounds.color[round][i]), old = colors[at];
-        colors[at] = passed ? color : old;
-      }
-    }
-    covered_pixels += static_cast<unsigned>(round);
-  }
-  bin.job.counters.samples_tested += 4 * static_cast<unsigned>(std::popcount(bin.small.live));
-  count_fragments(bin, covered_pixels, passed_pixels);
-}
-template <class Fragments, class Depth>
-HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* depths) {
-  const bool has_depth = bin.state.depth_write, has_color = bin.state.color_write;
-  if (has_depth && has_color) return draw_samples<Fragments, true, true>(bin, rounds, depths);
-  if (has_depth) return draw_samples<Fragments, true, false>(bin, rounds, depths);
-  has_color ? draw_samples<Fragments, false, true>(bin, rounds, depths)
-            : draw_samples<Fragments, false, false>(bin, rounds, depths);
-}
-
 /// Draws a batch whose records are loaded.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
   bin.line_tiles = 0;
+  if (bin.sees_surfaces()) add_surfaces(bin, slice);
   const std::uint64_t tiles = batch_tiles(bin);
   const bool is_short = bin.is_short;
   bool is_changed = false;
@@ -467,6 +335,7 @@ HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
     find_covered(bin, covered);
     bin.is_narrow ? draw_blocks<Fragments, NarrowTest>(bin, covered) : draw_blocks<Fragments, WideTest>(bin, covered);
   }
+  if (bin.sees_surfaces() && !bin.skip.attributes) shade_tiles(bin, tiles);
   bin.small.count = 0;
   // With less, a bound that is too high will do.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);

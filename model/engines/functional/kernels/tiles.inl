@@ -273,19 +273,6 @@ HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int
   return passed;
 }
 
-template <class Visit>
-HALFPLANE_INLINE void for_each_block(Visit&& visit) {
-  visit(std::integral_constant<std::size_t, 0>{});
-  visit(std::integral_constant<std::size_t, 1>{});
-  visit(std::integral_constant<std::size_t, 2>{});
-  visit(std::integral_constant<std::size_t, 3>{});
-}
-
-/// Those of a block.
-HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t block) {
-  return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
-}
-
 /// The same with depths in lanes of 32 bits, block by block.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int tile, std::int32_t anchor,
@@ -357,7 +344,11 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
   const std::uint64_t passed = constants.is_narrow ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
                                                    : test_wide<Fragments>(bin, t, tile, anchor, covered);
-  if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) color_tile(bin, t, tile, passed);
+  if (t.surface != 0) {
+    if (passed != 0) see(bin, t.surface, tile, passed);
+  } else if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) {
+    color_tile(bin, t, tile, passed);
+  }
   pixels.covered += static_cast<unsigned>(std::popcount(covered));
   pixels.passed += static_cast<unsigned>(std::popcount(passed));
 }
@@ -405,7 +396,13 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   const TileDepths depths(bin, t);
   if (bin.skip.tiles_hiz) take_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
   if (live == 0) return;
-  if (!is_flat && bin.state.color_write) set_up_colors(bin, corners, t);
+  t.surface = 0;
+  if (bin.sees_surfaces()) {
+    need_surfaces(bin, 1);
+    t.surface = add_surface(bin, slice, record);
+  } else if (!is_flat && bin.state.color_write) {
+    set_up_colors(bin, corners, t);
+  }
   std::uint64_t full = 0, taken = 0;
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
   if (full != 0 && bin.skip.attributes && (bin.state.depth_write || bin.state.color_write))

@@ -52,6 +52,20 @@ HALFPLANE_INLINE ColorRamp color_ramp(const Bin& bin, const ColorSteps& t, const
   return ramp;
 }
 
+/// The blocks of a tile, one after the other.
+template <class Visit>
+HALFPLANE_INLINE void for_each_block(Visit&& visit) {
+  visit(std::integral_constant<std::size_t, 0>{});
+  visit(std::integral_constant<std::size_t, 1>{});
+  visit(std::integral_constant<std::size_t, 2>{});
+  visit(std::integral_constant<std::size_t, 3>{});
+}
+
+/// Of the pixels of a tile, a bit each, those of a block.
+HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t block) {
+  return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
+}
+
 /// Depths in block 0...3 of a tile.
 HALFPLANE_INLINE I16 block_depths(const Bin& bin, const BinTriangle& t, const BlockRamp<I16>& ramp, std::size_t block) {
   return decode(ramp(block), bin.depth_format, t.z_low, t.z_high);

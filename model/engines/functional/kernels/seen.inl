@@ -1,0 +1,109 @@
+// Who is seen: colours of surfaces are put off. A pixel keeps the number of its triangle until somebody needs its colour,
+// mostly the end of the bin, and only those are computed that are still there. A triangle is set up when the first one is.
+//
+// A tile of which pixels wait has Bin::kSurfaces as the owner of its colours; one that such a triangle has taken waits as
+// any other that was taken. So what draws without surfaces asks nothing that it has not always asked.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// Whether pixels of a tile wait.
+HALFPLANE_INLINE bool is_waiting(const Bin& bin, int tile) {
+  const std::int32_t owner = bin.color_owner[tile];
+  return owner == Bin::kSurfaces || (owner >= 0 && bin.memory.planes[static_cast<std::size_t>(owner)].surface != 0);
+}
+
+/// Affine colours of a triangle of any slice.
+inline void set_up_surface_colors(Bin& bin, const SeenSurface& seen, BinTriangle& out) {
+  const SliceState state = bin.state;
+  bin.state = seen.slice->state;
+  (void)set_up(bin, *seen.slice, *seen.record, out);
+  bin.state = state;
+}
+
+/// Surface number `number`, which is set up when it is first asked for.
+inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
+  BinMemory& memory = bin.memory;
+  SeenSurface& seen = memory.seen[number];
+  if (seen.drawn >= 0) return memory.drawn[static_cast<std::size_t>(seen.drawn)];
+  seen.drawn = static_cast<std::int32_t>(memory.drawn.size());
+  const FrameContext& frame = bin.job.frame;
+  auto stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record);
+  const auto& texture = seen.slice->context->state.texture;
+  DrawnSurface& drawn = memory.drawn.emplace_back(DrawnSurface{
+      SurfaceConstants(*stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr), {}, nullptr});
+  if (!drawn.constants.are_in_lanes)
+    drawn.stage = std::move(stage);
+  else if (drawn.constants.has_color && !drawn.constants.is_color_over_w)
+    set_up_surface_colors(bin, seen, drawn.colors);
+  return drawn;
+}
+
+/// Colours of a tile of which pixels wait: then they are in memory.
+HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile) {
+  const std::int32_t owner = std::exchange(bin.color_owner[tile], std::int16_t{Bin::kInMemory});
+  if (owner >= 0) {
+    const std::int32_t number = bin.memory.planes[static_cast<std::size_t>(owner)].surface;
+    return shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, ~std::uint64_t{0});
+  }
+  const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
+  const U64 surface = U64::load(numbers);
+  for (std::uint64_t rest = ~bits_equal(surface, U64(0)); rest != 0;) {
+    const std::uint16_t number = numbers[std::countr_zero(rest)];
+    const std::uint64_t pixels = bits_equal(surface, U64(number));
+    shade(bin, drawn_surface(bin, number), tile, pixels);
+    rest &= ~pixels;
+  }
+}
+
+inline void shade_tiles(Bin& bin, std::uint64_t tiles) {
+  for (; tiles != 0; tiles &= tiles - 1)
+    if (is_waiting(bin, std::countr_zero(tiles))) shade_tile(bin, std::countr_zero(tiles));
+}
+
+/// Nobody waits any longer: numbers begin anew.
+HALFPLANE_NOINLINE void shade_all(Bin& bin) {
+  shade_tiles(bin, ~std::uint64_t{0});
+  bin.surface_count = 0;
+  bin.memory.drawn.clear();
+}
+
+/// Numbers for so many triangles, at most 16.
+HALFPLANE_INLINE void need_surfaces(Bin& bin, std::size_t count) {
+  if (bin.surface_count + count >= BinMemory::kSurfaces) shade_all(bin);
+}
+
+/// The number of one more.
+inline std::uint16_t add_surface(Bin& bin, const Slice& slice, const Record& record) {
+  const std::size_t number = ++bin.surface_count;
+  bin.memory.seen[number] = {&slice, &record, -1};
+  return static_cast<std::uint16_t>(number);
+}
+
+/// Those of a batch, one after the other.
+inline void add_surfaces(Bin& bin, const Slice& slice) {
+  need_surfaces(bin, bin.small.records.size());
+  bin.batch_surface = static_cast<std::int32_t>(bin.surface_count + 1);
+  for (int i = 0; i < bin.small.count; ++i) add_surface(bin, slice, *bin.small.records[static_cast<std::size_t>(i)]);
+}
+
+/// Makes the tile's pixels have numbers. Those of nobody have their colours in memory, and 0.
+inline void need_numbers(Bin& bin, int tile) {
+  const std::int32_t owner = bin.color_owner[tile];
+  if (owner == Bin::kSurfaces) return;
+  std::uint16_t number = 0;
+  if (owner >= 0) number = static_cast<std::uint16_t>(bin.memory.planes[static_cast<std::size_t>(owner)].surface);
+  if (number == 0) need_color(bin, tile);
+  U64(number).store(bin.memory.surface.data() + first_of(tile));
+  bin.color_owner[tile] = Bin::kSurfaces;
+  bin.in_memory &= ~(std::uint64_t{1} << tile);
+}
+
+/// Pixels of a tile show a surface.
+HALFPLANE_INLINE void see(Bin& bin, std::int32_t number, int tile, std::uint64_t pixels) {
+  if (!bin.skip.attributes) {
+    need_color(bin, tile);
+    return shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, pixels);
+  }
+  need_numbers(bin, tile);
+  std::uint16_t* const at = bin.memory.surface.data() + first_of(tile);
+  select(lanes_of(pixels), U64(static_cast<std::uint16_t>(number)), U64::load(at)).store(at);
+}

@@ -1,0 +1,162 @@
+// Surfaces in lanes: the colours of a tile's pixels that show a triangle with a texture or colours over w.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// divide_by_255() of channels in the halves of lanes: (t + (t >> 8)) >> 8 is 257 t >> 16.
+HALFPLANE_INLINE S32 divide_by_255(const S32& value) { return multiply_upper(value + 128, 257); }
+
+/// combined().
+HALFPLANE_INLINE ColorPairs combined(const ColorPairs& color, const ColorPairs& texel, const LaneTexture& texture) {
+  constexpr auto kAlpha = static_cast<std::int32_t>(0xffff0000U);
+  const auto with_alpha = [](const ColorPairs& rgb, const I16& green_alpha) HALFPLANE_LAMBDA {
+    return ColorPairs(rgb.red_blue, (rgb.green_alpha & 0xffff) | (green_alpha & kAlpha));
+  };
+  const auto by_channel = [&](auto&& of) HALFPLANE_LAMBDA {
+    return ColorPairs(as<I16>(of(as<S32>(color.red_blue), as<S32>(texel.red_blue))),
+                      as<I16>(of(as<S32>(color.green_alpha), as<S32>(texel.green_alpha))));
+  };
+  const auto product = [](const S32& a, const S32& b) HALFPLANE_LAMBDA { return divide_by_255(a * b); };
+  switch (texture.combine) {
+    case TextureCombine::modulate: return by_channel(product);
+    case TextureCombine::replace: return texture.has_alpha ? texel : with_alpha(texel, color.green_alpha);
+    case TextureCombine::decal: {
+      const auto part = as<S32>(shift_right_logical(texel.green_alpha, 16) | (texel.green_alpha & kAlpha));
+      const auto mixed = by_channel([&](const S32& a, const S32& b)
+                                        HALFPLANE_LAMBDA { return divide_by_255(a * (255 - part) + b * part); });
+      return with_alpha(mixed, color.green_alpha);
+    }
+    default: {
+      const auto sum = by_channel([](const S32& a, const S32& b) HALFPLANE_LAMBDA { return min(a + b, S32(255)); });
+      return with_alpha(sum, by_channel(product).green_alpha);
+    }
+  }
+}
+
+/// How much of sample() there is to do.
+enum class Sampling { none, nearest, linear, any };
+
+HALFPLANE_INLINE Sampling sampling_of(const SurfaceConstants& of) {
+  if (!of.has_texture) return Sampling::none;
+  if (of.texture.min == TextureMin::nearest && of.texture.mag == TextureMag::nearest) return Sampling::nearest;
+  if (of.texture.min == TextureMin::linear && of.texture.mag == TextureMag::linear) return Sampling::linear;
+  return Sampling::any;
+}
+
+/// The surface of a tile.
+template <Sampling kSampling>
+struct SurfaceRamps {
+  QuotientRamps<2> coordinate;
+  QuotientRamps<4> color_over_w;
+  ColorRamp color;
+  LodRamps lod;
+
+  HALFPLANE_INLINE SurfaceRamps(const Bin& bin, const DrawnSurface& surface, int tile_x, int tile_y) {
+    const SurfaceConstants& of = surface.constants;
+    if constexpr (kSampling != Sampling::none) coordinate.set(bin, of.coordinate, tile_x, tile_y);
+    if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
+    if (!of.has_color) return;
+    if (of.is_color_over_w) {
+      color_over_w.set(bin, of.color, tile_x, tile_y);
+      return;
+    }
+    const ColorRamp ramp = color_ramp(bin, surface.colors.color, color_anchor(bin, surface.colors, tile_x, tile_y));
+    for (std::size_t p = 0; p < ramp.size(); ++p) color[p] = ramp[p];
+  }
+
+  /// The primitive's own colours in a block.
+  HALFPLANE_INLINE ColorPairs own(const Bin& bin, const DrawnSurface& surface, std::size_t block) const {
+    const SurfaceConstants& of = surface.constants;
+    if (!of.is_color_over_w) {
+      const ColorSteps& steps = surface.colors.color;
+      const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
+        return color_codes(color[p](block), I16(steps.low[p]), I16(steps.high[p]), bin.color_format);
+      };
+      return {pair(0), pair(1)};
+    }
+    const ReciprocalsOfQ q(color_over_w.q(block), of.division);
+    const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA {
+      const I16 code = over_q(color_over_w.p[c](block), q, of.color.attribute[c], of.of_color);
+      const auto low = static_cast<std::int32_t>(of.color_low[c]), high = static_cast<std::int32_t>(of.color_high[c]);
+      return min(max(code, I16(low)), I16(high));
+    };
+    return {channel(0) | (channel(2) << 16), channel(1) | (channel(3) << 16)};
+  }
+
+  /// Where a block's pixels are on the texture. Returns lambda, where it is asked for.
+  HALFPLANE_INLINE I16 find_coordinates(const SurfaceConstants& of, std::size_t block, CoordinateLanes& at) const {
+    const LaneTexture& texture = of.texture;
+    const ReciprocalsOfQ q(coordinate.q(block), of.division);
+    const auto along = [&](std::size_t axis) HALFPLANE_LAMBDA {
+      const I16 u = over_q(coordinate.p[axis](block), q, of.coordinate.attribute[axis], of.of_coordinate);
+      const I16 sum = (texture.up == 0 ? u : u << texture.up) + texture.reference[axis];
+      // Far beyond the image one texel is like the next, and so 32 bits hold twice that.
+      constexpr std::int32_t kFar = 1 << 22;
+      return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
+    };
+    at.u = along(0);
+    at.v = along(1);
+    if constexpr (kSampling == Sampling::any) return lod(texture.lod, block, q.bits);
+    return I16(0);
+  }
+};
+
+template <Sampling kSampling>
+HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
+  if constexpr (kSampling == Sampling::nearest) return ColorPairs(filter_nearest(texture, at, BaseLevel(texture)));
+  if constexpr (kSampling == Sampling::linear) return filter_linear(texture, at, BaseLevel(texture));
+  return sample(texture, at, lod);
+}
+
+/// Colours of a tile's `pixels`, to memory. One step after the other for all four blocks: a block's steps wait for each
+/// other, and would keep the next block's from being seen in time.
+template <Sampling kSampling>
+HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
+  constexpr bool kHasTexture = kSampling != Sampling::none;
+  const SurfaceConstants& of = surface.constants;
+  const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles);
+  CoordinateLanes at[4];
+  I16 lod[4], red_blue[4], green_alpha[4];
+  if constexpr (kHasTexture) {
+    for_each_block([&](auto block) HALFPLANE_LAMBDA { lod[block] = ramps.find_coordinates(of, block, at[block]); });
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      const ColorPairs texels = texels_at<kSampling>(of.texture, at[block], lod[block]);
+      red_blue[block] = texels.red_blue;
+      green_alpha[block] = texels.green_alpha;
+    });
+  }
+  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
+  const ColorFormat format = bin.config.color_format;
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) return;
+    const auto pairs = [&]() HALFPLANE_LAMBDA {
+      if constexpr (!kHasTexture) return ramps.own(bin, surface, block);
+      const ColorPairs texels(red_blue[block], green_alpha[block]);
+      return of.has_color ? combined(ramps.own(bin, surface, block), texels, of.texture) : texels;
+    }();
+    const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
+    std::uint32_t* const to = colors + block * kBlockPixels;
+    (bits == 0xffff ? color : select_by_bits(bits, color, I16::load(to), bin.position.to_sign)).store(to);
+  });
+}
+
+/// The same pixel by pixel, through the stages.
+HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int tile, std::uint64_t pixels) {
+  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
+  const int left = bin.first_x + tile % kBinTiles * kTileSize, top = bin.first_y + tile / kBinTiles * kTileSize;
+  for (; pixels != 0; pixels &= pixels - 1) {
+    const auto at = static_cast<std::size_t>(std::countr_zero(pixels));
+    const int block = static_cast<int>(at) / kBlockPixels, pixel = static_cast<int>(at) % kBlockPixels;
+    const int x = block % 2 * kBlockSize + pixel % kBlockSize, y = block / 2 * kBlockSize + pixel / kBlockSize;
+    colors[at] = pack_color(bin.config.color_format, surface.color(left + x, top + y));
+  }
+}
+
+HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
+  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels);
+  switch (sampling_of(surface.constants)) {
+    case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels);
+    case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels);
+    case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels);
+    case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels);
+  }
+}

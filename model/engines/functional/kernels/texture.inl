@@ -1,0 +1,265 @@
+// Texels in lanes: texture_filter.hpp and texture_sample.hpp of textures whose sides are powers of two.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// 2^-8 texels of level 0.
+struct CoordinateLanes {
+  I16 u, v;
+};
+
+/// Level 0 in all lanes.
+struct BaseLevel {
+  const LaneTexture& texture;
+
+  HALFPLANE_INLINE explicit BaseLevel(const LaneTexture& texture_) : texture(texture_) {}
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE static const I16& cut(const I16& coordinate) {
+    return coordinate;
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE static const I16& rounded(const I16& coordinate) {
+    return coordinate;
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE I16 last() const {
+    return I16(texture.last[kAxis]);
+  }
+  /// From the bits of a row's number that count blocks to a place.
+  HALFPLANE_INLINE int pitch() const { return texture.pitch; }
+  HALFPLANE_INLINE static I16 first() { return I16(0); }
+};
+
+/// A level for each lane.
+struct LaneLevel {
+  I16 down[2], last_texel[2], to_row, first_texel;
+
+  HALFPLANE_INLINE LaneLevel(const LaneTexture& texture, const I16& level) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      down[axis] = min(level, I16(texture.bits[axis]));
+      last_texel[axis] = I16(texture.last[axis]) >> down[axis];
+    }
+    to_row = max(texture.bits[0] - level, I16(2));
+    first_texel = gather(texture.first.data(), level);
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE I16 cut(const I16& coordinate) const {
+    return coordinate >> down[kAxis];
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE I16 rounded(const I16& coordinate) const {
+    return (((coordinate << 1) >> down[kAxis]) + 1) >> 1;
+  }
+  template <std::size_t kAxis>
+  HALFPLANE_INLINE const I16& last() const {
+    return last_texel[kAxis];
+  }
+  HALFPLANE_INLINE const I16& pitch() const { return to_row; }
+  HALFPLANE_INLINE const I16& first() const { return first_texel; }
+};
+
+/// wrapped_texel(). `last`: the level's, a power of two less 1.
+HALFPLANE_INLINE I16 wrapped_texel(const I16& i, TextureWrap wrap, const I16& last) {
+  if (wrap == TextureWrap::repeat) return i & last;
+  if (wrap == TextureWrap::clamp) return min(max(i, I16(0)), last);
+  const I16 period = (last << 1) | 1, rest = i & period;
+  return rest ^ (period & (rest > last));
+}
+
+/// What a texel's column and row add to its place in TexelBlocks.
+HALFPLANE_INLINE I16 column_place(const I16& x) { return (x & 3) + ((x & ~3) << 2); }
+template <class Pitch>
+HALFPLANE_INLINE I16 row_place(const I16& y, const Pitch& pitch) {
+  return ((y & 3) << 2) + ((y & ~3) << pitch);
+}
+
+/// Colours, 8 bits a channel in the halves of lanes.
+struct ColorPairs {
+  I16 red_blue, green_alpha;
+
+  HALFPLANE_INLINE ColorPairs(const I16& red_blue_, const I16& green_alpha_)
+      : red_blue(red_blue_), green_alpha(green_alpha_) {}
+  /// R lowest.
+  HALFPLANE_INLINE explicit ColorPairs(const I16& rgba)
+      : ColorPairs(rgba & 0xff00ff, as<I16>(shift_right_logical(as<S32>(rgba), 8))) {}
+  HALFPLANE_INLINE ColorPairs(const ColorPairs& from) : ColorPairs(from.red_blue, from.green_alpha) {}
+  ColorPairs& operator=(const ColorPairs&) = delete;
+};
+
+/// R lowest.
+template <class Level>
+HALFPLANE_INLINE I16 filter_nearest(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
+  const I16 x = wrapped_texel(level.template cut<0>(at.u) >> kTexelFraction, texture.wrap[0], level.template last<0>()),
+            y = wrapped_texel(level.template cut<1>(at.v) >> kTexelFraction, texture.wrap[1], level.template last<1>());
+  return gather(texture.texels, level.first() + column_place(x) + row_place(y, level.pitch()));
+}
+
+/// What a linear filter looks at: left and right texels of two rows, R lowest, and how much there is of the second column
+/// and row, in 256ths.
+struct Footprints {
+  I16 upper_left, upper_right, lower_left, lower_right, across, down;
+};
+
+/// Texel by texel.
+template <class Level>
+HALFPLANE_INLINE Footprints gathered_footprints(const LaneTexture& texture, const CoordinateLanes& from_middle,
+                                                const Level& level) {
+  const I16 x = from_middle.u >> kTexelFraction, y = from_middle.v >> kTexelFraction;
+  const auto column = [&](const I16& i) HALFPLANE_LAMBDA {
+    return level.first() + column_place(wrapped_texel(i, texture.wrap[0], level.template last<0>()));
+  };
+  const auto row = [&](const I16& i) HALFPLANE_LAMBDA {
+    return row_place(wrapped_texel(i, texture.wrap[1], level.template last<1>()), level.pitch());
+  };
+  const auto fetch = [&texture](const I16& place) HALFPLANE_LAMBDA { return gather(texture.texels, place); };
+  const I16 left = column(x), right = column(x + 1), upper = row(y), lower = row(y + 1);
+  return {fetch(left + upper),  fetch(right + upper), fetch(left + lower),
+          fetch(right + lower), from_middle.u & 255,  from_middle.v & 255};
+}
+
+/// All four at once. Before the first of a clamped image there is it alone.
+template <class Level>
+HALFPLANE_INLINE Footprints footprints_of_quads(const LaneTexture& texture, const CoordinateLanes& from_middle,
+                                                const Level& level) {
+  const auto part = [](const I16& coordinate, TextureWrap wrap) HALFPLANE_LAMBDA {
+    const I16 bits = coordinate & 255;
+    return wrap == TextureWrap::clamp ? bits & ~(coordinate >> 31) : bits;
+  };
+  const I16 x = wrapped_texel(from_middle.u >> kTexelFraction, texture.wrap[0], level.template last<0>()),
+            y = wrapped_texel(from_middle.v >> kTexelFraction, texture.wrap[1], level.template last<1>());
+  alignas(64) std::array<std::int32_t, 16> place;
+  constexpr int kQuadShift = 4;  // bytes
+  ((level.first() + column_place(x) + row_place(y, level.pitch())) << kQuadShift).store(place.data());
+  const auto* const quads = reinterpret_cast<const char*>(texture.quads);
+  const Columns texels =
+      turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + place[static_cast<std::size_t>(i)]; });
+  return {texels.first,
+          texels.second,
+          texels.third,
+          texels.fourth,
+          part(from_middle.u, texture.wrap[0]),
+          part(from_middle.v, texture.wrap[1])};
+}
+
+/// Sums of R, G, B and A.
+struct ChannelSums {
+  I16 of[4];
+};
+
+/// low * (256 - part) + high * part + 2^(drop - 1) of numbers of 16 bits, lane by lane. `lanes`: both of them; `weights`:
+/// likewise; `drop`: bits that are to be rounded.
+HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, int drop) {
+  constexpr auto kCentre = static_cast<std::int32_t>(0x80008000U);  // as with a sign
+  return multiply_add_pairs(lanes ^ kCentre, weights) + ((1 << 23) + (1 << (drop - 1)));
+}
+HALFPLANE_INLINE I16 weights_of(const I16& part) { return (256 - part) | (part << 16); }
+
+/// linear_sums(), to be rounded by `drop` bits.
+template <class Level>
+HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const CoordinateLanes& at, const Level& level,
+                                         int drop) {
+  const CoordinateLanes from_middle{level.template rounded<0>(at.u) - 128, level.template rounded<1>(at.v) - 128};
+  const Footprints texels = texture.quads != nullptr ? footprints_of_quads(texture, from_middle, level)
+                                                     : gathered_footprints(texture, from_middle, level);
+  const auto across = as<S32>(doubled(texels.across));
+  // Two channels of a row: at most 255 * 256.
+  const auto mixed = [&across](const S32& left, const S32& right)
+                         HALFPLANE_LAMBDA { return as<I16>((left << 8) + (right - left) * across); };
+  const auto row = [&](const I16& left, const I16& right) HALFPLANE_LAMBDA {
+    const ColorPairs first(left), second(right);
+    return ColorPairs(mixed(as<S32>(first.red_blue), as<S32>(second.red_blue)),
+                      mixed(as<S32>(first.green_alpha), as<S32>(second.green_alpha)));
+  };
+  const I16 down = weights_of(texels.down);
+  const ColorPairs above = row(texels.upper_left, texels.upper_right),
+                   below = row(texels.lower_left, texels.lower_right);
+  const auto first = [&](const I16& upper, const I16& lower)
+                         HALFPLANE_LAMBDA { return weighted(pairs(upper, lower), down, drop); };
+  const auto second = [&](const I16& upper, const I16& lower) HALFPLANE_LAMBDA {
+    return weighted(shift_right_logical(upper, 16) | (lower & static_cast<std::int32_t>(0xffff0000U)), down, drop);
+  };
+  return {{first(above.red_blue, below.red_blue), first(above.green_alpha, below.green_alpha),
+           second(above.red_blue, below.red_blue), second(above.green_alpha, below.green_alpha)}};
+}
+
+/// Of sums with 16 fraction bits the integers.
+HALFPLANE_INLINE ColorPairs integers_of(const ChannelSums& sum) {
+  return {(sum.of[0] >> 16) | (sum.of[2] & 0xff0000), (sum.of[1] >> 16) | (sum.of[3] & 0xff0000)};
+}
+
+template <class Level>
+HALFPLANE_INLINE ColorPairs filter_linear(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
+  return integers_of(linear_sums(texture, at, level, 16));
+}
+
+/// blend_levels() of channels with 8 fraction bits.
+HALFPLANE_INLINE ColorPairs blend_levels(const ChannelSums& lower, const ChannelSums& upper, const I16& part) {
+  const I16 weights = weights_of(part);
+  ChannelSums sum;
+  for (std::size_t c = 0; c < 4; ++c) sum.of[c] = weighted(lower.of[c] | (upper.of[c] << 16), weights, 16);
+  return integers_of(sum);
+}
+
+/// levels_around().
+struct LevelPairLanes {
+  I16 lower, upper, part;
+  HALFPLANE_INLINE LevelPairLanes(const I16& lod, int last) {
+    const I16 level = lod >> kLodFraction;
+    lower = min(max(level, I16(0)), I16(last));
+    upper = min(max(level + 1, I16(0)), I16(last));
+    part = lod & 255;
+  }
+};
+
+HALFPLANE_INLINE ColorPairs filter_trilinear(const LaneTexture& texture, const CoordinateLanes& at,
+                                             const LevelPairLanes& levels) {
+  const auto sums = [&](const I16& level) HALFPLANE_LAMBDA {
+    ChannelSums sum = linear_sums(texture, at, LaneLevel(texture, level), 8);
+    for (I16& channel : sum.of) channel = channel >> 8;
+    return sum;
+  };
+  return blend_levels(sums(levels.lower), sums(levels.upper), levels.part);
+}
+
+HALFPLANE_INLINE ColorPairs filter_between_nearest(const LaneTexture& texture, const CoordinateLanes& at,
+                                                   const LevelPairLanes& levels) {
+  const auto channels = [&](const I16& level) HALFPLANE_LAMBDA {
+    const I16 texel = filter_nearest(texture, at, LaneLevel(texture, level));
+    return ChannelSums{{(texel & 255) << 8, texel & 0xff00, shift_right_logical(texel, 8) & 0xff00,
+                        shift_right_logical(texel, 16) & 0xff00}};
+  };
+  return blend_levels(channels(levels.lower), channels(levels.upper), levels.part);
+}
+
+HALFPLANE_INLINE ColorPairs filtered_base(const LaneTexture& texture, const CoordinateLanes& at, bool is_linear) {
+  const BaseLevel level(texture);
+  return is_linear ? filter_linear(texture, at, level) : ColorPairs(filter_nearest(texture, at, level));
+}
+
+/// What texture_min says.
+HALFPLANE_INLINE ColorPairs minified(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
+  const auto nearest_level = [&]() HALFPLANE_LAMBDA {
+    const I16 level = min(max((lod + 127) >> kLodFraction, I16(0)), I16(texture.last_level));
+    return LaneLevel(texture, level);
+  };
+  switch (texture.min) {
+    case TextureMin::nearest_mipmap_nearest: return ColorPairs(filter_nearest(texture, at, nearest_level()));
+    case TextureMin::linear_mipmap_nearest: return filter_linear(texture, at, nearest_level());
+    case TextureMin::nearest_mipmap_linear:
+      return filter_between_nearest(texture, at, LevelPairLanes(lod, texture.last_level));
+    case TextureMin::linear_mipmap_linear:
+      return filter_trilinear(texture, at, LevelPairLanes(lod, texture.last_level));
+    default: return filtered_base(texture, at, texture.min == TextureMin::linear);
+  }
+}
+
+/// sample(). `lod`: without bias and bounds.
+HALFPLANE_NOINLINE ColorPairs sample(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
+  const I16 level = min(max(lod + texture.bias, I16(texture.least)), I16(texture.largest));
+  const I16 is_magnified = level <= texture.magnified;
+  const std::uint32_t magnified = bits_of(is_magnified);
+  if (magnified == 0) return minified(texture, at, level);
+  const ColorPairs base = filtered_base(texture, at, texture.mag == TextureMag::linear);
+  if (magnified == 0xffff) return base;
+  const ColorPairs small = minified(texture, at, level);
+  return {select(is_magnified, base.red_blue, small.red_blue),
+          select(is_magnified, base.green_alpha, small.green_alpha)};
+}

@@ -1,0 +1,180 @@
+#include "surface_constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace halfplane::functional {
+namespace {
+
+/// What row_of() made a row of.
+SnappedVertex vertex_of(const VertexRow& row, std::uint32_t rgba, const Widths& widths) {
+  SnappedVertex v;
+  v.x = row.x;
+  v.y = row.y;
+  v.depth() = row.z;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c)
+    v.code[kColorPlane + c] = rgba >> 8 * c & 255;
+  return v;
+}
+
+Triangle triangle_of(const Slice& slice, const Record& record, const Widths& widths) {
+  Triangle triangle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexRow& row = slice.vertices[record.v[i]];
+    const std::uint32_t rgba = slice.vertices[record.v[slice.state.is_flat ? 0 : i]].rgba;
+    triangle.v[i] = vertex_of(row, rgba, widths);
+    triangle.surface[i] = slice.surface[record.v[i]];
+  }
+  return triangle;
+}
+
+const Texture* texture_of(const DrawContext& context) {
+  return context.state.texture ? &context.scene.textures[*context.state.texture] : nullptr;
+}
+
+/// `up`: bits below its values in a lane.
+LanePlane lanes_of(const Plane& plane, const TriangleSetup& setup, int guard_bits, int up, const Widths& widths) {
+  LanePlane lanes;
+  lanes.up = up;
+  lanes.drop = widths.plane_fraction - guard_bits;
+  const int to_tile = widths.tile_shift + widths.grid_bits;
+  lanes.tile_x = static_cast<std::uint64_t>(plane.step_x) << to_tile;
+  lanes.tile_y = static_cast<std::uint64_t>(plane.step_y) << to_tile;
+  const auto tiles = [&widths](int pixels) {
+    return static_cast<std::uint64_t>(std::int64_t{pixels >> widths.tile_shift});
+  };
+  lanes.at_zero = static_cast<std::uint64_t>(plane.value) + (std::uint64_t{1} << (lanes.drop - 1)) -
+                  lanes.tile_x * tiles(setup.left) - lanes.tile_y * tiles(setup.top);
+  const auto local = narrow_plane<std::uint64_t>(0, plane, guard_bits, widths);
+  const auto in_lane = [up](std::uint64_t step) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(step) << up);
+  };
+  lanes.step_x = in_lane(local.step_x);
+  lanes.step_y = in_lane(local.step_y);
+  return lanes;
+}
+
+bool is_nearest(TextureMin min) {
+  return min == TextureMin::nearest || min == TextureMin::nearest_mipmap_nearest ||
+         min == TextureMin::nearest_mipmap_linear;
+}
+
+}  // namespace
+
+StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record)
+    : triangle(triangle_of(slice, record, frame.widths)),
+      setup(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect)),
+      surface(triangle, setup, slice.context->state, texture_of(*slice.context), frame.config, frame.widths) {}
+
+LaneDivision::LaneDivision(const PerspectiveFormat& format)
+    : up(32 - q_local_bits(format)),
+      mantissa_mask((1 << kFloatFraction) - (1 << (kFloatFraction + 1 - format.mantissa_bits))),
+      middle(kFloatBias << kFloatFraction | 1 << (kFloatFraction - format.mantissa_bits)),
+      to_divisor(kFloatFraction - format.mantissa_bits),
+      power(std::ldexp(1.0F, format.mantissa_bits)),
+      whole(format.mantissa_bits < 16 ? 1 << (2 * format.mantissa_bits) : 0) {}
+
+LaneOverW::LaneOverW(const OverWFormat& attribute, const PerspectiveFormat& format)
+    : up(32 - p_local_bits(attribute, format)),
+      lowest(-(1 << attribute.narrow_bits)),
+      highest((1 << attribute.narrow_bits) - 1),
+      split(std::max(format.mantissa_bits + attribute.narrow_bits - 30, 0)),
+      lower_bits((1 << split) - 1) {}
+
+SurfaceConstants::SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels)
+    : division(from.surface.format()),
+      of_coordinate(from.surface.format().coordinate, from.surface.format()),
+      of_color(from.surface.format().color, from.surface.format()) {
+  is_color_over_w = from.surface.color_divisor().has_value();
+  has_texture = texels != nullptr;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const bool is_stored = c < static_cast<std::size_t>(frame.widths.color_planes);
+    color_low[c] = is_stored ? from.setup.range.low[kColorPlane + c] : 255;
+    color_high[c] = is_stored ? from.setup.range.high[kColorPlane + c] : 255;
+  }
+  if (has_texture) set_texture(from, frame.widths, *texels);
+  has_color = !has_texture || !sees_texture_alone(from);
+  if (has_color && is_color_over_w) set_color(from, frame.widths);
+}
+
+/// Whether the primitive's colour makes no difference.
+bool SurfaceConstants::sees_texture_alone(const StageSurface& from) const {
+  const bool is_white = std::ranges::all_of(color_low, [](std::uint32_t code) { return code == 255; });
+  switch (from.surface.combine()) {
+    case TextureCombine::modulate: return is_white;
+    case TextureCombine::replace: return is_white || texture.has_alpha;
+    default: return false;
+  }
+}
+
+/// Whether every Pn lies in its range where it is covered. x leaves a part of 2^-10 beside the largest |u'|. Of it
+/// rounding takes 2^-13 (Pn, of 12 bits and more), the reciprocal of the area 2 * 2^-14, and the planes of P and Q, off by
+/// less than 0.82 and 0.32 codes, 1.14 of 2^11 codes of Q; those of P count as many times as N is larger than N_P.
+bool SurfaceConstants::is_never_held(const OverWFormat& format, const PerspectiveFormat& all, const QCodes& q) {
+  constexpr int kNarrowBits = 12, kReciprocalBits = 14, kCodes = 11;
+  return format.narrow_bits >= kNarrowBits && all.reciprocal_bits >= kReciprocalBits &&
+         *std::ranges::min_element(q) >> (kCodes + all.q_bits - format.bits) != 0;
+}
+
+LaneAttribute SurfaceConstants::attribute_of(const Surface::Attribute& from, const OverWFormat& format,
+                                             const LaneOverW& lanes, const Surface::Divisor& divisor,
+                                             const StageSurface& surface, const Widths& widths) {
+  const PerspectiveFormat& all = surface.surface.format();
+  LaneAttribute attribute;
+  attribute.p = lanes_of(from.plane, surface.setup, all.guard_bits, lanes.up, widths);
+  const int narrow = 1 + from.over_w.reach - from.over_w.exponent - format.narrow_bits;  // from e to what P drops
+  attribute.narrow = narrow - 1 - kFloatBias + lanes.up;
+  attribute.drop = all.mantissa_bits + format.narrow_bits - 1 - from.over_w.reach - format.fraction_bits - lanes.split;
+  // At a covered pixel Q is the smallest vertex's or more, but for a third of a code.
+  const int smallest = floor_log2(*std::ranges::min_element(divisor.q)) + all.guard_bits - 1;
+  attribute.may_gain = smallest + narrow < 1;
+  const int largest = floor_log2(*std::ranges::max_element(divisor.q)) + all.guard_bits + 1;
+  attribute.is_tame =
+      !attribute.may_gain && largest + narrow - 1 + lanes.up <= 31 && is_never_held(format, all, divisor.q);
+  are_in_lanes &= attribute.drop >= 1;
+  attribute.half = 1 << std::max(attribute.drop - 1, 0);
+  return attribute;
+}
+
+void SurfaceConstants::set_color(const StageSurface& from, const Widths& widths) {
+  const Surface& surface = from.surface;
+  const Surface::Divisor& divisor = *surface.color_divisor();
+  color.q = lanes_of(divisor.plane, from.setup, surface.format().guard_bits, division.up, widths);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c)
+    color.attribute[c] = attribute_of(surface.channel(c), surface.format().color, of_color, divisor, from, widths);
+}
+
+void SurfaceConstants::set_texture(const StageSurface& from, const Widths& widths, const TexelBlocks& texels) {
+  const Surface& surface = from.surface;
+  const PerspectiveFormat& format = surface.format();
+  const Surface::Divisor& divisor = *surface.texture_divisor();
+  const Sampler& sampler = surface.sampler();
+  coordinate.q = lanes_of(divisor.plane, from.setup, format.guard_bits, division.up, widths);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    coordinate.attribute[axis] =
+        attribute_of(surface.coordinate(axis), format.coordinate, of_coordinate, divisor, from, widths);
+    are_in_lanes &= sampler.axes[axis].is_power_of_two();
+    texture.bits[axis] = floor_log2(static_cast<unsigned>(sampler.axes[axis].size));
+    texture.last[axis] = sampler.axes[axis].size - 1;
+    texture.wrap[axis] = sampler.axes[axis].wrap;
+    texture.reference[axis] = surface.reference(axis) * (1 << kTexelFraction);
+  }
+  texture.texels = texels.blocks.data();
+  texture.quads = texels.quads(texture.wrap);
+  texture.pitch = std::max(texture.bits[0], TexelBlocks::kShift);
+  texture.first = texels.first;
+  texture.up = kTexelFraction - format.coordinate.fraction_bits;
+  texture.min = sampler.min;
+  texture.mag = sampler.mag;
+  texture.last_level = sampler.texture->last_level();
+  texture.lod = surface.lod();
+  texture.bias = sampler.bias;
+  texture.least = sampler.least;
+  texture.largest = sampler.largest;
+  const bool has_levels = sampler.min != TextureMin::nearest && sampler.min != TextureMin::linear;
+  texture.magnified = sampler.mag == TextureMag::linear && is_nearest(sampler.min) && has_levels ? 128 : 0;
+  texture.combine = surface.combine();
+  texture.has_alpha = has_alpha(sampler.texture->format);
+}
+
+}  // namespace halfplane::functional

@@ -1,0 +1,128 @@
+// What is constant over the surface of one triangle, as lanes take it: the planes of surface.hpp, whose values wrap in 32
+// bits, and how a texture is looked at. Made for those triangles alone that a bin has found to be seen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "../../stages/surface.hpp"
+#include "frame.hpp"
+#include "texel_blocks.hpp"
+
+namespace halfplane::functional {
+
+/// Of binary32.
+inline constexpr int kFloatFraction = 23, kFloatBias = 127;
+
+/// The surface of a record, through the stages.
+struct StageSurface {
+  StageSurface(const FrameContext& frame, const Slice& slice, const Record& record);
+  StageSurface(const StageSurface&) = delete;
+  StageSurface& operator=(const StageSurface&) = delete;
+
+  Triangle triangle;
+  TriangleSetup setup;
+  Surface surface;  ///< of that setup
+};
+
+/// A plane over w, 2^-l codes, in the upper bits of a lane: it wraps by itself.
+struct LanePlane {
+  std::uint64_t at_zero = 0;             ///< at the anchor of the target's first tile, 2^-F codes; with what rounds it
+  std::uint64_t tile_x = 0, tile_y = 0;  ///< from tile to tile
+  std::int32_t step_x = 0, step_y = 0;   ///< of a pixel
+  int drop = 0;                          ///< F - l
+  int up = 0;                            ///< bits below it in a lane
+
+  /// At the anchor of a tile of the target.
+  [[nodiscard]] std::int32_t anchor(int x, int y) const {
+    const std::uint64_t value = at_zero + tile_x * static_cast<std::uint64_t>(std::int64_t{x}) +
+                                tile_y * static_cast<std::uint64_t>(std::int64_t{y});
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(value >> drop) << up);
+  }
+};
+
+/// How Q is divided by.
+struct LaneDivision {
+  int up;                      ///< bits below Q in a lane
+  std::int32_t mantissa_mask;  ///< in binary32: the k highest bits of a number but for the first
+  std::int32_t middle;         ///< the bit behind them, and the exponent of 1
+  int to_divisor;              ///< from d 2^-k in binary32 to d
+  float power;                 ///< 2^k
+  std::int32_t whole;          ///< 2^(2k) modulo 2^32
+
+  explicit LaneDivision(const PerspectiveFormat& format);
+};
+
+/// How P of one kind of attribute is. A product Pn r is computed in two parts, of the upper and the lower bits of r.
+struct LaneOverW {
+  int up;                        ///< bits below P in a lane
+  std::int32_t lowest, highest;  ///< Pn
+  int split;                     ///< lower bits of r
+  std::int32_t lower_bits;       ///< those
+
+  LaneOverW(const OverWFormat& attribute, const PerspectiveFormat& format);
+};
+
+/// An attribute: P, and how far it is shifted.
+struct LaneAttribute {
+  LanePlane p;
+  int narrow = 0;         ///< from Q's exponent in binary32 to what a lane of P drops, but for a bit that rounds
+  bool may_gain = false;  ///< whether P itself may drop less than a bit, and gain some
+  bool is_tame = false;   ///< where it is covered P drops 1 to 31 bits of a lane, and no Pn is held
+  int drop = 1;           ///< what the upper part of Pn r drops, at least 1
+  std::int32_t half = 1;  ///< of that
+};
+
+/// Attributes over one Q.
+template <std::size_t N>
+struct LaneQuotients {
+  LanePlane q;
+  std::array<LaneAttribute, N> attribute{};
+};
+
+/// How a texture is looked at, its sides powers of two.
+struct LaneTexture {
+  const void* texels = nullptr;              ///< TexelBlocks
+  const TexelBlocks::Quad* quads = nullptr;  ///< if there are
+  std::array<std::int32_t, TexelBlocks::kLevels> first{};
+  std::array<int, 2> bits{};                ///< log2 of its sides
+  std::array<std::int32_t, 2> last{};       ///< texel along them
+  int pitch = 0;                            ///< from a row's number, but for the two lowest bits, to its place
+  std::array<TextureWrap, 2> wrap{};        ///
+  std::array<std::int32_t, 2> reference{};  ///< u_ref, 2^-8 texels
+  int up = 0;                               ///< from a coordinate to 2^-8 texels
+  TextureMin min = TextureMin::nearest;
+  TextureMag mag = TextureMag::nearest;
+  int last_level = 0;
+  LodSetup lod;
+  Lod bias = 0, least = 0, largest = 0;
+  Lod magnified = 0;  ///< up to here mag counts
+  TextureCombine combine = TextureCombine::modulate;
+  bool has_alpha = false;
+};
+
+struct SurfaceConstants {
+  SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels);
+
+  bool are_in_lanes = true;  ///< what follows is all that there is to know
+  bool has_texture = false;  ///< else the colour is all
+  bool has_color = true;     ///< else the texture's colour is all
+  bool is_color_over_w = false;
+  LaneDivision division;
+  LaneOverW of_coordinate, of_color;
+  LaneQuotients<2> coordinate;
+  LaneQuotients<4> color;
+  std::array<std::uint32_t, 4> color_low{}, color_high{};  ///< of the vertices
+  LaneTexture texture;
+
+ private:
+  void set_color(const StageSurface& from, const Widths& widths);
+  void set_texture(const StageSurface& from, const Widths& widths, const TexelBlocks& texels);
+  [[nodiscard]] bool sees_texture_alone(const StageSurface& from) const;
+  [[nodiscard]] static bool is_never_held(const OverWFormat& format, const PerspectiveFormat& all, const QCodes& q);
+  [[nodiscard]] LaneAttribute attribute_of(const Surface::Attribute& from, const OverWFormat& format,
+                                           const LaneOverW& lanes, const Surface::Divisor& divisor,
+                                           const StageSurface& surface, const Widths& widths);
+};
+
+}  // namespace halfplane::functional

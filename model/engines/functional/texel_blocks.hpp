@@ -1,0 +1,48 @@
+// A texture as lanes fetch it: decoded, in blocks of 4 x 4 texels, a cache line each. A linear footprint then lies in one
+// line more often than in two, whichever way the texture is turned.
+//
+// For linear filters each texel may have its footprint beside it: itself, the next one, and both of the row below. That
+// takes four times the memory, and one load a pixel in place of four.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "../../scene.hpp"
+
+namespace halfplane {
+
+class TexelBlocks {
+ public:
+  static constexpr int kShift = 2, kSize = 1 << kShift, kTexels = kSize * kSize;
+  static constexpr std::size_t kLevels = 16;  ///< of 4096 texels, and a few more of nothing
+  static constexpr std::size_t kMostQuads = std::size_t{1}
+                                            << 21;  ///< texels of a texture with footprints: 32 MB of them
+  struct alignas(64) Block {
+    std::array<std::uint32_t, kTexels> texel{};  ///< row after row, R lowest
+  };
+  using Quad = std::array<std::uint32_t, 4>;
+
+  explicit TexelBlocks(const Texture& texture);
+
+  /// Makes footprints for these borders, if they are to be had: not for mirrored images, nor for large ones.
+  void add_quads(const std::array<TextureWrap, 2>& wrap);
+  /// Place by place as in `blocks`; null where there are none.
+  [[nodiscard]] const Quad* quads(const std::array<TextureWrap, 2>& wrap) const;
+
+  std::vector<Block> blocks;                  ///< level after level, row of blocks after row
+  std::array<std::int32_t, kLevels> first{};  ///< texel of each level
+
+ private:
+  struct Size {
+    int width, height;
+  };
+  [[nodiscard]] std::size_t place_of(std::size_t level, int x, int y) const;
+  [[nodiscard]] std::uint32_t texel(std::size_t place) const { return blocks[place / kTexels].texel[place % kTexels]; }
+
+  std::vector<Size> size_;                  ///< of each level
+  std::array<std::vector<Quad>, 4> quads_;  ///< by what repeats: u, v
+};
+
+}  // namespace halfplane

@@ -1,0 +1,82 @@
+#include "texture_unit.hpp"
+
+namespace halfplane {
+
+TextureFormat stored_format(TextureFormat format) {
+  return palette_size(format) != 0 ? TextureFormat::rgba8888 : format;
+}
+
+std::vector<std::uint8_t> texture_bytes(const Texture& texture) {
+  const TextureLevel& image = texture.level.front();
+  const TextureFormat format = stored_format(texture.format);
+  const auto bytes = std::size_t{1} << texel_size_log2(format);
+  const auto blocks = [](int size) { return (size + kTextureBlock - 1) / kTextureBlock; };
+  const int row = blocks(image.width);
+  std::vector<std::uint8_t> memory(static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks(image.height)) *
+                                   kTextureBlock * kTextureBlock * bytes);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      std::uint32_t code = image.code[static_cast<std::size_t>(y * image.width + x)];
+      if (format != texture.format) code = encode_texel(format, texture.palette[code], {});
+      const int block = y / kTextureBlock * row + x / kTextureBlock;
+      const int texel = y % kTextureBlock * kTextureBlock + x % kTextureBlock;
+      const std::size_t at = static_cast<std::size_t>(block * kTextureBlock * kTextureBlock + texel) * bytes;
+      for (std::size_t i = 0; i < bytes; ++i) memory[at + i] = static_cast<std::uint8_t>(code >> (8 * i));
+    }
+  return memory;
+}
+
+std::uint64_t TextureState::pack() const {
+  std::uint64_t word = 0;
+  int at = 0;
+  const auto put = [&](std::uint64_t value, int bits) {
+    word |= value << at;
+    at += bits;
+  };
+  put(enable ? 1 : 0, 1);
+  put(invalidates ? 1 : 0, 1);
+  put(static_cast<std::uint64_t>(format), 3);
+  put(static_cast<std::uint64_t>(combine), 2);
+  for (const TextureWrap w : wrap) put(static_cast<std::uint64_t>(w), 2);
+  for (const int size : log2_size) put(static_cast<std::uint64_t>(size), 4);
+  put(base / kTextureLine, 26);
+  put(is_linear ? 1 : 0, 1);
+  return word;
+}
+
+TextureState TextureState::unpack(std::uint64_t word) {
+  const auto take = [&word](int bits) {
+    const std::uint64_t value = word & ((std::uint64_t{1} << bits) - 1);
+    word >>= bits;
+    return value;
+  };
+  TextureState state;
+  state.enable = take(1) != 0;
+  state.invalidates = take(1) != 0;
+  state.format = static_cast<TextureFormat>(take(3));
+  state.combine = static_cast<TextureCombine>(take(2));
+  for (TextureWrap& w : state.wrap) w = static_cast<TextureWrap>(take(2));
+  for (int& size : state.log2_size) size = static_cast<int>(take(4));
+  state.base = static_cast<std::uint32_t>(take(26)) * kTextureLine;
+  state.is_linear = take(1) != 0;
+  return state;
+}
+
+TextureAxes TextureState::axes() const {
+  return {TextureAxis{1 << log2_size[0], wrap[0]}, TextureAxis{1 << log2_size[1], wrap[1]}};
+}
+
+TextureState texture_state(const Texture& texture, const State& state, std::uint32_t base) {
+  TextureState result;
+  result.enable = true;
+  result.format = stored_format(texture.format);
+  result.combine = state.texture_combine;
+  result.wrap = state.texture_wrap;
+  result.log2_size = {floor_log2(static_cast<unsigned>(texture.width())),
+                      floor_log2(static_cast<unsigned>(texture.height()))};
+  result.base = base;
+  result.is_linear = state.texture_mag == TextureMag::linear;
+  return result;
+}
+
+}  // namespace halfplane

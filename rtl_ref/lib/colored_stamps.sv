@@ -1,0 +1,164 @@
+// Colored stamps: what X is through with, on its way to W with the colours that are written: through the texture unit, where
+// there is one, and rop behind it; else as they are, two of them at most.
+//
+// A stamp never waits on its way in: X counts those inside, at most PLACES.
+module colored_stamps #(
+    parameter int CARRIED = 8,  // bits that go along
+    parameter int PLACES  = 2
+) (
+    input logic clk_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
+    input logic power_on_ni,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input logic rst_ni,
+
+    // From X and depth_test
+    input logic               stamp_valid_i,
+    input logic [CARRIED-1:0] carried_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // likewise; most of the fragment goes along by itself
+    input logic [raster_pkg::SAMPLES-1:0]                                writes_i,  // samples whose colour is written
+    input raster_pkg::fragment_packet_t                                  fragment_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input logic [raster_pkg::SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0] color_i,
+
+    // To W
+    output logic                                                        stamp_valid_o,
+    input  logic                                                        stamp_ready_i,
+    output logic [CARRIED-1:0]                                          carried_o,
+    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] color_o,
+
+    // To and from the memory of textures
+    output logic                         texture_valid_o,
+    output raster_pkg::texture_request_t texture_o,
+    output logic                         texel_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */
+    input  logic                         texture_ready_i,
+    input  logic                         texel_valid_i,
+    input  raster_pkg::texel_beat_t      texel_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // What W takes, for the co-simulation
+    output logic                      packet_valid_o,
+    output raster_pkg::color_packet_t packet_o,
+
+    output logic texture_is_idle_o  // behind a reset it may wait for answers of before
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+
+  genvar s;
+  generate
+    if (raster_pkg::COORDINATES == 0) begin : gen_colored
+      /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
+      logic w_ready;
+      /* verilator lint_on UNUSEDSIGNAL */
+      skid_buffer #(
+          .WIDTH(CARRIED + SAMPLES * COLOR)
+      ) u_colored (
+          .clk_i,
+          .rst_ni,
+          .valid_i(stamp_valid_i),
+          .ready_o(w_ready),
+          .data_i ({carried_i, color_i}),
+          .valid_o(stamp_valid_o),
+          .ready_i(stamp_ready_i),
+          .data_o ({carried_o, color_o})
+      );
+      assign texture_is_idle_o = 1'b1;
+      assign texture_valid_o   = 1'b0;
+      assign texture_o         = '0;
+      assign texel_ready_o     = 1'b0;
+      assign packet_valid_o    = 1'b0;
+      assign packet_o          = '0;
+    end else begin : gen_textured
+      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample
+      localparam int AFFINE = raster_pkg::AFFINE_PLANES;
+      localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*AFFINE+:32];
+      localparam int P = raster_pkg::FRAGMENT_BITS_OF[32*(AFFINE+1)+:32];
+      localparam int Q_AT = raster_pkg::FRAGMENT_AT[32*AFFINE+:32];
+      localparam int CHANNELS = raster_pkg::COLOR_PLANES;
+      localparam int L = raster_pkg::PERSPECTIVE_GUARD_BITS;
+      localparam int AFFINE_BITS = raster_pkg::ALL_AFFINE_CODE_BITS;
+      localparam int NARROW = raster_pkg::PERSPECTIVE_MANTISSA_BITS - 1;  // k_P
+      /* verilator lint_off UNUSEDSIGNAL */  // longer than a state
+      logic [raster_pkg::ALL_CODE_BITS-1:0] word;  // of a token: its codes
+      /* verilator lint_on UNUSEDSIGNAL */
+      logic [SAMPLES*Q-1:0]          q;
+      logic [SAMPLES*P-1:0]          u, v;
+      logic [SAMPLES*8*CHANNELS-1:0] rgba;
+      logic [SAMPLES-1:0]            mask;
+      /* verilator lint_off UNUSEDSIGNAL */  // nobody counts them yet
+      logic hits, misses;
+      /* verilator lint_on UNUSEDSIGNAL */
+      assign word = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
+                     fragment_i.code[0+:AFFINE_BITS]};
+      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        assign q[s*Q+:Q] = fragment_i.code[s*FRAGMENT+Q_AT+:Q];
+        assign u[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+:P];
+        assign v[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+P+:P];
+        logic [COLOR-1:0] packed_color;
+        rop u_rop (
+            .rgba_i (rgba[s*8*CHANNELS+:8*CHANNELS]),
+            .color_o(packed_color)
+        );
+        assign color_o[s*COLOR+:COLOR] = packed_color & {COLOR{mask[s]}};
+      end
+
+      texture_unit #(
+          .SAMPLES       (SAMPLES),
+          .Q_BITS        (Q),
+          .P_BITS        (P),
+          .MANTISSA      (raster_pkg::PERSPECTIVE_MANTISSA_BITS),
+          .NARROW        (NARROW),
+          .FRACTION      (raster_pkg::COORDINATE_FRACTION),
+          .SHIFT_BITS    (raster_pkg::COORDINATE_SHIFT_BITS),
+          .REACH_BITS    (raster_pkg::COORDINATE_REACH_BITS),
+          .REFERENCE_BITS(raster_pkg::COORDINATE_REFERENCE_BITS),
+          .CHANNELS      (CHANNELS),
+          .FILTER        (raster_pkg::TEXTURE_UNIT == 2 ? 1 : 0),
+          .PAYLOAD       (CARRIED),
+          .QUEUE         (PLACES),
+          .IN_FLIGHT     (raster_pkg::TEXTURE_QUEUE),
+          .LINES         (16 * raster_pkg::TEXTURE_CACHE_KB),
+          .PORT_BITS     (raster_pkg::TEXTURE_PORT_BITS)
+      ) u_texture (
+          .clk_i,
+          .power_on_ni,
+          .rst_ni,
+          .stamp_valid_i  (stamp_valid_i),
+          .payload_i      (carried_i),
+          .mask_i         (writes_i),
+          .color_i        (color_i),
+          .is_triangle_i  (fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE),
+          .q_i            (q),
+          .u_i            (u),
+          .v_i            (v),
+          .shift_i        (fragment_i.coordinates.shift),
+          .reach_i        (fragment_i.coordinates.reach),
+          .reference_i    (fragment_i.coordinates.origin),
+          .sets_state_i   (fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TEXTURE),
+          .state_i        (word[45:0]),
+          .stamp_valid_o  (stamp_valid_o),
+          .stamp_ready_i  (stamp_ready_i),
+          .payload_o      (carried_o),
+          .mask_o         (mask),
+          .color_o        (rgba),
+          .request_valid_o(texture_valid_o),
+          .request_ready_i(texture_ready_i),
+          .request_address_o(texture_o.address),
+          .request_beats_o(texture_o.beats),
+          .answer_valid_i (texel_valid_i),
+          .answer_ready_o (texel_ready_o),
+          .answer_data_i  (texel_i.data),
+          .hit_o          (hits),
+          .miss_o         (misses),
+          .idle_o         (texture_is_idle_o)
+      );
+      assign packet_valid_o = stamp_valid_o && mask != '0;
+      assign packet_o.mask  = mask;
+      assign packet_o.color = color_o;
+    end
+  endgenerate
+
+endmodule

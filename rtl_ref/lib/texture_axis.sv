@@ -1,0 +1,204 @@
+// One coordinate of a sample: P over q, as a texel of the image. Six clocks from P to texel.
+//
+//   narrow   Pn = P / 2^(e+c) rounded, held to NARROW bits and a sign
+//   product  Pn r, r the reciprocal of the normalised q
+//   place    its texels: the product times 2^x, rounded at FRACTION bits, what is behind the point cut off
+//   wrap     + u_ref, then onto the image
+// A fixed pipeline without enables. Specification: narrow_p, over_q of model/stages/perspective.hpp, wrapped_texel of
+// texture_filter.hpp.
+module texture_axis #(
+    parameter int P_BITS = 28,          // with its sign; 18 to 33
+    parameter int MANTISSA = 18,        // k
+    parameter int NARROW = 17,          // k_P
+    parameter int FRACTION = 8,         // f
+    parameter int REFERENCE_BITS = 24,  // with its sign
+    parameter int SIDE_BITS = 12,       // log2 of the longest side
+    parameter int LINEAR = 0            // also the two texels whose middles are around the place
+) (
+    input logic clk_i,
+
+    // Each in its clock: 0, 0, 3, 4, 5
+    input logic [P_BITS-1:0]         p_i,
+    input logic [5:0]                amount_i,  // e + c + NARROW; the shift to the right is by NARROW less
+    input logic [MANTISSA-2:0]       reciprocal_i,  // below its highest bit, which is set
+    input logic [4:0]                reach_i,      // x, at most 20
+    input logic [REFERENCE_BITS-1:0] reference_i,  // u_ref
+
+    // Of the texture: while samples are under way they stay
+    input logic [SIDE_BITS-1:0] last_i,   // size - 1
+    input logic [1:0]           wrap_i,   // 0 repeat, 1 clamp, 2 mirror
+    /* verilator lint_off UNUSEDSIGNAL */
+    input logic                 is_linear_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // Of six clocks ago
+    output logic [SIDE_BITS-1:0] texel_o,
+    output logic [SIDE_BITS-1:0] next_o,  // the texel behind it, where it is linear
+    output logic [7:0]           part_o   // how much of that, in 256ths
+);
+
+  // ----------------------------------------------------------------------------------------------------- clocks 0, 1: narrow
+  // P with room below, and a bit for the half: shifted by 16s, 4s, 1s. What leaves at the top must repeat the sign.
+  localparam int WIDE = NARROW + 65;
+  localparam int BY_16 = NARROW + 17;
+  localparam int BY_4 = NARROW + 5;
+  localparam int BY_1 = NARROW + 2;
+
+  function automatic [BY_16-1:0] by_16(input [WIDE-1:0] value, input [1:0] n);
+    case (n)
+      2'd0: by_16 = value[BY_16-1:0];
+      2'd1: by_16 = value[16+:BY_16];
+      2'd2: by_16 = value[32+:BY_16];
+      default: by_16 = value[48+:BY_16];
+    endcase
+  endfunction
+  function automatic [BY_4-1:0] by_4(input [BY_16-1:0] value, input [1:0] n);
+    case (n)
+      2'd0: by_4 = value[BY_4-1:0];
+      2'd1: by_4 = value[4+:BY_4];
+      2'd2: by_4 = value[8+:BY_4];
+      default: by_4 = value[12+:BY_4];
+    endcase
+  endfunction
+  function automatic [BY_1-1:0] by_1(input [BY_4-1:0] value, input [1:0] n);
+    case (n)
+      2'd0: by_1 = value[BY_1-1:0];
+      2'd1: by_1 = value[1+:BY_1];
+      2'd2: by_1 = value[2+:BY_1];
+      default: by_1 = value[3+:BY_1];
+    endcase
+  endfunction
+
+  logic             sign, lost_16, lost_4, lost_1;
+  logic [WIDE-1:0]  wide;
+  logic [BY_16-1:0] shifted_16;
+  logic [BY_4-1:0]  shifted_4;
+  logic [BY_1-1:0]  shifted_1, shifted_q;
+  logic [11:0]      top_4;  // bits that differ from the sign
+  logic [2:0]       top_1;
+  logic             sign_q, is_held_q;
+  logic [NARROW:0]  rounded;
+  logic [NARROW:0]  narrow_q, narrow_2_q;
+
+  assign sign       = p_i[P_BITS-1];
+  assign wide       = {{(WIDE - 1 - NARROW - P_BITS) {sign}}, p_i, {(NARROW + 1) {1'b0}}};
+  assign shifted_16 = by_16(wide, amount_i[5:4]);
+  assign shifted_4  = by_4(shifted_16, amount_i[3:2]);
+  assign shifted_1  = by_1(shifted_4, amount_i[1:0]);
+  assign top_4      = shifted_16[BY_4+:12] ^ {12{sign}};
+  assign top_1      = shifted_4[BY_1+:3] ^ {3{sign}};
+  assign lost_16    = amount_i[5:4] == 2'd0 && p_i[P_BITS-2:16] != {(P_BITS - 17) {sign}};
+  assign lost_4     = (amount_i[3:2] == 2'd0 && top_4[3:0] != '0) || (!amount_i[3] && top_4[7:4] != '0) ||
+                      (amount_i[3:2] != 2'd3 && top_4[11:8] != '0);
+  assign lost_1     = (amount_i[1:0] == 2'd0 && top_1[0]) || (!amount_i[1] && top_1[1]) ||
+                      (amount_i[1:0] != 2'd3 && top_1[2]);
+
+  assign rounded = shifted_q[NARROW+1:1] + (NARROW + 1)'(shifted_q[0]);
+  always_ff @(posedge clk_i) begin
+    shifted_q  <= shifted_1;
+    sign_q     <= sign;
+    is_held_q  <= lost_16 || lost_4 || lost_1 || shifted_1[NARROW+1] != sign;
+    narrow_q   <= (is_held_q || (!sign_q && rounded[NARROW])) ? {sign_q, {NARROW{!sign_q}}} : rounded;
+    narrow_2_q <= narrow_q;
+  end
+
+  // ---------------------------------------------------------------------------------------------------- clock 3: the product
+  // The highest bit of r is set: without it, as a number with a sign, it is no longer than a multiplier's input.
+  localparam int PRODUCT = NARROW + 1 + MANTISSA;
+  logic signed [PRODUCT-1:0] short_product, product_q;
+  assign short_product = $signed(narrow_2_q) * $signed({1'b0, reciprocal_i});
+  always_ff @(posedge clk_i)
+    product_q <= short_product + $signed({narrow_2_q, {(MANTISSA - 1) {1'b0}}});
+
+  // ------------------------------------------------------------------------------------------------------- clock 4: the place
+  // Times 2^x, between the half that rounds and the highest bit of the texels: shifted by 8s, 2s, 1.
+  localparam int POINT = MANTISSA + NARROW - 1;
+  localparam int WHOLE = 22;                // bits of the texels
+  localparam int PLACE = WHOLE + FRACTION + 1;
+  localparam int UP_2 = PLACE + 1;          // bits before the shift by 1
+  localparam int UP_8 = UP_2 + 6;           // bits before that by 2s
+  localparam int LONG = UP_8 + 24;          // bits before that by 8s
+  localparam int ABOVE = POINT + WHOLE - PRODUCT;  // copies of the sign
+  localparam int BELOW = LONG - PRODUCT - ABOVE;   // zeros
+
+  function automatic [UP_8-1:0] up_8(input [LONG-1:0] value, input [1:0] n);
+    case (n)
+      2'd0: up_8 = value[24+:UP_8];
+      2'd1: up_8 = value[16+:UP_8];
+      2'd2: up_8 = value[8+:UP_8];
+      default: up_8 = value[0+:UP_8];
+    endcase
+  endfunction
+  function automatic [UP_2-1:0] up_2(input [UP_8-1:0] value, input [1:0] n);
+    case (n)
+      2'd0: up_2 = value[6+:UP_2];
+      2'd1: up_2 = value[4+:UP_2];
+      2'd2: up_2 = value[2+:UP_2];
+      default: up_2 = value[0+:UP_2];
+    endcase
+  endfunction
+
+  logic [LONG-1:0]  long;
+  logic [UP_2-1:0]  placed_2;
+  logic [PLACE-1:0] placed;
+  logic [WHOLE-1:0] whole_q;
+  logic             carries_q;
+  generate
+    if (BELOW >= 0) begin : gen_zeros
+      assign long = {{ABOVE{product_q[PRODUCT-1]}}, product_q, {BELOW{1'b0}}};
+    end else begin : gen_cut  // bits that no reach brings up to the half
+      /* verilator lint_off UNUSEDSIGNAL */
+      logic [ABOVE+PRODUCT-1:0] all;
+      /* verilator lint_on UNUSEDSIGNAL */
+      assign all  = {{ABOVE{product_q[PRODUCT-1]}}, product_q};
+      assign long = all[ABOVE+PRODUCT-1-:LONG];
+    end
+  endgenerate
+  assign placed_2 = up_2(up_8(long, reach_i[4:3]), reach_i[2:1]);
+  assign placed   = reach_i[0] ? placed_2[PLACE-1:0] : placed_2[UP_2-1:1];
+  always_ff @(posedge clk_i) begin
+    whole_q   <= placed[PLACE-1-:WHOLE];
+    carries_q <= &placed[FRACTION:0];  // a half of the last bit carries into the texels
+  end
+
+  // -------------------------------------------------------------------------------------------------------- clock 5: the wrap
+  logic [REFERENCE_BITS-1:0] number;
+  assign number = reference_i + {{(REFERENCE_BITS - WHOLE) {whole_q[WHOLE-1]}}, whole_q} + REFERENCE_BITS'(carries_q);
+
+  function automatic [SIDE_BITS-1:0] wrapped(input [REFERENCE_BITS-1:0] value, input [SIDE_BITS-1:0] last,
+                                             input is_clamped, input is_mirrored);
+    logic [SIDE_BITS-1:0] low, beyond;
+    logic [SIDE_BITS:0]   turn;
+    logic                 is_above, is_turned;
+    low       = value[SIDE_BITS-1:0];
+    beyond    = low & ~last;
+    is_above  = value[REFERENCE_BITS-2:SIDE_BITS] != '0 || beyond != '0;
+    turn      = value[SIDE_BITS:0] & ({last, 1'b1} ^ {1'b0, last});  // the bit above those of the image
+    is_turned = is_mirrored && turn != '0;
+    if (is_clamped && value[REFERENCE_BITS-1]) wrapped = '0;
+    else if (is_clamped && is_above) wrapped = last;
+    else wrapped = (low ^ {SIDE_BITS{is_turned}}) & last;
+  endfunction
+
+  generate
+    if (LINEAR != 0) begin : gen_linear
+      // Less half a texel: from the middle of the texel in front.
+      logic [FRACTION-1:0]       part_q;
+      logic [7:0]                part;
+      logic [REFERENCE_BITS-1:0] first;
+      always_ff @(posedge clk_i) part_q <= placed[FRACTION:1] + FRACTION'(placed[0]);
+      assign part  = {part_q, {(8 - FRACTION) {1'b0}}};
+      assign first = number - REFERENCE_BITS'(is_linear_i && !part[7]);
+      always_ff @(posedge clk_i) begin
+        texel_o <= wrapped(first, last_i, wrap_i[0], wrap_i[1]);
+        next_o  <= wrapped(first + REFERENCE_BITS'(is_linear_i), last_i, wrap_i[0], wrap_i[1]);
+        part_o  <= is_linear_i ? part ^ 8'h80 : '0;
+      end
+    end else begin : gen_nearest
+      always_ff @(posedge clk_i) texel_o <= wrapped(number, last_i, wrap_i[0], wrap_i[1]);
+      assign next_o = '0;
+      assign part_o = '0;
+    end
+  endgenerate
+
+endmodule

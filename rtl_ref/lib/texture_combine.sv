@@ -1,0 +1,72 @@
+// A texel's colour and the primitive's become one. Combinational.
+//
+// Every mode is one product and one division by 255, floor((s + 128 + ((s + 128) >> 8)) >> 8):
+//   modulate  s = c t            replace  s = 255 t
+//   decal     s = 255 c + a (t - c)
+//   add       s = 255 min(c + t, 255), alpha as modulate
+// Specification: combined of model/stages/texture_filter.hpp.
+module texture_combine #(
+    parameter int CHANNELS = 4,  // of the primitive's colour: 3 or 4
+    parameter int SOFT = 0       // so many channels, R first, have no multiplier
+) (
+    input  logic [31:0]           texel_i,      // 8 bits a channel, R lowest
+    input  logic [8*CHANNELS-1:0] color_i,      // the primitive's, likewise
+    input  logic [1:0]            combine_i,    // 0 modulate, 1 replace, 2 decal, 3 add
+    input  logic                  has_alpha_i,  // the format has
+    output logic [8*CHANNELS-1:0] color_o
+);
+
+  logic is_modulated, is_replaced, is_decal, is_added;
+  assign is_modulated = combine_i == 2'd0;
+  assign is_replaced  = combine_i == 2'd1;
+  assign is_decal     = combine_i == 2'd2;
+  assign is_added     = combine_i == 2'd3;
+
+  genvar n;
+  generate
+    for (n = 0; n < CHANNELS; n++) begin : gen_channel
+      logic [7:0]         color, texel, whole;
+      logic [7:0]         left;  // of the product
+      logic signed [8:0]  right;
+      /* verilator lint_off UNUSEDSIGNAL */  // cut off
+      logic signed [16:0] product;
+      logic [15:0]        rounded, quotient;
+      /* verilator lint_on UNUSEDSIGNAL */
+      assign color    = color_i[8*n+:8];
+      assign texel    = texel_i[8*n+:8];
+      assign quotient = rounded + {8'd0, rounded[15:8]};
+      if (n < SOFT) begin : gen_soft
+        soft_product u_product (
+            .left_i   (left),
+            .right_i  (right),
+            .product_o(product)
+        );
+      end else begin : gen_multiplier
+        assign product = 17'($signed({1'b0, left}) * right);
+      end
+      if (n < 3) begin : gen_color
+        logic [8:0] sum;
+        assign sum   = {1'b0, color} + {1'b0, texel};
+        assign whole = is_replaced ? texel : is_added ? sum[7:0] | {8{sum[8]}} : is_decal ? color : '0;
+        assign left  = is_decal ? texel_i[31:24] : is_modulated ? color : '0;
+        assign right = $signed({1'b0, texel}) - $signed({1'b0, color & {8{is_decal}}});
+        // 255 times a colour: 256 times less once.
+        assign rounded = {whole, 8'd128} - {8'd0, whole} + product[15:0];
+        assign color_o[8*n+:8] = quotient[15:8];
+      end else begin : gen_alpha
+        assign whole   = is_replaced && has_alpha_i ? texel : color;
+        assign left    = color;
+        assign right   = $signed({1'b0, texel});
+        assign rounded = product[15:0] + 16'd128;
+        assign color_o[8*n+:8] = is_modulated || is_added ? quotient[15:8] : whole;
+      end
+    end
+    if (CHANNELS == 3) begin : gen_opaque
+      /* verilator lint_off UNUSEDSIGNAL */
+      logic unused;
+      assign unused = has_alpha_i;
+      /* verilator lint_on UNUSEDSIGNAL */
+    end
+  endgenerate
+
+endmodule

@@ -1,0 +1,315 @@
+// Texture cache: lines of 4x4 texels, direct mapped, whose misses nobody waits for but the sample itself.
+//
+//   sample -> [tags] -> waiting samples -> [data RAM] -> code
+//                '-> request .. memory .. answers -^
+//
+// A sample looks its line up and then waits in a queue, a hit as well as a miss, so that the answers to misses have time to
+// come (Igehy, Eldridge, Proudfoot 1998). Answers are written as they come, and always can be: each line that is asked for
+// takes the place of one that nobody reads any more. So a miss waits until the last sample that was found in the line's place
+// has been read. The tags know its number, counted in groups and modulo a power of two: a line that was last read long ago may
+// look as if a sample were still to read it, which costs a wait, and only for samples in front.
+//
+// Reset: power_on_ni resets the request and the count of answers, rst_ni everything else at any time. A request on offer stays
+// on offer until it is taken; answers from before rst_ni are dropped; until the last has come nothing is asked for.
+// Specification: TextureCache of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
+module texture_cache #(
+    parameter int LINES = 64,      // a power of two, at least 2
+    parameter int PORT_BITS = 64,  // 16 to 128
+    parameter int IN_FLIGHT = 32,  // samples that wait; a power of two
+    parameter int TAIL = 1,        // bits that go along with a sample
+    parameter int LINE = $clog2(LINES)  // derived; not to be set
+) (
+    input logic clk_i,
+    /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
+    input logic rst_ni,
+    /* verilator lint_on SYNCASYNCNET */
+    input logic power_on_ni,
+
+    // Samples
+    input  logic            sample_valid_i,
+    output logic            sample_ready_o,
+    input  logic [27:0]     address_i,  // of the line, 16 bytes
+    input  logic [LINE-1:0] line_i,
+    input  logic [3:0]      texel_i,    // inside the line
+    input  logic [2:0]      format_i,
+    input  logic [TAIL-1:0] tail_i,
+
+    input  logic drop_i,          // all lines; in a cycle in which no sample is in front of the tags, or in them
+    output logic tags_are_empty_o,
+
+    // Texels as they are stored, in order
+    output logic            code_valid_o,
+    input  logic            code_ready_i,
+    output logic [31:0]     code_o,
+    output logic [2:0]      code_format_o,
+    output logic [TAIL-1:0] code_tail_o,
+
+    // Memory: lines are read, beats come in their order
+    output logic                 request_valid_o,
+    input  logic                 request_ready_i,
+    output logic [31:0]          request_address_o,
+    output logic [5:0]           request_beats_o,
+    input  logic                 answer_valid_i,
+    output logic                 answer_ready_o,
+    input  logic [PORT_BITS-1:0] answer_data_i,
+
+    output logic hit_o,  // a sample has been looked up
+    output logic miss_o,
+    output logic idle_o
+);
+
+  localparam int NUMBER = 7;  // bits of a group's number, as many as fit beside a tag into a block RAM
+  localparam int GROUP = 3;   // log2 of a group's samples
+  localparam int COUNT = NUMBER + GROUP;
+  localparam int BYTES = $clog2(PORT_BITS / 8);  // of a beat, log2
+  localparam int WORD_BITS = (PORT_BITS < 32) ? 32 : PORT_BITS;  // of the RAM
+  localparam int WORD = $clog2(WORD_BITS / 8);   // bytes of a word, log2
+  localparam int WORDS = 6 - WORD;               // of a line of 64 bytes, log2
+  localparam int BEATS = 6 - BYTES;              // likewise
+  localparam int UNANSWERED = $clog2(IN_FLIGHT) + BEATS + 1;
+
+  function automatic [1:0] size_of(input [2:0] format);  // bytes of a texel, log2
+    size_of = (format == 3'd0) ? 2'd0 : (format == 3'd5) ? 2'd2 : 2'd1;
+  endfunction
+
+  // -------------------------------------------------------------------------------------------------------------------- tags
+  logic              t_valid_q, t_enters, t_goes, is_hit, waits, is_occupied, is_referenced;
+  logic              same_place_q, same_line_q;  // as the sample in front
+  logic [27:0]       t_address_q, tag;
+  logic [LINE-1:0]   t_line_q;
+  logic [3:0]        t_texel_q;
+  logic [2:0]        t_format_q;
+  logic [TAIL-1:0]   t_tail_q;
+  logic [NUMBER-1:0] tag_group, last_group, group, oldest_group;
+  logic              tag_valid, is_known;
+  logic              sweeps_q;
+  logic [LINE-1:0]   sweep_q;
+  logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags, and those of them that have been read
+  /* verilator lint_off UNUSEDSIGNAL */
+  logic [COUNT-1:0]  last;              // the number of the last that has left
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic              waiting_ready, waiting_valid, reads;
+  logic              recovers_q, discards, is_done;
+  logic              request_valid_q;
+
+  assign sample_ready_o   = (!t_valid_q || t_goes) && !sweeps_q;
+  assign t_enters         = sample_valid_i && sample_ready_o;
+  assign tags_are_empty_o = !t_valid_q;
+
+  sram #(
+      .WIDTH    (1 + 28 + NUMBER),
+      .DEPTH    (LINES),
+      .READS_OLD(0)
+  ) u_tags (
+      .clk_i,
+      .read_i         (t_enters),
+      .read_address_i (line_i),
+      .data_o         ({tag_valid, tag, tag_group}),
+      .write_i        (t_goes || sweeps_q),
+      .write_address_i(sweeps_q ? sweep_q : t_line_q),
+      .data_i         ({!sweeps_q, t_address_q, sweeps_q ? last_group : group})
+  );
+
+  assign last         = issued_q - 1'b1;
+  assign last_group   = last[COUNT-1:GROUP];
+  assign group        = issued_q[COUNT-1:GROUP];
+  assign oldest_group = read_q[COUNT-1:GROUP];
+  assign is_occupied  = issued_q != read_q;
+  assign is_known     = same_place_q ? same_line_q : tag_valid && tag == t_address_q;
+  assign is_hit       = is_known;
+  // Counted back from this sample: no farther than the oldest that waits.
+  assign is_referenced = is_occupied &&
+                         NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group);
+  assign waits  = !waiting_ready ||
+                  (!is_hit && (is_referenced || recovers_q || (request_valid_q && !request_ready_i)));
+  assign t_goes = t_valid_q && !waits;
+  assign hit_o  = t_goes && is_hit;
+  assign miss_o = t_goes && !is_hit;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      t_valid_q <= 1'b0;
+      sweeps_q  <= 1'b1;
+      sweep_q   <= '0;
+      issued_q  <= '0;
+      read_q    <= '0;
+    end else begin
+      t_valid_q <= t_enters || (t_valid_q && !t_goes);
+      sweeps_q  <= drop_i || (sweeps_q && sweep_q != '1);
+      sweep_q   <= drop_i ? '0 : sweep_q + LINE'(sweeps_q);
+      issued_q  <= issued_q + COUNT'(t_goes);
+      read_q    <= read_q + COUNT'(reads);
+    end
+  end
+  always_ff @(posedge clk_i)
+    if (t_enters) begin
+      t_address_q  <= address_i;
+      t_line_q     <= line_i;
+      t_texel_q    <= texel_i;
+      t_format_q   <= format_i;
+      t_tail_q     <= tail_i;
+      same_place_q <= t_goes && line_i == t_line_q;  // too late for the RAM
+      same_line_q  <= address_i == t_address_q;
+    end
+
+  // ---------------------------------------------------------------------------------------------------------------- requests
+  logic [27:0]           request_address_q;
+  logic [1:0]            request_size_q;
+  logic [1:0]            t_size;
+  logic [UNANSWERED-1:0] unanswered_q;  // beats
+  assign t_size            = size_of(t_format_q);
+  assign request_valid_o   = request_valid_q;
+  assign request_address_o = {request_address_q, 4'd0};
+  assign request_beats_o   = 6'(6'd1 << request_size_q) << (4 - BYTES);
+  assign discards          = recovers_q || !rst_ni;
+  assign is_done           = !request_valid_q && unanswered_q == '0;
+  assign answer_ready_o    = 1'b1;
+
+  always_ff @(posedge clk_i or negedge power_on_ni) begin
+    if (!power_on_ni) begin
+      request_valid_q <= 1'b0;
+      unanswered_q    <= '0;
+      recovers_q      <= 1'b0;
+    end else begin
+      request_valid_q <= miss_o || (request_valid_q && !request_ready_i);
+      unanswered_q    <= unanswered_q + (miss_o ? UNANSWERED'(1) << (3'(t_size) + 3'(4 - BYTES)) : '0) -
+                         UNANSWERED'(answer_valid_i);
+      recovers_q      <= !rst_ni || (recovers_q && !is_done);
+    end
+  end
+  always_ff @(posedge clk_i)
+    if (miss_o) begin
+      request_address_q <= t_address_q;
+      request_size_q    <= t_size;
+    end
+
+  // ----------------------------------------------------------------------------------------------------------------- answers
+  logic                 fills, fills_word, ends_line, has_come;
+  logic [LINE-1:0]      fill_line;
+  logic [1:0]           fill_size;
+  logic [BEATS-1:0]     beat_q;  // of the line
+  logic [BEATS-1:0]     last_beat;
+  logic [WORD_BITS-1:0] fill_word;
+  logic [WORDS-1:0]     fill_place;
+  /* verilator lint_off UNUSEDSIGNAL */  // each line has a sample that waits, and there is room for so many
+  logic fill_valid, fill_ready;
+  /* verilator lint_on UNUSEDSIGNAL */
+  fifo #(
+      .WIDTH(LINE + 2),
+      .DEPTH(IN_FLIGHT)
+  ) u_fills (
+      .clk_i,
+      .rst_ni,
+      .valid_i(miss_o),
+      .ready_o(fill_ready),
+      .data_i ({t_line_q, t_size}),
+      .valid_o(fill_valid),
+      .ready_i(ends_line),
+      .data_o ({fill_line, fill_size})
+  );
+  assign fills     = answer_valid_i && !discards;
+  assign last_beat = BEATS'((7'(PORT_BITS <= 128) << (3'(fill_size) + 3'(4 - BYTES))) - 7'd1);
+  assign ends_line = fills && beat_q == last_beat;
+
+  generate
+    if (PORT_BITS < 32) begin : gen_halves
+      logic [PORT_BITS-1:0] half_q;
+      always_ff @(posedge clk_i) if (fills) half_q <= answer_data_i;
+      assign fill_word  = {answer_data_i, half_q};
+      assign fills_word = fills && beat_q[0];
+      assign fill_place = beat_q[BEATS-1:1];
+    end else begin : gen_words
+      assign fill_word  = answer_data_i;
+      assign fills_word = fills;
+      assign fill_place = beat_q;
+    end
+  endgenerate
+
+  // Lines that have come, and whose sample has not been read.
+  logic [$clog2(IN_FLIGHT):0] come_q;
+  logic                       reads_miss;
+  assign has_come = come_q != '0;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      beat_q <= '0;
+      come_q <= '0;
+    end else begin
+      beat_q <= ends_line ? '0 : beat_q + BEATS'(fills);
+      come_q <= come_q + ($clog2(IN_FLIGHT) + 1)'(ends_line) - ($clog2(IN_FLIGHT) + 1)'(reads_miss);
+    end
+  end
+
+  // --------------------------------------------------------------------------------------------------- samples that wait, data
+  logic                 is_miss;
+  logic [LINE-1:0]      line;
+  logic [3:0]           texel;
+  logic [2:0]           format;
+  logic [TAIL-1:0]      tail;
+  logic [5:0]           offset;  // bytes
+  logic [WORD_BITS-1:0] word;
+  logic                 d_valid_q, d_ready;
+  logic [WORD-1:0]      d_offset_q;
+  logic [2:0]           d_format_q;
+  logic [TAIL-1:0]      d_tail_q;
+  fifo #(
+      .WIDTH(1 + LINE + 4 + 3 + TAIL),
+      .DEPTH(IN_FLIGHT)
+  ) u_waiting (
+      .clk_i,
+      .rst_ni,
+      .valid_i(t_goes),
+      .ready_o(waiting_ready),
+      .data_i ({!is_hit, t_line_q, t_texel_q, t_format_q, t_tail_q}),
+      .valid_o(waiting_valid),
+      .ready_i(reads),
+      .data_o ({is_miss, line, texel, format, tail})
+  );
+  assign d_ready    = !d_valid_q || code_ready_i;
+  assign reads      = waiting_valid && d_ready && (!is_miss || has_come);
+  assign reads_miss = reads && is_miss;
+  assign offset     = 6'(texel) << size_of(format);
+
+  sram #(
+      .WIDTH    (WORD_BITS),
+      .DEPTH    (LINES << WORDS),
+      .READS_OLD(0)
+  ) u_data (
+      .clk_i,
+      .read_i         (reads),
+      .read_address_i ({line, offset[5:WORD]}),
+      .data_o         (word),
+      .write_i        (fills_word),
+      .write_address_i({fill_line, fill_place}),
+      .data_i         (fill_word)
+  );
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) d_valid_q <= 1'b0;
+    else d_valid_q <= reads || (d_valid_q && !code_ready_i);
+  end
+  always_ff @(posedge clk_i)
+    if (reads) begin
+      d_offset_q <= offset[WORD-1:0];
+      d_format_q <= format;
+      d_tail_q   <= tail;
+    end
+
+  // The texel in the word: a texel of 2 bytes begins at an even one, one of 4 at a multiple of 4.
+  logic [31:0] whole;
+  logic [15:0] half;
+  generate
+    if (WORD > 2) begin : gen_wholes
+      assign whole = word[32*d_offset_q[WORD-1:2]+:32];
+    end else begin : gen_whole
+      assign whole = word;
+    end
+  endgenerate
+  assign half          = d_offset_q[1] ? whole[31:16] : whole[15:0];
+  assign code_o        = {whole[31:16], half[15:8], d_offset_q[0] ? half[15:8] : half[7:0]};
+  assign code_valid_o  = d_valid_q;
+  assign code_format_o = d_format_q;
+  assign code_tail_o   = d_tail_q;
+
+  assign idle_o = !t_valid_q && !waiting_valid && !d_valid_q && !sweeps_q && !discards && is_done;
+
+endmodule

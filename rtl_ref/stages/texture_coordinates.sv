@@ -1,0 +1,143 @@
+// Texture coordinates: from a sample's q, u and v to the texel it lies in, one sample a clock, eight clocks.
+//
+//   0  normalise    e = floor(log2 q), m the highest k bits of q
+//   1  reciprocal   of m, four clocks                         | by how much P is narrowed
+//   2  axes         P narrowed, beside the reciprocal; product, place, wrap (texture_axis.sv)
+// What a triangle's samples share waits in RAMs, a word for each stamp in the unit, and is read where it is needed.
+// A fixed pipeline without enables. Specification: divide_by_q of model/stages/perspective.hpp and what texture_axis has.
+module texture_coordinates #(
+    parameter int Q_BITS = 27,
+    parameter int P_BITS = 28,
+    parameter int MANTISSA = 18,
+    parameter int NARROW = 17,
+    parameter int FRACTION = 8,
+    parameter int SHIFT_BITS = 6,
+    parameter int REACH_BITS = 5,
+    parameter int REFERENCE_BITS = 24,
+    parameter int QUEUE = 16,
+    parameter int SIDE_BITS = 12,
+    parameter int LINEAR = 0,
+    parameter int INDEX = $clog2(QUEUE)  // derived; not to be set
+) (
+    input logic clk_i,
+
+    // What the samples of a stamp share; u lowest
+    input logic                        frame_valid_i,
+    input logic [INDEX-1:0]            frame_index_i,
+    input logic [2*SHIFT_BITS-1:0]     shift_i,      // c, at least -NARROW
+    input logic [2*REACH_BITS-1:0]     reach_i,      // x
+    input logic [2*REFERENCE_BITS-1:0] reference_i,  // u_ref
+
+    // The sample
+    input logic [INDEX-1:0]  index_i,  // of its stamp
+    input logic [Q_BITS-1:0] q_i,      // not 0
+    input logic [P_BITS-1:0] u_i,
+    input logic [P_BITS-1:0] v_i,
+
+    // The texture
+    input logic [2*SIDE_BITS-1:0] last_i,
+    input logic [3:0]             wrap_i,
+    input logic                   is_linear_i,
+
+    // Of eight clocks ago, x lowest
+    output logic [2*SIDE_BITS-1:0] texel_o,
+    output logic [2*SIDE_BITS-1:0] next_o,  // LINEAR: the texel behind it, and how much of that
+    output logic [15:0]            part_o
+);
+
+  localparam int EXPONENT = 5;
+
+  // The stamp's index, as far as the sample has come.
+  logic [7*INDEX-1:0] index_q;  // of a clock ago lowest
+  always_ff @(posedge clk_i) index_q <= {index_q[6*INDEX-1:0], index_i};
+
+  logic [2*SHIFT_BITS-1:0]     shift_ram_q[0:QUEUE-1];
+  logic [2*REACH_BITS-1:0]     reach_ram_q[0:QUEUE-1];
+  logic [2*REFERENCE_BITS-1:0] reference_ram_q[0:QUEUE-1];
+  logic [2*SHIFT_BITS-1:0]     shift;
+  logic [2*REACH_BITS-1:0]     reach;
+  logic [2*REFERENCE_BITS-1:0] reference;
+  assign shift     = shift_ram_q[index_q[INDEX-1:0]];
+  assign reach     = reach_ram_q[index_q[5*INDEX+:INDEX]];
+  assign reference = reference_ram_q[index_q[6*INDEX+:INDEX]];
+  always_ff @(posedge clk_i)
+    if (frame_valid_i) begin
+      shift_ram_q[frame_index_i]     <= shift_i;
+      reach_ram_q[frame_index_i]     <= reach_i;
+      reference_ram_q[frame_index_i] <= reference_i;
+    end
+
+  // ---------------------------------------------------------------------------------------------------- clock 0: normalise
+  // Zeros at the top are shifted out by 16, 8, 4, 2, 1: how many, and what is left below the highest bit.
+  function automatic [EXPONENT+30:0] normalised(input [31:0] value);
+    logic [31:0]         left;
+    logic [EXPONENT-1:0] zeros;
+    left = value;
+    for (int n = EXPONENT - 1; n >= 0; n--) begin
+      zeros[n] = (left >> (32 - (1 << n))) == '0;
+      left     = zeros[n] ? left << (1 << n) : left;
+    end
+    normalised = {zeros, left[30:0]};
+  endfunction
+  logic [EXPONENT-1:0] zeros;
+  /* verilator lint_off UNUSEDSIGNAL */  // the reciprocal looks at the highest
+  logic [30:0]         left;
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign {zeros, left} = normalised({q_i, {(32 - Q_BITS) {1'b0}}});
+
+  logic [MANTISSA-2:0]  mantissa_q;  // below its highest bit
+  logic [EXPONENT-1:0]  exponent_q;
+  logic [2*P_BITS-1:0]  p_1_q, p_2_q;
+  logic [11:0]          amount_q;
+  /* verilator lint_off UNUSEDSIGNAL */  // its highest bit is set
+  logic [MANTISSA-1:0]  reciprocal;
+  /* verilator lint_on UNUSEDSIGNAL */
+  always_ff @(posedge clk_i) begin
+    mantissa_q <= left[30-:MANTISSA-1];
+    exponent_q <= EXPONENT'(Q_BITS - 1) - zeros;
+    p_1_q      <= {v_i, u_i};
+    p_2_q      <= p_1_q;
+  end
+
+  reciprocal_table #(
+      .BITS(MANTISSA)
+  ) u_reciprocal (
+      .clk_i,
+      .mantissa_i  (mantissa_q),
+      .reciprocal_o(reciprocal)
+  );
+
+  genvar n;
+  generate
+    for (n = 0; n < 2; n++) begin : gen_axis
+      /* verilator lint_off UNUSEDSIGNAL */  // not negative, less than 64
+      logic signed [7:0] amount;
+      /* verilator lint_on UNUSEDSIGNAL */
+      assign amount = 8'($signed(shift[n*SHIFT_BITS+:SHIFT_BITS])) + 8'(exponent_q) + 8'(NARROW);
+      always_ff @(posedge clk_i) amount_q[6*n+:6] <= amount[5:0];
+      texture_axis #(
+          .P_BITS        (P_BITS),
+          .MANTISSA      (MANTISSA),
+          .NARROW        (NARROW),
+          .FRACTION      (FRACTION),
+          .REFERENCE_BITS(REFERENCE_BITS),
+          .SIDE_BITS     (SIDE_BITS),
+          .LINEAR        (LINEAR)
+      ) u_axis (
+          .clk_i,
+          .p_i         (p_2_q[n*P_BITS+:P_BITS]),
+          .amount_i    (amount_q[6*n+:6]),
+          .reciprocal_i(reciprocal[MANTISSA-2:0]),
+          .reach_i     (5'(reach[n*REACH_BITS+:REACH_BITS])),
+          .reference_i (reference[n*REFERENCE_BITS+:REFERENCE_BITS]),
+          .last_i      (last_i[n*SIDE_BITS+:SIDE_BITS]),
+          .wrap_i      (wrap_i[2*n+:2]),
+          .is_linear_i,
+          .texel_o     (texel_o[n*SIDE_BITS+:SIDE_BITS]),
+          .next_o      (next_o[n*SIDE_BITS+:SIDE_BITS]),
+          .part_o      (part_o[8*n+:8])
+      );
+    end
+  endgenerate
+
+endmodule

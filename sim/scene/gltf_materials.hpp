@@ -1,0 +1,48 @@
+// The materials of a glTF file, and the textures of their base colours.
+#pragma once
+
+#include <functional>
+#include <map>
+
+#include "sim/scene/gltf_file.hpp"
+#include "sim/scene/mesh.hpp"
+
+namespace halfplane {
+
+struct GltfMaterial {
+  std::array<double, 4> base{1, 1, 1, 1};  ///< linear
+  bool is_two_sided = false;
+  bool is_lit = true;
+  AlphaMode alpha = AlphaMode::opaque;
+  double alpha_cutoff = 0.5;
+  std::optional<JsonPlace> texture;   ///< an index into `textures`
+  std::string uv_set = "TEXCOORD_0";  ///< the attribute that the texture is looked up by
+  /// u and v on the texture from those of a vertex: factors of u, v and 1.
+  std::array<std::array<double, 3>, 2> uv_transform{{{1, 0, 0}, {0, 1, 0}}};
+};
+
+/// Reads what primitives name. Images are decoded when first used, each once.
+class GltfMaterials {
+ public:
+  using Warn = std::function<void(const std::string& text)>;
+
+  /// Textures are added to `textures`.
+  GltfMaterials(GltfFile& file, std::vector<Texture>& textures, Warn warn)
+      : file_(file), textures_(textures), warn_(std::move(warn)) {}
+
+  /// The material of a primitive; without one the format's default: white, back faces not seen.
+  [[nodiscard]] GltfMaterial of(const JsonPlace& primitive) const;
+  /// How its texture is looked up; nothing without one, or when its image is of a kind that is not read (a warning).
+  [[nodiscard]] std::optional<MeshSampler> sampler(const GltfMaterial& material);
+
+ private:
+  void read_base_color(const JsonPlace& shading, GltfMaterial& material) const;
+  [[nodiscard]] std::uint32_t image(const JsonPlace& index);
+
+  GltfFile& file_;
+  std::vector<Texture>& textures_;
+  Warn warn_;
+  std::map<std::size_t, std::uint32_t> texture_of_image_;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,140 @@
+#include "sim/study/compare/surface_oracle.hpp"
+
+#include <algorithm>
+
+#include "model/golden/exact.hpp"
+#include "model/widths.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr double kLevelBound = 0.1;           // levels
+constexpr double kRoundingBound = 0.5078125;  // LSB: a half, and 2^-7 for the one between two levels
+constexpr double kWeightBound = 1;            // LSB: two coordinates off by 2^-9 of 255
+
+std::int64_t grid_units(double lsb) {
+  return static_cast<std::int64_t>(std::floor(std::ldexp(lsb, exact::kGridBits) + 0.5));
+}
+
+double ratio_of(const std::array<double, 3>& w) {
+  const auto [low, high] = std::minmax({w[0], w[1], w[2]});
+  return high / low;
+}
+
+/// The filter with its weights, and nothing rounded.
+std::array<double, 4> weighted_texel(const Sampler& s, const SurfaceSample& sample) {
+  const auto fetch = [&s](int level, int x, int y) { return s.texture->texel(level, x, y); };
+  const auto [is_linear, is_between, levels] = filter_of(s, sample.lod);
+  const auto on_level = [&, linear = is_linear](int level) {
+    std::array<double, 4> color{};
+    const Texel nearest = filter_nearest(fetch, s.axes, sample.place, level);
+    const auto sums = linear_sums(fetch, s.axes, sample.place, level);
+    for (std::size_t c = 0; c < 4; ++c) color[c] = linear ? std::ldexp(sums[c], -16) : nearest[c];
+    return color;
+  };
+  const auto lower = on_level(levels.lower);
+  return is_between ? golden::between(lower, on_level(levels.upper), levels.part / 256.0) : lower;
+}
+
+}  // namespace
+
+double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& format, const OverWFormat& attribute,
+                    int tile_size) {
+  const double delta = std::ldexp(tile_size + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of Q's plane, codes
+  const double smallest_q = std::ldexp(1.0, format.q_bits - 1) / w_ratio, lost = 0.5 + delta;
+  // |U| <= 2^(x+1), 2^x at most twice the largest |u'| and its margin, and that from the real value.
+  const double held = attribute.is_centred ? 5.01 * (extent / 2 + 1) : extent;
+  if (smallest_q <= lost) return held;
+  const double first_order = coordinate_error_bound(extent, w_ratio, format, attribute, tile_size);
+  return std::min(held, first_order * smallest_q / (smallest_q - lost));
+}
+
+double largest_level_w_ratio(const PerspectiveFormat& format) { return std::ldexp(1.0, format.q_bits - 10); }
+
+SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle)
+    : state_(scene.states[std::get<Draw>(scene.commands[triangle.draw]).state]),
+      texture_(state_.texture ? &scene.textures[*state_.texture] : nullptr),
+      rules_{state_.color_interp, state_.texture_interp} {
+  const Widths widths = derive_widths(config);
+  const PerspectiveFormat format = perspective_format(config);
+  std::array<golden::ScreenVertex<double>, 3> v;
+  std::array<double, 3> w{};
+  std::uint32_t largest_code = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SnappedVertex& from = triangle.v[i];
+    v[i].x = std::ldexp(from.x, -widths.grid_bits);
+    v[i].y = std::ldexp(from.y, -widths.grid_bits);
+    w[i] = triangle.surface[i].w;
+    v[i].inverse_w = 1 / w[i];
+    v[i].uv = {triangle.surface[i].u, triangle.surface[i].v};
+    v[i].rgba[3] = 255;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c) {
+      v[i].rgba[c] = from.code[kColorPlane + c];
+      largest_code = std::max(largest_code, from.code[kColorPlane + c]);
+    }
+  }
+  setup_ = golden::setup_triangle(v);
+  if (state_.color_interp == ColorInterp::perspective)
+    color_bound_ = over_w_bound(largest_code, ratio_of(w), format, format.color, config.tile_size);
+  if (texture_ == nullptr) return;
+  sampler_ = Sampler(*texture_, state_);
+  const double w_ratio = state_.texture_interp == TextureInterp::affine ? 1 : ratio_of(w);
+  if (w_ratio <= largest_level_w_ratio(format)) level_bound_ = kLevelBound;
+  for (const std::size_t axis : {0U, 1U}) {
+    const auto [low, high] = std::minmax({v[0].uv[axis], v[1].uv[axis], v[2].uv[axis]});
+    const double extent = (high - low) * sampler_.axes[axis].size;
+    coordinate_bound_[axis] = extent < std::ldexp(1.0, kMaxReach)  // farther from u_ref, it is held
+                                  ? over_w_bound(extent, w_ratio, format, format.coordinate, config.tile_size)
+                                  : HUGE_VAL;
+  }
+}
+
+SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) const {
+  const double px = x + 0.5, py = y + 0.5;
+  const std::array e{setup_.edge[0].value(px, py), setup_.edge[1].value(px, py), setup_.edge[2].value(px, py)};
+  const golden::Fragment<double> exact = golden::interpolate(setup_, e, rules_);
+  SurfaceErrors errors;
+  errors.exact = exact.rgba;
+  errors.color.bound = color_bound_;
+  for (std::size_t c = 0; c < 4 && color_bound_ < HUGE_VAL; ++c)
+    errors.color.value = std::max(errors.color.value, std::abs(sample.primitive[c] - exact.rgba[c]));
+  if (texture_ != nullptr) compare_texels(sample, exact, errors);
+  return errors;
+}
+
+void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact,
+                                   SurfaceErrors& errors) const {
+  errors.has_texture = true;
+  const golden::TexelPlace place{exact.texture.u * texture_->width(), exact.texture.v * texture_->height()};
+  const std::array off{std::abs(sample.coordinate[0] - place.x), std::abs(sample.coordinate[1] - place.y)};
+  errors.coordinate = {off[0], coordinate_bound_[0]};
+  if (const Held v{off[1], coordinate_bound_[1]}; !(v.ratio() <= errors.coordinate.ratio())) errors.coordinate = v;
+  const double lod = golden::level_of_detail(*texture_, exact.texture);
+  const double worse = std::max(off[0], off[1]);
+  errors.footprints = std::isfinite(lod) ? worse / std::exp2(lod) : 0;
+  const double least = -1 - state_.texture_lod[0], model_lod = std::ldexp(sample.lod, -kLodFraction);
+  if (lod < HUGE_VAL) errors.level = std::max(model_lod, least) - std::max(lod, least);  // else none is known
+  errors.level_size = {std::abs(errors.level), level_bound_};
+
+  const double bounded = golden::bounded_level(state_, lod);
+  const double model_bounded =
+      std::ldexp(std::clamp(sample.lod + sampler_.bias, sampler_.least, sampler_.largest), -kLodFraction);
+  const double unit = std::ldexp(1.0, -sample.place.fraction_bits);
+  const golden::TexelPlace own{static_cast<double>(sample.place.coordinate[0]) * unit,
+                               static_cast<double>(sample.place.coordinate[1]) * unit};
+  const golden::Color s = golden::filtered(*texture_, state_, place, bounded),
+                      c = golden::filtered(*texture_, state_, own, bounded),
+                      l = golden::filtered(*texture_, state_, own, model_bounded), w = weighted_texel(sampler_, sample);
+  errors.filter.bound = kRoundingBound + (filter_of(sampler_, sample.lod).is_linear ? kWeightBound : 0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double d = sample.texel[i];
+    errors.texel.coordinate[i] = grid_units(c[i]) - grid_units(s[i]);
+    errors.texel.level_of_detail[i] = grid_units(l[i]) - grid_units(c[i]);
+    errors.texel.weights[i] = grid_units(w[i]) - grid_units(l[i]);
+    errors.texel.rounding[i] = grid_units(d) - grid_units(w[i]);
+    errors.filter.value = std::max(errors.filter.value, std::abs(d - l[i]));
+  }
+  errors.exact = golden::combined(exact.rgba, s, state_.texture_combine, has_alpha(texture_->format));
+}
+
+}  // namespace halfplane

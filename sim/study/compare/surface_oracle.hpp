@@ -1,0 +1,79 @@
+// What a surface should show at a sample, in real arithmetic through the snapped vertices, and how far what it shows is
+// from that, step by step.
+//
+// Real is binary64: edge values of snapped vertices are exact, all weights have one sign, coordinates count from a vertex,
+// so that nothing cancels; 2^-30 texel where a triangle spans 2^20 of them. The filter is the golden's.
+//
+//   S  filtered at the exact coordinate and level
+//   C  at the hardware's coordinate and the exact level
+//   L  at the hardware's coordinate and level
+//   W  the same with weights of 8 bits, not rounded
+//   D  the texel
+//
+// coordinate = C - S, level_of_detail = L - C, weights = W - L, rounding = D - W: integers of 2^-20 LSB, so that they sum to
+// D - S exactly.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "model/golden/interpolate.hpp"
+#include "model/scene.hpp"
+#include "model/stages/surface.hpp"
+
+namespace halfplane {
+
+/// A figure and the most that it may be; infinite where nothing is promised.
+struct Held {
+  double value = 0, bound = HUGE_VAL;
+  [[nodiscard]] bool holds() const { return !std::isfinite(bound) || value <= bound; }  // of a promise, no NaN does
+  [[nodiscard]] double ratio() const { return value / bound; }
+};
+
+/// The channels of a texel, in 2^-20 LSB of 8 bits.
+struct TexelErrors {
+  std::array<std::int64_t, 4> coordinate{}, level_of_detail{}, weights{}, rounding{};
+};
+
+/// One sample of a surface against the real one.
+struct SurfaceErrors {
+  golden::Color exact{};     ///< what should show, 0...255
+  Held color;                ///< a colour over w, its worst channel, LSB of 8 bits
+  bool has_texture = false;  ///< otherwise nothing of what follows
+  Held coordinate;           ///< the worse of u and v, texels of level 0
+  double footprints = 0;     ///< the same in extents of a pixel on the texture
+  double level = 0;          ///< model less real, levels; what magnifies counts as one level below 0
+  Held level_size;           ///< its size
+  Held filter;               ///< texel less real one at the hardware's own coordinate and level, LSB of 8 bits
+  TexelErrors texel;
+};
+
+class SurfaceOracle {
+ public:
+  /// A triangle of `scene` with has_surface(), not of zero area.
+  SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle);
+  [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
+
+ private:
+  void compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact, SurfaceErrors& errors) const;
+
+  const State& state_;
+  const Texture* texture_;
+  Sampler sampler_;
+  golden::InterpolationRules rules_;
+  golden::Setup<double> setup_;
+  double color_bound_ = HUGE_VAL, level_bound_ = HUGE_VAL;
+  std::array<double, 2> coordinate_bound_{};
+};
+
+/// What real arithmetic allows an attribute over w to be off, texels or LSB: coordinate_error_bound(), which is to first
+/// order in the errors of Q, to all orders. Where Q is not known to be more than its error, whatever its bits can hold.
+[[nodiscard]] double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& format,
+                                  const OverWFormat& attribute, int tile_size);
+
+/// The largest w ratio to which a level of detail is promised to be 0.1 off at most: a code of Q is then 2^-9 of the
+/// smallest or less.
+[[nodiscard]] double largest_level_w_ratio(const PerspectiveFormat& format);
+
+}  // namespace halfplane

@@ -1,0 +1,106 @@
+// The texture unit as a bench drives it. FAULTS of CMakeLists.txt look at fault_i; the unit as it is does not.
+module texture_unit_bench #(
+    parameter int SAMPLES = 4,
+    parameter int Q_BITS = 27,
+    parameter int P_BITS = 28,
+    parameter int MANTISSA = 18,
+    parameter int NARROW = 17,
+    parameter int FRACTION = 8,
+    parameter int CHANNELS = 4,
+    parameter int SOFT = 0,
+    parameter int FILTER = 0,
+    parameter int QUEUE = 16,
+    parameter int IN_FLIGHT = 32,
+    parameter int LINES = 64,
+    parameter int PORT_BITS = 64
+) (
+    input logic       clk_i,
+    input logic       rst_ni,
+    input logic       power_on_ni,
+    /* verilator lint_off UNUSEDSIGNAL */
+    input logic [5:0] fault_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    input logic                          stamp_valid_i,
+    input logic [31:0]                   payload_i,
+    input logic [SAMPLES-1:0]            mask_i,
+    input logic [8*CHANNELS*SAMPLES-1:0] color_i,
+    input logic                          is_triangle_i,
+    input logic [SAMPLES*Q_BITS-1:0]     q_i,
+    input logic [SAMPLES*P_BITS-1:0]     u_i,
+    input logic [SAMPLES*P_BITS-1:0]     v_i,
+    input logic [11:0]                   shift_i,
+    input logic [9:0]                    reach_i,
+    input logic [47:0]                   reference_i,
+    input logic                          sets_state_i,
+    input logic [45:0]                   state_i,
+
+    output logic                          stamp_valid_o,
+    input  logic                          stamp_ready_i,
+    output logic [31:0]                   payload_o,
+    output logic [SAMPLES-1:0]            mask_o,
+    output logic [8*CHANNELS*SAMPLES-1:0] color_o,
+
+    output logic                 request_valid_o,
+    input  logic                 request_ready_i,
+    output logic [31:0]          request_address_o,
+    output logic [5:0]           request_beats_o,
+    input  logic                 answer_valid_i,
+    output logic                 answer_ready_o,
+    input  logic [PORT_BITS-1:0] answer_data_i,
+
+    output logic hit_o,
+    output logic miss_o,
+    output logic idle_o
+);
+
+  texture_unit #(
+      .SAMPLES  (SAMPLES),
+      .Q_BITS   (Q_BITS),
+      .P_BITS   (P_BITS),
+      .MANTISSA (MANTISSA),
+      .NARROW   (NARROW),
+      .FRACTION (FRACTION),
+      .CHANNELS (CHANNELS),
+      .SOFT     (SOFT),
+      .FILTER   (FILTER),
+      .PAYLOAD  (32),
+      .QUEUE    (QUEUE),
+      .IN_FLIGHT(IN_FLIGHT),
+      .LINES    (LINES),
+      .PORT_BITS(PORT_BITS)
+  ) u_texture_unit (
+      .clk_i,
+      .rst_ni,
+      .power_on_ni,
+      .stamp_valid_i,
+      .payload_i,
+      .mask_i,
+      .color_i,
+      .is_triangle_i,
+      .q_i,
+      .u_i,
+      .v_i,
+      .shift_i,
+      .reach_i,
+      .reference_i,
+      .sets_state_i,
+      .state_i,
+      .stamp_valid_o,
+      .stamp_ready_i,
+      .payload_o,
+      .mask_o,
+      .color_o,
+      .request_valid_o,
+      .request_ready_i,
+      .request_address_o,
+      .request_beats_o,
+      .answer_valid_i,
+      .answer_ready_o,
+      .answer_data_i,
+      .hit_o,
+      .miss_o,
+      .idle_o
+  );
+
+endmodule

@@ -1,0 +1,231 @@
+// What the texture unit has to do with a random program, cycle by cycle: the specification gives the colours and requests, the
+// timing when each of them crosses. A run ends by itself, or is cut by a reset.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "model/engines/cycle/texture_timing.hpp"
+#include "model/stages/texture_unit.hpp"
+
+namespace halfplane::texture_test {
+
+/// Of the unit that is verilated.
+struct UnitFormat {
+  int samples, channels;
+  TextureSettings settings;
+  PerspectiveFormat perspective;
+};
+
+struct PlannedStamp {
+  bool sets_state = false, is_triangle = true;
+  TextureState state;
+  std::uint32_t payload = 0;
+  SampleMask mask;
+  std::array<Texel, 16> color{}, combined{};
+  std::array<TextureSample, 16> sample{};
+  TextureFrame frame;
+  Cycle enters = 0, offered = 0, left = 0;
+};
+
+struct PlannedRequest {
+  std::uint32_t address = 0;
+  int beats = 0;
+  TextureLine line{};
+  Cycle offered = 0, asked = 0;
+  std::vector<Cycle> answered;
+};
+
+/// The world around the unit: when it stalls, how late memory is.
+struct World {
+  std::array<Stalls, 4> stalls{};  ///< of stamps in, stamps out, requests, answers
+  int latency = 1;
+  [[nodiscard]] bool is_stalled(int stream, Cycle cycle) const {
+    const Stalls& s = stalls[static_cast<std::size_t>(stream)];
+    return halfplane::is_stalled(s.seed, stream, cycle, s.threshold);
+  }
+  [[nodiscard]] Cycle next_free(int stream, Cycle cycle) const {
+    return stalls[static_cast<std::size_t>(stream)].next_free(1U << stream, cycle);
+  }
+};
+
+struct Plan {
+  std::vector<PlannedStamp> stamps;
+  std::vector<PlannedRequest> requests;
+  Cycle last = 0;  ///< something crosses in it
+  std::uint64_t hits = 0, misses = 0;
+};
+
+using Random = std::mt19937_64;
+inline int pick(Random& random, int low, int high) { return std::uniform_int_distribution(low, high)(random); }
+
+inline World random_world(Random& random) {
+  World world;
+  for (Stalls& stalls : world.stalls) {
+    stalls.seed = random();
+    const int kind = pick(random, 0, 3);
+    stalls.threshold = kind < 2 ? 0 : stall_threshold(kind == 2 ? 0.3 : 0.8);
+  }
+  world.latency = pick(random, 1, 60);
+  return world;
+}
+
+/// Draws random programs: states, stamps with and without texture, coordinates that wander over the texture or jump.
+class Program {
+ public:
+  Program(Random& random, const UnitFormat& format) : random_(random), format_(format) { new_triangle(); }
+
+  [[nodiscard]] PlannedStamp next() {
+    PlannedStamp stamp;
+    stamp.payload = static_cast<std::uint32_t>(random_());
+    if (left_-- <= 0) {
+      left_ = pick(random_, 0, 3) == 0 ? pick(random_, 0, 6) : pick(random_, 20, 150);
+      stamp.sets_state = true;
+      stamp.state = new_state();
+      return stamp;
+    }
+    if (pick(random_, 0, 9) == 0) new_triangle();
+    stamp.is_triangle = pick(random_, 0, 15) != 0;
+    const std::uint64_t all = SampleMask::all(format_.samples).bits();
+    stamp.mask = SampleMask(pick(random_, 0, 2) != 0 ? all : random_() & all);
+    if (pick(random_, 0, 15) == 0) stamp.mask = {};
+    stamp.frame = frame_;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(format_.samples); ++s) {
+      for (std::size_t c = 0; c < 4; ++c)
+        stamp.color[s][c] = static_cast<std::uint8_t>(pick(random_, 0, 3) == 0 ? 255U * (random_() & 1) : random_());
+      if (format_.channels == 3) stamp.color[s][3] = 255;
+      stamp.sample[s] = new_sample();
+    }
+    return stamp;
+  }
+
+ private:
+  TextureState new_state() {
+    TextureState state;
+    state.enable = pick(random_, 0, 5) != 0;
+    state.invalidates = texture_[0].base == 0 || pick(random_, 0, 5) == 0;
+    if (state.invalidates)  // other textures, and other contents
+      for (std::uint32_t n = 0; n < 4; ++n) {
+        const int most = pick(random_, 0, 2) == 0 ? 12 : 6;
+        texture_[n].format = static_cast<TextureFormat>(pick(random_, 0, 5));
+        texture_[n].log2_size = {pick(random_, 0, most), pick(random_, 0, most)};
+        texture_[n].base = n << 28 | static_cast<std::uint32_t>(pick(random_, 1, 4095)) << 6;
+      }
+    const int n = pick(random_, 0, 3);
+    const TextureState& t = texture_[static_cast<std::size_t>(n)];
+    state.format = t.format;
+    state.log2_size = t.log2_size;
+    state.base = t.base;
+    state.combine = static_cast<TextureCombine>(pick(random_, 0, 3));
+    for (TextureWrap& wrap : state.wrap) wrap = static_cast<TextureWrap>(pick(random_, 0, 2));
+    state.is_linear = format_.settings.has_linear && pick(random_, 0, 3) != 0;
+    return state;
+  }
+
+  void new_triangle() {
+    const int q_bits = format_.perspective.q_bits, narrow = format_.perspective.coordinate.narrow_bits;
+    is_wild_ = pick(random_, 0, 7) == 0;
+    step_ = std::ldexp(1.0, pick(random_, -3, is_wild_ ? 8 : 1));
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int reach = pick(random_, 0, 3) == 0 ? pick(random_, 0, kMaxReach) : pick(random_, 4, 10);
+      exponent_[i] = reach - pick(random_, 0, pick(random_, 0, 2) == 0 ? q_bits + 1 : 3);
+      frame_.scale[i] = {1 + reach - exponent_[i] - narrow, reach};
+      frame_.reference[i] = pick(random_, -300, 300) << (pick(random_, 0, 9) == 0 ? 13 : 0);
+      at_[i] = pick(random_, -100, 400);
+    }
+    q_bits_ = pick(random_, 1, q_bits + 1 + format_.perspective.guard_bits);
+  }
+
+  TextureSample new_sample() {
+    TextureSample sample;
+    sample.q = (std::uint64_t{1} << (q_bits_ - 1)) | (random_() & ((std::uint64_t{1} << (q_bits_ - 1)) - 1));
+    const int p_bits = p_local_bits(format_.perspective.coordinate, format_.perspective);
+    for (std::size_t i = 0; i < 2; ++i) {
+      at_[i] += step_ * std::uniform_real_distribution(-0.4, 1.0)(random_);
+      const double p = (at_[i] - frame_.reference[i]) * static_cast<double>(sample.q) * std::ldexp(1.0, -exponent_[i]);
+      const double limit = std::ldexp(1.0, p_bits - 1);
+      sample.p[i] = static_cast<std::int64_t>(std::clamp(std::floor(p), -limit, limit - 1));
+      if (is_wild_ && pick(random_, 0, 3) == 0)
+        sample.p[i] = wrap_signed(static_cast<std::int64_t>(random_()), p_bits) >> pick(random_, 0, p_bits - 1);
+    }
+    return sample;
+  }
+
+  Random& random_;
+  const UnitFormat& format_;
+  int left_ = 0;
+  std::array<TextureState, 4> texture_{};
+  TextureFrame frame_;
+  std::array<int, 2> exponent_{};
+  std::array<double, 2> at_{};
+  double step_ = 1;
+  bool is_wild_ = false;
+  int q_bits_ = 8;
+};
+
+/// A program of so many stamps, begun with the unit's rst_ni high from `start` on.
+inline Plan make_plan(const UnitFormat& format, const World& world, Random& random, int stamps, Cycle start,
+                      Cycle recovered, Cycle answered) {
+  Plan plan;
+  TextureUnit unit(format.settings, format.perspective);
+  TextureTiming timing(format.settings, start, recovered);
+  Program program(random, format);
+  std::uint64_t contents = random();  // of memory
+  const auto read = [&](std::uint32_t address, int beats) {
+    PlannedRequest request{address, beats, {}, 0, 0, {}};
+    for (int i = 0; i < beats * format.settings.port_bits / 8; ++i) {
+      std::uint64_t z = contents + (address + static_cast<std::uint32_t>(i)) * 0x9e3779b97f4a7c15ULL;
+      z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+      request.line[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(z >> 40);
+    }
+    plan.requests.push_back(request);
+    return request.line;
+  };
+  std::size_t asked = 0;
+  const auto memory = make_memory({MemoryKind::fixed, world.latency, 50}, Config{});
+  Stream request_stream(world.stalls[2], 1U << 2), answer_stream(world.stalls[3], 1U << 3);
+  TexturePort port(*memory, request_stream, answer_stream);
+  port.answers_until(answered);
+  const auto ask = [&](Cycle cycle, std::uint32_t address, int beats) {
+    PlannedRequest& request = plan.requests[asked++];
+    const LineTimes times = port.ask(cycle, address, beats, [&](int, Cycle came) { request.answered.push_back(came); });
+    request.offered = cycle;
+    request.asked = times.asked;
+    plan.last = std::max(plan.last, times.answered);
+    return times;
+  };
+  Cycle x = start;
+  for (int n = 0; n < stamps; ++n) {
+    PlannedStamp stamp = program.next();
+    x = world.next_free(0, std::max(x + 1, timing.room()));
+    stamp.enters = x + 1;
+    stamp.combined = stamp.color;
+    if (stamp.sets_state) {
+      if (stamp.state.invalidates) contents = random();
+      unit.set(TextureState::unpack(stamp.state.pack()));
+      stamp.offered = timing.set(x, stamp.state.invalidates);
+    } else if (!unit.is_textured(stamp.is_triangle, stamp.mask)) {
+      stamp.offered = timing.pass(x);
+    } else {
+      const auto lookups = unit.take(stamp.mask, stamp.sample, stamp.frame, stamp.combined, read);
+      bool is_hit = true;
+      for (const TextureLookup& lookup : lookups) {
+        is_hit = is_hit && !lookup.is_miss;
+        plan.misses += lookup.is_miss;
+        if (lookup.ends) plan.hits += is_hit, is_hit = true;
+      }
+      stamp.offered = timing.take(x, lookups, ask);
+    }
+    stamp.left = world.next_free(1, stamp.offered);
+    timing.leave(stamp.left);
+    plan.last = std::max(plan.last, stamp.left);
+    plan.stamps.push_back(stamp);
+  }
+  plan.last = std::max(plan.last, timing.is_empty());
+  return plan;
+}
+
+}  // namespace halfplane::texture_test

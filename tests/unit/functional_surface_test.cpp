@@ -1,0 +1,247 @@
+// Textures and colours over w in the functional engine's lanes against the scalar engine, on every instruction set of this
+// machine.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "../functional_case.hpp"
+#include "../scene_builder.hpp"
+#include "model/engines/functional/frame_renderer.hpp"
+#include "model/engines/functional/surface_constants.hpp"
+#include "sim/scene/builtin.hpp"
+
+namespace halfplane {
+namespace {
+
+using test::expect_all_same;
+using test::Random;
+using test::SceneBuilder;
+
+constexpr int kWidth = 150, kHeight = 100;
+
+Config with_colors(const std::string& name) {
+  Config config = preset(name);
+  config.color_format = ColorFormat::rgba8888;
+  config.stamp_size = std::min(config.stamp_size, 2);
+  return config;
+}
+
+/// Noise: no two texels alike, so that a wrong one shows.
+Texture noise(Random& random, int width, int height, TextureFormat format, Mips mips) {
+  TexelImage image{width, height, {}};
+  for (int i = 0; i < width * height; ++i) {
+    Texel texel{};
+    for (std::uint8_t& channel : texel) channel = static_cast<std::uint8_t>(random.index(256));
+    image.texel.push_back(texel);
+  }
+  return make_texture("t" + std::to_string(random.index(1 << 20)), image, format, mips);
+}
+
+State random_surface(Random& random) {
+  State state = SceneBuilder::window_state();
+  state.depth_test = static_cast<DepthFunc>(random.index(8));
+  state.depth_write = random.index(5) != 0;
+  state.color_write = random.index(8) != 0;
+  state.shade = static_cast<Shade>(random.index(2));
+  state.color_interp = static_cast<ColorInterp>(random.index(2));
+  state.texture_interp = static_cast<TextureInterp>(random.index(2));
+  state.texture_min = static_cast<TextureMin>(random.index(6));
+  state.texture_mag = static_cast<TextureMag>(random.index(2));
+  for (TextureWrap& wrap : state.texture_wrap) wrap = static_cast<TextureWrap>(random.index(3));
+  state.texture_combine = static_cast<TextureCombine>(random.index(4));
+  state.texture_lod[0] = random.index(3) == 0 ? random.between(-16, 16) : random.between(-1, 1);
+  state.texture_lod[1] = random.index(4) == 0 ? random.between(0, 12) : 0;
+  state.texture_lod[2] = random.index(4) == 0 ? random.between(0, 12) : 12;
+  return state;
+}
+
+/// Triangles of any size, `count` of about `size` pixels, w ratios to 2^`octaves`, coordinates to +-`texels`.
+void add_triangles(Scene& scene, Random& random, int count, double size, double octaves, double texels) {
+  const std::size_t first = scene.indices.size();
+  const State& state = scene.states.back();
+  const double side = state.texture ? scene.textures[*state.texture].width() : 1;
+  for (int n = 0; n < count; ++n) {
+    const double left = random.between(-8, kWidth), top = random.between(-8, kHeight);
+    for (int corner = 0; corner < 3; ++corner) {
+      const double x = std::floor(4 * (left + size * random.unit())) / 4,
+                   y = std::floor(4 * (top + size * random.unit())) / 4;
+      Vertex vertex = test::at(x, y, random.unit());
+      vertex.w = std::exp2(random.between(0, octaves));
+      vertex.u = random.between(-texels, texels) / side;
+      vertex.v = random.between(-texels, texels) / side;
+      if (random.index(3) != 0)
+        for (double& channel : vertex.rgba) channel = random.index(256);
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.push_back(vertex);
+    }
+  }
+  scene.commands.push_back(Draw{static_cast<std::uint32_t>(scene.states.size() - 1), 0, Topology::triangles, first,
+                                scene.indices.size() - first, 0});
+}
+
+/// Draws with surfaces, and one in four without.
+Scene random_surfaces(std::uint32_t seed, int draws) {
+  Random random(seed);
+  SceneBuilder builder(kWidth, kHeight);
+  Scene& scene = builder.scene;
+  for (int n = 0; n < draws; ++n) {
+    State state = random_surface(random);
+    if (random.index(4) == 0) state.color_interp = ColorInterp::affine;
+    if (random.index(4) != 0) {
+      const bool is_odd = random.index(5) == 0;
+      const int width = is_odd ? 1 + random.index(40) : 1 << random.index(7), height = 1 << random.index(7);
+      const auto format = static_cast<TextureFormat>(random.index(6));
+      const auto mips = static_cast<Mips>(random.index(3));
+      state.texture = static_cast<std::uint32_t>(scene.textures.size());
+      scene.textures.push_back(noise(random, width, height, format, mips));
+    }
+    scene.states.push_back(state);
+    constexpr std::array kSizes{2.0, 7.0, 17.0, 31.0, 90.0, 200.0};
+    const double size = kSizes[static_cast<std::size_t>(random.index(6))];
+    const int count = size < 40 ? 40 : 3;
+    add_triangles(scene, random, count, size, random.index(3) * 5.0, std::exp2(random.between(0, 12)));
+  }
+  return scene;
+}
+
+TEST(FunctionalSurface, RandomSurfacesAreTheSameOnEveryPath) {
+  for (const char* name : {"embedded", "full", "small"})
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      const Scene scene = random_surfaces(seed, 12);
+      for (const ColorFormat format : {ColorFormat::rgba8888, ColorFormat::rgb565}) {
+        Config config = with_colors(name);
+        config.color_format = format;
+        EXPECT_TRUE(functional::is_supported(scene, config, {}));
+        expect_all_same(scene, config);
+      }
+    }
+}
+
+/// Every number of bits that a configuration may give to 1/w and its reciprocal.
+TEST(FunctionalSurface, EveryPrecisionIsTheSameOnEveryPath) {
+  std::uint32_t seed = 100;
+  for (const int bits : {12, 16, 19, 22, 26})
+    for (const int mantissa_bits : {8, 12, 15, 16, 17, 18, 19, 20}) {
+      Config config = with_colors("embedded");
+      config.perspective_bits = bits;
+      config.perspective_mantissa_bits = mantissa_bits;
+      SCOPED_TRACE("perspective.bits " + std::to_string(bits) + ", mantissa_bits " + std::to_string(mantissa_bits) +
+                   ", seed " + std::to_string(seed));
+      expect_all_same(random_surfaces(seed++, 6), config);
+    }
+}
+
+TEST(FunctionalSurface, TheSmallestAndTheLargestTexturesAreTheSameOnEveryPath) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 64}, {64, 1}, {2, 2}, {4096, 4}, {4, 4096}, {3, 5}})
+    for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror})
+      for (int min = 0; min < 6; ++min) {
+        SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height) + ", wrap " +
+                     std::to_string(static_cast<int>(wrap)) + ", min " + std::to_string(min));
+        Random random(static_cast<std::uint32_t>(width + 7 * height + min));
+        SceneBuilder builder(kWidth, kHeight);
+        State state = SceneBuilder::window_state();
+        state.texture = 0;
+        state.texture_wrap = {wrap, wrap};
+        state.texture_min = static_cast<TextureMin>(min);
+        state.texture_mag = TextureMag::linear;
+        builder.scene.states.push_back(state);
+        builder.scene.textures.push_back(noise(random, width, height, TextureFormat::rgba8888, Mips::box));
+        for (const double texels : {1.0, 100.0, 5000.0, 3e6}) add_triangles(builder.scene, random, 4, 90, 6, texels);
+        expect_all_same(builder.scene, with_colors("full"));
+      }
+}
+
+/// More triangles of a pixel or two in each bin than there are numbers for.
+TEST(FunctionalSurface, MoreSurfacesThanNumbersAreTheSameOnEveryPath) {
+  Random random(7);
+  SceneBuilder builder(kWidth, kHeight);
+  State state = SceneBuilder::window_state();
+  state.texture = 0;
+  builder.scene.states.push_back(state);
+  builder.scene.textures.push_back(noise(random, 32, 32, TextureFormat::rgb565, Mips::none));
+  add_triangles(builder.scene, random, 60000, 3, 2, 40);
+  expect_all_same(builder.scene, with_colors("embedded"));
+}
+
+/// Meshes: shared vertices, clip space, triangles that the near plane and the guard band cut, back faces culled.
+TEST(FunctionalSurface, TexturedMeshesAreTheSameOnEveryPath) {
+  for (const char* name : {"teapot:6", "ball:30", "walk", "blocks:60", "dust:4000", "layers_linear:12"})
+    for (std::uint32_t seed = 1; seed <= 2; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      Scene scene = make_builtin(name, kWidth, kHeight, {}, 1);
+      scene.textures.assign(1, noise(random, 64, 32, TextureFormat::rgba4444, Mips::box));
+      for (Vertex& v : scene.vertices) {
+        v.u = random.between(-2, 2);
+        v.v = random.between(-2, 2);
+      }
+      for (State& state : scene.states) {
+        const State surface = random_surface(random);
+        state.texture = 0;
+        state.color_interp = surface.color_interp;
+        state.texture_min = surface.texture_min;
+        state.texture_mag = surface.texture_mag;
+        state.texture_wrap = surface.texture_wrap;
+        state.texture_combine = surface.texture_combine;
+      }
+      EXPECT_TRUE(functional::is_supported(scene, with_colors("embedded"), {}));
+      expect_all_same(scene, with_colors("embedded"));
+    }
+}
+
+/// That pictures are compared: a row of texels that differ, and eight bits less in a reciprocal.
+TEST(FunctionalSurfaceMustFail, WrongTexelsAndShorterReciprocalsAreSeen) {
+  const Config config = with_colors("embedded");
+  const Scene scene = make_builtin("layers_nearest:4", kWidth, kHeight, {}, 1);
+  const Rendering scalar = render_scalar(scene, config);
+  EXPECT_EQ(render_functional(scene, config).frame.color, scalar.frame.color);
+  Scene changed = scene;
+  for (std::size_t x = 0; x < 256; ++x) changed.textures[0].level[0].code[std::size_t{256} * 40 + x] ^= 1U << 31;  // R
+  EXPECT_NE(render_functional(changed, config).frame.color, scalar.frame.color);
+  Config shorter = config;
+  shorter.perspective_mantissa_bits = 10;
+  EXPECT_NE(render_functional(scene, shorter).frame.color, scalar.frame.color);
+}
+
+/// A record of one slice, as the engine makes them.
+functional::SurfaceConstants constants_of(const Scene& scene, const Config& config, const TexelBlocks* texels) {
+  const Widths widths = derive_widths(config);
+  const PreparedScene prepared(scene);
+  const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
+  const DrawContext context(scene, config, std::get<Draw>(scene.commands.back()), 0);
+  functional::Slice slice;
+  slice.context = &context;
+  functional::Record record;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const Vertex& v = scene.vertices[i];
+    record.v[i] = i;
+    const WindowPosition at = window_position(v, context.state, kHeight);
+    slice.vertices.push_back(functional::row_of(snap_vertex(at, v.rgba, config, {"", 0, i})));
+    slice.surface.push_back({v.w, v.u, v.v});
+  }
+  return {functional::StageSurface(frame, slice, record), frame, texels};
+}
+
+TEST(FunctionalSurface, WhatIsUsualIsDrawnInLanes) {
+  int in_lanes = 0, narrow = 0;
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    Random random(seed);
+    SceneBuilder builder(kWidth, kHeight);
+    State state = SceneBuilder::window_state();
+    state.texture = 0;
+    builder.scene.states.push_back(state);
+    builder.scene.textures.push_back(noise(random, 64, 64, TextureFormat::rgba8888, Mips::none));
+    add_triangles(builder.scene, random, 1, 200, 10, 500);
+    const TexelBlocks texels(builder.scene.textures.front());
+    in_lanes += constants_of(builder.scene, with_colors("embedded"), &texels).are_in_lanes ? 1 : 0;
+    narrow += constants_of(builder.scene, with_colors("full"), &texels).are_in_lanes ? 1 : 0;
+  }
+  EXPECT_EQ(in_lanes, 200);
+  EXPECT_EQ(narrow, 200);
+}
+
+}  // namespace
+}  // namespace halfplane
