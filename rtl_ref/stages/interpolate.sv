@@ -2,8 +2,9 @@
 //
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; then its code, clamped to
-// the range of the vertices. Planes behind depth and colours, 1/w and what lies over it, stay as they are. Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a
-// place for its fragment in the FIFO at the end. A cycle each:
+// the range of the vertices. Planes behind depth and colours, 1/w and what lies over it, stay as they are. Latency 6 cycles,
+// one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
+// end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
 //   samples  from there to each sample

@@ -427,8 +427,10 @@ module triangle_setup (
       logic [1:0]          base;
       logic signed [C-1:0] base_x, base_y;
       assign base         = base_of(anchor_packet.vertex.code);
-      assign base_x       = base[1] ? anchor_packet.vertex.x[2*C+:C] : base[0] ? anchor_packet.vertex.x[C+:C] : anchor_packet.vertex.x[0+:C];
-      assign base_y       = base[1] ? anchor_packet.vertex.y[2*C+:C] : base[0] ? anchor_packet.vertex.y[C+:C] : anchor_packet.vertex.y[0+:C];
+      assign base_x       = base[1] ? anchor_packet.vertex.x[2*C+:C] :
+                            base[0] ? anchor_packet.vertex.x[C+:C] : anchor_packet.vertex.x[0+:C];
+      assign base_y       = base[1] ? anchor_packet.vertex.y[2*C+:C] :
+                            base[0] ? anchor_packet.vertex.y[C+:C] : anchor_packet.vertex.y[0+:C];
       assign sums_over_w  = at_q[SUM+AFFINE+:PLANES-AFFINE] != '0;
       assign moves_over_w = at_q[MOVE+AFFINE+:PLANES-AFFINE] != '0;
       always_ff @(posedge clk_i) begin

@@ -358,6 +358,19 @@ TEST(SuiteMustFail, AnExceptionIsAFailureThatNamesItsUnit) {
   EXPECT_EQ(tally.first->place.unit, 3U);
 }
 
+// The worst depth of another fill rule is measured again by that rule: this unit covers a worse sample by it.
+TEST(Stress, AWorstErrorIsMeasuredByTheFillRuleThatItWasFoundWith) {
+  RunOptions options;
+  options.seed = 3;
+  options.names = {"fill_rules"};
+  options.unit = 102;
+  const auto results = run_cases(options);
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_EQ(results[0].tally.failures, 0u);
+  ASSERT_TRUE(results[0].tally.worst.contains("depth"));
+  EXPECT_NE(results[0].tally.worst.at("depth").place.rule, FillRule::top_left);
+}
+
 TEST(SuiteRun, TheSameWhateverTheNumberOfThreads) {
   RunOptions options;
   options.names = {"fans", "mean_bias", "t_junctions"};

@@ -98,7 +98,7 @@ Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
   unit.measure("coverage", "samples", static_cast<double>(oracle.mismatches), 0, scene);
   const AttributeErrors errors = attribute_errors(scene, unit.config, rendering);
   unit.count_samples(errors.fragments);
-  unit.measure("depth", "LSB", errors.depth, depth_error_bound(unit.config), scene);
+  unit.measure("depth", "LSB", errors.depth, depth_error_bound(unit.config), scene, rule);
   unit.measure("color", "LSB", errors.color, 1, scene);
   return rendering;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "model/engines/scalar.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"
@@ -132,6 +133,15 @@ class Driver {
     checks_ += tally.checks - before;
   }
 
+  /// The one that draws by this rule: all but the usual one are the scalar engine's.
+  [[nodiscard]] Engine engine_of(FillRule rule) const {
+    if (rule == FillRule::top_left) return engine_;
+    return [rule](const Scene& scene, const Config& config, RenderOptions options) {
+      options.rules.fill_rule = rule;
+      return render_scalar(scene, config, options);
+    };
+  }
+
   void judge(CaseResult& result) const {
     Tally& tally = result.tally;
     for (const auto& [name, sums] : tally.bias) {
@@ -146,7 +156,7 @@ class Driver {
     if (const auto depth = tally.worst.find("depth"); depth != tally.worst.end() && depth->second.value > 0) {
       Worst& worst = depth->second;
       if (!worst.place.scene.states.empty())
-        worst.measured = measured_depth_error(worst.place.scene, worst.place.config, engine_);
+        worst.measured = measured_depth_error(worst.place.scene, worst.place.config, engine_of(worst.place.rule));
       if (worst.measured && !(std::abs(worst.value - *worst.measured) <= 0.01 * *worst.measured)) {
         ++tally.failures;
         tally.keep_first({"self-report",

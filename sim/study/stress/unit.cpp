@@ -74,13 +74,15 @@ bool Unit::require(bool holds, std::string_view property, const Scene& scene, st
   return false;
 }
 
-void Unit::measure(std::string_view property, std::string_view unit, double value, double bound, const Scene& scene) {
+void Unit::measure(std::string_view property, std::string_view unit, double value, double bound, const Scene& scene,
+                   FillRule rule) {
   const auto known = tally_.worst.find(property);
   const double ratio = bound > 0 ? value / bound : value;
   // Copying a scene is dear, and a better one is rare.
   if (known == tally_.worst.end() || ratio > known->second.ratio() ||
       (ratio == known->second.ratio() && number < known->second.place.unit))
-    tally_.keep_worst(std::string(property), {value, bound, std::string(unit), {number, config, scene}, std::nullopt});
+    tally_.keep_worst(std::string(property),
+                      {value, bound, std::string(unit), {number, config, scene, rule}, std::nullopt});
   if (property == "depth" && value > tally_.preset_depth[config.preset] && config == preset(config.preset))
     tally_.preset_depth[config.preset] = value;
   if (value <= bound) return;  // false for a NaN
@@ -88,7 +90,7 @@ void Unit::measure(std::string_view property, std::string_view unit, double valu
   if (!tally_.first || number < tally_.first->place.unit)
     tally_.keep_first({std::string(property),
                        std::to_string(value) + " " + std::string(unit) + ", bound " + std::to_string(bound),
-                       {number, config, scene}});
+                       {number, config, scene, rule}});
 }
 
 void Unit::add_bias(std::int64_t error_sum, std::int64_t count) {

@@ -35,7 +35,8 @@ class Random : public halfplane::Random {
 struct Place {
   std::uint64_t unit = 0;
   Config config;
-  Scene scene;  ///< may be empty: not every check draws one
+  Scene scene;                         ///< may be empty: not every check draws one
+  FillRule rule = FillRule::top_left;  ///< by which it was drawn
 };
 
 /// The worst of one property so far.
@@ -120,7 +121,8 @@ class Unit {
   /// A yes-or-no property: counts as one check. `scene` is saved when it does not hold. Returns `holds`.
   bool require(bool holds, std::string_view property, const Scene& scene, std::string_view what);
   /// A measured figure against its bound; the worst of all units is kept with its scene.
-  void measure(std::string_view property, std::string_view unit, double value, double bound, const Scene& scene);
+  void measure(std::string_view property, std::string_view unit, double value, double bound, const Scene& scene,
+               FillRule rule = FillRule::top_left);
   /// One triangle's errors for the mean of this configuration.
   void add_bias(std::int64_t error_sum, std::int64_t count);
 
