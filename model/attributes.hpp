@@ -64,8 +64,20 @@ struct AttributeList {
   constexpr void add(const Attribute& next) { attribute[static_cast<std::size_t>(attributes++)] = next; }
 };
 
-/// Whether a unit looks at alpha. Today that is rop alone, where the stored format keeps it.
-[[nodiscard]] constexpr bool needs_alpha(const Config& config) { return config.color_format == ColorFormat::rgba8888; }
+/// Whether a unit looks at alpha: rop, where the stored format keeps it, a blend, or a test.
+[[nodiscard]] constexpr bool needs_alpha(const Config& config) {
+  return config.color_format == ColorFormat::rgba8888 || config.alpha_units != 0 || config.blend_lanes != 0;
+}
+
+/// Whether rop packs colours where they are written, and not before: they are blended or dithered there.
+[[nodiscard]] constexpr bool packs_at_write(const Config& config) {
+  return config.blend_lanes != 0 || config.dither_units != 0;
+}
+
+/// Whether the hardware tests alpha. Other hardware with alpha.unit interpolates it, and that is all.
+[[nodiscard]] constexpr bool tests_alpha(const Config& config) {
+  return config.alpha_units != 0 && config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined;
+}
 
 /// The list.
 [[nodiscard]] constexpr AttributeList attributes_of(const Config& config) {

@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 2> kFrameClearsNames{"resolve", "flags"};
 constexpr std::array<std::string_view, 2> kFrameOrderNames{"program", "bins"};
 constexpr std::array<std::string_view, 2> kFrameStoreNames{"all", "color"};
 constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
-constexpr std::array<std::string_view, 3> kTextureUnitNames{"off", "nearest", "bilinear"};
+constexpr std::array<std::string_view, 4> kTextureUnitNames{"off", "nearest", "bilinear", "trilinear"};
 
 const std::array kSettings{
     Setting{"subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12, &Config::subpixel_bits},
@@ -64,13 +64,21 @@ const std::array kSettings{
             &Config::frame_store},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
             &Config::setup_kind},
-    Setting{"texture.unit", "off|nearest|bilinear", "what the RTL's texture unit can do; off: it has none", 0, 0,
-            &Config::texture_unit},
+    Setting{"texture.unit", "off|nearest|bilinear|trilinear", "what the RTL's texture unit can do; off: it has none", 0,
+            0, &Config::texture_unit},
     Setting{"texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64,
             &Config::texture_cache_kb},
     Setting{"texture.queue", "samples",
             "between their coordinates and their texels in the texture unit; a power of two", 8, 128,
             &Config::texture_queue},
+    Setting{"alpha.unit", "units",
+            "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither",
+            0, 1, &Config::alpha_units},
+    Setting{"blend.lanes", "samples",
+            "blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks", 0, 4,
+            &Config::blend_lanes},
+    Setting{"dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them", 0, 1,
+            &Config::dither_units},
     Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
             &Config::line_units},
     Setting{"counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0, 1,
@@ -268,6 +276,12 @@ void validate(const Config& config) {
                   "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
     refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
   }
+  refuse_unless(config.blend_lanes == 0 || config.blend_lanes == 1 || config.blend_lanes == 4,
+                "blend.lanes must be 0, 1 or 4");
+  refuse_unless(
+      !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
+      "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
+      "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
                 "a cache of tiles holds at most 256: lower cache.lines");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_order == FrameOrder::program,

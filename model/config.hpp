@@ -38,8 +38,9 @@ enum class FrameStore : int { all, color };
 /// How the RTL does triangle setup: several multipliers and a triangle every few cycles, or one shared multiplier. Same bits.
 enum class SetupKind : int { pipelined, serial };
 
-/// What the RTL's texture unit can do: nothing, as it is not there; nearest texels; linear filters of four as well.
-enum class TextureUnitKind : int { off, nearest, bilinear };
+/// What the RTL's texture unit can do: nothing, as it is not there; nearest texels; linear filters of four as well; levels,
+/// and linear between two of them.
+enum class TextureUnitKind : int { off, nearest, bilinear, trilinear };
 
 /// A hardware configuration. The default is the `embedded` preset.
 struct Config {
@@ -72,6 +73,9 @@ struct Config {
   TextureUnitKind texture_unit = TextureUnitKind::off;
   int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
+  int alpha_units = 0;       ///< 1: alpha is interpolated whatever the format stores, and tested
+  int blend_lanes = 0;       ///< samples that are blended in a clock: 0 (no unit), 1 or 4
+  int dither_units = 0;      ///< 1: the RTL dithers colours of rgb565
   int line_units = 1;        ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
   int counter_units = 1;     ///< 1: the RTL counts its work; 0: its counters are left out
   int counter_bits = 32;     ///< of each of them

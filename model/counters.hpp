@@ -55,7 +55,8 @@ struct Counters {
   std::uint64_t primitives_in = 0, culled = 0, drawn = 0, clipped = 0;
   std::uint64_t covered = 0;         ///< samples that the fine raster produced; untested ones of accepted tiles too
   std::uint64_t depth_passed = 0;    ///< in program order: equal for every engine and skip setting
-  std::uint64_t written = 0;         ///< of those, with depth or colour writes enabled
+  std::uint64_t alpha_killed = 0;    ///< of those, dropped by the alpha test
+  std::uint64_t written = 0;         ///< of the rest, with depth or colour writes enabled
   std::uint64_t samples_tested = 0;  ///< samples whose edge functions were evaluated; scanline: samples visited
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   std::uint64_t bins = 1;            ///< of hardware: parts of the target that the frame is sent in

@@ -35,6 +35,32 @@ requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) StateValue
            static_cast<double>(box.height)}};
 }
 
+/// The numbers of a struct as references, in the order in which they are written.
+constexpr auto numbers_of(
+    auto& alpha) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(alpha)>>, AlphaTest> {
+  return std::tie(alpha.func, alpha.reference);
+}
+constexpr auto numbers_of(
+    auto& blend) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(blend)>>, BlendFactors> {
+  return std::tie(blend.src, blend.dst, blend.src_alpha, blend.dst_alpha);
+}
+constexpr auto numbers_of(
+    auto& s) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(s)>>, Stencil> {
+  return std::tie(s.func, s.reference, s.read_mask, s.write_mask, s.stencil_fails, s.depth_fails, s.passes);
+}
+template <class Value>
+concept HasNumbers = requires(Value& value) {
+  numbers_of(value);
+};
+
+template <HasNumbers Value>
+StateValue to_value(const Value& from, std::size_t words) {
+  StateValue value{words, {}};
+  auto to = value.numbers.begin();
+  std::apply([&to](const auto&... number) { ((*to++ = static_cast<double>(number)), ...); }, numbers_of(from));
+  return value;
+}
+
 template <class Value>
 StateValue to_value(const std::optional<Value>& value, std::size_t words) {
   return value ? to_value(*value, words) : StateValue{words - 1, {}};
@@ -59,8 +85,18 @@ template <class Box>
 requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) void from_value(const StateValue& from, Box& to,
                                                                                      std::size_t) {
   using Number = decltype(to.x);
-  const auto [x, y, width, height] = from.numbers;
+  const auto [x, y, width, height, f, g, h] = from.numbers;
   to = {static_cast<Number>(x), static_cast<Number>(y), static_cast<Number>(width), static_cast<Number>(height)};
+}
+
+template <HasNumbers Value>
+void from_value(const StateValue& from, Value& to, std::size_t) {
+  auto number = from.numbers.begin();
+  std::apply(
+      [&number](auto&... member) {
+        ((member = static_cast<std::remove_reference_t<decltype(member)>>(*number++)), ...);
+      },
+      numbers_of(to));
 }
 
 template <class Value>
@@ -154,6 +190,68 @@ constexpr std::array<Words, 6> texture_min_words{"nearest",
 constexpr std::array<Words, 2> texture_mag_words{"nearest", "linear"};
 constexpr std::array<Words, 3> wrap_words{"repeat", "clamp", "mirror"};
 constexpr std::array<Words, 4> combine_words{"modulate", "replace", "decal", "add"};
+
+constexpr std::array<Words, 15> factor_words{"zero",
+                                             "one",
+                                             "src_color",
+                                             "one_minus_src_color",
+                                             "dst_color",
+                                             "one_minus_dst_color",
+                                             "src_alpha",
+                                             "one_minus_src_alpha",
+                                             "dst_alpha",
+                                             "one_minus_dst_alpha",
+                                             "constant_color",
+                                             "one_minus_constant_color",
+                                             "constant_alpha",
+                                             "one_minus_constant_alpha",
+                                             "src_alpha_saturate"};
+static_assert(factor_words.size() == enumerators<BlendFactor>());
+constexpr std::array<Words, 5> equation_words{"add", "subtract", "reverse_subtract", "min", "max"};
+static_assert(equation_words.size() == enumerators<BlendEquation>());
+constexpr std::array<Words, 8> stencil_op_words{"keep", "zero",   "replace",   "incr",
+                                                "decr", "invert", "incr_wrap", "decr_wrap"};
+static_assert(stencil_op_words.size() == enumerators<StencilOp>());
+constexpr std::array<Words, 1> off_words{"off"};
+constexpr std::array<Words, 1> same_words{"same"};
+
+/// One of a list of words.
+constexpr StateNumber word_number(Words what, std::span<const Words> words, std::size_t repeats = 0) {
+  return {.what = what,
+          .low = 0,
+          .high = static_cast<double>(words.size() - 1),
+          .is_whole = true,
+          .random_step = 1,
+          .random_count = static_cast<unsigned>(words.size()),
+          .words = words,
+          .repeats = repeats};
+}
+/// A code of 8 bits.
+constexpr StateNumber byte_number(Words what, double random_step = 51, unsigned random_count = 6) {
+  return {
+      .what = what, .low = 0, .high = 255, .is_whole = true, .random_step = random_step, .random_count = random_count};
+}
+constexpr std::array<StateNumber, 2> alpha_test_numbers{
+    {word_number("alpha_test's function", depth_words), byte_number("alpha_test's reference")}};
+constexpr std::array<StateNumber, 4> blend_numbers{
+    {word_number("the factor of the source", factor_words), word_number("the factor of the destination", factor_words),
+     word_number("the factor of the source's alpha", factor_words, 2),
+     word_number("the factor of the destination's alpha", factor_words, 2)}};
+constexpr std::array<StateNumber, 2> blend_equation_numbers{{word_number("the equation of the colour", equation_words),
+                                                             word_number("the equation of alpha", equation_words, 1)}};
+constexpr std::array<StateNumber, 4> blend_color_numbers{
+    {byte_number("blend_color's red"), byte_number("blend_color's green"), byte_number("blend_color's blue"),
+     byte_number("blend_color's alpha")}};
+constexpr std::array<StateNumber, 4> color_mask_numbers{
+    {word_number("color_mask of red", switch_words), word_number("color_mask of green", switch_words),
+     word_number("color_mask of blue", switch_words), word_number("color_mask of alpha", switch_words)}};
+// References, masks and stored values near each other, so that all outcomes come up.
+constexpr std::array<StateNumber, 7> stencil_numbers{
+    {word_number("the stencil's function", depth_words), byte_number("the stencil's reference", 1, 4),
+     byte_number("the mask that is read through", 85, 4), byte_number("the mask that is written through", 85, 4),
+     word_number("what to do where the stencil test fails", stencil_op_words),
+     word_number("what to do where the depth test fails", stencil_op_words),
+     word_number("what to do where both pass", stencil_op_words)}};
 
 constexpr std::array<StateNumber, 1> texture_numbers{{
     {"texture", 0, 65535, true, false, 0, 1, 0, {}, true},
@@ -298,6 +396,51 @@ constexpr std::array table{
     row<&State::texture_combine>({.name = "texture_combine",
                                   .words = combine_words,
                                   .purpose = "what becomes of the triangle's colour and the texel"}),
+    row<&State::alpha_test>({.name = "alpha_test",
+                             .numbers = alpha_test_numbers,
+                             .form = "func ref",
+                             .purpose = "how a fragment's alpha, after its texture, must compare with the reference",
+                             .home = StateHome::unit}),
+    row<&State::blend>({.name = "blend",
+                        .words = off_words,
+                        .numbers = blend_numbers,
+                        .form = "src dst [src_a dst_a]",
+                        .purpose = "what the fragment's and the stored colour are multiplied with before they are put "
+                                   "together; without the last two, alpha as the colour",
+                        .home = StateHome::unit}),
+    row<&State::blend_equation>({.name = "blend_equation",
+                                 .numbers = blend_equation_numbers,
+                                 .form = "eq [eq_a]",
+                                 .purpose = "how they are put together; `min` and `max` take no factors",
+                                 .home = StateHome::unit}),
+    row<&State::blend_color>({.name = "blend_color",
+                              .numbers = blend_color_numbers,
+                              .form = "r g b a",
+                              .purpose = "the constant of blend factors",
+                              .home = StateHome::unit}),
+    row<&State::color_mask>({.name = "color_mask",
+                             .numbers = color_mask_numbers,
+                             .form = "r g b a",
+                             .purpose = "which channels `color_write` writes",
+                             .home = StateHome::unit}),
+    row<&State::stencil>({.name = "stencil",
+                          .words = off_words,
+                          .numbers = stencil_numbers,
+                          .form = "func ref read write sfail zfail zpass",
+                          .purpose = "how the reference must compare with the stored stencil value, both through the "
+                                     "mask `read`, and what becomes of that through the mask `write`",
+                          .home = StateHome::unit}),
+    row<&State::stencil_back>({.name = "stencil_back",
+                               .words = same_words,
+                               .numbers = stencil_numbers,
+                               .form = "func ref read write sfail zfail zpass",
+                               .purpose = "the same for triangles that show their back, while `stencil` is not off",
+                               .home = StateHome::unit}),
+    row<&State::dither>({.name = "dither",
+                         .words = switch_words,
+                         .purpose = "whether a colour is spread over its neighbours where it is stored in fewer than 8 "
+                                    "bits a channel",
+                         .home = StateHome::unit}),
 };
 
 static_assert(table.size() == count_members<State>(), "a member of State has no row, or two");

@@ -19,13 +19,13 @@ namespace halfplane {
 enum class StateHome {
   host,       ///< geometry uses it up: the hardware sees what it made of the vertices
   primitive,  ///< rides with the primitive through the hardware
-  slot        ///< to be read from a slot of the hardware's state RAM, whose number rides; no state is there yet
+  unit        ///< held by a unit of the hardware, from a token of kind state on
 };
 
 /// Any state's value in one form: a word of its list, or numbers.
 struct StateValue {
   std::size_t word = 0;             ///< place in DrawState::words; words.size(): `numbers` say it
-  std::array<double, 4> numbers{};  ///< as many as DrawState::numbers has; the others are 0
+  std::array<double, 7> numbers{};  ///< as many as DrawState::numbers has; the others are 0
   bool operator==(const StateValue&) const = default;
 };
 
@@ -40,6 +40,8 @@ struct StateNumber {
   unsigned random_count = 1;
   std::span<const std::string_view> words{};  ///< written as one of these: the number is its place
   bool is_texture = false;                    ///< an index into Scene::textures, written as a name
+  /// May be left out with all behind it: it is then the number that stands so many places before it. 0: may not.
+  std::size_t repeats = 0;
 };
 
 /// A row of the table.

@@ -1,8 +1,7 @@
 // What happens to a fragment once its attributes are known: the arithmetic of each operation, once.
 //
-// In program order of a fragment: the tests own what they compare (today depth; stencil and alpha belong beside it),
-// then the colour (today it is packed; blending belongs before that), then the write masks. Nothing here knows packets,
-// tiles or memories: stages/depth_test and stages/rop put the pieces together for stamps, and the engines for what they
+// In program order of a fragment: the tests own what they compare (depth; stencil_ops.hpp), then the colour
+// (color_ops.hpp), then the write masks. Nothing here knows packets, tiles or memories: stages/depth_test and stages/rop put the pieces together for stamps, and the engines for what they
 // hold at once.
 // Lane: std::uint32_t, or a vector of them. The scalar instance is the specification; a test holds vectors against it.
 #pragma once
@@ -10,11 +9,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
+#include <optional>
 
+#include "color_ops.hpp"
 #include "config.hpp"
 #include "packets.hpp"
 #include "scene.hpp"
+#include "stencil_ops.hpp"
 
 namespace halfplane {
 
@@ -23,25 +24,49 @@ namespace halfplane {
 /// It rides with its primitives.
 using FragmentState = PrimitiveState;
 
-[[nodiscard]] constexpr FragmentState fragment_state(const State& state) {
-  return {state.depth_test, state.depth_write, state.color_write};
+[[nodiscard]] constexpr FragmentState fragment_state(const State& state, ColorFormat format) {
+  return {state.depth_test, state.depth_write, writes_color(state, format)};
 }
 
-// --- lanes ----------------------------------------------------------------------------------------------------------
-
-/// The result of a comparison of lanes as a mask: all bits set where it holds.
-template <class Lane, class Comparison>
-[[nodiscard]] constexpr Lane lane_mask(const Comparison& holds) {
-  if constexpr (std::is_integral_v<Lane>)
-    return holds ? static_cast<Lane>(~Lane{}) : Lane{};
-  else
-    return (Lane)holds;  // as wide
+/// Whether a state looks at a fragment's alpha.
+[[nodiscard]] constexpr bool looks_at_alpha(const State& state) {
+  if (state.alpha_test.func != DepthFunc::always) return true;
+  if (!state.blend) return false;
+  const auto is_alpha = [](BlendFactor f) {
+    return f == BlendFactor::src_alpha || f == BlendFactor::one_minus_src_alpha || f == BlendFactor::src_alpha_saturate;
+  };
+  return is_alpha(state.blend->src) ||
+         is_alpha(state.blend->dst);  // what becomes of alpha matters to a format with one
 }
 
-/// `value` where the mask is set, `stored` elsewhere.
-template <class Lane>
-[[nodiscard]] constexpr Lane write_where(const Lane& mask, const Lane& value, const Lane& stored) {
-  return (value & mask) | (stored & ~mask);
+/// `config` with a plane of alpha where a draw of `scene` looks at it. The software engines have all units; a plane more
+/// changes no bit of the others.
+[[nodiscard]] inline Config with_alpha(Config config, const Scene& scene) {
+  for (const State& state : scene.states)
+    if (looks_at_alpha(state)) config.alpha_units = 1;
+  return config;
+}
+
+/// All of it.
+struct FragmentOps {
+  FragmentState state;
+  AlphaTest alpha;
+  std::optional<StencilSides> stencil;
+  ColorOps color;
+
+  /// Nothing but the depth test and colours that replace each other.
+  [[nodiscard]] constexpr bool is_plain() const {
+    return alpha.func == DepthFunc::always && !stencil && (!state.color_write || color.is_plain());
+  }
+};
+
+[[nodiscard]] constexpr FragmentOps fragment_ops(const State& state, ColorFormat format) {
+  return {fragment_state(state, format), state.alpha_test, stencil_sides(state), color_ops(state, format)};
+}
+
+/// Whether a state does no more with its fragments than the depth test and colours that replace each other.
+[[nodiscard]] constexpr bool has_plain_fragments(const State& state, const Config& config) {
+  return fragment_ops(state, config.color_format).is_plain();
 }
 
 // --- tests ----------------------------------------------------------------------------------------------------------
@@ -96,55 +121,56 @@ struct DepthOutcomes {
 /// Whether a fragment that passes may have a larger code than the one it replaces.
 [[nodiscard]] constexpr bool can_raise_depth(DepthFunc func) { return depth_passes(func, 1, 0); }
 
-// --- colour ---------------------------------------------------------------------------------------------------------
-
-/// The nearest 5- or 6-bit code of an 8-bit one: floor(c * 31 / 255 + 1/2), or with 63, as one multiply, add and shift
-/// (exact for all 256 inputs; tested).
-template <class Lane>
-[[nodiscard]] constexpr Lane to_5_bits(const Lane& c) {
-  return (c * 249 + 1014) >> 11;
-}
-template <class Lane>
-[[nodiscard]] constexpr Lane to_6_bits(const Lane& c) {
-  return (c * 253 + 505) >> 10;
-}
-
-template <class Lane>
-[[nodiscard]] constexpr Lane pack_rgb565(const Lane& r, const Lane& g, const Lane& b) {
-  return to_5_bits(r) << 11 | to_6_bits(g) << 5 | to_5_bits(b);
-}
-template <class Lane>
-[[nodiscard]] constexpr Lane pack_rgba8888(const Lane& r, const Lane& g, const Lane& b, const Lane& a) {
-  return r | g << 8 | b << 16 | a << 24;
-}
-
-/// 8-bit codes R, G, B, A to the stored code. rgb565 does not look at the last.
-template <class Lane>
-[[nodiscard]] constexpr Lane pack_color(ColorFormat format, const std::array<Lane, 4>& c) {
-  return format == ColorFormat::rgb565 ? pack_rgb565(c[0], c[1], c[2]) : pack_rgba8888(c[0], c[1], c[2], c[3]);
-}
-[[nodiscard]] constexpr std::uint32_t pack_color(ColorFormat format, const std::array<std::uint8_t, 4>& c) {
-  return pack_color(format, std::array<std::uint32_t, 4>{c[0], c[1], c[2], c[3]});
-}
-
-/// A stored code taken apart: R, G, B, A as they are stored, 5, 6, 5 bits or 8 each. Of rgb565 the last is 0.
-template <class Lane>
-[[nodiscard]] constexpr std::array<Lane, 4> unpack_color(ColorFormat format, const Lane& color) {
-  if (format == ColorFormat::rgb565) return {color >> 11 & 31, color >> 5 & 63, color & 31, Lane{}};
-  return {color & 255, color >> 8 & 255, color >> 16 & 255, color >> 24};
-}
-
 // --- one fragment, all of it ----------------------------------------------------------------------------------------
 
-/// Runs the operations on one fragment, in order, on the codes stored at its pixel. Returns whether it passed the tests.
-/// `depth`: the code in the stored format. `color()` gives the four 8-bit codes; asked only when colour is written.
+/// What comes of a fragment.
+enum class Fate {
+  failed,  ///< the stencil or the depth test
+  killed,  ///< passed those, but not the alpha test
+  passed
+};
+
+/// What is stored at a fragment's pixel.
+struct StoredPixel {
+  std::uint32_t& depth;
+  std::uint32_t& color;
+  std::uint8_t& stencil;
+};
+
+/// A fragment as it comes to the operations.
+struct TestedFragment {
+  std::uint32_t depth = 0;  ///< the code in the stored format
+  int x = 0, y = 0;         ///< pixels: dithering
+  bool is_back = false;     ///< of a triangle that shows its back
+};
+
+/// Runs the operations on one fragment, in order, on what is stored at its pixel. `color()` gives the four 8-bit codes; asked
+/// only when somebody looks at them. What the alpha test drops leaves nothing behind, in the stencil neither.
 template <class Color>
-constexpr bool apply_fragment(const FragmentState& state, ColorFormat format, std::uint32_t depth, Color&& color,
-                              std::uint32_t& stored_depth, std::uint32_t& stored_color) {
-  if (!depth_passes(state.depth_test, depth, stored_depth)) return false;
-  if (state.depth_write) stored_depth = depth;
-  if (state.color_write) stored_color = pack_color(format, color());
-  return true;
+constexpr Fate apply_fragment(const FragmentOps& ops, ColorFormat format, const TestedFragment& fragment, Color&& color,
+                              const StoredPixel& stored) {
+  using Code = std::uint32_t;
+  const Stencil* stencil = ops.stencil ? &(*ops.stencil)[fragment.is_back ? 1 : 0] : nullptr;
+  const bool stencil_passes =
+      stencil == nullptr || depth_passes(stencil->func, Code{stencil->reference} & stencil->read_mask,
+                                         Code{stored.stencil} & stencil->read_mask);
+  const bool passes = stencil_passes && depth_passes(ops.state.depth_test, fragment.depth, stored.depth);
+  const bool has_side_effects = stencil != nullptr && writes_stencil(*stencil);
+  if (!passes && !has_side_effects) return Fate::failed;
+  Channels<Code> source{};
+  const bool tests_alpha = ops.alpha.func != DepthFunc::always;
+  if (tests_alpha || (passes && ops.state.color_write)) source = color();
+  if (tests_alpha && !depth_passes(ops.alpha.func, source[3], Code{ops.alpha.reference}))
+    return passes ? Fate::killed : Fate::failed;
+  if (has_side_effects) {
+    const StencilOp op = !stencil_passes ? stencil->stencil_fails : passes ? stencil->passes : stencil->depth_fails;
+    stored.stencil = static_cast<std::uint8_t>(apply_stencil<Code>(op, *stencil, Code{stored.stencil}));
+  }
+  if (!passes) return Fate::failed;
+  if (ops.state.depth_write) stored.depth = fragment.depth;
+  if (ops.state.color_write)
+    stored.color = store_color<Code>(ops.color, format, source, stored.color, dither_threshold(fragment.x, fragment.y));
+  return Fate::passed;
 }
 
 }  // namespace halfplane

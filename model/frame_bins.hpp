@@ -53,6 +53,9 @@ class FrameBins {
     std::uint32_t primitive = 0, command = 0;
     std::uint32_t line = kNoLine;  ///< index into lines_
     std::uint64_t texture_state = 0;
+    ColorWords colors{};
+    std::uint32_t texture_levels = 0;
+    std::optional<TextureLines> texture_lines{};
   };
 
   [[nodiscard]] PixelBounds box_of(std::size_t bin) const;

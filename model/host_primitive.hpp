@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "packets.hpp"
+#include "stages/color_packets.hpp"
+#include "stages/texture_levels.hpp"
 
 namespace halfplane {
 
@@ -17,6 +19,9 @@ struct HostPrimitive {
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
   bool is_part = false;                ///< what lies in one bin: the host has counted the whole
   std::uint64_t texture_state = 0;     ///< of a triangle: what the texture unit must be set to (TextureState)
+  ColorWords colors{};                 ///< of what is drawn: what the units behind it must be set to
+  std::uint32_t texture_levels = 0;    ///< likewise TextureLevels
+  std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
 };
 
 }  // namespace halfplane

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "fragment_ops.hpp"
+#include "stages/color_packets.hpp"
+#include "stages/state_packets.hpp"
 #include "stages/surface.hpp"
 #include "stages/texture_packets.hpp"
 
@@ -42,13 +44,13 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
   if (config.texture_unit == TextureUnitKind::off)
     return "texture: this hardware has no texture unit; use --set texture.unit=nearest";
   const bool is_linear = state.texture_min == TextureMin::linear && state.texture_mag == TextureMag::linear;
-  if (is_linear && config.texture_unit != TextureUnitKind::bilinear)
+  if (is_linear && config.texture_unit == TextureUnitKind::nearest)
     return "texture_min and texture_mag: this texture unit takes nearest texels alone; use nearest, or --set "
            "texture.unit=bilinear";
-  if (!is_linear && (state.texture_min != TextureMin::nearest || state.texture_mag != TextureMag::nearest))
+  if (config.texture_unit != TextureUnitKind::trilinear && !is_linear &&
+      (state.texture_min != TextureMin::nearest || state.texture_mag != TextureMag::nearest))
     return "texture_min and texture_mag: this texture unit knows no levels, nor which of the two counts; make both "
-           "nearest "
-           "or both linear";
+           "nearest or both linear, or use --set texture.unit=trilinear";
   const Texture& texture = scene.textures[*state.texture];
   if (!TextureAxis{texture.width()}.is_power_of_two() || !TextureAxis{texture.height()}.is_power_of_two())
     return "texture: " + texture.name + " has " + std::to_string(texture.width()) + "x" +
@@ -77,7 +79,7 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   validate(config);
   check_hardware_scene(scene, config);
   widths_ = derive_widths(config);
-  if (has_texture_planes(config)) textures_.emplace(scene);
+  if (has_texture_planes(config)) textures_.emplace(scene, config);
   if (config.frame_order == FrameOrder::bins) {
     bins_.emplace(widths_, scene.width, scene.height);
     counters_.bins = 0;
@@ -92,23 +94,61 @@ HostStream::HostStream(const Scene& scene, const Config& config)
 }
 
 std::optional<HostPrimitive> HostStream::next() {
-  std::optional<HostPrimitive> primitive = held_ ? std::exchange(held_, std::nullopt) : next_primitive();
-  if (!textures_ || !primitive || primitive->packet.kind != PrimitiveKind::triangle) return primitive;
-  if (has_set_texture_ && primitive->texture_state == texture_state_) return primitive;
-  held_ = std::move(primitive);
-  return set_texture(held_->texture_state);
+  if (in_front_.empty()) {
+    std::optional<HostPrimitive> primitive = next_primitive();
+    if (!primitive) return primitive;
+    set_colors(*primitive);
+    if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) set_texture(*primitive);
+    in_front_.push_back(std::move(*primitive));
+  }
+  HostPrimitive first = std::move(in_front_.front());
+  in_front_.pop_front();
+  return first;
 }
 
-/// What the texture unit does from here on. The first one of a scene drops what is left of another one's texels.
-HostPrimitive HostStream::set_texture(std::uint64_t state) {
-  texture_state_ = state;
+/// The registers of colours that have another value than wanted. At the start of a scene nobody knows what they hold.
+void HostStream::set_colors(const HostPrimitive& primitive) {
+  const auto set = [&](StateRegister which, std::optional<std::uint32_t> ColorWords::*word) {
+    const auto& wanted = primitive.colors.*word;
+    if (!wanted || wanted == colors_.*word) return;
+    colors_.*word = wanted;
+    in_front_.push_back(state_token(which, *wanted, primitive));
+  };
+  set(StateRegister::color_ops, &ColorWords::ops);
+  set(StateRegister::blend_constant, &ColorWords::constant);
+  set(StateRegister::alpha_test, &ColorWords::alpha);
+}
+
+/// What the texture unit must be told in front of a triangle. The first state of a scene drops what is left of another one's
+/// texels.
+void HostStream::set_texture(const HostPrimitive& triangle) {
+  if (!has_set_texture_ || triangle.texture_state != texture_state_) {
+    texture_state_ = triangle.texture_state;
+    TextureState next = TextureState::unpack(texture_state_);
+    next.invalidates = !std::exchange(has_set_texture_, true);
+    in_front_.push_back(state_token(StateRegister::texture, next.pack(), triangle));
+  }
+  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(texture_state_).enable) return;
+  if (triangle.texture_levels != texture_levels_) {
+    texture_levels_ = triangle.texture_levels;
+    in_front_.push_back(state_token(StateRegister::texture_levels, triangle.texture_levels, triangle));
+  }
+  if (!triangle.texture_lines || triangle.texture_lines == texture_lines_) return;
+  texture_lines_ = triangle.texture_lines;
+  const int part_bits = line_part_bits(state_word_bits(widths_));
+  for (int n = 0; n < line_parts(part_bits); ++n)
+    in_front_.push_back(
+        state_token(StateRegister::texture_lines, line_part(*triangle.texture_lines, part_bits, n), triangle));
+}
+
+/// A register of a unit has its value from here on.
+HostPrimitive HostStream::state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const {
   PrimitivePacket packet;
-  packet.kind = PrimitiveKind::texture;
-  TextureState next = TextureState::unpack(state);
-  next.invalidates = !std::exchange(has_set_texture_, true);
-  for (auto& code : packet.vertex.code) set_texture_word(code, next.pack(), widths_);
-  HostPrimitive out = host_primitive(packet, held_->primitive);
-  out.command = held_->command;
+  packet.kind = PrimitiveKind::state;
+  packet.state = sets_register(which);
+  for (auto& code : packet.vertex.code) set_state_word(code, word, widths_);
+  HostPrimitive out = host_primitive(packet, in_front_of.primitive);
+  out.command = in_front_of.command;
   return out;
 }
 
@@ -187,14 +227,14 @@ void HostStream::send_outline(const AssembledPrimitive& assembled) {
   for (const PointPrimitive& point : outline_.points) {
     PrimitivePacket packet = draw_packet(PrimitiveKind::point, point.box);
     packet.vertex.code.fill(point.drawn.at.code);
-    send(host_primitive(packet, primitive_));
+    send(drawn_primitive(packet, primitive_));
   }
 }
 
 void HostStream::send_line(const LinePrimitive& line) {
   const LineSetup& setup = line.setup;
   HostPrimitive place =
-      host_primitive(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
+      drawn_primitive(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
   if (bins_) {
     const Rect& rect = context_->rect;
     bins_->add(place, {line.drawn.start,
@@ -213,7 +253,7 @@ PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& b
   const State& state = context_->state;
   PrimitivePacket packet;
   packet.kind = kind;
-  packet.state = fragment_state(state);
+  packet.state = fragment_state(state, config_.color_format);
   packet.box = to_box(box);
   return packet;
 }
@@ -226,7 +266,7 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   packet.cull = is_culled ? Cull::none : state.cull;
   packet.front_cw = state.front == FrontFace::cw;
   set_vertices(packet.vertex, triangle.v);
-  HostPrimitive out = host_primitive(packet, triangle.primitive);
+  HostPrimitive out = drawn_primitive(packet, triangle.primitive);
   if (textures_ && state.texture) set_coordinates(triangle, out);
   send(out);
 }
@@ -252,6 +292,28 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) c
     packet.coordinates.origin[axis] = coordinates.reference[axis];
   }
   out.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
+  if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
+}
+
+/// And what it must know of levels. A triangle that the hardware drops needs none.
+void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& coordinates,
+                            const PerspectiveFormat& format, HostPrimitive& out) const {
+  const State& state = context_->state;
+  const TextureLevels levels = texture_levels(scene_.textures[*state.texture], state);
+  out.texture_levels = levels.pack();
+  const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
+  if (!needs_level(levels, state.texture_mag) || cull(area, out.packet.cull, state.front) != CullResult::keep) return;
+  const auto order = canonical_order(triangle.v, area);
+  std::array<SnappedVertex, 3> v;
+  QCodes q{};
+  std::array<std::array<double, 3>, 2> texels{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    v[i] = triangle.v[order[i]];
+    q[i] = coordinates.q[order[i]];
+    for (const std::size_t axis : {0U, 1U}) texels[axis][i] = coordinates.texels[axis][order[i]];
+  }
+  const LodSetup lod = setup_lod(v, std::abs(area), q, texels, format.guard_bits, widths_.grid_bits);
+  out.texture_lines = TextureLines::pack(lod, Sampler(scene_.textures[*state.texture], state).bias);
 }
 
 /// Of the whole target; of no plane so far.
@@ -268,12 +330,21 @@ void HostStream::send_clear(const Clear& command) {
   PrimitivePacket packet = is_fast ? fast_clear() : flat_packet(PrimitiveKind::rectangle, rect);
   if (command.depth) clear_depth(packet, *command.depth, config_);
   if (command.color) clear_color(packet, *command.color, config_);
-  send(host_primitive(packet, primitive_));
+  HostPrimitive out = host_primitive(packet, primitive_);
+  if (!is_fast) out.colors = color_words({packet.state, {}, {}, {}}, config_);  // whatever has been drawn before
+  send(out);
 }
 
 HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out{packet, {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
   out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  return out;
+}
+
+/// Of the draw at work.
+HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
+  HostPrimitive out = host_primitive(packet, primitive);
+  out.colors = color_words(fragment_ops(context_->state, config_.color_format), config_);
   return out;
 }
 
@@ -298,6 +369,27 @@ double HostStream::progress() const {
   return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
 }
 
+namespace {
+
+/// What of a state's operations this hardware does not have, and the mend; empty: it has all.
+std::string fragment_fault(const State& state, const Config& config) {
+  const FragmentOps ops = fragment_ops(state, config.color_format);
+  const std::string none = ", but this hardware has no unit for it; leave it out";
+  const auto unit = [](const char* setting) {
+    return std::string(", but this hardware has no unit for it; use --set ") + setting +
+           " (with cache.kind=blocks and setup.kind=pipelined), or leave it out";
+  };
+  if (ops.alpha.func != DepthFunc::always && !tests_alpha(config)) return "alpha_test" + unit("alpha.unit=1");
+  if (ops.stencil) return "stencil" + none;
+  if (!ops.state.color_write) return {};
+  if (ops.color.blends() && config.blend_lanes == 0) return "blend" + unit("blend.lanes=4");
+  if (ops.color.reads_stored() && config.blend_lanes == 0) return "color_mask of some channels" + unit("blend.lanes=4");
+  if (ops.color.dithers && config.dither_units == 0) return "dither" + unit("dither.unit=1");
+  return {};
+}
+
+}  // namespace
+
 void check_hardware_scene(const Scene& scene, const Config& config) {
   check_scene(scene, config);
   if (!DepthEncode(config, scene.planes).is_identity())
@@ -312,6 +404,9 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
       if (const std::string fault = surface_fault(scene, state, config); !fault.empty())
         throw InputError(place_of_draw(scene.name, draw->line) + ": state " + fault +
                          "; or use the functional, scalar or golden engine");
+    if (const std::string fault = fragment_fault(state, config); !fault.empty())
+      throw InputError(place_of_draw(scene.name, draw->line) + ": state " + fault +
+                       "; or use the functional, scalar or golden engine");
     if (config.line_units == 0 && drawn_as(state, draw->topology) == PrimitiveType::line)
       throw InputError(place_of_draw(scene.name, draw->line) +
                        ": lines, but this hardware has no unit that draws them; use --set lines.unit=1");

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "host_primitive.hpp"
 #include "pipeline.hpp"
 #include "stages/line_setup.hpp"
+#include "stages/surface.hpp"
 #include "texture_memory.hpp"
 
 namespace halfplane {
@@ -46,12 +48,17 @@ class HostStream {
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
   void set_coordinates(const Triangle& triangle, HostPrimitive& out) const;
-  [[nodiscard]] HostPrimitive set_texture(std::uint64_t state);
+  void set_colors(const HostPrimitive& primitive);
+  void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
+                  HostPrimitive& out) const;
+  void set_texture(const HostPrimitive& triangle);
+  [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
   [[nodiscard]] std::optional<HostPrimitive> next_primitive();
   void send_line(const LinePrimitive& line);
   [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
   [[nodiscard]] PrimitivePacket fast_clear() const;
   [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
   void send(const HostPrimitive& primitive);
 
   const Scene& scene_;
@@ -70,10 +77,13 @@ class HostStream {
   std::optional<FrameBins> bins_;              ///< of frame.order bins: what waits for the frame to be complete
   std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
   std::size_t pending_first_ = 0;
-  std::optional<TextureMemory> textures_;  ///< with a texture unit
-  std::uint64_t texture_state_ = 0;        ///< what the unit was last set to
-  bool has_set_texture_ = false;           ///< it was, since the scene began
-  std::optional<HostPrimitive> held_;      ///< waits for that
+  std::optional<TextureMemory> textures_;        ///< with a texture unit
+  std::uint64_t texture_state_ = 0;              ///< what the unit was last set to
+  bool has_set_texture_ = false;                 ///< it was, since the scene began
+  std::optional<std::uint32_t> texture_levels_;  ///< of one with levels, likewise
+  std::optional<TextureLines> texture_lines_;
+  ColorWords colors_;                            ///< what else has been set since the scene began
+  std::deque<HostPrimitive> in_front_;  ///< what does so, and the triangle that waits for it
 };
 
 /// What the hardware relies on and cannot see: behind reset a fast clear of both planes, without which the flags of tiles are

@@ -27,7 +27,7 @@ template <class T>
   return static_cast<T>(bits);
 }
 
-/// Elements of a field in one configuration; 1 for a plain one. Of an array with an element for each plane: those of its
+/// Elements of a field in one configuration; 1 for a plain one, 0 if the configuration does not have it. Of an array with an element for each plane: those of its
 /// outermost dimension, if there is another one, else 1.
 template <class Packet, class Member, class Place>
 [[nodiscard]] constexpr std::size_t element_count(const Field<Packet, Member, Place>& field, const Widths& widths) {
@@ -50,7 +50,7 @@ constexpr void for_each_value_in_order(Packet& packet, const Widths& widths, Vis
   const auto elements = [&](auto& member, const Width& width, std::size_t count) {
     if constexpr (kArraySize<std::remove_cvref_t<decltype(member)>> != 0)
       for (std::size_t i = 0; i < count; ++i) visit(member[i], width);
-    else
+    else if (count != 0)
       visit(member, width);
   };
   const auto one = [&](const auto& field) {
@@ -184,13 +184,14 @@ struct ElementName {
   Width width;
 };
 
-/// Every element of a packet type, the highest field first, elements of an array in order.
+/// Every element of a packet type that has bits, the highest field first, elements of an array in order.
 template <class Packet>
 [[nodiscard]] std::vector<ElementName> element_names(const Widths& widths) {
   std::vector<ElementName> names;
   const auto planes = [&](const std::string& name, Width AttributeWidths::*width) {
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
-      names.push_back({name + "[" + std::string(widths.plane_name(p)) + "]", widths.of_plane(p).*width});
+      if ((widths.of_plane(p).*width).bits != 0)
+        names.push_back({name + "[" + std::string(widths.plane_name(p)) + "]", widths.of_plane(p).*width});
   };
   const auto one = [&]<class P, class Member, class Place>(const Field<P, Member, Place>& field) {
     const std::string name(field.name);

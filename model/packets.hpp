@@ -129,8 +129,22 @@ enum class PrimitiveKind : std::uint8_t {
   flush = 3,       ///< writes back all that is on the chip; the box is the whole target
   point = 4,       ///< a rectangle that is counted
   line = 6,        ///< the place of a line in program order; its pixels come from line_raster
-  texture = 7      ///< what the texture unit does from here on: a word, spread over the codes (TextureState)
+  state = 7  ///< what a unit behind the depth test does from here on: a StateRegister, which stands in the place of the
+             ///< depth test, and its value, spread over the codes (stages/state_packets.hpp)
 };
+
+/// What a token of kind state sets.
+enum class StateRegister : std::uint8_t {
+  texture = 0,         ///< TextureState
+  texture_levels = 1,  ///< TextureLevels
+  texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
+  color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
+  blend_constant = 5,  ///< that
+  alpha_test = 6       ///< AlphaTest
+};
+
+/// Whether it is one of the texture unit's.
+[[nodiscard]] constexpr bool is_of_texture(StateRegister which) { return which < StateRegister::color_ops; }
 
 /// What the counters count; clears and flushes are the host's own.
 [[nodiscard]] constexpr bool is_counted(PrimitiveKind kind) {
@@ -147,9 +161,9 @@ enum class HizUpdate : std::uint8_t { none, set, clear };
 enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags };
 inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
 
-/// Where the depth test finds what is stored under a stamp.
+/// Where the depth test finds what is stored under a stamp; and where colour operations do.
 enum class DepthSource : std::uint8_t {
-  none,    ///< it does not look: `always`, with a full mask
+  none,    ///< it does not look: `always`, with a full mask; operations that store the fragment's colour
   chip,    ///< on the chip
   clear,   ///< the last fast clear's value
   memory,  ///< a read
@@ -167,11 +181,24 @@ template <>
 struct WireEnum<PrimitiveKind> {
   static constexpr std::string_view name = "primitive_kind";
   static constexpr Width Widths::*width = &Widths::kind;
-  static constexpr Enumerator<PrimitiveKind> all[] = {
-      {PrimitiveKind::triangle, "triangle"},     {PrimitiveKind::rectangle, "rectangle"},
-      {PrimitiveKind::fast_clear, "fast_clear"}, {PrimitiveKind::flush, "flush"},
-      {PrimitiveKind::point, "point"},           {PrimitiveKind::line, "line"},
-      {PrimitiveKind::texture, "texture"}};
+  static constexpr Enumerator<PrimitiveKind> all[] = {{PrimitiveKind::triangle, "triangle"},
+                                                      {PrimitiveKind::rectangle, "rectangle"},
+                                                      {PrimitiveKind::fast_clear, "fast_clear"},
+                                                      {PrimitiveKind::flush, "flush"},
+                                                      {PrimitiveKind::point, "point"},
+                                                      {PrimitiveKind::line, "line"},
+                                                      {PrimitiveKind::state, "state"}};
+};
+template <>
+struct WireEnum<StateRegister> {
+  static constexpr std::string_view name = "state_register";
+  static constexpr Width Widths::*width = &Widths::depth_func;  // in whose place it stands
+  static constexpr Enumerator<StateRegister> all[] = {{StateRegister::texture, "texture"},
+                                                      {StateRegister::texture_levels, "texture_levels"},
+                                                      {StateRegister::texture_lines, "texture_lines"},
+                                                      {StateRegister::color_ops, "color_ops"},
+                                                      {StateRegister::blend_constant, "blend_constant"},
+                                                      {StateRegister::alpha_test, "alpha_test"}};
 };
 template <>
 struct WireEnum<DepthFunc> {
@@ -239,7 +266,7 @@ struct TileBox {
 /// The states that ride with a primitive.
 struct PrimitiveState {
   PACKET(PrimitiveState, "primitive_state");
-  FIELD(DepthFunc, depth_test, &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth()
+  FIELD(DepthFunc, depth_test, &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth(); for a state: which
   FIELD(bool, depth_write, &Widths::flag)            ///< for a fast clear: clears depth
   FIELD(bool, color_write, &Widths::flag)            ///< likewise
   PACKET_END
@@ -427,8 +454,9 @@ struct WritePacket {
   FIELD(SampleMask, passed, &Widths::sample_mask)       ///< samples that passed the depth test
   FIELD(SampleMask, write_depth, &Widths::sample_mask)  ///< of those, the ones to write
   FIELD(SampleMask, write_color, &Widths::sample_mask)
-  FIELD(Codes, depth, kDepthCode, &Widths::samples)              ///< codes; also of samples that are not written
-  FIELD(Codes, color, &Widths::written_color, &Widths::samples)  ///< as it is stored or before the texture; likewise
+  FIELD(Codes, depth, kDepthCode, &Widths::samples)  ///< codes; also of samples that are not written
+  FIELD(Codes, color, &Widths::written_color,
+        &Widths::samples)  ///< as it is stored, or before the texture or the blend; likewise
   PACKET_END
 };
 
@@ -540,11 +568,12 @@ struct TexelBeat {
   PACKET_END
 };
 
-/// texture_unit, rop -> framebuffer: the colours of a stamp that writes any; of other samples they are 0.
+/// texture_unit, rop -> framebuffer: the colours of a stamp of which any sample lives; of other samples they are 0.
 struct ColorPacket {
   PACKET(ColorPacket, "color_packet");
-  FIELD(SampleMask, mask, &Widths::sample_mask)                              ///< samples whose colour is written
-  FIELD(WritePacket::Codes, color, &Widths::stored_color, &Widths::samples)  ///< 0 where none is written
+  FIELD(SampleMask, mask, &Widths::sample_mask)  ///< samples whose colour is written, or looked at by the alpha test
+  FIELD(WritePacket::Codes, color, &Widths::shaded_color,
+        &Widths::samples)  ///< as it is stored, or before it is blended or dithered; 0 where none lives
   PACKET_END
 };
 
@@ -566,9 +595,11 @@ struct CounterPacket {
   FIELD(std::uint64_t, covered, &Widths::counter)
   FIELD(std::uint64_t, depth_passed, &Widths::counter)
   FIELD(std::uint64_t, written, &Widths::counter)
-  FIELD(std::uint64_t, tile_fills, &Widths::counter)  ///< stamps, as the next two; of depth alone, as the last
+  FIELD(std::uint64_t, tile_fills,
+        &Widths::counter)  ///< stamps that were read, as the next two; with blending colours too
   FIELD(std::uint64_t, tile_evictions, &Widths::counter)
-  FIELD(std::uint64_t, tile_clears, &Widths::counter)
+  FIELD(std::uint64_t, tile_clears, &Widths::counter)                            ///< of depth alone
+  FIELD(std::uint64_t, alpha_killed, &Widths::counter, &Widths::alpha_counters)  ///< only with the alpha test
   PACKET_END
 };
 

@@ -278,7 +278,8 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       guard_band(guard_band_planes(state.clip_z, viewport, config_)),
       view_volume(view_volume_planes(state.clip_z)),
       frustum(view_volume_planes(state.clip_z, viewport, 1)),
-      depth_encode(config_, scene_.planes) {}
+      depth_encode(config_, scene_.planes),
+      fragment_ops(halfplane::fragment_ops(state, config_.color_format)) {}
 
 void require_positive_w(const DrawContext& context, const Triangle& triangle) {
   if (std::ranges::all_of(triangle.surface, [](const SurfaceVertex& v) { return v.w > 0; })) return;

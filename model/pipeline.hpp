@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "counters.hpp"
+#include "fragment_ops.hpp"
 #include "scene.hpp"
 #include "stages/clip.hpp"
 #include "stages/cull.hpp"
@@ -31,6 +32,7 @@ struct DrawContext {
   ClipPlanes
       frustum;  ///< the view volume and a pixel around it: what is outside of this snaps to no pixel of the viewport
   DepthEncode depth_encode;
+  FragmentOps fragment_ops;
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
 };
@@ -99,6 +101,11 @@ struct Outline {
 /// one by one. No side of the view volume drops a line before the clip: a line a hair outside may snap to a pixel inside.
 void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
               std::uint32_t number, Counters& counters, Outline& out);
+
+/// Whether a triangle of that signed area shows its back. Lines and points, a triangle's outline too, show their front.
+[[nodiscard]] constexpr bool shows_back(std::int64_t area, FrontFace front) {
+  return (area > 0) == (front == FrontFace::ccw);  // positive is clockwise
+}
 
 /// validate(scene), then check_fits().
 void check_scene(const Scene& scene, const Config& config);

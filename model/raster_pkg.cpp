@@ -82,6 +82,7 @@ void print_field(std::ostream& out, const Field<Packet, Member, Place>& field, c
   const auto logic = [&](bool is_signed, const std::string& bits) {
     out << "    logic " << (is_signed ? "signed " : "") << "[" << bits << "-1:0] " << field.name << ";\n";
   };
+  if (element_count(field, widths) == 0) return;
   if constexpr (std::is_same_v<Place, Nested>) {
     if (packet_bits<Member>(widths) != 0) out << "    " << Member::name << "_t " << field.name << ";\n";
   } else if constexpr (std::is_enum_v<Member>) {
@@ -158,7 +159,7 @@ std::string raster_pkg(const Config& config) {
                      "0 resolve, 1 flags: " + std::string(setting.meaning));
     else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.texture_unit),
-                     "0 off, 1 nearest, 2 bilinear: " + std::string(setting.meaning));
+                     "0 off, 1 nearest, 2 bilinear, 3 trilinear: " + std::string(setting.meaning));
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
                      "0 pipelined, 1 serial: " + std::string(setting.meaning));
@@ -208,6 +209,7 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "MAX_NUMERATOR_BITS", widest(widths, &AttributeWidths::numerator).bits, "likewise");
   out << "\n  // What a field can say.";
   print_enum<PrimitiveKind>(out, widths);
+  print_enum<StateRegister>(out, widths);
   print_enum<DepthFunc>(out, widths);
   print_enum<Cull>(out, widths);
   print_enum<HizUpdate>(out, widths);

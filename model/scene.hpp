@@ -51,6 +51,51 @@ enum class TextureWrap { repeat, clamp, mirror };
 /// What becomes of the primitive's colour.
 enum class TextureCombine { modulate, replace, decal, add };
 
+/// What a colour is multiplied with before two of them are added (OpenGL ES 2.0, table 4.2).
+enum class BlendFactor {
+  zero,
+  one,
+  src_color,
+  one_minus_src_color,
+  dst_color,
+  one_minus_dst_color,
+  src_alpha,
+  one_minus_src_alpha,
+  dst_alpha,
+  one_minus_dst_alpha,
+  constant_color,
+  one_minus_constant_color,
+  constant_alpha,
+  one_minus_constant_alpha,
+  src_alpha_saturate
+};
+/// How the products are put together; the last two take the colours themselves.
+enum class BlendEquation { add, subtract, reverse_subtract, min, max };
+/// What becomes of a stored stencil value.
+enum class StencilOp { keep, zero, replace, incr, decr, invert, incr_wrap, decr_wrap };
+
+/// A fragment is dropped unless its alpha compares so with `reference`.
+struct AlphaTest {
+  DepthFunc func = DepthFunc::always;
+  std::uint8_t reference = 0;
+  bool operator==(const AlphaTest&) const = default;
+};
+
+/// Source and destination, of the colour and of alpha.
+struct BlendFactors {
+  BlendFactor src = BlendFactor::one, dst = BlendFactor::zero;
+  BlendFactor src_alpha = BlendFactor::one, dst_alpha = BlendFactor::zero;
+  bool operator==(const BlendFactors&) const = default;
+};
+
+/// The stencil test of one side of triangles. Lines and points have a front.
+struct Stencil {
+  DepthFunc func = DepthFunc::always;  ///< how (reference & read_mask) compares with (stored & read_mask)
+  std::uint8_t reference = 0, read_mask = 255, write_mask = 255;
+  StencilOp stencil_fails = StencilOp::keep, depth_fails = StencilOp::keep, passes = StencilOp::keep;
+  bool operator==(const Stencil&) const = default;
+};
+
 /// A vertex as it was given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down,
 /// pixel centres at half-integers, unless its state says otherwise), z in [0, 1], w as the clip-space w.
 struct Vertex {
@@ -101,17 +146,26 @@ struct State {
   std::array<TextureWrap, 2> texture_wrap{};
   std::array<double, 3> texture_lod{0.0, 0.0, 12.0};  ///< bias, least and largest level
   TextureCombine texture_combine = TextureCombine::modulate;
+  AlphaTest alpha_test;
+  std::optional<BlendFactors> blend;                       ///< none: the fragment's colour replaces the stored one
+  std::array<BlendEquation, 2> blend_equation{};           ///< of colour and of alpha
+  std::array<std::uint8_t, 4> blend_color{};               ///< the constant of blend factors
+  std::array<bool, 4> color_mask{true, true, true, true};  ///< channels that color_write writes
+  std::optional<Stencil> stencil;                          ///< none: no test, nothing is stored
+  std::optional<Stencil> stencil_back;                     ///< of triangles that show their back; none: as `stencil`
+  bool dither = false;                                     ///< ordered, where a channel has fewer than 8 bits
   bool operator==(const State&) const = default;
 };
 
 /// Among the indices of a draw: ends a strip, fan, loop or list, and begins the next one (primitive restart).
 inline constexpr std::uint32_t kRestart = ~0U;
 
-/// Fills colour and depth inside the scissor of `state`.
+/// Fills colour, depth and stencil inside the scissor of `state`.
 struct Clear {
   std::uint32_t state = 0;                       ///< index into Scene::states
   std::optional<std::array<double, 4>> color{};  ///< 0...255
   std::optional<double> depth{};                 ///< window z in [0, 1]: ignores depth_range
+  std::optional<std::uint8_t> stencil{};
 };
 
 /// A run of indices that share topology, state and object.

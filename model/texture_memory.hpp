@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "config.hpp"
 #include "scene.hpp"
 #include "stages/texture_unit.hpp"
 
@@ -15,11 +16,12 @@ class TextureMemory {
   static constexpr std::uint32_t kAlignment = 64;  ///< bytes, of an image
 
   TextureMemory() = default;
-  explicit TextureMemory(const Scene& scene) {
+  TextureMemory(const Scene& scene, const Config& config) {
+    const bool has_levels = config.texture_unit == TextureUnitKind::trilinear;
     for (const Texture& texture : scene.textures) {
       bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment);
       base_.push_back(static_cast<std::uint32_t>(bytes_.size()));
-      const auto image = texture_bytes(texture);
+      const auto image = texture_bytes(texture, has_levels);
       bytes_.insert(bytes_.end(), image.begin(), image.end());
     }
   }

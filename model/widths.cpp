@@ -115,9 +115,13 @@ void derive_texture(Widths& w, const Config& config) {
   w.coordinate_reference =
       exact("coordinate reference", "u_ref: +-2^22, beyond which no clamp can tell", symmetric(int128{1} << 22));
   w.written_color = w.stored_color;
-  if (has_unit) w.written_color = w.vertex_color;
+  if (has_unit || packs_at_write(config)) w.written_color = w.vertex_color;
   w.written_color.name = "written color";
-  w.written_color.bound = "a stored colour, or with a texture unit the primitive's";
+  w.written_color.bound = "a stored colour, or in front of a unit that changes it the primitive's";
+  w.shaded_color = packs_at_write(config) ? w.vertex_color : w.stored_color;
+  w.shaded_color.name = "shaded color";
+  w.shaded_color.bound = "a stored colour, or what is blended or dithered";
+  w.alpha_counters = tests_alpha(config) ? 1 : 0;
   w.texture_port_bytes = std::min(config.memory_port_bits, 64) / 8;
   w.texture_beats = exact("texture beats", "of a line of 4x4 texels of 4 bytes, of 16 bits at least", {0, 32});
   w.texture_byte = exact("texture byte", "8 bits", {0, 255});
@@ -302,7 +306,8 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &written_color, &texture_byte, &texture_beats});
+  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &written_color, &shaded_color, &texture_byte,
+       &texture_beats});
   add({&primitive_id,  &slot,         &tile_x,     &tile_y,       &tile_pixel,   &stamp_index, &sample_mask,
        &stored_color,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,     &pixel_y,
        &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane, &counter,

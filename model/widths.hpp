@@ -89,6 +89,7 @@ struct Widths {
   int port_bytes = 0;                    ///< of a beat on the memory port
   int planes = 0;                        ///< of all attributes together
   int affine_planes = 0;                 ///< depth and colour, which come first
+  int alpha_counters = 0;                ///< 1: the alpha test counts
   int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
   std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow
   int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
@@ -112,7 +113,7 @@ struct Widths {
       depth_source, memory_lane, counter;
   // The memory port.
   Width coordinate_shift, coordinate_reach, coordinate_reference;  // of the texture unit
-  Width written_color, texture_byte, texture_beats;
+  Width written_color, shaded_color, texture_byte, texture_beats;
   int texture_port_bytes = 0;  ///< of a beat of the texture unit's port
   Width run, address, row_stride, burst_length, port_strobe, port_byte;
   // Lines.

@@ -294,7 +294,7 @@ module raster_top (
   /* verilator lint_on UNUSEDSIGNAL */
   logic                                                       access_ready;
   logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth;
-  logic [COUNT-1:0]                                           covered, passed, written;
+  logic [COUNT-1:0]                                           covered, passed, written, killed, tested_written, tested_killed;
   logic [1:0]                                                 fill, evict, clear;
   /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
   logic                                                       color_valid, color_ready;
@@ -321,7 +321,8 @@ module raster_top (
       .retire_o        (retire_data),
       .covered_o       (covered),
       .passed_o        (passed),
-      .written_o       (written)
+      .written_o       (tested_written),
+      .killed_o        (tested_killed)
   );
 
   generate
@@ -352,6 +353,8 @@ module raster_top (
           .moves_tiles_o   (moves_tiles),
           .idle_o          (framebuffer_idle)
       );
+      assign written         = tested_written;
+      assign killed          = tested_killed;
       assign color_valid     = 1'b0;
       assign color_ready     = 1'b0;
       assign color_data      = '0;
@@ -360,6 +363,11 @@ module raster_top (
       assign texel_accepted  = 1'b0;
     end else begin : gen_blocks
       assign access_ready = 1'b1;
+      // Samples are counted where alpha is tested.
+      localparam bit LATE = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::COORDINATES != 0;
+      logic [COUNT-1:0] late_written, late_killed;
+      assign written = LATE ? late_written : tested_written;
+      assign killed  = LATE ? late_killed : tested_killed;
 
       block_cache u_framebuffer (
           .clk_i,
@@ -391,6 +399,8 @@ module raster_top (
           .fill_o          (fill),
           .evict_o         (evict),
           .clear_o         (clear),
+          .written_o       (late_written),
+          .killed_o        (late_killed),
           .at_token_o      (moves_tiles),
           .idle_o          (framebuffer_idle)
       );
@@ -480,6 +490,8 @@ module raster_top (
       counters_q.tile_fills         <= counters_q.tile_fills + COUNTER'(fill_q);
       counters_q.tile_evictions     <= counters_q.tile_evictions + COUNTER'(evict_q);
       counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear_q);
+      if (raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0)
+        counters_q[COUNTER-1:0] <= counters_q[COUNTER-1:0] + COUNTER'(killed);  // the last is alpha_killed
       if (!counters_hold_i) begin
         shown_q          <= counters_q;
         shown_q.overflow <= overflow_q;

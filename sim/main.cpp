@@ -87,6 +87,9 @@ int run(int argc, char** argv) {
   add_widths_command(app, selected);
   add_config_command(app, selected);
   add_convert_command(app, selected);
+  add_explain_command(app, selected);
+  add_vectors_command(app, selected);
+  add_check_command(app, selected);
   add_completions_command(app, selected);
   add_man_command(app, selected);
   check_command(app, argc, argv);

@@ -16,6 +16,8 @@ inline void expect_same(const Rendering& fast, const Rendering& scalar) {
   ASSERT_EQ(fast.frame.depth, scalar.frame.depth);
   ASSERT_EQ(fast.frame.color, scalar.frame.color);
   EXPECT_EQ(fast.counters.depth_passed, scalar.counters.depth_passed);
+  ASSERT_EQ(fast.frame.stencil, scalar.frame.stencil);
+  EXPECT_EQ(fast.counters.alpha_killed, scalar.counters.alpha_killed);
   EXPECT_EQ(fast.counters.written, scalar.counters.written);
   EXPECT_EQ(fast.counters.primitives_in, scalar.counters.primitives_in);
   EXPECT_EQ(fast.counters.primitives_in, fast.counters.culled + fast.counters.drawn);

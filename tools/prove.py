@@ -153,8 +153,9 @@ def front_end(proof, preset, folder, twin):
     # What is cut out may give any result: what is shown then holds for the right one, too.
     cut = ''.join(f'cutpoint t:{cells}; ' for cells in proof.cuts)
     top = pathlib.Path(proof.module).stem
+    wires = ''.join(f'connect -nomap -nounset -set {name} {inside}; ' for name, inside in proof.wires)
     return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {top}{parameters}; proc; {cut}'
-            'flatten; opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
+            f'flatten; {wires}opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
 
 
 def yosys(script, log, seconds):

@@ -26,6 +26,7 @@ class Proof:
     has_reset: bool = True
     file: str = ''
     starts: tuple = ()      # what holds at the start of a bounded proof: (module, file that is put into it)
+    wires: tuple = ()       # names in the properties for what is inside a module of it: (name, name behind flattening)
     inputs: str = ''        # other files in front of it: what is assumed of the inputs, or of what is cut
 
     @property
@@ -50,12 +51,21 @@ TILES = tuple((name, number, 'embedded') for name, number in
 BLOCKS = (('CACHE_KIND', 1), ('CACHE_LINES', 2), ('LINE_X_BITS', 1), ('LINE_Y_BITS', 0), ('CACHE_QUEUE', 4), ('CACHE_VICTIMS', 2),
           ('BLOCK_SIDE', 2), ('BLOCKS_PER_ROW', 1), ('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2), ('FLAG_WORD', 2),
           ('TILES_X', 2), ('TILES_Y', 2), ('TILE_X_BITS', 1), ('TILE_Y_BITS', 1), ('PRIMITIVE_ID_BITS', 1), ('COLOR_FORMAT', 1),
-          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('WRITTEN_COLOR_BITS', 1),
+          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('WRITTEN_COLOR_BITS', 1), ('SHADED_COLOR_BITS', 1),
           ('ALL_CODE_BITS', 2), ('ALL_FRAGMENT_BITS', 2), ('MEMORY_LANE_BITS', 2),
           ('FRAGMENT_PACKET_BITS', 18, 'tiny'), ('FRAGMENT_PACKET_BITS', 27, 'embedded'))
 # The same with two by two of them in a tile, and flags that outlive a flush.
 BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAMP_INDEX_BITS', 4), ('FRAME_CLEARS', 1),
                    ('FRAGMENT_PACKET_BITS', 20, 'tiny'), ('FRAGMENT_PACKET_BITS', 29, 'embedded'))
+# Blocks with blending, a sample a clock; a word of operations fits a depth code.
+BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
+            ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
+# What block_cache's properties call the registers of color_write.
+COLOR_WRITE = tuple((name, f'u_write.{inside}') for name, inside in
+                    (('w_left_q', 'left_q'), ('w_next', 'next'), ('w_left_line_q', 'left_line_q'), ('w_started_q', 'started_q'),
+                     ('w_starts', 'starts'), ('w_reads', 'reads'), ('w_fills_q', 'victim_fills_q'), ('c_fills_q', 'fills_q'),
+                     ('w_slot_q', 'next_slot_q'), ('w_ram_dirty', 'dirty'), ('w_ram_writes', 'writes'),
+                     ('w_ram_dirty_new', 'dirty_new'), ('w_ram_code', 'code'), ('w_ram_code_new', 'code_new')))
 QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*', '*colored_stamps*')
 
 PROOFS = [
@@ -119,6 +129,18 @@ PROOFS = [
           presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)),
           twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('memory_q[head_q[INDEX-1:0]]', 'memory_q[\'0]'),
                  ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
+    Proof('texture_levels_place', 'e', 'stages/texture_levels.sv', 'a level begins where the larger ones end, and its blocks lie '
+          'below that', presets=TINY, parameters=(('TAIL', 2),), cover_depth=6,
+          twins=(("(21'h155555 << new_odds)", "21'h155555"), ("(21'h1ffffe << blocks)", "(21'h1fffff << blocks)"),
+                 ("level > first_of_one_q", "level >= first_of_one_q"))),
+    Proof('texture_levels_stream', 'f', 'stages/texture_levels.sv', 'one pass a sample or two, the first and the second, in order',
+          presets=TINY, parameters=(('TAIL', 2),), k=2, quick=TINY, cover_depth=6,
+          twins=(('has_second && !is_second_q : is_second_q', 'has_second : is_second_q'),
+                 ('scales && (!has_second || is_second_q)', 'scales'), ('(!wrapped_valid_q || ready_i)', "1'b1"))),
+    Proof('texture_blend_stream', 'f', 'lib/texture_blend.sv', 'the first of two levels waits for the second, which leaves once',
+          presets=TINY, parameters=(('TAIL', 2),), k=2, quick=TINY, cover_depth=6, cuts=MULTIPLIERS,
+          twins=(('if (!is_second_i) lower_q', 'lower_q'), ('!valid_q || is_first_q || ready_i', "1'b1"),
+                 ('if (valid_i && ready_o) begin', 'if (ready_o) begin'))),
     Proof('line_raster_stream', 'f', 'stages/line_raster.sv', 'remaining + 1 pixels a line, in order, stable', k=2, cover_depth=7,
           quick=TINY, twins=(43, 46)),
     Proof('primitive_join_stream', 'f', 'stages/primitive_join.sv', 'each pixel is one fragment, each other fragment as it was',
@@ -158,15 +180,23 @@ PROOFS = [
     Proof('cache_tags_data_in_tiles', 'd, f', 'stages/cache_tags.sv', 'the same with blocks in tiles, and frame.clears=flags',
           cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
           quick=('embedded',), twins=(70, 74, 75)),
+    Proof('cache_tags_color', 'd, f', 'stages/cache_tags.sv', 'with blending: colours are known only if they are on the chip, and '
+          'are asked for where they are not', cuts=SRAMS, inputs='cache_tags_inputs cache_tags_data', package=BLENDING,
+          presets=TINY, quick=TINY, twins=(196, 197, ("color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)",
+                                          'color_known | stamp_bit'))),
+    Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
+          'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
+          presets=('embedded',), quick=('embedded',), cover_depth=9,
+          twins=(190, 191, 192, ("| (~mask_i & {SAMPLES{writes_all && is_first}})", "| {SAMPLES{writes_all && is_first}}"))),
     Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
           cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
           twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'),
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
           'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
-          quick=TINY, cover_depth=9, twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80)),
+          wires=COLOR_WRITE, quick=TINY, cover_depth=9, twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80)),
     Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
-          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, quick=TINY, cover_depth=9,
+          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, quick=TINY, cover_depth=9,
           twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
     Proof('block_cache_whole', 'd, f', 'stages/block_cache.sv', 'tags and all: the test sees what was written last, or cleared',
           is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs', package=BLOCKS,

@@ -144,18 +144,20 @@ void CaptureReader::read_clear() {
   Clear clear;
   while (text_.has_word()) {
     const std::string_view what = text_.word();
-    if ((what == "color" && clear.color) || (what == "depth" && clear.depth))
+    if ((what == "color" && clear.color) || (what == "depth" && clear.depth) || (what == "stencil" && clear.stencil))
       text_.fail("a second " + quoted_word(what) + " on one clear line; remove one of them");
     if (what == "color") {
       clear.color = read_color();
     } else if (what == "depth") {
       clear.depth = text_.number("the clear depth", 0, 1);
+    } else if (what == "stencil") {
+      clear.stencil = static_cast<std::uint8_t>(text_.integer("the clear stencil", 0, 255));
     } else {
-      text_.fail(quoted_word(what) + " cannot be cleared; write clear color r g b a depth z, or one of the two");
+      text_.fail(quoted_word(what) + " cannot be cleared; write clear color r g b a depth z stencil s, or one of them");
     }
   }
-  if (!clear.color && !clear.depth)
-    text_.fail("clear without anything to clear; write clear color r g b a depth z, or one of the two");
+  if (!clear.color && !clear.depth && !clear.stencil)
+    text_.fail("clear without anything to clear; write clear color r g b a depth z stencil s, or one of them");
   clear.state = state_number();
   scene_.commands.emplace_back(clear);
 }

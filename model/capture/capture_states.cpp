@@ -41,6 +41,10 @@ void read_numbers(CaptureText& text, const DrawState& row, std::span<const Textu
   for (std::size_t i = 0; i < row.numbers.size(); ++i) {
     const StateNumber& number = row.numbers[i];
     double& read = value.numbers[i];
+    if (number.repeats != 0 && !text.has_word()) {
+      read = value.numbers[i - number.repeats];
+      continue;
+    }
     if (number.is_texture)
       read = read_texture(text, row, textures);
     else if (!number.words.empty())
@@ -75,7 +79,15 @@ void write_state_value(const State& state, const DrawState& row, std::span<const
     out += row.words[value.word];
     return;
   }
-  for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+  std::size_t count = row.numbers.size();
+  const auto says_nothing = [&](std::size_t i) {
+    const std::size_t repeats = row.numbers[i].repeats;
+    return repeats != 0 && value.numbers[i] == value.numbers[i - repeats];
+  };
+  std::size_t needed = count;
+  while (needed > 0 && says_nothing(needed - 1)) --needed;
+  if (needed == 0 || row.numbers[needed - 1].repeats == 0) count = needed;  // all that may be left out, or none of it
+  for (std::size_t i = 0; i < count; ++i) {
     const StateNumber& number = row.numbers[i];
     out += ' ';
     if (number.is_texture)

@@ -145,7 +145,7 @@ void CaptureWriter::write_state(const State& wanted) {
 }
 
 void CaptureWriter::write_clear(const Clear& clear) {
-  if (!clear.color && !clear.depth) return;  // clears nothing, and has no line
+  if (!clear.color && !clear.depth && !clear.stencil) return;  // clears nothing, and has no line
   write_state(scene_.states[clear.state]);
   buffer_ += "clear";
   const auto write = [this](const char* what, std::span<const double> numbers) {
@@ -157,6 +157,7 @@ void CaptureWriter::write_clear(const Clear& clear) {
   };
   if (clear.color) write(" color", *clear.color);
   if (clear.depth) write(" depth", std::span(&*clear.depth, 1));
+  if (clear.stencil) buffer_ += " stencil " + std::to_string(*clear.stencil);
   buffer_ += '\n';
 }
 

@@ -13,24 +13,32 @@
 
 namespace halfplane {
 
-/// A covered sample through depth_encode, depth_test and rop. `color()` gives its four codes, when they are needed.
+/// A covered sample through depth_encode, the tests and rop. `color()` gives its four codes, when they are needed.
+/// `is_back`: of a triangle that shows its back.
 template <class Color>
 void shade_sample(const DrawContext& context, const RenderOptions& options, int x, int y, std::uint32_t plane_code,
-                  Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering) {
-  const FragmentState state = fragment_state(context.state);
+                  Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering,
+                  bool is_back = false) {
+  const FragmentOps& ops = context.fragment_ops;
   const std::uint32_t depth = context.depth_encode(plane_code);
   const std::size_t pixel = rendering.frame.at(x, y);
   const auto plain =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering.frame.width) + static_cast<std::size_t>(x);
   ++rendering.counters.covered;
   if (!rendering.count.empty()) ++rendering.count[plain];
-  if (!apply_fragment(state, context.config.color_format, depth, color, rendering.frame.depth[pixel],
-                      rendering.frame.color[pixel])) {
+  Framebuffer& frame = rendering.frame;
+  const Fate fate = apply_fragment(ops, context.config.color_format, {depth, x, y, is_back}, color,
+                                   {frame.depth[pixel], frame.color[pixel], frame.stencil[pixel]});
+  if (fate == Fate::failed) {
     rendering.counters.skipped.fragments_early_z += options.skip.fragments_early_z ? 1 : 0;
     return;
   }
   ++rendering.counters.depth_passed;
-  if (!state.writes()) return;
+  if (fate == Fate::killed) {
+    ++rendering.counters.alpha_killed;
+    return;
+  }
+  if (!ops.state.writes()) return;
   ++rendering.counters.written;
   if (!rendering.ids.empty()) rendering.ids[plain] = static_cast<std::int32_t>(primitive);
   if (!rendering.visible.empty()) rendering.visible[plain] = visible;

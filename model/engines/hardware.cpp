@@ -13,6 +13,7 @@
 #include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
 #include "../stages/rop.hpp"
+#include "../stages/state_packets.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_packets.hpp"
 #include "../stages/triangle_setup.hpp"
@@ -176,7 +177,7 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     case PrimitiveKind::flush:
       std::visit([&](auto& cache) { cache.flush(fragment, *this, counters_); }, cache_);
       return;
-    case PrimitiveKind::texture: texture_->set(TextureState::unpack(texture_word(fragment, widths_))); return;
+    case PrimitiveKind::state: set_state(fragment); return;
     case PrimitiveKind::triangle:
     case PrimitiveKind::rectangle:
     case PrimitiveKind::point:
@@ -185,15 +186,28 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   if (fragment.mask.any()) {
     const auto stored = std::visit([&](auto& cache) { return cache.access(fragment, *this, counters_); }, cache_);
     WritePacket packet = rop(fragment, depth_test(fragment, stored, widths_), config_, widths_);
+    SampleMask kept = packet.passed;
+    if (!texture_) {
+      kept = alpha_passes(colors_.alpha, kept, [&](std::size_t s) { return color_channels(fragment.code[s])[3]; });
+      keep(kept, packet);
+    }
     sink_.take(on<Arrow::write>, packet);
-    if (texture_) texture(fragment, packet);
+    if (fragment.kind != PrimitiveKind::line) {
+      const bool may_fail = is_late(fragment.state, colors_.alpha, config_);
+      visit_.add(fragment, kept, may_fail ? SampleMask() : kept, widths_);
+    }
+    if (texture_) kept = texture(fragment, packet);
+    if (packs_at_write(config_)) {
+      const StampAddress at{fragment.key.tile_x, fragment.key.tile_y, fragment.stamp};
+      written_colors(colors_.ops, at, packet.write_color, std::get<BlockCache>(cache_).colors(), packet.color, config_,
+                     widths_);
+    }
     std::visit([&](auto& cache) { cache.write(fragment, packet); }, cache_);
-    if (fragment.kind != PrimitiveKind::line) visit_.add(fragment, packet.passed, widths_);
     if (is_counted(fragment.kind)) {
-      const auto passed = static_cast<std::uint32_t>(packet.passed.count());
       counters_.covered += static_cast<std::uint32_t>(fragment.mask.count());
-      counters_.depth_passed += passed;
-      if (fragment.state.writes()) counters_.written += passed;
+      counters_.depth_passed += static_cast<std::uint32_t>(packet.passed.count());
+      counters_.alpha_killed += static_cast<std::uint32_t>(packet.passed.count() - kept.count());
+      if (fragment.state.writes()) counters_.written += static_cast<std::uint32_t>(kept.count());
     }
   }
   if (fragment.ends_visit) {
@@ -204,13 +218,26 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   }
 }
 
-/// texture_unit, and rop behind it: the colours of `packet` become what is stored.
-void HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
+/// A register of a unit behind the depth test.
+void HardwareModel::set_state(const FragmentPacket& token) {
+  const StateRegister which = state_register(token.state);
+  if (is_of_texture(which)) return set_register(*texture_, which, token, widths_);
+  colors_.set(which, state_word(token, widths_));
+  std::get<BlockCache>(cache_).set(colors_);
+}
+
+/// texture_unit, and rop behind it: the colours of `packet` become what is stored, or is about to be blended. Returns the
+/// samples that the alpha test lets pass, and only those are written.
+SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
   std::array<TextureSample, kMaxSamples> sample;
   std::array<Texel, kMaxSamples> color;
-  const SampleMask live = packet.write_color;
+  const SampleMask live = colors_.alpha.func != DepthFunc::always ? packet.passed : packet.write_color;
+  const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp);
   live.for_each([&](std::size_t s) {
     sample[s] = texture_sample(fragment.code[s], widths_);
+    const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
+    sample[s].x = (fragment.key.tile_x << widths_.tile_shift) + origin.x + pixel.x;
+    sample[s].y = (fragment.key.tile_y << widths_.tile_shift) + origin.y + pixel.y;
     for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(packet.color[s] >> 8 * c);
   });
   if (texture_->is_textured(fragment.kind == PrimitiveKind::triangle, live))
@@ -218,9 +245,16 @@ void HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet)
                    [this](std::uint32_t address, int beats) { return read_texels(address, beats); });
   packet.color = {};
   live.for_each([&](std::size_t s) {
-    packet.color[s] = pack_color(config_.color_format, {color[s][0], color[s][1], color[s][2], color[s][3]});
+    const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};
+    packet.color[s] = packs_at_write(config_) ? static_cast<std::uint32_t>(wrap_unsigned(
+                                                    pack_rgba8888(c[0], c[1], c[2], c[3]), widths_.shaded_color.bits))
+                                              : pack_color(config_.color_format, c);
   });
   if (live.any()) sink_.take(on<Arrow::color>, ColorPacket{live, packet.color});
+  const SampleMask kept =
+      alpha_passes(colors_.alpha, packet.passed, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
+  keep(kept, packet);
+  return kept;
 }
 
 /// A line of texels.
@@ -291,6 +325,7 @@ void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters
   counters.samples_tested = hardware.samples_tested;
   counters.covered = hardware.covered;
   counters.depth_passed = hardware.depth_passed;
+  counters.alpha_killed = hardware.alpha_killed;
   counters.written = hardware.written;
 }
 

@@ -74,7 +74,7 @@ class HardwareModel final : private MemoryPort {
   /// With a memory that may hold something already.
   HardwareModel(const Config& config, PacketSink& sink, TileMemory memory);
   /// From now on the memory of textures holds those of `scene`.
-  void hold_textures(const Scene& scene) { texels_ = TextureMemory(scene); }
+  void hold_textures(const Scene& scene) { texels_ = TextureMemory(scene, config_); }
   /// One primitive, to its last write: every packet that follows from it. `line`: there if and only if its kind is line.
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);
   [[nodiscard]] const CounterPacket& counters() const { return counters_; }
@@ -85,7 +85,8 @@ class HardwareModel final : private MemoryPort {
   void shade(const FragmentPacket& fragment);
   void request(const MemoryRequest& request) override;
   const MemoryResponse& response() override;
-  void texture(const FragmentPacket& fragment, WritePacket& packet);
+  void set_state(const FragmentPacket& token);
+  [[nodiscard]] SampleMask texture(const FragmentPacket& fragment, WritePacket& packet);
   [[nodiscard]] TextureLine read_texels(std::uint32_t address, int beats);
 
   Config config_;
@@ -97,6 +98,7 @@ class HardwareModel final : private MemoryPort {
   std::variant<TileCache, BlockCache> cache_;
   TileMemory memory_;
   std::optional<TextureUnit> texture_;
+  ColorState colors_;  ///< of the units that this hardware has
   TextureMemory texels_;
   PortStage port_;
   std::deque<MemoryResponse> responses_;  ///< to what has been asked for

@@ -23,6 +23,7 @@ void clear(Rendering& rendering, const Scene& scene, const Clear& command, const
   };
   if (command.depth) fill(frame.depth, frame.stride, DepthEncode(config, scene.planes).of_window(*command.depth));
   if (command.color) fill(frame.color, frame.stride, clear_color(*command.color, config.color_format));
+  if (command.stencil) fill(frame.stencil, frame.stride, *command.stencil);
   if (!rendering.ids.empty()) fill(rendering.ids, frame.width, -1);
   if (!rendering.visible.empty()) fill(rendering.visible, frame.width, -1);
 }

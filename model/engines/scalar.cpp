@@ -52,8 +52,10 @@ void shade_sample(const DrawContext& context, const TriangleSetup& setup, const 
     const Texel c = surface->at(x, y, weight_bits).color;
     return {c[0], c[1], c[2], c[3]};
   };
+  const auto& v = t.triangle.v;
   shade_sample(context, options, x, y, value.code[kDepthPlane], color, setup.primitive,
-               static_cast<std::int32_t>(t.index), rendering);
+               static_cast<std::int32_t>(t.index), rendering,
+               shows_back(signed_area(v[0], v[1], v[2]), context.state.front));
 }
 
 /// What stays the same over a scene.
@@ -186,7 +188,7 @@ void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, st
       const Interpolated value = interpolate_at(setup, engine.widths, x, y);
       shade_sample(
           context, engine.options, x, y, value.code[kDepthPlane], [&value] { return color_channels(value.code); },
-          number, kVisibleOutline, rendering);
+          number, kVisibleOutline, rendering, setup.is_back);
     });
   });
 }
@@ -204,8 +206,9 @@ void check_options(const RenderOptions& options) {
 
 }  // namespace
 
-Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options) {
-  validate(config);
+Rendering render_scalar(const Scene& scene, const Config& plain_config, const RenderOptions& options) {
+  validate(plain_config);
+  const Config config = with_alpha(plain_config, scene);
   check_options(options);
   const ScalarEngine engine{config, options};
   const bool is_default = options.rules == StudyRules{};

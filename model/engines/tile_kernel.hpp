@@ -58,41 +58,55 @@ struct TriangleLanes {
   }
 };
 
-/// T: the tile size. The tiles of triangles that share the depth test and the write masks.
+/// Leaves the colours of a row as its planes have them.
+template <class Mask>
+struct PlaneColors {
+  void operator()(int /*row*/, const Mask& /*wanted*/, Channels<Mask>& /*color*/) const {}
+};
+
+/// T: the tile size. The tiles of triangles that share the operations of their fragments.
 template <int T, class Lane>
 class TileKernel {
  public:
   using Mask = Lanes<std::uint32_t, T>;  ///< one lane per column: all bits set or none
 
   /// `encode`: not null where stored codes are not plane codes.
-  TileKernel(const FragmentState& state, const Config& config, const Widths& widths,
-             const DepthEncode* encode = nullptr)
-      : widths_(widths),
+  TileKernel(const FragmentOps& ops, const Config& config, const Widths& widths, const DepthEncode* encode = nullptr)
+      : ops_(ops),
+        widths_(widths),
         encode_(encode),
         channels_(static_cast<std::size_t>(widths.color_planes)),
         format_(config.color_format),
-        outcomes_(state.depth_test),
-        depth_write_(state.depth_write),
-        color_write_(state.color_write) {}
+        outcomes_(ops.state.depth_test),
+        alpha_outcomes_(ops.alpha.func) {}
+
+  /// What the operations made of a row's lanes.
+  struct Fates {
+    Mask passed;  ///< the stencil and the depth test
+    Mask kept;    ///< of those, what the alpha test has not dropped
+  };
 
   /// Draws the part of tile (tile_x, tile_y) that lies in the triangle's box. `edges`: the edge values at the tile's
-  /// first pixel; `is_accepted`: no need to look at them. Calls on_row(j, covered, passed) for each row with a covered
-  /// sample. `shades_failed`: colours are computed even where the depth test has failed.
-  template <class OnRow>
+  /// first pixel; `is_accepted`: no need to look at them. Calls on_row(j, covered, fates) for each row with a covered
+  /// sample. `shades_failed`: colours are computed even where the depth test has failed. `is_back`: the triangle shows its
+  /// back. color(j, wanted, channels) may replace the colours of a row's wanted lanes.
+  template <class OnRow, class Color = PlaneColors<Mask>>
   void draw(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, const EdgeValues& edges, bool is_accepted,
-            int tile_x, int tile_y, bool shades_failed, Framebuffer& frame, OnRow&& on_row) const {
+            int tile_x, int tile_y, bool shades_failed, bool is_back, Framebuffer& frame, OnRow&& on_row,
+            Color&& color = {}) const {
     const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
     Mask in_box;
     for (int i = 0; i < T; ++i) in_box[i] = i >= box.left && i <= box.right ? ~0U : 0U;
     const auto anchor = plane_at_tile(setup.plane[kDepthPlane], tile_offset(setup, tile_x, tile_y, widths_), 64);
     Tile tile{tile_x, tile_y, local_plane(anchor, setup.plane[kDepthPlane], lanes.depth_format, widths_).anchor};
+    if (ops_.stencil) tile.stencil = &(*ops_.stencil)[is_back ? 1 : 0];
     const std::array<std::int32_t, 3> edge0{saturate_tile_edge(edges[0], widths_),
                                             saturate_tile_edge(edges[1], widths_),
                                             saturate_tile_edge(edges[2], widths_)};
     for (int j = box.top; j <= box.bottom; ++j) {
       Mask covered = in_box;
       if (!is_accepted) cover_row(setup, lanes, edge0, j, covered);
-      if (is_any(covered)) on_row(j, covered, shade_row(setup, lanes, tile, j, covered, shades_failed, frame));
+      if (is_any(covered)) on_row(j, covered, shade_row(setup, lanes, tile, j, covered, shades_failed, frame, color));
     }
   }
 
@@ -116,6 +130,7 @@ class TileKernel {
     Lane depth;                            ///< accumulator at the anchor
     std::array<std::uint32_t, 4> color{};  ///< likewise; valid when has_color
     bool has_color = false;
+    const Stencil* stencil = nullptr;
   };
 
   static bool is_any(const Mask& mask) {
@@ -152,9 +167,10 @@ class TileKernel {
       return __builtin_convertvector(code, Mask);
   }
 
-  /// interpolate, depth_test and rop for row j of a tile. Returns what passed.
-  Mask shade_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j,
-                 const Mask& covered, bool shades_failed, Framebuffer& frame) const {
+  /// interpolate, the tests and rop for row j of a tile.
+  template <class Color>
+  Fates shade_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j,
+                  const Mask& covered, bool shades_failed, Framebuffer& frame, Color&& color) const {
     const std::size_t first = frame.at(tile.x * T, tile.y * T + j);
     std::uint32_t* stored_depth = frame.depth.data() + first;
     const Lane row = static_cast<Lane>(tile.depth + static_cast<Lane>(j - T / 2) * lanes.depth.step_y);
@@ -165,15 +181,55 @@ class TileKernel {
       for (int i = 0; i < T; ++i) depth[i] = covered[i] != 0 ? (*encode_)(depth[i]) : 0;
     Mask stored;
     load(stored, stored_depth);
-    const Mask passed = covered & outcomes_(depth, stored);
-    if (!shades_failed && !is_any(passed)) return passed;
-    if (depth_write_) store(stored_depth, write_where(passed, depth, stored));
-    if (color_write_) color_row(setup, lanes, tile, j, passed, frame.color.data() + first);
-    return passed;
+    const Mask is_nearer = outcomes_(depth, stored);
+    Mask passes_stencil = ~Mask{}, stencil{};
+    if (tile.stencil != nullptr) {
+      for (int i = 0; i < T; ++i) stencil[i] = frame.stencil[first + static_cast<std::size_t>(i)];
+      const std::uint32_t read = tile.stencil->read_mask;
+      passes_stencil =
+          DepthOutcomes(tile.stencil->func)(Mask(Mask{} + (tile.stencil->reference & read)), Mask(stencil & read));
+    }
+    const Mask passed = covered & passes_stencil & is_nearer;
+    const bool writes_stencil = tile.stencil != nullptr && halfplane::writes_stencil(*tile.stencil);
+    if (!shades_failed && !is_any(writes_stencil ? covered : passed)) return {passed, passed};
+    Mask kept = covered;
+    Channels<Mask> channel;
+    const bool tests_alpha = ops_.alpha.func != DepthFunc::always;
+    if (tests_alpha || ops_.state.color_write) {
+      channel = color_row(setup, lanes, tile, j);
+      color(j, tests_alpha && writes_stencil ? covered : passed, channel);
+    }
+    if (tests_alpha) kept &= alpha_outcomes_(channel[3], Mask(Mask{} + ops_.alpha.reference));
+    if (writes_stencil) store_stencil(*tile.stencil, kept, passes_stencil, is_nearer, stencil, &frame.stencil[first]);
+    kept &= passed;
+    if (ops_.state.depth_write) store(stored_depth, write_where(kept, depth, stored));
+    if (ops_.state.color_write) {
+      std::uint32_t* stored_color = frame.color.data() + first;
+      load(stored, stored_color);
+      store(stored_color, write_where(kept, store_row(tile, j, channel, stored), stored));
+    }
+    return {passed, kept};
   }
 
-  void color_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j, const Mask& passed,
-                 std::uint32_t* stored_color) const {
+  void store_stencil(const Stencil& s, const Mask& kept, const Mask& passes_stencil, const Mask& is_nearer,
+                     const Mask& stored, std::uint8_t* to) const {
+    Mask result = write_where(is_nearer, apply_stencil(s.passes, s, stored), apply_stencil(s.depth_fails, s, stored));
+    result = write_where(passes_stencil, result, apply_stencil(s.stencil_fails, s, stored));
+    result = write_where(kept, result, stored);
+    for (int i = 0; i < T; ++i) to[i] = static_cast<std::uint8_t>(result[i]);
+  }
+
+  /// The codes that colours leave of stored ones.
+  Mask store_row(const Tile& tile, int j, const Channels<Mask>& channel, const Mask& stored) const {
+    if (ops_.color.is_plain()) return pack_color(format_, channel);
+    Mask threshold{};
+    if (ops_.color.dithers)
+      for (int i = 0; i < T; ++i) threshold[i] = dither_threshold(tile.x * T + i, tile.y * T + j);
+    return store_color(ops_.color, format_, channel, stored, threshold);
+  }
+
+  /// The colours of a row's planes.
+  Channels<Mask> color_row(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, Tile& tile, int j) const {
     if (!tile.has_color) {
       tile.has_color = true;
       const TileOffset offset = tile_offset(setup, tile.x, tile.y, widths_);
@@ -182,24 +238,22 @@ class TileKernel {
         tile.color[c] = local_plane(anchor, setup.plane[kColorPlane + c], lanes.color_format, widths_).anchor;
       }
     }
-    std::array<Mask, 4> channel;
+    Channels<Mask> channel{};
     for (std::size_t c = 0; c < channels_; ++c) {
       const std::uint32_t row = tile.color[c] + static_cast<std::uint32_t>(j - T / 2) * lanes.color[c].step_y;
       const Mask value = lanes.color_ramp[c] + row;
       channel[c] = decode_row<std::uint32_t>(value, lanes.color_format, setup.range.low[kColorPlane + c],
                                              setup.range.high[kColorPlane + c]);
     }
-    Mask stored;
-    load(stored, stored_color);
-    store(stored_color, write_where(passed, pack_color(format_, channel), stored));
+    return channel;
   }
 
+  FragmentOps ops_;
   const Widths& widths_;
   const DepthEncode* encode_;
   std::size_t channels_;
   ColorFormat format_;
-  DepthOutcomes outcomes_;
-  bool depth_write_, color_write_;
+  DepthOutcomes outcomes_, alpha_outcomes_;
 };
 
 }  // namespace halfplane

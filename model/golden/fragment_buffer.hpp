@@ -2,44 +2,79 @@
 // last room of the golden and of nobody else: no code of the model's, and nothing is rounded here.
 //
 // In: clears and fragments in program order. Out: for each pixel the depth that was written last, the value that came
-// with it, and whose it is. Operations today: the depth test and the two write masks; a colour is stored as it came.
+// with it, and whose it is. Operations: alpha, stencil and depth test, blending, the write masks.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "../scene.hpp"
+#include "color.hpp"
 #include "depth_test.hpp"
 
 namespace halfplane::golden {
 
 /// What became of a fragment.
 struct Fate {
-  bool passed = false;   ///< the tests
+  bool passed = false;   ///< the stencil and the depth test
+  bool killed = false;   ///< and then not the alpha test
   bool written = false;  ///< it owns the pixel now: it passed, and its draw writes depth, colour or both
 };
 
-/// Depth: what the test compares. Value: what colour writes store: channels, or whatever says more about a fragment.
+/// A fragment as it comes to the operations, beside its colour.
+template <class Depth>
+struct Tested {
+  Depth depth{};
+  double alpha = 255;    ///< 0...255, behind its texture
+  bool is_back = false;  ///< of a triangle that shows its back
+};
+
+/// Depth: what the test compares. Value: what colour writes store: channels, which are blended, or whatever says more about a
+/// fragment.
 template <class Depth, class Value>
 class FragmentBuffer {
  public:
-  FragmentBuffer(std::size_t pixels, Depth depth, const Value& value)
-      : depth_(pixels, depth), value_(pixels, value), owner_(pixels, -1) {}
+  /// `has_alpha`: a stored colour has one; otherwise it is opaque.
+  FragmentBuffer(std::size_t pixels, Depth depth, const Value& value, bool has_alpha = true)
+      : has_alpha_(has_alpha), depth_(pixels, depth), value_(pixels, value), stencil_(pixels, 0), owner_(pixels, -1) {}
 
   /// Runs the operations of `state` on a fragment of `owner`, not negative.
-  Fate apply(std::size_t pixel, const State& state, Depth depth, const Value& value, std::int32_t owner) {
-    if (!passes(state.depth_test, depth, depth_[pixel])) return {};
-    if (!state.depth_write && !state.color_write) return {true, false};
-    if (state.depth_write) depth_[pixel] = depth;
-    if (state.color_write) value_[pixel] = value;
+  Fate apply(std::size_t pixel, const State& state, const Tested<Depth>& fragment, const Value& value,
+             std::int32_t owner) {
+    const Stencil* stencil = stencil_of(state, fragment.is_back);
+    const bool stencil_passes = stencil == nullptr || halfplane::golden::passes(*stencil, stencil_[pixel]);
+    const bool is_nearer = passes(state.depth_test, fragment.depth, depth_[pixel]);
+    const bool tests_pass = stencil_passes && is_nearer;
+    if (!passes<double>(state.alpha_test.func, fragment.alpha, state.alpha_test.reference))
+      return {tests_pass, tests_pass, false};
+    if (stencil != nullptr) {
+      const StencilOp op = !stencil_passes ? stencil->stencil_fails
+                           : is_nearer     ? stencil->passes
+                                           : stencil->depth_fails;
+      stencil_[pixel] = operated(op, *stencil, stencil_[pixel]);
+    }
+    if (!tests_pass) return {};
+    const auto& mask = state.color_mask;
+    const bool writes_color = state.color_write && (mask[0] || mask[1] || mask[2] || (mask[3] && has_alpha_));
+    if (!state.depth_write && !writes_color) return {true, false, false};
+    if (state.depth_write) depth_[pixel] = fragment.depth;
+    if constexpr (std::is_same_v<Value, RealColor>) {
+      if (!has_alpha_) value_[pixel][3] = 255;
+      if (writes_color) value_[pixel] = blended(state, value, value_[pixel]);
+    } else {
+      if (writes_color) value_[pixel] = value;
+    }
     owner_[pixel] = owner;
-    return {true, true};
+    return {true, false, true};
   }
 
   void clear_depth(std::size_t pixel, Depth depth) { depth_[pixel] = depth; }
   void clear_value(std::size_t pixel, const Value& value) { value_[pixel] = value; }
-  /// A clear of either leaves a pixel to nobody.
+  void clear_stencil(std::size_t pixel, int value) { stencil_[pixel] = value; }
+  /// A clear of any of them leaves a pixel to nobody.
   void disown(std::size_t pixel) { owner_[pixel] = -1; }
 
   [[nodiscard]] Depth depth(std::size_t pixel) const { return depth_[pixel]; }
@@ -48,8 +83,10 @@ class FragmentBuffer {
   [[nodiscard]] const std::vector<std::int32_t>& owners() const { return owner_; }
 
  private:
+  bool has_alpha_;
   std::vector<Depth> depth_;
   std::vector<Value> value_;
+  std::vector<int> stencil_;
   std::vector<std::int32_t> owner_;
 };
 

@@ -56,7 +56,8 @@ class Renderer {
         options_(options),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
         depth_buffer_(config, scene.planes),
-        pixels_(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height), Real(1), {}) {
+        pixels_(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height), Real(1), {},
+                config.color_format == ColorFormat::rgba8888) {
     const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
     image_.width = scene.width;
     image_.height = scene.height;
@@ -102,9 +103,16 @@ class Renderer {
         const std::size_t p = pixel(x, y);
         if (clear.depth) pixels_.clear_depth(p, static_cast<Real>(depth_buffer_.window_depth(*clear.depth)));
         if (clear.color) pixels_.clear_value(p, *clear.color);
+        if (clear.stencil) pixels_.clear_stencil(p, *clear.stencil);
         pixels_.disown(p);
       }
     }
+  }
+
+  [[nodiscard]] PixelRange wanted(const PixelRange& range) const {
+    if (!options_.only) return range;
+    const Rect& only = *options_.only;
+    return intersect(range, {only.x, only.y, only.x + only.width, only.y + only.height});
   }
 
   /// One draw, and the primitive of it that is at work.
@@ -117,6 +125,7 @@ class Renderer {
     std::uint32_t primitive = 0;
     Real offset = 0;  ///< polygon offset, window depth
     bool was_cut = false, was_drawn = false;
+    bool is_back = false;  ///< of a filled triangle that shows its back
   };
 
   void draw(const Draw& draw, std::uint32_t command) {
@@ -125,12 +134,12 @@ class Renderer {
     const Viewport vp = viewport_of(scene_, state);
     DrawAtWork d{state, vp,
                  clip_planes<Real>(state.clip_z, vp, config_.guard_band - std::ldexp(1.0, -config_.subpixel_bits)),
-                 draw_region(scene_, state), command};
+                 wanted(draw_region(scene_, state)), command};
     std::size_t done = 0;
     for_each_primitive(scene_, draw, state.provoking, [&](const Primitive& p) {
       d.primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);
       d.offset = 0;
-      d.was_cut = d.was_drawn = false;
+      d.was_cut = d.was_drawn = d.is_back = false;
       std::array<ClipVertex<Real>, 3> v;
       for (std::size_t i = 0; i < 3; ++i)
         v[i] = vertex(p.index[i], state.shade == Shade::flat ? p.provoking : p.index[i]);
@@ -197,6 +206,7 @@ class Renderer {
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
       std::array<ScreenVertex<Real>, 3> v{corner(0), corner(k), corner(k + 1)};
       if (is_culled(signed_area(v), d.state)) continue;
+      d.is_back = shows_back(signed_area(v), d.state);
       d.was_drawn = true;
       add_outline(v, d);
       for (auto& vertex : v) vertex.z += d.offset;
@@ -207,6 +217,7 @@ class Renderer {
   void draw_homogeneous(const std::array<ClipVertex<Real>, 3>& v, DrawAtWork& d) {
     const HomogeneousSetup<Real> t = setup_homogeneous(v, d.state, d.vp);
     if (is_culled(t.determinant, d.state)) return;
+    d.is_back = shows_back(t.determinant, d.state);
     const PixelRange range = homogeneous_range(t, d.region, scene_);
     const auto [per_x, per_y] = depth_slopes(t);
     d.was_drawn = !range.empty();
@@ -311,9 +322,16 @@ class Renderer {
     const std::size_t p = pixel(x, y);
     ++image_.counters.covered;
     ++image_.count[p];
+    const auto stored = static_cast<double>(pixels_.depth(p));
+    const Color color = widen(fragment.rgba);
     const Fate fate =
-        pixels_.apply(p, d.state, fragment.z, widen(fragment.rgba), static_cast<std::int32_t>(d.primitive));
+        pixels_.apply(p, d.state, {fragment.z, color[3], d.is_back}, color, static_cast<std::int32_t>(d.primitive));
+    if (options_.fragment_tap)
+      options_.fragment_tap({d.primitive, d.command, image_.outlines.empty() ? 0 : image_.outlines.size() - 1, x, y,
+                             static_cast<double>(fragment.z) * depth_max_, stored * depth_max_, color, fate.passed,
+                             fate.written});
     image_.counters.depth_passed += fate.passed ? 1 : 0;
+    image_.counters.alpha_killed += fate.killed ? 1 : 0;
     image_.counters.written += fate.written ? 1 : 0;
   }
 

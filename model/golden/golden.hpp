@@ -43,11 +43,23 @@ struct Image {
   std::vector<Outline> outlines;             ///< what was not culled, if asked for
 };
 
+/// A fragment as it comes to the operations, and what becomes of it. Depths in LSB of the interpolated depth, not rounded.
+struct TappedFragment {
+  std::uint32_t primitive = 0, draw = 0;  ///< as in Outline
+  std::size_t outline = 0;                ///< its place in Image::outlines; with want_outlines
+  int x = 0, y = 0;                       ///< pixels
+  double depth = 0, stored_depth = 0;     ///< its own, and what lies at its pixel before it
+  std::array<double, 4> color{};          ///< 0...255, with its texture
+  bool passed = false, written = false;   ///< the tests; it owns the pixel now
+};
+
 struct Options {
   Precision precision = Precision::binary64;
   Clipping clipping = Clipping::polygon;
-  std::optional<ColorInterp> color_interp;        ///< in place of what the states say
-  bool want_outlines = false;                     ///< none are kept of triangles that are drawn without clipping
+  std::optional<ColorInterp> color_interp;  ///< in place of what the states say
+  bool want_outlines = false;               ///< none are kept of triangles that are drawn without clipping
+  std::optional<Rect> only;                 ///< draws touch these pixels alone; clears touch all
+  std::function<void(const TappedFragment&)> fragment_tap;  ///< in program order; may be empty
   std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 primitives or so; may be empty
 };
 

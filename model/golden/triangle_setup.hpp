@@ -46,6 +46,12 @@ template <class Real>
   return state.cull == Cull::both || state.cull == (is_front ? Cull::front : Cull::back);
 }
 
+/// Of a triangle that is not culled. Lines and points, a triangle's outline too, show their front.
+template <class Real>
+[[nodiscard]] bool shows_back(Real area, const State& state) {
+  return (area > 0) != (state.front == FrontFace::cw);
+}
+
 /// A triangle of positive area.
 template <class Real>
 struct Setup {

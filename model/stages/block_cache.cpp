@@ -15,6 +15,7 @@ BlockCache::BlockCache(const Config& config, const Widths& widths)
       widths_(widths),
       directory_(config, widths),
       stored_(static_cast<std::size_t>(widths.samples)),
+      stored_color_(static_cast<std::size_t>(widths.samples)),
       code_mask_{static_cast<std::uint32_t>(widths.depth().code.range.hi),
                  static_cast<std::uint32_t>(widths.stored_color.range.hi)} {
   const std::size_t stamps = stamp_index(directory_.lines(), 0);
@@ -39,9 +40,29 @@ std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment
                            [mask = code_mask_[0]](std::uint32_t lane) { return lane & mask; });
     ++counters.tile_fills;
   }
+  if (last_.color_source == DepthSource::memory) memory.request(request_of(TilePlane::color, at));
   if (last_.eviction) capture(*last_.eviction);
+  read_colors(memory, counters);
   if (last_.source == DepthSource::chip) std::ranges::copy(lanes(TilePlane::depth, last_stamp_), stored_.begin());
   return stored_;
+}
+
+/// Those that the chip does not have come from the clear value or from memory. What has been written of the stamp is newer.
+void BlockCache::read_colors(MemoryPort& memory, CounterPacket& counters) {
+  std::ranges::fill(stored_color_, last_.color_source == DepthSource::clear ? clear_value_[1] : 0);
+  if (last_.color_source == DepthSource::none) return;
+  if (last_.color_source == DepthSource::memory) {
+    const MemoryResponse& response = memory.response();
+    std::ranges::transform(std::span(response.data).first(stored_color_.size()), stored_color_.begin(),
+                           [mask = code_mask_[1]](std::uint32_t lane) { return lane & mask; });
+    ++counters.tile_fills;
+  }
+  const auto held = lanes(TilePlane::color, last_stamp_);
+  if (last_.color_source == DepthSource::chip) {
+    std::ranges::copy(held, stored_color_.begin());
+  } else if (!last_.starts_color) {
+    dirty_[number(TilePlane::color)][last_stamp_].for_each([&](std::size_t s) { stored_color_[s] = held[s]; });
+  }
 }
 
 void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet) {
@@ -58,6 +79,8 @@ void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet
   if (starts_depth) std::ranges::copy(stored_, lanes(TilePlane::depth, last_stamp_).begin());
   masked_copy(TilePlane::depth, packet.write_depth, packet.depth);
   add_dirty(TilePlane::depth, packet.write_depth, starts_depth);
+  if (last_.color_source != DepthSource::none && last_.color_source != DepthSource::chip)
+    std::ranges::copy(stored_color_, lanes(TilePlane::color, last_stamp_).begin());
   masked_copy(TilePlane::color, packet.write_color, packet.color);
   if (fragment.state.color_write) add_dirty(TilePlane::color, packet.write_color, last_.starts_color);
 }
@@ -72,7 +95,7 @@ void BlockCache::capture(const Eviction& eviction) {
       const bool is_here = (eviction.stamps[p] >> stamp & 1) != 0;
       const std::size_t at = stamp_index(eviction.line, stamp);
       const SampleMask dirty = is_here ? dirty_[p][at] : SampleMask();
-      // Depths of a stamp are on the chip all or none; colours where they have been written.
+      // Depths of a stamp are on the chip all or none; of colours those that have been written matter.
       const SampleMask held = plane == TilePlane::depth && is_here ? SampleMask::all(widths_.samples) : dirty;
       MemoryRequest request = request_of(plane, stamp_address({eviction.block, stamp}, widths_));
       request.is_write = true;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "cache_tags.hpp"
+#include "color_packets.hpp"
 #include "memory_port.hpp"
 
 namespace halfplane {
@@ -19,6 +20,14 @@ class BlockCache {
   /// look at are 0.
   [[nodiscard]] std::span<const std::uint32_t> access(const FragmentPacket& fragment, MemoryPort& memory,
                                                       CounterPacket& counters);
+
+  /// The stored colours under it, where its operations read them: else 0.
+  [[nodiscard]] std::span<const std::uint32_t> colors() const { return stored_color_; }
+
+  /// A token has set what is done with colours.
+  void set(const ColorState& colors) {
+    directory_.set(colors.ops.reads_stored(), colors.alpha.func != DepthFunc::always);
+  }
 
   /// Writes what came of the fragment of the last access.
   void write(const FragmentPacket& fragment, const WritePacket& packet);
@@ -42,6 +51,7 @@ class BlockCache {
     const auto samples = static_cast<std::size_t>(widths_.samples);
     return {lanes_[static_cast<std::size_t>(plane)].data() + stamp * samples, samples};
   }
+  void read_colors(MemoryPort& memory, CounterPacket& counters);
   void capture(const Eviction& eviction);
   void write_victims(int count, MemoryPort& memory, CounterPacket& counters);
   void evict_all(MemoryPort& memory, CounterPacket& counters);
@@ -49,10 +59,11 @@ class BlockCache {
   Config config_;
   Widths widths_;
   CacheTags directory_;
-  TagResult last_;                          ///< of the last access
-  std::size_t last_stamp_ = 0;              ///< likewise, in the arrays below
-  std::vector<std::uint32_t> stored_;       ///< likewise: what the depth test saw
-  std::array<std::uint32_t, 2> code_mask_;  ///< bits of a code of each plane
+  TagResult last_;                           ///< of the last access
+  std::size_t last_stamp_ = 0;               ///< likewise, in the arrays below
+  std::vector<std::uint32_t> stored_;        ///< likewise: what the depth test saw
+  std::vector<std::uint32_t> stored_color_;  ///< likewise: what operations on colours see
+  std::array<std::uint32_t, 2> code_mask_;   ///< bits of a code of each plane
   std::array<std::uint32_t, 2> clear_value_{};
   std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
   std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that memory does not have

@@ -3,7 +3,8 @@
 // data, the cycle model the time, rtl_ref/stages/cache_tags.sv is the hardware.
 //
 // Direct mapped: a line holds depth and colour of one block. Depth is fetched a stamp at a time, when a fragment first
-// asks for it; colour is only ever written. What leaves the chip is an eviction. Its data wait until `cache.victims` later
+// asks for it. Colour is only written, until a fragment comes whose operations read what is stored: then that of its stamp is
+// fetched as depth is, behind it, and stays known. What leaves the chip is an eviction. Its data wait until `cache.victims` later
 // ones have come, or until the block is wanted again; then they go to memory, oldest first.
 #pragma once
 
@@ -33,6 +34,7 @@ struct TagResult {
   std::optional<Eviction> eviction;
   DepthSource source = DepthSource::none;
   bool starts_color = false;  ///< the first colours of this stamp: the others of it are not on the chip
+  DepthSource color_source = DepthSource::none;  ///< of the stored colours, where operations read them
 
   int flag_cycles = 0;  ///< a flag falls: its word is written, and read before unless it is the one that was looked at
 };
@@ -70,13 +72,27 @@ class CacheTags {
     }
     if ((line.known & stamp) != 0)
       result.source = DepthSource::chip;
-    else if (state.depth_test != DepthFunc::always || !is_full)
+    else if (state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.depth_write))
       result.source = line.is_cleared[0] ? DepthSource::clear : DepthSource::memory;
     if (result.source != DepthSource::none || state.depth_write) line.known |= stamp;
     line.has_depth = line.has_depth || state.depth_write;
     result.starts_color = state.color_write && (line.colored & stamp) == 0;
     if (state.color_write) line.colored |= stamp;
+    if (state.color_write && reads_color_) {
+      if ((line.color_known & stamp) != 0)
+        result.color_source = DepthSource::chip;
+      else
+        result.color_source = line.is_cleared[1] ? DepthSource::clear : DepthSource::memory;
+      line.color_known |= stamp;
+    }
     return result;
+  }
+
+  /// A token has set what is done with colours: whether it reads what is stored, and whether alpha is tested, so that of what
+  /// passes the depth test not all may be written.
+  void set(bool reads_color, bool tests_alpha) {
+    reads_color_ = reads_color;
+    tests_alpha_ = tests_alpha;
   }
 
   /// Whether depth that leaves the chip from now on is lost: the flag of its block stays as it is.
@@ -125,6 +141,7 @@ class CacheTags {
     BlockAddress block;
     std::uint64_t known = 0;           ///< stamps whose depths are on the chip
     std::uint64_t colored = 0;         ///< stamps whose colours may have been written
+    std::uint64_t color_known = 0;     ///< of those, the ones whose colours are all on the chip
     bool has_depth = false;            ///< depths may have been written
     std::array<bool, 2> is_cleared{};  ///< the flags of the block, as long as it is here
   };
@@ -169,6 +186,7 @@ class CacheTags {
   Widths widths_;
   std::size_t victims_;
   bool drops_depth_ = false;
+  bool reads_color_ = false, tests_alpha_ = false;
   std::vector<Line> lines_;
   std::deque<BlockAddress> unwritten_;  ///< evictions whose data wait, oldest first
   ClearFlags flags_;

@@ -1,7 +1,7 @@
-// Framebuffer: depth and colour memory of one target.
+// Framebuffer: depth, colour and stencil memory of one target.
 //
 // In: depth-tested stamps, clears. Out: the two images. Depth is one code per pixel, colour one stored code per pixel
-// (Config::color_format). Rows are padded to whole tiles, so that an engine may touch a tile as a whole.
+// (Config::color_format), stencil 8 bits. Rows are padded to whole tiles, so that an engine may touch a tile as a whole.
 #pragma once
 
 #include <cstddef>
@@ -31,6 +31,7 @@ struct Framebuffer {
   int width = 0, height = 0;  ///< pixels
   int stride = 0;             ///< pixels from one row to the next; rows below `height` are padding as well
   Image depth, color;
+  std::vector<std::uint8_t> stencil;
 
   Framebuffer() = default;
   Framebuffer(int width_, int height_, int tile_size)
@@ -38,12 +39,13 @@ struct Framebuffer {
     const auto rows = static_cast<std::size_t>((height_ + tile_size - 1) / tile_size * tile_size);
     depth.resize(static_cast<std::size_t>(stride) * rows);
     color.resize(depth.size());
+    stencil.resize(depth.size());
   }
 
   /// Whether every sixteen pixels of a row, from its first on, are a cache line.
   [[nodiscard]] bool has_whole_lines() const { return stride % 16 == 0; }
 
-  /// Index of pixel (x, y) in `depth` and `color`.
+  /// Index of pixel (x, y) in each of them.
   [[nodiscard]] std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
   }

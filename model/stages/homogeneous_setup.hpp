@@ -45,6 +45,7 @@ struct HomogeneousSetup {
       bound{};                    ///< three edges, near, far: covered where none is negative; (0, 0) is the target's
   TriangleSetup triangle;         ///< box, planes and their ranges; its edges are not set
   std::int64_t depth_offset = 0;  ///< polygon offset, codes: added at the sample
+  bool is_back = false;           ///< it shows its back
   bool is_perspective = false;    ///< then the next two are set, and the colour planes are not
   LinearFunction weight;          ///< 1 / w, scaled; (0, 0) is the first pixel of the box
   PerPlane<LinearFunction> code_weight{};  ///< codes / w likewise, of the planes but depth

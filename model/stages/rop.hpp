@@ -1,11 +1,12 @@
 // ROP: a fragment's colour in the stored format, and which samples of it are written.
 //
-// In: a FragmentPacket, and the WritePacket in which depth_test says what passed. Out: the WritePacket, complete. The
-// arithmetic is fragment_ops.hpp's.
+// In: a FragmentPacket, and the WritePacket in which depth_test says what is written. Out: the WritePacket, complete; where
+// colours are blended or dithered, written_colors() once more as they are written. The arithmetic is color_ops.hpp's.
 #pragma once
 
 #include "../fragment_ops.hpp"
 #include "../packets.hpp"
+#include "clear_flags.hpp"
 
 namespace halfplane {
 
@@ -26,11 +27,30 @@ namespace halfplane {
 [[nodiscard]] inline WritePacket rop(const FragmentPacket& fragment, const WritePacket& tested, const Config& config,
                                      const Widths& widths) {
   WritePacket packet = tested;
+  const bool is_packed = !has_texture_planes(config) && !packs_at_write(config);
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s)
-    packet.color[s] =
-        has_texture_planes(config) ? vertex_color(fragment.code[s], widths) : stored_color(fragment.code[s], config);
-  if (fragment.state.color_write) packet.write_color = tested.passed;
+    packet.color[s] = is_packed ? stored_color(fragment.code[s], config) : vertex_color(fragment.code[s], widths);
   return packet;
+}
+
+/// 8-bit codes as vertex_color() has them, back.
+[[nodiscard]] constexpr Channels<std::uint32_t> unpacked_channels(std::uint32_t color) {
+  return {color & 255, color >> 8 & 255, color >> 16 & 255, color >> 24};
+}
+
+/// What becomes of the colours of `samples` of a stamp as they are written: `color` are vertex_color()s, and then codes as they
+/// are stored. `stored`: the codes before, of samples whose operations read them.
+inline void written_colors(const ColorOps& ops, const StampAddress& at, SampleMask samples,
+                           std::span<const std::uint32_t> stored, WritePacket::Codes& color, const Config& config,
+                           const Widths& widths) {
+  const PixelOffset origin = widths.stamps.origin_of(at.stamp);
+  samples.for_each([&](std::size_t s) {
+    const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
+    const int x = at.tile_x * config.tile_size + origin.x + pixel.x,
+              y = at.tile_y * config.tile_size + origin.y + pixel.y;
+    color[s] = store_color<std::uint32_t>(ops, config.color_format, unpacked_channels(color[s]), stored[s],
+                                          dither_threshold(x, y));
+  });
 }
 
 }  // namespace halfplane

@@ -1,48 +1,43 @@
-// What the texture unit sees of the packets: samples, their frame, and the word of a token that sets it.
+// What the texture unit sees of the packets: samples and their frame.
 #pragma once
 
 #include "../packets.hpp"
+#include "state_packets.hpp"
 #include "texture_unit.hpp"
 
 namespace halfplane {
 
 [[nodiscard]] inline TextureSettings texture_settings(const Config& config, const Widths& widths) {
-  return {config.texture_cache_kb * 1024 / kTextureLine, 8 * widths.texture_port_bytes, config.texture_queue / 2,
-          config.texture_queue, config.texture_unit == TextureUnitKind::bilinear};
+  const bool has_levels = config.texture_unit == TextureUnitKind::trilinear;
+  return {config.texture_cache_kb * 1024 / kTextureLine,
+          8 * widths.texture_port_bytes,
+          config.texture_queue / 2,
+          config.texture_queue,
+          has_levels || config.texture_unit == TextureUnitKind::bilinear,
+          has_levels,
+          line_part_bits(state_word_bits(widths))};
 }
 
-/// Q and P of a sample.
+/// Q and P of a sample, not its pixel.
 [[nodiscard]] inline TextureSample texture_sample(const PerPlane<std::uint32_t>& code, const Widths& widths) {
   const std::size_t q = widths.q_plane;
   const auto p = [&](std::size_t plane) { return wrap_signed(code[plane], widths.of_plane(plane).local.bits); };
-  return {code[q], {p(q + 1), p(q + 2)}};
+  return {code[q], {p(q + 1), p(q + 2)}, 0, 0};
+}
+
+/// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have become.
+template <class Codes>
+void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
+  if (which == StateRegister::texture_lines)
+    unit.move_in(wide_state_word(token, widths));
+  else if (which == StateRegister::texture_levels)
+    unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(state_word(token, widths))));
+  else
+    unit.set(TextureState::unpack(state_word(token, widths)));
 }
 
 [[nodiscard]] inline TextureFrame texture_frame(const CoordinateFrame& frame) {
   return {{OverWScale{frame.shift[0], frame.reach[0]}, OverWScale{frame.shift[1], frame.reach[1]}}, frame.origin};
-}
-
-/// A token's word over the codes of a vertex, lowest plane first, and back from the fragment that it has become.
-inline void set_texture_word(PerPlane<std::uint32_t>& code, std::uint64_t word, const Widths& widths) {
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
-    const int bits = widths.of_plane(p).code.bits;
-    code[p] = static_cast<std::uint32_t>(wrap_unsigned(word, bits));
-    word >>= bits;
-  }
-}
-[[nodiscard]] inline std::uint64_t texture_word(const PerPlane<std::uint32_t>& code, const Widths& widths) {
-  std::uint64_t word = 0;
-  for (int p = widths.planes - 1; p >= 0; --p) {
-    const int bits = widths.of_plane(static_cast<std::size_t>(p)).code.bits;
-    word = word << bits | wrap_unsigned(code[static_cast<std::size_t>(p)], bits);
-  }
-  return word;
-}
-[[nodiscard]] inline std::uint64_t texture_word(const FragmentPacket& token, const Widths& widths) {
-  PerPlane<std::uint32_t> code = token.code[0];
-  for (auto p = static_cast<std::size_t>(widths.affine_planes); p < static_cast<std::size_t>(widths.planes); ++p)
-    code[p] >>= widths.of_plane(p).guard_bits();
-  return texture_word(code, widths);
 }
 
 }  // namespace halfplane

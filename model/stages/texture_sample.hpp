@@ -15,6 +15,7 @@ struct Sampler {
   TextureMin min = TextureMin::nearest;
   TextureMag mag = TextureMag::nearest;
   Lod bias = 0, least = 0, largest = 0;
+  int last_level = 0;
 
   Sampler() = default;
   Sampler(const Texture& texture_, const State& state)
@@ -25,7 +26,8 @@ struct Sampler {
         mag(state.texture_mag),
         bias(to_lod(state.texture_lod[0])),
         least(to_lod(state.texture_lod[1])),
-        largest(std::max(least, to_lod(state.texture_lod[2]))) {}
+        largest(std::max(least, to_lod(state.texture_lod[2]))),
+        last_level(texture_.last_level()) {}
 
  private:
   [[nodiscard]] static Lod to_lod(double level) { return static_cast<Lod>(std::floor(level * 256 + 0.5)); }
@@ -47,10 +49,9 @@ struct SampleFilter {
   const Lod magnified = s.mag == TextureMag::linear && is_nearest && has_levels ? 128 : 0;
   if (level <= magnified) return {s.mag == TextureMag::linear, false, {}};
   if (!has_levels) return {!is_nearest, false, {}};
-  const int last = s.texture->last_level();
   if (s.min == TextureMin::nearest_mipmap_nearest || s.min == TextureMin::linear_mipmap_nearest)
-    return {!is_nearest, false, {nearest_level(level, last), 0, 0}};
-  return {!is_nearest, true, levels_around(level, last)};
+    return {!is_nearest, false, {nearest_level(level, s.last_level), 0, 0}};
+  return {!is_nearest, true, levels_around(level, s.last_level)};
 }
 
 /// The texture's colour; `lod` as above.

@@ -1,28 +1,42 @@
 #include "texture_unit.hpp"
 
 namespace halfplane {
+namespace {
+
+/// A level, behind those before it.
+void put_level(std::vector<std::uint8_t>& memory, const Texture& texture, int level, const LevelPlace& place) {
+  const TextureLevel& image = texture.level[static_cast<std::size_t>(level)];
+  const TextureFormat format = stored_format(texture.format);
+  const auto bytes = std::size_t{1} << texel_size_log2(format);
+  constexpr int kTexels = kTextureBlock * kTextureBlock;
+  const auto blocks = [](int size) { return (size + kTextureBlock - 1) / kTextureBlock; };
+  const int row = blocks(image.width), first = static_cast<int>(place.block), corner = place.is_corner ? 2 : 0;
+  memory.resize(static_cast<std::size_t>((first + row * blocks(image.height)) * kTexels) * bytes);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      std::uint32_t code = image.code[static_cast<std::size_t>(y * image.width + x)];
+      if (format != texture.format) code = encode_texel(format, texture.palette[code], {});
+      const int block = first + y / kTextureBlock * row + x / kTextureBlock;
+      const int texel = (y + corner) % kTextureBlock * kTextureBlock + (x + corner) % kTextureBlock;
+      const std::size_t at = static_cast<std::size_t>(block * kTexels + texel) * bytes;
+      for (std::size_t i = 0; i < bytes; ++i) memory[at + i] = static_cast<std::uint8_t>(code >> (8 * i));
+    }
+}
+
+}  // namespace
 
 TextureFormat stored_format(TextureFormat format) {
   return palette_size(format) != 0 ? TextureFormat::rgba8888 : format;
 }
 
-std::vector<std::uint8_t> texture_bytes(const Texture& texture) {
-  const TextureLevel& image = texture.level.front();
-  const TextureFormat format = stored_format(texture.format);
-  const auto bytes = std::size_t{1} << texel_size_log2(format);
-  const auto blocks = [](int size) { return (size + kTextureBlock - 1) / kTextureBlock; };
-  const int row = blocks(image.width);
-  std::vector<std::uint8_t> memory(static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks(image.height)) *
-                                   kTextureBlock * kTextureBlock * bytes);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      std::uint32_t code = image.code[static_cast<std::size_t>(y * image.width + x)];
-      if (format != texture.format) code = encode_texel(format, texture.palette[code], {});
-      const int block = y / kTextureBlock * row + x / kTextureBlock;
-      const int texel = y % kTextureBlock * kTextureBlock + x % kTextureBlock;
-      const std::size_t at = static_cast<std::size_t>(block * kTextureBlock * kTextureBlock + texel) * bytes;
-      for (std::size_t i = 0; i < bytes; ++i) memory[at + i] = static_cast<std::uint8_t>(code >> (8 * i));
-    }
+std::vector<std::uint8_t> texture_bytes(const Texture& texture, bool has_levels) {
+  const TextureAxes axes{TextureAxis{texture.width()}, TextureAxis{texture.height()}};
+  const std::array log2_size{floor_log2(static_cast<unsigned>(texture.width())),
+                             floor_log2(static_cast<unsigned>(texture.height()))};
+  has_levels = has_levels && axes[0].is_power_of_two() && axes[1].is_power_of_two();
+  std::vector<std::uint8_t> memory;
+  for (int n = 0; n <= (has_levels ? texture.last_level() : 0); ++n)
+    put_level(memory, texture, n, has_levels ? level_place(log2_size, n) : LevelPlace{});
   return memory;
 }
 

@@ -1,9 +1,13 @@
-// Texture unit: the texture of a stamp's live samples in hardware, level 0, nearest or linear, and the cache that it reads
-// through. Its coordinates, texels and colours are those of perspective.hpp, texture_filter.hpp and texture.hpp.
+// Texture unit: the texture of a stamp's live samples in hardware, nearest or linear, on one level or between two, and the
+// cache that it reads through. Its coordinates, levels, texels and colours are those of perspective.hpp, level_of_detail.hpp,
+// texture_sample.hpp, texture_filter.hpp and texture.hpp.
 //
-// In memory a texture is a row of rows of blocks of 4x4 texels, the texels of a block row by row, a code's low byte first;
-// sides below 4 are padded to a block, palettes are gone (rgba8888). A block is a line of the cache: 16, 32 or 64 bytes. The
-// lowest bits of its column and row say where in the cache it may lie.
+// In memory a level is a row of rows of blocks of 4x4 texels, the texels of a block row by row, a code's low byte first; sides
+// below 4 are padded to a block, palettes are gone (rgba8888). Where the levels begin says texture_levels.hpp. A block is a line
+// of the cache: 16, 32 or 64 bytes. The lowest bits of its column and row say where in the cache it may lie; of a draw that
+// looks at two levels the highest of those of the row says whether the level is odd, so that no level is in the other's way.
+//
+// A sample between two levels goes through cache and filter twice, once where the second would add nothing.
 //
 // A state holds for the stamps behind it. Stamps of other primitives than triangles, stamps without live samples, and all
 // while the state's texture is off pass as they are.
@@ -20,6 +24,7 @@
 #include "../texture.hpp"
 #include "perspective.hpp"
 #include "texture_filter.hpp"
+#include "texture_levels.hpp"
 
 namespace halfplane {
 
@@ -33,8 +38,8 @@ using TextureLine = std::array<std::uint8_t, kTextureLine>;
 }
 /// The format in which hardware stores it.
 [[nodiscard]] TextureFormat stored_format(TextureFormat format);
-/// Level 0 as it lies in memory.
-[[nodiscard]] std::vector<std::uint8_t> texture_bytes(const Texture& texture);
+/// As it lies in memory: level 0, or all of them where the sides are powers of two.
+[[nodiscard]] std::vector<std::uint8_t> texture_bytes(const Texture& texture, bool has_levels = false);
 
 /// What the unit knows of a draw.
 struct TextureState {
@@ -46,7 +51,7 @@ struct TextureState {
   std::array<TextureWrap, 2> wrap{};
   std::array<int, 2> log2_size{};  ///< width, height; 0 to 12
   std::uint32_t base = 0;          ///< byte address, a multiple of 64
-  bool is_linear = false;          ///< only of a unit with that filter
+  bool is_linear = false;          ///< only of a unit with that filter; of one with levels texture_mag
 
   /// From the lowest bit: enable, invalidates, format 3, combine 2, wraps 2 + 2, sizes 4 + 4, base / 64 26, is_linear.
   [[nodiscard]] std::uint64_t pack() const;
@@ -64,17 +69,20 @@ struct TextureSettings {
   int queue = 16;           ///< stamps inside
   int in_flight = 32;       ///< samples between address and texel
   bool has_linear = false;  ///< FILTER: four texels a sample, lines in four banks
+  bool has_levels = false;  ///< likewise: more than level 0; has_linear as well
+  int line_bits = 104;      ///< of a TextureLines in a token
   /// Beats of a line.
   [[nodiscard]] int beats(TextureFormat format) const { return (128 << texel_size_log2(format)) / port_bits; }
 };
 
-/// A sample's way through the cache.
+/// A line on a sample's way through the cache.
 struct TextureLookup {
   std::uint32_t address = 0;  ///< of its line
   std::uint32_t line = 0;     ///< the place in the cache
   bool is_miss = false;
-  int beats = 1;     ///< of the line
-  bool ends = true;  ///< the last of its sample's lines
+  int beats = 1;           ///< of the line
+  bool ends = true;        ///< the last of its sample's lines, or of those on one of its levels
+  bool continues = false;  ///< and the sample goes through again, for another level
 };
 
 /// Which lines are in the cache.
@@ -89,6 +97,11 @@ class TextureCache {
   /// Where the block of that column and row may lie.
   [[nodiscard]] std::uint32_t line_of(std::uint32_t x, std::uint32_t y) const {
     return (y & ((1U << y_bits_) - 1)) << x_bits_ | (x & ((1U << x_bits_) - 1));
+  }
+  /// The same in the half for even or for odd levels.
+  [[nodiscard]] std::uint32_t line_of(std::uint32_t x, std::uint32_t y, int level) const {
+    const auto half = std::uint32_t{1} << (y_bits_ - 1);
+    return line_of(x, (y & (half - 1)) | ((level & 1) != 0 ? half : 0));
   }
   /// Whether the line was there; it is now.
   bool access(std::uint32_t address, std::uint32_t line) {
@@ -116,21 +129,39 @@ struct TextureFrame {
   std::array<std::int32_t, 2> reference{};  ///< wrapped_reference()
 };
 
-/// A sample's place, local to its tile (q_at, p_at).
+/// A sample's place, local to its tile (q_at, p_at), and its pixel, of which levels take the 12 lowest bits.
 struct TextureSample {
   std::uint64_t q = 1;
   std::array<std::int64_t, 2> p{};
+  int x = 0, y = 0;
 };
 
 class TextureUnit {
  public:
   TextureUnit(const TextureSettings& settings, const PerspectiveFormat& format)
-      : settings_(settings), format_(format), cache_(settings.lines), data_(static_cast<std::size_t>(settings.lines)) {}
+      : settings_(settings),
+        format_(format),
+        lines_(settings.line_bits),
+        cache_(settings.lines),
+        data_(static_cast<std::size_t>(settings.lines)) {}
 
   [[nodiscard]] const TextureState& state() const { return state_; }
   void set(const TextureState& state) {
     state_ = state;
+    sampler_.mag = state.is_linear ? TextureMag::linear : TextureMag::nearest;
     if (state.invalidates) cache_.drop();
+  }
+  void set_levels(const TextureLevels& levels) {
+    levels_ = levels;
+    sampler_.min = levels.min;
+    sampler_.least = levels.least;
+    sampler_.largest = levels.largest;
+    sampler_.last_level = levels.last;
+  }
+  /// A part of the lines of the triangle that follows.
+  void move_in(uint128 line_part) {
+    lines_.move_in(line_part);
+    lod_ = lines_.lines().unpack();
   }
   [[nodiscard]] bool is_textured(bool is_triangle, SampleMask live) const {
     return state_.enable && is_triangle && live.any();
@@ -148,15 +179,23 @@ class TextureUnit {
     return place;
   }
 
-  /// The columns and rows of texels that it looks at: of a nearest filter one of each, twice.
-  [[nodiscard]] std::array<TexelPair, 2> texels_of(const TexturePlace& place) const {
+  /// What a sample reads.
+  [[nodiscard]] SampleFilter filter_at(const TextureSample& sample) const {
+    if (!settings_.has_levels) return {state_.is_linear, false, {}};
+    return filter_of(sampler_, level_of_detail(lod_, sample.q, sample.x, sample.y));
+  }
+
+  /// The columns and rows of texels that it looks at on a level: of a nearest filter one of each, twice.
+  [[nodiscard]] std::array<TexelPair, 2> texels_of(const TexturePlace& place, bool is_linear, int level) const {
     const TextureAxes axes = state_.axes();
     std::array<TexelPair, 2> texels{};
     for (const std::size_t i : {0U, 1U}) {
-      if (state_.is_linear) {
-        texels[i] = texels_around(place, axes, i, 0);
+      if (is_linear) {
+        texels[i] = texels_around(place, axes, i, level);
       } else {
-        texels[i].first = texels[i].second = wrapped_texel(place.coordinate[i] >> place.fraction_bits, axes[i]);
+        texels[i].first = texels[i].second =
+            wrapped_texel(at_level(place.coordinate[i], place.fraction_bits, axes[i], level) >> kTexelFraction,
+                          axes[i].at_level(level));
       }
     }
     return texels;
@@ -170,34 +209,61 @@ class TextureUnit {
     lookups_.clear();
     live.for_each([&](std::size_t s) {
       const TexturePlace place = place_of(samples[s], frame);
-      const auto [x, y] = texels_of(place);
-      // Bank by bank, by the lowest bits of a block's row and column; without banks the one block that there is.
-      for (const int bank : {0, 1, 2, 3}) {
-        const auto block_x = block_in(x, bank & 1), block_y = block_in(y, bank >> 1);
-        if (block_x >= 0 && block_y >= 0)
-          look_up(static_cast<std::uint32_t>(block_x), static_cast<std::uint32_t>(block_y), read);
+      const SampleFilter filter = filter_at(samples[s]);
+      const LevelPair& levels = filter.levels;
+      const Sums lower = sums(place, filter.is_linear, levels.lower, read);
+      Sums upper = lower;
+      if (filter.is_between && levels.part != 0 && levels.upper != levels.lower) {
+        lookups_.back().continues = true;
+        upper = sums(place, filter.is_linear, levels.upper, read);
       }
-      lookups_.back().ends = true;
-      const auto fetch = [this](int, int column, int row) { return texel(column, row); };
-      const Texel texel = state_.is_linear ? filter_linear(fetch, state_.axes(), place, 0) : fetch(0, x.first, y.first);
+      Texel texel{};
+      for (std::size_t c = 0; c < 4; ++c)
+        texel[c] = filter.is_between ? blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), levels.part)
+                                     : static_cast<std::uint8_t>(round_shift(lower[c], 16));
       colors[s] = combined(colors[s], texel, state_.combine, has_alpha(state_.format));
     });
     return lookups_;
   }
 
  private:
+  using Sums = std::array<std::uint32_t, 4>;
+
+  /// What the filter gives on a level, 16 fraction bits, behind the look-ups of its lines.
+  template <class Read>
+  [[nodiscard]] Sums sums(const TexturePlace& place, bool is_linear, int level, Read&& read) {
+    const auto [x, y] = texels_of(place, is_linear, level);
+    // Bank by bank, by the lowest bits of a block's row and column; without banks the one block that there is.
+    for (const int bank : {0, 1, 2, 3}) {
+      const auto block_x = block_in(x, bank & 1), block_y = block_in(y, bank >> 1);
+      if (block_x >= 0 && block_y >= 0)
+        look_up(level, static_cast<std::uint32_t>(block_x), static_cast<std::uint32_t>(block_y), read);
+    }
+    lookups_.back().ends = true;
+    if (is_linear)
+      return linear_sums([this](int l, int u, int v) { return texel(l, u, v); }, state_.axes(), place, level);
+    const Texel nearest = texel(level, x.first, y.first);
+    Sums sums{};
+    for (std::size_t c = 0; c < 4; ++c) sums[c] = std::uint32_t{nearest[c]} << 16;
+    return sums;
+  }
+
   /// Of two columns or rows of texels, the block whose lowest bit is `bit`; -1: there is none.
   [[nodiscard]] static int block_in(const TexelPair& pair, int bit) {
     for (const int texel : {pair.first, pair.second})
       if ((texel / kTextureBlock & 1) == bit) return texel / kTextureBlock;
     return -1;
   }
+  [[nodiscard]] std::uint32_t line_of(int level, std::uint32_t block_x, std::uint32_t block_y) const {
+    return levels_.has_two() ? cache_.line_of(block_x, block_y, level) : cache_.line_of(block_x, block_y);
+  }
   template <class Read>
-  void look_up(std::uint32_t block_x, std::uint32_t block_y, Read&& read) {
-    const int row = std::max(0, state_.log2_size[0] - 2);
+  void look_up(int level, std::uint32_t block_x, std::uint32_t block_y, Read&& read) {
+    const int row = std::max(0, state_.log2_size[0] - 2 - level);
+    const std::uint32_t block = level_place(state_.log2_size, level).block + (block_y << row) + block_x;
     TextureLookup lookup;
-    lookup.address = state_.base + (((block_y << row) + block_x) << (4 + texel_size_log2(state_.format)));
-    lookup.line = cache_.line_of(block_x, block_y);
+    lookup.address = state_.base + (block << (4 + texel_size_log2(state_.format)));
+    lookup.line = line_of(level, block_x, block_y);
     lookup.is_miss = !cache_.access(lookup.address, lookup.line);
     lookup.beats = settings_.beats(state_.format);
     lookup.ends = false;
@@ -205,9 +271,10 @@ class TextureUnit {
     lookups_.push_back(lookup);
   }
   /// A texel whose line is there.
-  [[nodiscard]] Texel texel(int column, int row) const {
-    const auto x = static_cast<std::uint32_t>(column), y = static_cast<std::uint32_t>(row);
-    const TextureLine& line = data_[cache_.line_of(x / kTextureBlock, y / kTextureBlock)];
+  [[nodiscard]] Texel texel(int level, int column, int row) const {
+    const std::uint32_t corner = level_place(state_.log2_size, level).is_corner ? 2 : 0;
+    const auto x = static_cast<std::uint32_t>(column) + corner, y = static_cast<std::uint32_t>(row) + corner;
+    const TextureLine& line = data_[line_of(level, x / kTextureBlock, y / kTextureBlock)];
     const int size = texel_size_log2(state_.format);
     const std::uint32_t at = (y % kTextureBlock * kTextureBlock + x % kTextureBlock) << size;
     std::uint32_t code = 0;
@@ -218,6 +285,10 @@ class TextureUnit {
   TextureSettings settings_;
   PerspectiveFormat format_;
   TextureState state_;
+  TextureLevels levels_;
+  LineRegister lines_;
+  LodSetup lod_;     ///< what is in it
+  Sampler sampler_;  ///< state_ and levels_, but for the texture
   TextureCache cache_;
   std::vector<TextureLine> data_;
   std::vector<TextureLookup> lookups_;

@@ -215,8 +215,8 @@ mutant(77 stages/block_cache.sv "victims: the stamp that is about to be written 
   [=[goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0]=] [=[1'b0]=])
 mutant(78 stages/block_cache.sv "strobes: samples count as written that only came from memory"
   [=[{write_i.write_depth[s], written}]=] [=[{1'b1, written}]=])
-mutant(79 stages/block_cache.sv "fill: what was not drawn into keeps what the colour RAM had"
-  [=[dirty ? color : clear_color & {COLOR{c_fills_q}}]=] [=[color]=])
+mutant(79 stages/color_write.sv "fill: what was not drawn into keeps what the colour RAM had"
+  [=[dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}}]=] [=[code[s*COLOR+:COLOR]]=])
 mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])
 
@@ -273,30 +273,114 @@ mutant(143 stages/triangle_setup.sv "texture: the way to the anchor is that of v
 mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the one that comes"
   [=[raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q)]=] [=[raster_pkg::COORDINATE_FRAME_BITS'(p_q.coordinates)]=])
 mutant(145 lib/colored_stamps.sv "texture: points and clears have it too"
-  [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[fragment_i.kind != raster_pkg::PRIMITIVE_KIND_TEXTURE]=])
+  [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[fragment_i.kind != raster_pkg::PRIMITIVE_KIND_STATE]=])
 mutant(146 stages/block_cache.sv "texture: samples that fail the depth test are looked up"
-  [=[{SAMPLES{write_valid_i}} & write_i.write_color]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
+  [=[{SAMPLES{write_valid_i}} & (tests_alpha ? write_i.passed : write_i.write_color)]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
 mutant(147 stages/block_cache.sv "texture: idle though its memory has not answered what was asked for before a reset"
   [=[tags_are_idle && drained && texture_is_idle]=] [=[tags_are_idle && drained]=])
 mutant(148 stages/block_cache.sv "texture: one stamp more goes in than there is room for"
   [=[behind_q != BEHIND'(PLACES)]=] [=[behind_q <= BEHIND'(PLACES)]=])
-mutant(149 stages/texture_cache.sv "texture: of the tag the lowest bits"
-  [=[tag == t_address_q]=] [=[tag[5:0] == t_address_q[5:0]]=])
-mutant(150 stages/texture_cache.sv "texture: an answer of before a reset is taken"
+mutant(149 stages/texture_cache_linear.sv "texture: of the tag the lowest bits"
+  [=[tag == t_address_q[b*28+:28]]=] [=[tag[5:0] == t_address_q[b*28+:6]]=])
+mutant(150 stages/texture_cache_linear.sv "texture: an answer of before a reset is taken"
   [=[answer_valid_i && !discards]=] [=[answer_valid_i]=])
-mutant(151 stages/texture_cache.sv "texture: a line that is still to be read is overwritten"
-  [=[NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group)]=] [=[1'b0]=])
-mutant(152 stages/texture_cache.sv "texture: a sample does not wait for its line"
-  [=[(!is_miss || has_come)]=] [=[1'b1]=])
-mutant(153 stages/texture_cache.sv "texture: another texture begins with the lines of the one before"
+mutant(151 stages/texture_cache_linear.sv "texture: a line that is still to be read is overwritten"
+  [=[(asks & referenced) != '0]=] [=[1'b0]=])
+mutant(152 stages/texture_cache_linear.sv "texture: a sample does not wait for its lines"
+  [=[come_q >= COME'(waits_for)]=] [=[1'b1]=])
+mutant(153 stages/texture_cache_linear.sv "texture: another texture begins with the lines of the one before"
   [=[drop_i || (sweeps_q && sweep_q != '1)]=] [=[sweeps_q && sweep_q != '1]=])
 mutant(154 lib/texture_axis.sv "texture: P is cut off"
   [=[(NARROW + 1)'(shifted_q[0])]=] [=[(NARROW + 1)'(1'b0)]=])
-mutant(155 lib/texture_axis.sv "texture: mirror repeats"
+mutant(155 lib/texture_wrap.sv "texture: mirror repeats"
   [=[is_mirrored && turn != '0]=] [=[1'b0]=])
 mutant(156 lib/texture_combine.sv "texture: add does not hold"
   [=[{8{sum[8]}}]=] [=[8'd0]=])
 mutant(157 stages/texture_unit.sv "texture: the frame of a triangle goes with its first sample"
   [=[INDEX'(splits && is_last)]=] [=[INDEX'(splits)]=])
-mutant(158 stages/texture_unit.sv "texture: rows of blocks are one shorter in the widest"
-  [=[(22'(block_y) << row_q)]=] [=[(22'(block_y) << (row_q - 4'(row_q == 4'd4)))]=])
+mutant(158 stages/texture_levels.sv "texture: rows of blocks are as long on all levels"
+  [=[less(wide_q, level)]=] [=[wide_q]=])
+mutant(159 lib/colored_stamps.sv "texture: a level of detail is that of the tile's first pixel"
+  [=[((PIXEL'(fragment_i.stamp) >> ROW) << STAMP)]=] [=[PIXEL'(0)]=])
+mutant(160 lib/colored_stamps.sv "texture: levels are never set"
+  [=[fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS]=] [=[1'b0]=])
+mutant(161 stages/level_of_detail.sv "texture: the two slopes are one"
+  [=[lines_q[128+32*(n%2)+:32]]=] [=[lines_q[128+:32]]=])
+mutant(162 stages/level_of_detail.sv "texture: the octagon is a square"
+  [=[!more[32]]=] [=[1'b0]=])
+mutant(163 stages/level_of_detail.sv "texture: magnified begins at 0"
+  [=[12'd128]=] [=[12'd0]=])
+mutant(164 stages/level_of_detail.sv "texture: the nearest level is rounded the other way"
+  [=[{1'b0, level_q} + 13'd127]=] [=[{1'b0, level_q} + 13'd128]=])
+mutant(165 stages/level_of_detail.sv "texture: a bias is whole levels"
+  [=[lines_q[192+:16]]=] [=[{lines_q[200+:8], 8'd0}]=])
+mutant(166 lib/log2_below.sv "texture: the logarithm is made of lines"
+  [=[below_i + 8'(bow_rom[from_end])]=] [=[below_i]=])
+mutant(167 stages/texture_levels.sv "texture: a level begins where the larger one does"
+  [=[(ones_q & (21'h1ffffe << blocks))]=] [=[(ones_q & (21'h1ffffc << blocks))]=])
+mutant(168 stages/texture_levels.sv "texture: the second pass is on the first one's level"
+  [=[level_i + 4'(is_second_q)]=] [=[level_i]=])
+mutant(169 lib/texture_on_level.sv "texture: coordinates on a level are cut off"
+  [=[PLACE'(is_linear_q && scaled_q[0])]=] [=[PLACE'(1'b0)]=])
+mutant(170 lib/texture_blend.sv "texture: between levels sums are cut off"
+  [=[sum_i[24*n+8+:16] + 16'(sum_i[24*n+7])]=] [=[sum_i[24*n+8+:16]]=])
+
+# colour operations
+mutant(180 lib/blend_lane.sv "colours: one minus a factor is one more"
+  [=[factor_of ^ {8{code[0]}}]=] [=[(code[0] ? -factor_of : factor_of)]=])
+mutant(181 lib/blend_lane.sv "colours: reverse subtract adds"
+  [=[equation == REVERSE_SUBTRACT]=] [=[1'b0]=])
+mutant(182 lib/blend_lane.sv "colours: a sum above 1 does not hold"
+  [=[quotient[15:8] | {8{quotient[16]}}]=] [=[quotient[15:8]]=])
+mutant(183 lib/blend_lane.sv "colours: a difference below 0 does not hold"
+  [=[(sum_q[17] ? '0 : sum_q[16:0])]=] [=[sum_q[16:0]]=])
+mutant(184 lib/blend_lane.sv "colours: a blend is cut off"
+  [=[17'd128]=] [=[17'd0]=])
+mutant(185 lib/blend_lane.sv "colours: a blend is divided by 256"
+  [=[{8'd0, rounded[16:8]}]=] [=[17'd0]=])
+mutant(186 lib/blend_lane.sv "colours: src_alpha_saturate does not look at what is stored"
+  [=[(source_alpha < room ? source_alpha : room)]=] [=[source_alpha]=])
+mutant(187 lib/blend_lane.sv "colours: max is min"
+  [=[(source < stored) == (equation == MIN)]=] [=[source < stored]=])
+mutant(188 stages/color_write.sv "colours: the masks of red and blue are exchanged"
+  [=[{{5{out_3_q[0]}}, {6{out_3_q[1]}}, {5{out_3_q[2]}}}]=] [=[{{5{out_3_q[2]}}, {6{out_3_q[1]}}, {5{out_3_q[0]}}}]=])
+mutant(189 stages/color_write.sv "colours: what has been written of a stamp is lost when the rest of it comes"
+  [=[(dirty[s] && !starts_1_q)]=] [=[1'b0]=])
+mutant(190 stages/color_write.sv "colours: hazard: a stamp is read while it is on its way to the RAM"
+  [=[is_same_stamp != '0 && is_first]=] [=[1'b0]=])
+mutant(191 stages/color_write.sv "colours: hazard: a block is evicted while a stamp of it is on its way to the RAM"
+  [=[is_same_line != '0]=] [=[1'b0]=])
+mutant(192 stages/color_write.sv "colours: samples that memory does not have pass for read ones"
+  [=[mask_1_q | (starts_1_q ? '0 : dirty)]=] [=[mask_1_q]=])
+mutant_text(193 stages/color_write.sv "colours: a stamp has the masks of the one behind it"
+  [=[out_3_q     <= out_2_q]=] [=[out_3_q <= raster_cosim.mutant_q == 16'd193 ? ops_q[DITHERS:WRITES] : out_2_q]=])
+mutant(194 stages/color_write.sv "colours: dithering: the matrix is turned"
+  [=[~{x[0] ^ y[0], y[0], x[1] ^ y[1], y[1]}]=] [=[~{x[0] ^ y[0], x[0], x[1] ^ y[1], x[1]}]=])
+mutant(195 lib/sample_place.sv "colours: dithering: every stamp begins at the matrix' first column"
+  [=[2'(stamp_i[SIDE_BITS-1:0])]=] [=[2'd0]=])
+mutant(196 stages/cache_tags.sv "colours: what a clear has left is asked of memory"
+  [=[cleared[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY]=] [=[raster_pkg::DEPTH_SOURCE_MEMORY]=])
+mutant(197 stages/cache_tags.sv "colours: a block begins with what was known of the one before it"
+  [=[hits ? line_state[KNOWN-1:0] : '0]=] [=[line_state[KNOWN-1:0]]=])
+mutant(198 stages/block_cache.sv "colours: asked for ahead of depth"
+  [=[order_reads_color && (!order_reads || depth_asked_q)]=] [=[order_reads_color && !depth_asked_q]=])
+mutant(199 stages/block_cache.sv "colours: an answer goes to the other plane"
+  [=[response_valid_i && !is_color]=] [=[response_valid_i && (!is_color || color_valid)]=])
+
+# alpha test
+mutant(200 lib/alpha_test.sv "alpha: equal passes for less"
+  [=[alpha_i[8*s+:8] < reference_i]=] [=[alpha_i[8*s+:8] <= reference_i]=])
+mutant(201 stages/depth_test.sv "alpha: what may still be dropped sets the bound of HiZ"
+  [=[kept == '1 && !is_late]=] [=[kept == '1]=])
+mutant(202 stages/block_cache.sv "alpha: depth is written before it is decided"
+  [=[write_valid_i && writes && !x1_late]=] [=[write_valid_i && writes]=])
+mutant(203 stages/block_cache.sv "alpha: a stamp does not wait for what is decided about it"
+  [=[(pending_here & item_bit) != '0]=] [=[1'b0]=])
+mutant(204 stages/block_cache.sv "alpha: a block leaves before what is decided about it"
+  [=[(evicts && pending_here != '0)]=] [=[1'b0]=])
+mutant(205 stages/block_cache.sv "alpha: what is not tested overtakes what is"
+  [=[late_behind_q != '0]=] [=[1'b0]=])
+mutant(206 stages/cache_tags.sv "alpha: depth unread where always writes all that alpha lets pass"
+  [=[(tests_alpha && fragment_q.state.depth_write)]=] [=[1'b0]=])
+mutant(207 stages/block_cache.sv "alpha: counter: samples that fail the depth test are counted too"
+  [=[popcount(w_passed & ~alpha_passes)]=] [=[popcount(~alpha_passes)]=])

@@ -25,7 +25,8 @@ module colored_stamps #(
     output logic                                                        stamp_valid_o,
     input  logic                                                        stamp_ready_i,
     output logic [CARRIED-1:0]                                          carried_o,
-    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] color_o,
+    output logic [raster_pkg::SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] color_o,
+    output logic [raster_pkg::SAMPLES*8-1:0]                            alpha_o,  // with a texture unit; else known before
 
     // To and from the memory of textures
     output logic                         texture_valid_o,
@@ -45,7 +46,7 @@ module colored_stamps #(
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
-  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int COLOR = raster_pkg::SHADED_COLOR_BITS;  // as W takes it: as it is stored, unless it packs
 
   genvar s;
   generate
@@ -65,6 +66,7 @@ module colored_stamps #(
           .ready_i(stamp_ready_i),
           .data_o ({carried_o, color_o})
       );
+      assign alpha_o           = '0;
       assign texture_is_idle_o = 1'b1;
       assign texture_valid_o   = 1'b0;
       assign texture_o         = '0;
@@ -81,8 +83,14 @@ module colored_stamps #(
       localparam int L = raster_pkg::PERSPECTIVE_GUARD_BITS;
       localparam int AFFINE_BITS = raster_pkg::ALL_AFFINE_CODE_BITS;
       localparam int NARROW = raster_pkg::PERSPECTIVE_MANTISSA_BITS - 1;  // k_P
+      localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::ALL_CODE_BITS >= 104 ? 104 : 70;
+      localparam int PIXEL = 12;
+      localparam int TILE = raster_pkg::TILE_SHIFT;
+      localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
+      localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
       /* verilator lint_off UNUSEDSIGNAL */  // longer than a state
       logic [raster_pkg::ALL_CODE_BITS-1:0] word;  // of a token: its codes
+      logic [PIXEL-1:0] stamp_x, stamp_y;          // its first pixel, as levels want it
       /* verilator lint_on UNUSEDSIGNAL */
       logic [SAMPLES*Q-1:0]          q;
       logic [SAMPLES*P-1:0]          u, v;
@@ -90,18 +98,28 @@ module colored_stamps #(
       logic [SAMPLES-1:0]            mask;
       /* verilator lint_off UNUSEDSIGNAL */  // nobody counts them yet
       logic hits, misses;
+      logic is_token;
       /* verilator lint_on UNUSEDSIGNAL */
+      assign stamp_x = (PIXEL'(fragment_i.key.tile_x) << TILE) |
+                       ((PIXEL'(fragment_i.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
+      assign stamp_y = (PIXEL'(fragment_i.key.tile_y) << TILE) | ((PIXEL'(fragment_i.stamp) >> ROW) << STAMP);
       assign word = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
                      fragment_i.code[0+:AFFINE_BITS]};
+      assign is_token = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_STATE;
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
         assign q[s*Q+:Q] = fragment_i.code[s*FRAGMENT+Q_AT+:Q];
         assign u[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+:P];
         assign v[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+P+:P];
         logic [COLOR-1:0] packed_color;
-        rop u_rop (
-            .rgba_i (rgba[s*8*CHANNELS+:8*CHANNELS]),
-            .color_o(packed_color)
-        );
+        if (raster_pkg::BLEND_LANES != 0 || raster_pkg::DITHER_UNIT != 0) begin : gen_whole
+          assign packed_color = rgba[s*8*CHANNELS+:8*CHANNELS];
+        end else begin : gen_rop
+          rop u_rop (
+              .rgba_i (rgba[s*8*CHANNELS+:8*CHANNELS]),
+              .color_o(packed_color)
+          );
+        end
+        assign alpha_o[s*8+:8] = rgba[(s+1)*8*CHANNELS-1-:8];
         assign color_o[s*COLOR+:COLOR] = packed_color & {COLOR{mask[s]}};
       end
 
@@ -116,12 +134,14 @@ module colored_stamps #(
           .REACH_BITS    (raster_pkg::COORDINATE_REACH_BITS),
           .REFERENCE_BITS(raster_pkg::COORDINATE_REFERENCE_BITS),
           .CHANNELS      (CHANNELS),
-          .FILTER        (raster_pkg::TEXTURE_UNIT == 2 ? 1 : 0),
+          .FILTER        (raster_pkg::TEXTURE_UNIT - 1),
           .PAYLOAD       (CARRIED),
           .QUEUE         (PLACES),
           .IN_FLIGHT     (raster_pkg::TEXTURE_QUEUE),
           .LINES         (16 * raster_pkg::TEXTURE_CACHE_KB),
-          .PORT_BITS     (raster_pkg::TEXTURE_PORT_BITS)
+          .PORT_BITS     (raster_pkg::TEXTURE_PORT_BITS),
+          .WORD          (WORD),
+          .PIXEL         (PIXEL)
       ) u_texture (
           .clk_i,
           .power_on_ni,
@@ -137,8 +157,12 @@ module colored_stamps #(
           .shift_i        (fragment_i.coordinates.shift),
           .reach_i        (fragment_i.coordinates.reach),
           .reference_i    (fragment_i.coordinates.origin),
-          .sets_state_i   (fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TEXTURE),
-          .state_i        (word[45:0]),
+          .sets_state_i   (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE),
+          .sets_levels_i  (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS),
+          .moves_in_i     (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LINES),
+          .x_i            (stamp_x),
+          .y_i            (stamp_y),
+          .state_i        (word[WORD-1:0]),
           .stamp_valid_o  (stamp_valid_o),
           .stamp_ready_i  (stamp_ready_i),
           .payload_o      (carried_o),

@@ -4,7 +4,7 @@
 //   product  Pn r, r the reciprocal of the normalised q
 //   place    its texels: the product times 2^x, rounded at FRACTION bits, what is behind the point cut off
 //   wrap     + u_ref, then onto the image
-// A fixed pipeline without enables. Specification: narrow_p, over_q of model/stages/perspective.hpp, wrapped_texel of
+// A fixed pipeline without enables. Specification: narrow_p, over_q of model/stages/perspective.hpp, texels_around of
 // texture_filter.hpp.
 module texture_axis #(
     parameter int P_BITS = 28,          // with its sign; 18 to 33
@@ -13,7 +13,7 @@ module texture_axis #(
     parameter int FRACTION = 8,         // f
     parameter int REFERENCE_BITS = 24,  // with its sign
     parameter int SIDE_BITS = 12,       // log2 of the longest side
-    parameter int LINEAR = 0            // also the two texels whose middles are around the place
+    parameter int LINEAR = 0            // 1 also the two texels whose middles are around the place, 2 the place alone
 ) (
     input logic clk_i,
 
@@ -34,7 +34,8 @@ module texture_axis #(
     // Of six clocks ago
     output logic [SIDE_BITS-1:0] texel_o,
     output logic [SIDE_BITS-1:0] next_o,  // the texel behind it, where it is linear
-    output logic [7:0]           part_o   // how much of that, in 256ths
+    output logic [7:0]           part_o,  // how much of that, in 256ths
+    output logic [REFERENCE_BITS+7:0] coordinate_o  // or the place before it is wrapped, 2^-8 texels
 );
 
   // ----------------------------------------------------------------------------------------------------- clocks 0, 1: narrow
@@ -143,6 +144,10 @@ module texture_axis #(
   logic [PLACE-1:0] placed;
   logic [WHOLE-1:0] whole_q;
   logic             carries_q;
+  /* verilator lint_off UNUSEDSIGNAL */  // where only texels count
+  logic [FRACTION-1:0] rounded_part;
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign rounded_part = placed[FRACTION:1] + FRACTION'(placed[0]);
   generate
     if (BELOW >= 0) begin : gen_zeros
       assign long = {{ABOVE{product_q[PRODUCT-1]}}, product_q, {BELOW{1'b0}}};
@@ -165,39 +170,68 @@ module texture_axis #(
   logic [REFERENCE_BITS-1:0] number;
   assign number = reference_i + {{(REFERENCE_BITS - WHOLE) {whole_q[WHOLE-1]}}, whole_q} + REFERENCE_BITS'(carries_q);
 
-  function automatic [SIDE_BITS-1:0] wrapped(input [REFERENCE_BITS-1:0] value, input [SIDE_BITS-1:0] last,
-                                             input is_clamped, input is_mirrored);
-    logic [SIDE_BITS-1:0] low, beyond;
-    logic [SIDE_BITS:0]   turn;
-    logic                 is_above, is_turned;
-    low       = value[SIDE_BITS-1:0];
-    beyond    = low & ~last;
-    is_above  = value[REFERENCE_BITS-2:SIDE_BITS] != '0 || beyond != '0;
-    turn      = value[SIDE_BITS:0] & ({last, 1'b1} ^ {1'b0, last});  // the bit above those of the image
-    is_turned = is_mirrored && turn != '0;
-    if (is_clamped && value[REFERENCE_BITS-1]) wrapped = '0;
-    else if (is_clamped && is_above) wrapped = last;
-    else wrapped = (low ^ {SIDE_BITS{is_turned}}) & last;
-  endfunction
-
   generate
-    if (LINEAR != 0) begin : gen_linear
+    if (LINEAR == 2) begin : gen_levels
+      logic [FRACTION-1:0] part_q;
+      always_ff @(posedge clk_i) begin
+        part_q       <= rounded_part;
+        coordinate_o <= {number, part_q, {(8 - FRACTION) {1'b0}}};
+      end
+      assign texel_o = '0;
+      assign next_o  = '0;
+      assign part_o  = '0;
+      /* verilator lint_off UNUSEDSIGNAL */  // wrapped on its level
+      logic unused;
+      assign unused = &{last_i, wrap_i, is_linear_i};
+      /* verilator lint_on UNUSEDSIGNAL */
+    end else if (LINEAR == 1) begin : gen_linear
       // Less half a texel: from the middle of the texel in front.
       logic [FRACTION-1:0]       part_q;
       logic [7:0]                part;
       logic [REFERENCE_BITS-1:0] first;
-      always_ff @(posedge clk_i) part_q <= placed[FRACTION:1] + FRACTION'(placed[0]);
+      logic [SIDE_BITS-1:0]      texel, next;
+      always_ff @(posedge clk_i) part_q <= rounded_part;
       assign part  = {part_q, {(8 - FRACTION) {1'b0}}};
       assign first = number - REFERENCE_BITS'(is_linear_i && !part[7]);
+      texture_wrap #(
+          .NUMBER_BITS(REFERENCE_BITS),
+          .SIDE_BITS  (SIDE_BITS)
+      ) u_first (
+          .number_i(first),
+          .last_i,
+          .wrap_i,
+          .texel_o (texel)
+      );
+      texture_wrap #(
+          .NUMBER_BITS(REFERENCE_BITS),
+          .SIDE_BITS  (SIDE_BITS)
+      ) u_next (
+          .number_i(first + REFERENCE_BITS'(is_linear_i)),
+          .last_i,
+          .wrap_i,
+          .texel_o (next)
+      );
       always_ff @(posedge clk_i) begin
-        texel_o <= wrapped(first, last_i, wrap_i[0], wrap_i[1]);
-        next_o  <= wrapped(first + REFERENCE_BITS'(is_linear_i), last_i, wrap_i[0], wrap_i[1]);
+        texel_o <= texel;
+        next_o  <= next;
         part_o  <= is_linear_i ? part ^ 8'h80 : '0;
       end
+      assign coordinate_o = '0;
     end else begin : gen_nearest
-      always_ff @(posedge clk_i) texel_o <= wrapped(number, last_i, wrap_i[0], wrap_i[1]);
-      assign next_o = '0;
-      assign part_o = '0;
+      logic [SIDE_BITS-1:0] texel;
+      texture_wrap #(
+          .NUMBER_BITS(REFERENCE_BITS),
+          .SIDE_BITS  (SIDE_BITS)
+      ) u_wrap (
+          .number_i(number),
+          .last_i,
+          .wrap_i,
+          .texel_o (texel)
+      );
+      always_ff @(posedge clk_i) texel_o <= texel;
+      assign next_o       = '0;
+      assign part_o       = '0;
+      assign coordinate_o = '0;
     end
   endgenerate
 

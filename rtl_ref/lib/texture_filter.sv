@@ -1,7 +1,9 @@
 // Linear filter: four texels and how much there is of the second column and row. Two registers; without rounding between them,
-// (sum + 2^15) >> 16 at the end. Specification: linear_sums and filter_linear of model/stages/texture_filter.hpp.
+// (sum + 2^15) >> 16 at the end, or the sum as it is where it is blended with that of another level. Specification:
+// linear_sums and filter_linear of model/stages/texture_filter.hpp.
 module texture_filter #(
-    parameter int TAIL = 1  // bits that go along
+    parameter int LEVELS = 0,  // sum_o is what counts
+    parameter int TAIL = 1     // bits that go along
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -15,6 +17,7 @@ module texture_filter #(
 
     output logic            valid_o,
     input  logic            ready_i,
+    output logic [95:0]     sum_o,  // 24 bits a channel, with 2^15 without LEVELS
     output logic [31:0]     texel_o,
     output logic [TAIL-1:0] tail_o
 );
@@ -81,14 +84,15 @@ module texture_filter #(
       logic signed [16:0] difference;
       /* verilator lint_off UNUSEDSIGNAL */
       logic signed [25:0] product;
-      logic [23:0]        sum;
       /* verilator lint_on UNUSEDSIGNAL */
+      logic [23:0]        sum;
       assign first           = row_q[16*n+:16];
       assign second          = row_q[64+16*n+:16];
       assign difference      = $signed({1'b0, second}) - $signed({1'b0, first});
       assign product         = difference * $signed({1'b0, part_y_q});
-      assign sum             = {first, 8'd0} + product[23:0] + 24'h008000;
+      assign sum             = {first, 8'd0} + product[23:0] + (LEVELS != 0 ? 24'd0 : 24'h008000);
       assign texel_o[8*n+:8] = sum[23:16];
+      assign sum_o[24*n+:24] = sum;
     end
   endgenerate
 

@@ -1,14 +1,14 @@
 // Framebuffer of blocks: the depth and colour of blocks of 4x4 pixels on the chip, a direct-mapped write-back cache of the
 // planes in memory whose misses nobody waits for.
 //
-//   fragment -> cache_tags -> items -> [X: depth RAM] <-> depth_test -> (texture_unit) -> [W: colour RAM]
+//   fragment -> cache_tags -> items -> [X: depth RAM] <-> depth_test -> (texture_unit) -> [W: color_write]
 //                   '------ orders -> requests <- victims -----'------------'
 //
 // cache_tags looks fragments up as they come and orders what they need from memory; up to CACHE_QUEUE of them wait here for
 // their answers. X hands them to depth_test with what is stored under them: from the RAM, the clear value, or the answer,
-// which goes into the RAM with what is written. W writes colours, which nobody reads but to write them back. A block that
-// leaves goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, a stamp a cycle, first the one
-// that is about to be overwritten, and from there to memory.
+// which goes into the RAM with what is written. W writes colours; with blending it has answers of its own. A block that leaves
+// goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, a stamp a cycle, first the one that is
+// about to be overwritten, and from there to memory.
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module block_cache (
     input logic clk_i,
@@ -63,11 +63,16 @@ module block_cache (
     output logic [1:0] evict_o,
     output logic [1:0] clear_o,
 
+    // Samples of triangles, points and lines that are counted behind the texture, where the alpha test is
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o,
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] killed_o,
+
     output logic at_token_o,  // a clear or a flush is at work, behind everything
     output logic idle_o       // nothing is under way
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int COUNT = $clog2(SAMPLES + 1);
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
@@ -87,6 +92,10 @@ module block_cache (
   localparam int QUEUE = raster_pkg::CACHE_QUEUE;
   localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + BLOCK_X + BLOCK_Y + 2 * STAMPS + 2;
   localparam int ORDER = WRITES + 1 + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS + INDEX;
+  localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
+  localparam bit LATE = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::COORDINATES != 0;  // alpha is tested behind the texture
+  localparam bit HAS_STATE = BLENDS || LATE || raster_pkg::DITHER_UNIT != 0;  // colours have operations that tokens set
+  localparam int SHADED = raster_pkg::SHADED_COLOR_BITS;
 
   localparam int PLACES = raster_pkg::COORDINATES == 0 ? 2 : raster_pkg::TEXTURE_QUEUE / 2;  // between X and W
   localparam int BEHIND = $clog2(PLACES + 1);
@@ -98,6 +107,11 @@ module block_cache (
   function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
     number_of = '0;
     for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
+  endfunction
+
+  function automatic [COUNT-1:0] popcount(input [SAMPLES-1:0] mask);
+    popcount = '0;
+    for (int i = 0; i < SAMPLES; i++) popcount = popcount + COUNT'(mask[i]);
   endfunction
 
   // Of the lowest one, how many follow each other without a gap.
@@ -115,6 +129,10 @@ module block_cache (
   logic [LINE-1:0]                  made_line;
   logic [STAMP-1:0]                 made_stamp;
   raster_pkg::depth_source_t        made_source;
+  /* verilator lint_off UNUSEDSIGNAL */  // without blending
+  logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] made_color_source;
+  logic                             ordered_reads_color;
+  /* verilator lint_on UNUSEDSIGNAL */
   logic [1:0]                       made_fills;
   logic [BLOCK_X-1:0]               made_x;
   logic [BLOCK_Y-1:0]               made_y;
@@ -142,6 +160,7 @@ module block_cache (
       .item_stamp_o       (made_stamp),
       .item_source_o      (made_source),
       .item_starts_color_o(made_starts_color),
+      .item_color_source_o(made_color_source),
       .evicts_o           (made_evicts),
       .evicts_x_o         (made_x),
       .evicts_y_o         (made_y),
@@ -152,6 +171,7 @@ module block_cache (
       .order_ready_i      (ordered_ready),
       .order_writes_o     (ordered_writes),
       .order_reads_o      (ordered_reads),
+      .order_reads_color_o(ordered_reads_color),
       .order_tile_x_o     (ordered_x),
       .order_tile_y_o     (ordered_y),
       .order_stamp_o      (ordered_stamp),
@@ -176,20 +196,24 @@ module block_cache (
   logic [BLOCK_X-1:0]               evicts_x;
   logic [BLOCK_Y-1:0]               evicts_y;
   logic [STAMPS-1:0]                evicts_depth, evicts_color;
+  localparam int BITS = ITEM + (BLENDS ? 2 : 0);
+  logic [BITS-1:0] made_bits, item_bits;
+  assign made_bits[ITEM-1:0] = {made, made_line, made_stamp, made_source, made_starts_color, made_evicts, made_x, made_y,
+                                made_depth, made_color, made_fills};
+  assign {item, item_line, item_stamp, source, starts_color, evicts, evicts_x, evicts_y, evicts_depth, evicts_color,
+          fills} = item_bits[ITEM-1:0];
   fifo #(
-      .WIDTH(ITEM),
+      .WIDTH(BITS),
       .DEPTH(QUEUE)
   ) u_items (
       .clk_i,
       .rst_ni,
       .valid_i(made_valid),
       .ready_o(made_ready),
-      .data_i ({made, made_line, made_stamp, made_source, made_starts_color, made_evicts, made_x, made_y, made_depth,
-                made_color, made_fills}),
+      .data_i (made_bits),
       .valid_o(item_valid),
       .ready_i(takes_item),
-      .data_o ({item, item_line, item_stamp, source, starts_color, evicts, evicts_x, evicts_y, evicts_depth,
-                evicts_color, fills})
+      .data_o (item_bits)
   );
 
   logic                               order_valid, takes_order, order_reads;
@@ -197,36 +221,104 @@ module block_cache (
   logic [raster_pkg::TILE_X_BITS-1:0] order_x;
   logic [raster_pkg::TILE_Y_BITS-1:0] order_y;
   logic [INDEX-1:0]                   order_stamp;
+  localparam int ORDER_BITS = ORDER + (BLENDS ? 1 : 0);
+  logic [ORDER_BITS-1:0] ordered_bits, order_bits;
+  assign ordered_bits[ORDER-1:0] = {ordered_writes, ordered_reads, ordered_x, ordered_y, ordered_stamp};
+  assign {order_writes, order_reads, order_x, order_y, order_stamp} = order_bits[ORDER-1:0];
+  generate
+    if (BLENDS) begin : gen_color_bits
+      assign made_bits[ITEM+:2]  = made_color_source;
+      assign ordered_bits[ORDER] = ordered_reads_color;
+    end
+  endgenerate
   fifo #(
-      .WIDTH(ORDER),
+      .WIDTH(ORDER_BITS),
       .DEPTH(QUEUE)
   ) u_orders (
       .clk_i,
       .rst_ni,
       .valid_i(ordered_valid),
       .ready_o(ordered_ready),
-      .data_i ({ordered_writes, ordered_reads, ordered_x, ordered_y, ordered_stamp}),
+      .data_i (ordered_bits),
       .valid_o(order_valid),
       .ready_i(takes_order),
-      .data_o ({order_writes, order_reads, order_x, order_y, order_stamp})
+      .data_o (order_bits)
   );
 
-  // Answers: a place for each item that can wait for one.
-  logic                    answer_valid, takes_answer;
-  logic [SAMPLES*CODE-1:0] answer, response_depth;
+  // Answers: a place for each item that can wait for one, here for depth, and for colour (gen_blends) here and behind X.
+  logic                      answer_valid, takes_answer, answers_depth, answers_ready;
+  logic [SAMPLES*CODE-1:0]   answer, response_depth;
+  /* verilator lint_off UNUSEDSIGNAL */  // without blending
+  logic                      read_goes, reads_color, takes_color;  // a read goes out; it is one of colours
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic                      order_reads_color, color_valid;
+  logic [SAMPLES*COLOR-1:0]  stored_color;
+  logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] color_source;  // of the item at the head
   fifo #(
       .WIDTH(SAMPLES * CODE),
       .DEPTH(QUEUE)
   ) u_answers (
       .clk_i,
       .rst_ni,
-      .valid_i(response_valid_i),
-      .ready_o(response_ready_o),
+      .valid_i(answers_depth),
+      .ready_o(answers_ready),
       .data_i (response_depth),
       .valid_o(answer_valid),
       .ready_i(takes_answer),
       .data_o (answer)
   );
+  generate
+    if (BLENDS) begin : gen_blends
+      localparam int READS = 1 << $clog2(2 * QUEUE + PLACES);  // that may not have been answered
+      logic                     is_color, color_ready;  // the next answer
+      logic [SAMPLES*COLOR-1:0] response_color;
+      /* verilator lint_off UNUSEDSIGNAL */  // there is room, and one answer for each
+      logic                     planes_ready, planes_valid;
+      /* verilator lint_on UNUSEDSIGNAL */
+      // Which plane the next answer is of: as the reads went out.
+      fifo #(
+          .WIDTH(1),
+          .DEPTH(READS)
+      ) u_planes (
+          .clk_i,
+          .rst_ni,
+          .valid_i(read_goes),
+          .ready_o(planes_ready),
+          .data_i (reads_color),
+          .valid_o(planes_valid),
+          .ready_i(response_valid_i && response_ready_o),
+          .data_o (is_color)
+      );
+      fifo #(
+          .WIDTH(SAMPLES * COLOR),
+          .DEPTH(1 << $clog2(QUEUE + PLACES))
+      ) u_color_answers (
+          .clk_i,
+          .rst_ni,
+          .valid_i(response_valid_i && is_color),
+          .ready_o(color_ready),
+          .data_i (response_color),
+          .valid_o(color_valid),
+          .ready_i(takes_color),
+          .data_o (stored_color)
+      );
+      genvar n;
+      for (n = 0; n < SAMPLES; n++) begin : gen_response
+        assign response_color[n*COLOR+:COLOR] = response_i.data[n*LANE+:COLOR];
+      end
+      assign answers_depth     = response_valid_i && !is_color;
+      assign response_ready_o  = is_color ? color_ready : answers_ready;
+      assign color_source      = item_bits[ITEM+:2];
+      assign order_reads_color = order_bits[ORDER];
+    end else begin : gen_replaces
+      assign answers_depth     = response_valid_i;
+      assign response_ready_o  = answers_ready;
+      assign color_valid       = 1'b0;
+      assign stored_color      = '0;
+      assign color_source      = raster_pkg::DEPTH_SOURCE_NONE;
+      assign order_reads_color = 1'b0;
+    end
+  endgenerate
 
   // --------------------------------------------------------------------------------------------------- X: the depth test
   logic              on_chip, in_memory, reads_victim, slot_free, goes, hazard, leaves_line;
@@ -236,6 +328,8 @@ module block_cache (
   logic [BEHIND-1:0] behind_q;  // items between X and W: as many as the buffer holds
   logic              colors_done;  // W takes an item
   logic              finishes;     // an eviction is in memory
+  logic              waits_for_late;  // for what W writes of depth (gen_late)
+  logic              tests_alpha, x1_late;  // by the register of the alpha test; the item depth_test has is late
 
   logic               x1_valid_q, x1_starts_color_q, x1_evicts_q;
   logic [LINE-1:0]    x1_line_q;
@@ -253,7 +347,7 @@ module block_cache (
   assign hazard       = x1_valid_q && on_chip && x1_line_q == item_line && x1_stamp_q == item_stamp &&
                         (x1_writes_q & item.mask) != '0;
   assign leaves_line  = x1_valid_q && x1_line_q == item_line && x1_writes_q != '0;
-  assign goes         = item_valid && (!evicts || (left_q == '0 && slot_free && !leaves_line)) &&
+  assign goes         = item_valid && !waits_for_late && (!evicts || (left_q == '0 && slot_free && !leaves_line)) &&
                         (!on_chip || left_q == '0) && (!in_memory || answer_valid) && !hazard &&
                         (behind_q != BEHIND'(PLACES) || (colors_done && raster_pkg::COORDINATES == 0));
   assign left         = goes && evicts ? evicts_depth : left_q;
@@ -288,7 +382,7 @@ module block_cache (
     x1_fills_q        <= fills[1];
     x1_color_q        <= evicts_color;
     answer_q          <= answer;
-    if (item.mask == '0) x1_writes_q <= '0;
+    if (item.mask == '0 || (tests_alpha && item.state.depth_write)) x1_writes_q <= '0;
     else if (on_chip) x1_writes_q <= item.mask & {SAMPLES{item.state.depth_write}};
     else x1_writes_q <= {SAMPLES{source != raster_pkg::DEPTH_SOURCE_NONE || item.state.depth_write}};
   end
@@ -320,6 +414,9 @@ module block_cache (
   end
 
   logic x1_on_chip;
+  logic late_valid;  // W writes depths (gen_late)
+  logic [SAMPLES-1:0]          late_writes;
+  logic [SAMPLES*(CODE+1)-1:0] late_word;
   assign x1_on_chip = x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP;
   genvar s;
   generate
@@ -335,7 +432,7 @@ module block_cache (
       end
       assign writes = write_i.write_depth[s] || (!x1_on_chip && x1_source_q != raster_pkg::DEPTH_SOURCE_NONE);
       assign written = write_i.write_depth[s] ? write_i.depth[s*CODE+:CODE] : stored;
-      assign word = {write_i.write_depth[s], written};
+      assign word = late_valid ? late_word[s*(CODE+1)+:CODE+1] : {write_i.write_depth[s], written};
       assign stored_depth_o[s*CODE+:CODE] = stored;
       sram #(
           .WIDTH    (CODE + 1),
@@ -346,8 +443,8 @@ module block_cache (
           .read_i         (reads_victim || goes),
           .read_address_i (depth_read_address),
           .data_o         ({dirty, code}),
-          .write_i        (write_valid_i && writes),
-          .write_address_i({x1_line_q, x1_stamp_q}),
+          .write_i        (late_valid ? late_writes[s] : write_valid_i && writes && !x1_late),
+          .write_address_i(late_valid ? {w_line, w_stamp} : {x1_line_q, x1_stamp_q}),
           .data_i         (word)
       );
       assign strobe = v_fills_q || dirty;
@@ -357,24 +454,57 @@ module block_cache (
   endgenerate
 
   // ----------------------------------------------------------------------------------------------------------- W: colours
-  localparam int CARRIED = LINE + STAMP + 2 * SAMPLES + 1 + 1 + STAMPS;
-  logic                     w_valid, w_evicts, w_fills;
-  logic [LINE-1:0]          w_line;
-  logic [STAMP-1:0]         w_stamp;
-  logic [SAMPLES-1:0]       w_writes, w_dirty;
-  logic [SAMPLES*COLOR-1:0] w_color;
-  logic [STAMPS-1:0]        w_stamps;
-  logic [CARRIED-1:0]       x1_carried, w_carried;
-  /* verilator lint_off UNUSEDSIGNAL */  // what a texture unit looks at, if there is one
-  raster_pkg::fragment_packet_t x1_item_q;
+  localparam int CARRIED = LINE + STAMP + 1 + SAMPLES + 1 + 1 + STAMPS;
+  localparam int STATES = 1 + 3 + 32;  // a token: that it is one, which register, its value
+  localparam int LATES = 4 + SAMPLES + 2 * SAMPLES * CODE;  // what W needs to write depths and to count
+  localparam int LATE_AT = CARRIED + (HAS_STATE ? STATES : 0);
+  localparam int ALL_CARRIED = LATE_AT + (LATE ? LATES : 0) + (BLENDS ? 2 : 0);
+  logic                      w_valid, w_starts_color, w_evicts, w_fills, w_sets_state;
+  logic [LINE-1:0]           w_line;
+  logic [STAMP-1:0]          w_stamp;
+  logic [SAMPLES-1:0]        w_mask, w_kept;  // samples whose colour is written by the depth test, and by the alpha test
+  /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
+  logic [SAMPLES*8-1:0]      w_alpha;
   /* verilator lint_on UNUSEDSIGNAL */
-  always_ff @(posedge clk_i) x1_item_q <= item;
-  logic                     texture_is_idle;
-  assign x1_carried = {x1_line_q, x1_stamp_q, {SAMPLES{write_valid_i}} & (write_i.write_color | {SAMPLES{x1_starts_color_q}}),
-                       write_i.write_color, x1_evicts_q, x1_fills_q, x1_color_q};
-  assign {w_line, w_stamp, w_writes, w_dirty, w_evicts, w_fills, w_stamps} = w_carried;
+  logic [SAMPLES*SHADED-1:0] w_color;
+  logic [STAMPS-1:0]         w_stamps;
+  logic [ALL_CARRIED-1:0]    x1_carried, w_carried;
+  logic [raster_pkg::DEPTH_FUNC_BITS-1:0]   w_register;
+  logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] w_source;
+  logic [31:0]               w_word;
+  /* verilator lint_off UNUSEDSIGNAL */  // what a texture unit looks at, or operations on colours, if there are any
+  raster_pkg::fragment_packet_t x1_item_q;
+  logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] x1_color_source_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  always_ff @(posedge clk_i) begin
+    x1_item_q         <= item;
+    x1_color_source_q <= color_source;
+  end
+  logic                      texture_is_idle;
+  assign x1_carried[CARRIED-1:0] = {x1_line_q, x1_stamp_q, x1_starts_color_q, write_i.write_color & {SAMPLES{write_valid_i}},
+                                    x1_evicts_q, x1_fills_q, x1_color_q};
+  assign {w_line, w_stamp, w_starts_color, w_mask, w_evicts, w_fills, w_stamps} = w_carried[CARRIED-1:0];
+  generate
+    if (HAS_STATE) begin : gen_state
+      assign x1_carried[CARRIED+:STATES] = {x1_valid_q && x1_item_q.kind == raster_pkg::PRIMITIVE_KIND_STATE,
+                                            x1_item_q.state.depth_test, x1_item_q.code[31:0]};
+      assign w_sets_state = w_carried[CARRIED+STATES-1];
+      assign w_register   = w_carried[CARRIED+32+:3];
+      assign w_word       = w_carried[CARRIED+:32];
+    end else begin : gen_no_state
+      assign w_sets_state = 1'b0;
+      assign w_register   = raster_pkg::STATE_REGISTER_COLOR_OPS;
+      assign w_word       = '0;
+    end
+    if (BLENDS) begin : gen_color_source
+      assign x1_carried[ALL_CARRIED-1-:2] = x1_color_source_q;
+      assign w_source = w_carried[ALL_CARRIED-1-:2];
+    end else begin : gen_no_color_source
+      assign w_source = raster_pkg::DEPTH_SOURCE_NONE;
+    end
+  endgenerate
   colored_stamps #(
-      .CARRIED(CARRIED),
+      .CARRIED(ALL_CARRIED),
       .PLACES (PLACES)
   ) u_colored (
       .clk_i,
@@ -382,13 +512,14 @@ module block_cache (
       .rst_ni,
       .stamp_valid_i  (x1_valid_q),
       .carried_i      (x1_carried),
-      .writes_i       ({SAMPLES{write_valid_i}} & write_i.write_color),
+      .writes_i       ({SAMPLES{write_valid_i}} & (tests_alpha ? write_i.passed : write_i.write_color)),
       .color_i        (write_i.color),
       .fragment_i     (x1_item_q),
       .stamp_valid_o  (w_valid),
       .stamp_ready_i  (colors_done),
       .carried_o      (w_carried),
       .color_o        (w_color),
+      .alpha_o        (w_alpha),
       .texture_valid_o,
       .texture_ready_i,
       .texture_o,
@@ -401,69 +532,136 @@ module block_cache (
   );
   assign color_ready_o = colors_done;
 
-  logic              w_started_q, w_starts, w_reads, w_hits;
-  logic [STAMPS-1:0] w_left_q, w_left, w_next, w_own;
-  logic [LINE-1:0]   w_left_line_q;
-  assign w_own       = w_valid && w_writes != '0 && !w_started_q ? STAMPS'(1) << w_stamp : '0;  // about to be written
-  assign w_starts    = w_valid && w_evicts && !w_started_q && w_left_q == '0;
-  assign w_left      = w_starts ? w_stamps : w_left_q;
-  assign w_hits      = (w_starts || w_left_line_q == w_line) && (w_left & w_own) != '0;
-  assign w_next      = w_hits ? w_own : lowest(w_left);
-  assign w_reads     = w_left != '0;
-  assign colors_done = w_valid && !w_hits && (!w_evicts || w_starts || w_started_q);
-
-  logic                     c_valid_q, c_last_q, c_fills_q, w_fills_q;  // colours of a victim have been read
-  logic [STAMP-1:0]         c_stamp_q;
-  logic [VICTIM-1:0]        c_slot_q, w_slot_q;
-  logic [SAMPLES*COLOR-1:0] c_color;
-  logic [SAMPLES-1:0]       c_color_strobe;
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      w_started_q <= 1'b0;
-      w_left_q    <= '0;
-      c_valid_q   <= 1'b0;
-      w_slot_q    <= '0;
-    end else begin
-      w_started_q <= !colors_done && (w_started_q || w_starts);
-      w_left_q    <= w_left & ~w_next;
-      c_valid_q   <= w_reads;
-      w_slot_q    <= w_slot_q + VICTIM'(w_starts);
-    end
-  end
-  always_ff @(posedge clk_i) begin
-    if (w_starts) begin
-      w_left_line_q <= w_line;
-      w_fills_q     <= w_fills;
-    end
-    c_fills_q <= w_starts ? w_fills : w_fills_q;
-    c_stamp_q <= number_of(w_next);
-    c_slot_q  <= w_starts ? w_slot_q : w_slot_q - 1'b1;
-    c_last_q  <= w_left == w_next;
-  end
-
+  // Late: the alpha test comes behind the texture, so what it may still drop writes its depths here. At X an item waits for
+  // what is late in its place, an eviction for what is late in its line, told apart by the lowest bits of the line; and one that
+  // is not late for all that is.
   generate
-    for (s = 0; s < SAMPLES; s++) begin : gen_color
-      logic [COLOR-1:0] color;
-      logic [COLOR:0]   word;
-      logic             dirty;
-      assign word = {w_dirty[s], w_color[s*COLOR+:COLOR]};
-      sram #(
-          .WIDTH    (COLOR + 1),
-          .DEPTH    (1 << ADDRESS),
-          .READS_OLD(0)
-      ) u_color (
-          .clk_i,
-          .read_i         (w_reads),
-          .read_address_i ({w_starts ? w_line : w_left_line_q, number_of(w_next)}),
-          .data_o         ({dirty, color}),
-          .write_i        (colors_done && w_writes[s]),
-          .write_address_i({w_line, w_stamp}),
-          .data_i         (word)
+    if (LATE) begin : gen_late
+      localparam int NEAR = LINE < 4 ? LINE : 4;  // bits of a line that X looks at
+      localparam int PLACE = NEAR + STAMP;
+      localparam int PLACED = 1 << PLACE;
+      logic [PLACED-1:0]    pending_q, sets, clears;
+      logic [STAMPS-1:0]    pending_here;  // of the item's line
+      logic [BEHIND-1:0]    late_behind_q;
+      logic                 tests_alpha_q, is_late, enters, leaves;
+      logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_q;
+      logic [7:0]           reference_q;
+      logic                 w_late, w_on_chip, w_counted, w_writes;
+      logic [SAMPLES-1:0]   w_passed, alpha_passes;
+      logic [SAMPLES*CODE-1:0] w_depth, w_stored;
+
+      // X
+      assign is_late      = tests_alpha_q && item.state.depth_write && item.mask != '0;
+      assign pending_here = pending_q[{item_line[NEAR-1:0], {STAMP{1'b0}}}+:STAMPS];
+      assign waits_for_late = (item.mask != '0 && (is_late ? (pending_here & item_bit) != '0 : late_behind_q != '0)) ||
+                              (evicts && pending_here != '0);
+      assign enters = goes && is_late;
+      assign leaves = colors_done && w_late;
+      assign sets   = enters ? PLACED'(1) << {item_line[NEAR-1:0], item_stamp} : '0;
+      assign clears = leaves ? PLACED'(1) << {w_line[NEAR-1:0], w_stamp} : '0;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          pending_q     <= '0;
+          late_behind_q <= '0;
+          tests_alpha_q <= 1'b0;
+        end else begin
+          pending_q     <= (pending_q & ~clears) | sets;
+          late_behind_q <= late_behind_q + BEHIND'(enters) - BEHIND'(leaves);
+          if (goes && item.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+              item.state.depth_test == raster_pkg::STATE_REGISTER_ALPHA_TEST)
+            tests_alpha_q <= item.code[2:0] != raster_pkg::DEPTH_FUNC_ALWAYS;
+        end
+      end
+      assign tests_alpha = tests_alpha_q;
+      assign x1_late     = tests_alpha_q && x1_item_q.state.depth_write;
+      assign x1_carried[LATE_AT+:LATES] = {
+        write_valid_i && x1_late, x1_on_chip,
+        write_valid_i && (x1_item_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || x1_item_q.kind[2]),
+        x1_item_q.state.depth_write || x1_item_q.state.color_write, write_i.passed, write_i.depth, stored_depth_o
+      };
+
+      // W
+      assign {w_late, w_on_chip, w_counted, w_writes, w_passed, w_depth, w_stored} = w_carried[LATE_AT+:LATES];
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          func_q      <= raster_pkg::DEPTH_FUNC_ALWAYS;
+          reference_q <= '0;
+        end else if (colors_done && w_sets_state && w_register == raster_pkg::STATE_REGISTER_ALPHA_TEST) begin
+          func_q      <= w_word[2:0];
+          reference_q <= w_word[10:3];
+        end
+      end
+      alpha_test u_alpha (
+          .func_i     (func_q),
+          .reference_i(reference_q),
+          .alpha_i    (w_alpha),
+          .passes_o   (alpha_passes)
       );
-      assign c_color_strobe[s] = c_fills_q || dirty;
-      assign c_color[s*COLOR+:COLOR] = dirty ? color : clear_color & {COLOR{c_fills_q}};
+      assign w_kept     = alpha_passes;
+      assign late_valid = leaves;
+      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        logic is_kept;
+        assign is_kept        = w_passed[s] && alpha_passes[s];
+        assign late_writes[s] = is_kept || !w_on_chip;
+        assign late_word[s*(CODE+1)+:CODE+1] = {is_kept, is_kept ? w_depth[s*CODE+:CODE] : w_stored[s*CODE+:CODE]};
+      end
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          written_o <= '0;
+          killed_o  <= '0;
+        end else begin
+          written_o <= colors_done && w_counted && w_writes ? popcount(w_passed & alpha_passes) : '0;
+          killed_o  <= colors_done && w_counted ? popcount(w_passed & ~alpha_passes) : '0;
+        end
+      end
+    end else begin : gen_early
+      assign waits_for_late = 1'b0;
+      assign tests_alpha    = 1'b0;
+      assign x1_late        = 1'b0;
+      assign w_kept         = '1;
+      assign late_valid     = 1'b0;
+      assign late_writes    = '0;
+      assign late_word      = '0;
+      assign written_o      = '0;
+      assign killed_o       = '0;
     end
   endgenerate
+
+  logic                     c_valid, c_last, leaves_empty, write_is_idle;  // colours of a victim have been read
+  logic [STAMP-1:0]         c_stamp;
+  logic [VICTIM-1:0]        c_slot;
+  logic [SAMPLES*COLOR-1:0] c_color;
+  logic [SAMPLES-1:0]       c_color_strobe;
+  color_write u_write (
+      .clk_i,
+      .rst_ni,
+      .stamp_valid_i  (w_valid),
+      .stamp_ready_o  (colors_done),
+      .line_i         (w_line),
+      .stamp_i        (w_stamp),
+      .starts_i       (w_starts_color),
+      .mask_i         (w_mask & w_kept),
+      .color_i        (w_color),
+      .evicts_i       (w_evicts),
+      .fills_i        (w_fills),
+      .stamps_i       (w_stamps),
+      .clear_color_i  (clear_color),
+      .sets_state_i   (w_sets_state),
+      .register_i     (w_register),
+      .word_i         (w_word),
+      .source_i       (w_source),
+      .answer_valid_i (color_valid),
+      .answer_i       (stored_color),
+      .answer_ready_o (takes_color),
+      .victim_valid_o (c_valid),
+      .victim_last_o  (c_last),
+      .victim_slot_o  (c_slot),
+      .victim_stamp_o (c_stamp),
+      .victim_strobe_o(c_color_strobe),
+      .victim_color_o (c_color),
+      .leaves_empty_o (leaves_empty),
+      .idle_o         (write_is_idle)
+  );
 
   // ------------------------------------------------------------------------------------ victims, and what goes to memory
   localparam int SLOTTED = VICTIM + STAMP;  // address of a stamp in the slots
@@ -476,6 +674,7 @@ module block_cache (
   logic [VICTIM:0]   depth_ready_q, color_ready_q;  // evictions whose depths, and colours, are all here
   logic              is_ready;
   logic [WRITES-1:0] written_q;  // of the order at the head
+  logic              depth_asked_q;  // likewise: its read of depths has been taken, that of colours has not
 
   logic                        sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request;
   logic [STAMPS-1:0]           depth_left, color_left, sent, here_depth, here_color;
@@ -500,7 +699,20 @@ module block_cache (
   assign ends_victim = is_color ? color_left == sent : depth_left == sent && color_left == '0;
   assign is_here     = (sent & (is_color ? here_color : here_depth)) != '0;
   assign finishes    = skips || (sends && takes_request && ends_victim);
-  assign takes_order = (finishes && written_q + 1'b1 == order_writes && !order_reads) || (wants_read && takes_request);
+  assign reads_color = order_reads_color && (!order_reads || depth_asked_q);  // behind that of depth
+  assign read_goes  = wants_read && takes_request;
+  assign takes_order = (finishes && written_q + 1'b1 == order_writes && !order_reads && !order_reads_color) ||
+                       (read_goes && (reads_color || !order_reads_color));
+  generate
+    if (BLENDS) begin : gen_asked
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) depth_asked_q <= 1'b0;
+        else if (read_goes) depth_asked_q <= !takes_order;
+      end
+    end else begin : gen_not_asked
+      assign depth_asked_q = 1'b0;
+    end
+  endgenerate
 
   assign request_valid_o = flush_valid || sends || wants_read;
   assign takes_request   = request_valid_o && request_ready_i;
@@ -518,15 +730,15 @@ module block_cache (
       oldest_q      <= oldest_q + VICTIM'(finishes);
       depth_ready_q <= depth_ready_q + (VICTIM + 1)'(goes && evicts && evicts_depth == '0) +
                        (VICTIM + 1)'(v_valid_q && v_last_q) - (VICTIM + 1)'(finishes);
-      color_ready_q <= color_ready_q + (VICTIM + 1)'(w_starts && w_stamps == '0) +
-                       (VICTIM + 1)'(c_valid_q && c_last_q) - (VICTIM + 1)'(finishes);
+      color_ready_q <= color_ready_q + (VICTIM + 1)'(leaves_empty) +
+                       (VICTIM + 1)'(c_valid && c_last) - (VICTIM + 1)'(finishes);
       written_q     <= takes_order ? '0 : written_q + WRITES'(finishes);
     end
   end
 
   always_ff @(posedge clk_i) begin
     if (v_valid_q) victim_depth_q[{v_slot_q, v_stamp_q}] <= {v_depth_strobe, v_depth};
-    if (c_valid_q) victim_color_q[{c_slot_q, c_stamp_q}] <= {c_color_strobe, c_color};
+    if (c_valid) victim_color_q[{c_slot, c_stamp}] <= {c_color_strobe, c_color};
     if (goes && evicts) victim_q[slot_q] <= {evicts_x, evicts_y, evicts_depth, evicts_color};
   end
 
@@ -543,8 +755,8 @@ module block_cache (
         end else begin
           if (v_valid_q && v_slot_q == VICTIM'(v) && v_depth_strobe != '0)
             depth_left_q[v] <= depth_left_q[v] | (STAMPS'(1) << v_stamp_q);
-          if (c_valid_q && c_slot_q == VICTIM'(v) && c_color_strobe != '0)
-            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << c_stamp_q);
+          if (c_valid && c_slot == VICTIM'(v) && c_color_strobe != '0)
+            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << c_stamp);
           if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
           if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
         end
@@ -567,7 +779,7 @@ module block_cache (
   always_comb begin
     request_o          = '0;
     request_o.is_write = sends;
-    request_o.plane    = raster_pkg::TILE_PLANE_DEPTH;
+    request_o.plane    = reads_color && !sends ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
     request_o.tile_x   = order_x;
     request_o.tile_y   = order_y;
     request_o.stamp    = order_stamp;
@@ -588,8 +800,8 @@ module block_cache (
   end
 
   assign drained = !item_valid && behind_q == '0 && !order_valid;
-  assign idle_o  = tags_are_idle && drained && texture_is_idle;
-  assign fill_o  = {1'b0, wants_read && takes_request};
+  assign idle_o  = tags_are_idle && drained && texture_is_idle && write_is_idle;
+  assign fill_o  = {1'b0, read_goes};
   assign evict_o = {1'b0, (sends && takes_request) || is_resolved};
   assign clear_o = {1'b0, is_cleared};
 

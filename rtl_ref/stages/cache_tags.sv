@@ -2,7 +2,7 @@
 // a fragment needs while those before it are still on their way.
 //
 // In: fragments, in program order. Out: items for the test, each with what the tags have found, and orders: so many evicted
-// blocks go to memory, then a stamp of depth is read. A fragment takes two cycles to become an item, one a cycle; one or
+// blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes two cycles to become an item, one a cycle; one or
 // two more where the flag of a cleared block falls. Tokens stay until all they ask for is done: a walk over the lines that evicts
 // what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
 // Specification: model/stages/cache_tags.hpp.
@@ -32,6 +32,7 @@ module cache_tags #(
     output logic [STAMP-1:0]             item_stamp_o,
     output raster_pkg::depth_source_t    item_source_o,
     output logic                         item_starts_color_o,
+    output raster_pkg::depth_source_t    item_color_source_o,  // of stored colours, where operations read them
     // The block that leaves the line
     output logic                         evicts_o,
     output logic [BLOCK_X-1:0]           evicts_x_o,
@@ -45,6 +46,7 @@ module cache_tags #(
     input  logic                                    order_ready_i,
     output logic [WRITES-1:0]                       order_writes_o,
     output logic                                    order_reads_o,
+    output logic                                    order_reads_color_o,
     output logic [raster_pkg::TILE_X_BITS-1:0]      order_tile_x_o,
     output logic [raster_pkg::TILE_Y_BITS-1:0]      order_tile_y_o,
     output logic [raster_pkg::STAMP_INDEX_BITS-1:0] order_stamp_o,
@@ -82,7 +84,10 @@ module cache_tags #(
   localparam int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1;  // bits of a word's number in its row
   localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
   localparam int FLAG = $clog2(FLAGS);
-  localparam int STATE = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;  // of a line
+  localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // with blending: stamps whose colours are here
+  localparam int REST = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;
+  localparam int STATE = REST + KNOWN;  // of a line
+  localparam bit TESTS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::SETUP_KIND == 0;
   localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
   localparam logic [LINE-1:0] LINE_Y_MASK = LINE'((1 << LINE_Y) - 1);
 
@@ -203,7 +208,7 @@ module cache_tags #(
   end
   assign line_state = is_forwarded_q ? forward_q : line_read;
   // What follows from the rest stands in it as well, known at once: the line may have been written; its flags fall then.
-  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state;
+  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state[STATE-1-:REST];
   assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line) & BLOCK_X'((1 << LINE_X) - 1));
   assign line_above_x = line >> LINE_X;
   assign line_y = (BLOCK_Y'(tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
@@ -246,12 +251,16 @@ module cache_tags #(
   // What the tags find. The flags of a block that comes are looked at before those of the one that leaves.
   logic is_access, read_hits, forward_hits, hits, is_dirty, may_fall, leaves_line, evicts, falls, is_full, is_known;
   logic starts_color, uses, stores_depth;
+  /* verilator lint_off UNUSEDSIGNAL */  // without units that have a state
+  logic sets_state;
+  /* verilator lint_on UNUSEDSIGNAL */
   logic [1:0]        cleared, cleared_q, fills;
   raster_pkg::depth_source_t source;
   logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;
   logic              drops_depth_q;  // depth that leaves the chip is lost, and its flag stays
 
   assign is_access  = valid_q && !walks_q && fragment_q.mask != '0;
+  assign sets_state = valid_q && !walks_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE;
   assign is_full    = fragment_q.mask == '1;
   assign stamp_bit  = STAMPS'(1) << stamp;
   // The tag is compared on either way that the line may come, before one of the two is taken.
@@ -277,11 +286,54 @@ module cache_tags #(
   always_comb begin
     source = raster_pkg::DEPTH_SOURCE_NONE;
     if (is_known) source = raster_pkg::DEPTH_SOURCE_CHIP;
-    else if (fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full)
+    else if (fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full ||
+             (tests_alpha && fragment_q.state.depth_write))
       source = cleared[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY;
     if (!is_access) source = raster_pkg::DEPTH_SOURCE_NONE;
   end
   assign uses = source != raster_pkg::DEPTH_SOURCE_NONE || fragment_q.state.depth_write;
+
+  // What is done with colours: a register that tokens set. Where it reads what is stored, a stamp's colours are asked for once;
+  // where alpha is tested, what passes the depth test may still not be written, so depths are asked for.
+  raster_pkg::depth_source_t color_source;
+  logic                      tests_alpha;
+  logic [REST-1:0]           line_rest;
+  generate
+    if (raster_pkg::BLEND_LANES != 0) begin : gen_reads_color
+      localparam int READS = 28;  // the bit of a word of operations that says so
+      logic              reads_color_q;
+      logic [STAMPS-1:0] color_known, color_known_new;
+      assign color_known     = hits ? line_state[KNOWN-1:0] : '0;
+      assign color_known_new = color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0);
+      assign line_new        = {line_rest, color_known_new};
+      always_comb begin
+        color_source = raster_pkg::DEPTH_SOURCE_NONE;
+        if (is_access && fragment_q.state.color_write && reads_color_q) begin
+          color_source = cleared[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY;
+          if ((color_known & stamp_bit) != '0) color_source = raster_pkg::DEPTH_SOURCE_CHIP;
+        end
+      end
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) reads_color_q <= 1'b0;
+        else if (leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_COLOR_OPS)
+          reads_color_q <= fragment_q.code[READS];
+      end
+    end else begin : gen_writes_color
+      assign line_new     = line_rest;
+      assign color_source = raster_pkg::DEPTH_SOURCE_NONE;
+    end
+    if (TESTS_ALPHA) begin : gen_tests_alpha
+      logic tests_alpha_q;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) tests_alpha_q <= 1'b0;
+        else if (leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_ALPHA_TEST)
+          tests_alpha_q <= fragment_q.code[2:0] != raster_pkg::DEPTH_FUNC_ALWAYS;
+      end
+      assign tests_alpha = tests_alpha_q;
+    end else begin : gen_no_alpha
+      assign tests_alpha = 1'b0;
+    end
+  endgenerate
 
   logic [STAMPS-1:0] known_new, colored_new;
   logic              has_depth_new;
@@ -290,11 +342,11 @@ module cache_tags #(
   assign has_depth_new = (hits && line_has_depth) || fragment_q.state.depth_write;
   assign line_writes   = (leaves && (is_access || walks_q)) || state_q == MARK;
   always_comb begin
-    line_new = {
+    line_rest = {
       1'b1, has_depth_new || colored_new != '0, (cleared & {colored_new != '0, has_depth_new && known_new != '0}) != '0,
       TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y), known_new, colored_new, has_depth_new, cleared
     };
-    if (walks_q || state_q == MARK) line_new[STATE-1] = 1'b0;
+    if (walks_q || state_q == MARK) line_rest[REST-1] = 1'b0;
   end
 
   // Evicted blocks whose data wait. The wanted one may be among them.
@@ -340,12 +392,14 @@ module cache_tags #(
   logic is_item, is_order, is_settled;
   assign is_settled     = valid_q && !(may_fall && fall_q != 2'd2 && leaves_line);
   assign is_item        = !walks_q || evicts;
-  assign is_order       = writes != '0 || source == raster_pkg::DEPTH_SOURCE_MEMORY;
+  assign is_order       = writes != '0 || source == raster_pkg::DEPTH_SOURCE_MEMORY ||
+                          color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
   assign item_valid_o   = is_settled && is_item && order_ready_i;
   assign order_valid_o  = state_q == ORDER ? waiting_q != '0 : is_settled && is_order && item_ready_i;
   assign leaves         = is_settled && item_ready_i && order_ready_i;
   assign order_writes_o = writes;
   assign order_reads_o  = source == raster_pkg::DEPTH_SOURCE_MEMORY;
+  assign order_reads_color_o = color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
   assign order_tile_x_o = fragment_q.key.tile_x;
   assign order_tile_y_o = fragment_q.key.tile_y;
   assign order_stamp_o  = fragment_q.stamp;
@@ -361,6 +415,7 @@ module cache_tags #(
   assign item_stamp_o        = stamp;
   assign item_source_o       = source;
   assign item_starts_color_o = starts_color;
+  assign item_color_source_o = color_source;
   assign evicts_o            = evicts;
   assign evicts_x_o          = line_x;
   assign evicts_y_o          = line_y;

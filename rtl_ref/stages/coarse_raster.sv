@@ -78,7 +78,7 @@ module coarse_raster (
   logic is_outside, is_inside, is_behind, is_settled, visits_are_done;
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
-  assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line, texture)
+  assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line, state)
   assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
   assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
   assign setup_ready_o  = (state_q == IDLE || finishes) && used_q != (SLOT + 1)'(SLOTS);

@@ -31,7 +31,8 @@ module depth_test (
     // Samples of triangles, points and lines that this cycle adds to the counters
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] covered_o,
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] passed_o,
-    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o,
+    output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] killed_o
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -44,6 +45,7 @@ module depth_test (
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
   localparam int COUNT = $clog2(SAMPLES + 1);
+  localparam bit HAS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0;
 
   // D0: the fragment on offer. Tokens (bit 1 of a kind) have no covered sample; those of lines have become pixels by now.
   logic needs_access, must_wait, takes_fragment;
@@ -56,7 +58,7 @@ module depth_test (
   /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
-  logic [SAMPLES-1:0]       passed;
+  logic [SAMPLES-1:0]       passed, kept;  // by the depth test, and of those by the alpha test
   logic                     is_stamp;
 
   assign needs_access = fragment_i.kind[1] || fragment_i.mask != '0;
@@ -90,8 +92,53 @@ module depth_test (
   assign greater_passes = func == raster_pkg::DEPTH_FUNC_GREATER || func == raster_pkg::DEPTH_FUNC_GEQUAL ||
                           func == raster_pkg::DEPTH_FUNC_NOTEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
 
+  // The alpha test, where the colour is known here: without a texture unit. With one W decides, and what writes depth is late.
+  // Its register is set by a token.
+  /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
+  logic is_late;
+  /* verilator lint_on UNUSEDSIGNAL */
   genvar s;
   generate
+    if (HAS_ALPHA) begin : gen_alpha
+      localparam int ALPHA = CODE + COLORS - 8;  // the last colour
+      logic [raster_pkg::DEPTH_FUNC_BITS-1:0] alpha_func_q;
+      logic [7:0] reference_q;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          alpha_func_q <= raster_pkg::DEPTH_FUNC_ALWAYS;
+          reference_q  <= '0;
+        end else if (valid_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+                     fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_ALPHA_TEST) begin
+          alpha_func_q <= fragment_q.code[2:0];
+          reference_q  <= fragment_q.code[10:3];
+        end
+      end
+      if (raster_pkg::COORDINATES == 0) begin : gen_here
+        logic [8*SAMPLES-1:0] alpha;
+        logic [SAMPLES-1:0]   alpha_passes;
+        for (s = 0; s < SAMPLES; s++) begin : gen_sample
+          assign alpha[8*s+:8] = fragment_q.code[s*CODES+ALPHA+:8];
+        end
+        alpha_test u_alpha (
+            .func_i     (alpha_func_q),
+            .reference_i(reference_q),
+            .alpha_i    (alpha),
+            .passes_o   (alpha_passes)
+        );
+        assign kept    = passed & alpha_passes;
+        assign is_late = 1'b0;
+      end else begin : gen_late
+        /* verilator lint_off UNUSEDSIGNAL */
+        logic [7:0] unused;
+        assign unused = reference_q;
+        /* verilator lint_on UNUSEDSIGNAL */
+        assign kept    = passed;
+        assign is_late = alpha_func_q != raster_pkg::DEPTH_FUNC_ALWAYS;
+      end
+    end else begin : gen_no_alpha
+      assign kept    = passed;
+      assign is_late = 1'b0;
+    end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
       logic is_less, is_equal;
       assign depth[s*CODE+:CODE] = fragment_q.code[s*CODES+:CODE];
@@ -100,12 +147,12 @@ module depth_test (
       assign passed[s] = fragment_q.mask[s] &&
                          (is_less ? less_passes : (is_equal ? equal_passes : greater_passes));
 
-      if (raster_pkg::COORDINATES == 0) begin : gen_rop
+      if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0) begin : gen_rop
         rop u_rop (
             .rgba_i (fragment_i.code[s*CODES+CODE+:COLORS]),
             .color_o(color[s*COLOR+:COLOR])
         );
-      end else begin : gen_textured  // packed behind the texture unit
+      end else begin : gen_whole  // packed behind the texture unit, or where it is written
         assign color[s*COLOR+:COLOR] = fragment_i.code[s*CODES+CODE+:COLORS];
       end
     end
@@ -116,8 +163,8 @@ module depth_test (
   assign write_o.key          = fragment_q.key;
   assign write_o.stamp        = fragment_q.stamp;
   assign write_o.passed       = passed;
-  assign write_o.write_depth  = fragment_q.state.depth_write ? passed : '0;
-  assign write_o.write_color  = fragment_q.state.color_write ? passed : '0;
+  assign write_o.write_depth  = fragment_q.state.depth_write ? kept : '0;
+  assign write_o.write_color  = fragment_q.state.color_write ? kept : '0;
   assign write_o.depth        = depth;
   assign write_o.color        = color_q;
 
@@ -139,9 +186,19 @@ module depth_test (
     end else begin
       covered_o <= is_counted ? popcount(fragment_q.mask) : '0;
       passed_o  <= is_counted ? popcount(passed) : '0;
-      written_o <= is_counted && writes ? popcount(passed) : '0;
+      written_o <= is_counted && writes ? popcount(kept) : '0;
     end
   end
+  generate
+    if (HAS_ALPHA) begin : gen_killed
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) killed_o <= '0;
+        else killed_o <= is_counted ? popcount(passed & ~kept) : '0;
+      end
+    end else begin : gen_none_killed
+      assign killed_o = '0;
+    end
+  endgenerate
 
   // The retirement of a visit.
   raster_pkg::tile_key_t retire_key_q;
@@ -168,8 +225,8 @@ module depth_test (
       logic                  sets, clears, sets_q, clears_q;  // the visit sets its tile's bound, clears it
       logic [HIZ-1:0]        max_of_visit_q;
 
-      assign is_full     = passed == '1;
-      assign any_passed  = any_passed_q || passed != '0;
+      assign is_full     = kept == '1 && !is_late;
+      assign any_passed  = any_passed_q || kept != '0;
       assign covers_tile = is_full && full_stamps_q == STAMP_BITS'(STAMPS - 1);
 
       // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a

@@ -3,7 +3,9 @@
 // rgb565 keeps the nearest code: floor(c * 31 / 255 + 1/2) = (c * 249 + 1014) >> 11, for green (c * 253 + 505) >> 10,
 // with the products as shifts and adds. Specification: model/stages/rop.hpp.
 module rop (
+    /* verilator lint_off UNUSEDSIGNAL */  // rgb565 keeps no alpha
     input  logic [raster_pkg::VERTEX_COLOR_BITS-1:0] rgba_i,  // 8 bits a channel, R lowest
+    /* verilator lint_on UNUSEDSIGNAL */
     output logic [raster_pkg::STORED_COLOR_BITS-1:0] color_o
 );
 

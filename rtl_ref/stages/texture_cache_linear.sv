@@ -26,11 +26,16 @@ module texture_cache_linear #(
     input  logic [2*SIDE_BITS-1:0] y_i,
     input  logic [TAIL-1:0]        tail_i,
 
+    // Its level: where that begins, in lines of 16 bytes, and a row of its lines, log2
+    input logic [23:0] offset_i,
+    input logic [3:0]  row_i,
+    input logic        is_odd_i,
+
     // The texture: stays while samples are in front of the tags
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
-    input logic [3:0]  row_i,
+    input logic        shares_i,  // odd levels have one half of each bank, even ones the other
 
     input  logic drop_i,
     output logic tags_are_empty_o,
@@ -88,10 +93,13 @@ module texture_cache_linear #(
   // What a texel needs of a column or row to be read: the line's part, and the bit above the bank's.
   localparam int WAY_X = LINE_X + 1;
   localparam int WAY_Y = LINE_Y + 1;
+  localparam logic [WAY_Y-1:0] HALF_OF_WAY = WAY_Y'(1) << LINE_Y;  // its highest bit, that of a place along y likewise
+  localparam logic [BANK_Y-1:0] HALF_OF_BANK = BANK_Y'(1) << (BANK_Y - 1);
   logic [2*WAY_X-1:0] way_x;
   logic [2*WAY_Y-1:0] way_y;
   assign way_x = x_i[0] ? {x_i[1+:WAY_X], x_i[SIDE_BITS+1+:WAY_X]} : {x_i[SIDE_BITS+1+:WAY_X], x_i[1+:WAY_X]};
-  assign way_y = y_i[0] ? {y_i[1+:WAY_Y], y_i[SIDE_BITS+1+:WAY_Y]} : {y_i[SIDE_BITS+1+:WAY_Y], y_i[1+:WAY_Y]};
+  assign way_y = ((y_i[0] ? {y_i[1+:WAY_Y], y_i[SIDE_BITS+1+:WAY_Y]} : {y_i[SIDE_BITS+1+:WAY_Y], y_i[1+:WAY_Y]}) &
+                  ~{2{HALF_OF_WAY & {WAY_Y{shares_i}}}}) | {2{HALF_OF_WAY & {WAY_Y{shares_i && is_odd_i}}}};
 
   // -------------------------------------------------------------------------------------------------------------------- tags
   logic             t_valid_q, t_enters, t_goes;
@@ -132,8 +140,10 @@ module texture_cache_linear #(
       logic [27:0]       tag, address;
       logic [NUMBER-1:0] tag_group;
       logic [BANK-1:0]   place;
-      assign address = {base_i, 2'd0} + (28'(block_y[Y*BLOCK+:BLOCK]) << row_i | 28'(block_x[X*BLOCK+:BLOCK]) << size_i);
-      assign place   = {block_y[Y*BLOCK+1+:BANK_Y], block_x[X*BLOCK+1+:BANK_X]};
+      assign address = {base_i, 2'd0} + (28'(block_y[Y*BLOCK+:BLOCK]) << row_i |
+                                         28'(block_x[X*BLOCK+:BLOCK]) << size_i | 28'(offset_i));
+      assign place   = {(block_y[Y*BLOCK+1+:BANK_Y] & ~(HALF_OF_BANK & {BANK_Y{shares_i}})) |
+                        (HALF_OF_BANK & {BANK_Y{shares_i && is_odd_i}}), block_x[X*BLOCK+1+:BANK_X]};
       sram #(
           .WIDTH    (1 + 28 + NUMBER),
           .DEPTH    (LINES / 4),

@@ -17,7 +17,8 @@ module texture_coordinates #(
     parameter int QUEUE = 16,
     parameter int SIDE_BITS = 12,
     parameter int LINEAR = 0,
-    parameter int INDEX = $clog2(QUEUE)  // derived; not to be set
+    parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
+    parameter int EXPONENT = 5
 ) (
     input logic clk_i,
 
@@ -41,11 +42,14 @@ module texture_coordinates #(
 
     // Of eight clocks ago, x lowest
     output logic [2*SIDE_BITS-1:0] texel_o,
-    output logic [2*SIDE_BITS-1:0] next_o,  // LINEAR: the texel behind it, and how much of that
-    output logic [15:0]            part_o
-);
+    output logic [2*SIDE_BITS-1:0] next_o,  // LINEAR 1: the texel behind it, and how much of that
+    output logic [15:0]            part_o,
+    output logic [2*REFERENCE_BITS+15:0] coordinate_o,  // LINEAR 2: the place before it is wrapped, 2^-8 texels
 
-  localparam int EXPONENT = 5;
+    // Of a clock ago: floor(log2 q), and what of q follows its highest bit
+    output logic [EXPONENT-1:0] exponent_o,
+    output logic [7:0]          below_o
+);
 
   // The stamp's index, as far as the sample has come.
   logic [7*INDEX-1:0] index_q;  // of a clock ago lowest
@@ -97,7 +101,9 @@ module texture_coordinates #(
     exponent_q <= EXPONENT'(Q_BITS - 1) - zeros;
     p_1_q      <= {v_i, u_i};
     p_2_q      <= p_1_q;
+    below_o    <= left[30:23];
   end
+  assign exponent_o = exponent_q;
 
   reciprocal_table #(
       .BITS(MANTISSA)
@@ -135,7 +141,8 @@ module texture_coordinates #(
           .is_linear_i,
           .texel_o     (texel_o[n*SIDE_BITS+:SIDE_BITS]),
           .next_o      (next_o[n*SIDE_BITS+:SIDE_BITS]),
-          .part_o      (part_o[8*n+:8])
+          .part_o      (part_o[8*n+:8]),
+          .coordinate_o(coordinate_o[(REFERENCE_BITS+8)*n+:REFERENCE_BITS+8])
       );
     end
   endgenerate

@@ -20,13 +20,14 @@ module texture_unit #(
     parameter int REFERENCE_BITS = 24,  // of u_ref, with its sign
     parameter int CHANNELS = 4,         // of a colour
     parameter int SOFT = 0,             // of these, so many are combined without a multiplier
-    parameter int FILTER = 0,           // 0 nearest, 1 linear as well
+    parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
     parameter int PAYLOAD = 1,          // bits that a stamp carries along
     parameter int QUEUE = 16,           // stamps inside; a power of two
     parameter int IN_FLIGHT = 32,       // samples between address and texel; a power of two
     parameter int LINES = 64,           // of the cache; a power of two
     parameter int PORT_BITS = 64,       // of a beat
-    parameter int STATE = 46            // bits of a state; not to be set
+    parameter int WORD = 46,            // bits that a state brings: of a level's lines 70 or 104, else 46
+    parameter int PIXEL = 12            // of a pixel's column and row
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -45,7 +46,13 @@ module texture_unit #(
     input logic [2*REACH_BITS-1:0]            reach_i,
     input logic [2*REFERENCE_BITS-1:0]        reference_i,
     input logic                               sets_state_i,   // for the stamps behind it; without a mask
-    input logic [STATE-1:0]                   state_i,        // TextureState::pack
+    /* verilator lint_off UNUSEDSIGNAL */  // of FILTER 2
+    input logic                               sets_levels_i,
+    input logic                               moves_in_i,     // a part of a triangle's lines
+    input logic [PIXEL-1:0]                   x_i,            // of the stamp's first sample
+    input logic [PIXEL-1:0]                   y_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input logic [WORD-1:0]                    state_i,        // TextureState::pack, TextureLevels::pack, line_part
 
     // The same with their colours
     output logic                          stamp_valid_o,
@@ -75,11 +82,11 @@ module texture_unit #(
   localparam int COLOR = 8 * CHANNELS;
   localparam int PLACE = Q_BITS + 2 * P_BITS;
   localparam int COORDINATES = SAMPLES * PLACE;
-  localparam int LINE = $clog2(LINES);
-  localparam int LINE_X = (LINE + 1) / 2;
-  localparam int LINE_Y = LINE / 2;
   localparam int AHEAD = 16;  // samples between split and tags
-  localparam int CLOCKS = 8;  // of texture_coordinates
+  localparam int CLOCKS = (FILTER == 2) ? 10 : 8;  // of texture_coordinates, of level_of_detail
+  localparam int TOKEN = (FILTER == 2) ? 3 : 1;    // kinds of states
+  localparam int PIXELS = COORDINATES + 2 * PIXEL;
+  localparam int WAITING = (FILTER != 2) ? COORDINATES : (PIXELS > WORD) ? PIXELS : WORD + 1;
 
   // ---------------------------------------------------------------------------------------------------------------- the door
   logic       is_textured, door_enable_q;
@@ -105,9 +112,10 @@ module texture_unit #(
     end
   endgenerate
 
-  logic                   waits, is_state, takes;
+  logic                   waits, is_token, is_state, takes;
+  logic [TOKEN-1:0]       token, waiting_token;
   logic [SAMPLES-1:0]     waiting_mask;
-  logic [COORDINATES-1:0] waiting;
+  logic [WAITING-1:0]     entering, waiting;
   logic [INDEX-1:0]       entered_q, split_q;  // number of the next textured stamp at the door, and at the split
   logic                   passes_door, has_alpha, stamp_waits, stamp_is_textured, stamp_has_alpha, stamp_leaves;
   logic [1:0]             stamp_combine;
@@ -117,20 +125,32 @@ module texture_unit #(
   /* verilator lint_off UNUSEDSIGNAL */  // there is room
   logic                   waiting_ready, stamps_ready;
   /* verilator lint_on UNUSEDSIGNAL */
-  assign passes_door = is_textured || (stamp_valid_i && sets_state_i);
+  assign passes_door = is_textured || (stamp_valid_i && token != '0);
   assign has_alpha   = door_format_q != 3'd0 && door_format_q != 3'd2;
+  generate
+    if (FILTER == 2) begin : gen_pixels
+      assign token    = {moves_in_i, sets_levels_i, sets_state_i};
+      assign entering = WAITING'({y_i, x_i, places});
+      assign is_state = waiting_token[1:0] != '0;
+    end else begin : gen_places
+      assign token    = sets_state_i;
+      assign entering = places;
+      assign is_state = waiting_token[0];
+    end
+  endgenerate
+  assign is_token = waiting_token != '0;
   fifo #(
-      .WIDTH(1 + SAMPLES + COORDINATES),
+      .WIDTH(TOKEN + SAMPLES + WAITING),
       .DEPTH(QUEUE)
   ) u_coordinates (
       .clk_i,
       .rst_ni,
       .valid_i(passes_door),
       .ready_o(waiting_ready),
-      .data_i ({sets_state_i, mask_i, places[COORDINATES-1:STATE], sets_state_i ? state_i : places[STATE-1:0]}),
+      .data_i ({token, mask_i, entering[WAITING-1:WORD], token != '0 ? state_i : entering[WORD-1:0]}),
       .valid_o(waits),
       .ready_i(takes),
-      .data_o ({is_state, waiting_mask, waiting})
+      .data_o ({waiting_token, waiting_mask, waiting})
   );
   fifo #(
       .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + 4),
@@ -158,16 +178,17 @@ module texture_unit #(
     place_of = left[PLACE-1:0];
   endfunction
 
-  logic               splits, sets_state, is_last, leaves_queue, tags_are_empty;
+  logic               splits, can_set, sets_state, moves_in, is_last, leaves_queue, tags_are_empty;
   logic [SAMPLES-1:0] done_q, left;  // samples of the stamp that are through; that are not
   logic [LANE-1:0]    lane;
   logic [4:0]         ahead_q;
   assign left       = waiting_mask & ~done_q;
   assign lane       = lowest(left);
   assign is_last    = (left & (left - 1'b1)) == '0;
-  assign splits     = waits && !is_state && ahead_q != 5'(AHEAD);
-  assign sets_state = waits && is_state && ahead_q == '0 && tags_are_empty;
-  assign takes      = sets_state || (splits && is_last);
+  assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);
+  assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
+  assign sets_state = can_set && waiting_token[0];
+  assign takes      = can_set || moves_in || (splits && is_last);
 
   logic [PLACE-1:0] place_q;  // the sample
   logic [INDEX-1:0] place_index_q;
@@ -185,7 +206,7 @@ module texture_unit #(
     end
   end
   always_ff @(posedge clk_i) begin
-    place_q       <= place_of(waiting, lane);
+    place_q       <= place_of(waiting[COORDINATES-1:0], lane);
     place_index_q <= split_q;
   end
 
@@ -219,6 +240,11 @@ module texture_unit #(
   /* verilator lint_off UNUSEDSIGNAL */  // of a linear filter
   logic [2*SIDE_BITS-1:0]     next;
   logic [15:0]                part;
+  logic [2*REFERENCE_BITS+15:0] place, coordinate;  // of levels, as far as the level
+  logic [4:0]                 exponent;
+  logic [7:0]                 below, level_part;
+  logic [3:0]                 level;
+  logic                       level_is_linear, level_is_between, shares;
   /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
@@ -254,137 +280,88 @@ module texture_unit #(
       .is_linear_i  (is_linear_q),
       .texel_o      (texel),
       .next_o       (next),
-      .part_o       (part)
+      .part_o       (part),
+      .coordinate_o (place),
+      .exponent_o   (exponent),
+      .below_o      (below)
   );
 
-  // The texels: nearest, with the address of each in front of the queue; or the four around a place.
-  logic            found_valid, found_ready, drops, cache_is_idle;
+  generate
+    if (FILTER == 2) begin : gen_level_of_detail
+      localparam int SIDE = LANE / 2;  // log2 of the samples along a stamp's side
+      logic [PIXEL-1:0]             x_q, y_q;
+      logic [2*REFERENCE_BITS+15:0] place_1_q, place_2_q;
+      assign moves_in = waits && waiting_token[2];
+      always_ff @(posedge clk_i) begin
+        x_q       <= waiting[COORDINATES+:PIXEL] | (PIXEL'(lane) & PIXEL'((1 << SIDE) - 1));
+        y_q       <= waiting[COORDINATES+PIXEL+:PIXEL] | (PIXEL'(lane) >> SIDE);
+        place_1_q <= place;
+        place_2_q <= place_1_q;
+      end
+      assign coordinate = place_2_q;
+      level_of_detail #(
+          .PART (WORD),
+          .PIXEL(PIXEL)
+      ) u_level_of_detail (
+          .clk_i,
+          .moves_in_i     (moves_in),
+          .line_part_i    (waiting[WORD-1:0]),
+          .sets_levels_i  (can_set && waiting_token[1]),
+          .levels_i       (waiting[30:0]),
+          .x_i            (x_q),
+          .y_i            (y_q),
+          .exponent_i     (exponent),
+          .below_i        (below),
+          .is_mag_linear_i(is_linear_q),
+          .level_o        (level),
+          .part_o         (level_part),
+          .is_linear_o    (level_is_linear),
+          .is_between_o   (level_is_between),
+          .shares_o       (shares)
+      );
+    end else begin : gen_level_0
+      assign moves_in         = 1'b0;
+      assign coordinate       = '0;
+      assign level            = '0;
+      assign level_part       = '0;
+      assign level_is_linear  = 1'b0;
+      assign level_is_between = 1'b0;
+      assign shares           = 1'b0;
+    end
+  endgenerate
+
+  logic            drops, cache_is_idle;
   logic            texel_valid, texel_ready;
   logic [31:0]     texel_color, e_texel_q;
   logic [TAIL-1:0] texel_tail;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: those ahead are counted
-  logic            found_has_room;
-  /* verilator lint_on UNUSEDSIGNAL */
-  assign drops        = sets_state && waiting[1];
-  assign leaves_queue = found_valid && found_ready;
+  assign drops = sets_state && waiting[1];
   generate
     if (FILTER == 0) begin : gen_nearest
-      // Blocks of 4x4 texels in rows; which line, their lowest bits say.
-      logic [9:0]      block_x, block_y;
-      logic [21:0]     place;
-      logic [27:0]     address, found_address;
-      logic [LINE-1:0] line, found_line;
-      logic [3:0]      found_texel;
-      logic [TAIL-1:0] found_tail;
-      logic [31:0]     code;
-      logic [2:0]      code_format;
-      assign block_x          = texel[11:2];
-      assign block_y          = texel[23:14];
-      assign place            = (22'(block_y) << row_q) | (22'(block_x) << size_q);
-      assign address          = {base_q, 2'd0} + 28'(place);
-      assign line[LINE_X-1:0] = block_x[LINE_X-1:0];
-      if (LINE_Y > 0) begin : gen_line_y
-        assign line[LINE-1:LINE_X] = block_y[LINE_Y-1:0];
-      end
-
-      fifo #(
-          .WIDTH(28 + LINE + 4 + TAIL),
-          .DEPTH(AHEAD)
-      ) u_addresses (
-          .clk_i,
-          .rst_ni,
-          .valid_i(valid_q[CLOCKS]),
-          .ready_o(found_has_room),
-          .data_i ({address, line, texel[13:12], texel[1:0], tail_q[TAIL*CLOCKS+:TAIL]}),
-          .valid_o(found_valid),
-          .ready_i(found_ready),
-          .data_o ({found_address, found_line, found_texel, found_tail})
-      );
-      texture_cache #(
+      texture_nearest #(
+          .SIDE_BITS(SIDE_BITS),
+          .AHEAD    (AHEAD),
           .LINES    (LINES),
           .PORT_BITS(PORT_BITS),
           .IN_FLIGHT(IN_FLIGHT),
           .TAIL     (TAIL)
-      ) u_cache (
+      ) u_texture_nearest (
           .clk_i,
           .rst_ni,
           .power_on_ni,
-          .sample_valid_i  (found_valid),
-          .sample_ready_o  (found_ready),
-          .address_i       (found_address),
-          .line_i          (found_line),
-          .texel_i         (found_texel),
-          .format_i        (format_q),
-          .tail_i          (found_tail),
-          .drop_i          (drops),
-          .tags_are_empty_o(tags_are_empty),
-          .code_valid_o    (texel_valid),
-          .code_ready_i    (texel_ready),
-          .code_o          (code),
-          .code_format_o   (code_format),
-          .code_tail_o     (texel_tail),
-          .request_valid_o,
-          .request_ready_i,
-          .request_address_o,
-          .request_beats_o,
-          .answer_valid_i,
-          .answer_ready_o,
-          .answer_data_i,
-          .hit_o,
-          .miss_o,
-          .idle_o          (cache_is_idle)
-      );
-      texture_decode u_decode (
-          .code_i  (code),
-          .format_i(code_format),
-          .texel_o (texel_color)
-      );
-    end else begin : gen_linear
-      logic [2*SIDE_BITS-1:0] found_texel, found_next;
-      logic [15:0]            found_part, code_part;
-      logic [TAIL-1:0]        found_tail, code_tail;
-      logic                   code_valid, code_ready;
-      logic [127:0]           code;
-      logic [2:0]             code_format;
-      fifo #(
-          .WIDTH(4 * SIDE_BITS + 16 + TAIL),
-          .DEPTH(AHEAD)
-      ) u_places (
-          .clk_i,
-          .rst_ni,
-          .valid_i(valid_q[CLOCKS]),
-          .ready_o(found_has_room),
-          .data_i ({texel, next, part, tail_q[TAIL*CLOCKS+:TAIL]}),
-          .valid_o(found_valid),
-          .ready_i(found_ready),
-          .data_o ({found_texel, found_next, found_part, found_tail})
-      );
-      texture_cache_linear #(
-          .LINES    (LINES),
-          .PORT_BITS(PORT_BITS),
-          .IN_FLIGHT(IN_FLIGHT),
-          .TAIL     (16 + TAIL),
-          .SIDE_BITS(SIDE_BITS)
-      ) u_cache (
-          .clk_i,
-          .rst_ni,
-          .power_on_ni,
-          .sample_valid_i  (found_valid),
-          .sample_ready_o  (found_ready),
-          .x_i             ({found_next[SIDE_BITS-1:0], found_texel[SIDE_BITS-1:0]}),
-          .y_i             ({found_next[2*SIDE_BITS-1:SIDE_BITS], found_texel[2*SIDE_BITS-1:SIDE_BITS]}),
-          .tail_i          ({found_part, found_tail}),
+          .valid_i         (valid_q[CLOCKS]),
+          .texel_i         (texel),
+          .tail_i          (tail_q[TAIL*CLOCKS+:TAIL]),
+          .pops_o          (leaves_queue),
           .format_i        (format_q),
           .base_i          (base_q),
           .size_i          (size_q),
           .row_i           (row_q),
           .drop_i          (drops),
           .tags_are_empty_o(tags_are_empty),
-          .code_valid_o    (code_valid),
-          .code_ready_i    (code_ready),
-          .code_o          (code),
-          .code_format_o   (code_format),
-          .code_tail_o     ({code_part, code_tail}),
+          .texel_valid_o   (texel_valid),
+          .texel_ready_i   (texel_ready),
+          .texel_o         (texel_color),
+          .texel_tail_o    (texel_tail),
           .request_valid_o,
           .request_ready_i,
           .request_address_o,
@@ -396,21 +373,55 @@ module texture_unit #(
           .miss_o,
           .idle_o          (cache_is_idle)
       );
-      texture_filter #(
-          .TAIL(TAIL)
-      ) u_filter (
+    end else begin : gen_linear
+      texture_linear #(
+          .LEVELS        (FILTER - 1),
+          .REFERENCE_BITS(REFERENCE_BITS),
+          .SIDE_BITS     (SIDE_BITS),
+          .AHEAD         (AHEAD),
+          .LINES         (LINES),
+          .PORT_BITS     (PORT_BITS),
+          .IN_FLIGHT     (IN_FLIGHT),
+          .TAIL          (TAIL)
+      ) u_texture_linear (
           .clk_i,
           .rst_ni,
-          .valid_i (code_valid),
-          .ready_o (code_ready),
-          .code_i  (code),
-          .format_i(code_format),
-          .part_i  (code_part),
-          .tail_i  (code_tail),
-          .valid_o (texel_valid),
-          .ready_i (texel_ready),
-          .texel_o (texel_color),
-          .tail_o  (texel_tail)
+          .power_on_ni,
+          .valid_i         (valid_q[CLOCKS]),
+          .texel_i         (texel),
+          .next_i          (next),
+          .part_i          (part),
+          .coordinate_i    (coordinate),
+          .level_i         (level),
+          .level_part_i    (level_part),
+          .is_linear_i     (level_is_linear),
+          .is_between_i    (level_is_between),
+          .tail_i          (tail_q[TAIL*CLOCKS+:TAIL]),
+          .pops_o          (leaves_queue),
+          .sets_state_i    (sets_state),
+          .log2_size_i     (waiting[18:11]),
+          .wrap_i          (wrap_q),
+          .format_i        (format_q),
+          .base_i          (base_q),
+          .size_i          (size_q),
+          .row_i           (row_q),
+          .shares_i        (shares),
+          .drop_i          (drops),
+          .tags_are_empty_o(tags_are_empty),
+          .texel_valid_o   (texel_valid),
+          .texel_ready_i   (texel_ready),
+          .texel_o         (texel_color),
+          .texel_tail_o    (texel_tail),
+          .request_valid_o,
+          .request_ready_i,
+          .request_address_o,
+          .request_beats_o,
+          .answer_valid_i,
+          .answer_ready_o,
+          .answer_data_i,
+          .hit_o,
+          .miss_o,
+          .idle_o          (cache_is_idle)
       );
     end
   endgenerate

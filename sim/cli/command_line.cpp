@@ -13,6 +13,7 @@
 #include "sim/show/report/hardware.hpp"
 #include "sim/study/bench/engines.hpp"
 #include "sim/study/stress/cases.hpp"
+#include "sim/vectors/stages.hpp"
 
 namespace halfplane {
 namespace {
@@ -38,6 +39,12 @@ Words with(Words words, const Words& more) {
 }
 
 Words scene_names() { return names_of(all_builtin_scenes(), &Builtin::name); }
+
+Words stage_names() {
+  Words words;
+  for (const vectors::JudgedStage& stage : vectors::judged_stages()) words.emplace_back(info(stage.stage).name);
+  return words;
+}
 
 Words convention_names() {
   Words words;
@@ -73,6 +80,7 @@ std::map<std::string, Completion> known_completions() {
       {"--mapping", {Kind::list, mappings, {}}},
       {"--format", {Kind::list, {"u16", "u24", "u32", "bins16", "bins24", "f16", "f32", "uf4.12", "uf5.11"}, {}}},
       {"--case", {Kind::list, names_of(stress::cases(), &stress::Case::name), {}}},
+      {"--stage", {Kind::words, stage_names(), {}}},
       {"--scene", {Kind::scene, scene_names(), kSceneFiles}},
       {"SCENE", {Kind::scene, scene_names(), kSceneFiles}},
       {"SCENES", {Kind::scene, scene_names(), kSceneFiles}},

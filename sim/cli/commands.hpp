@@ -21,6 +21,9 @@ void add_stress_command(CLI::App& app, Action& selected);
 void add_widths_command(CLI::App& app, Action& selected);
 void add_config_command(CLI::App& app, Action& selected);
 void add_convert_command(CLI::App& app, Action& selected);
+void add_explain_command(CLI::App& app, Action& selected);
+void add_vectors_command(CLI::App& app, Action& selected);
+void add_check_command(CLI::App& app, Action& selected);
 
 /// These walk the whole of `app` when they run.
 void add_completions_command(CLI::App& app, Action& selected);

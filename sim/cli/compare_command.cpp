@@ -1,3 +1,4 @@
+#include "sim/study/compare/against.hpp"
 #include "sim/study/compare/compare.hpp"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace {
 struct CompareCommand : CommonOptions {
   std::string golden = "binary64";
   StudyOptions study;
-  std::string sheet_path, model_path, golden_path;
+  std::string sheet_path, model_path, golden_path, against_path;
   std::vector<std::string> panels;
 };
 
@@ -60,6 +61,18 @@ Json texture_json(const TextureErrors& t) {
             {"rounding", part_json(t.part_rounding)}}}};
 }
 
+Json layers_json(const std::vector<LayerRow>& rows) {
+  Json json = Json::array();
+  for (const LayerRow& row : rows)
+    json.push_back({{"layers", row.layers},
+                    {"pixels", row.pixels},
+                    {"max", row.max},
+                    {"rms", row.rms},
+                    {"bound", row.bound},
+                    {"part_of_bound", row.part_of_bound}});
+  return json;
+}
+
 Json comparison_json(const Comparison& c) {
   Json json{{"compared_pixels", c.compared_pixels},
             {"coverage",
@@ -91,7 +104,8 @@ Json comparison_json(const Comparison& c) {
               {"color_over_w_lsb", part_json(c.color_over_w)},
               {"color_bias", figure_of(c.color_datapath_bias, c.color_datapath_bias.mean)},
               {"stage_mismatches", c.stage_mismatches}}},
-            {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)}};
+            {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)},
+            {"layers", layers_json(c.layers)}};
   return json;
 }
 
@@ -151,6 +165,11 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
                                row("  rounding", t.part_rounding), row("coordinate, texels", t.coordinate),
                                row("coordinate, footprints", t.footprints), row("level of detail, levels", t.level)});
   }
+  // Of many numbers of layers, powers of two and the last.
+  for (const LayerRow& layer : c.layers)
+    if ((layer.layers & (layer.layers - 1)) == 0 || &layer == &c.layers.back())
+      lines.push_back("under " + std::to_string(layer.layers) + " layers\t" + fixed(layer.max, 3) + "\t" +
+                      fixed(layer.rms, 4));
   lines.emplace_back();
   lines.insert(lines.end(), bounds.begin(), bounds.end());
   return lines;
@@ -206,6 +225,37 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
   return sheet;
 }
 
+Json against_json(const std::string& path, const ForeignImage& image, const AgainstResult& r) {
+  Json kinds = Json::object();
+  for (std::size_t k = 0; k < r.kinds.size(); ++k)
+    kinds[std::string(kForeignDifferences[k])] = {
+        {"pixels", r.kinds[k].pixels}, {"max", r.kinds[k].max}, {"rms", r.kinds[k].rms()}};
+  Json first = nullptr;
+  if (r.first)
+    first = {{"x", r.first->x},
+             {"y", r.first->y},
+             {"kind", kForeignDifferences[static_cast<std::size_t>(r.first->kind)]},
+             {"expected", r.first->expected},
+             {"got", r.first->got}};
+  return {{"file", path},       {"image", image.is_depth ? "depth" : "color"},
+          {"pixels", r.pixels}, {"different", r.different},
+          {"kinds", kinds},     {"first", first}};
+}
+
+void print_against(std::ostream& out, const std::string& path, const ForeignImage& image, const AgainstResult& r,
+                   const std::string& explain) {
+  out << "\nagainst " << path << ": " << with_commas(r.different) << " of " << with_commas(r.pixels) << " pixels differ"
+      << (r.different == 0 ? "\n" : ", by what explains them\n");
+  for (std::size_t k = 0; k < r.kinds.size(); ++k)
+    if (r.kinds[k].pixels != 0)
+      out << "  " << left_aligned(std::string(kForeignDifferences[k]), 12)
+          << right_aligned(with_commas(r.kinds[k].pixels), 10) << " pixels, by at most " << fixed(r.kinds[k].max, 0)
+          << ", rms " << fixed(r.kinds[k].rms(), 2) << (image.is_depth ? " depth codes\n" : " LSB of 8 bits\n");
+  if (r.first)
+    out << "  first at " << r.first->x << ' ' << r.first->y << "; why the model has it so says `" << explain << ' '
+        << r.first->x << ' ' << r.first->y << "`\n";
+}
+
 int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
@@ -214,8 +264,11 @@ int run(const CompareCommand& options) {
     check_output(*path, ".png");
   if (!options.panels.empty() && options.sheet_path.empty())
     throw InputError("--panels: there is no sheet to choose from; add -o FILE.png");
+  check_distinct({options.against_path, options.sheet_path, options.model_path, options.golden_path, options.json});
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
+  std::optional<ForeignImage> foreign;
+  if (!options.against_path.empty()) foreign = read_foreign_image(options.against_path, scene.width, scene.height);
   Comparison c;
   {
     Progress progress(options, "comparing");
@@ -259,6 +312,11 @@ int run(const CompareCommand& options) {
   result["samples_tested"] = c.rendering.counters.samples_tested;
   result["time_s"] = {{"load", load_s}, {"geometry", c.rendering.geometry_s}, {"raster", c.rendering.raster_s}};
   result.update(comparison_json(c));
+  std::optional<AgainstResult> against;
+  if (foreign) {
+    against = compare_against(scene, config, c, rules, *foreign);
+    result["against"] = against_json(options.against_path, *foreign, *against);
+  }
   result["broken_bounds"] = broken;
   result["bounds"] = {{"broken", broken}, {"given_up", given_up}};
   result["wall_s"] = seconds_since(start);
@@ -270,7 +328,11 @@ int run(const CompareCommand& options) {
                             TerminalStyle::color);
   out << title << "; model (" << result["engine"].get<std::string>() << ") against golden (" << options.golden << ")\n";
   print_lines(out, lines);
-  return broken.empty() ? exit_ok : exit_mismatch;
+  if (against)
+    print_against(out, options.against_path, *foreign, *against,
+                  program_word() + " explain" + config_arguments(config) +
+                      (options.size.empty() ? "" : " --size " + quoted(options.size)) + " " + quoted(options.scene));
+  return broken.empty() && (!against || against->different == 0) ? exit_ok : exit_mismatch;
 }
 
 }  // namespace
@@ -291,6 +353,11 @@ void add_compare_command(CLI::App& app, Action& selected) {
       ->check(CLI::IsMember(panel_names()));
   add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");
   add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png");
+  command
+      ->add_option("--against", options->against_path,
+                   "another rasterizer's image: the model against it too, colours .png or depth codes .npy")
+      ->check(refuse_empty)
+      ->type_name("FILE");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

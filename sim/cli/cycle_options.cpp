@@ -307,8 +307,10 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
     result["traffic_bytes"][std::string(kMoveCauses[cause])] = {{"depth", bytes.bytes[cause][0]},
                                                                 {"color", bytes.bytes[cause][1]}};
   if (has_texture_planes(hardware.config))
-    result["texture"] = {
-        {"samples", run.totals.texture_samples}, {"misses", run.totals.texture_misses}, {"bytes", bytes.texels}};
+    result["texture"] = {{"samples", run.totals.texture_samples},
+                         {"hits", run.totals.texture_hits},
+                         {"misses", run.totals.texture_misses},
+                         {"bytes", bytes.texels}};
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
     Json reliefs = Json::array(), saved = Json::object();
@@ -356,7 +358,7 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
   if (has_texture_planes(hardware.config)) {
     const auto samples = static_cast<double>(std::max<std::uint64_t>(1, run.totals.texture_samples));
     out << ", texels " << kilobytes(bytes.texels) << "\ntextures    " << with_commas(run.totals.texture_samples)
-        << " samples, " << fixed(100 - 100 * static_cast<double>(run.totals.texture_misses) / samples, 1) << " % hit, "
+        << " samples, " << fixed(100 * static_cast<double>(run.totals.texture_hits) / samples, 1) << " % hit, "
         << fixed(static_cast<double>(bytes.texels) / samples, 2) << " bytes each from memory";
   }
   out << "\n\nstage                 items         works   no item       waits for\n";

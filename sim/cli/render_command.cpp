@@ -119,7 +119,11 @@ void check_options(const RenderCommand& options, const Config& config) {
 
 Json counters_json(const Counters& c) {
   return {{"primitives", {{"in", c.primitives_in}, {"culled", c.culled}, {"drawn", c.drawn}, {"clipped", c.clipped}}},
-          {"fragments", {{"covered", c.covered}, {"depth_passed", c.depth_passed}, {"written", c.written}}},
+          {"fragments",
+           {{"covered", c.covered},
+            {"depth_passed", c.depth_passed},
+            {"alpha_killed", c.alpha_killed},
+            {"written", c.written}}},
           {"samples_tested", c.samples_tested},
           {"tiles_visited", c.tiles_visited},
           {"skipped",

@@ -112,7 +112,7 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       bytes_(packet_bytes(widths_)),
       expected_(widths_),
       memory_(config_, widths_, options_.memory, options_.layout.value_or(default_layout(widths_))),
-      textures_(widths_, make_memory(options_.memory, config_)),
+      textures_(config_, widths_, make_memory(options_.memory, config_)),
       counter_bytes_(static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
       lines_(words_of(packet_bits<LineSetup>(widths_))),
@@ -308,6 +308,11 @@ void Lockstep::step(HostStream& host) {
   if (all_sent_ && cycle_ == snapshot_at_) snapshot_ = words_from(out.counters, counter_bytes_);
 
   bool moved = out.fired != 0;
+  if (options_.tap)
+    for (std::uint32_t left = out.fired; left != 0; left &= left - 1) {
+      const Arrow arrow = kTapped[static_cast<std::size_t>(std::countr_zero(left))];
+      options_.tap(arrow, out.packet[index(arrow)], cycle_);
+    }
   if (options_.compares)
     for (std::uint32_t left = out.fired; left != 0 && !result_.mismatch; left &= left - 1) {
       const Arrow arrow = kTapped[static_cast<std::size_t>(std::countr_zero(left))];
@@ -354,11 +359,13 @@ void Lockstep::step(HostStream& host) {
     has_primitive_ = false;
     moved = true;
     drains_ = options_.drains_clears && sent_.back().packet.kind == PrimitiveKind::fast_clear;
+    if (options_.tap) options_.tap(Arrow::primitive, primitive_.data(), cycle_);
     count_taken();
     compare_cycle(Arrow::primitive);
   }
   if (has_line_ && out.line_ready) {
     compare_cycle(Arrow::line);
+    if (options_.tap) options_.tap(Arrow::line, lines_.front(), cycle_);
     lines_.pop();
     has_line_ = false;
     moved = true;

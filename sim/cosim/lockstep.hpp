@@ -39,6 +39,9 @@ struct LockstepOptions {
   std::optional<MemorySettings> model_memory;  ///< likewise: `memory` unless given
   std::string trace;                           ///< FST file, empty: none; holds the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
+  /// Sees what crosses a boundary into or inside the RTL, in the cycle in which it does: little-endian bytes of the packet,
+  /// rounded up. Packets of one arrow come in order. May be empty.
+  std::function<void(Arrow arrow, const void* packet, std::uint64_t cycle)> tap;
   /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
   std::function<bool(double fraction)> progress;
 };

@@ -81,11 +81,14 @@ class MemoryModel {
 /// The same of textures, behind the texture unit: reads alone.
 class TextureModel {
  public:
-  TextureModel(const Widths& widths, std::unique_ptr<MemoryTiming> timing)
-      : widths_(widths), timing_(std::move(timing)), answers_(words_of(packet_bits<TexelBeat>(widths))) {}
+  TextureModel(const Config& config, const Widths& widths, std::unique_ptr<MemoryTiming> timing)
+      : config_(config),
+        widths_(widths),
+        timing_(std::move(timing)),
+        answers_(words_of(packet_bits<TexelBeat>(widths))) {}
 
   /// From now on it holds the scene's.
-  void hold(const Scene& scene) { texels_ = TextureMemory(scene); }
+  void hold(const Scene& scene) { texels_ = TextureMemory(scene, config_); }
   [[nodiscard]] bool is_ready(std::uint64_t cycle) const { return timing_->room() <= cycle; }
   void accept(const std::uint32_t* words, std::uint64_t cycle) {
     const auto request = unpack_words<TextureRequest>(words, widths_);
@@ -107,6 +110,7 @@ class TextureModel {
   }
 
  private:
+  const Config& config_;
   const Widths& widths_;
   std::unique_ptr<MemoryTiming> timing_;
   TextureMemory texels_;

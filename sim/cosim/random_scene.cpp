@@ -53,6 +53,7 @@ class Generator {
       made += run;
     }
     set_newer();
+    set_units();
     if (has_texture_planes(config_)) set_textures();
     return std::move(scene_);
   }
@@ -79,6 +80,7 @@ class Generator {
   State state();
   void set_any(State& s, std::string_view name);
   void set_newer();
+  void set_units();
   void set_textures();
   void clear();
   void line_and_point_state(State& s);
@@ -138,28 +140,48 @@ void Generator::set_any(State& s, std::string_view name) {
 /// hashes and cycle counts, so the stream of numbers that makes them stays.
 void Generator::set_newer() {
   StateRows rows = states_but({"depth_test", "depth_write", "color_write", "cull", "front"});
-  std::erase_if(rows, [](const DrawState* row) { return row->home == StateHome::host; });
+  std::erase_if(rows, [](const DrawState* row) { return row->home != StateHome::primitive; });
   Random random(~seed_);
   for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
 }
 
-/// A few small textures, and triangles that show them: w ratios up to 2^10, coordinates from beside a texel's border to many
-/// repeats away. By random numbers of their own, as above.
+/// States of the units that this hardware has behind the depth test, in runs of draws with and without. By random numbers of
+/// their own, as above.
+void Generator::set_units() {
+  StateRows rows;
+  const auto add = [&rows](const StateRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
+  if (config_.blend_lanes != 0)  // the first ones twice: a state that blends is as likely as one that does not
+    add(states_named({"blend", "blend", "blend_equation", "blend_color", "color_mask"}));
+  if (config_.dither_units != 0) add(states_named({"dither"}));
+  if (tests_alpha(config_)) add(states_named({"alpha_test"}));
+  Random random(seed_ ^ 0xb1e4du);
+  bool has_units = false;
+  for (State& state : scene_.states) {
+    if (random.next() % 4 == 0) has_units = !has_units;
+    if (has_units) state = random_state(state, rows, chooser(random));
+  }
+}
+
+/// A few small textures, with levels where the unit has them, and triangles that show them: w ratios up to 2^10, coordinates
+/// from beside a texel's border to many repeats away. By random numbers of their own, as above.
 void Generator::set_textures() {
   Random random(seed_ ^ 0x7e87u);
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };
   const auto chance = [&random](double probability) { return random.uniform(0, 1) < probability; };
+  const bool has_levels = config_.texture_unit == TextureUnitKind::trilinear;
   const std::size_t count = 1 + below(4);
   for (std::size_t n = 0; n < count; ++n) {
     TexelImage image{1 << below(7), 1 << below(7), {}};
+    if (has_levels && chance(0.2)) (chance(0.5) ? image.width : image.height) <<= 4;
     image.texel.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     const bool has_few_colors = chance(0.5);
     for (Texel& texel : image.texel)
       for (std::uint8_t& channel : texel)
         channel = static_cast<std::uint8_t>(has_few_colors ? 255 * below(2) : below(256));
     const std::size_t formats = has_few_colors ? 8 : 6;  // a palette has no more
-    scene_.textures.push_back(
-        make_texture("random" + std::to_string(n), image, static_cast<TextureFormat>(below(formats)), Mips::none));
+    const auto format = static_cast<TextureFormat>(below(formats));
+    const Mips mips = has_levels && chance(0.8) ? Mips::box : Mips::none;
+    scene_.textures.push_back(make_texture("random" + std::to_string(n), image, format, mips));
   }
   for (State& state : scene_.states) {
     if (!chance(0.75)) continue;
@@ -167,9 +189,16 @@ void Generator::set_textures() {
     state.texture_interp = chance(0.8) ? TextureInterp::perspective : TextureInterp::affine;
     for (TextureWrap& wrap : state.texture_wrap) wrap = static_cast<TextureWrap>(below(3));
     state.texture_combine = static_cast<TextureCombine>(below(4));
-    if (config_.texture_unit != TextureUnitKind::bilinear || chance(0.3)) continue;
-    state.texture_min = TextureMin::linear;
-    state.texture_mag = TextureMag::linear;
+    if (config_.texture_unit == TextureUnitKind::bilinear && !chance(0.3)) {
+      state.texture_min = TextureMin::linear;
+      state.texture_mag = TextureMag::linear;
+    }
+    if (!has_levels) continue;
+    state.texture_min = static_cast<TextureMin>(below(6));
+    state.texture_mag = static_cast<TextureMag>(below(2));
+    if (chance(0.5)) state.texture_lod[0] = random.uniform(-3, 3);
+    if (chance(0.2)) state.texture_lod[1] = random.uniform(0, 4);
+    if (chance(0.2)) state.texture_lod[2] = random.uniform(0, 12);
   }
   const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, repeats
   for (Vertex& v : scene_.vertices) {

@@ -69,6 +69,29 @@ Scene textured_layers_scene(int width, int height, int layers, bool is_front_fir
   return scene;
 }
 
+// The layers as coloured glass: each keeps a third to two thirds of what is behind it.
+Scene glass_scene(int width, int height, int layers) {
+  Scene scene = layers_scene(width, height, layers, false);
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+    scene.vertices[i].rgba[3] = 85 + static_cast<double>(i * 37 % 86);
+  State& state = scene.states[0];
+  state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
+                             BlendFactor::one_minus_src_alpha};
+  state.depth_write = false;
+  return scene;
+}
+
+// The layers with holes: texels of a chequer, of which every other is transparent.
+Scene leaves_scene(int width, int height, int layers) {
+  constexpr int kSide = 256;  // texels
+  Scene scene = textured_layers_scene(width, height, layers, false, true);
+  TexelImage image = pattern_image(TexturePattern::chequer, kSide, kSide);
+  for (Texel& texel : image.texel) texel[3] = texel[0];
+  scene.textures[0] = make_texture("leaves", image, TextureFormat::rgba8888, Mips::none);
+  scene.states[0].alpha_test = {DepthFunc::gequal, 128};
+  return scene;
+}
+
 // 40 to 80 pixels long, whatever the target; ends may lie outside it.
 Scene scratches_scene(int width, int height, int count, std::uint64_t seed) {
   Scene scene = cleared_scene(width, height);
@@ -328,6 +351,8 @@ Scene make_work_scene(std::string_view name, int size, int width, int height, co
     return textured_layers_scene(width, height, size, name == "layers_nearest_front", false);
   if (name == "layers_linear" || name == "layers_linear_front")
     return textured_layers_scene(width, height, size, name == "layers_linear_front", true);
+  if (name == "layers_glass") return glass_scene(width, height, size);
+  if (name == "layers_leaves") return leaves_scene(width, height, size);
   if (name == "scratches") return scratches_scene(width, height, size, seed);
   if (name == "dust") return dust_scene(width, height, size, seed);
   if (name == "objects") return view(objects_mesh(size, seed), objects_camera(aspect), Cull::back);

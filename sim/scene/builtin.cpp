@@ -18,7 +18,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::size_t kPictures = 10;  // the others are work
-constexpr std::array<Builtin, kPictures + 14> kBuiltins{{
+constexpr std::array<Builtin, kPictures + 16> kBuiltins{{
     {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
     {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
     {"knot", "a torus knot in all hues", "segments along the tube", 256, 16, 4096, true},
@@ -36,6 +36,8 @@ constexpr std::array<Builtin, kPictures + 14> kBuiltins{{
     {"layers_nearest_front", "the same, front to back", "triangles", 64, 1, 8192, false},
     {"layers_linear", "layers with a texture in perspective, linear filter", "triangles", 64, 1, 8192, false},
     {"layers_linear_front", "the same, front to back", "triangles", 64, 1, 8192, false},
+    {"layers_glass", "layers that are blended over each other", "triangles", 64, 1, 8192, false},
+    {"layers_leaves", "layers with a texture, of which an alpha test drops half", "triangles", 64, 1, 8192, false},
     {"ball", "a sphere of small triangles, back faces culled", "rings", 160, 2, 1024, true},
     {"blocks", "boxes that hide each other, front to back, back faces culled", "boxes", 2000, 1, 65536, true},
     {"blocks_depth", "the same without colour: depth only", "boxes", 2000, 1, 65536, true},

@@ -75,7 +75,8 @@ GltfMaterial GltfMaterials::of(const JsonPlace& primitive) const {
   result.is_two_sided = place.flag_or("doubleSided", false);
   if (const auto extensions = place.find("extensions")) result.is_lit = !extensions->find("KHR_materials_unlit");
   const std::string alpha = place.text_or("alphaMode", "OPAQUE");
-  if (alpha != "OPAQUE") warn_("alphaMode " + in_quotes(alpha) + " is not read: everything is drawn opaque");
+  if (alpha != "OPAQUE" && alpha != "MASK" && alpha != "BLEND")
+    warn_("alphaMode " + in_quotes(alpha) + " is none of glTF 2.0: drawn opaque");
   result.alpha = alpha == "MASK" ? AlphaMode::mask : alpha == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
   result.alpha_cutoff = place.number_or("alphaCutoff", result.alpha_cutoff);
   for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {

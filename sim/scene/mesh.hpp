@@ -32,7 +32,7 @@ struct MeshSampler {
   auto operator<=>(const MeshSampler&) const = default;
 };
 
-/// What a material says of its opacity. Everything is drawn opaque so far.
+/// What a material says of its opacity.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
 /// A run of triangles, or of indices of lines or points, that belong to one object.

@@ -1,7 +1,9 @@
 #include "sim/scene/mesh_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "model/config.hpp"
@@ -25,6 +27,37 @@ void look_up(State& state, const MeshSampler& sampler) {
   state.texture_min = sampler.min;
   state.texture_mag = sampler.mag;
   state.texture_wrap = sampler.wrap;
+}
+
+/// What the opacity of a material asks for: `mask` draws what is opaque enough, `blend` lays colours over what is there,
+/// which later draws still have to be able to lie behind.
+void set_opacity(State& state, AlphaMode alpha, double cutoff) {
+  if (alpha == AlphaMode::mask && cutoff > 1)
+    state.alpha_test = {DepthFunc::never, 0};  // nothing is so opaque
+  else if (alpha == AlphaMode::mask)
+    state.alpha_test = {DepthFunc::gequal, static_cast<std::uint8_t>(std::ceil(255 * std::max(cutoff, 0.0)))};
+  if (alpha != AlphaMode::blend) return;
+  state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
+                             BlendFactor::one_minus_src_alpha};
+  state.depth_write = false;
+}
+
+/// The parts in the order in which they are drawn: those that blend behind all others, farthest first by the middles of their
+/// objects' triangles. Objects that reach through each other have no such order.
+std::vector<const MeshPart*> drawing_order(const Mesh& mesh, const std::vector<ObjectBounds>& bounds,
+                                           const Mat4& to_clip, bool is_ortho) {
+  std::vector<const MeshPart*> parts;
+  for (const MeshPart& part : mesh.parts) parts.push_back(&part);
+  const auto blended =
+      std::stable_partition(parts.begin(), parts.end(), [](const MeshPart* p) { return p->alpha != AlphaMode::blend; });
+  const auto distance = [&](const MeshPart* part) {
+    const Vec3& middle = bounds[part->object].center;
+    const Vec4 clip = transform(to_clip, {middle[0], middle[1], middle[2], 1});
+    return is_ortho ? clip[2] : clip[3];  // every w is 1
+  };
+  std::stable_sort(blended, parts.end(),
+                   [&](const MeshPart* a, const MeshPart* b) { return distance(a) > distance(b); });
+  return parts;
 }
 
 bool finite(const Vertex& v) {
@@ -78,18 +111,23 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   }
   const Mat4 to_clip = product(projection, view);
   scene.textures = mesh.textures;
-  std::map<std::pair<bool, std::optional<MeshSampler>>, std::uint32_t> states{{{false, std::nullopt}, 0}};
+  using Look = std::tuple<bool, std::optional<MeshSampler>, AlphaMode, double>;
+  std::map<Look, std::uint32_t> states{{{false, std::nullopt, AlphaMode::opaque, 0.0}, 0}};
   std::vector<std::uint8_t> outside;
-  for (const ObjectBounds& bounds : object_bounds(mesh)) outside.push_back(outside_view(bounds, to_clip));
-  for (const MeshPart& part : mesh.parts) {
+  const std::vector<ObjectBounds> bounds = object_bounds(mesh);
+  for (const ObjectBounds& object : bounds) outside.push_back(outside_view(object, to_clip));
+  for (const MeshPart* const at : drawing_order(mesh, bounds, to_clip, camera.ortho > 0)) {
+    const MeshPart& part = *at;
     const std::uint32_t object = numbers[part.object];
     const bool is_culled = !part.two_sided && cull == Cull::none;
     const auto [state, is_new] =
-        states.try_emplace({is_culled, part.sampler}, static_cast<std::uint32_t>(scene.states.size()));
+        states.try_emplace({is_culled, part.sampler, part.alpha, part.alpha == AlphaMode::mask ? part.alpha_cutoff : 0},
+                           static_cast<std::uint32_t>(scene.states.size()));
     if (is_new) {
       State& made = scene.states.emplace_back(scene.states[0]);
       if (is_culled) made.cull = Cull::back;
       if (part.sampler) look_up(made, *part.sampler);
+      set_opacity(made, part.alpha, part.alpha_cutoff);
     }
     const bool is_filled = part.topology == Topology::triangles;
     const std::size_t first = is_filled ? part.first * 3 : corners + part.first;

@@ -34,6 +34,11 @@ StateRows states_but(std::initializer_list<std::string_view> names) {
   return rows;
 }
 
+StateRows without_operations(StateRows rows) {
+  std::erase_if(rows, [](const DrawState* row) { return row->home == StateHome::unit; });
+  return rows;
+}
+
 State random_state(State state, const StateRows& rows, const Chooser& choose, Refused refused) {
   for (const DrawState* row : rows)
     if (choose(2) == 0) row->set(state, random_value(*row, choose, refused));

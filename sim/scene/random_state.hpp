@@ -39,6 +39,9 @@ using StateRows = std::vector<const DrawState*>;
 [[nodiscard]] StateRows states_named(std::initializer_list<std::string_view> names);
 [[nodiscard]] StateRows states_but(std::initializer_list<std::string_view> names);
 
+/// All but what is held by units behind the depth test: fragment operations.
+[[nodiscard]] StateRows without_operations(StateRows rows);
+
 /// `state` with random values in those rows, each as it is in half of the cases.
 [[nodiscard]] State random_state(State state, const StateRows& rows, const Chooser& choose,
                                  Refused refused = Refused::left_out);

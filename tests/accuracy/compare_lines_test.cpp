@@ -119,7 +119,8 @@ Scene random_state_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
   for (int d = 0; d < 20; ++d) {
-    scene.states.push_back(random_state(SceneBuilder::window_state(), states_but({"space"}), chooser(random)));
+    scene.states.push_back(
+        random_state(SceneBuilder::window_state(), without_operations(states_but({"space"})), chooser(random)));
     const double z = random.index(6) / 5.0;  // equal depths meet often
     const std::size_t first = scene.indices.size();
     for (int i = 3 + random.index(6); i > 0; --i) {

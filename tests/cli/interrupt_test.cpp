@@ -110,6 +110,18 @@ TEST_F(CliInterrupt, WhatIsWholeOrNothingEndsWithoutAFile) {
   EXPECT_TRUE(listing().empty());
 }
 
+TEST_F(CliInterrupt, ExplanationsAndVectorsAreWholeOrNothing) {
+  for (const Arguments& words :
+       {Arguments{"explain", "city:65536", "640", "360", "--size", "1280x720", "-o", "p.html", "--json=p.json"},
+        Arguments{"vectors", "--random", "1000000", "--stage", "cull", "-o", "v.jsonl", "--json=v.json"}}) {
+    const Outcome outcome = interrupt(words, SIGINT);
+    EXPECT_EQ(outcome.status, 130) << words[0];
+    EXPECT_EQ(lines_of(outcome.err).back(),
+              "halfplane: interrupted: this work is whole or nothing, so nothing was written");
+    EXPECT_TRUE(listing().empty());
+  }
+}
+
 TEST_F(CliInterrupt, ASecondSignalEndsItAtOnce) {
   const Outcome outcome =
       interrupt({"stress", "--case", "fans", "--seconds", "3600", "--json=result.json"}, SIGINT, 0.2);

@@ -64,6 +64,13 @@ TEST_F(JsonSchema, CompareIsDescribed) {
                              "triangle --size 32x32 --traversal bbox"});
 }
 
+TEST_F(JsonSchema, ForeignImagesAreDescribed) {
+  ASSERT_EQ(run({"render", "triangle", "--size", "32x32", "-o", "a.png", "--set", "subpixel.bits=0"}).status, 0);
+  ASSERT_EQ(run({"render", "triangle", "--size", "32x32", "--depth", "a.npy"}).status, 0);
+  expect_results("compare", {"triangle --size 32x32 --against a.npy"});
+  expect_results("compare", {"triangle --size 32x32 --against a.png"}, 1);
+}
+
 TEST_F(JsonSchema, DepthIsDescribed) {
   expect_results("depth",
                  {"--near 1 --far 100", "--near 1 --far 10 --mapping stdinf,revinf,log --format uf4.12 --error 0.1",
@@ -99,6 +106,32 @@ TEST_F(JsonSchema, ConfigAndScenesAreDescribed) {
   expect_results("convert", {"triangle -o t.hpt", "--random 60 --config tiny -o r.hpt"});
 }
 
+TEST_F(JsonSchema, ExplanationsAreDescribed) {
+  write("t.hpt",
+        "halfplane 1\ntarget 16 16\ntexture t pattern grid 16 16\nclear depth 1\nspace window\nv 0 0 0.5\nv 9 9 0.5\nl "
+        "0 1\n"
+        "p 1\nstate texture t\nv 1 1 0.5 1 255 0 0 255 0 0\nv 15 2 0.5 4 0 255 0 255 1 0\n"
+        "v 5 15 0.5 2 0 0 255 255 0 1\nt 2 3 4\n");
+  expect_results("explain", {"triangle 8 8 --size 16x16 --steps", "t.hpt 8 8 --box 2x2 --steps",
+                             "t.hpt 8 8 --set texture.unit=nearest"});
+}
+
+TEST_F(JsonSchema, VectorsAndTheirJudgementAreDescribed) {
+  expect_results("vectors",
+                 {"triangle --size 16x16 --stage cull -o v.jsonl", "--random 20 --stage rop --format hex -o v"});
+  expect_results("check", {"--stage cull v.jsonl", "--stage rop v"});
+  std::string text;
+  {
+    std::ifstream file(folder_ / "v.jsonl");
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  const std::size_t at = text.find("\"dir\":\"out\"");
+  ASSERT_NE(at, std::string::npos);
+  text[text.find("\"area\":\"0x", at) + 10] = '1';
+  write("bad.jsonl", text);
+  expect_results("check", {"--stage cull bad.jsonl"}, 1);
+}
+
 /// Those that run the RTL.
 class RtlJsonSchema : public JsonSchema {
  protected:
@@ -109,6 +142,7 @@ TEST_F(RtlJsonSchema, CosimIsDescribed) {
   expect_results("cosim", {"triangle --size 16x16", "--random 20 --memory sdram"});
   expect_results("render",
                  {"triangle --size 16x16 --engine rtl", "triangle --size 16x16 --engine rtl --set frame.order=bins"});
+  expect_results("explain", {"triangle 8 8 --size 16x16 --rtl"});
 }
 
 TEST_F(RtlJsonSchema, MismatchesAreDescribed) {

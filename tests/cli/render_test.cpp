@@ -41,7 +41,7 @@ TEST_F(RenderCommand, ResultHasEveryKeyOfTheContractInItsType) {
                       {"color_hash", 's'},
                       {"depth_hash", 's'}});
   expect_types(json["primitives"], {{"in", 'u'}, {"culled", 'u'}, {"drawn", 'u'}, {"clipped", 'u'}});
-  expect_types(json["fragments"], {{"covered", 'u'}, {"depth_passed", 'u'}, {"written", 'u'}});
+  expect_types(json["fragments"], {{"covered", 'u'}, {"depth_passed", 'u'}, {"alpha_killed", 'u'}, {"written", 'u'}});
   expect_types(json["skipped"], {{"frustum", 'u'},
                                  {"trivially_accepted", 'u'},
                                  {"backface", 'u'},

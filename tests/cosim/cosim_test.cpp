@@ -86,6 +86,24 @@ TEST(Cosim, TexturesAreLookedUpInRandomScenes) {
   EXPECT_GT(units, 0u);
 }
 
+// Colours are read and blended, depth is written late, and alpha drops samples.
+TEST(Cosim, ColoursAreBlendedInRandomScenes) {
+  std::size_t units = 0;
+  for (const DutFactory& factory : verilated_duts()) {
+    if (!packs_at_write(factory.config) && !tests_alpha(factory.config)) continue;
+    ++units;
+    for (const double stalls : {0.0, 0.4}) {
+      LockstepOptions options;
+      options.seed = 32;
+      options.stall_probability = stalls;
+      const Session session = run(factory, options, random_scenes(factory.config, 32, 3000), HostOrders::drawn);
+      EXPECT_EQ(describe(session), "") << factory.name;
+      EXPECT_GT(session.result.compared[index(Arrow::response)], 500u);
+    }
+  }
+  EXPECT_GT(units, 0u);
+}
+
 TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
   for (const DutFactory& factory : verilated_duts())
     for (const MemoryKind kind :
@@ -249,12 +267,20 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
     return run_session(*dut, factory.config, options, scenes, HostOrders::drawn).result.mismatch.has_value();
   };
   Config with_textures = preset("embedded");
-  with_textures.texture_unit = TextureUnitKind::nearest;
+  with_textures.texture_unit = TextureUnitKind::trilinear;
+  Config with_operations = preset("embedded");
+  with_operations.texture_unit = TextureUnitKind::nearest;
+  with_operations.alpha_units = with_operations.dither_units = 1;
+  with_operations.blend_lanes = 4;
   const DutFactory &embedded = find_dut(preset("embedded")), &tiny = find_dut(preset("tiny")),
-                   &textured = find_dut(with_textures);
-  ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants && textured.has_mutants);
+                   &textured = find_dut(with_textures), &blended = find_dut(with_operations);
+  ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants && textured.has_mutants && blended.has_mutants);
+  const auto is_of_operations = [](const Mutant& mutant) {
+    return mutant.what.starts_with("colours") || mutant.what.starts_with("alpha");
+  };
   for (const Mutant& mutant : mutants())  // `tiny` has the framebuffer of tiles
     EXPECT_TRUE((mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
+                (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||
                 is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
                 is_caught(embedded, mutant, 0.2, true))
         << "mutant " << mutant.id << " of " << mutant.file << " is not caught: " << mutant.what;

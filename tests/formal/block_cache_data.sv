@@ -48,7 +48,7 @@
       assign is_left   = is_begun && (p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot &&
                          ((p == 0 ? left_q : w_left_q) & any_bit) != '0;
       assign is_read   = p == 0 ? v_valid_q && v_slot_q == any_slot && v_stamp_q == any_stamp :
-                                  c_valid_q && c_slot_q == any_slot && c_stamp_q == any_stamp;
+                                  c_valid && c_slot == any_slot && c_stamp == any_stamp;
       assign slot_left = ((p == 0 ? depth_left_q[any_slot] : color_left_q[any_slot]) & any_bit) != '0;
       always_ff @(posedge clk_i) if (begins) begin
         is_line_q <= begins_line == any_line;
@@ -57,7 +57,7 @@
       end
       always_comb if (runs_q && is_begun) begin
         if ((p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot)
-          if ((p == 0 ? v_valid_q : c_valid_q))
+          if ((p == 0 ? v_valid_q : c_valid))
             assert (is_line_q == ((p == 0 ? left_line_q : w_left_line_q) == any_line) && fills_q == (p == 0 ? v_fills_q : c_fills_q));
         if (is_left || is_read) assert (is_here_q && slot_left == fills_q);
         if (!is_here_q && slot_left) assert (fills_q);
@@ -68,10 +68,10 @@
         logic [BITS:0] word_q, read_word_q, snapshot_q, ram, stored;  // the lane's dirty bit above its code
         logic          writes, read_is_it_q, collided_q, sent_q, owes, lane_strobe;
         logic [BITS-1:0] lane;
-        assign writes = p == 0 ? write_valid_i && gen_depth[m].writes : colors_done && w_writes[m];
+        assign writes = p == 0 ? write_valid_i && gen_depth[m].writes : w_ram_writes[m];
         assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) :
-                                 (BITS + 1)'({gen_color[m].dirty, gen_color[m].color});
-        assign stored = p == 0 ? (BITS + 1)'(gen_depth[m].word) : (BITS + 1)'(gen_color[m].word);
+                                 (BITS + 1)'({w_ram_dirty[m], w_ram_code[m*COLOR+:COLOR]});
+        assign stored = p == 0 ? (BITS + 1)'(gen_depth[m].word) : (BITS + 1)'({w_ram_dirty_new[m], w_ram_code_new[m*COLOR+:COLOR]});
         assign lane   = BITS'(request_o.data[m*LANE+:BITS]);
         assign owes   = fills_q || (is_here_q && snapshot_q[BITS]);
         always_ff @(posedge clk_i) begin
@@ -91,7 +91,7 @@
           // What is written: what passed, or what was there (a colour: garbage, under a strobe that says so).
           if (p == 0 && writes) assert (stored == {write_i.write_depth[m], write_i.write_depth[m] ? write_i.depth[m*CODE+:CODE] :
                                                                             stored_depth_o[m*CODE+:CODE]});
-          if (p == 1 && writes) assert (stored[BITS] == w_dirty[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
+          if (p == 1 && writes) assert (stored[BITS] == w_mask[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
           // The test sees what was written last.
           if (p == 0 && x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask[m] &&
               {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin

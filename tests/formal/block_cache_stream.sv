@@ -110,7 +110,7 @@
     if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
       assert ((evicts && !slot_free) || (source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));
     if (order_valid && !request_valid_o) assert (skips || !is_ready);
-    if (taken_q != '0 && left_q == '0 && w_left_q == '0 && !v_valid_q && !c_valid_q && behind_q == '0) assert (is_ready);
+    if (taken_q != '0 && left_q == '0 && w_left_q == '0 && !v_valid_q && !c_valid && behind_q == '0) assert (is_ready);
     cover (reader_waits_q && !unwritten_q && place_q == '0 && wants_read && order_writes != '0);
     cover (item_valid && evicts && !goes && !slot_free);
   end

@@ -97,7 +97,7 @@
   logic               flag_is_it, flag_reads_it, flag_read_is_it_q;
   logic [STATE-1:0]   line_before_q;
   logic [WORD-1:0]    depth_before_q, color_before_q;
-  assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q;
+  assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q[STATE-1-:REST];
   assign word_x        = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
   assign word_y        = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
   assign is_marking    = state_q == MARK || (state_q == DONE && is_clear);

@@ -105,7 +105,7 @@ class Coordinates {
     const std::uint64_t mask = (std::uint64_t{1} << p_local_bits(format_.coordinate, format_)) - 1;
     dut_.u_i = static_cast<IData>(static_cast<std::uint64_t>(sample.p[0]) & mask);
     dut_.v_i = static_cast<IData>(static_cast<std::uint64_t>(sample.p[1]) & mask);
-    const auto [x, y] = unit_.texels_of(unit_.place_of(sample, frame_[frame]));
+    const auto [x, y] = unit_.texels_of(unit_.place_of(sample, frame_[frame]), false, 0);
     expected_[count_ % kClocks] = static_cast<std::uint32_t>(y.first << 12 | x.first);
     dut_.index_i = static_cast<CData>(frame);
     tick();

@@ -9,8 +9,10 @@
 namespace halfplane {
 namespace {
 
-/// 2x2 stamps of tiles of 16x16 pixels over 640x480, a texture of 1024x512; turned: u along y.
-double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& settings, bool is_turned) {
+/// 2x2 stamps of tiles over 640x480, a texture of 1024x512; turned: u along y. Of a unit with levels a pixel
+/// holds 2^(lod/256) texels.
+double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& settings, bool is_turned, int tile = 16,
+            TextureMin min = TextureMin::nearest, Lod lod = 0) {
   const PerspectiveFormat perspective;
   TextureUnit unit(settings, perspective);
   TextureTiming timing(settings);
@@ -21,6 +23,16 @@ double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& s
   state.is_linear = settings.has_linear;
   unit.set(state);
   timing.leave(timing.set(0, false));
+  constexpr int kReach = 11, kQ = 1 << 25;       // u = 2^kReach P / Q
+  const double texels = std::exp2(lod / 256.0);  // in a pixel
+  if (settings.has_levels) {
+    unit.set_levels({min, 10, 0, TextureLevels::kLargest});
+    LodSetup lines;
+    lines.along_y[0].at_zero = lines.along_x[1].at_zero = 1U << 30;
+    lines.offset = lod - level_of_detail(lines, kQ, 0, 0);
+    const TextureLines packed = TextureLines::pack(lines, 0);
+    for (int n = 0; n < line_parts(settings.line_bits); ++n) unit.move_in(line_part(packed, settings.line_bits, n));
+  }
   Cycle x = 0;
   Stream requests(Stalls{}, 1), answers(Stalls{}, 2);
   TexturePort port(memory, requests, answers);
@@ -31,17 +43,16 @@ double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& s
   std::uint64_t samples = 0;
   TextureFrame frame;
   const int narrow = perspective.coordinate.narrow_bits;
-  constexpr int kReach = 11, kQ = 1 << 25;  // u = 2^kReach P / Q
   frame.scale.fill({1 - narrow, kReach});
   std::array<TextureSample, 4> sample;
   std::array<Texel, 4> color{};
   Cycle last = 0;
-  for (int ty = 0; ty < 480; ty += 16)
-    for (int tx = 0; tx < 640; tx += 16)
-      for (int y = ty; y < ty + 16; y += 2)
-        for (int s = tx; s < tx + 16; s += 2) {
+  for (int ty = 0; ty < 480; ty += tile)
+    for (int tx = 0; tx < 640; tx += tile)
+      for (int y = ty; y < ty + tile; y += 2)
+        for (int s = tx; s < tx + tile; s += 2) {
           for (int i = 0; i < 4; ++i) {
-            const double u = s + i % 2 + 0.5, v = y + i / 2 + 0.5;
+            const double u = (s + i % 2 + 0.5) * texels, v = (y + i / 2 + 0.5) * texels;
             auto& at = sample[static_cast<std::size_t>(i)];
             at.q = kQ;
             at.p = {static_cast<std::int64_t>(std::ldexp(is_turned ? v : u, 25 - kReach)),
@@ -72,6 +83,22 @@ TEST(TextureRate, AScreenAtOneTexelAPixel) {
           std::cout << (is_linear ? "linear " : "nearest ") << kTextureFormats[static_cast<std::size_t>(format)] << ' '
                     << mhz << " MHz" << (is_turned ? ", turned: " : ": ") << samples << '\n';
         }
+}
+
+TEST(TextureRate, ALevelASampleOrTwo) {
+  Config config;
+  config.memory_port_bits = 64;
+  TextureSettings settings;
+  settings.has_linear = settings.has_levels = true;
+  for (const TextureMin min : {TextureMin::linear_mipmap_nearest, TextureMin::linear_mipmap_linear})
+    for (const bool is_turned : {false, true})
+      for (const Lod lod : {64, 128, 192, 320}) {
+        const auto memory = make_memory({MemoryKind::ddr3, 0, 50}, config);
+        const double samples = rate(TextureFormat::rgb565, *memory, settings, is_turned, 8, min, lod);
+        EXPECT_GE(samples, min == TextureMin::linear_mipmap_nearest ? 0.95 : 0.45) << lod;
+        std::cout << (min == TextureMin::linear_mipmap_nearest ? "one level" : "two levels") << ", level of detail "
+                  << lod / 256.0 << (is_turned ? ", turned: " : ": ") << samples << '\n';
+      }
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ module texture_unit_bench #(
     parameter int QUEUE = 16,
     parameter int IN_FLIGHT = 32,
     parameter int LINES = 64,
-    parameter int PORT_BITS = 64
+    parameter int PORT_BITS = 64,
+    parameter int WORD = 46
 ) (
     input logic       clk_i,
     input logic       rst_ni,
@@ -33,7 +34,11 @@ module texture_unit_bench #(
     input logic [9:0]                    reach_i,
     input logic [47:0]                   reference_i,
     input logic                          sets_state_i,
-    input logic [45:0]                   state_i,
+    input logic                          sets_levels_i,
+    input logic                          moves_in_i,
+    input logic [11:0]                   x_i,
+    input logic [11:0]                   y_i,
+    input logic [WORD-1:0]               state_i,
 
     output logic                          stamp_valid_o,
     input  logic                          stamp_ready_i,
@@ -68,7 +73,8 @@ module texture_unit_bench #(
       .QUEUE    (QUEUE),
       .IN_FLIGHT(IN_FLIGHT),
       .LINES    (LINES),
-      .PORT_BITS(PORT_BITS)
+      .PORT_BITS(PORT_BITS),
+      .WORD     (WORD)
   ) u_texture_unit (
       .clk_i,
       .rst_ni,
@@ -85,6 +91,10 @@ module texture_unit_bench #(
       .reach_i,
       .reference_i,
       .sets_state_i,
+      .sets_levels_i,
+      .moves_in_i,
+      .x_i,
+      .y_i,
       .state_i,
       .stamp_valid_o,
       .stamp_ready_i,

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "model/engines/cycle/texture_timing.hpp"
+#include "model/packets.hpp"
 #include "model/stages/texture_unit.hpp"
 
 namespace halfplane::texture_test {
@@ -21,9 +24,11 @@ struct UnitFormat {
 };
 
 struct PlannedStamp {
-  bool sets_state = false, is_triangle = true;
-  TextureState state;
+  std::optional<StateRegister> sets;  ///< a token, and its value
+  uint128 word = 0;
+  bool is_triangle = true;
   std::uint32_t payload = 0;
+  int x = 0, y = 0;  ///< its first pixel
   SampleMask mask;
   std::array<Texel, 16> color{}, combined{};
   std::array<TextureSample, 16> sample{};
@@ -73,21 +78,30 @@ inline World random_world(Random& random) {
   return world;
 }
 
-/// Draws random programs: states, stamps with and without texture, coordinates that wander over the texture or jump.
+/// Draws random programs: states, stamps with and without texture, coordinates and levels that wander over the texture or jump.
 class Program {
  public:
   Program(Random& random, const UnitFormat& format) : random_(random), format_(format) { new_triangle(); }
 
   [[nodiscard]] PlannedStamp next() {
     PlannedStamp stamp;
-    stamp.payload = static_cast<std::uint32_t>(random_());
-    if (left_-- <= 0) {
+    if (tokens_.empty() && left_-- <= 0) {
       left_ = pick(random_, 0, 3) == 0 ? pick(random_, 0, 6) : pick(random_, 20, 150);
-      stamp.sets_state = true;
-      stamp.state = new_state();
+      const TextureState state = new_state();
+      token(StateRegister::texture, state.pack());
+      if (format_.settings.has_levels) token(StateRegister::texture_levels, new_levels(state).pack());
+    }
+    if (tokens_.empty() && pick(random_, 0, 9) == 0) new_triangle();
+    if (!tokens_.empty()) {
+      stamp = tokens_.front();
+      tokens_.pop_front();
+      stamp.payload = static_cast<std::uint32_t>(random_());
       return stamp;
     }
-    if (pick(random_, 0, 9) == 0) new_triangle();
+    stamp.payload = static_cast<std::uint32_t>(random_());
+    const int side = format_.samples == 1 ? 1 : format_.samples == 4 ? 2 : 4;
+    stamp.x = (x_ + pick(random_, 0, 15)) / side * side;
+    stamp.y = (y_ + pick(random_, 0, 15)) / side * side;
     stamp.is_triangle = pick(random_, 0, 15) != 0;
     const std::uint64_t all = SampleMask::all(format_.samples).bits();
     stamp.mask = SampleMask(pick(random_, 0, 2) != 0 ? all : random_() & all);
@@ -98,11 +112,45 @@ class Program {
         stamp.color[s][c] = static_cast<std::uint8_t>(pick(random_, 0, 3) == 0 ? 255U * (random_() & 1) : random_());
       if (format_.channels == 3) stamp.color[s][3] = 255;
       stamp.sample[s] = new_sample();
+      stamp.sample[s].x = stamp.x + static_cast<int>(s) % side;
+      stamp.sample[s].y = stamp.y + static_cast<int>(s) / side;
     }
     return stamp;
   }
 
  private:
+  void token(StateRegister sets, uint128 word) {
+    PlannedStamp stamp;
+    stamp.sets = sets;
+    stamp.word = word;
+    tokens_.push_back(stamp);
+  }
+
+  TextureLevels new_levels(const TextureState& state) {
+    TextureLevels levels;
+    levels.min = static_cast<TextureMin>(pick(random_, 0, 5));
+    levels.last = pick(random_, 0, 9) == 0 ? 0 : std::max(state.log2_size[0], state.log2_size[1]);
+    levels.least = pick(random_, 0, 2) == 0 ? pick(random_, 0, 12 * 256) : 0;
+    levels.largest = pick(random_, 0, 2) == 0 ? pick(random_, 0, TextureLevels::kLargest) : 12 * 256;
+    levels.largest = std::max(levels.least, levels.largest);
+    return levels;
+  }
+
+  /// Lines whose level, about the pixels of the triangle, is one of a texture, or a little less.
+  TextureLines new_lines() {
+    LodSetup lod;
+    const auto number = [this] { return static_cast<std::uint32_t>(random_() >> pick(random_, 32, 63)); };
+    for (const std::size_t c : {0U, 1U}) {
+      const std::uint32_t step = number() * (pick(random_, 0, 1) != 0 ? 1U : ~0U);
+      lod.along_y[c] = {number() - static_cast<std::uint32_t>(y_) * step, step};
+      lod.along_x[c] = {number() - static_cast<std::uint32_t>(x_) * step, step};
+      if (pick(random_, 0, 3) == 0) lod.along_y[c].at_zero = number();
+    }
+    const Lod wanted = pick(random_, -2 * 256, 12 * 256) >> (pick(random_, 0, 2) == 0 ? 3 : 0);
+    const Lod there = level_of_detail(lod, std::uint64_t{1} << (q_bits_ - 1), x_, y_);
+    return TextureLines::pack(lod, pick(random_, 0, 30) == 0 ? pick(random_, -60, 60) * 1000 : wanted - there);
+  }
+
   TextureState new_state() {
     TextureState state;
     state.enable = pick(random_, 0, 5) != 0;
@@ -137,6 +185,12 @@ class Program {
       at_[i] = pick(random_, -100, 400);
     }
     q_bits_ = pick(random_, 1, q_bits + 1 + format_.perspective.guard_bits);
+    if (!format_.settings.has_levels) return;
+    x_ = pick(random_, 0, pick(random_, 0, 1) != 0 ? 4079 : 31);
+    y_ = pick(random_, 0, pick(random_, 0, 1) != 0 ? 4079 : 31);
+    const int bits = format_.settings.line_bits;
+    const TextureLines lines = new_lines();
+    for (int n = 0; n < line_parts(bits); ++n) token(StateRegister::texture_lines, line_part(lines, bits, n));
   }
 
   TextureSample new_sample() {
@@ -157,6 +211,8 @@ class Program {
   Random& random_;
   const UnitFormat& format_;
   int left_ = 0;
+  std::deque<PlannedStamp> tokens_;  ///< in front of the next stamp
+  int x_ = 0, y_ = 0;                ///< about where the triangle is
   std::array<TextureState, 4> texture_{};
   TextureFrame frame_;
   std::array<int, 2> exponent_{};
@@ -203,10 +259,17 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
     x = world.next_free(0, std::max(x + 1, timing.room()));
     stamp.enters = x + 1;
     stamp.combined = stamp.color;
-    if (stamp.sets_state) {
-      if (stamp.state.invalidates) contents = random();
-      unit.set(TextureState::unpack(stamp.state.pack()));
-      stamp.offered = timing.set(x, stamp.state.invalidates);
+    if (stamp.sets == StateRegister::texture) {
+      const auto state = TextureState::unpack(static_cast<std::uint64_t>(stamp.word));
+      if (state.invalidates) contents = random();
+      unit.set(state);
+      stamp.offered = timing.set(x, state.invalidates);
+    } else if (stamp.sets == StateRegister::texture_levels) {
+      unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(stamp.word)));
+      stamp.offered = timing.set(x, false);
+    } else if (stamp.sets == StateRegister::texture_lines) {
+      unit.move_in(stamp.word);
+      stamp.offered = timing.set_lines(x);
     } else if (!unit.is_textured(stamp.is_triangle, stamp.mask)) {
       stamp.offered = timing.pass(x);
     } else {

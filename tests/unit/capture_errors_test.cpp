@@ -68,7 +68,7 @@ TEST(CaptureErrors, UnknownLinesAndStatesAreNamed) {
   expect_line_refused("vertex 1 2 3", "'vertex'");
   expect_line_refused("\x01\x02", "'\\x01\\x02'");
   expect_line_refused("state", "state without a name");
-  expect_line_refused("state blend on", "state 'blend' is not known");
+  expect_line_refused("state glow on", "state 'glow' is not known");
   expect_line_refused("state cull", "the value of cull should follow");
   expect_line_refused("state cull backwards", "'backwards' is no value of cull; write one of none, back, front, both");
   expect_line_refused("state cull back front", "'front' is left over");
@@ -128,7 +128,7 @@ TEST(CaptureErrors, TargetIsOneAndWithinItsBounds) {
 
 TEST(CaptureErrors, ClearIsCompleteAndWithinItsBounds) {
   expect_line_refused("clear", "without anything to clear");
-  expect_line_refused("clear stencil 0", "'stencil' cannot be cleared");
+  expect_line_refused("clear mist 0", "'mist' cannot be cleared");
   expect_line_refused("clear color 1 2 3", "a colour component should follow");
   expect_line_refused("clear color 1 2 3 256", "a colour component is 256; write a number from 0 to 255");
   expect_line_refused("clear color 1 2 3 -1", "a colour component is -1");

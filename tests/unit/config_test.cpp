@@ -144,8 +144,13 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   EXPECT_EQ(file_text("presets/small/raster_pkg.sv"), raster_pkg(preset("small")));
   EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
   Config textured;
-  textured.texture_unit = TextureUnitKind::nearest;
+  textured.texture_unit = TextureUnitKind::trilinear;
   EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
+  Config blended;
+  blended.texture_unit = TextureUnitKind::nearest;
+  blended.alpha_units = blended.dither_units = 1;
+  blended.blend_lanes = 4;
+  EXPECT_EQ(file_text("presets/blended/raster_pkg.sv"), raster_pkg(blended));
 }
 
 TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("cosim/taps.svh"), raster_taps()); }

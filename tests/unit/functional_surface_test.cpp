@@ -11,6 +11,7 @@
 #include "model/engines/functional/frame_renderer.hpp"
 #include "model/engines/functional/surface_constants.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/scene/random_state.hpp"
 
 namespace halfplane {
 namespace {
@@ -118,6 +119,27 @@ TEST(FunctionalSurface, RandomSurfacesAreTheSameOnEveryPath) {
         expect_all_same(scene, config);
       }
     }
+}
+
+TEST(FunctionalSurface, FragmentOperationsOnSurfacesAreTheSameOnEveryPath) {
+  std::uint64_t killed = 0;
+  for (const char* name : {"embedded", "full"})
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      Scene scene = random_surfaces(seed, 12);
+      Random random(seed + 50);
+      StateRows rows =
+          states_named({"alpha_test", "blend", "blend_equation", "blend_color", "color_mask", "dither", "stencil"});
+      if (seed % 4 != 0) rows.pop_back();  // the lanes leave a stencil to the plain path
+      for (State& state : scene.states) state = random_state(state, rows, chooser(random));
+      for (const ColorFormat format : {ColorFormat::rgba8888, ColorFormat::rgb565}) {
+        Config config = with_colors(name);
+        config.color_format = format;
+        expect_all_same(scene, config);
+        killed += render_scalar(scene, config).counters.alpha_killed;
+      }
+    }
+  EXPECT_GT(killed, 1000U);
 }
 
 /// Every number of bits that a configuration may give to 1/w and its reciprocal.

@@ -13,6 +13,7 @@
 #include "sim/cosim/random_scene.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/depth_mapping.hpp"
+#include "sim/scene/random_state.hpp"
 
 namespace halfplane {
 namespace {
@@ -103,6 +104,75 @@ TEST(Functional, RandomScenesAreTheSameOnEveryPath) {
       const Config config = preset(name);
       expect_all_same(random_scene(config, seed, 300), config);
     }
+}
+
+/// Triangles of all sizes, lines and points whose states take any fragment operations.
+TEST(Functional, EveryFragmentOperationIsTheSameOnEveryPath) {
+  std::uint64_t written = 0, killed = 0;
+  for (const char* name : {"tiny", "embedded", "full"})
+    for (const bool has_alpha : {false, true})
+      for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        Config config = preset(name);
+        config.color_format = has_alpha ? ColorFormat::rgba8888 : ColorFormat::rgb565;
+        SCOPED_TRACE(std::string(name) + (has_alpha ? " rgba8888" : " rgb565") + ", seed " + std::to_string(seed));
+        Scene scene = random_scene(config, seed, 300);
+        test::Random random(static_cast<std::uint32_t>(seed));
+        const StateRows rows = seed % 3 == 0 ? states_named({"alpha_test", "blend", "blend_equation", "blend_color",
+                                                             "color_mask", "stencil", "stencil_back", "dither"})
+                               : seed % 3 == 1
+                                   ? states_named({"blend", "blend_equation", "blend_color", "color_mask", "dither"})
+                                   : states_named({"alpha_test", "blend"});
+        for (State& state : scene.states) state = random_state(state, rows, chooser(random));
+        for (Vertex& vertex : scene.vertices) vertex.rgba[3] = random.index(256);
+        expect_all_same(scene, config);
+        const Counters counters = render_functional(scene, config).counters;
+        written += counters.written;
+        killed += counters.alpha_killed;
+      }
+  EXPECT_GT(written, 10000U);
+  EXPECT_GT(killed, 1000U);
+}
+
+/// Lines show their front, whatever the triangle before them showed; a clear leaves the padding of the target alone.
+TEST(Functional, LinesBehindATriangleThatShowsItsBackTakeTheFrontOfTheStencil) {
+  State state = test::SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  state.stencil = Stencil{.reference = 3, .passes = StencilOp::replace};
+  state.stencil_back = Stencil{.reference = 9, .passes = StencilOp::replace};
+  for (const FrontFace front : {FrontFace::ccw, FrontFace::cw}) {
+    state.front = front;
+    test::SceneBuilder builder(53, 45, state);
+    Scene& scene = builder.scene;
+    scene.commands.insert(scene.commands.begin(), Clear{0, {}, {}, std::uint8_t{5}});
+    builder.triangle(test::at(2, 2, 0.5), test::at(40, 4, 0.5), test::at(5, 40, 0.5));
+    for (const auto& [x, y] : {std::pair{1.0, 30.0}, {50.0, 31.0}, {20.0, 1.0}, {22.0, 44.0}}) {
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.push_back(test::at(x, y, 0.25));
+    }
+    const auto drawn = static_cast<std::uint32_t>(scene.states.size() - 1);
+    scene.commands.push_back(Draw{drawn, 0, Topology::lines, scene.indices.size() - 4, 4, 0});
+    expect_all_same(scene, preset("embedded"));
+    const Rendering rendering = render_functional(scene, preset("embedded"));
+    EXPECT_EQ(rendering.frame.stencil[rendering.frame.at(45, 30)], 3) << "on the line alone";
+    EXPECT_EQ(rendering.frame.stencil[rendering.frame.at(52, 44)], 5) << "cleared";
+  }
+}
+
+/// The blend that most draws ask for has a way of its own.
+TEST(Functional, LayersOfGlassAreTheSameOnEveryPath) {
+  for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888}) {
+    Config config = preset("embedded");
+    config.color_format = format;
+    Scene scene = make_builtin("layers:24", 192, 130, {}, 1);
+    for (State& state : scene.states) {
+      state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::src_alpha,
+                                 BlendFactor::one_minus_src_alpha};
+      state.depth_write = false;
+    }
+    for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+      scene.vertices[i].rgba[3] = static_cast<double>(i * 37 % 256);
+    expect_all_same(scene, config);
+  }
 }
 
 TEST(Functional, TheWidestReciprocalsAreTheSameOnEveryPath) {

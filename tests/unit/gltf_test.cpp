@@ -307,7 +307,7 @@ TEST(Gltf, OnlyVerticesThatAreUsedAreFramed) {
 
 TEST(Gltf, WhatIsLeftOutIsSaidOnceForTheWholeFile) {
   GltfBuilder builder = test::one_triangle();
-  builder.json["materials"] = {{{"alphaMode", "BLEND"},
+  builder.json["materials"] = {{{"alphaMode", "GLASS"},
                                 {"normalTexture", {{"index", 0}}},
                                 {"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}}};
   Json& primitive = builder.json["meshes"][0]["primitives"][0];
@@ -316,7 +316,7 @@ TEST(Gltf, WhatIsLeftOutIsSaidOnceForTheWholeFile) {
   builder.root({{"mesh", 0}, {"skin", 0}});
   const std::vector<std::string> warnings = parse(builder.text()).warnings;
   ASSERT_EQ(warnings.size(), 4u);
-  for (const char* part : {"alphaMode 'BLEND'", "of the textures", "morph targets", "skins"}) {
+  for (const char* part : {"alphaMode 'GLASS'", "of the textures", "morph targets", "skins"}) {
     EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
                             [part](const std::string& w) { return w.find(part) != std::string::npos; }),
               1)

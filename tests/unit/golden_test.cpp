@@ -246,20 +246,20 @@ TEST(Golden, ZeroWidthTriangleAndNumbersBeyondFloatDrawNothing) {
 TEST(GoldenFragmentBuffer, RunsTheOperationsOfTheStateAndRoundsNothing) {
   golden::FragmentBuffer<double, int> pixels(2, 1.0, 0);
   State state;
-  EXPECT_TRUE(pixels.apply(0, state, 0.5, 7, 3).written);
-  EXPECT_FALSE(pixels.apply(0, state, 0.5, 8, 4).passed) << "less";
-  EXPECT_TRUE(pixels.apply(0, state, 0.5 - 1e-15, 9, 5).written);
+  EXPECT_TRUE(pixels.apply(0, state, {0.5}, 7, 3).written);
+  EXPECT_FALSE(pixels.apply(0, state, {0.5}, 8, 4).passed) << "less";
+  EXPECT_TRUE(pixels.apply(0, state, {0.5 - 1e-15}, 9, 5).written);
   EXPECT_EQ(pixels.value(0), 9);
   EXPECT_EQ(pixels.owners()[0], 5);
   EXPECT_EQ(pixels.owners()[1], -1);
   state.depth_test = DepthFunc::always;
   state.color_write = false;
-  EXPECT_TRUE(pixels.apply(0, state, 0.75, 1, 6).written);
+  EXPECT_TRUE(pixels.apply(0, state, {0.75}, 1, 6).written);
   EXPECT_EQ(pixels.depth(0), 0.75);
   EXPECT_EQ(pixels.value(0), 9) << "colour is masked";
   EXPECT_EQ(pixels.owners()[0], 6);
   state.depth_write = false;
-  const golden::Fate fate = pixels.apply(0, state, 0.25, 1, 7);
+  const golden::Fate fate = pixels.apply(0, state, {0.25}, 1, 7);
   EXPECT_TRUE(fate.passed);
   EXPECT_FALSE(fate.written);
   EXPECT_EQ(pixels.owners()[0], 6) << "what writes nothing owns nothing";

@@ -65,8 +65,8 @@ Scene random_scene(std::uint32_t seed, int width, int height, double band, int t
   State state;
   for (int n = 0; n < triangles; ++n) {
     if (n % 5 == 0) {
-      state = random_state(SceneBuilder::window_state(), states_but({"polygon_mode", "pixel_center", "origin"}),
-                           chooser(random));
+      state = random_state(SceneBuilder::window_state(),
+                           without_operations(states_but({"polygon_mode", "pixel_center", "origin"})), chooser(random));
       builder.with_state(state);
       if (random.unit() < 0.25)
         builder.scene.commands.push_back(

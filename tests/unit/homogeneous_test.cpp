@@ -36,8 +36,9 @@ Vertex project(double x, double y, double z, const State& state, std::array<doub
 State random_state(Random& random) {
   State state;
   state.depth_test = DepthFunc::always;
-  return random_state(state, states_but({"space", "depth_test", "depth_write", "color_write", "polygon_mode"}),
-                      chooser(random));
+  return random_state(
+      state, without_operations(states_but({"space", "depth_test", "depth_write", "color_write", "polygon_mode"})),
+      chooser(random));
 }
 
 /// One triangle with a vertex on each side of the eye plane.

@@ -11,6 +11,7 @@
 
 #include "model/capture/capture.hpp"
 #include "model/config.hpp"
+#include "model/draw_states.hpp"
 #include "model/engines/functional.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -22,9 +23,14 @@ constexpr int kWidth = 96, kHeight = 64;
 
 class MesaPeerTest : public testing::Test {
  protected:
+  void start(int depth_bits) {
+    peer_ = std::make_unique<MesaPeer>(kWidth, kHeight, depth_bits, 1);
+    depth_bits_ = depth_bits;
+  }
+
   void SetUp() override {
     try {
-      peer_ = std::make_unique<MesaPeer>(kWidth, kHeight, 16, 1);
+      start(16);
     } catch (const std::runtime_error& error) {
       ASSERT_NE(std::string(error.what()).find("install"), std::string::npos);
       GTEST_SKIP() << error.what();
@@ -37,7 +43,7 @@ class MesaPeerTest : public testing::Test {
     EXPECT_GT(peer_->render(), 0);
     const std::vector<std::uint32_t> there = peer_->color();
     Config config = preset("full");
-    config.depth_bits = 16;  // the unit of polygon_offset
+    config.depth_bits = depth_bits_;  // the unit of polygon_offset
     const Picture here = color_picture(render_functional(scene, config).frame, config.color_format);
     EXPECT_EQ(there.size() * 3, here.rgb.size());
     int count = 0;
@@ -51,6 +57,7 @@ class MesaPeerTest : public testing::Test {
   }
 
   std::unique_ptr<MesaPeer> peer_;
+  int depth_bits_ = 0;
 };
 
 TEST_F(MesaPeerTest, ItDrawsTheBuiltinScenesAsWeDo) {
@@ -68,8 +75,9 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
   const std::string flat = "v 5 5 0.4 1 200 90 0 255\nv 91 30 0.4 1 10 90 200 255\nv 20 60 0.6 1 255 255 255 255\n";
   for (const char* state :
        {"cull back", "cull front", "cull both", "front cw\nstate cull back", "depth_test greater", "depth_test always",
-        "depth_write off", "color_write off", "shade flat", "shade flat\nstate provoking last", "scissor 20 10 40 30",
-        "polygon_mode line", "polygon_mode point\nstate point_size 4", "polygon_offset 0 9000"}) {
+        "depth_test lequal", "depth_test equal", "depth_test notequal", "depth_test gequal", "depth_write off",
+        "color_write off", "shade flat", "shade flat\nstate provoking last", "scissor 20 10 40 30", "polygon_mode line",
+        "polygon_mode point\nstate point_size 4", "polygon_offset 0 9000"}) {
     std::string text = head;
     text.append("space window\n").append(fan).append(flat).append("t 4 5 6\nstate ").append(state);
     text += "\ntf 0 1 2 3\nts 3 2 1 0\nt 4 6 5\nl 0 3\np 2\n";
@@ -82,6 +90,41 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
     text.append("state ").append(state).append("\n").append(clip).append("t 0 1 2\n");
     EXPECT_LE(differing(read_capture(text, "clip.hpt")), 12) << state;
   }
+}
+
+// Every factor and equation, masks, alpha and stencil, over three triangles that lie over each other.
+TEST_F(MesaPeerTest, FragmentOperationsMeanTheSame) {
+  start(24);  // a stencil goes with it
+  const std::string head =
+      "halfplane 1\ntarget 96 64\nclear color 200 120 30 90 depth 1 stencil 5\nspace window\nstate blend_color 250 10 "
+      "128 60\n"
+      "v 50 2 0.25 1 255 0 0 20\nv 3 60 0.5 1 0 255 0 130\nv 92 55 0.75 1 0 0 255 255\n"
+      "v 5 5 0.6 1 200 90 0 240\nv 91 30 0.4 1 10 90 200 10\nv 20 60 0.3 1 255 255 255 128\n"
+      "v 90 3 0.2 1 70 80 90 200\nv 60 62 0.2 1 1 200 3 60\nv 2 30 0.8 1 99 98 97 0\n";
+  std::vector<std::string> states;
+  const DrawState& blend = draw_state("blend");
+  const auto factors = blend.numbers[0].words;
+  for (std::size_t src = 0; src < factors.size(); ++src)  // each with four others, each of those with four
+    for (std::size_t n = 0; n < 4; ++n)
+      states.push_back("blend " + std::string(factors[src]) + " " +
+                       std::string(factors[(src + 4 * n) % factors.size()]));
+  for (const char* equation : {"subtract", "reverse_subtract", "min", "max", "add subtract", "max reverse_subtract"})
+    states.push_back("blend src_alpha one_minus_dst_color one dst_alpha\nstate blend_equation " +
+                     std::string(equation));
+  for (const char* state :
+       {"color_mask on off on off", "color_mask off off off on", "alpha_test greater 100", "alpha_test notequal 60",
+        "alpha_test never 0", "stencil equal 5 255 255 incr decr replace", "stencil less 3 7 15 keep invert zero",
+        "stencil always 9 255 254 keep incr_wrap decr_wrap\nstate stencil_back notequal 1 255 255 zero keep incr",
+        "stencil gequal 5 255 255 keep replace invert\nstate alpha_test gequal 70\nstate blend one "
+        "one_minus_src_alpha"})
+    states.emplace_back(state);
+  for (const std::string& state : states) {
+    const Scene scene = read_capture(
+        head + "state depth_test lequal\nstate " + state + "\nt 0 1 2\nt 3 4 5\nt 8 7 6\nt 5 1 8\n", "ops.hpt");
+    // A factor that is a stored colour doubles what that is off by, layer by layer.
+    EXPECT_LE(differing(scene), state.find("dst_color") == std::string::npos ? 12 : 80) << state;
+  }
+  EXPECT_GT(states.size(), 70u);
 }
 
 TEST_F(MesaPeerTest, WhatItDoesNotHaveIsRefusedByName) {

@@ -216,7 +216,7 @@ TEST(GltfTexture, TheAlphaModeIsKept) {
   const Read masked = read_gltf(builder);
   EXPECT_EQ(masked.mesh.parts[0].alpha, AlphaMode::mask);
   EXPECT_EQ(masked.mesh.parts[0].alpha_cutoff, 0.25);
-  ASSERT_EQ(masked.warnings.size(), 1u);
+  EXPECT_TRUE(masked.warnings.empty());
   builder.json["materials"][0]["alphaMode"] = "BLEND";
   EXPECT_EQ(read_gltf(builder).mesh.parts[0].alpha, AlphaMode::blend);
 }

@@ -208,14 +208,17 @@ TEST(FragmentOps, APacketThroughDepthTestAndRopIsEachOfItsFragmentsThroughTheOpe
         const std::uint64_t rgba = words();
         for (std::size_t c = 0; c < 4; ++c) fragment.code[s][kColorPlane + c] = rgba >> 8 * c & 255;
         color[s] = static_cast<std::uint32_t>(words());
+        if (config.color_format == ColorFormat::rgb565) color[s] &= 0xffff;
       }
       const WritePacket written = rop(fragment, depth_test(fragment, depth, widths), config, widths);
       for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
         std::uint32_t expected_depth = depth[s], expected_color = color[s];
-        const bool passes = fragment.mask.has(s) &&
-                            apply_fragment(
-                                fragment.state, config.color_format, fragment.code[s][kDepthPlane],
-                                [&] { return color_channels(fragment.code[s]); }, expected_depth, expected_color);
+        std::uint8_t stencil = 0;
+        const auto source = [&] { return color_channels(fragment.code[s]); };
+        const bool passes =
+            fragment.mask.has(s) &&
+            apply_fragment({fragment.state, {}, {}, {}}, config.color_format, {fragment.code[s][kDepthPlane]}, source,
+                           {expected_depth, expected_color, stencil}) == Fate::passed;
         EXPECT_EQ(written.passed.has(s), passes);
         EXPECT_EQ(written.write_depth.has(s) ? written.depth[s] : depth[s], expected_depth);
         EXPECT_EQ(written.write_color.has(s) ? written.color[s] : color[s], expected_color);

@@ -1,6 +1,7 @@
 // Textured triangles in hardware: the hardware and the cycle engine against the scalar one, and what a texture unit refuses.
 #include <gtest/gtest.h>
 
+#include <random>
 #include <string>
 
 #include "../hardware_scene.hpp"
@@ -9,6 +10,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/host_stream.hpp"
+#include "model/stages/state_packets.hpp"
 #include "model/stages/texture_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 
@@ -23,6 +25,9 @@ const std::vector<Config>& configurations() {
       with("embedded", {{"texture.unit", "nearest"}, {"frame.order", "bins"}, {"texture.cache_kb", "1"}}),
       with("embedded", {{"texture.unit", "bilinear"}}),
       with("full", {{"texture.unit", "bilinear"}, {"texture.cache_kb", "1"}, {"memory.port_bits", "32"}}),
+      with("embedded", {{"texture.unit", "trilinear"}}),
+      with("full", {{"texture.unit", "trilinear"}, {"frame.order", "bins"}, {"texture.cache_kb", "1"}}),
+      with("tiny", {{"texture.unit", "trilinear"}, {"cache.kind", "blocks"}, {"perspective.bits", "12"}}),
       with("full", {{"texture.unit", "nearest"}, {"texture.queue", "8"}}),
       with("tiny", {{"texture.unit", "nearest"}, {"cache.kind", "blocks"}, {"perspective.bits", "12"}})};
   return all;
@@ -78,6 +83,22 @@ TEST(TexturedHardware, DrawsRandomScenesAsTheScalarEngine) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) expect_equal(random_scene(config, seed, 25), config);
 }
 
+// Where the upper of two levels is not there, or has no weight, the other is asked once.
+TEST(TexturedHardware, ASecondLevelThatAddsNothingIsNotAsked) {
+  for (const std::string lod : {"6.3 0 12", "0 2 2"}) {
+    std::string text = kRoom;
+    const auto replace = [&text](const std::string& from, const std::string& to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    replace("state texture_wrap",
+            "state texture_min linear_mipmap_linear\nstate texture_mag linear\nstate texture_lod " + lod +
+                "\nstate texture_wrap");
+    replace("grid 64 64", "grid 4 4 mips box");
+    const Config config = with("embedded", {{"texture.unit", "trilinear"}});
+    expect_equal(read_capture(text, "room"), config);
+  }
+}
+
 // One word of 45 bits, over the codes of a vertex and back from a fragment that setup and interpolation have made of it.
 TEST(TexturedHardware, ATokenKeepsItsWordThroughThePlanes) {
   for (const Config& config : configurations()) {
@@ -85,10 +106,95 @@ TEST(TexturedHardware, ATokenKeepsItsWordThroughThePlanes) {
     for (std::uint64_t word = 1; word < std::uint64_t{1} << TextureState::kBits; word = word * 5 + 3) {
       const TextureState state = TextureState::unpack(word);
       PerPlane<std::uint32_t> code{};
-      set_texture_word(code, state.pack(), widths);
-      EXPECT_EQ(TextureState::unpack(texture_word(code, widths)), state) << label(config);
+      set_state_word(code, state.pack(), widths);
+      EXPECT_EQ(TextureState::unpack(state_word(code, widths)), state) << label(config);
     }
   }
+}
+
+// The same of levels and lines, whose parts may come behind any others.
+TEST(TexturedHardware, TokensBringLevelsAndLines) {
+  std::mt19937_64 random(7);
+  for (const Config& config : configurations()) {
+    const Widths widths = derive_widths(config);
+    const int bits = line_part_bits(state_word_bits(widths));
+    LineRegister unit(bits);
+    for (int n = 0; n < 200; ++n) {
+      const auto word = static_cast<std::uint32_t>(random() % 6 | (random() >> 40) << 3) & 0x7fffffffU;
+      EXPECT_EQ(TextureLevels::unpack(word).pack(), word);
+      LodSetup lod;
+      for (const std::size_t c : {0U, 1U}) {
+        lod.along_y[c] = {static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random())};
+        lod.along_x[c] = {static_cast<std::uint32_t>(random()), lod.along_y[c].step};
+      }
+      lod.offset = static_cast<Lod>(random() % 60000) - 30000;
+      const TextureLines lines = TextureLines::pack(lod, -7);
+      PerPlane<std::uint32_t> code{};
+      for (int part = 0; part < line_parts(bits); ++part) {
+        set_state_word(code, line_part(lines, bits, part), widths);
+        unit.move_in(wide_state_word(code, widths));
+      }
+      EXPECT_EQ(unit.lines(), lines) << label(config);
+      const LodSetup out = unit.lines().unpack();
+      EXPECT_EQ(out.offset, lod.offset - 7);
+      for (const std::size_t c : {0U, 1U})
+        for (const int at : {0, 1, 4095}) {
+          EXPECT_EQ(out.along_y[c].at(at), lod.along_y[c].at(at));
+          EXPECT_EQ(out.along_x[c].at(at), lod.along_x[c].at(at));
+        }
+    }
+  }
+}
+
+// Whatever the sides, no two levels share a block but the last two, and each lies behind the one before; in all they take the
+// blocks that they need.
+TEST(TexturedHardware, LevelsLieOneBehindTheOther) {
+  for (int w = 0; w <= 12; ++w)
+    for (int h = 0; h <= 12; ++h) {
+      std::uint32_t next = 0;
+      for (int n = 0; n <= std::max(w, h); ++n) {
+        const LevelPlace place = level_place({w, h}, n);
+        const std::uint32_t blocks = 1U << (std::max(0, w - 2 - n) + std::max(0, h - 2 - n));
+        EXPECT_EQ(place.block, place.is_corner ? next - 1 : next) << w << ", " << h << ", level " << n;
+        EXPECT_EQ(place.is_corner, n >= 2 && std::max(w, h) == n) << w << ", " << h << ", level " << n;
+        if (!place.is_corner) next += blocks;
+      }
+    }
+}
+
+// Of sides that are no powers of two, which hardware refuses to draw, memory holds the image alone.
+TEST(TexturedHardware, LevelsOfOddSidesAreNotInMemory) {
+  for (const auto& [width, height] : {std::pair{12, 8}, std::pair{8, 12}}) {
+    const Texture texture =
+        make_texture("odd", pattern_image(TexturePattern::chequer, width, height), TextureFormat::l8, Mips::box);
+    EXPECT_GT(texture.last_level(), 0);
+    EXPECT_EQ(texture_bytes(texture, true), texture_bytes(texture)) << width << " x " << height;
+  }
+}
+
+// A level of detail that makes no difference is not sent; one of another scene that is held to any bound has none either.
+TEST(TexturedHardware, SendsLinesOnlyWhereTheyMakeADifference) {
+  const Config config = with("embedded", {{"texture.unit", "trilinear"}});
+  const auto lines_of = [&](const std::string& states) {
+    const std::string text =
+        "halfplane 1\ntarget 64 48\ntexture t pattern chequer 16 16 mips box\nspace window\nstate cull back\nstate "
+        "texture t\n" +
+        states +
+        "v 0 0 0 1 0 0 0 0 0 0\nv 40 0 0 1 0 0 0 0 4 0\nv 0 40 0 3 0 0 0 0 0 4\nv 20 20 0 1 0 0 0 0 2 2\n"
+        "t 0 1 2\nt 0 2 1\nt 1 3 2\n";
+    const Scene scene = read_capture(text, "lines");
+    HostStream host(scene, config);
+    int count = 0;
+    while (const auto primitive = host.next())
+      count += primitive->packet.kind == PrimitiveKind::state &&
+               state_register(primitive->packet.state) == StateRegister::texture_lines;
+    return count;
+  };
+  EXPECT_EQ(lines_of(""), 0);
+  EXPECT_EQ(lines_of("state texture_min linear\n"), 2);  // one of three triangles faces here and has an area
+  EXPECT_EQ(lines_of("state texture_min linear\nstate texture_mag linear\n"), 0);
+  EXPECT_EQ(lines_of("state texture_min nearest_mipmap_nearest\n"), 2);
+  EXPECT_EQ(lines_of("state texture_min linear_mipmap_linear\nstate texture_lod 0 2 2\n"), 0);
 }
 
 TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
@@ -110,6 +216,11 @@ TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
   const std::string linear = "state texture_mag linear\nstate texture_min linear";
   EXPECT_TRUE(names(fault(kRoom, with_unit, "state texture_wrap", linear + "\nstate texture_wrap"), "bilinear"));
   EXPECT_EQ(fault(kRoom, configurations()[2], "state texture_wrap", linear + "\nstate texture_wrap"), "");
+  EXPECT_TRUE(
+      names(fault(kRoom, with_unit, "state texture off", "state texture_mag linear"), "texture.unit=trilinear"));
+  EXPECT_EQ(fault(kRoom, with("embedded", {{"texture.unit", "trilinear"}}), "state texture_wrap",
+                  "state texture_min linear_mipmap_nearest\nstate texture_wrap"),
+            "");
   EXPECT_TRUE(names(fault(kRoom, with_unit, "16 8 format", "16 9 format"), "16x9"));
   EXPECT_THROW(validate(with("tiny", {{"texture.unit", "nearest"}})), InputError);
   EXPECT_THROW(validate(with("full", {{"texture.unit", "nearest"}, {"stamp.size", "8"}})), InputError);

@@ -60,13 +60,14 @@ soak_run() {
 # gets a twentieth.
 soak_cosim() {
   local primitives=${1:-1150000} config i words folders=() left piece seed status=0
-  local sizes=('embedded stamp.size=1' 'embedded stamp.size=4' 'full stamp.size=2' 'embedded texture.unit=bilinear')
+  local sizes=('embedded stamp.size=1' 'embedded stamp.size=4' 'full stamp.size=2' 'embedded texture.unit=bilinear'
+    'embedded texture.unit=nearest')
   # Each of the sizes that the RTL takes at a second value, for the cycles as well as for the bits.
   local corners=('embedded tile.size=16 stamp.size=4 cache.lines=4 context.slots=2 hiz.bits=6 depth.bits=24'
     'embedded tile.size=4 stamp.size=1 cache.lines=64 context.slots=8 hiz.bits=0'
     'small lines.unit=1 tile.size=16 context.slots=4 hiz.bits=5'
     'embedded stamp.size=4 memory.port_bits=32 texture.unit=nearest texture.cache_kb=1 texture.queue=8'
-    'full texture.unit=nearest')
+    'full texture.unit=trilinear')
   [[ $primitives =~ ^[1-9][0-9]*$ ]] || { say "./dev soak-cosim: N is a whole number, not '$primitives'"; exit 2; }
   ensure "${everyday[@]}"
   insist build sim rtl
@@ -75,11 +76,11 @@ soak_cosim() {
     read -ra words <<<"${config// / --set }"
     folders+=("$(rtl_package "${words[@]}")") || exit 2
   done
-  step 'configure nine more configurations' configure release -B build/soak \
+  step 'configure ten more configurations' configure release -B build/soak \
     "-DHALFPLANE_RTL_CONFIGS=$rtl_presets" "-DHALFPLANE_RTL_EXTRA=$(IFS=';' && echo "${folders[*]}")"
   step 'build them' cmake --build build/soak --parallel "$(jobs)" --target halfplane_program
   say "== $primitives random primitives per configuration; a twentieth of it for full with its stamp of 4, and for corners"
-  local whole=(small tiny embedded 'embedded texture.unit=nearest' "${sizes[@]}") all
+  local whole=(small tiny embedded 'embedded texture.unit=trilinear' "${sizes[@]}") all
   all=("${whole[@]}" full "${corners[@]}")
   for i in "${!all[@]}"; do
     config=${all[i]} left=$primitives

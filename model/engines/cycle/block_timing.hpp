@@ -8,6 +8,13 @@
 //   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2))
 //   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between X and W texture_timing.hpp says when W has it
 //
+// With blending an order may end with a read of colours, and W takes a fragment for as many clocks as blend.lanes wants, one at
+// least: w is the first, and w(m-1) + 1 counts from the last. What it writes is in the RAM kBlendClocks later, in order. An item
+// that reads colours waits at W for its answer, w >= answer + 1, and where it reads the RAM, for what is to be written of these
+// samples before, w >= write + 1, and until nothing of an eviction is left to be read. With the alpha test behind a texture unit
+// a fragment that writes depth is late: W writes it, and at X none goes before that which is in the same place (kLateLines),
+// or is not late itself.
+//
 // An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own,
 // W writes where nothing is left to be read, and the next eviction waits.
 #pragma once
@@ -27,8 +34,9 @@ namespace halfplane {
 
 /// What a fragment is to a texture unit.
 struct TextureWork {
-  bool sets_state = false, invalidates = false;  ///< a token
-  std::span<const TextureLookup> lookups;        ///< of the samples that are textured
+  std::optional<StateRegister> sets;       ///< a token
+  bool invalidates = false;                ///< and what is in the cache goes
+  std::span<const TextureLookup> lookups;  ///< of the samples that are textured
 };
 
 /// What the test made of a fragment.
@@ -36,7 +44,11 @@ struct BlockItem {
   SampleMask mask;                                ///< covered samples; none: an empty stamp, or a line of a walk
   int stamp = 0;                                  ///< in its block
   bool depth_write = false, color_write = false;  ///< by its state
-  bool wrote_depth = false, wrote_color = false;  ///< any sample passed
+  bool wrote_depth = false;                       ///< of any sample
+  SampleMask colors;                              ///< samples whose colour is written
+  bool blends = false;                            ///< by the state
+  bool is_late = false;                           ///< depth is written behind the texture: is_late()
+  bool is_shaded = false;                         ///< with a texture unit: a sample lives there
   TextureWork texture;                            ///< with a texture unit
 };
 
@@ -44,10 +56,12 @@ class BlockTiming {
  public:
   BlockTiming(const Config& config, const Widths& widths)
       : widths_(widths),
+        lanes_(std::min(config.blend_lanes, widths.samples)),
         items_(config.cache_queue, 1, 1),
         orders_(config.cache_queue, 1, 1),
         slots_(static_cast<std::size_t>(config.cache_victims)),
-        dirty_(static_cast<std::size_t>(config.cache_lines)) {
+        dirty_(static_cast<std::size_t>(config.cache_lines)),
+        late_(kLateLines * static_cast<std::size_t>(widths.blocks.stamps())) {
     if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths));
   }
 
@@ -66,13 +80,15 @@ class BlockTiming {
   /// `cycle` at the earliest; returns PortTimes.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
-    const bool reads = tags.source == DepthSource::memory, is_order = reads || tags.writes > 0;
+    const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
+    const bool is_order = reads || reads_color || tags.writes > 0;
     const Cycle t = std::max({moved + 1 + static_cast<Cycle>(tags.flag_cycles), items_.room(), orders_.room()});
     left_ = t;
-    const Cycle answer = is_order ? order(t, tags.writes, reads ? &item : nullptr, tags, ask) : 0;
+    const Answers answers = is_order ? order(t, tags.writes, &item, tags, ask) : Answers{};
     Cycle x = std::max({items_.ready(t), tested_ + 1, texture_ ? texture_->room() : behind_.room()});
-    if (reads) x = std::max(x, answer + 1);
+    if (reads) x = std::max(x, answers.depth + 1);
     if (tags.source == DepthSource::chip || tags.eviction) x = std::max(x, depth_free_);
+    x = std::max(x, late_room(tags, item));
     if (tags.source == DepthSource::chip && last_line_ == tags.line && last_stamp_ == item.stamp &&
         (last_writes_ & item.mask).any() && x < tested_ + 2) {
       x = tested_ + 2;
@@ -86,7 +102,11 @@ class BlockTiming {
     const Cycle depth_ready = depth_free_ + 1;
     items_.leave(x);
     tested_ = x;
-    const Cycle color_ready = color(tags, item, shaded(item.texture, ask));
+    const Cycle color_ready = color(tags, item, shaded(item.texture, ask), answers.color);
+    if (item.is_late && item.mask.any()) {
+      late_[late_place(tags.line, item.stamp)] = colored_;
+      last_late_ = colored_;
+    }
     texture_ ? texture_->leave(colored_) : behind_.leave(colored_);
     if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready)));
     note_writes(tags, item);
@@ -107,7 +127,7 @@ class BlockTiming {
   Cycle drain(Cycle cycle, int writes, Ask&& ask) {
     if (writes > 0) {
       cycle = std::max(cycle, orders_.room());
-      (void)order(cycle, writes, nullptr, {}, ask);
+      (void)order(cycle, writes, nullptr, TagResult{}, ask);
     }
     return std::max({cycle + 1, tested_ + 1, colored_ + 1, ordered_ + 1});
   }
@@ -120,25 +140,60 @@ class BlockTiming {
     Cycle ready;  ///< all of it is in the slot
   };
 
+  /// When the answers to an item's reads have come.
+  struct Answers {
+    Cycle depth = 0, color = 0;
+  };
+  /// A write of colours that may not be in the RAM yet: the cycle in which W took it.
+  struct ColorWrite {
+    Cycle taken = 0;
+    std::size_t line = 0;
+    int stamp = 0;
+    SampleMask samples;
+  };
+  static constexpr Cycle kBlendClocks = 3;       ///< from W to the RAM, with blending
+  static constexpr std::size_t kLateLines = 16;  ///< lines whose late fragments X tells apart, modulo
+
+  [[nodiscard]] std::size_t late_place(std::size_t line, int stamp) const {
+    return line % kLateLines * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
+  }
+
+  /// The first cycle in which X can let an item go, as far as it depends on late ones.
+  [[nodiscard]] Cycle late_room(const TagResult& tags, const BlockItem& item) const {
+    Cycle room = 0;
+    if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, item.stamp)] + 1 : last_late_ + 1;
+    for (int stamp = 0; tags.eviction && stamp < widths_.blocks.stamps(); ++stamp)
+      room = std::max(room, late_[late_place(tags.line, stamp)] + 1);
+    return room;
+  }
+
   /// When the item that X is through with is on offer to W.
   template <class Ask>
   Cycle shaded(const TextureWork& work, Ask&& ask) {
     if (!texture_) return tested_ + 2;
-    if (work.sets_state) return texture_->set(tested_, work.invalidates);
+    if (work.sets == StateRegister::texture_lines) return texture_->set_lines(tested_);
+    if (work.sets) return texture_->set(tested_, work.invalidates);
     if (work.lookups.empty()) return texture_->pass(tested_);
     return texture_->take(tested_, work.lookups, [&ask](Cycle cycle, std::uint32_t address, int beats) {
       return ask.texture(cycle, address, beats);
     });
   }
 
-  /// W: the colours of that item, on offer from `offered` on. Returns when those of what it evicts are out of the RAM.
-  Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered) {
-    const std::uint64_t own = item.wrote_color || tags.starts_color ? std::uint64_t{1} << item.stamp : 0;
+  /// W: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns when those of what it
+  /// evicts are out of the RAM.
+  Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered, Cycle answer) {
+    const DepthSource source = tags.color_source;
+    const bool fetches = source == DepthSource::clear || source == DepthSource::memory;
+    const bool writes_all = tags.starts_color || fetches;
+    const std::uint64_t own = item.colors.any() || writes_all ? std::uint64_t{1} << item.stamp : 0;
     const auto read = [this](std::uint64_t wanted) {  // the stamp that is about to be written, or the lowest
       left_color_ &= ~(wanted != 0 ? wanted : left_color_ & (~left_color_ + 1));
       ++color_at_;
     };
     Cycle w = std::max(offered, colored_ + 1), ready = 0;
+    if (tags.eviction)
+      for (const ColorWrite& write : color_writes_)
+        if (write.samples.any() && write.line == tags.line) w = std::max(w, write.taken + kBlendClocks + 1);
     if (tags.eviction) w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
     while (left_color_ != 0 && color_at_ < w) read(0);
     if (tags.eviction) {
@@ -151,13 +206,40 @@ class BlockTiming {
       read(own);
       ++w;
     }
-    colored_ = w;
+    if (source == DepthSource::memory) w = std::max(w, answer + 1);
+    if (source != DepthSource::none && !tags.starts_color) {  // reads the RAM
+      w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
+      const SampleMask looks = fetches ? SampleMask::all(widths_.samples) : item.colors;
+      for (const ColorWrite& write : color_writes_)
+        if (write.line == tags.line && write.stamp == item.stamp && (write.samples & looks).any())
+          w = std::max(w, write.taken + kBlendClocks + 1);
+    }
+    colored_ = lanes_ == 0 ? w : write_colors(w, tags.line, item, writes_all);
     return ready;
   }
 
+  /// The clocks in which an item passes W from `w` on: one for each group of lanes with a sample to blend. Returns the last.
+  Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
+    const int groups = item.blends ? widths_.samples / lanes_ : 1, size = widths_.samples / groups;
+    SampleMask writes;  // that come along with the first group: no group reads what another writes
+    if (writes_all) writes = SampleMask(SampleMask::all(widths_.samples).bits() & ~item.colors.bits());
+    bool has_gone = false;
+    for (int group = 0; group < groups; ++group) {
+      const SampleMask own = item.colors & SampleMask((SampleMask::all(size).bits()) << group * size);
+      if (!own.any() && !(group + 1 == groups && !has_gone)) continue;
+      if (has_gone) ++w;
+      color_writes_[next_write_] = {w, line, item.stamp, writes | own};
+      next_write_ = (next_write_ + 1) % color_writes_.size();
+      writes = {};
+      has_gone = true;
+    }
+    return w;
+  }
+
   template <class Ask>
-  Cycle order(Cycle pushed, int writes, const BlockItem* item, const TagResult& tags, Ask&& ask) {
-    Cycle cycle = std::max(ordered_ + 1, orders_.ready(pushed)), answer = 0;
+  Answers order(Cycle pushed, int writes, const BlockItem* item, const TagResult& tags, Ask&& ask) {
+    Cycle cycle = std::max(ordered_ + 1, orders_.ready(pushed));
+    Answers answers;
     for (; writes > 0; --writes) {
       const Victim& v = victims_.front();
       cycle = std::max(cycle, v.ready);
@@ -173,15 +255,16 @@ class BlockTiming {
       slots_[v.slot] = cycle;
       victims_.pop_front();
     }
-    if (item != nullptr) {
-      const auto [asked, answered] =
-          ask(cycle, TilePlane::depth, stamp_address({tags.block, item->stamp}, widths_), 1, false);
+    const auto read = [&](TilePlane plane) {
+      const auto [asked, answered] = ask(cycle, plane, stamp_address({tags.block, item->stamp}, widths_), 1, false);
       cycle = asked + 1;
-      answer = answered;
-    }
+      return answered;
+    };
+    if (tags.source == DepthSource::memory) answers.depth = read(TilePlane::depth);
+    if (tags.color_source == DepthSource::memory) answers.color = read(TilePlane::color);
     ordered_ = cycle - 1;
     orders_.leave(ordered_);
-    return answer;
+    return answers;
   }
 
   [[nodiscard]] Victim victim(const Eviction& e, Cycle ready) {
@@ -198,8 +281,8 @@ class BlockTiming {
     last_writes_ = {};
     if (!item.mask.any()) return;
     const bool starts_depth = tags.source != DepthSource::chip;
-    if (!starts_depth && item.depth_write) last_writes_ = item.mask;
-    if (starts_depth && (tags.source != DepthSource::none || item.depth_write))
+    if (!starts_depth && item.depth_write && !item.is_late) last_writes_ = item.mask;
+    if (starts_depth && !item.is_late && (tags.source != DepthSource::none || item.depth_write))
       last_writes_ = SampleMask::all(widths_.samples);
     const std::uint64_t bit = std::uint64_t{1} << item.stamp;
     const auto note = [&](std::uint64_t& dirty, bool starts, bool writes) {
@@ -207,10 +290,11 @@ class BlockTiming {
       if (writes) dirty |= bit;
     };
     note(dirty_[tags.line][0], starts_depth, item.wrote_depth);
-    note(dirty_[tags.line][1], tags.starts_color, item.wrote_color);
+    note(dirty_[tags.line][1], tags.starts_color, item.colors.any());
   }
 
   Widths widths_;
+  int lanes_;  ///< samples that are blended in a clock; 0: none are
   Station items_, orders_;
   Station behind_{2, 0, 0};  ///< between X and W; or there is a
   std::optional<TextureTiming> texture_;
@@ -219,7 +303,9 @@ class BlockTiming {
   Cycle depth_free_ = 0;          ///< when the depth RAM has been read for the last eviction
   std::uint64_t left_color_ = 0;  ///< stamps of it that the colour RAM is still to be read for, one a cycle
   std::size_t color_line_ = 0;
-  Cycle color_at_ = 0;  ///< when the next of them is
+  Cycle color_at_ = 0;                                   ///< when the next of them is
+  std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last ones
+  std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
   int last_stamp_ = 0;
   SampleMask last_writes_;  ///< samples that the last fragment may have written
@@ -228,6 +314,8 @@ class BlockTiming {
   std::size_t next_slot_ = 0;
   std::deque<Victim> victims_;
   std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
+  std::vector<Cycle> late_;                          ///< by place: when W took the last late item
+  Cycle last_late_ = 0;                              ///< the last of them all
 };
 
 }  // namespace halfplane

@@ -5,10 +5,12 @@
 #include <chrono>
 #include <type_traits>
 
+#include "../../stages/color_packets.hpp"
 #include "../../stages/cull.hpp"
 #include "../../stages/depth_test.hpp"
 #include "../../stages/hiz.hpp"
 #include "../../stages/line_raster.hpp"
+#include "../../stages/state_packets.hpp"
 #include "../../stages/surface.hpp"
 #include "../../stages/texture_packets.hpp"
 #include "../../stages/viewport.hpp"
@@ -61,7 +63,7 @@ class CycleModelOf final : public CycleModel {
     if (has_texture_planes(config_)) texture_.emplace(texture_settings(config_, widths_), perspective_format(config_));
   }
 
-  void hold_textures(const Scene& scene) override { texels_ = TextureMemory(scene); }
+  void hold_textures(const Scene& scene) override { texels_ = TextureMemory(scene, config_); }
 
   void begin(int width, int height, Cycle cycle) override {
     rendering_ = {};
@@ -93,12 +95,10 @@ class CycleModelOf final : public CycleModel {
     switch (triangle->kind) {
       case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
       case PrimitiveKind::flush: flush(packet); return;
-      case PrimitiveKind::texture:
+      case PrimitiveKind::state:
         timing_.end_token([&](Cycle offered) {
-          const TextureState state = token_state(*triangle);
-          texture_->set(state);
           BlockItem item;
-          item.texture = {true, state.invalidates, {}};
+          set_state(*triangle, item.texture);
           return timing_.access(offered, TagResult{}, item);
         });
         return;
@@ -178,7 +178,7 @@ class CycleModelOf final : public CycleModel {
     LineState next = first_state(line);
     FragmentPlace place;
     place.depth_write = state.depth_write;
-    bool passed = false;
+    Fate fate = Fate::failed;
     const auto step = [&] {
       const LinePixel pixel = pixel_of(next, line, widths_);
       const int x = pixel.x & (T - 1), y = pixel.y & (T - 1);
@@ -186,16 +186,22 @@ class CycleModelOf final : public CycleModel {
       place.tile_y = pixel.y / T;
       place.stamp = stamps.stamp_at(x, y);
       place.mask = SampleMask::only(stamps.sample_at(x % stamps.size, y % stamps.size));
-      passed = shade_pixel(state, pixel, primitive);
+      fate = shade_pixel(state, pixel, primitive);
       if (!pixel.is_last) advance(next, line, widths_);
       return !pixel.is_last;
     };
     const auto look_up = [&](auto& mover) {
       const bool hits = tiles_->access(place.tile_x, place.tile_y, mover, counters_);
-      if (passed) tiles_->wrote(place.tile_x, place.tile_y, place.stamp, state.depth_write, state.color_write);
+      if (fate == Fate::passed)
+        tiles_->wrote(place.tile_x, place.tile_y, place.stamp, state.depth_write, state.color_write);
       return hits;
     };
-    const auto look_up_block = [&](BlockItem& item) { return block_access(place, state, passed, item); };
+    const auto look_up_block = [&](BlockItem& item) {
+      const TagResult tags = block_access(place, state, item);
+      note_result(state, fate != Fate::failed ? place.mask : SampleMask(),
+                  fate == Fate::passed ? place.mask : SampleMask(), item);
+      return tags;
+    };
     const Cycle before = timing_.last_fragment();
     timing_.end_token([&](Cycle offered) {
       return blocks_ ? timing_.take_block_pixels(offered, step, look_up_block)
@@ -206,37 +212,45 @@ class CycleModelOf final : public CycleModel {
     line_raster(line, widths_, [&](const LinePixel& pixel) { cost_[plain_index(pixel.x, pixel.y)] += cycles; });
   }
 
-  /// What the tags of a framebuffer of blocks find for a fragment, and what became of it.
-  TagResult block_access(const FragmentPlace& place, const PrimitiveState& state, bool passed, BlockItem& item) {
+  /// What the tags of a framebuffer of blocks find for a fragment.
+  TagResult block_access(const FragmentPlace& place, const PrimitiveState& state, BlockItem& item) {
     const StampAddress at{static_cast<std::uint16_t>(place.tile_x), static_cast<std::uint16_t>(place.tile_y),
                           static_cast<std::uint16_t>(place.stamp)};
-    const TagResult tags = blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
-    item = {place.mask,
-            block_stamp(at, widths_).stamp,
-            state.depth_write,
-            state.color_write,
-            passed && state.depth_write,
-            passed && state.color_write,
-            {}};
-    return tags;
+    item.mask = place.mask;
+    item.stamp = block_stamp(at, widths_).stamp;
+    item.depth_write = state.depth_write;
+    item.color_write = state.color_write;
+    item.blends = colors_.ops.blends();
+    item.is_late = is_late(state, colors_.alpha, config_);
+    return blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
   }
 
-  /// depth_test and rop of a pixel of a line. Returns whether it passed.
-  bool shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive) {
+  /// What became of it: of its samples some passed the depth test, and of those the alpha test kept some.
+  void note_result(const PrimitiveState& state, SampleMask passed, SampleMask kept, BlockItem& item) const {
+    item.wrote_depth = state.depth_write && kept.any();
+    if (state.color_write) item.colors = kept;
+    item.is_shaded = (tests_alpha() ? passed : item.colors).any();
+  }
+  [[nodiscard]] bool tests_alpha() const { return colors_.alpha.func != DepthFunc::always; }
+
+  /// depth_test and rop of a pixel of a line.
+  Fate shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive) {
     Framebuffer& frame = rendering_.frame;
     const std::size_t at = frame.at(pixel.x, pixel.y);
     ++counters_.covered;
     const std::size_t plain = plain_index(pixel.x, pixel.y);
     if (!rendering_.count.empty()) ++rendering_.count[plain];
-    if (!apply_fragment(
-            state, config_.color_format, pixel.code[kDepthPlane], [&pixel] { return color_channels(pixel.code); },
-            frame.depth[at], frame.color[at]))
-      return false;
+    const Fate fate =
+        apply_fragment(FragmentOps{state, colors_.alpha, {}, colors_.ops}, config_.color_format,
+                       {pixel.code[kDepthPlane], pixel.x, pixel.y}, [&pixel] { return color_channels(pixel.code); },
+                       {frame.depth[at], frame.color[at], frame.stencil[at]});
+    if (fate == Fate::failed) return fate;
     ++counters_.depth_passed;
-    if (!state.writes()) return true;
+    if (fate == Fate::killed) ++counters_.alpha_killed;
+    if (fate == Fate::killed || !state.writes()) return fate;
     ++counters_.written;
     if (!rendering_.ids.empty()) rendering_.ids[plain] = static_cast<std::int32_t>(primitive);
-    return true;
+    return fate;
   }
 
   [[nodiscard]] std::size_t plain_index(int x, int y) const {
@@ -245,7 +259,7 @@ class CycleModelOf final : public CycleModel {
 
   /// coarse_raster, and for each visit the rest of the pipeline.
   void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
-    const Kernel kernel(packet.state, config_, widths_);
+    const Kernel kernel({state_of_kernel(packet.state), {}, {}, {}}, config_, widths_);
     const TriangleLanes<T, Lane> lanes(setup, widths_);
     CounterPacket uncounted;
     CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
@@ -285,6 +299,13 @@ class CycleModelOf final : public CycleModel {
     if (!has_ended) timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
   }
 
+  /// What the kernel writes by itself: nothing whose alpha is tested, and colours where they replace each other.
+  [[nodiscard]] PrimitiveState state_of_kernel(PrimitiveState state) const {
+    state.depth_write = state.depth_write && !tests_alpha();
+    state.color_write = state.color_write && !tests_alpha() && colors_.ops.is_plain();
+    return state;
+  }
+
   void visit(const Kernel& kernel, const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
              const EdgeValues& edges, bool is_inside, const SetupPacket& packet, const PixelBounds& box, int tile_x,
              int tile_y, bool ends_primitive, std::uint32_t primitive) {
@@ -293,8 +314,9 @@ class CycleModelOf final : public CycleModel {
     TileVisitWork work{ends_primitive, box.top / size, box.bottom / size, box.left / size, box.right / size, {}};
     Mask covered_count{}, passed_count{};
     const bool wants_bits = options_.want_count || options_.want_ids;
-    kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, rendering_.frame,
-                [&](int j, const Mask& covered_lanes, const Mask& passed_lanes) {
+    kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, false, rendering_.frame,
+                [&](int j, const Mask& covered_lanes, const typename Kernel::Fates& fates) {
+                  const Mask& passed_lanes = fates.passed;
                   const std::uint32_t row = kernel.to_bits(covered_lanes);
                   covered_rows[static_cast<std::size_t>(j)] = row;
                   passed_rows[static_cast<std::size_t>(j)] = kernel.to_bits(passed_lanes);
@@ -302,7 +324,8 @@ class CycleModelOf final : public CycleModel {
                   covered_count += covered_lanes;
                   passed_count += passed_lanes;
                   if (wants_bits)
-                    note_row(tile_x * T, tile_y * T + j, row, kernel.to_bits(passed_lanes), packet, primitive);
+                    note_row(tile_x * T, tile_y * T + j, row, tests_alpha() ? 0 : kernel.to_bits(passed_lanes), packet,
+                             primitive);
                 });
     const std::uint32_t covered = kernel.count(covered_count), passed = kernel.count(passed_count);
     for (int row = work.first_row; row <= work.last_row; ++row) {
@@ -315,11 +338,7 @@ class CycleModelOf final : public CycleModel {
       }
       pixels = columns;
     }
-    if (is_counted(packet.kind)) {
-      counters_.covered += covered;
-      counters_.depth_passed += passed;
-      if (packet.state.writes()) counters_.written += passed;
-    }
+    std::uint32_t killed = 0;  // by the alpha test
     bool is_resident = false;
     const Cycle before = timing_.last_fragment();
     if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
@@ -337,8 +356,10 @@ class CycleModelOf final : public CycleModel {
       const bool passes = samples(passed_rows).any();
       if (blocks_) {
         BlockItem item;
-        const TagResult tags = block_access(place, packet.state, passes, item);
-        if (texture_ && item.wrote_color) shade_stamp(setup, packet.kind, place, samples(passed_rows), item);
+        const TagResult tags = block_access(place, packet.state, item);
+        const SampleMask live = samples(passed_rows), kept = shade_stamp(setup, packet, place, live, item, primitive);
+        killed += static_cast<std::uint32_t>(live.count() - kept.count());
+        note_result(packet.state, live, kept, item);
         return timing_.access(offered, tags, item);
       }
       const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
@@ -347,7 +368,14 @@ class CycleModelOf final : public CycleModel {
       if (passes) tiles_->wrote(tile_x, tile_y, place.stamp, packet.state.depth_write, packet.state.color_write);
       return moved;
     });
-    retire(packet, tile_x, tile_y, passed);
+    if (is_counted(packet.kind)) {
+      counters_.covered += covered;
+      counters_.depth_passed += passed;
+      counters_.alpha_killed += killed;
+      if (packet.state.writes()) counters_.written += passed - killed;
+    }
+    const bool is_late = halfplane::is_late(packet.state, colors_.alpha, config_);
+    retire(packet, tile_x, tile_y, is_late ? passed : passed - killed, is_late);
     if (!options_.want_cost) return;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before);
     for (int j = box.top; j <= box.bottom; ++j)
@@ -358,51 +386,83 @@ class CycleModelOf final : public CycleModel {
           cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(covered);
   }
 
-  /// The texture unit: the colours of the samples of a stamp that are written, and how they were looked up.
-  void shade_stamp(const TriangleSetup& setup, PrimitiveKind kind, const FragmentPlace& place, SampleMask live,
-                   BlockItem& item) {
-    if (!texture_->is_textured(kind == PrimitiveKind::triangle, live)) return;
-    std::array<TextureSample, kMaxSamples> sample;
-    std::array<Texel, kMaxSamples> color;
-    std::array<std::size_t, kMaxSamples> at;
+  /// What comes behind the depth test for a stamp, `passed` of whose samples passed: texture unit, alpha test, operations on
+  /// colours; what the kernel did not write is. Returns the samples that the alpha test keeps.
+  SampleMask shade_stamp(const TriangleSetup& setup, const SetupPacket& packet, const FragmentPlace& place,
+                         SampleMask passed, BlockItem& item, std::uint32_t primitive) {
+    const SampleMask live = tests_alpha() || packet.state.color_write ? passed : SampleMask();
+    const bool is_textured = texture_ && texture_->is_textured(packet.kind == PrimitiveKind::triangle, live);
+    if (!live.any() || !(is_textured || tests_alpha() || !colors_.ops.is_plain())) return passed;
+    std::array<Texel, kMaxSamples> color{};
+    std::array<PixelOffset, kMaxSamples> at;  // pixels of the target
     const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
-    const std::size_t q = widths_.q_plane;
     live.for_each([&](std::size_t s) {
       const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
-      const int x = place.tile_x * T + origin.x + pixel.x, y = place.tile_y * T + origin.y + pixel.y;
-      at[s] = rendering_.frame.at(x, y);
-      const PixelPlace where = place_of(setup, widths_, x, y);
+      at[s] = {place.tile_x * T + origin.x + pixel.x, place.tile_y * T + origin.y + pixel.y};
+      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
+        color[s][c] = static_cast<std::uint8_t>(plane_at(setup, kColorPlane + c, widths_, at[s].x, at[s].y).code);
+    });
+    if (is_textured) look_up_texels(setup, live, at, color, item);
+    Framebuffer& frame = rendering_.frame;
+    const auto index = [&](std::size_t s) { return frame.at(at[s].x, at[s].y); };
+    const SampleMask kept =
+        alpha_passes(colors_.alpha, live, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
+    kept.for_each([&](std::size_t s) {
+      const Texel& c = color[s];
+      if (tests_alpha() && packet.state.depth_write)
+        frame.depth[index(s)] = plane_at(setup, kDepthPlane, widths_, at[s].x, at[s].y).code;
+      if (packet.state.color_write)
+        frame.color[index(s)] = store_color<std::uint32_t>(colors_.ops, config_.color_format, {c[0], c[1], c[2], c[3]},
+                                                           frame.color[index(s)], dither_threshold(at[s].x, at[s].y));
+      if (tests_alpha() && !rendering_.ids.empty() && packet.state.writes())
+        rendering_.ids[plain_index(at[s].x, at[s].y)] =
+            is_counted(packet.kind) ? static_cast<std::int32_t>(primitive) : -1;
+    });
+    return kept;
+  }
+
+  /// The texture unit: the colours of the samples of a stamp that live, and how they were looked up.
+  void look_up_texels(const TriangleSetup& setup, SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
+                      std::array<Texel, kMaxSamples>& color, BlockItem& item) {
+    std::array<TextureSample, kMaxSamples> sample;
+    const std::size_t q = widths_.q_plane;
+    live.for_each([&](std::size_t s) {
+      sample[s].x = at[s].x;
+      sample[s].y = at[s].y;
+      const PixelPlace where = place_of(setup, widths_, at[s].x, at[s].y);
       sample[s].q = q_at(setup.plane[q], where, perspective_, widths_);
       for (const std::size_t i : {0U, 1U})
         sample[s].p[i] = p_at(setup.plane[q + 1 + i], where, perspective_.coordinate, perspective_, widths_);
-      color[s] = {0, 0, 0, 255};
-      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
-        color[s][c] = static_cast<std::uint8_t>(plane_at(setup, kColorPlane + c, widths_, x, y).code);
+      if (widths_.color_planes == 3) color[s][3] = 255;
     });
     item.texture.lookups = texture_->take(live, sample, frame_, color, [this](std::uint32_t address, int) {
       TextureLine line;
       texels_.read(address, line);
       return line;
     });
-    live.for_each([&](std::size_t s) {
-      rendering_.frame.color[at[s]] =
-          pack_color(config_.color_format, {color[s][0], color[s][1], color[s][2], color[s][3]});
-    });
   }
 
-  /// The state that a token sets.
-  [[nodiscard]] TextureState token_state(const TrianglePacket& token) const {
-    return TextureState::unpack(texture_word(token.vertex.code[0], widths_));
+  /// What a token sets, here and in the tags; `texture`: what that is to the texture unit.
+  void set_state(const TrianglePacket& token, TextureWork& texture) {
+    const StateRegister which = state_register(token.state);
+    if (is_of_texture(which)) {
+      set_register(*texture_, which, token.vertex.code[0], widths_);
+      texture.sets = which;
+      texture.invalidates = which == StateRegister::texture && texture_->state().invalidates;
+      return;
+    }
+    colors_.set(which, state_word(token.vertex.code[0], widths_));
+    blocks_->set(colors_.ops.reads_stored(), tests_alpha());
   }
 
   /// The news of a visit for HiZ.
-  void retire(const SetupPacket& packet, int tile_x, int tile_y, std::uint32_t passed) {
+  void retire(const SetupPacket& packet, int tile_x, int tile_y, std::uint32_t passed, bool is_late) {
     if (config_.hiz_bits == 0) return;
     hiz_.begin_visit(packet.state);
     RetirePacket retired;
     retired.key.tile_x = static_cast<std::uint16_t>(tile_x);
     retired.key.tile_y = static_cast<std::uint16_t>(tile_y);
-    const bool is_full = packet.state.depth_write && passed == T * T;
+    const bool is_full = packet.state.depth_write && passed == T * T && !is_late;
     std::uint32_t largest = 0;
     if (is_full)  // the codes of a covered tile are a plane, rounded and clamped: the largest is at a corner
       for (const int y : {0, T - 1})
@@ -437,6 +497,7 @@ class CycleModelOf final : public CycleModel {
   std::optional<TileDirectory> tiles_;  ///< one of them, by cache.kind
   std::optional<CacheTags> blocks_;
   std::optional<TextureUnit> texture_;
+  ColorState colors_;
   PerspectiveFormat perspective_ = perspective_format(config_);
   TextureFrame frame_;  ///< of the triangle at work
   TextureMemory texels_;

@@ -11,7 +11,17 @@
 //   g(m) = that of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
 //
 // With a linear filter a sample asks for its lines one by one, and leaves the tags with the last of them or later. It
-// is offered to W in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t + 1).
+// is offered to W in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t + 1); lines of a
+// triangle as soon as they come: max(x(m) + 2, s + 1).
+//
+// With levels its level is known two clocks later, and it goes through two more stages in front of the tags and one more behind
+// the filter, once or twice. Of its pass i, counted over all samples:
+//
+//   f(i) = max(s(n) + 12, b(i-1))   it leaves the queue; with its last pass the sample
+//   b(i) = max(f(i) + 1, a(i-1))    its coordinates are on their level
+//   a(i) = max(b(i) + 1, t(i-1), tags swept)
+//
+// and the first of two passes waits in no e: it ends in the filter's last stage, a clock behind the one before.
 #pragma once
 
 #include <algorithm>
@@ -64,8 +74,12 @@ class TextureTiming {
   /// rst_ni is high from `start` on; all that was asked for before it is over in `recovered` (recovered()).
   explicit TextureTiming(const TextureSettings& settings, Cycle start = 0, Cycle recovered = 0)
       : has_linear_(settings.has_linear),
+        has_levels_(settings.has_levels),
+        filter_stages_(settings.has_levels   ? 4
+                       : settings.has_linear ? 3
+                                             : 1),
         inside_(settings.queue, 0, 1),
-        ahead_(kAhead, kClocks, 1),
+        ahead_(kAhead, settings.has_levels ? kLevelClocks : kClocks, 1),
         waiting_(settings.in_flight, 1, 1),
         requests_(settings.has_linear ? kRequests : settings.in_flight, 1, 1),
         sweep_(static_cast<Cycle>(settings.has_linear ? settings.lines / 4 : settings.lines)),
@@ -99,14 +113,23 @@ class TextureTiming {
     return pass(x);
   }
 
+  /// A stamp that brings a part of a triangle's lines.
+  Cycle set_lines(Cycle x) {
+    split_ = std::max(x + kDoor, split_ + 1);
+    return pass(x);
+  }
+
   /// A stamp with a texture; `lookups`: of its samples, in order. ask(cycle, address, beats): a request, on offer from `cycle`
   /// on; returns LineTimes.
   template <class Ask>
   Cycle take(Cycle x, std::span<const TextureLookup> lookups, Ask&& ask) {
+    bool is_next = true;  // the next pass is a sample's first
     for (std::size_t first = 0; first < lookups.size();) {
       std::size_t end = first + 1;
       while (!lookups[end - 1].ends) ++end;
-      sample(x, lookups.subspan(first, end - first), ask);
+      if (is_next) split_ = std::max({x + kDoor, split_ + 1, ahead_.room()});
+      is_next = !lookups[end - 1].continues;
+      pass(lookups.subspan(first, end - first), ask);
       first = end;
     }
     gone_ = combined_;
@@ -120,7 +143,7 @@ class TextureTiming {
   }
 
  private:
-  static constexpr int kAhead = 16, kClocks = 10,
+  static constexpr int kAhead = 16, kClocks = 10, kLevelClocks = 12,
                        kRequests = 16;  ///< samples between split and tags, and the least cycles; lines asked for
   static constexpr Cycle kDoor = 2;     ///< from X to the head of the queues
   static constexpr int kGroup = 3, kNumber = 7;  ///< a group is 8 samples; of its number the tags know 7 bits
@@ -128,11 +151,26 @@ class TextureTiming {
 
   [[nodiscard]] std::uint64_t last_group() const { return (count_ - 1) >> kGroup; }
 
+  /// When the tags of the next pass are read.
+  Cycle tags_read(bool is_last) {
+    Cycle at = ahead_.ready(split_);
+    if (!has_levels_) {
+      at = std::max({at, looked_up_, swept_});
+      ahead_.leave(at);
+      return at;
+    }
+    at = std::max(at, on_level_);
+    if (is_last) ahead_.leave(at);
+    on_level_ = std::max(at + 1, tag_read_);
+    tag_read_ = std::max({on_level_ + 1, looked_up_, swept_});
+    return tag_read_;
+  }
+
+  /// A sample's way through cache and filter, on one level.
   template <class Ask>
-  void sample(Cycle x, std::span<const TextureLookup> lookups, Ask&& ask) {
-    split_ = std::max({x + kDoor, split_ + 1, ahead_.room()});
-    const Cycle tag_read = std::max({ahead_.ready(split_), looked_up_, swept_});
-    ahead_.leave(tag_read);
+  void pass(std::span<const TextureLookup> lookups, Ask&& ask) {
+    const bool is_last = !lookups.back().continues;
+    const Cycle tag_read = tags_read(is_last);
     Cycle t = tag_read + 1, next = t, answered = 0;
     for (const TextureLookup& lookup : lookups) {
       if (lookup.is_miss) {
@@ -152,12 +190,11 @@ class TextureTiming {
     read_[count_ % read_.size()] = h;
     ++count_;
     Cycle at = h;
-    const std::size_t stages = has_linear_ ? stages_.size() : 1;
-    for (std::size_t i = 0; i < stages; ++i) {
-      at = std::max(at + 1, i + 1 < stages ? stages_[i + 1] : combined_);
+    for (std::size_t i = 0; i < filter_stages_; ++i) {
+      at = std::max(at + 1, i + 1 < filter_stages_ ? stages_[i + 1] : is_last ? combined_ : 0);
       stages_[i] = at;
     }
-    combined_ = std::max({at + 1, gone_ + 1, left_});
+    if (is_last) combined_ = std::max({at + 1, gone_ + 1, left_});
   }
 
   /// When no sample waits any more that may have been found in a line's place, the last of them in `group`: all up to the end
@@ -170,12 +207,14 @@ class TextureTiming {
     return read_[(end - 1) % read_.size()] + 1;
   }
 
-  bool has_linear_;
+  bool has_linear_, has_levels_;
+  std::size_t filter_stages_;  ///< between data RAM and e
   Station inside_, ahead_, waiting_, requests_;
   Cycle sweep_, swept_;                             ///< how long it takes to sweep the tags; when they have been
   Cycle request_room_;                              ///< when the next request may leave the tags
   Cycle split_ = 0, looked_up_ = 0, combined_ = 0;  ///< of the last sample
-  std::array<Cycle, 3>
+  Cycle on_level_ = 0, tag_read_ = 0;               ///< of the last pass, with levels
+  std::array<Cycle, 4>
       stages_{};  ///< of the last sample, when it left the data RAM, and what a linear filter has behind it
   Cycle gone_ = 0, left_ = 0;         ///< of the last stamp
   std::uint64_t count_ = 0;           ///< samples

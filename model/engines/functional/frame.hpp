@@ -36,6 +36,7 @@ inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
 inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 
 /// What a draw asks of its fragments, and how they are shaded.
+/// Of draws that test alpha, color_write says that colours are looked at.
 struct SliceState : FragmentState {
   bool is_flat = false;      ///< the colour is that of the first vertex
   bool is_opaque = true;     ///< what passes replaces what is stored, what fails leaves no trace
@@ -132,6 +133,7 @@ struct FrameContext {
   const Widths& widths;
   Skip skip;
   int bins_x = 0, bins_y = 0;
+  bool takes_one_by_one = false;  ///< all fragments: RenderOptions::general_fragments
 };
 
 /// What happens to triangle number `triangle` of a part that the lanes cannot take: the host side's own function.

@@ -55,6 +55,7 @@ void add(Counters& sum, const Counters& c) {
   sum.clipped += c.clipped;
   sum.covered += c.covered;
   sum.depth_passed += c.depth_passed;
+  sum.alpha_killed += c.alpha_killed;
   sum.written += c.written;
   sum.samples_tested += c.samples_tested;
   sum.tiles_visited += c.tiles_visited;
@@ -88,6 +89,7 @@ bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
 bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
   if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
+  if (std::ranges::any_of(scene.states, [](const State& s) { return s.stencil && has_surface(s); })) return false;
   if (std::ranges::any_of(scene.states, has_surface) && !has_plain_surfaces(scene, options)) return false;
   const Widths widths = derive_widths(config);
   // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
@@ -96,7 +98,7 @@ bool is_supported(const Scene& scene, const Config& config, const RenderOptions&
          widths.reciprocal.bits <= 30 && DepthEncode(config, scene.planes).is_identity();
 }
 
-FrameRenderer::FrameRenderer(const Config& config) : config_(config), widths_(derive_widths(config)) {}
+FrameRenderer::FrameRenderer(const Config& config) : given_(config), config_(config), widths_(derive_widths(config)) {}
 
 const Rendering& FrameRenderer::render(const PreparedScene& prepared, const RenderOptions& options) {
   start(prepared, options);
@@ -131,6 +133,10 @@ Rendering FrameRenderer::take() { return std::exchange(rendering_, {}); }
 
 void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& options) {
   const Scene& scene = prepared.scene();
+  if (const Config wanted = with_alpha(given_, scene); wanted.alpha_units != config_.alpha_units) {
+    config_ = wanted;
+    widths_ = derive_widths(config_);
+  }
   check_fits(scene, config_);
   check_onto(scene, options);
   prepared_ = &prepared;
@@ -148,6 +154,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   Framebuffer& frame = rendering_.frame;
   const bool is_new = frame.width != scene.width || frame.height != scene.height;
   if (is_new) frame = Framebuffer(scene.width, scene.height, config_.tile_size);
+  is_stencil_zero_ |= is_new;
   rendering_.counters = {};
   rendering_.geometry_s = rendering_.raster_s = 0;
   bins_x_ = (scene.width + kBinSize - 1) / kBinSize;
@@ -165,9 +172,11 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   primitive_ = 0;
   entries_done_ = 0;
   if (options.onto == nullptr) {
-    clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
+    clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0,
+                      is_stencil_zero_ ? std::nullopt : std::optional(std::uint8_t{0})});
   } else if (options.onto != &frame) {
     frame = *options.onto;
+    is_stencil_zero_ = false;
     forget_tiles();
   }
 }
@@ -203,6 +212,12 @@ void FrameRenderer::clear_whole(const Clear& command) {
   const auto started = Clock::now();
   has_flushed_ = false;
   std::uint8_t bits = 0;
+  if (command.stencil) {
+    Framebuffer& frame = rendering_.frame;  // not the padding
+    for (int y = 0; y < frame.height; ++y)
+      std::fill_n(frame.stencil.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), frame.width, *command.stencil);
+    is_stencil_zero_ = *command.stencil == 0;
+  }
   if (command.depth) {
     bits |= TileStates::kDepthCleared;
     clear_depth_ = DepthEncode(config_, scene_->planes).of_window(*command.depth);
@@ -235,6 +250,7 @@ void FrameRenderer::clear(const Clear& command) {
   if (rect.width <= 0 || rect.height <= 0) return;
   if (rect == Rect{0, 0, scene_->width, scene_->height}) return clear_whole(command);
   settle(rect);
+  is_stencil_zero_ = is_stencil_zero_ && command.stencil.value_or(0) == 0;
   std::ranges::fill(tiles_.held, std::uint8_t{0});
   halfplane::clear(rendering_, *scene_, command, config_);
   if (!command.depth) return;
@@ -336,7 +352,9 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   Slice& slice = slices_[slice_count_++];
   const State& state = context.state;
   slice.context = &context;
-  slice.state = {fragment_state(state), state.shade == Shade::flat, is_opaque_, false};
+  const FragmentOps& ops = context.fragment_ops;
+  slice.state = {ops.state, state.shade == Shade::flat, is_opaque_ && ops.is_plain(), false};
+  slice.state.color_write |= ops.alpha.func != DepthFunc::always;
   slice.parts.clear();
   slice.outlines.clear();
   slice.triangles = 0;
@@ -344,6 +362,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   slice.low_index = ~0U;
   slice.high_index = 0;
   slice.counters = {};
+  is_stencil_zero_ = is_stencil_zero_ && !ops.stencil;
   const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal ||
                      state.depth_test == DepthFunc::equal || state.depth_test == DepthFunc::never;
   pending_rises_ |= state.depth_write && !falls;
@@ -354,7 +373,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
 bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
   const State& state = context.state;
   const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal;
-  if (!is_opaque_ || context.rect.width <= 0 || context.rect.height <= 0) return false;
+  if (!is_opaque_ || context.fragment_ops.stencil || context.rect.width <= 0 || context.rect.height <= 0) return false;
   if (!draw.has_box || !falls || pending_rises_ || state.polygon_offset != std::array<double, 2>{0.0, 0.0})
     return false;
   const auto corner = [&](const std::array<double, 3>& p) {
@@ -453,7 +472,7 @@ void FrameRenderer::flush() {
   const auto built = Clock::now();
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
   bin_counters_.assign(bins, {});
-  const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_};
+  const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_, !is_opaque_};
   std::vector<const Slice*> slices;
   for (std::size_t i = 0; i < slice_count_; ++i) slices.push_back(&slices_[i]);
   for_each_index(arena_.get(), bins, [&](std::size_t bin) {

@@ -50,7 +50,8 @@ class FrameRenderer {
     return static_cast<std::uint16_t>(code >> range_drop(config_));
   }
 
-  Config config_;
+  Config given_;   ///< by who made it
+  Config config_;  ///< with what the scene needs: with_alpha()
   Widths widths_;
   const Kernels* kernels_ = nullptr;
   const PreparedScene* prepared_ = nullptr;
@@ -71,7 +72,8 @@ class FrameRenderer {
   std::size_t slice_count_ = 0, pending_primitives_ = 0;
   bool pending_rises_ = false;  ///< what is pending may make a stored depth larger
   bool has_flushed_ = false;    ///< since the last clear
-  Slice* open_ = nullptr;       ///< takes further triangles of its state
+  bool is_stencil_zero_ = true;
+  Slice* open_ = nullptr;  ///< takes further triangles of its state
   std::uint32_t open_state_ = 0;
   std::uint32_t primitive_ = 0;
   std::size_t entries_done_ = 0;

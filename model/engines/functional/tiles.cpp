@@ -18,9 +18,9 @@ class TileRaster {
         widths_(widths),
         options_(options),
         out_(rendering),
-        kernel_(fragment_state(context.state), context.config, widths,
+        kernel_(context.fragment_ops, context.config, widths,
                 context.depth_encode.is_identity() ? nullptr : &context.depth_encode),
-        writes_(context.state.depth_write || context.state.color_write),
+        writes_(context.fragment_ops.state.writes()),
         wants_bits_(options.want_count || options.want_ids || options.coverage_tap) {}
 
   void draw(const Triangle& triangle, std::uint32_t index) {
@@ -28,6 +28,8 @@ class TileRaster {
     if (setup.is_empty()) return;
     const TriangleLanes<T, Lane> lanes(setup, widths_);
     const std::optional<Surface> surface = surface_of(context_, triangle, setup, widths_);
+    const auto& v = triangle.v;
+    is_back_ = shows_back(signed_area(v[0], v[1], v[2]), context_.state.front);
     const int shift = widths_.tile_shift;
     for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y)
       for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x)
@@ -51,36 +53,40 @@ class TileRaster {
     counters.skipped.trivially_accepted += is_accepted ? 1 : 0;
 
     if (!is_accepted) counters.samples_tested += tile_box(setup, tile_x, tile_y, widths_).samples();
-    Mask covered_count{}, passed_count{};
+    Mask covered_count{}, passed_count{}, kept_count{};
     TileMask bits{};  // filled when somebody wants it
-    kernel_.draw(setup, lanes, edges, is_accepted, tile_x, tile_y, !options_.skip.fragments_early_z, out_.frame,
-                 [&](int j, const Mask& covered, const Mask& passed) {
-                   covered_count += covered;
-                   passed_count += passed;
-                   if (surface) color_row(*surface, tile_x * T, tile_y * T + j, kernel_.to_bits(passed));
-                   if (!wants_bits_) return;
-                   bits[static_cast<std::size_t>(j)] = kernel_.to_bits(covered);
-                   note_row(setup, index, tile_x * T, tile_y * T + j, kernel_.to_bits(covered),
-                            kernel_.to_bits(passed));
-                 });
-    count(kernel_.count(covered_count), kernel_.count(passed_count));
+    const auto on_row = [&](int j, const Mask& covered, const typename TileKernel<T, Lane>::Fates& fates) {
+      covered_count += covered;
+      passed_count += fates.passed;
+      kept_count += fates.kept;
+      if (!wants_bits_) return;
+      bits[static_cast<std::size_t>(j)] = kernel_.to_bits(covered);
+      note_row(setup, index, tile_x * T, tile_y * T + j, kernel_.to_bits(covered), kernel_.to_bits(fates.kept));
+    };
+    const auto color = [&](int j, const Mask& wanted, Channels<Mask>& channel) {
+      if (surface) color_row(*surface, tile_x * T, tile_y * T + j, kernel_.to_bits(wanted), channel);
+    };
+    kernel_.draw(setup, lanes, edges, is_accepted, tile_x, tile_y, !options_.skip.fragments_early_z, is_back_,
+                 out_.frame, on_row, color);
+    count(kernel_.count(covered_count), kernel_.count(passed_count), kernel_.count(kept_count));
     if (options_.coverage_tap) options_.coverage_tap(index, tile_x, tile_y, bits);
   }
 
-  void count(std::uint64_t covered, std::uint64_t passed) {
+  void count(std::uint64_t covered, std::uint64_t passed, std::uint64_t kept) {
     Counters& counters = out_.counters;
     counters.covered += covered;
     counters.depth_passed += passed;
     if (options_.skip.fragments_early_z) counters.skipped.fragments_early_z += covered - passed;
-    if (writes_) counters.written += passed;
+    counters.alpha_killed += passed - kept;
+    if (writes_) counters.written += kept;
   }
 
-  /// The surface's colours where the row's samples have passed, in place of those of its planes.
-  void color_row(const Surface& surface, int x, int y, std::uint32_t passed) {
-    if (!context_.state.color_write) return;
-    for (; passed != 0; passed &= passed - 1) {
-      const int at = x + std::countr_zero(passed);
-      out_.frame.color[out_.frame.at(at, y)] = pack_color(config_.color_format, surface_channels(surface, at, y));
+  /// The surface's colours where somebody wants them, in place of those of its planes.
+  static void color_row(const Surface& surface, int x, int y, std::uint32_t wanted, Channels<Mask>& channel) {
+    for (; wanted != 0; wanted &= wanted - 1) {
+      const int i = std::countr_zero(wanted);
+      const std::array<std::uint32_t, 4> color = surface_channels(surface, x + i, y);
+      for (std::size_t c = 0; c < 4; ++c) channel[c][i] = color[c];
     }
   }
 
@@ -107,6 +113,7 @@ class TileRaster {
   Rendering& out_;
   TileKernel<T, Lane> kernel_;
   bool writes_, wants_bits_;
+  bool is_back_ = false;  ///< of the triangle at work
 };
 
 template <int T, class Lane>
@@ -128,7 +135,8 @@ Rendering render(const Scene& scene, const Config& config, const RenderOptions& 
 
 }  // namespace
 
-Rendering render_tiles(const Scene& scene, const Config& config, const RenderOptions& options) {
+Rendering render_tiles(const Scene& scene, const Config& plain_config, const RenderOptions& options) {
+  const Config config = with_alpha(plain_config, scene);
   if (options.rules != StudyRules{})
     throw InputError("the functional engine has no other traversal, fill rule or clipping; use the scalar engine");
   switch (config.tile_size) {

@@ -26,13 +26,16 @@ package raster_pkg;
   localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: what a flush writes of cleared blocks or tiles: colours, or flags
   localparam int MEMORY_PORT_BITS = 16;  // data that the memory port moves in a cycle; a power of two
   localparam int SETUP_KIND = 1;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
-  localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear: what the RTL's texture unit can do; off: it has none
+  localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
   localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
+  localparam int ALPHA_UNIT = 0;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
+  localparam int BLEND_LANES = 0;  // blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks
+  localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
   localparam int LINES_UNIT = 0;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 0;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'hb083986661af6b5e;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h0be34ccfef795bcb;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -108,7 +111,8 @@ package raster_pkg;
   localparam int COORDINATE_SHIFT_BITS = 5;  // c = 1 + x - sp - k_P, 0 <= x - sp <= 1 + N_P
   localparam int COORDINATE_REACH_BITS = 5;  // x <= 20
   localparam int COORDINATE_REFERENCE_BITS = 24;  // u_ref: +-2^22, beyond which no clamp can tell
-  localparam int WRITTEN_COLOR_BITS = 16;  // a stored colour, or with a texture unit the primitive's
+  localparam int WRITTEN_COLOR_BITS = 16;  // a stored colour, or in front of a unit that changes it the primitive's
+  localparam int SHADED_COLOR_BITS = 16;  // a stored colour, or what is blended or dithered
   localparam int TEXTURE_BYTE_BITS = 8;  // 8 bits
   localparam int TEXTURE_BEATS_BITS = 6;  // of a line of 4x4 texels of 4 bytes, of 16 bits at least
   localparam int PRIMITIVE_ID_BITS = 8;  // modulo 2^key.primitive_bits
@@ -188,8 +192,17 @@ package raster_pkg;
     PRIMITIVE_KIND_FLUSH = 3'd3,
     PRIMITIVE_KIND_POINT = 3'd4,
     PRIMITIVE_KIND_LINE = 3'd6,
-    PRIMITIVE_KIND_TEXTURE = 3'd7
+    PRIMITIVE_KIND_STATE = 3'd7
   } primitive_kind_t;
+
+  typedef enum logic [DEPTH_FUNC_BITS-1:0] {
+    STATE_REGISTER_TEXTURE = 3'd0,
+    STATE_REGISTER_TEXTURE_LEVELS = 3'd1,
+    STATE_REGISTER_TEXTURE_LINES = 3'd2,
+    STATE_REGISTER_COLOR_OPS = 3'd4,
+    STATE_REGISTER_BLEND_CONSTANT = 3'd5,
+    STATE_REGISTER_ALPHA_TEST = 3'd6
+  } state_register_t;
 
   typedef enum logic [DEPTH_FUNC_BITS-1:0] {
     DEPTH_FUNC_NEVER = 3'd0,
@@ -456,7 +469,7 @@ package raster_pkg;
 
   typedef struct packed {
     logic [SAMPLE_MASK_BITS-1:0] mask;
-    logic [1*STORED_COLOR_BITS-1:0] color;
+    logic [1*SHADED_COLOR_BITS-1:0] color;
   } color_packet_t;
   localparam int COLOR_PACKET_BITS = 17;  // of the struct above
 

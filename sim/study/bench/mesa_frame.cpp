@@ -7,6 +7,7 @@
 
 #include "model/config.hpp"
 #include "model/pipeline.hpp"
+#include "sim/study/bench/mesa_operations.hpp"
 #include "sim/study/bench/mesa_texture.hpp"
 
 namespace halfplane {
@@ -26,19 +27,19 @@ struct Shaders {
 };
 
 Shaders shaders_of(const State& state, bool has_texture, bool has_alpha) {
-  const std::string head = "#version 330 core\n";
+  const std::string head = "#version 330 core\n", test = gl::alpha_test_source(state.alpha_test);
   const std::string color = state.shade == Shade::flat                  ? "flat"
                             : state.color_interp == ColorInterp::affine ? "noperspective"
                                                                         : "smooth";
   if (!has_texture)
     return {head + color + " out vec4 color;\n" + kInputs + "void main() { gl_Position = position; color = rgba; }\n",
-            head + color + " in vec4 color;\nout vec4 result; void main() { result = color; }\n"};
+            head + color + " in vec4 color;\nout vec4 result; void main() { result = color; " + test + " }\n"};
   const std::string place = state.texture_interp == TextureInterp::affine ? "noperspective" : "smooth";
   return {head + color + " out vec4 color; " + place + " out vec2 place;\n" + kInputs +
               "layout(location = 2) in vec2 uv;\nvoid main() { gl_Position = position; color = rgba; place = uv; }\n",
           head + color + " in vec4 color; " + place + " in vec2 place;\nuniform sampler2D image; out vec4 result;\n" +
               "void main() { vec4 texel = texture(image, place); result = " +
-              gl::combine_source(state.texture_combine, has_alpha) + "; }\n"};
+              gl::combine_source(state.texture_combine, has_alpha) + "; " + test + " }\n"};
 }
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -115,8 +116,10 @@ void MesaFrame::make_target() {
   gl_.gen_framebuffers(1, &framebuffer);
   gl_.bind_framebuffer(gl::kFramebuffer, framebuffer);
   gl_.gen_renderbuffers(2, buffers.data());
-  const std::array<gl::Enum, 2> formats{gl::kRgba8, depth_bits_ <= 16 ? gl::kDepth16 : gl::kDepth24};
-  const std::array<gl::Enum, 2> attachments{gl::kColorAttachment, gl::kDepthAttachment};
+  const bool has_stencil = depth_bits_ > 16;
+  const std::array<gl::Enum, 2> formats{gl::kRgba8, has_stencil ? gl::kDepth24Stencil8 : gl::kDepth16};
+  const std::array<gl::Enum, 2> attachments{gl::kColorAttachment,
+                                            has_stencil ? gl::kDepthStencilAttachment : gl::kDepthAttachment};
   for (std::size_t i = 0; i < 2; ++i) {
     gl_.bind_renderbuffer(gl::kRenderbuffer, buffers[i]);
     gl_.renderbuffer_storage(gl::kRenderbuffer, formats[i], width_, height_);
@@ -170,6 +173,7 @@ void MesaFrame::add_draw(const Scene& scene, const Draw& draw) {
   if (draw.outside != 0 || draw.count == 0) return;
   const State& state = scene.states[draw.state];
   check_draw_state(state, draw.topology);
+  if (state.stencil && depth_bits_ <= 16) refuse("stencil beside a depth of 16 bits");
   const auto first = scene.indices.begin() + static_cast<std::ptrdiff_t>(draw.first);
   const auto last = first + static_cast<std::ptrdiff_t>(draw.count);
   const bool has_restart = std::find(first, last, kRestart) != last;
@@ -228,10 +232,9 @@ void MesaFrame::apply(const Call& call) const {
                         static_cast<float>(view.width), static_cast<float>(view.height));
   gl_.depth_range(is_window ? 0 : state.depth_range[0], is_window ? 1 : state.depth_range[1]);
   gl_.clip_control(gl::kLowerLeft, !is_window && state.clip_z == ClipZ::zero_one ? gl::kZeroToOne : gl::kMinusOneToOne);
-  gl_.depth_func(gl::kNever + static_cast<gl::Enum>(state.depth_test));
+  gl_.depth_func(gl::comparison(state.depth_test));
   gl_.depth_mask(state.depth_write ? 1 : 0);
-  const unsigned char writes = state.color_write ? 1 : 0;
-  gl_.color_mask(writes, writes, writes, writes);
+  gl::apply_operations(gl_, state);
   state.cull == Cull::none ? gl_.disable(gl::kCullFace) : gl_.enable(gl::kCullFace);
   if (state.cull != Cull::none)
     gl_.cull_face(state.cull == Cull::back ? gl::kBack : state.cull == Cull::front ? gl::kFront : gl::kFrontAndBack);
@@ -255,13 +258,16 @@ void MesaFrame::clear(const Call& call) const {
   apply_target(call.state);
   gl_.color_mask(1, 1, 1, 1);
   gl_.depth_mask(1);
+  for (const gl::Enum side : {gl::kFront, gl::kBack}) gl_.stencil_mask_separate(side, 255);
   if (call.clear.color) {
     const auto& c = *call.clear.color;
     gl_.clear_color(static_cast<float>(c[0] / 255), static_cast<float>(c[1] / 255), static_cast<float>(c[2] / 255),
                     static_cast<float>(c[3] / 255));
   }
   if (call.clear.depth) gl_.clear_depth(*call.clear.depth);
-  gl_.clear((call.clear.color ? gl::kColorBuffer : 0) | (call.clear.depth ? gl::kDepthBuffer : 0));
+  if (call.clear.stencil) gl_.clear_stencil(*call.clear.stencil);
+  gl_.clear((call.clear.color ? gl::kColorBuffer : 0) | (call.clear.depth ? gl::kDepthBuffer : 0) |
+            (call.clear.stencil ? gl::kStencilBuffer : 0));
 }
 
 void MesaFrame::render() {

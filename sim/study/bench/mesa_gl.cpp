@@ -53,6 +53,12 @@ void find_state_functions(const Finder& find, Functions& f) {
   find(f.depth_func, "glDepthFunc");
   find(f.depth_mask, "glDepthMask");
   find(f.color_mask, "glColorMask");
+  find(f.blend_func_separate, "glBlendFuncSeparate");
+  find(f.blend_equation_separate, "glBlendEquationSeparate");
+  find(f.blend_color, "glBlendColor");
+  find(f.stencil_func_separate, "glStencilFuncSeparate");
+  find(f.stencil_op_separate, "glStencilOpSeparate");
+  find(f.stencil_mask_separate, "glStencilMaskSeparate");
   find(f.cull_face, "glCullFace");
   find(f.front_face, "glFrontFace");
   find(f.scissor, "glScissor");
@@ -71,6 +77,7 @@ void find_state_functions(const Finder& find, Functions& f) {
 void find_work_functions(const Finder& find, Functions& f) {
   find(f.clear_color, "glClearColor");
   find(f.clear_depth, "glClearDepth");
+  find(f.clear_stencil, "glClearStencil");
   find(f.clear, "glClear");
   find(f.finish, "glFinish");
   find(f.read_pixels, "glReadPixels");

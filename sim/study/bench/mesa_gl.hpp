@@ -10,15 +10,15 @@ namespace halfplane::gl {
 using Enum = unsigned int;
 using Name = unsigned int;
 
-inline constexpr Enum kDepthBuffer = 0x100, kColorBuffer = 0x4000;             // masks of Clear
-inline constexpr Enum kPoints = 0, kLines = 1, kLineLoop = 2, kLineStrip = 3;  // modes of DrawElements
-inline constexpr Enum kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;    // likewise
-inline constexpr Enum kNever = 0x200;                                          // less ... always follow
-inline constexpr Enum kFront = 0x404, kBack = 0x405, kFrontAndBack = 0x408;    // CullFace
-inline constexpr Enum kCw = 0x900, kCcw = 0x901;                               // FrontFace
-inline constexpr Enum kPoint = 0x1b00, kLine = 0x1b01, kFill = 0x1b02;         // PolygonMode
-inline constexpr Enum kCullFace = 0xb44, kDepthTest = 0xb71, kDither = 0xbd0;  // Enable
-inline constexpr Enum kScissorTest = 0xc11, kPrimitiveRestart = 0x8f9d;        // likewise
+inline constexpr Enum kDepthBuffer = 0x100, kStencilBuffer = 0x400, kColorBuffer = 0x4000;  // masks of Clear
+inline constexpr Enum kPoints = 0, kLines = 1, kLineLoop = 2, kLineStrip = 3;               // modes of DrawElements
+inline constexpr Enum kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;                 // likewise
+inline constexpr Enum kFront = 0x404, kBack = 0x405, kFrontAndBack = 0x408;                 // CullFace
+inline constexpr Enum kCw = 0x900, kCcw = 0x901;                                            // FrontFace
+inline constexpr Enum kPoint = 0x1b00, kLine = 0x1b01, kFill = 0x1b02;                      // PolygonMode
+inline constexpr Enum kCullFace = 0xb44, kDepthTest = 0xb71, kDither = 0xbd0;               // Enable
+inline constexpr Enum kScissorTest = 0xc11, kPrimitiveRestart = 0x8f9d;                     // likewise
+inline constexpr Enum kBlend = 0xbe2, kStencilTest = 0xb90;                                 // likewise
 inline constexpr Enum kOffsetPoint = 0x2a01, kOffsetLine = 0x2a02, kOffsetFill = 0x8037;
 inline constexpr Enum kFirstVertex = 0x8e4d, kLastVertex = 0x8e4e;                        // ProvokingVertex
 inline constexpr Enum kLowerLeft = 0x8ca1, kMinusOneToOne = 0x935e, kZeroToOne = 0x935f;  // ClipControl
@@ -27,12 +27,12 @@ inline constexpr Enum kTexture2d = 0xde1, kMagFilter = 0x2800, kMinFilter = 0x28
 inline constexpr Enum kMinLod = 0x813a, kMaxLod = 0x813b, kLodBias = 0x8501, kMaxLevel = 0x813d;  // TexParameter
 inline constexpr Enum kNearest = 0x2600, kLinear = 0x2601, kNearestMipmapNearest = 0x2700;  // three more follow it
 inline constexpr Enum kRepeat = 0x2901, kClampToEdge = 0x812f, kMirroredRepeat = 0x8370;
-inline constexpr Enum kRgba8 = 0x8058, kDepth16 = 0x81a5, kDepth24 = 0x81a6;
+inline constexpr Enum kRgba8 = 0x8058, kDepth16 = 0x81a5, kDepth24Stencil8 = 0x88f0;
 inline constexpr Enum kRenderer = 0x1f01;
 inline constexpr Enum kArrayBuffer = 0x8892, kElementBuffer = 0x8893, kStaticDraw = 0x88e4;
 inline constexpr Enum kFragmentShader = 0x8b30, kVertexShader = 0x8b31, kCompiled = 0x8b81, kLinked = 0x8b82;
 inline constexpr Enum kFramebuffer = 0x8d40, kRenderbuffer = 0x8d41, kComplete = 0x8cd5;
-inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00;
+inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00, kDepthStencilAttachment = 0x821a;
 
 // OSMesaCreateContextAttribs; each is followed by its value, the list ends with 0.
 inline constexpr int kOsFormat = 0x22, kOsDepthBits = 0x30, kOsProfile = 0x33, kOsCoreProfile = 0x34, kOsMajor = 0x36,
@@ -49,6 +49,12 @@ struct Functions {
   void (*depth_func)(Enum);
   void (*depth_mask)(unsigned char);
   void (*color_mask)(unsigned char, unsigned char, unsigned char, unsigned char);
+  void (*blend_func_separate)(Enum, Enum, Enum, Enum);
+  void (*blend_equation_separate)(Enum, Enum);
+  void (*blend_color)(float, float, float, float);
+  void (*stencil_func_separate)(Enum, Enum, int, unsigned);
+  void (*stencil_op_separate)(Enum, Enum, Enum, Enum);
+  void (*stencil_mask_separate)(Enum, unsigned);
   void (*cull_face)(Enum);
   void (*front_face)(Enum);
   void (*scissor)(int, int, int, int);
@@ -59,6 +65,7 @@ struct Functions {
   void (*clip_control)(Enum, Enum);
   void (*clear_color)(float, float, float, float);
   void (*clear_depth)(double);
+  void (*clear_stencil)(int);
   void (*clear)(Enum);
   void (*gen_textures)(int, Name*);
   void (*bind_texture)(Enum, Name);

@@ -106,7 +106,8 @@ class AttributeComparison {
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
         depth_encode_(config, scene.planes),
         eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())),
-        texture_(result.depth_error_lsb.size()) {}
+        texture_(result.depth_error_lsb.size()),
+        layers_(frame.layers()) {}
 
   /// `progress` gets the part of the pixels done.
   void run(const std::function<void(double)>& progress) {
@@ -129,6 +130,7 @@ class AttributeComparison {
     result_.color_datapath = color_datapath_.stats();
     result_.color_over_w = color_over_w_.stats();
     if (has_texture_) result_.texture = std::move(texture_).result();
+    result_.layers = layers_.rows();
     result_.datapath_bias = datapath_bias_.stats();
     result_.color_datapath_bias = color_datapath_bias_.stats();
   }
@@ -170,7 +172,7 @@ class AttributeComparison {
     const bool same_visible = result_.golden.ids[pixel.p] == owner && result_.rendering.ids[pixel.p] == owner;
     result_.compared_pixels += same_visible ? 1 : 0;
     if (state.depth_write) depth(pixel, result_.rendering.frame.depth[pixel.at], same_visible);
-    if (state.color_write) color(pixel, result_.rendering.frame.color[pixel.at], same_visible);
+    if (writes_color(state, config_.color_format)) color(pixel, result_.rendering.frame.color[pixel.at], same_visible);
   }
 
   void depth(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
@@ -203,9 +205,26 @@ class AttributeComparison {
     }
   }
 
+  /// A colour of several fragments: what of its error is the operations'.
+  void layered_color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
+    layers_.judge(pixel.p, stored);
+    if (!same_visible) return;
+    const auto max = golden::channel_max(config_.color_format);
+    double worst = 0;
+    for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
+      const auto c = static_cast<std::size_t>(channel);
+      const double error = golden::stored_channel(stored, config_.color_format, channel) -
+                           result_.golden.color[pixel.p][c] * max[c] / 255;
+      color_.add(error);
+      if (std::abs(error) > std::abs(worst)) worst = error;
+    }
+    result_.color_error_lsb[pixel.p] = static_cast<float>(worst);
+  }
+
   void color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     const auto max = golden::channel_max(config_.color_format);
     result_.stage_mismatches += stored != made_.frame.color[pixel.at] ? 1 : 0;
+    if (layers_.is_layered(pixel.p)) return layered_color(pixel, stored, same_visible);
     double worst = 0;
     const golden::Color surface = pixel.surface != nullptr ? exact_surface(pixel) : golden::Color{};
     for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
@@ -259,6 +278,7 @@ class AttributeComparison {
   ErrorSet depth_, color_, eye_;
   MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_;
   TextureErrorSets texture_;
+  LayeredColors layers_;
   bool has_texture_ = false;
   PartSets depth_parts_, color_parts_;
   PartSet affine_;
@@ -311,7 +331,8 @@ Rendering draw_fragments(const Scene& scene, const Config& config, const Compare
 
 }  // namespace
 
-Comparison compare(const Scene& scene, const Config& config, const CompareOptions& options) {
+Comparison compare(const Scene& scene, const Config& plain_config, const CompareOptions& options) {
+  const Config config = with_alpha(plain_config, scene);
   Comparison result;
   CoverageLog log(config.tile_size);
   RenderOptions render_options;
@@ -400,6 +421,9 @@ std::vector<std::string> broken_bounds(const Comparison& c, const Config& config
           line_depth_error_bound(config));
   require(!has_population || std::abs(c.datapath_bias.mean) < 0.05,
           "depth: mean error %.4f LSB before rounding (bound %.2f)", c.datapath_bias.mean, 0.05);
+  for (const LayerRow& row : c.layers)
+    require(row.part_of_bound <= 1, "colour under layers: an error of %.3f of its bound (largest bound %.3f LSB)",
+            row.part_of_bound, row.bound);
   require(c.color_datapath.max <= 1, "colour: %.3f LSB from the exact plane through the snapped vertices (bound %.0f)",
           c.color_datapath.max, 1);
   return broken;

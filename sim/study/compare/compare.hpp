@@ -14,6 +14,7 @@
 #include "coverage.hpp"
 #include "coverage_class.hpp"
 #include "fragment_judge.hpp"
+#include "layers.hpp"
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/golden/golden.hpp"
@@ -65,6 +66,7 @@ struct Comparison {
   ErrorMoments color_over_w;             ///< of surfaces: their primitive's own colour before a texture, LSB of 8 bits
   ErrorMoments line_datapath;            ///< the depth of lines and points, whose bound is another; not in `datapath`
   std::optional<TextureErrors> texture;  ///< of the pixels that show one; none: no pixel does
+  std::vector<LayerRow> layers;          ///< pixels whose colour is more than one fragment's; not in `color_parts`
   std::uint64_t visible_triangles = 0;   ///< of the model, behind those figures
   std::uint64_t stage_mismatches = 0;    ///< stored values, and owners, that differ from what the fragments leave
 

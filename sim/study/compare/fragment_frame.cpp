@@ -2,6 +2,7 @@
 
 #include "model/fragment_ops.hpp"
 #include "model/golden/viewport.hpp"
+#include "model/pipeline.hpp"
 
 namespace halfplane {
 namespace {
@@ -15,9 +16,18 @@ std::size_t pixel_of(const Scene& scene, int x, int y) {
 }
 
 std::array<std::uint8_t, 4> color_of(const TappedFragment& fragment) {
+  if (fragment.surface) return fragment.surface->color;
   std::array<std::uint8_t, 4> code;
   for (std::size_t c = 0; c < 4; ++c) code[c] = static_cast<std::uint8_t>(fragment.plane[kColorPlane + c].code);
   return code;
+}
+
+std::uint32_t alpha_of(const TappedFragment& fragment) { return color_of(fragment)[3]; }
+
+bool shows_back(const TappedFragment& fragment, const State& state) {
+  if (fragment.triangle == nullptr) return false;
+  const auto& v = fragment.triangle->v;
+  return halfplane::shows_back(signed_area(v[0], v[1], v[2]), state.front);
 }
 
 }  // namespace
@@ -26,7 +36,8 @@ FragmentFrame::FragmentFrame(const Scene& scene, const Config& config)
     : scene_(scene),
       config_(config),
       depth_encode_(config, scene.planes),
-      pixels_(pixels_of(scene), depth_encode_.of_window(1.0), {}),
+      pixels_(pixels_of(scene), depth_encode_.of_window(1.0), {}, config.color_format == ColorFormat::rgba8888),
+      layers_(pixels_of(scene), config.color_format),
       shown_(pixels_of(scene)) {}
 
 void FragmentFrame::add(const TappedFragment& fragment) {
@@ -37,11 +48,14 @@ void FragmentFrame::add(const TappedFragment& fragment) {
   const State& state = scene_.states[std::get<Draw>(scene_.commands[fragment.draw]).state];
   const std::size_t p = pixel_of(scene_, fragment.x, fragment.y);
   const auto owner = static_cast<std::int32_t>(fragment.primitive);
-  const golden::Fate fate = pixels_.apply(p, state, depth_encode_(fragment.plane[kDepthPlane].code), {}, owner);
+  const golden::Tested<double> tested{static_cast<double>(depth_encode_(fragment.plane[kDepthPlane].code)),
+                                      static_cast<double>(alpha_of(fragment)), shows_back(fragment, state)};
+  const golden::Fate fate = pixels_.apply(p, state, tested, {}, owner);
   // Of several lines or points of one primitive that store the same there, the last stands for all.
   const bool is_another = !fate.written && fragment.kind != PrimitiveKind::triangle && pixels_.owners()[p] == owner &&
                           is_equal(fragment, shown_[p], state);
   if (fate.written || is_another) shown_[p] = fragment;
+  if (fate.written && writes_color(state, config_.color_format)) layers_.write(p, state, color_of(fragment));
 }
 
 /// Does the one leave in the target what the other does?
@@ -60,6 +74,8 @@ void FragmentFrame::clear_until(std::size_t command) {
       for (int x = range.begin_x; x < range.end_x; ++x) {
         const std::size_t p = pixel_of(scene_, x, y);
         if (clear->depth) pixels_.clear_depth(p, depth_encode_.of_window(*clear->depth));
+        if (clear->color) layers_.clear(p, *clear->color);
+        if (clear->stencil) pixels_.clear_stencil(p, *clear->stencil);
         pixels_.disown(p);
       }
   }

@@ -1,13 +1,14 @@
 // What the fragments of a tap leave in a target by the golden's own operations: for each pixel, whose fragment it shows.
 //
-// Every operation that there is stores a fragment as it came or not at all, so that the exact and the unrounded values of
-// a pixel are those of the fragment it shows and can wait until somebody asks. The depth test compares stored codes, as
-// real numbers.
+// The tests store a fragment as it came or not at all, so that the exact and the unrounded values of a pixel are those of
+// the fragment it shows and can wait until somebody asks. They compare stored codes, as real numbers. Colours that are
+// more than one fragment's are layers (layers.hpp).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "layers.hpp"
 #include "model/engines/render.hpp"
 #include "model/golden/fragment_buffer.hpp"
 #include "model/stages/depth_encode.hpp"
@@ -25,6 +26,7 @@ class FragmentFrame {
 
   /// By pixel, y * width + x: the primitive that owns it, -1 none; and the fragment it shows, where it is owned.
   [[nodiscard]] const std::vector<std::int32_t>& owners() const { return pixels_.owners(); }
+  [[nodiscard]] const LayeredColors& layers() const { return layers_; }
   [[nodiscard]] const TappedFragment& shown(std::size_t pixel) const { return shown_[pixel]; }
 
  private:
@@ -37,6 +39,7 @@ class FragmentFrame {
   const Config& config_;
   DepthEncode depth_encode_;
   golden::FragmentBuffer<double, Nothing> pixels_;  // stored depth codes
+  LayeredColors layers_;
   std::vector<TappedFragment> shown_;
   std::size_t next_command_ = 0;
 };

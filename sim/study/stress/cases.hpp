@@ -73,6 +73,13 @@ void q_near_one(Unit& unit);
 void wrap_across_a_tile(Unit& unit);
 void levels_along_a_scanline(Unit& unit);
 void texture_viewport(Unit& unit);
+// fragment_cases.cpp
+void random_operations(Unit& unit);
+void layers(Unit& unit);
+void opaque_blend(Unit& unit);
+void alpha_parts(Unit& unit);
+void mask_parts(Unit& unit);
+void stencil_counts(Unit& unit);
 // engine_cases.cpp
 void traversals(Unit& unit);
 void fill_rules(Unit& unit);

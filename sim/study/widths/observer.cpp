@@ -35,6 +35,7 @@ constexpr std::array kByConstruction{&Widths::primitive_id,
                                      &Widths::coordinate_reach,
                                      &Widths::coordinate_reference,
                                      &Widths::written_color,
+                                     &Widths::shaded_color,
                                      &Widths::texture_byte,
                                      &Widths::texture_beats};
 

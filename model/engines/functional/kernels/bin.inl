@@ -171,6 +171,10 @@ struct Bin {
   std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
   SliceState state;
+  const FragmentOps* ops = nullptr;  ///< of the slice
+  bool has_operations = false;       ///< which are more than plain: operations.inl
+  bool lays_over = false;            ///< of them blending alone, by alpha
+  bool is_back = false;              ///< the triangle at work shows its back, where somebody asks
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones

@@ -3,9 +3,15 @@
 //   opaque   what passes replaces what is stored, what fails leaves no trace. So a tile that lies behind may be left
 //            out, one in front may be taken whole, and blocks are drawn lane by lane.
 //   general  anything else: fragment by fragment through the scalar operations, out of line, nothing left out
-//            (general.inl). What blending, stencil and alpha ask for belongs there.
+//            (general.inl). What blending, masks and the alpha test ask of triangles is in lanes too (operations.inl).
 //
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// What the alpha test has dropped of fragments that count as passed.
+inline void count_killed(Bin& bin, std::uint64_t killed) {
+  bin.job.counters.alpha_killed += killed;
+  if (bin.ops->state.writes()) bin.job.counters.written -= killed;
+}
 
 /// Up to sixteen fragments that follow each other.
 struct FragmentLanes {
@@ -142,20 +148,27 @@ struct GeneralFragments {
   /// Those whose bit is set, one after the other. Returns how many passed.
   HALFPLANE_NOINLINE static unsigned draw_some(Bin& bin, const FragmentLanes& fragments, std::uint32_t covered) {
     const DepthPixels depths(bin);
-    unsigned passed = 0;
+    unsigned passed = 0, killed = 0;
     for (; covered != 0; covered &= covered - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(covered));
       const auto to = static_cast<std::size_t>(fragments.place[k]);
-      const auto depth = static_cast<std::uint32_t>(fragments.depth[k]);
-      if (!depth_passes(bin.state.depth_test, depth, static_cast<std::uint32_t>(depths.at(to)))) continue;
-      ++passed;
-      if (bin.state.depth_write) depths.set(to, fragments.depth[k]);
-      if (!bin.state.color_write) continue;
-      std::array<std::uint8_t, 4> code;
-      for (std::size_t c = 0; c < 4; ++c)
-        code[c] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(fragments.color[k]) >> 8 * c);
-      bin.memory.color[to] = pack_color(bin.config.color_format, code);
+      const auto [x, y] = pixel_of(fragments.place[k]);
+      auto depth = static_cast<std::uint32_t>(depths.at(to));
+      const StoredPixel stored{depth, bin.memory.color[to],
+                               bin.job.target.stencil[bin.job.target.at(bin.first_x + x, bin.first_y + y)]};
+      const TestedFragment fragment{static_cast<std::uint32_t>(fragments.depth[k]), bin.first_x + x, bin.first_y + y,
+                                    bin.is_back};
+      const auto color = [&] {
+        std::array<std::uint32_t, 4> code;
+        for (std::size_t c = 0; c < 4; ++c) code[c] = static_cast<std::uint32_t>(fragments.color[k]) >> 8 * c & 255;
+        return code;
+      };
+      const Fate fate = apply_fragment(*bin.ops, bin.config.color_format, fragment, color, stored);
+      depths.set(to, static_cast<std::int32_t>(depth));
+      passed += fate != Fate::failed ? 1 : 0;
+      killed += fate == Fate::killed ? 1 : 0;
     }
+    count_killed(bin, killed);
     return passed;
   }
 
@@ -173,6 +186,6 @@ inline void count_fragments(Bin& bin, std::uint64_t covered, std::uint64_t passe
   Counters& counters = bin.job.counters;
   counters.covered += covered;
   counters.depth_passed += passed;
-  if (bin.state.depth_write || bin.state.color_write) counters.written += passed;
+  if (bin.ops->state.writes()) counters.written += passed;
   if (bin.skip.fragments_early_z) counters.skipped.fragments_early_z += covered - passed;
 }

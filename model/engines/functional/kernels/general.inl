@@ -1,5 +1,6 @@
-// Fragments that ask for more than opaque ones do: one by one, tile after tile, nothing left out or put off. Whatever the
-// size of a triangle it is set up by itself. No draw needs this yet: RenderOptions::general_fragments takes it.
+// Fragments that ask for more than opaque ones do, and for more than operations.inl has: one by one, tile after tile, nothing
+// left out or put off. Whatever the size of a triangle it is set up by itself. Of draws with a stencil;
+// RenderOptions::general_fragments takes it for all.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
 /// The part of a triangle in one tile. `edge`: at the tile's first pixel.
@@ -7,10 +8,11 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
                                           const std::array<std::int32_t, 3>& edge) {
   const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
   need_depth(bin, tile);
-  if (bin.state.color_write) need_color(bin, tile);
+  need_color(bin, tile);
   const BlockRamp<I16> depth_plane = depth_ramp(bin, t, depth_anchor(bin, t, tile_x, tile_y));
+  const bool needs_colors = bin.state.color_write || bin.ops->alpha.func != DepthFunc::always;
   const ColorRamp color_plane =
-      bin.state.color_write ? color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y)) : ColorRamp{};
+      needs_colors ? color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y)) : ColorRamp{};
   const ColorFormat format = GeneralFragments::format(bin.config);
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
   for (std::size_t block = 0; block < 4; ++block) {
@@ -23,14 +25,21 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
     FragmentLanes fragments;
     (bin.position.lane + (first_of(tile) + static_cast<int>(block) * kBlockPixels)).store(fragments.place.data());
     block_depths(bin, t, depth_plane, block).store(fragments.depth.data());
-    if (bin.state.color_write)
-      block_colors(t.color, color_plane, block, bin.color_format, format).store(fragments.color.data());
+    if (needs_colors) block_colors(t.color, color_plane, block, bin.color_format, format).store(fragments.color.data());
     covered_pixels += static_cast<unsigned>(std::popcount(covered));
     passed_pixels += GeneralFragments::draw_some(bin, fragments, covered);
   }
   bin.job.counters.samples_tested += kTileSize * kTileSize;
   count_fragments(bin, covered_pixels, passed_pixels);
   if (bin.state.depth_write && passed_pixels != 0) find_range(bin, tile);
+}
+
+/// Of a triangle, where the stencil has two sides. Turning the vertices, as records do, keeps the sign of the area.
+inline bool shows_back(const Bin& bin, const Slice& slice, const Record& record) {
+  if (!bin.ops->stencil || record.kind() != RecordKind::triangle) return false;
+  const VertexRow &a = slice.vertices[record.v[0]], &b = slice.vertices[record.v[1]], &c = slice.vertices[record.v[2]];
+  const std::int64_t area = std::int64_t{b.x - a.x} * (c.y - a.y) - std::int64_t{b.y - a.y} * (c.x - a.x);
+  return halfplane::shows_back(area, slice.context->state.front);
 }
 
 inline void draw_triangle_general(Bin& bin, const BinTriangle& t) {
@@ -62,8 +71,10 @@ HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const
     BinTriangle triangle;
     triangle.box = box_of(bin, record);
     triangle.is_whole = false;
+    bin.is_back = shows_back(bin, slice, record);
     if (set_up(bin, slice, record, triangle) && !record.has(Record::kDrawsNothing))
       draw_triangle_general(bin, triangle);
+    bin.is_back = false;  // lines and points show their front
   }
   draw_lines<GeneralFragments>(bin, slice);
 }

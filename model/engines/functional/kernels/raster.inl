@@ -162,6 +162,27 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   draw_lines<Fragments>(bin, slice);
 }
 
+/// The records of a slice whose fragments look at what is stored: one after the other.
+template <class Fragments>
+void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
+  const bool tests_alpha = bin.ops->alpha.func != DepthFunc::always;  // depths wait for it
+  while (first != last) {
+    const Record& record = slice.records[*first];
+    fetch_records(slice, first++, last);
+    const RecordKind kind = record.kind();
+    if (kind == RecordKind::whole_line || kind == RecordKind::cut_line) {
+      bin.state = slice.state;
+      draw_records_general(bin, slice, first - 1, first);
+      continue;
+    }
+    bin.state.depth_write = slice.state.depth_write && !tests_alpha;
+    const BinBounds box = box_of(bin, record);
+    const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
+    if (live != 0) draw_alone<Fragments>(bin, slice, record, box, live);
+    bin.is_range_old = true;
+  }
+}
+
 /// The kernel: a bin, slice after slice.
 static void raster(BinJob& job) {
   Bin bin(job);
@@ -173,18 +194,33 @@ static void raster(BinJob& job) {
     const std::uint32_t* last = slice.bin_records.data() + slice.bin_first[number + 1];
     if (first == last) continue;
     bin.state = slice.state;
+    bin.ops = &slice.context->fragment_ops;
+    bin.has_operations = false;
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
     // Opaque ones twice: for the test that nearly every scene has, and for any.
-    if (!bin.state.is_opaque)
+    if (bin.state.is_opaque) {
+      // As they are.
+    } else if (job.frame.takes_one_by_one || bin.ops->stencil) {
       draw_records_general(bin, slice, first, last);
-    else if (bin.state.depth_test == DepthFunc::less)
+    } else {
+      bin.has_operations = true;
+      bin.lays_over = bin.ops->alpha.func == DepthFunc::always && bin.state.color_write &&
+                      is_over(bin.ops->color, bin.config.color_format);
+      draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
+      bin.has_operations = false;
+    }
+    if (!bin.state.is_opaque) {
+      bin.closed_from = Bin::kOpen;
+      continue;
+    }
+    if (bin.state.depth_test == DepthFunc::less)
       draw_records<OpaqueFragments<true>>(bin, slice, first, last);
     else
       draw_records<OpaqueFragments<false>>(bin, slice, first, last);
     // What another test lets through may lie behind.
-    if (bin.state.depth_test != DepthFunc::less || !bin.state.is_opaque) bin.closed_from = Bin::kOpen;
+    if (bin.state.depth_test != DepthFunc::less) bin.closed_from = Bin::kOpen;
   }
   finish(bin);
 }

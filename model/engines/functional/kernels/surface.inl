@@ -106,10 +106,11 @@ HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const Coordina
   return sample(texture, at, lod);
 }
 
-/// Colours of a tile's `pixels`, to memory. One step after the other for all four blocks: a block's steps wait for each
+/// Colours of a tile's `pixels`. One step after the other for all four blocks: a block's steps wait for each
 /// other, and would keep the next block's from being seen in time.
 template <Sampling kSampling>
-HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
+HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                              std::uint32_t* const colors, ColorFormat format) {
   constexpr bool kHasTexture = kSampling != Sampling::none;
   const SurfaceConstants& of = surface.constants;
   const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles);
@@ -123,8 +124,6 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       green_alpha[block] = texels.green_alpha;
     });
   }
-  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
-  const ColorFormat format = bin.config.color_format;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     const std::uint32_t bits = block_bits(pixels, block);
     if (bits == 0) return;
@@ -140,23 +139,29 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
 }
 
 /// The same pixel by pixel, through the stages.
-HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int tile, std::uint64_t pixels) {
-  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
+HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int tile, std::uint64_t pixels,
+                                        std::uint32_t* const colors, ColorFormat format) {
   const int left = bin.first_x + tile % kBinTiles * kTileSize, top = bin.first_y + tile / kBinTiles * kTileSize;
   for (; pixels != 0; pixels &= pixels - 1) {
     const auto at = static_cast<std::size_t>(std::countr_zero(pixels));
     const int block = static_cast<int>(at) / kBlockPixels, pixel = static_cast<int>(at) % kBlockPixels;
     const int x = block % 2 * kBlockSize + pixel % kBlockSize, y = block / 2 * kBlockSize + pixel / kBlockSize;
-    colors[at] = pack_color(bin.config.color_format, surface.color(left + x, top + y));
+    colors[at] = pack_color(format, surface.color(left + x, top + y));
   }
 }
 
-HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
-  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels);
+/// Colours of a tile's `pixels`, in a format, to the places of the tile's 64.
+HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                            std::uint32_t* const colors, ColorFormat format) {
+  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels, colors, format);
   switch (sampling_of(surface.constants)) {
-    case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels);
-    case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels);
-    case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels);
-    case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels);
+    case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels, colors, format);
+    case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels, colors, format);
+    case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels, colors, format);
+    case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels, colors, format);
   }
+}
+/// To memory, as they are stored.
+HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
+  shade(bin, surface, tile, pixels, bin.memory.color.data() + first_of(tile), bin.config.color_format);
 }

@@ -26,6 +26,16 @@ HALFPLANE_INLINE I16 place_of(const I16& x, const I16& y) {
   return (((x & 56) << 3) | ((x & 4) << 2) | (x & 3)) + (((y & 56) << 6) | ((y & 4) << 3) | ((y & 3) << 2));
 }
 
+/// The pixel at a place: the way back.
+struct BinPixel {
+  int x, y;
+};
+[[nodiscard]] inline BinPixel pixel_of(std::int32_t place) {
+  const int tile = place >> 6, block = place >> 4 & 3;
+  return {tile % kBinTiles * kTileSize + (block & 1) * kBlockSize + (place & 3),
+          tile / kBinTiles * kTileSize + (block >> 1) * kBlockSize + (place >> 2 & 3)};
+}
+
 /// The bin's part of the target is asked for now: it is written at the end, and comes from far away.
 inline void fetch_target(const Bin& bin) {
   constexpr int kLine = 16;  // pixels

@@ -330,10 +330,16 @@ struct PixelCounts {
   std::uint64_t covered = 0, passed = 0;
 };
 
-/// The part of a triangle in one tile.
+/// The part of a triangle in one tile. `is_in_front`: a full one, all of which passes, and whose depths stay.
 template <class Fragments>
 HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConstants& constants, int tile, bool is_full,
-                                PixelCounts& pixels) {
+                                bool is_in_front, PixelCounts& pixels) {
+  if (is_in_front) {
+    operate_on_tile(bin, t, tile, ~std::uint64_t{0});
+    pixels.covered += kTileSize * kTileSize;
+    pixels.passed += kTileSize * kTileSize;
+    return;
+  }
   const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
   S64 outside(0);
   if (!is_full) outside = outside_edges(constants, tile_x, tile_y);
@@ -344,7 +350,9 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
   const std::uint64_t passed = constants.is_narrow ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
                                                    : test_wide<Fragments>(bin, t, tile, anchor, covered);
-  if (t.surface != 0) {
+  if (bin.has_operations) {
+    operate_on_tile(bin, t, tile, passed);
+  } else if (t.surface != 0) {
     if (passed != 0) see(bin, t.surface, tile, passed);
   } else if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) {
     color_tile(bin, t, tile, passed);
@@ -353,16 +361,17 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   pixels.passed += static_cast<unsigned>(std::popcount(passed));
 }
 
-/// `full`: of those tiles, which need no look at the edges.
+/// `full`: of those tiles, which need no look at the edges; `in_front`: nor at the depths.
 template <class Fragments>
-HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t tiles, std::uint64_t full) {
+HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t tiles, std::uint64_t full,
+                                   std::uint64_t in_front) {
   const TileConstants constants(bin, t);
   PixelCounts pixels;
   const auto full_tiles = static_cast<unsigned>(std::popcount(tiles & full)),
              cut_tiles = static_cast<unsigned>(std::popcount(tiles & ~full));
   for (; tiles != 0; tiles &= tiles - 1) {
     const int tile = std::countr_zero(tiles);
-    draw_tile<Fragments>(bin, t, constants, tile, (full >> tile & 1) != 0, pixels);
+    draw_tile<Fragments>(bin, t, constants, tile, (full >> tile & 1) != 0, (in_front >> tile & 1) != 0, pixels);
   }
   bin.job.counters.skipped.trivially_accepted += full_tiles;
   bin.job.counters.samples_tested += std::uint64_t{kTileSize * kTileSize} * cut_tiles;
@@ -397,17 +406,19 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.skip.tiles_hiz) take_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
   if (live == 0) return;
   t.surface = 0;
-  if (bin.sees_surfaces()) {
+  if (bin.sees_surfaces() || (bin.has_operations && bin.state.has_surface)) {
     need_surfaces(bin, 1);
     t.surface = add_surface(bin, slice, record);
-  } else if (!is_flat && bin.state.color_write) {
+  } else if (!is_flat && (bin.state.color_write || bin.has_operations)) {
     set_up_colors(bin, corners, t);
   }
-  std::uint64_t full = 0, taken = 0;
+  std::uint64_t full = 0, taken = 0, in_front = 0;
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
-  if (full != 0 && bin.skip.attributes && (bin.state.depth_write || bin.state.color_write))
+  if (full != 0 && bin.skip.attributes && !bin.has_operations && (bin.state.depth_write || bin.state.color_write))
     taken = full & Fragments::tiles_in_front(bin, depths);
+  if (full != 0 && bin.has_operations && !bin.state.depth_write && bin.ops->alpha.func == DepthFunc::always)
+    in_front = full & Fragments::tiles_in_front(bin, depths);
   if (taken != 0) take_tiles(bin, t, taken, depths);
-  if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full);
+  if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full, in_front);
   if (bin.state.depth_write) bin.is_range_old = true;
 }

@@ -1,0 +1,257 @@
+// Operations in lanes: alpha test, blending, dithering and masks of a triangle's pixels in a tile, from color_ops.hpp.
+// Colours stay what they are to the surfaces: red with blue and green with alpha in the halves of lanes.
+//
+// Such a triangle looks at what is stored, so it takes no tile and puts no colour off; what lies behind is still left out.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+using H32 = Pack<std::uint16_t, 32>;  ///< without signs
+
+/// min(a + b, 255^2) of products of codes; what a is above b, or 0.
+HALFPLANE_INLINE S32 limited_sum(const S32& a, const S32& b) {
+  constexpr std::uint16_t kMost = 255 * 255;
+  const auto first = as<H32>(a);
+  return as<S32>(first + min(as<H32>(b), kMost - first));
+}
+HALFPLANE_INLINE S32 limited_difference(const S32& a, const S32& b) {
+  const auto first = as<H32>(a);
+  return as<S32>(first - min(first, as<H32>(b)));
+}
+
+/// Alpha in both halves.
+HALFPLANE_INLINE S32 alpha_pairs(const ColorPairs& c) {
+  return as<S32>(shift_right_logical(c.green_alpha, 16) | (c.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
+}
+
+/// What is stored, as codes of 8 bits: widen_color(). Five bits r become 33 r >> 2, six g 65 g >> 4: here as the upper halves
+/// of products, r 2^11 times 264 and g 2^10 times 260.
+HALFPLANE_INLINE ColorPairs widened(const I16& stored, ColorFormat format) {
+  if (format == ColorFormat::rgba8888) return ColorPairs(stored);
+  const I16 red_blue = (stored & 0xf800) | (stored << 27), green = (stored << 5) & 0xfc00;
+  return ColorPairs(as<I16>(multiply_upper(as<S32>(red_blue), 264)),
+                    as<I16>(multiply_upper(as<S32>(green), 260)) | (255 << 16));
+}
+
+/// A block's colours on their way to be stored.
+struct BlendLanes {
+  const ColorOps& ops;
+  ColorPairs source, stored;
+  S32 source_alpha, stored_alpha;
+
+  HALFPLANE_INLINE BlendLanes(const ColorOps& ops_, const ColorPairs& source_, const ColorPairs& stored_)
+      : ops(ops_),
+        source(source_),
+        stored(stored_),
+        source_alpha(alpha_pairs(source)),
+        stored_alpha(alpha_pairs(stored)) {}
+
+  /// blend_factor() of red with blue, or green with alpha; `is_alpha`: of the latter, alpha's.
+  HALFPLANE_INLINE S32 factor(BlendFactor of, const S32& src, const S32& dst, std::size_t first, std::size_t second,
+                              bool is_alpha) const {
+    const auto constant = [&](std::size_t a, std::size_t b)
+                              HALFPLANE_LAMBDA { return as<S32>(I16(ops.constant[a] | ops.constant[b] << 16)); };
+    switch (of) {
+      case BlendFactor::zero: return S32(0);
+      case BlendFactor::one: return S32(255);
+      case BlendFactor::src_color: return src;
+      case BlendFactor::one_minus_src_color: return 255 - src;
+      case BlendFactor::dst_color: return dst;
+      case BlendFactor::one_minus_dst_color: return 255 - dst;
+      case BlendFactor::src_alpha: return source_alpha;
+      case BlendFactor::one_minus_src_alpha: return 255 - source_alpha;
+      case BlendFactor::dst_alpha: return stored_alpha;
+      case BlendFactor::one_minus_dst_alpha: return 255 - stored_alpha;
+      case BlendFactor::constant_color: return constant(first, second);
+      case BlendFactor::one_minus_constant_color: return 255 - constant(first, second);
+      case BlendFactor::constant_alpha: return constant(3, 3);
+      case BlendFactor::one_minus_constant_alpha: return 255 - constant(3, 3);
+      case BlendFactor::src_alpha_saturate: return is_alpha ? S32(255) : min(source_alpha, 255 - stored_alpha);
+    }
+    return S32(0);
+  }
+
+  /// blend_channel() of pairs.
+  HALFPLANE_INLINE static S32 put_together(BlendEquation equation, const S32& s, const S32& fs, const S32& d,
+                                           const S32& fd) {
+    switch (equation) {
+      case BlendEquation::add: return divide_by_255(limited_sum(s * fs, d * fd));
+      case BlendEquation::subtract: return divide_by_255(limited_difference(s * fs, d * fd));
+      case BlendEquation::reverse_subtract: return divide_by_255(limited_difference(d * fd, s * fs));
+      case BlendEquation::min: return min(s, d);
+      default: return max(s, d);
+    }
+  }
+
+  /// blended().
+  HALFPLANE_INLINE ColorPairs operator()(bool has_alpha) const {
+    const BlendFactors& f = ops.factors;
+    const auto pair = [&](const I16& src, const I16& dst, std::size_t first, std::size_t second,
+                          bool is_alpha) HALFPLANE_LAMBDA {
+      const auto s = as<S32>(src), d = as<S32>(dst);
+      return as<I16>(put_together(ops.equation[is_alpha ? 1 : 0], s,
+                                  factor(is_alpha ? f.src_alpha : f.src, s, d, first, second, is_alpha), d,
+                                  factor(is_alpha ? f.dst_alpha : f.dst, s, d, first, second, is_alpha)));
+    };
+    const I16 red_blue = pair(source.red_blue, stored.red_blue, 0, 2, false),
+              green = pair(source.green_alpha, stored.green_alpha, 1, 3, false);
+    if (!has_alpha) return ColorPairs(red_blue, green);
+    const I16 alpha = pair(source.green_alpha, stored.green_alpha, 1, 3, true);
+    return ColorPairs(red_blue, (green & 0xffff) | (alpha & static_cast<std::int32_t>(0xffff0000U)));
+  }
+};
+
+/// src_alpha, one_minus_src_alpha, added, to all channels: what most draws that blend ask for. The two factors are 255
+/// together. Alpha, where it is stored, has the same ones, or one in the place of the first.
+[[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
+  const BlendFactors& f = ops.factors;
+  if (f.src != BlendFactor::src_alpha || f.dst != BlendFactor::one_minus_src_alpha ||
+      ops.equation[0] != BlendEquation::add || ops.dithers || ops.writes != ColorOps{}.writes)
+    return false;
+  return format != ColorFormat::rgba8888 ||
+         ((f.src_alpha == BlendFactor::src_alpha || f.src_alpha == BlendFactor::one) &&
+          f.dst_alpha == BlendFactor::one_minus_src_alpha && ops.equation[1] == BlendEquation::add);
+}
+
+/// The colour of such a draw. `adds_alpha`: alpha's first factor is one.
+HALFPLANE_INLINE ColorPairs laid_over(const ColorPairs& source, const ColorPairs& stored, bool adds_alpha) {
+  const S32 alpha = alpha_pairs(source), rest = 255 - alpha;
+  const S32 of_alpha = adds_alpha ? as<S32>((as<I16>(alpha) & 0xffff) | (255 << 16)) : alpha;
+  return ColorPairs(
+      as<I16>(divide_by_255(as<S32>(source.red_blue) * alpha + as<S32>(stored.red_blue) * rest)),
+      as<I16>(divide_by_255(as<S32>(source.green_alpha) * of_alpha + as<S32>(stored.green_alpha) * rest)));
+}
+
+/// Codes of 8 bits to rgb565, each pixel with its threshold in both halves: pack_rgb565_dithered().
+HALFPLANE_INLINE I16 packed_dithered(const ColorPairs& c, const S32& threshold) {
+  const I16 red_blue = as<I16>(shift_right_logical(
+                as<S32>(c.red_blue) * std::int16_t{249} + threshold * std::int16_t{128} + std::int16_t{64}, 11)),
+            green = as<I16>(shift_right_logical(
+                as<S32>(c.green_alpha) * std::int16_t{253} + threshold * std::int16_t{64} + std::int16_t{32}, 10));
+  return multiply_add_pairs(red_blue, I16(1 << 16 | 1 << 11)) | multiply_add_pairs(green, I16(1 << 5));
+}
+/// The thresholds of a block, whose side is that of the matrix.
+HALFPLANE_INLINE S32 block_thresholds() {
+  return as<S32>(I16::of([](int i) {
+    const auto t = static_cast<std::int32_t>(dither_threshold(i % 4, i / 4));
+    return t | t << 16;
+  }));
+}
+
+/// The colours of a tile's pixels before they are stored: computed when they are asked for, or a surface's.
+struct TileColors {
+  ColorRamp plane;
+  const ColorSteps& steps;
+  const LaneFormat& format;
+  bool is_surface;
+  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> rgba;  ///< of a surface
+
+  HALFPLANE_INLINE TileColors(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels)
+      : steps(t.color), format(bin.color_format), is_surface(t.surface != 0) {
+    if (is_surface) {
+      rgba.fill(0);
+      shade(bin, drawn_surface(bin, static_cast<std::size_t>(t.surface)), tile, pixels, rgba.data(),
+            ColorFormat::rgba8888);
+    } else {
+      const ColorRamp ramp = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+      for (std::size_t p = 0; p < ramp.size(); ++p) plane[p] = ramp[p];
+    }
+  }
+  HALFPLANE_INLINE ColorPairs operator[](std::size_t block) const {
+    if (is_surface) return ColorPairs(I16::load(rgba.data() + block * kBlockPixels));
+    return ColorPairs(color_codes(plane[0](block), I16(steps.low[0]), I16(steps.high[0]), format),
+                      color_codes(plane[1](block), I16(steps.low[1]), I16(steps.high[1]), format));
+  }
+};
+
+/// Of `pixels`, those that the alpha test lets pass.
+HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, const TileColors& colors) {
+  const DepthFunc func = bin.ops->alpha.func;
+  const I16 reference(bin.ops->alpha.reference);
+  std::uint64_t passed = 0;
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const I16 alpha = shift_right_logical(colors[block].green_alpha, 16);
+    const I16 less = alpha < reference, equal = alpha == reference;
+    I16 passes(0);
+    if (depth_passes(func, 0, 1)) passes |= less;
+    if (depth_passes(func, 0, 0)) passes |= equal;
+    if (depth_passes(func, 1, 0)) passes |= ~(less | equal);
+    passed |= std::uint64_t{bits_of(passes)} << (kBlockPixels * block);
+  });
+  return passed & pixels;
+}
+
+/// Depths of `pixels`, which have passed every test.
+HALFPLANE_INLINE void write_depths(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
+  if (pixels == 0) return;
+  need_depth(bin, tile);
+  const BlockRamp<I16> plane = depth_ramp(bin, t, depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+  const auto first = static_cast<std::size_t>(first_of(tile));
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::size_t at = first + block * kBlockPixels;
+    store_depths(bin, at,
+                 select_by_bits(block_bits(pixels, block), block_depths(bin, t, plane, block), load_depths(bin, at),
+                                bin.position.to_sign));
+  });
+  find_range(bin, tile);
+}
+
+/// Colours of `pixels` upon what is stored: store_color().
+HALFPLANE_INLINE void store_colors(Bin& bin, int tile, std::uint64_t pixels, const TileColors& colors) {
+  const ColorOps& ops = bin.ops->color;
+  const ColorFormat format = bin.config.color_format;
+  const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
+  const auto written = static_cast<std::int32_t>(written_bits(ops, format));
+  const bool writes_all = ops.writes == ColorOps{}.writes;
+  const S32 thresholds = dithers ? block_thresholds() : S32(0);
+  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) return;
+    std::uint32_t* const at = to + block * kBlockPixels;
+    const I16 stored = I16::load(at);
+    const auto mixed = [&]() HALFPLANE_LAMBDA {
+      if (!blends) return colors[block];
+      return BlendLanes(ops, colors[block], widened(stored, format))(has_alpha);
+    }();
+    I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
+    if (!writes_all) code = (code & written) | (stored & ~written);
+    (bits == 0xffff ? code : select_by_bits(bits, code, stored, bin.position.to_sign)).store(at);
+  });
+}
+
+/// A draw of is_over() and no alpha test.
+template <ColorFormat kFormat>
+HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
+  const TileColors colors(bin, t, tile, pixels);
+  need_color(bin, tile);
+  const bool adds_alpha = kFormat == ColorFormat::rgba8888 && bin.ops->color.factors.src_alpha == BlendFactor::one;
+  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) return;
+    std::uint32_t* const at = to + block * kBlockPixels;
+    const I16 stored = I16::load(at);
+    const ColorPairs mixed = laid_over(colors[block], widened(stored, kFormat), adds_alpha);
+    const I16 code = packed(mixed.red_blue, mixed.green_alpha, kFormat);
+    (bits == 0xffff ? code : select_by_bits(bits, code, stored, bin.position.to_sign)).store(at);
+  });
+}
+
+/// What becomes of a tile's pixels that have passed the depth test; the alpha test may still drop them.
+HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
+  const FragmentOps& ops = *bin.ops;
+  const bool tests_alpha = ops.alpha.func != DepthFunc::always;
+  if (passed == 0 || (!tests_alpha && !ops.state.color_write)) return;
+  if (bin.lays_over)
+    return bin.config.color_format == ColorFormat::rgb565 ? lay_over<ColorFormat::rgb565>(bin, t, tile, passed)
+                                                          : lay_over<ColorFormat::rgba8888>(bin, t, tile, passed);
+  const TileColors colors(bin, t, tile, passed);
+  std::uint64_t kept = passed;
+  if (tests_alpha) {
+    kept = test_alpha(bin, passed, colors);
+    count_killed(bin, static_cast<unsigned>(std::popcount(passed & ~kept)));
+    if (ops.state.depth_write) write_depths(bin, t, tile, kept);
+  }
+  if (!ops.state.color_write || kept == 0) return;
+  need_color(bin, tile);
+  store_colors(bin, tile, kept, colors);
+}

@@ -1,0 +1,107 @@
+// Color packets: the states of the units behind the texture as tokens carry them: what is done with colours, its constant, and
+// the alpha test (state_packets.hpp says where the words lie).
+#pragma once
+
+#include <optional>
+
+#include "../fragment_ops.hpp"
+#include "state_packets.hpp"
+
+namespace halfplane {
+
+/// The words of the registers that a draw wants; none: it does not look at that one.
+struct ColorWords {
+  std::optional<std::uint32_t> ops, constant, alpha;
+};
+
+namespace color_packets_detail {
+inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // bits
+}
+
+/// ColorOps without the constant, lowest first: four factors, two equations, channels that are written, dithers, blends,
+/// reads what is stored. The last two follow from the rest, and stand there for who needs no more.
+[[nodiscard]] constexpr std::uint32_t pack(const ColorOps& ops) {
+  using namespace color_packets_detail;
+  std::uint32_t word = 0;
+  int at = 0;
+  const auto put = [&](auto value, int bits) {
+    word |= static_cast<std::uint32_t>(value) << at;
+    at += bits;
+  };
+  put(ops.factors.src, kFactor);
+  put(ops.factors.dst, kFactor);
+  put(ops.factors.src_alpha, kFactor);
+  put(ops.factors.dst_alpha, kFactor);
+  for (const BlendEquation equation : ops.equation) put(equation, kEquation);
+  for (const bool writes : ops.writes) put(writes, 1);
+  put(ops.dithers, 1);
+  put(ops.blends(), 1);
+  put(ops.reads_stored(), 1);
+  return word;
+}
+
+/// Back; the constant stays as it is.
+constexpr void unpack(std::uint64_t word, ColorOps& ops) {
+  using namespace color_packets_detail;
+  const auto take = [&word](int bits) {
+    const std::uint64_t value = word & ((std::uint64_t{1} << bits) - 1);
+    word >>= bits;
+    return value;
+  };
+  ops.factors.src = static_cast<BlendFactor>(take(kFactor));
+  ops.factors.dst = static_cast<BlendFactor>(take(kFactor));
+  ops.factors.src_alpha = static_cast<BlendFactor>(take(kFactor));
+  ops.factors.dst_alpha = static_cast<BlendFactor>(take(kFactor));
+  for (BlendEquation& equation : ops.equation) equation = static_cast<BlendEquation>(take(kEquation));
+  for (bool& writes : ops.writes) writes = take(1) != 0;
+  ops.dithers = take(1) != 0;
+}
+
+/// The constant, R lowest.
+[[nodiscard]] constexpr std::uint32_t pack(const BlendColor& constant) {
+  std::uint32_t word = 0;
+  for (std::size_t c = 4; c-- > 0;) word = word << color_packets_detail::kByte | constant[c];
+  return word;
+}
+[[nodiscard]] constexpr BlendColor unpack_constant(std::uint64_t word) {
+  BlendColor constant{};
+  for (std::size_t c = 0; c < 4; ++c) constant[c] = static_cast<std::uint8_t>(word >> 8 * c);
+  return constant;
+}
+
+/// The function, and above it the reference.
+[[nodiscard]] constexpr std::uint32_t pack(const AlphaTest& alpha) {
+  return static_cast<std::uint32_t>(alpha.func) | std::uint32_t{alpha.reference} << color_packets_detail::kFunction;
+}
+[[nodiscard]] constexpr AlphaTest unpack_alpha(std::uint64_t word) {
+  using namespace color_packets_detail;
+  return {static_cast<DepthFunc>(word & ((1U << kFunction) - 1)), static_cast<std::uint8_t>(word >> kFunction)};
+}
+
+/// What a draw asks of the units that this hardware has.
+[[nodiscard]] inline ColorWords color_words(const FragmentOps& ops, const Config& config) {
+  ColorWords words;
+  if (packs_at_write(config) && ops.state.color_write) {
+    words.ops = pack(ops.color);
+    const BlendFactors& f = ops.color.factors;
+    if (is_constant(f.src) || is_constant(f.dst) || is_constant(f.src_alpha) || is_constant(f.dst_alpha))
+      words.constant = pack(ops.color.constant);
+  }
+  if (tests_alpha(config)) words.alpha = pack(ops.alpha);
+  return words;
+}
+
+/// The registers.
+struct ColorState {
+  ColorOps ops;
+  AlphaTest alpha;
+
+  /// A token sets one of them.
+  constexpr void set(StateRegister which, std::uint64_t word) {
+    if (which == StateRegister::color_ops) unpack(word, ops);
+    if (which == StateRegister::blend_constant) ops.constant = unpack_constant(word);
+    if (which == StateRegister::alpha_test) alpha = unpack_alpha(word);
+  }
+};
+
+}  // namespace halfplane

@@ -1,0 +1,91 @@
+// Texture levels in hardware: what the unit knows of a draw's levels, where they lie in memory, and how the lines of a triangle
+// (level_of_detail.hpp) come to it in tokens.
+//
+// Levels lie one behind the other, the largest first, each a row of rows of blocks. Of 2^w x 2^h texels, level n has 2^a
+// blocks, a = max(0, w-2-n) + max(0, h-2-n). Down to the first of one block these are falling powers of two, so their sum up to
+// a level is some of the bits of one number: those above a. No adder is needed to find it, and none to find a block in it.
+// Of the two levels that may follow the first has the next block, and the second, of 1x1 texels, is texel (2, 2) of that.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "../fixed.hpp"
+#include "texture_sample.hpp"
+
+namespace halfplane {
+
+/// Of a draw.
+struct TextureLevels {
+  static constexpr int kBits = 31;
+  TextureMin min = TextureMin::nearest;
+  int last = 0;                ///< number of the smallest level
+  Lod least = 0, largest = 0;  ///< 0 to kLargest
+
+  /// A level of detail above has no other effect than this.
+  static constexpr Lod kLargest = (1 << 12) - 1;
+
+  /// From the lowest bit: min 3 (its lowest: linear; the others: none, the nearest level, two levels), last 4, least 12,
+  /// largest 12.
+  [[nodiscard]] std::uint32_t pack() const;
+  [[nodiscard]] static TextureLevels unpack(std::uint32_t word);
+  /// Whether any sample looks at two levels. They share the cache then, even and odd ones.
+  [[nodiscard]] constexpr bool has_two() const { return min >= TextureMin::nearest_mipmap_linear; }
+  bool operator==(const TextureLevels&) const = default;
+};
+
+[[nodiscard]] TextureLevels texture_levels(const Texture& texture, const State& state);
+
+/// Whether its samples have a level of detail that makes a difference.
+[[nodiscard]] bool needs_level(const TextureLevels& levels, TextureMag mag);
+
+/// Where a level begins.
+struct LevelPlace {
+  std::uint32_t block = 0;  ///< behind the first of level 0
+  bool is_corner = false;   ///< at texel (2, 2) of it
+};
+/// Of sides of so many texels, log2; 0 <= level <= the larger of the two.
+[[nodiscard]] constexpr LevelPlace level_place(const std::array<int, 2>& log2_size, int level) {
+  const int w = std::max(0, log2_size[0] - 2), h = std::max(0, log2_size[1] - 2);
+  const int first_of_one = std::max(w, h);
+  LevelPlace place;
+  for (int n = 0; n < std::min(level, first_of_one); ++n)
+    place.block += std::uint32_t{1} << (std::max(0, w - n) + std::max(0, h - n));
+  if (level > first_of_one) ++place.block;
+  place.is_corner = level == first_of_one + 2;
+  return place;
+}
+
+/// The lines of a triangle as tokens bring them: bits of along_y (at_zero of u, of v), along_x (likewise), the steps of u and
+/// of v, and 16 of the offset.
+struct TextureLines {
+  static constexpr int kBits = 208;
+  static constexpr int kOffsetBits = 16;  ///< +-2^7 levels: beyond, each level of detail is held
+  uint128 low = 0, high = 0;
+
+  /// `bias` is a part of the offset.
+  [[nodiscard]] static TextureLines pack(const LodSetup& setup, Lod bias);
+  [[nodiscard]] LodSetup unpack() const;
+  bool operator==(const TextureLines&) const = default;
+};
+
+/// Bits of them in a token whose codes have so many, and how many tokens that makes. No codes have less than 70 bits.
+[[nodiscard]] constexpr int line_part_bits(int code_bits) { return code_bits >= 104 ? 104 : 70; }
+[[nodiscard]] constexpr int line_parts(int part_bits) { return (TextureLines::kBits + part_bits - 1) / part_bits; }
+/// Part n, the lowest first.
+[[nodiscard]] uint128 line_part(const TextureLines& lines, int part_bits, int n);
+
+/// What the unit has of them: the last parts that came, the last one highest.
+class LineRegister {
+ public:
+  explicit LineRegister(int part_bits) : part_bits_(part_bits) {}
+  void move_in(uint128 part);
+  [[nodiscard]] TextureLines lines() const;
+
+ private:
+  int part_bits_;
+  std::array<uint128, 3> part_{};  ///< as many as there are
+};
+
+}  // namespace halfplane

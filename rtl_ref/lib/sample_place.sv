@@ -1,0 +1,25 @@
+// Where a sample lies in its block of 4x4 pixels: the low bits of its pixel's place. Combinational.
+module sample_place #(
+    parameter int SAMPLE = 0,  // of the stamp, row by row
+    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
+    parameter int STAMP = (SIDE_BITS == 0) ? 1 : 2 * SIDE_BITS
+) (
+    /* verilator lint_off UNUSEDSIGNAL */  // where a block is a stamp
+    input  logic [STAMP-1:0] stamp_i,  // of the block, row by row
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic [1:0]       x_o,
+    output logic [1:0]       y_o
+);
+
+  localparam int SIZE = raster_pkg::STAMP_SIZE;
+  generate
+    if (SIDE_BITS == 0) begin : gen_stamp
+      assign x_o = 2'(SAMPLE % SIZE);
+      assign y_o = 2'(SAMPLE / SIZE);
+    end else begin : gen_stamps
+      assign x_o = 2'(stamp_i[SIDE_BITS-1:0]) * 2'(SIZE) + 2'(SAMPLE % SIZE);
+      assign y_o = 2'(stamp_i[2*SIDE_BITS-1:SIDE_BITS]) * 2'(SIZE) + 2'(SAMPLE / SIZE);
+    end
+  endgenerate
+
+endmodule

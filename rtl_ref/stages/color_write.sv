@@ -1,0 +1,379 @@
+// Color write (W): what X is through with comes to the colour RAM: an evicted block's colours are read first, a stamp a clock,
+// then the stamp's own are written.
+//
+// Without blending nobody reads colours but to write them back, and a stamp takes a clock. With it a stamp also reads what is
+// stored under it, from the RAM and, where that does not have all of it, from the clear value or an answer of memory; it takes
+// a clock for each group of BLEND_LANES samples that are blended, one at least, and what it writes is in the RAM three clocks
+// later, in order. A stamp that reads waits until nothing of an eviction is left to be read and for what is on its way to
+// these samples; an eviction waits for what is on its way to its line. Samples are packed here, rounded or dithered.
+// Specification: model/stages/block_cache.hpp, rop.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+module color_write #(
+    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
+    parameter int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE,  // of a block
+    parameter int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS,
+    parameter int LINE = (raster_pkg::CACHE_LINES == 1) ? 1 : raster_pkg::LINE_X_BITS + raster_pkg::LINE_Y_BITS,
+    parameter int VICTIM = $clog2(raster_pkg::CACHE_VICTIMS)
+) (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From X and what stands between
+    input  logic                                                        stamp_valid_i,
+    output logic                                                        stamp_ready_o,
+    input  logic [LINE-1:0]                                             line_i,
+    input  logic [STAMP-1:0]                                            stamp_i,
+    input  logic                                                        starts_i,  // nothing of the stamp is in the RAM
+    input  logic [raster_pkg::SAMPLES-1:0]                              mask_i,    // samples whose colour is written
+    input  logic [raster_pkg::SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] color_i,
+    input  logic                                                        evicts_i,
+    input  logic                                                        fills_i,
+    input  logic [STAMPS-1:0]                                           stamps_i,  // that leave
+    input  logic [raster_pkg::STORED_COLOR_BITS-1:0]                    clear_color_i,
+
+    // What is done with colours
+    /* verilator lint_off UNUSEDSIGNAL */  // without units for it
+    input logic                               sets_state_i,  // a token: of these registers one
+    input logic [raster_pkg::DEPTH_FUNC_BITS-1:0]   register_i,
+    input logic [31:0]                        word_i,
+    input logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] source_i,  // of the stored colours
+    input logic                               answer_valid_i,
+    input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic                              answer_ready_o,
+
+    // A stamp that leaves, in a slot for victims; and that one leaves without a colour
+    output logic                                                        victim_valid_o,
+    output logic                                                        victim_last_o,
+    output logic [VICTIM-1:0]                                           victim_slot_o,
+    output logic [STAMP-1:0]                                            victim_stamp_o,
+    output logic [raster_pkg::SAMPLES-1:0]                              victim_strobe_o,
+    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] victim_color_o,
+    output logic                                                        leaves_empty_o,
+
+    output logic idle_o  // everything is in the RAM
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int SHADED = raster_pkg::SHADED_COLOR_BITS;
+  localparam int LANES = raster_pkg::BLEND_LANES;
+  localparam int ADDRESS = LINE + STAMP;
+
+  function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
+    lowest = set & (~set + 1'b1);
+  endfunction
+  function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
+    number_of = '0;
+    for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
+  endfunction
+
+  // What the stamp at the head does: it begins to read an evicted block, it goes on to the RAM.
+  logic               writes_all;  // all its samples are written into the RAM, that others are known not to be there
+  logic               is_busy;     // something is on its way to its line
+  logic               waits;       // for what it reads
+  logic               ends;        // with this clock
+  logic               goes, started_q, starts, reads, hits;
+  logic [STAMPS-1:0]  left_q, left, next, own;
+  logic [LINE-1:0]    left_line_q;
+  assign own    = stamp_valid_i && (mask_i != '0 || writes_all) && !started_q ? STAMPS'(1) << stamp_i : '0;
+  assign starts = stamp_valid_i && evicts_i && !started_q && left_q == '0 && !is_busy;
+  assign left   = starts ? stamps_i : left_q;
+  assign hits   = (starts || left_line_q == line_i) && (left & own) != '0;
+  assign next   = hits ? own : lowest(left);
+  assign reads  = left != '0;
+  assign goes   = stamp_valid_i && !hits && (!evicts_i || starts || started_q) && !waits;
+  assign stamp_ready_o  = goes && ends;
+  assign leaves_empty_o = starts && stamps_i == '0;
+
+  logic              valid_q, last_q, fills_q, victim_fills_q;  // colours of a victim have been read
+  logic [STAMP-1:0]  stamp_q;
+  logic [VICTIM-1:0] slot_q, next_slot_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      started_q   <= 1'b0;
+      left_q      <= '0;
+      valid_q     <= 1'b0;
+      next_slot_q <= '0;
+    end else begin
+      started_q   <= !stamp_ready_o && (started_q || starts);
+      left_q      <= left & ~next;
+      valid_q     <= reads;
+      next_slot_q <= next_slot_q + VICTIM'(starts);
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (starts) begin
+      left_line_q    <= line_i;
+      victim_fills_q <= fills_i;
+    end
+    fills_q <= starts ? fills_i : victim_fills_q;
+    stamp_q <= number_of(next);
+    slot_q  <= starts ? next_slot_q : next_slot_q - 1'b1;
+    last_q  <= left == next;
+  end
+  assign victim_valid_o = valid_q;
+  assign victim_last_o  = last_q;
+  assign victim_slot_o  = slot_q;
+  assign victim_stamp_o = stamp_q;
+
+  // The colour RAM: of each sample its code, and whether memory does not have it.
+  logic                     looks;  // the stamp at the head reads the RAM
+  logic [ADDRESS-1:0]       read_address, write_address;
+  logic [SAMPLES-1:0]       dirty, writes, dirty_new;
+  logic [SAMPLES*COLOR-1:0] code, code_new;
+  assign read_address = looks ? {line_i, stamp_i} : {starts ? line_i : left_line_q, number_of(next)};
+  genvar s;
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_color
+      sram #(
+          .WIDTH    (COLOR + 1),
+          .DEPTH    (1 << ADDRESS),
+          .READS_OLD(0)
+      ) u_color (
+          .clk_i,
+          .read_i         (reads || looks),
+          .read_address_i (read_address),
+          .data_o         ({dirty[s], code[s*COLOR+:COLOR]}),
+          .write_i        (writes[s]),
+          .write_address_i(write_address),
+          .data_i         ({dirty_new[s], code_new[s*COLOR+:COLOR]})
+      );
+      assign victim_strobe_o[s] = fills_q || dirty[s];
+      assign victim_color_o[s*COLOR+:COLOR] = dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}};
+    end
+  endgenerate
+
+  // The threshold of a sample, by the place of its pixel in a block of 4x4: Bayer's matrix.
+  function automatic [3:0] threshold_of(input [1:0] x, input [1:0] y);
+    threshold_of = ~{x[0] ^ y[0], y[0], x[1] ^ y[1], y[1]};
+  endfunction
+
+  generate
+    if (LANES == 0) begin : gen_replaces
+      assign writes_all    = starts_i;
+      assign is_busy       = 1'b0;
+      assign waits         = 1'b0;
+      assign ends          = 1'b1;
+      assign looks         = 1'b0;
+      assign write_address = {line_i, stamp_i};
+      assign dirty_new     = mask_i;
+      assign writes        = {SAMPLES{stamp_ready_o}} & (mask_i | {SAMPLES{starts_i}});
+      assign answer_ready_o = 1'b0;
+      assign idle_o        = 1'b1;
+      if (raster_pkg::DITHER_UNIT == 0) begin : gen_packed
+        assign code_new = color_i;
+      end else begin : gen_dithered
+        localparam int DITHERS = 26;  // the bit of a word of operations that says so
+        logic dithers_q;
+        always_ff @(posedge clk_i or negedge rst_ni) begin
+          if (!rst_ni) dithers_q <= 1'b0;
+          else if (stamp_ready_o && sets_state_i && register_i == raster_pkg::STATE_REGISTER_COLOR_OPS)
+            dithers_q <= word_i[DITHERS];
+        end
+        for (s = 0; s < SAMPLES; s++) begin : gen_rop
+          logic [1:0] x, y;
+          sample_place #(
+              .SAMPLE(s)
+          ) u_place (
+              .stamp_i,
+              .x_o(x),
+              .y_o(y)
+          );
+          dithered_rop u_rop (
+              .rgba_i     (color_i[s*SHADED+:SHADED]),
+              .dithers_i  (dithers_q),
+              .threshold_i(threshold_of(x, y)),
+              .color_o    (code_new[s*COLOR+:COLOR])
+          );
+        end
+      end
+    end else begin : gen_blends
+      localparam int GROUP = LANES < SAMPLES ? LANES : SAMPLES;  // samples that are blended in a clock
+      localparam int GROUPS = SAMPLES / GROUP;
+      localparam int CHANNELS = raster_pkg::COLOR_FORMAT == 0 ? 3 : 4;  // that are stored
+
+      // The registers: operations, lowest first four factors, two equations, channels that are written, dithers, blends.
+      localparam int EQUATION = 16;
+      localparam int WRITES = 22;
+      localparam int DITHERS = 26;
+      localparam int BLENDS = 27;
+      logic [BLENDS:0] ops_q;
+      logic [31:0]     constant_q;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          ops_q      <= {2'b00, 4'b1111, WRITES'(0)};
+          constant_q <= '0;
+        end else if (stamp_ready_o && sets_state_i) begin
+          if (register_i == raster_pkg::STATE_REGISTER_COLOR_OPS) ops_q <= word_i[BLENDS:0];
+          if (register_i == raster_pkg::STATE_REGISTER_BLEND_CONSTANT) constant_q <= word_i;
+        end
+      end
+
+      // 0: the stamp at the head, group by group.
+      logic               is_here, is_fetched, is_first;
+      logic [GROUPS-1:0]  wanted, done_q, group;  // groups with a sample to be blended
+      logic [SAMPLES-1:0] written, looked_at;
+      assign is_here    = source_i == raster_pkg::DEPTH_SOURCE_CHIP;
+      assign is_fetched = source_i != raster_pkg::DEPTH_SOURCE_NONE && !is_here;
+      assign writes_all = starts_i || is_fetched;
+      for (s = 0; s < GROUPS; s++) begin : gen_group
+        assign wanted[s] = mask_i[s*GROUP+:GROUP] != '0 && !done_q[s];
+        assign written[s*GROUP+:GROUP] = mask_i[s*GROUP+:GROUP] & {GROUP{group[s] || !ops_q[BLENDS]}};
+      end
+      assign group     = wanted & (~wanted + 1'b1);
+      assign is_first  = done_q == '0;
+      assign ends      = !ops_q[BLENDS] || wanted == group;
+      assign looked_at = is_fetched ? '1 : mask_i;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) done_q <= '0;
+        else if (goes) done_q <= ends ? '0 : done_q | group;
+      end
+
+      // 1 to 3: what is on its way to the RAM. 1 has read it, 2 multiplies, 3 packs and writes.
+      logic [2:0]           on_way_q;
+      logic [LINE-1:0]      line_1_q, line_2_q, line_3_q;
+      logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q;
+      logic [SAMPLES-1:0]   mask_1_q, mask_2_q, mask_3_q;     // whose colour is written
+      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q;  // that come into the RAM
+      logic [SAMPLES-1:0]   blended_1_q, blended_2_q, blended_3_q;  // by the lanes
+      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q;
+      logic [SAMPLES*SHADED-1:0] color_1_q, color_2_q, color_3_q;
+      logic [SAMPLES*COLOR-1:0]  base_1_q, stored, stored_2_q, stored_3_q;
+      logic [GROUPS-1:0]    group_1_q;
+      logic                 starts_1_q, is_here_1_q;
+      /* verilator lint_off UNUSEDSIGNAL */  // rgb565 has no alpha, rgba8888 no dithering
+      logic [4:0]           out_2_q, out_3_q;  // of the operations what comes last: channels written, dithers
+      /* verilator lint_on UNUSEDSIGNAL */
+      logic                 collides;
+      logic [2:0]           is_same_line, is_same_stamp;
+
+      assign is_same_line = on_way_q & {line_3_q == line_i && writes_3_q != '0, line_2_q == line_i && writes_2_q != '0,
+                                        line_1_q == line_i && writes_1_q != '0};
+      assign is_same_stamp = is_same_line & {stamp_3_q == stamp_i && (writes_3_q & looked_at) != '0,
+                                             stamp_2_q == stamp_i && (writes_2_q & looked_at) != '0,
+                                             stamp_1_q == stamp_i && (writes_1_q & looked_at) != '0};
+      assign is_busy  = is_same_line != '0;
+      assign collides = is_same_stamp != '0 && is_first;
+      // Where something of the stamp is in the RAM it is read.
+      assign waits = (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i) ||
+                     (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i && (left != '0 || collides));
+      assign looks = goes && source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i;
+      assign answer_ready_o = stamp_ready_o && source_i == raster_pkg::DEPTH_SOURCE_MEMORY;
+      assign idle_o = on_way_q == '0;
+
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) on_way_q <= '0;
+        else on_way_q <= {on_way_q[1:0], goes};
+      end
+      always_ff @(posedge clk_i) begin
+        line_1_q    <= line_i;
+        stamp_1_q   <= stamp_i;
+        mask_1_q    <= written;
+        writes_1_q  <= written | (~mask_i & {SAMPLES{writes_all && is_first}});  // no group reads what another writes
+        color_1_q   <= color_i;
+        base_1_q    <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_i : {SAMPLES{clear_color_i}};
+        group_1_q   <= group;
+        starts_1_q  <= starts_i;
+        is_here_1_q <= is_here;
+        blended_1_q <= written & {SAMPLES{ops_q[BLENDS]}};
+        line_2_q    <= line_1_q;
+        stamp_2_q   <= stamp_1_q;
+        mask_2_q    <= mask_1_q;
+        writes_2_q  <= writes_1_q;
+        blended_2_q <= blended_1_q;
+        color_2_q   <= color_1_q;
+        dirty_2_q   <= mask_1_q | (starts_1_q ? '0 : dirty);
+        stored_2_q  <= stored;
+        out_2_q     <= ops_q[DITHERS:WRITES];
+        line_3_q    <= line_2_q;
+        stamp_3_q   <= stamp_2_q;
+        mask_3_q    <= mask_2_q;
+        writes_3_q  <= writes_2_q;
+        blended_3_q <= blended_2_q;
+        color_3_q   <= color_2_q;
+        dirty_3_q   <= dirty_2_q;
+        stored_3_q  <= stored_2_q;
+        out_3_q     <= out_2_q;
+      end
+
+      // 1: what is stored, and of the group its samples, as 8 bits a channel.
+      for (s = 0; s < SAMPLES; s++) begin : gen_stored
+        assign stored[s*COLOR+:COLOR] = is_here_1_q || (dirty[s] && !starts_1_q) ? code[s*COLOR+:COLOR] : base_1_q[s*COLOR+:COLOR];
+      end
+      logic [GROUP*8*CHANNELS-1:0] result;
+      genvar l;
+      for (l = 0; l < GROUP; l++) begin : gen_lane
+        logic [COLOR-1:0]  stored_code;
+        logic [SHADED-1:0] source;
+        logic [31:0]       wide;
+        always_comb begin
+          stored_code = '0;
+          source      = '0;
+          for (int i = 0; i < GROUPS; i++) begin
+            stored_code = stored_code | (stored[(i*GROUP+l)*COLOR+:COLOR] & {COLOR{group_1_q[i]}});
+            source      = source | (color_1_q[(i*GROUP+l)*SHADED+:SHADED] & {SHADED{group_1_q[i]}});
+          end
+        end
+        if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
+          assign wide = {8'hff, stored_code[4:0], stored_code[4:2], stored_code[10:5], stored_code[10:9],
+                         stored_code[15:11], stored_code[15:13]};
+        end else begin : gen_rgba8888
+          assign wide = stored_code;
+        end
+        blend_lane #(
+            .CHANNELS(CHANNELS)
+        ) u_lane (
+            .clk_i,
+            .source_i  (source),
+            .stored_i  (wide),
+            .factors_i (ops_q[15:0]),
+            .equation_i(ops_q[EQUATION+:6]),
+            .constant_i(constant_q),
+            .color_o   (result[l*8*CHANNELS+:8*CHANNELS])
+        );
+      end
+
+      // 3: packed, and of each channel the new or the stored one.
+      assign write_address = {line_3_q, stamp_3_q};
+      assign writes        = writes_3_q & {SAMPLES{on_way_q[2]}};
+      assign dirty_new     = dirty_3_q;
+      for (s = 0; s < SAMPLES; s++) begin : gen_rop
+        logic [SHADED-1:0] rgba;
+        logic [COLOR-1:0]  packed_color, channels;
+        always_comb begin
+          rgba = color_3_q[s*SHADED+:SHADED];
+          if (blended_3_q[s]) rgba[8*CHANNELS-1:0] = result[(s%GROUP)*8*CHANNELS+:8*CHANNELS];
+        end
+        if (raster_pkg::DITHER_UNIT == 0) begin : gen_rounded
+          rop u_rop (
+              .rgba_i (rgba),
+              .color_o(packed_color)
+          );
+        end else begin : gen_dithered
+          logic [1:0] x, y;
+          sample_place #(
+              .SAMPLE(s)
+          ) u_place (
+              .stamp_i(stamp_3_q),
+              .x_o(x),
+              .y_o(y)
+          );
+          dithered_rop u_rop (
+              .rgba_i     (rgba),
+              .dithers_i  (out_3_q[4]),
+              .threshold_i(threshold_of(x, y)),
+              .color_o    (packed_color)
+          );
+        end
+        if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
+          assign channels = {{5{out_3_q[0]}}, {6{out_3_q[1]}}, {5{out_3_q[2]}}};
+        end else begin : gen_rgba8888
+          assign channels = {{8{out_3_q[3]}}, {8{out_3_q[2]}}, {8{out_3_q[1]}}, {8{out_3_q[0]}}};
+        end
+        assign code_new[s*COLOR+:COLOR] = (packed_color & channels & {COLOR{mask_3_q[s]}}) |
+                                          (stored_3_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_3_q[s]}}));
+      end
+    end
+  endgenerate
+
+endmodule

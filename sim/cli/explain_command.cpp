@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <ostream>
+
+#include "sim/cli/commands.hpp"
+#include "sim/cli/explain_output.hpp"
+#include "sim/cli/explain_page.hpp"
+#include "sim/cli/options.hpp"
+#include "sim/cli/progress.hpp"
+#include "sim/cosim/dut.hpp"
+#include "sim/show/image/png.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/study/explain/explain.hpp"
+#include "sim/study/explain/picture.hpp"
+#include "sim/study/explain/report.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr int kMostPixels = 4096;  // of --box: a history of each is kept
+
+struct ExplainOptions : CommonOptions {
+  int x = 0, y = 0;  ///< pixels
+  std::string box = "1x1";
+  double near = 1;  ///< pixels
+  bool rtl = false, steps = false;
+  int mutant = 0;
+  std::string output;  ///< .png or .html
+  int margin = 4;      ///< of it, pixels
+};
+
+bool is_page(const std::string& path) { return path.ends_with(".html"); }
+
+/// Row by row.
+std::vector<explain::Pixel> box_pixels(int x, int y, int width, int height) {
+  std::vector<explain::Pixel> pixels;
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i) pixels.push_back({x + i, y + j});
+  return pixels;
+}
+
+std::unique_ptr<Dut> explained_rtl(const ExplainOptions& options, const Config& config) {
+  if (!options.rtl) {
+    if (options.mutant != 0) throw InputError("--mutant is a fault of the RTL; give --rtl as well");
+    return nullptr;
+  }
+  const DutFactory& factory = find_dut(config);
+  if (options.mutant != 0 && !factory.has_mutants)
+    throw InputError("--mutant: the RTL of " + factory.name + " has no mutants; use --config embedded");
+  return make_dut(factory);
+}
+
+Json explain_json(const ExplainOptions& options, const Config& config, const Scene& scene,
+                  const explain::Explanation& told) {
+  Json result = result_head("explain", options, config);
+  result["width"] = scene.width;
+  result["height"] = scene.height;
+  result["primitives"] = told.primitives;
+  result["near"] = options.near;
+  result["hardware"] = {{"has_scene", told.no_hardware.empty()},
+                        {"why_not", told.no_hardware.empty() ? Json(nullptr) : Json(told.no_hardware)}};
+  result["checks"] = told.checks;
+  result["differences"] = told.differences;
+  result["pixels"] = Json::array();
+  for (const explain::PixelHistory& pixel : told.pixels)
+    result["pixels"].push_back(explain::pixel_json(pixel, told, scene, config));
+  return result;
+}
+
+void print_explanation(std::ostream& out, const ExplainOptions& options, const Config& config, const Scene& scene,
+                       const explain::Explanation& told) {
+  out << options.scene << ", " << scene.width << "x" << scene.height << ", " << label(config) << ": "
+      << with_commas(told.primitives) << " primitives; those that pass within " << options.near
+      << " pixels, in program order\n";
+  if (!told.no_hardware.empty()) out << "without hardware: " << told.no_hardware << '\n';
+  for (const explain::PixelHistory& pixel : told.pixels) explain::print_pixel(out, pixel, told, scene, config);
+  out << with_commas(told.checks) << " figures held against each other, "
+      << (told.differences.empty() ? "all agree" : std::to_string(told.differences.size()) + " differ") << '\n';
+  for (const std::string& difference : told.differences) out << "  " << difference << '\n';
+}
+
+void check_picture(const ExplainOptions& options) {
+  if (options.output.empty()) return;
+  if (options.output == "-") throw InputError("-o: give a file, .png or .html");
+  if (!options.output.ends_with(".png") && !is_page(options.output))
+    throw InputError("cannot write '" + options.output + "': give a name that ends in .png or .html");
+  check_output(options.output);
+}
+
+/// The command as it can be repeated.
+std::string explain_repeat(const ExplainOptions& options, const Config& config) {
+  std::string command = program_word() + " explain " + quoted(options.scene) + " " + std::to_string(options.x) + " " +
+                        std::to_string(options.y) + config_arguments(config);
+  if (options.box != "1x1") command += " --box " + quoted(options.box);
+  if (!options.size.empty()) command += " --size " + quoted(options.size);
+  if (!options.camera.empty()) command += " --camera " + quoted(options.camera);
+  if (options.rtl) command += " --rtl";
+  return command + " -o " + quoted(options.output);
+}
+
+/// Explains what lies around the box as well, and draws it.
+void write_picture(const ExplainOptions& options, const Rect& box, const Scene& scene, const Config& config,
+                   const explain::Options& how) {
+  const explain::Window window = explain::window_around(box, options.margin, scene);
+  const explain::Explanation around =
+      explain::explain(scene, config, box_pixels(window.left, window.top, window.width, window.height), how);
+  if (!is_page(options.output)) {
+    const std::string title =
+        options.scene + ", " + label(config) + ", pixel " + std::to_string(box.x) + " " + std::to_string(box.y);
+    write_png(options.output, explain::neighbourhood_picture(around, window, box, config, title));
+    return;
+  }
+  Json page = explain::page_json(around, window, box, scene, config);
+  page["scene"] = options.scene;
+  page["command"] = explain_repeat(options, config);
+  const std::string text = explain::explain_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
+  write_whole_file(options.output, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+int run(const ExplainOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Size box;
+  try {
+    box = parse_size(options.box);
+  } catch (const InputError&) {
+    throw InputError("--box: '" + options.box + "' is no box; give WIDTHxHEIGHT of at least 1x1, as in 4x4");
+  }
+  if (box.width > kMostPixels || box.height > kMostPixels || box.width * box.height > kMostPixels)
+    throw InputError("--box: " + options.box + " is more than " + std::to_string(kMostPixels) +
+                     " pixels; give a smaller one");
+  if (options.skip != "all") throw InputError("--skip: explain tells what the default leaves out; leave it out");
+  check_distinct({options.scene, options.json, options.output});
+  check_picture(options);
+  const Config config = effective_config(options);
+  const std::unique_ptr<Dut> dut = explained_rtl(options, config);
+  double load_s = 0;
+  const Scene scene = load_scene(options, config, load_s);
+  Progress progress(options, "explaining");
+  explain::Options how;
+  how.near = options.near;
+  how.wants_steps = options.steps;
+  how.rtl = dut.get();
+  how.mutant = static_cast<std::uint16_t>(options.mutant);
+  how.progress = [&progress](double fraction) { progress(fraction); };
+  const explain::Explanation told =
+      explain::explain(scene, config, box_pixels(options.x, options.y, box.width, box.height), how);
+  if (!options.output.empty())
+    write_picture(options, {options.x, options.y, box.width, box.height}, scene, config, how);
+  Json result = explain_json(options, config, scene, told);
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+  print_explanation(human(options), options, config, scene, told);
+  return told.differences.empty() ? exit_ok : exit_mismatch;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("explain", "one pixel's history: what touched it, and why it is what it is");
+  auto options = std::make_shared<ExplainOptions>();
+  add_scene_options(*command, *options);
+  command->add_option("X", options->x, "column of the pixel; the top left one is 0 0")->required();
+  command->add_option("Y", options->y, "row of the pixel")->required();
+  command->add_option("--box", options->box, "WxH pixels with X Y as the top left one")
+      ->check(refuse_empty)
+      ->capture_default_str()
+      ->type_name("SIZE");
+  command->add_option("--near", options->near, "also tell of primitives that pass within N pixels")
+      ->check(CLI::Range(1.0, 100000.0))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_flag("--rtl", options->rtl, "the RTL's packets too, bit by bit, and the cycles in which they crossed");
+  add_file_option(*command, "-o", options->output,
+                  "the neighbourhood enlarged, .png: grid, samples, edges; or .html: a page to step through");
+  command->add_option("--margin", options->margin, "of -o: so many pixels around")
+      ->check(CLI::Range(0, 24))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_flag("--steps", options->steps, "of lines and triangles every pixel, step by step");
+  command->add_option("--mutant", options->mutant, "with --rtl: one of the RTL's built-in faults, 0 for none")
+      ->check(CLI::Range(0, 65535))
+      ->type_name("N");
+  command->footer(
+      "\nSpecification, hardware model, functional engine, golden and oracle are held against each other: the status\n"
+      "is 1 where they differ.\n"
+      "\nExample:\n  halfplane explain teapot 320 240 -o pixel.html");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane

@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <ostream>
+
+#include "sim/cli/commands.hpp"
+#include "sim/cli/options.hpp"
+#include "sim/cli/progress.hpp"
+#include "sim/vectors/vector_file.hpp"
+
+namespace halfplane {
+namespace {
+
+struct VectorsOptions : CommonOptions {
+  std::uint64_t random = 0;  ///< primitives; 0: a scene
+  std::string stage, format = "jsonl", output;
+};
+
+vectors::Format vector_format(const std::string& name) {
+  const auto found = std::find(vectors::kFormats.begin(), vectors::kFormats.end(), name);
+  return static_cast<vectors::Format>(found - vectors::kFormats.begin());
+}
+
+Json port_counts(const std::vector<vectors::Port>& ports, const std::vector<vectors::PacketList>& lists) {
+  Json json = Json::object();
+  for (std::size_t p = 0; p < ports.size(); ++p) json[std::string(ports[p].name)] = lists[p].size();
+  return json;
+}
+
+std::string ports_text(const std::vector<vectors::Port>& ports, const std::vector<vectors::PacketList>& lists) {
+  std::string text;
+  for (std::size_t p = 0; p < ports.size(); ++p)
+    text += (text.empty() ? "" : ", ") + with_commas(lists[p].size()) + " " + std::string(ports[p].name);
+  return text.empty() ? "nothing" : text;
+}
+
+std::string vector_source(const VectorsOptions& options) {
+  return options.random == 0 ? options.scene
+                             : "random " + std::to_string(options.random) + " seed " + std::to_string(options.seed);
+}
+
+int run(const VectorsOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  if (options.scene.empty() == (options.random == 0))
+    throw InputError(options.scene.empty() ? "nothing to run; give a SCENE or --random N"
+                                           : "a SCENE and --random exclude each other; leave one of them out");
+  if (options.skip != "all") throw InputError("--skip: hardware skips by its own rules; leave it out");
+  const vectors::Format format = vector_format(options.format);
+  if (format == vectors::Format::hex && options.output == "-")
+    throw InputError("-o: hex vectors are a folder, which cannot go to stdout; give its name");
+  if (format != vectors::Format::hex) check_output(options.output);
+  check_distinct({options.scene, options.output, options.json});
+  const Config config = effective_config(options);
+  const vectors::JudgedStage& stage = vectors::judged_stage(options.stage);
+  vectors::require_stage(stage, config);
+  double load_s = 0;
+  const SceneSource scenes = options.random != 0 ? random_scenes(config, options.seed, options.random)
+                                                 : single_scene(load_scene(options, config, load_s));
+  Progress progress(options, "recording", "primitives");
+  const vectors::StagePackets packets = vectors::record_stage(stage, config, scenes, [&progress](std::uint64_t sent) {
+    progress(std::numeric_limits<double>::quiet_NaN(), sent);
+  });
+  const auto written = vectors::write_vectors(options.output, format, stage, config, packets, vector_source(options));
+  Json result = result_head("vectors", options, config);
+  result["seed"] = options.seed;
+  result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
+  result["stage"] = options.stage;
+  result["format"] = options.format;
+  result["can_be_checked"] = stage.run != nullptr;
+  result["in"] = port_counts(stage.in, packets.in);
+  result["out"] = port_counts(stage.out, packets.out);
+  result["files"] = Json::array();
+  for (const auto& [path, bytes] : written) result["files"].push_back({{"path", path}, {"bytes", bytes}});
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+  std::ostream& out = human(options);
+  out << options.stage << " of " << vector_source(options) << ", " << label(config)
+      << (options.random != 0 ? "" : ", seed " + std::to_string(options.seed)) << '\n'
+      << "in   " << ports_text(stage.in, packets.in) << '\n'
+      << "out  " << ports_text(stage.out, packets.out) << '\n';
+  for (const auto& [path, bytes] : written) out << path << "  " << with_commas(bytes) << " bytes\n";
+  if (stage.run == nullptr) out << "`halfplane check` cannot judge this stage: " << stage.why_not << '\n';
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_vectors_command(CLI::App& app, Action& selected) {
+  CLI::App* command = app.add_subcommand("vectors", "what goes into a stage and what must come out, for your own RTL");
+  auto options = std::make_shared<VectorsOptions>();
+  add_scene_options(*command, *options);
+  command->get_option("SCENE")->required(false);
+  command
+      ->add_option("--random", options->random,
+                   "N random triangles, lines and points of all sizes and states instead of a scene")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10'000'000}))
+      ->type_name("N");
+  command->add_option("--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...")
+      ->required()
+      ->check(refuse_empty)
+      ->type_name("NAME");
+  command->add_option("--format", options->format, "how they are written")
+      ->check(CLI::IsMember({"jsonl", "csv", "hex"}))
+      ->capture_default_str();
+  add_file_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout");
+  command->get_option("-o")->required();
+  command->footer(
+      "\nThe hardware model runs from reset. Judge what your implementation gave with `halfplane check`.\n"
+      "\nExample:\n  halfplane vectors --random 200 --stage fine_raster -o fine_raster.jsonl");
+  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace halfplane

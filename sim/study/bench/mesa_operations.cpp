@@ -1,0 +1,56 @@
+#include "sim/study/bench/mesa_operations.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace halfplane::gl {
+namespace {
+
+constexpr std::array<Enum, 15> kFactors{0,     1,     0x300,  0x301,  0x306,  0x307,  0x302, 0x303,
+                                        0x304, 0x305, 0x8001, 0x8002, 0x8003, 0x8004, 0x308};
+constexpr std::array<Enum, 5> kEquations{0x8006, 0x800a, 0x800b, 0x8007, 0x8008};
+constexpr std::array<Enum, 8> kStencilOps{0x1e00, 0, 0x1e01, 0x1e02, 0x1e03, 0x150a, 0x8507, 0x8508};
+
+Enum factor(BlendFactor f) { return kFactors[static_cast<std::size_t>(f)]; }
+Enum equation(BlendEquation e) { return kEquations[static_cast<std::size_t>(e)]; }
+Enum operation(StencilOp op) { return kStencilOps[static_cast<std::size_t>(op)]; }
+
+}  // namespace
+
+Enum comparison(DepthFunc func) {
+  constexpr std::array<Enum, 8> kComparisons{0x200, 0x201, 0x203, 0x202, 0x204, 0x206, 0x205, 0x207};
+  return kComparisons[static_cast<std::size_t>(func)];
+}
+
+void apply_operations(const Functions& gl, const State& state) {
+  const auto writes = [&](std::size_t c) {
+    return static_cast<unsigned char>(state.color_write && state.color_mask[c]);
+  };
+  gl.color_mask(writes(0), writes(1), writes(2), writes(3));
+  state.blend ? gl.enable(kBlend) : gl.disable(kBlend);
+  if (state.blend) {
+    const BlendFactors& f = *state.blend;
+    gl.blend_func_separate(factor(f.src), factor(f.dst), factor(f.src_alpha), factor(f.dst_alpha));
+    gl.blend_equation_separate(equation(state.blend_equation[0]), equation(state.blend_equation[1]));
+    const auto part = [&](std::size_t c) { return static_cast<float>(state.blend_color[c] / 255.0); };
+    gl.blend_color(part(0), part(1), part(2), part(3));
+  }
+  state.stencil ? gl.enable(kStencilTest) : gl.disable(kStencilTest);
+  if (!state.stencil) return;
+  for (const Enum side : {kFront, kBack}) {
+    const Stencil& s = side == kBack && state.stencil_back ? *state.stencil_back : *state.stencil;
+    gl.stencil_func_separate(side, comparison(s.func), s.reference, s.read_mask);
+    gl.stencil_op_separate(side, operation(s.stencil_fails), operation(s.depth_fails), operation(s.passes));
+    gl.stencil_mask_separate(side, s.write_mask);
+  }
+}
+
+std::string alpha_test_source(const AlphaTest& test) {
+  constexpr std::array<const char*, 8> kComparisons{"", " < ", " <= ", " == ", " > ", " >= ", " != ", ""};
+  if (test.func == DepthFunc::always) return "";
+  if (test.func == DepthFunc::never) return "discard;";
+  return "if (!(floor(result.a * 255.0 + 0.5)" + std::string(kComparisons[static_cast<std::size_t>(test.func)]) +
+         std::to_string(test.reference) + ".0)) discard;";
+}
+
+}  // namespace halfplane::gl

@@ -1,0 +1,108 @@
+#include "layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/fragment_ops.hpp"
+#include "model/golden/golden.hpp"
+
+namespace halfplane {
+namespace {
+
+/// By how much a factor of the real colours may be off, 0...1: where it is made of a stored colour that is off by `color`
+/// 255ths, its alpha by `alpha`.
+double factor_error(BlendFactor factor, std::size_t channel, double color, double alpha) {
+  switch (factor) {
+    case BlendFactor::dst_color:
+    case BlendFactor::one_minus_dst_color: return color / 255;
+    case BlendFactor::dst_alpha:
+    case BlendFactor::one_minus_dst_alpha: return alpha / 255;
+    case BlendFactor::src_alpha_saturate: return channel == 3 ? 0 : alpha / 255;
+    default: return 0;
+  }
+}
+
+}  // namespace
+
+LayeredColors::LayeredColors(std::size_t pixels, ColorFormat format)
+    : format_(format), most_{}, channels_(static_cast<std::size_t>(golden::channel_count(format))), at_(pixels) {
+  const auto max = golden::channel_max(format);
+  for (std::size_t c = 0; c < 4; ++c) most_[c] = max[c];
+}
+
+void LayeredColors::clear(std::size_t pixel, const std::array<double, 4>& color) {
+  Pixel& at = at_[pixel];
+  at = {};
+  at.real = color;
+  if (channels_ == 3) at.real[3] = 255;
+  at.bound.fill(1);  // to 8 bits, then to the stored ones
+}
+
+double LayeredColors::bound_of_blend(const Pixel& before, const State& state, const golden::RealColor& source,
+                                     std::size_t c) const {
+  const bool is_narrow = format_ == ColorFormat::rgb565;
+  const auto error_of = [&](std::size_t channel) {  // 255ths, as the blend sees it
+    if (is_narrow && channel == 3) return 0.0;
+    return before.bound[channel] * 255 / most_[channel] + (is_narrow ? 0.5 : 0.0);
+  };
+  const double d = before.real[c], e = error_of(c), alpha = error_of(3);
+  double error = e;  // of min and max
+  const BlendEquation equation = state.blend_equation[c == 3 ? 1 : 0];
+  if (equation != BlendEquation::min && equation != BlendEquation::max) {
+    const BlendFactors& f = *state.blend;
+    golden::RealColor constant{};
+    for (std::size_t i = 0; i < 4; ++i) constant[i] = state.blend_color[i];
+    const BlendFactor of_source = c == 3 ? f.src_alpha : f.src, of_stored = c == 3 ? f.dst_alpha : f.dst;
+    const double weight = golden::factor_value(of_stored, c, source, before.real, constant);
+    error = e * weight + (d + e) * factor_error(of_stored, c, e, alpha) +
+            source[c] * factor_error(of_source, c, e, alpha) + 0.5;
+  }
+  const double stored = error * most_[c] / 255 + (is_narrow ? (state.dither ? 1.0 : 0.5) : 0.0);
+  return std::min(stored, most_[c]);
+}
+
+void LayeredColors::write(std::size_t pixel, const State& state, const std::array<std::uint8_t, 4>& color) {
+  Pixel& at = at_[pixel];
+  const ColorOps ops = color_ops(state, format_);
+  golden::RealColor source{};
+  for (std::size_t c = 0; c < 4; ++c) source[c] = color[c];
+  const Pixel before = at;
+  at.real = golden::blended(state, source, before.real);
+  if (channels_ == 3) at.real[3] = 255;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    if (!state.color_mask[c]) continue;
+    at.bound[c] = static_cast<float>(ops.blends() ? bound_of_blend(before, state, source, c) : ops.dithers ? 1.0 : 0.5);
+  }
+  at.layers = ops.reads_stored() ? before.layers + 1 : 0;
+  at.is_layered = !ops.is_plain();
+}
+
+void LayeredColors::judge(std::size_t pixel, std::uint32_t stored) {
+  const Pixel& at = at_[pixel];
+  if (rows_.size() <= at.layers) rows_.resize(at.layers + std::size_t{1});
+  LayerRow& row = rows_[at.layers];
+  double worst = 0;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const double code = golden::stored_channel(stored, format_, static_cast<int>(c));
+    const double error = std::abs(code - at.real[c] * most_[c] / 255);
+    worst = std::max(worst, error);
+    row.bound = std::max(row.bound, static_cast<double>(at.bound[c]));
+    row.part_of_bound = std::max(row.part_of_bound, error / at.bound[c]);
+  }
+  row.layers = at.layers;
+  ++row.pixels;
+  row.max = std::max(row.max, worst);
+  row.rms += worst * worst;
+}
+
+std::vector<LayerRow> LayeredColors::rows() const {
+  std::vector<LayerRow> rows;
+  for (LayerRow row : rows_) {
+    if (row.pixels == 0) continue;
+    row.rms = std::sqrt(row.rms / static_cast<double>(row.pixels));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace halfplane

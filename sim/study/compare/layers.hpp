@@ -1,0 +1,65 @@
+// Layers: what blending, masks and dithering lose, pixel by pixel. The same fragments, as codes, go through the golden's
+// blending in real arithmetic; the stored colour less that is the error of the arithmetic alone, and a bound grows with it:
+//
+//   a plain write   1/2 LSB, dithered 1
+//   a blend         |d_m - d| f_d + (d + |d_m - d|) |delta f_d| + s |delta f_s|, then 1/2 of a 255th, then 1/2 LSB of rgb565
+//
+// d_m is the stored code as the blend sees it: rgb565 is widened to 8 bits. What is stored was rounded from 8 bits, k, and
+// comes back within 4 (5 bits) or 2 (6 bits) of k, which is less than the stored half LSB and half of a 255th together. A
+// factor is off where it is made of what is stored.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/golden/color.hpp"
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+/// The errors of the pixels under so many layers.
+struct LayerRow {
+  std::uint32_t layers = 0;  ///< colour writes that looked at what was stored, since one that did not
+  std::uint64_t pixels = 0;
+  double max = 0, rms = 0;   ///< LSB of the stored format, the worst channel of each pixel
+  double bound = 0;          ///< the largest
+  double part_of_bound = 0;  ///< the largest error as a part of its pixel's own bound
+};
+
+class LayeredColors {
+ public:
+  LayeredColors(std::size_t pixels, ColorFormat format);
+
+  /// A fragment's colour is written. `color`: its codes.
+  void write(std::size_t pixel, const State& state, const std::array<std::uint8_t, 4>& color);
+  void clear(std::size_t pixel, const std::array<double, 4>& color);
+
+  /// Whether what the pixel shows is more than the code of one fragment.
+  [[nodiscard]] bool is_layered(std::size_t pixel) const { return at_[pixel].is_layered; }
+
+  /// Holds a stored colour against it.
+  void judge(std::size_t pixel, std::uint32_t stored);
+  /// Of the pixels that were judged, by their layers.
+  [[nodiscard]] std::vector<LayerRow> rows() const;
+
+ private:
+  struct Pixel {
+    golden::RealColor real{0, 0, 0, 255};  ///< 0...255
+    std::array<float, 4> bound{};          ///< LSB of the stored format
+    std::uint32_t layers = 0;
+    bool is_layered = false;
+  };
+  [[nodiscard]] double bound_of_blend(const Pixel& before, const State& state, const golden::RealColor& source,
+                                      std::size_t channel) const;
+
+  ColorFormat format_;
+  std::array<double, 4> most_;  ///< the largest code of each channel
+  std::size_t channels_;
+  std::vector<Pixel> at_;
+  std::vector<LayerRow> rows_;  ///< by layers; rms still a sum of squares
+};
+
+}  // namespace halfplane

@@ -1,0 +1,98 @@
+#include "explain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "golden_record.hpp"
+#include "hardware_record.hpp"
+#include "model/engines/functional.hpp"
+#include "model/engines/hardware.hpp"
+#include "specification.hpp"
+#include "verify.hpp"
+
+namespace halfplane::explain {
+namespace {
+
+void require_inside(const Scene& scene, const std::vector<Pixel>& pixels) {
+  for (const auto [x, y] : pixels)
+    if (x < 0 || y < 0 || x >= scene.width || y >= scene.height)
+      throw InputError("pixel " + std::to_string(x) + " " + std::to_string(y) + " lies outside the target of " +
+                       std::to_string(scene.width) + "x" + std::to_string(scene.height) + "; give 0 0 to " +
+                       std::to_string(scene.width - 1) + " " + std::to_string(scene.height - 1));
+}
+
+Stored stored_at(const Framebuffer& frame, Pixel pixel) {
+  const std::size_t at = frame.at(pixel.x, pixel.y);
+  return {frame.depth[at], frame.color[at], -1, frame.stencil[at]};
+}
+
+/// Why the hardware cannot draw the scene; empty: it can.
+std::string hardware_refusal(const Scene& scene, const Config& config) {
+  try {
+    check_hardware_scene(scene, config);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+/// A part of the work, as a part of the whole.
+std::function<void(double)> part_of(const Options& options, double from, double to) {
+  return [&options, from, to](double fraction) {
+    if (options.progress) options.progress(from + (to - from) * fraction);
+  };
+}
+
+void add_engine(const Scene& scene, const Config& config, Explanation& result) {
+  RenderOptions options;
+  options.want_ids = true;
+  const Rendering rendering = render_functional(scene, config, options);
+  for (PixelHistory& pixel : result.pixels) {
+    const auto [x, y] = pixel.at;
+    pixel.engine = stored_at(rendering.frame, pixel.at);
+    pixel.engine.owner =
+        rendering
+            .ids[static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x)];
+  }
+}
+
+}  // namespace
+
+Explanation explain(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels,
+                    const Options& options) {
+  validate(config);
+  check_scene(scene, config);
+  require_inside(scene, pixels);
+  Explanation result;
+  SpecificationRecord record =
+      record_specification(scene, with_alpha(config, scene), pixels, options, result.differences, result.checks);
+  result.pixels = std::move(record.pixels);
+  result.primitives = record.primitives;
+  result.no_hardware = hardware_refusal(scene, config);
+  if (options.rtl != nullptr && !result.no_hardware.empty()) throw InputError(result.no_hardware);
+  const double golden_ends = options.rtl == nullptr ? 0.5 : 0.1, hardware_ends = 2 * golden_ends;
+  record_golden(scene, config, part_of(options, 0, golden_ends), result);
+  add_engine(scene, config, result);
+  if (result.no_hardware.empty()) {
+    const HardwareRecord hardware = record_hardware(scene, config, pixels, record.near,
+                                                    part_of(options, golden_ends, hardware_ends), result.packets);
+    join_hardware(hardware, config, result);
+    for (PixelHistory& pixel : result.pixels) pixel.hardware = stored_at(hardware.frame, pixel.at);
+    record_cycles(scene, config, result.packets);
+  }
+  if (options.rtl != nullptr) {
+    const auto progress = part_of(options, hardware_ends, 1);
+    const Framebuffer frame = record_rtl(
+        *options.rtl, scene, config, options.mutant,
+        [&progress](double fraction) {
+          progress(fraction);
+          return true;
+        },
+        result.packets);
+    for (PixelHistory& pixel : result.pixels) pixel.rtl = stored_at(frame, pixel.at);
+  }
+  verify(config, result);
+  return result;
+}
+
+}  // namespace halfplane::explain

@@ -1,0 +1,25 @@
+// Explain: why is this pixel what it is? Everything that came near it, in program order, by the specification, the hardware
+// model, the golden, the oracle and, with a design, the RTL; each held against the others.
+#pragma once
+
+#include <functional>
+
+#include "history.hpp"
+#include "sim/cosim/dut.hpp"
+
+namespace halfplane::explain {
+
+struct Options {
+  double near = 1;           ///< pixels: how far from the pixel a primitive may pass and still be told of; at least 1
+  bool wants_steps = false;  ///< of lines and triangles: every pixel
+  Dut* rtl = nullptr;        ///< of exactly this configuration
+  std::uint16_t mutant = 0;  ///< the fault in it
+  std::function<void(double fraction)> progress;  ///< 0...1 over all of it; may be empty, may throw to end the work
+};
+
+/// Throws InputError for a pixel outside the target, for a scene that the engines refuse and, with an RTL, for one that the
+/// hardware does.
+[[nodiscard]] Explanation explain(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels,
+                                  const Options& options = {});
+
+}  // namespace halfplane::explain

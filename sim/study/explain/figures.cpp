@@ -1,0 +1,291 @@
+#include "figures.hpp"
+
+#include <algorithm>
+
+#include "line_walk.hpp"
+#include "model/engines/commands.hpp"
+#include "model/golden/exact_line.hpp"
+#include "model/stages/fine_raster.hpp"
+#include "model/stages/interpolate.hpp"
+#include "model/texture_memory.hpp"
+
+namespace halfplane::explain {
+namespace {
+
+PixelBounds bounds_of_rect(const Rect& rect) {
+  return {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+}
+
+bool holds(const PixelBounds& box, Pixel pixel) {
+  return pixel.x >= box.left && pixel.x <= box.right && pixel.y >= box.top && pixel.y <= box.bottom;
+}
+
+std::string_view side_of(const SnappedVertex& from, const SnappedVertex& to) {
+  const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+  if (dy == 0) return dx > 0 ? "top" : "bottom";
+  return dy < 0 ? "left" : "right";
+}
+
+/// E of an edge at a pixel's centre, square subpixels.
+std::int64_t exact_edge(const SnappedVertex& from, const SnappedVertex& to, Pixel pixel, int s) {
+  const std::int64_t half = std::int64_t{1} << (s - 1);
+  const std::int64_t px = (std::int64_t{pixel.x} << s) + half, py = (std::int64_t{pixel.y} << s) + half;
+  return (std::int64_t{to.x} - from.x) * (py - from.y) - (std::int64_t{to.y} - from.y) * (px - from.x);
+}
+
+/// The sample of a pixel in its tile's stamp.
+struct SamplePlace {
+  PixelOffset origin;
+  std::size_t sample;
+};
+SamplePlace sample_place(Pixel pixel, const Widths& widths) {
+  const StampGrid& stamps = widths.stamps;
+  const int last = (1 << widths.tile_shift) - 1, x = pixel.x & last, y = pixel.y & last;
+  return {stamps.origin_of(stamps.stamp_at(x, y)),
+          static_cast<std::size_t>(stamps.sample_at(x % stamps.size, y % stamps.size))};
+}
+
+PlaneFigure plane_figure(const Widths& widths, std::size_t plane, int guard_bits, const PlaneSample& sample,
+                         const exact::Rational& oracle) {
+  return {widths.plane_name(plane),
+          widths.of_plane(plane).code.bits,
+          guard_bits,
+          sample.unrounded,
+          sample.code,
+          oracle,
+          {},
+          {}};
+}
+
+constexpr std::uint32_t kWhole = 1U << 24;  ///< a weight of 1
+
+/// Four texels of a linear filter, or the one of a nearest filter, on one level.
+void add_texels(const Sampler& sampler, const SurfaceSample& sample, bool is_linear, int level, std::uint32_t part,
+                std::vector<TexelFigure>& texels) {
+  const auto add = [&](int x, int y, std::uint32_t weight) {
+    texels.push_back({level, x, y, weight, {}, sampler.texture->texel(level, x, y)});
+  };
+  const auto& axes = sampler.axes;
+  const TexturePlace& place = sample.place;
+  if (!is_linear) {
+    const auto texel = [&](std::size_t axis) {
+      const std::int64_t at = at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level);
+      return wrapped_texel(at >> kTexelFraction, axes[axis].at_level(level));
+    };
+    add(texel(0), texel(1), (kWhole >> 8) * part);
+    return;
+  }
+  const TexelPair x = texels_around(place, axes, 0, level), y = texels_around(place, axes, 1, level);
+  add(x.first, y.first, (256 - x.part) * (256 - y.part) * part);
+  add(x.second, y.first, x.part * (256 - y.part) * part);
+  add(x.first, y.second, (256 - x.part) * y.part * part);
+  add(x.second, y.second, x.part * y.part * part);
+}
+
+SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface, const SurfaceOracle& oracle,
+                             Pixel pixel) {
+  SurfaceFigure figure;
+  figure.sample = surface.at(pixel.x, pixel.y);
+  figure.errors = oracle.errors(figure.sample, pixel.x, pixel.y);
+  if (!context.state.texture) return figure;
+  const Sampler& sampler = surface.sampler();
+  figure.texture = sampler.texture->name;
+  figure.filter = filter_of(sampler, figure.sample.lod);
+  const auto& [is_linear, is_between, levels] = figure.filter;
+  add_texels(sampler, figure.sample, is_linear, levels.lower, is_between ? 256 - levels.part : 256, figure.texels);
+  if (is_between) add_texels(sampler, figure.sample, is_linear, levels.upper, levels.part, figure.texels);
+  for (TexelFigure& texel : figure.texels)
+    if (texel.level == 0)
+      texel.address = texel_address(context.scene, context.config, *context.state.texture, texel.x, texel.y);
+  return figure;
+}
+
+std::optional<Surface> made_surface(const DrawContext& context, const Triangle& triangle, const TriangleSetup& setup,
+                                    const Widths& widths) {
+  if (setup.is_empty()) return std::nullopt;
+  return surface_of(context, triangle, setup, widths);
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> texel_address(const Scene& scene, const Config& config, std::uint32_t texture, int x,
+                                           int y) {
+  if (!has_texture_planes(config)) return std::nullopt;
+  const Texture& image = scene.textures[texture];
+  const TextureMemory memory(scene, config);
+  const auto block_row = static_cast<std::uint32_t>((image.width() + kTextureBlock - 1) / kTextureBlock);
+  const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
+  const std::uint32_t block = row / kTextureBlock * block_row + column / kTextureBlock;
+  const std::uint32_t texel =
+      block * kTextureBlock * kTextureBlock + row % kTextureBlock * kTextureBlock + column % kTextureBlock;
+  return memory.base(texture) + (texel << texel_size_log2(stored_format(image.format)));
+}
+
+TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle)
+    : context_(context),
+      widths_(widths),
+      triangle_(triangle),
+      setup_(setup_triangle(triangle, context.config, widths, context.rect)),
+      whole_(setup_triangle(triangle, context.config, widths)),
+      oracle_(triangle, widths.grid_bits),
+      surface_(made_surface(context, triangle_, setup_, widths)) {
+  const auto& v = triangle_.v;
+  order_ = canonical_order(v, signed_area(v[0], v[1], v[2]));
+  for (std::size_t i = 0; i < 3; ++i) corner_[i] = v[order_[i]];
+  if (surface_) surface_oracle_.emplace(context.scene, context.config, triangle_);
+}
+
+/// As coarse_raster and fine_raster step them, from the first tile of the whole triangle.
+EdgeValues TrianglePiece::edges_at(Pixel pixel) const {
+  const int shift = widths_.tile_shift, last = (1 << shift) - 1;
+  EdgeValues value = edges_at_tile(whole_, pixel.x >> shift, pixel.y >> shift, widths_);
+  for (std::size_t i = 0; i < 3; ++i)
+    value[i] += EdgeValue{pixel.y & last} * whole_.edge[i].dx - EdgeValue{pixel.x & last} * whole_.edge[i].dy;
+  return value;
+}
+
+/// As fine_raster has it.
+bool TrianglePiece::is_covered(Pixel pixel) const {
+  const int shift = widths_.tile_shift;
+  const TilePacket tile =
+      make_tile_packet(to_setup_packet(setup_, widths_), pixel.x >> shift, pixel.y >> shift, 0, false, widths_);
+  const SamplePlace place = sample_place(pixel, widths_);
+  return stamp_mask(tile, make_edge_context(setup_), place.origin, widths_.stamps).has(place.sample);
+}
+
+Outcome TrianglePiece::outcome_at(Pixel pixel, const EdgeValues& edges) const {
+  const bool is_inside = std::ranges::all_of(edges, [](EdgeValue e) { return e >= 0; });
+  if (!holds(bounds_of_rect(context_.rect), pixel))
+    return is_inside ? Outcome(Verdict::scissor)
+                     : Outcome(Verdict::uncovered, Stage::cull,
+                               "it does not cover the pixel, and the scissor or "
+                               "viewport leaves the pixel out");
+  if (setup_.is_empty()) return Outcome(Verdict::empty);
+  if (!holds({setup_.left, setup_.top, setup_.right, setup_.bottom}, pixel))
+    return {Verdict::uncovered, Stage::cull, "the pixel's centre lies outside its box"};
+  const int shift = widths_.tile_shift;
+  const EdgeValues at_tile = edges_at_tile(setup_, pixel.x >> shift, pixel.y >> shift, widths_);
+  if (classify(setup_, at_tile, 1 << shift) == TileClass::outside) return Outcome(Verdict::tiles_outside);
+  return is_covered(pixel) ? Outcome(Verdict::written) : Outcome(Verdict::uncovered);
+}
+
+Entry TrianglePiece::at(Pixel pixel) const {
+  Entry entry;
+  entry.kind = Kind::triangle;
+  entry.primitive = triangle_.primitive;
+  entry.draw = triangle_.draw;
+  const auto& v = triangle_.v;
+  entry.corners.assign(v.begin(), v.end());
+  entry.area = signed_area(v[0], v[1], v[2]);
+  entry.box = {setup_.left, setup_.top, setup_.right, setup_.bottom};
+  const EdgeValues edges = edges_at(pixel);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SnappedVertex &from = corner_[i], &to = corner_[(i + 1) % 3];
+    entry.edges.push_back({order_[i], order_[(i + 1) % 3], edges[i], exact_edge(from, to, pixel, widths_.grid_bits),
+                           widths_.edge_value.bits, is_top_left(from, to), side_of(from, to)});
+  }
+  entry.oracle = OracleFigure{oracle_.covers(pixel.x, pixel.y),
+                              exact::is_on_border(triangle_, pixel.x, pixel.y, widths_.grid_bits)};
+  entry.specification = outcome_at(pixel, edges);
+  if (holds(entry.box, pixel)) {
+    const int shift = widths_.tile_shift;
+    entry.tile = classify(setup_, edges_at_tile(setup_, pixel.x >> shift, pixel.y >> shift, widths_), 1 << shift);
+  }
+  if (has_fragment(entry.specification.verdict)) add_attributes(pixel, entry);
+  return entry;
+}
+
+void TrianglePiece::add_attributes(Pixel pixel, Entry& entry) const {
+  const Interpolated value = interpolate_at(setup_, widths_, pixel.x, pixel.y);
+  const exact::PlaneWeights weights = oracle_.weights_at(pixel.x, pixel.y);
+  // Colours over w are no planes of their own codes.
+  const bool is_affine = context_.state.color_interp == ColorInterp::affine;
+  const std::size_t planes = is_affine ? static_cast<std::size_t>(widths_.affine_planes) : 1;
+  for (std::size_t p = 0; p < planes; ++p) {
+    const exact::Rational oracle =
+        weights.plane({triangle_.v[0].code[p], triangle_.v[1].code[p], triangle_.v[2].code[p]});
+    entry.planes.push_back(
+        plane_figure(widths_, p, context_.config.local_guard_bits, {value.unrounded[p], value.code[p]}, oracle));
+  }
+  if (surface_) entry.surface = surface_figure(context_, *surface_, *surface_oracle_, pixel);
+}
+
+std::vector<TriangleStep> TrianglePiece::steps() const {
+  std::vector<TriangleStep> steps;
+  const int shift = widths_.tile_shift;
+  for (int y = setup_.top; y <= setup_.bottom; ++y)
+    for (int x = setup_.left; x <= setup_.right; ++x) {
+      TriangleStep step{x,
+                        y,
+                        classify(setup_, edges_at_tile(setup_, x >> shift, y >> shift, widths_), 1 << shift),
+                        edges_at({x, y}),
+                        false,
+                        {}};
+      step.covered = is_covered({x, y});
+      if (step.covered) step.depth = plane_at(setup_, kDepthPlane, widths_, x, y);
+      steps.push_back(step);
+    }
+  return steps;
+}
+
+Entry line_entry(const DrawContext& context, const Widths& widths, const LinePrimitive& line, Pixel pixel,
+                 bool wants_steps) {
+  const DrawnLine& drawn = line.drawn;
+  Entry entry;
+  entry.kind = Kind::line;
+  entry.primitive = drawn.primitive;
+  entry.draw = drawn.draw;
+  entry.corners = {drawn.start, drawn.end};
+  const PixelBounds rect = bounds_of_rect(context.rect);
+  entry.box = rect;
+  const LineRule rule = context.state.line_rule;
+  entry.line = line_figure(line, rule, rect, widths, pixel, wants_steps);
+  const exact::Line exact{drawn.start, drawn.end, rule, drawn.drops_last, widths.grid_bits};
+  entry.oracle = OracleFigure{exact::covers(exact, pixel.x, pixel.y), false};
+  entry.specification = {Verdict::uncovered, Stage::line_raster, "the line takes another pixel here, or ends before"};
+  if (!holds(rect, pixel)) {
+    if (entry.oracle->covers) entry.specification = Outcome(Verdict::scissor);
+    return entry;
+  }
+  tap_line(line, widths, 0, [&](const TappedFragment& fragment) {
+    if (fragment.x != pixel.x || fragment.y != pixel.y) return;
+    entry.specification = Outcome(Verdict::written);
+    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
+      entry.planes.push_back(
+          plane_figure(widths, p, fragment.guard_bits, fragment.plane[p],
+                       exact::plane_at(exact, pixel.x, pixel.y, drawn.start.code[p], drawn.end.code[p])));
+  });
+  return entry;
+}
+
+Entry point_entry(const Widths& widths, const PointPrimitive& point, Pixel pixel) {
+  const DrawnPoint& drawn = point.drawn;
+  Entry entry;
+  entry.kind = Kind::point;
+  entry.primitive = drawn.primitive;
+  entry.draw = drawn.draw;
+  entry.corners = {drawn.at};
+  entry.box = point.box;
+  entry.point_size = drawn.size;
+  entry.point_size = drawn.size;
+  // From the definition, in halves of a subpixel: the centre lies in [X - n/2, X + n/2), and so across.
+  const auto spans = [&](int i, std::int32_t at) {
+    const std::int64_t centre = (2 * std::int64_t{i} + 1) << widths.grid_bits, middle = 2 * std::int64_t{at};
+    return centre >= middle - drawn.size && centre < middle + drawn.size;
+  };
+  entry.oracle = OracleFigure{spans(pixel.x, drawn.at.x) && spans(pixel.y, drawn.at.y), false};
+  if (!holds(point.box, pixel)) {
+    entry.specification = entry.oracle->covers
+                              ? Outcome(Verdict::scissor)
+                              : Outcome(Verdict::uncovered, Stage::point_raster, "the pixel lies outside its square");
+    return entry;
+  }
+  entry.specification = Outcome(Verdict::written);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
+    const std::uint32_t code = drawn.at.code[p];
+    entry.planes.push_back(plane_figure(widths, p, 0, {code, code}, {code, 1}));
+  }
+  return entry;
+}
+
+}  // namespace halfplane::explain

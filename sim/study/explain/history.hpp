@@ -1,0 +1,214 @@
+// What `explain` knows of a pixel: everything that came near it, in program order, step by step.
+//
+// The model's figures are those of the specification (model/stages); its packets are those of the hardware model. Beside
+// them: the golden (unsnapped, real arithmetic), the oracle (snapped, exact), and the RTL.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/golden/exact.hpp"
+#include "model/golden/golden.hpp"
+#include "model/packets.hpp"
+#include "model/stages/coarse_raster.hpp"
+#include "model/stages/surface.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
+#include "verdict.hpp"
+
+namespace halfplane::explain {
+
+/// Whole pixels, the top left one is 0 0.
+struct Pixel {
+  int x = 0, y = 0;
+  bool operator==(const Pixel&) const = default;
+};
+
+enum class Kind : std::uint8_t { clear, triangle, line, point };
+inline constexpr std::array<std::string_view, 4> kKindNames{"clear", "triangle", "line", "point"};
+
+/// One edge of a triangle at the pixel's centre.
+struct EdgeFigure {
+  std::size_t from = 0, to = 0;  ///< corners, as the primitive names them
+  EdgeValue value = 0;           ///< the model's: floor((E + bias) / 2^s), stepped from the tile's first pixel
+  std::int64_t exact = 0;        ///< E itself, square subpixels
+  int bits = 0;                  ///< of `value`
+  bool owns_ties = false;        ///< a sample exactly on it belongs to this triangle
+  std::string_view side;         ///< top, left, bottom or right: the first two own their ties
+  [[nodiscard]] bool is_tie() const { return exact == 0; }
+};
+
+/// Why a value is what it is, in 2^-20 LSB: they sum to the code less the golden's value.
+struct Parts {
+  std::int64_t snap = 0, interpolation = 0, storage = 0;
+};
+
+/// A plane at the pixel.
+struct PlaneFigure {
+  std::string_view name;
+  int bits = 0;                  ///< of a code
+  int guard_bits = 0;            ///< fraction bits of `unrounded`
+  std::int64_t unrounded = 0;    ///< 2^-guard_bits LSB, before rounding and clamp
+  std::uint32_t code = 0;        ///< after
+  exact::Rational oracle;        ///< LSB
+  std::optional<double> golden;  ///< LSB; none where the golden has no such fragment, or its colour is textured
+  std::optional<Parts> parts;    ///< with `golden`
+};
+
+/// A texel that a sample looked at.
+struct TexelFigure {
+  int level = 0, x = 0, y = 0;
+  std::uint32_t weight = 0;              ///< 2^-24
+  std::optional<std::uint32_t> address;  ///< byte of the texture unit's memory, where there is one
+  Texel color{};
+};
+
+/// A colour over w or a texture at the pixel.
+struct SurfaceFigure {
+  SurfaceSample sample;
+  std::string texture;  ///< its name; empty: colours over w alone
+  SampleFilter filter;
+  std::vector<TexelFigure> texels;
+  SurfaceErrors errors;
+};
+
+/// A state of a line's registers, and what two textbooks hold at the same pixel.
+struct LineStep {
+  std::uint32_t step = 0;
+  int x = 0, y = 0;
+  std::int64_t error = 0;  ///< line_raster's: >= 0 moves along both axes
+  bool moves = false;
+};
+struct LineWalk {
+  LineRule rule = LineRule::midpoint;
+  std::vector<LineStep> steps;  ///< at the pixel's place along the major axis alone, or all of them
+};
+struct LineFigure {
+  LineRule rule = LineRule::midpoint;
+  std::int64_t major = 0, minor = 0;  ///< D and d, subpixels
+  bool is_x_major = false;
+  LineSetup setup;
+  std::vector<LineWalk> walks;      ///< by each rule
+  std::vector<LineStep> bresenham;  ///< the textbook's decision p (Bresenham 1965), pixels; likewise
+  std::vector<LineStep> midpoint;   ///< 2 F(M) of the midpoint method (Pitteway 1967, Van Aken 1984), pixels
+};
+
+/// A pixel of a triangle's box, for --steps.
+struct TriangleStep {
+  int x = 0, y = 0;
+  TileClass tile = TileClass::outside;
+  EdgeValues value{};
+  bool covered = false;
+  PlaneSample depth{};  ///< of covered ones
+};
+
+/// A figure of an operation: codes, or the channels R, G, B, A.
+struct Figure {
+  std::string_view name;
+  std::vector<std::uint64_t> values;
+  int bits = 0;  ///< of each; 0: a word of `text`
+  std::string_view text{};
+};
+
+/// One operation on the fragment, and what it did.
+struct OperationStep {
+  std::string_view name;
+  Stage stage = Stage::none;
+  std::optional<bool> passes;  ///< of a test
+  std::vector<Figure> figures;
+};
+
+/// Packet `number` of an arrow, counted from reset.
+using PacketId = std::pair<Arrow, std::uint64_t>;
+struct RecordedPacket {
+  std::vector<std::uint32_t> model, rtl;  ///< words; rtl is empty where there is none
+  std::optional<std::uint64_t> model_cycle, rtl_cycle;
+};
+using PacketStore = std::map<PacketId, RecordedPacket>;
+
+/// What coarse_raster saw when it looked at the tile's HiZ bound. Depth codes.
+struct HizLook {
+  std::uint64_t nearest = 0;   ///< of the primitive: the smallest code of its corners
+  std::uint64_t farthest = 0;  ///< of the tile: no stored code is above it
+  bool rejects = false;
+};
+
+/// What the hardware model does with a primitive at the pixel.
+struct HardwareFigure {
+  Outcome outcome;
+  std::optional<HizLook> hiz;
+  std::vector<PacketId> packets;  ///< in order
+};
+
+/// What the golden does with it.
+struct GoldenFigure {
+  std::optional<golden::Outline> outline;  ///< none: it was dropped before the raster
+  std::vector<double> edges;               ///< of a triangle, square pixels: by corner opposite, >= 0 inside
+  std::optional<golden::TappedFragment> fragment;
+};
+
+/// The exact answer.
+struct OracleFigure {
+  bool covers = false, is_on_border = false;
+};
+
+/// A primitive, or a piece of one, at the pixel.
+struct Entry {
+  Kind kind = Kind::triangle;
+  std::optional<std::uint32_t> primitive;  ///< number over the whole scene; none for a clear
+  std::uint32_t draw = 0;                  ///< index into Scene::commands
+  std::uint32_t piece = 0;                 ///< of a clipped triangle, or of one whose edges are drawn
+  Outcome outcome;                         ///< the hardware's where it has the scene
+  Outcome specification;
+  bool is_cut = false;
+  std::vector<SnappedVertex> corners;  ///< of the piece; empty when nothing was snapped
+  std::int64_t area = 0;               ///< twice, signed, square subpixels
+  PixelBounds box;                     ///< pixel centres inside the scissor
+  std::vector<EdgeFigure> edges;
+  std::optional<TileClass> tile;
+  std::vector<PlaneFigure> planes;
+  std::optional<SurfaceFigure> surface;
+  std::optional<LineFigure> line;
+  std::vector<TriangleStep> steps;  ///< only if asked for
+  std::int32_t point_size = 0;      ///< subpixels
+  std::vector<OperationStep> operations;
+  std::optional<HardwareFigure> hardware;
+  std::optional<GoldenFigure> golden;
+  std::optional<OracleFigure> oracle;
+};
+
+/// What lies at the pixel in the end.
+struct Stored {
+  std::uint32_t depth = 0, color = 0;
+  std::int32_t owner = -1;   ///< input primitive, -1 none; of the RTL and the hardware model nobody knows
+  std::uint8_t stencil = 0;  ///< likewise
+};
+struct GoldenStored {
+  double depth = 0;               ///< LSB of the interpolated depth, not rounded
+  std::array<double, 4> color{};  ///< 0...255
+  Stored rounded;
+};
+
+struct PixelHistory {
+  Pixel at;
+  std::vector<Entry> history;
+  Stored model;   ///< what the operations leave
+  Stored engine;  ///< what the functional engine rendered
+  GoldenStored golden;
+  std::optional<Stored> hardware, rtl;
+};
+
+struct Explanation {
+  std::vector<PixelHistory> pixels;
+  PacketStore packets;                   ///< those that a history names
+  std::uint64_t primitives = 0;          ///< of the scene
+  std::string no_hardware;               ///< why the hardware cannot draw the scene; empty: it can
+  std::uint64_t checks = 0;              ///< figures that were held against each other
+  std::vector<std::string> differences;  ///< those that differ, a line each
+};
+
+}  // namespace halfplane::explain

@@ -1,0 +1,176 @@
+#include "operations.hpp"
+
+#include "model/draw_states.hpp"
+#include "model/fragment_ops.hpp"
+
+namespace halfplane::explain {
+namespace {
+
+using Result = std::optional<Verdict>;  ///< none: the fragment goes on
+
+int color_bits(const FragmentAtWork& f) { return f.context.config.color_format == ColorFormat::rgb565 ? 16 : 32; }
+
+Figure channels(std::string_view name, const std::array<std::uint32_t, 4>& color) {
+  return {name, {color.begin(), color.end()}, 8};
+}
+Figure channels(std::string_view name, const Texel& color) { return {name, {color.begin(), color.end()}, 8}; }
+
+std::string_view word_of(std::string_view state, const State& of) {
+  const DrawState& row = draw_state(state);
+  return row.words[row.value(of).word];
+}
+
+bool is_encoded(const FragmentAtWork& f) { return !f.context.depth_encode.is_identity(); }
+Result encode(FragmentAtWork& f, OperationStep& step) {
+  const int bits = f.context.depth_encode.format().bits;
+  step.figures = {{"plane", {f.plane_depth}, f.context.config.depth_bits}, {"code", {f.depth}, bits}};
+  return {};
+}
+
+const Stencil* stencil_of(const FragmentAtWork& f) {
+  const auto& sides = f.context.fragment_ops.stencil;
+  return sides ? &(*sides)[f.is_back ? 1 : 0] : nullptr;
+}
+bool changes_stencil(const FragmentAtWork& f) {
+  const Stencil* stencil = stencil_of(f);
+  return stencil != nullptr && writes_stencil(*stencil);
+}
+/// Which of the two tests drops the fragment.
+Result failed_test(const FragmentAtWork& f) {
+  return !f.passes_stencil ? Result(Verdict::stencil) : !f.passes_depth ? Result(Verdict::depth) : Result{};
+}
+/// Nothing is left to be done for a fragment that failed: no stencil value changes.
+Result failed_for_good(const FragmentAtWork& f) { return changes_stencil(f) ? Result{} : failed_test(f); }
+
+bool has_stencil(const FragmentAtWork& f) { return stencil_of(f) != nullptr; }
+Result test_stencil(FragmentAtWork& f, OperationStep& step) {
+  const Stencil& s = *stencil_of(f);
+  step.figures = {{"func", {}, 0, draw_state("depth_test").words[static_cast<std::size_t>(s.func)]},
+                  {"reference", {s.reference}, 8},
+                  {"read", {s.read_mask}, 8},
+                  {"stored", {f.stored.stencil}, 8}};
+  f.passes_stencil =
+      depth_passes(s.func, std::uint32_t{s.reference} & s.read_mask, std::uint32_t{f.stored.stencil} & s.read_mask);
+  step.passes = f.passes_stencil;
+  return f.passes_stencil ? Result{} : failed_for_good(f);
+}
+
+bool always(const FragmentAtWork&) { return true; }
+Result test_depth(FragmentAtWork& f, OperationStep& step) {
+  const int bits = f.context.depth_encode.format().bits;
+  step.figures = {{"func", {}, 0, word_of("depth_test", f.context.state)},
+                  {"fragment", {f.depth}, bits},
+                  {"stored", {f.stored.depth}, bits}};
+  f.passes_depth = depth_passes(f.context.state.depth_test, f.depth, f.stored.depth);
+  step.passes = f.passes_depth;
+  return failed_for_good(f);
+}
+
+bool tests_alpha(const FragmentAtWork& f) { return f.context.fragment_ops.alpha.func != DepthFunc::always; }
+Result test_alpha(FragmentAtWork& f, OperationStep& step) {
+  const AlphaTest& test = f.context.fragment_ops.alpha;
+  step.figures = {{"func", {}, 0, draw_state("depth_test").words[static_cast<std::size_t>(test.func)]},
+                  {"fragment", {f.color[3]}, 8},
+                  {"reference", {test.reference}, 8}};
+  f.passes_alpha = depth_passes(test.func, f.color[3], std::uint32_t{test.reference});
+  step.passes = f.passes_alpha;
+  if (f.passes_alpha) return {};
+  const Result failed = failed_test(f);
+  return failed ? failed : Result(Verdict::alpha);
+}
+
+Result change_stencil(FragmentAtWork& f, OperationStep& step) {
+  const Stencil& s = *stencil_of(f);
+  const StencilOp op = !f.passes_stencil ? s.stencil_fails : f.passes_depth ? s.passes : s.depth_fails;
+  const auto after = apply_stencil(op, s, std::uint32_t{f.stored.stencil});
+  step.figures = {{"before", {f.stored.stencil}, 8}, {"write", {s.write_mask}, 8}, {"after", {after}, 8}};
+  f.stored.stencil = static_cast<std::uint8_t>(after);
+  return failed_test(f);
+}
+
+bool writes_color(const FragmentAtWork& f) { return f.context.fragment_ops.state.color_write; }
+bool is_textured(const FragmentAtWork& f) {
+  const bool is_seen = tests_alpha(f) || (writes_color(f) && !failed_test(f));
+  return f.surface != nullptr && !f.surface->texture.empty() && is_seen;
+}
+Result texture(FragmentAtWork& f, OperationStep& step) {
+  const SurfaceSample& sample = f.surface->sample;
+  step.figures = {{"combine", {}, 0, word_of("texture_combine", f.context.state)},
+                  channels("before", f.color),
+                  channels("texel", sample.texel)};
+  for (std::size_t c = 0; c < 4; ++c) f.color[c] = sample.color[c];
+  step.figures.push_back(channels("after", f.color));
+  return {};
+}
+
+bool blends(const FragmentAtWork& f) { return writes_color(f) && f.context.fragment_ops.color.blends(); }
+Result blend(FragmentAtWork& f, OperationStep& step) {
+  const auto stored = widen_color(f.context.config.color_format, f.stored.color);
+  step.figures = {channels("before", f.color), channels("stored", stored)};
+  f.color = blended(f.context.fragment_ops.color, f.color, stored);
+  step.figures.push_back(channels("after", f.color));
+  return {};
+}
+Result pack(FragmentAtWork& f, OperationStep& step) {
+  const ColorOps& ops = f.context.fragment_ops.color;
+  const auto threshold = dither_threshold(f.at.x, f.at.y);
+  f.packed = ops.dithers ? pack_rgb565_dithered(f.color[0], f.color[1], f.color[2], threshold)
+                         : pack_color(f.context.config.color_format, f.color);
+  step.figures = {channels("before", f.color)};
+  if (ops.dithers) step.figures.push_back({"threshold", {threshold}, 4});
+  step.figures.push_back({"after", {f.packed}, color_bits(f)});
+  return {};
+}
+
+bool writes_depth(const FragmentAtWork& f) { return f.context.state.depth_write; }
+Result write_depth(FragmentAtWork& f, OperationStep& step) {
+  const int bits = f.context.depth_encode.format().bits;
+  step.figures = {{"before", {f.stored.depth}, bits}, {"after", {f.depth}, bits}};
+  f.stored.depth = f.depth;
+  return {};
+}
+Result write_color(FragmentAtWork& f, OperationStep& step) {
+  const std::uint32_t bits = written_bits(f.context.fragment_ops.color, f.context.config.color_format);
+  const std::uint32_t after = write_where(bits, f.packed, f.stored.color);
+  step.figures = {{"before", {f.stored.color}, color_bits(f)}};
+  if (f.context.fragment_ops.color.writes != ColorOps{}.writes) step.figures.push_back({"mask", {bits}, color_bits(f)});
+  step.figures.push_back({"after", {after}, color_bits(f)});
+  f.stored.color = after;
+  return {};
+}
+
+/// In program order of a fragment. `stage`: who does it in hardware.
+struct Operation {
+  std::string_view name;
+  Stage stage;
+  bool (*is_of)(const FragmentAtWork&);
+  Result (*run)(FragmentAtWork&, OperationStep&);
+};
+constexpr Operation kOperations[] = {
+    {"depth_encode", Stage::interpolate, is_encoded, encode},
+    {"stencil_test", Stage::depth_test, has_stencil, test_stencil},
+    {"depth_test", Stage::depth_test, always, test_depth},
+    {"texture", Stage::texture_unit, is_textured, texture},
+    {"alpha_test", Stage::rop, tests_alpha, test_alpha},
+    {"write_stencil", Stage::depth_test, changes_stencil, change_stencil},
+    {"blend", Stage::rop, blends, blend},
+    {"pack_color", Stage::rop, writes_color, pack},
+    {"write_depth", Stage::framebuffer, writes_depth, write_depth},
+    {"write_color", Stage::framebuffer, writes_color, write_color},
+};
+
+}  // namespace
+
+Outcome run_operations(FragmentAtWork& fragment, std::vector<OperationStep>& steps) {
+  fragment.depth = fragment.context.depth_encode(fragment.plane_depth);
+  for (const Operation& operation : kOperations) {
+    if (!operation.is_of(fragment)) continue;
+    OperationStep& step = steps.emplace_back(OperationStep{operation.name, operation.stage, {}, {}});
+    if (const Result verdict = operation.run(fragment, step)) return Outcome(*verdict);
+  }
+  if (!fragment.context.fragment_ops.state.writes()) return Outcome(Verdict::masked);
+  fragment.stored.owner = static_cast<std::int32_t>(fragment.primitive);
+  return Outcome(Verdict::written);
+}
+
+}  // namespace halfplane::explain

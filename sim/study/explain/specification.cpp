@@ -1,0 +1,314 @@
+#include "specification.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "figures.hpp"
+#include "model/engines/render.hpp"
+#include "operations.hpp"
+
+namespace halfplane::explain {
+namespace {
+
+struct Point {
+  double x = 0, y = 0;  ///< pixels
+};
+
+/// Distance from the segment.
+double distance_to(const Point& a, const Point& b, const Point& p) {
+  const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
+  const double t = length > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / length, 0.0, 1.0) : 0.0;
+  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+/// What a primitive looks like on the screen before the snap: a convex polygon, a line's two ends, or a point.
+struct Shape {
+  std::vector<Point> corners;
+  double margin = 0;  ///< pixels around it that belong to it: half a point's side, and a pixel of a line
+
+  [[nodiscard]] bool is_near(Pixel pixel, double near) const {
+    if (corners.empty()) return false;
+    const Point p{pixel.x + 0.5, pixel.y + 0.5};
+    const auto [left, right] = std::ranges::minmax(corners, {}, &Point::x);
+    const auto [top, bottom] = std::ranges::minmax(corners, {}, &Point::y);
+    const double reach = near + margin;
+    if (p.x < left.x - reach || p.x > right.x + reach || p.y < top.y - reach || p.y > bottom.y + reach) return false;
+    bool is_left = true, is_right = true;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Point &a = corners[i], &b = corners[(i + 1) % corners.size()];
+      if (distance_to(a, b, p) <= near + margin) return true;
+      const double side = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+      is_left = is_left && side >= 0;
+      is_right = is_right && side <= 0;
+    }
+    return corners.size() > 2 && (is_left || is_right);
+  }
+};
+
+/// Of the vertices themselves, if none lies behind the eye, and what is left of them in the guard band.
+Shape shape_of(const DrawContext& context, const AssembledPrimitive& primitive) {
+  const State& state = context.state;
+  const std::size_t count = primitive.type == PrimitiveType::triangle ? 3
+                            : primitive.type == PrimitiveType::line   ? 2
+                                                                      : 1;
+  std::array<Vertex, 3> v;
+  for (std::size_t i = 0; i < 3; ++i) v[i] = context.scene.vertices[primitive.index[i]];
+  Shape shape;
+  shape.margin = drawn_as(state, context.draw.topology) == PrimitiveType::point ? state.point_size * 0.7072 : 1;
+  const auto add = [&](const Vertex& vertex) {
+    const WindowPosition p = state.space == Space::clip ? to_window(vertex, state, context.viewport)
+                                                        : window_position(vertex, state, context.scene.height);
+    if (std::isfinite(p.x) && std::isfinite(p.y)) shape.corners.push_back({p.x, p.y});
+  };
+  const bool is_in_front = state.space == Space::window ||
+                           std::ranges::all_of(std::span(v).first(count), [](const Vertex& u) { return u.w > 0; });
+  if (is_in_front) {
+    for (std::size_t i = 0; i < count; ++i) add(v[i]);
+  } else if (count == 3) {
+    const ClipPolygon polygon = clip(context.guard_band, v[0], v[1], v[2]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.size); ++i) add(polygon.v[i]);
+  } else if (count == 2) {
+    if (const auto line = clip(context.guard_band, v[0], v[1]))
+      for (const Vertex& end : *line) add(end);
+  }
+  return shape;
+}
+
+/// A piece behind the snap.
+Shape shape_of(std::initializer_list<SnappedVertex> corners, double margin, int grid_bits) {
+  Shape shape{{}, margin};
+  for (const SnappedVertex& v : corners)
+    shape.corners.push_back({std::ldexp(v.x, -grid_bits), std::ldexp(v.y, -grid_bits)});
+  return shape;
+}
+
+/// Why the host kept a primitive to itself.
+Outcome dropped_by_host(const Counters& before, const Counters& after) {
+  const auto &a = before.skipped, &b = after.skipped;
+  if (b.frustum != a.frustum) return Outcome(Verdict::frustum);
+  if (b.zero_area != a.zero_area) return Outcome(Verdict::zero_area);
+  if (b.backface != a.backface) return Outcome(Verdict::backface);
+  if (b.empty != a.empty) return Outcome(Verdict::empty);
+  return {Verdict::frustum, Stage::clip, "the clipper leaves nothing of it"};
+}
+
+class SpecificationWalk {
+ public:
+  SpecificationWalk(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels, const Options& options,
+                    std::vector<std::string>& differences, std::uint64_t& checks)
+      : scene_(scene),
+        config_(config),
+        options_(options),
+        widths_(derive_widths(config)),
+        cache_(scene.vertices.size()),
+        differences_(differences),
+        checks_(checks) {
+    const Rendering empty = make_rendering(scene, config, {});
+    for (const Pixel pixel : pixels) {
+      PixelHistory& history = record_.pixels.emplace_back();
+      history.at = pixel;
+      const std::size_t at = empty.frame.at(pixel.x, pixel.y);
+      history.model = {empty.frame.depth[at], empty.frame.color[at], -1};
+    }
+  }
+
+  SpecificationRecord run() && {
+    for (std::size_t i = 0; i < scene_.commands.size(); ++i) {
+      const auto command = static_cast<std::uint32_t>(i);
+      if (const auto* clear = std::get_if<Clear>(&scene_.commands[i])) this->clear(*clear, command);
+      if (const auto* draw = std::get_if<Draw>(&scene_.commands[i])) this->draw(*draw, command);
+    }
+    record_.primitives = number_;
+    return std::move(record_);
+  }
+
+ private:
+  void clear(const Clear& command, std::uint32_t number) {
+    const Rect rect = clear_rect(scene_, command);
+    const DepthEncode encode(config_, scene_.planes);
+    for (PixelHistory& history : record_.pixels) {
+      const auto [x, y] = history.at;
+      Entry entry;
+      entry.kind = Kind::clear;
+      entry.draw = number;
+      const bool is_inside = x >= rect.x && x < rect.x + rect.width && y >= rect.y && y < rect.y + rect.height;
+      entry.specification = is_inside
+                                ? Outcome(Verdict::written, Stage::framebuffer, "it clears the pixel")
+                                : Outcome(Verdict::scissor, Stage::framebuffer, "the scissor leaves the pixel out");
+      const auto store = [&](std::string_view name, std::uint32_t& stored, std::uint32_t value, int bits) {
+        entry.operations.push_back(
+            {name, Stage::framebuffer, {}, {{"before", {stored}, bits}, {"after", {value}, bits}}});
+        stored = value;
+      };
+      if (is_inside && command.depth)
+        store("write_depth", history.model.depth, encode.of_window(*command.depth), encode.format().bits);
+      if (is_inside && command.color)
+        store("write_color", history.model.color, clear_color(*command.color, config_.color_format),
+              config_.color_format == ColorFormat::rgb565 ? 16 : 32);
+      if (is_inside && command.stencil) {
+        entry.operations.push_back({"write_stencil",
+                                    Stage::framebuffer,
+                                    {},
+                                    {{"before", {history.model.stencil}, 8}, {"after", {*command.stencil}, 8}}});
+        history.model.stencil = *command.stencil;
+      }
+      if (is_inside) history.model.owner = -1;
+      entry.outcome = entry.specification;
+      history.history.push_back(std::move(entry));
+    }
+  }
+
+  void draw(const Draw& draw, std::uint32_t command) {
+    const State& state = scene_.states[draw.state];
+    if (draw.outside != 0) {  // the object as a whole lies outside of the view: it is only numbered
+      number_ += static_cast<std::uint32_t>(primitive_count(scene_, draw));
+      return;
+    }
+    const DrawContext context(scene_, config_, draw, command);
+    for_each_primitive(scene_, draw, state.provoking, [&](const AssembledPrimitive& primitive) {
+      const Shape shape = shape_of(context, primitive);
+      std::vector<std::size_t> near;
+      for (std::size_t i = 0; i < record_.pixels.size(); ++i)
+        if (shape.is_near(record_.pixels[i].at, options_.near)) near.push_back(i);
+      if (near.empty())
+        ++number_;
+      else
+        tell(context, primitive, number_++, near);
+    });
+  }
+
+  /// A primitive that passes near some of the pixels.
+  void tell(const DrawContext& context, const AssembledPrimitive& primitive, std::uint32_t number,
+            const std::vector<std::size_t>& near) {
+    record_.near.insert(number);
+    Counters counters;
+    const Counters before = counters;
+    pieces_.clear();
+    outline_ = {};
+    const bool is_filled = drawn_as(context.state, context.draw.topology) == PrimitiveType::triangle;
+    if (is_filled)
+      geometry(context, cache_, primitive.index, number, Skip{}, counters, pieces_);
+    else
+      geometry(context, widths_, cache_, primitive, number, counters, outline_);
+    if (pieces_.empty() && outline_.lines.empty() && outline_.points.empty()) {
+      const Outcome outcome = dropped_by_host(before, counters);
+      for (const std::size_t i : near) add_dropped(context, primitive, number, outcome, i);
+      return;
+    }
+    const bool is_cut = counters.clipped != 0;
+    const int s = widths_.grid_bits;
+    std::uint32_t piece = 0;
+    const auto for_each_near = [&](const Shape& shape, auto&& entry_at) {
+      for (const std::size_t i : near)
+        if (shape.is_near(record_.pixels[i].at, options_.near))
+          add(context, entry_at(record_.pixels[i].at), piece, is_cut, i);
+      ++piece;
+    };
+    for (const Triangle& triangle : pieces_) {
+      const TrianglePiece at_pixels(context, widths_, triangle);
+      for_each_near(shape_of({triangle.v[0], triangle.v[1], triangle.v[2]}, 0, s), [&](Pixel pixel) {
+        Entry entry = at_pixels.at(pixel);
+        if (options_.wants_steps) entry.steps = at_pixels.steps();
+        return entry;
+      });
+    }
+    for (const LinePrimitive& line : outline_.lines)
+      for_each_near(shape_of({line.drawn.start, line.drawn.end}, 1, s),
+                    [&](Pixel pixel) { return line_entry(context, widths_, line, pixel, options_.wants_steps); });
+    for (const PointPrimitive& point : outline_.points)
+      for_each_near(shape_of({point.drawn.at}, std::ldexp(point.drawn.size, -s), s),
+                    [&](Pixel pixel) { return point_entry(widths_, point, pixel); });
+  }
+
+  /// Of a whole primitive that never was drawn.
+  void add_dropped(const DrawContext& context, const AssembledPrimitive& primitive, std::uint32_t number,
+                   const Outcome& outcome, std::size_t pixel) {
+    Entry entry;
+    entry.kind = primitive.type == PrimitiveType::triangle ? Kind::triangle
+                 : primitive.type == PrimitiveType::line   ? Kind::line
+                                                           : Kind::point;
+    entry.primitive = number;
+    entry.draw = context.command;
+    const std::size_t count = entry.kind == Kind::triangle ? 3 : entry.kind == Kind::line ? 2 : 1;
+    bool is_snapped = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      const VertexCache::Entry& vertex = cache_.get(context, primitive.index[i]);
+      is_snapped = is_snapped && vertex.outside_guard_band == 0;
+      entry.corners.push_back(vertex.snapped);
+    }
+    if (!is_snapped) entry.corners.clear();
+    if (entry.corners.size() == 3) entry.area = signed_area(entry.corners[0], entry.corners[1], entry.corners[2]);
+    entry.specification = entry.outcome = outcome;
+    record_.pixels[pixel].history.push_back(std::move(entry));
+  }
+
+  /// Runs the operations, and holds what they leave against the specification of all of them together.
+  void add(const DrawContext& context, Entry entry, std::uint32_t piece, bool is_cut, std::size_t pixel) {
+    PixelHistory& history = record_.pixels[pixel];
+    entry.piece = piece;
+    entry.is_cut = is_cut;
+    if (has_fragment(entry.specification.verdict)) {
+      const auto color = color_of(entry);
+      std::uint32_t depth_after = history.model.depth, color_after = history.model.color;
+      std::uint8_t stencil_after = history.model.stencil;
+      const std::uint32_t plane = entry.planes[kDepthPlane].code;
+      const auto finished = [&] {
+        if (!entry.surface) return color;
+        const Texel& c = entry.surface->sample.color;
+        return std::array<std::uint32_t, 4>{c[0], c[1], c[2], c[3]};
+      };
+      const bool is_back = entry.kind == Kind::triangle && shows_back(entry.area, context.state.front);
+      const Fate fate = apply_fragment(context.fragment_ops, config_.color_format,
+                                       {context.depth_encode(plane), history.at.x, history.at.y, is_back}, finished,
+                                       {depth_after, color_after, stencil_after});
+      FragmentAtWork fragment{
+          context, entry.surface ? &*entry.surface : nullptr, plane, color, 0, 0, history.model, history.at, is_back};
+      fragment.primitive = *entry.primitive;
+      entry.specification = run_operations(fragment, entry.operations);
+      const Verdict verdict = entry.specification.verdict;
+      const Fate told = verdict == Verdict::written || verdict == Verdict::masked ? Fate::passed
+                        : verdict == Verdict::alpha                               ? Fate::killed
+                                                                                  : Fate::failed;
+      ++checks_;
+      if (fate != told || stencil_after != history.model.stencil || depth_after != history.model.depth ||
+          color_after != history.model.color)
+        differences_.push_back("pixel " + std::to_string(history.at.x) + "," + std::to_string(history.at.y) +
+                               " primitive " + std::to_string(*entry.primitive) +
+                               ": the table of operations leaves something else than apply_fragment");
+    }
+    entry.outcome = entry.specification;
+    history.history.push_back(std::move(entry));
+  }
+
+  /// The primitive's own colour. Alpha is 255 where no plane holds it and nobody looks.
+  [[nodiscard]] static std::array<std::uint32_t, 4> color_of(const Entry& entry) {
+    std::array<std::uint32_t, 4> color{0, 0, 0, 255};
+    if (entry.surface)
+      for (std::size_t c = 0; c < 4; ++c) color[c] = entry.surface->sample.primitive[c];
+    else
+      for (std::size_t p = kColorPlane; p < entry.planes.size(); ++p) color[p - kColorPlane] = entry.planes[p].code;
+    return color;
+  }
+
+  const Scene& scene_;
+  const Config& config_;
+  const Options& options_;
+  const Widths widths_;
+  VertexCache cache_;
+  std::vector<std::string>& differences_;
+  std::uint64_t& checks_;
+  SpecificationRecord record_;
+  std::vector<Triangle> pieces_;  ///< scratch
+  Outline outline_;               ///< scratch
+  std::uint32_t number_ = 0;      ///< of the next input primitive
+};
+
+}  // namespace
+
+SpecificationRecord record_specification(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels,
+                                         const Options& options, std::vector<std::string>& differences,
+                                         std::uint64_t& checks) {
+  return SpecificationWalk(scene, config, pixels, options, differences, checks).run();
+}
+
+}  // namespace halfplane::explain

@@ -1,0 +1,184 @@
+// Fragment operations: pictures that must be the same to the bit, and colours under layers against real arithmetic.
+#include <algorithm>
+#include <array>
+
+#include "model/engines/scalar.hpp"
+#include "sim/scene/random_state.hpp"
+#include "sim/study/compare/fragment_frame.hpp"
+#include "sim/study/stress/cases.hpp"
+#include "sim/study/stress/check.hpp"
+#include "sim/study/stress/shapes.hpp"
+
+namespace halfplane::stress {
+namespace {
+
+State with(Unit& unit, State state, std::initializer_list<std::string_view> names) {
+  const auto choose = [&unit](std::uint32_t n) {
+    return static_cast<std::uint32_t>(unit.random.index(static_cast<int>(n)));
+  };
+  for (const std::string_view name : names) draw_state(name).set(state, random_value(draw_state(name), choose));
+  return state;
+}
+
+/// Triangles of any size, their alpha at random.
+void add_triangles(Unit& unit, SceneBuilder& builder, int count) {
+  const int width = builder.scene.width, height = builder.scene.height;
+  for (int n = 0; n < count; ++n) {
+    std::array<Vertex, 3> v;
+    for (Vertex& vertex : v) {
+      vertex = random_vertex_at(unit, random_point(unit, width, height, 4));
+      for (double& channel : vertex.rgba) channel = unit.random.index(256);
+    }
+    builder.triangle(v[0], v[1], v[2]);
+  }
+}
+
+/// The engine's picture is the specification's.
+Rendering rendered(Unit& unit, const Scene& scene) {
+  Rendering drawn = unit.engine(scene, unit.config, render_options());
+  unit.count_triangles(drawn.triangles.size());
+  const Rendering expected = render_scalar(scene, unit.config, render_options());
+  expect_same_image(unit, scene, expected, drawn);
+  unit.require(drawn.frame.stencil == expected.frame.stencil, "stencil", scene, "stored stencil values differ");
+  unit.require(drawn.counters.alpha_killed == expected.counters.alpha_killed, "alpha_killed", scene,
+               "the alpha test drops other fragments");
+  return drawn;
+}
+
+/// The same triangles once more, in a state of their own.
+void again(Scene& scene, const State& state) {
+  const auto draws = scene.commands;
+  scene.states.push_back(state);
+  for (const Command& command : draws)
+    if (const auto* draw = std::get_if<Draw>(&command)) {
+      Draw second = *draw;
+      second.state = static_cast<std::uint32_t>(scene.states.size() - 1);
+      scene.commands.emplace_back(second);
+    }
+}
+
+}  // namespace
+
+void random_operations(Unit& unit) {
+  SceneBuilder builder(unit.width(40), unit.height(32));
+  for (int n = 0; n < 6; ++n) {
+    State state = with(unit, SceneBuilder::window_state(), {"depth_test", "depth_write", "blend", "dither"});
+    if (unit.random.coin()) state = with(unit, state, {"blend_equation", "blend_color", "color_mask"});
+    if (unit.random.coin()) state = with(unit, state, {"alpha_test"});
+    if (unit.random.coin()) state = with(unit, state, {"stencil", "stencil_back"});
+    builder.with_state(state);
+    add_triangles(unit, builder, 2);
+  }
+  (void)rendered(unit, builder.scene);
+}
+
+void layers(Unit& unit) {
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  state = with(unit, state, {"blend", "blend_equation", "blend_color", "dither"});
+  if (!state.blend || unit.random.coin())
+    state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
+                               BlendFactor::one_minus_src_alpha};
+  SceneBuilder builder(unit.width(12), unit.height(10), state);
+  const int count = 1 << unit.random.index(7);
+  add_triangles(unit, builder, count);
+  const Scene& scene = builder.scene;
+  const Config config = with_alpha(unit.config, scene);
+  FragmentFrame frame(scene, config);
+  RenderOptions options = render_options();
+  options.fragment_tap = [&frame](const TappedFragment& fragment) { frame.add(fragment); };
+  const Rendering rendering = unit.engine(scene, unit.config, options);
+  frame.finish();
+  unit.count_triangles(rendering.triangles.size());
+  LayeredColors colors = frame.layers();
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x) {
+      const auto p = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x);
+      if (frame.owners()[p] >= 0) colors.judge(p, rendering.frame.color[rendering.frame.at(x, y)]);
+    }
+  for (const LayerRow& row : colors.rows()) {
+    unit.count_checks(row.pixels);
+    unit.measure("layers", "of its bound", row.part_of_bound, 1, scene);
+  }
+}
+
+void opaque_blend(Unit& unit) {
+  SceneBuilder builder(unit.width(40), unit.height(32));
+  add_triangles(unit, builder, 6);
+  for (Vertex& vertex : builder.scene.vertices) vertex.rgba[3] = 255;
+  const Rendering plain = rendered(unit, builder.scene);
+  for (State& state : builder.scene.states)
+    state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::src_alpha,
+                               BlendFactor::one_minus_src_alpha};
+  expect_same_image(unit, builder.scene, plain, rendered(unit, builder.scene));
+}
+
+void alpha_parts(Unit& unit) {
+  // What passes a test, and what passes its opposite, are together what there is: where order does not matter.
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  state.blend = BlendFactors{BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one};
+  state.blend_equation = {BlendEquation::max, BlendEquation::max};
+  SceneBuilder builder(unit.width(40), unit.height(32), state);
+  add_triangles(unit, builder, 5);
+  const Rendering whole = rendered(unit, builder.scene);
+  constexpr std::array<std::array<DepthFunc, 2>, 4> kOpposites{{{DepthFunc::less, DepthFunc::gequal},
+                                                                {DepthFunc::lequal, DepthFunc::greater},
+                                                                {DepthFunc::equal, DepthFunc::notequal},
+                                                                {DepthFunc::never, DepthFunc::always}}};
+  const auto& funcs = kOpposites[static_cast<std::size_t>(unit.random.index(4))];
+  const auto reference = static_cast<std::uint8_t>(unit.random.index(256));
+  Scene parts = builder.scene;
+  for (State& of : parts.states) of.alpha_test = {funcs[0], reference};
+  state.alpha_test = {funcs[1], reference};
+  again(parts, state);
+  const Rendering both = rendered(unit, parts);
+  unit.count_checks(1);
+  unit.require(both.frame.color == whole.frame.color, "parts", parts, "the parts are not the whole");
+  unit.require(both.counters.written == whole.counters.written, "written", parts, "a fragment is in both, or in none");
+}
+
+void mask_parts(Unit& unit) {
+  SceneBuilder builder(unit.width(40), unit.height(32));
+  builder.scene.states.back().depth_test = DepthFunc::always;
+  add_triangles(unit, builder, 1);
+  const Rendering whole = rendered(unit, builder.scene);
+  Scene parts = builder.scene;
+  const int bits = unit.random.index(16);
+  State other = parts.states.back();
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (State& of : parts.states) of.color_mask[c] = (bits >> c & 1) != 0;
+    other.color_mask[c] = (bits >> c & 1) == 0;
+  }
+  again(parts, other);
+  const Rendering both = rendered(unit, parts);
+  unit.count_checks(2);
+  unit.require(both.frame.color == whole.frame.color, "parts", parts, "the parts are not the whole");
+  unit.require(both.frame.depth == whole.frame.depth, "depth", parts, "the depths are others");
+}
+
+void stencil_counts(Unit& unit) {
+  // Each fragment adds one; what is then drawn where the value is k are the pixels that so many cover.
+  State state = SceneBuilder::window_state();
+  state.depth_test = static_cast<DepthFunc>(unit.random.index(8));
+  state.stencil = Stencil{.func = DepthFunc::always,
+                          .stencil_fails = StencilOp::zero,
+                          .depth_fails = StencilOp::incr_wrap,
+                          .passes = StencilOp::incr_wrap};
+  SceneBuilder builder(unit.width(24), unit.height(20), state);
+  add_triangles(unit, builder, 1 + unit.random.index(12));
+  const Rendering drawn = rendered(unit, builder.scene);
+  std::uint64_t wrong = 0;
+  for (int y = 0; y < drawn.frame.height; ++y)
+    for (int x = 0; x < drawn.frame.width; ++x)
+      wrong += drawn.frame.stencil[drawn.frame.at(x, y)] !=
+                       (drawn.count[static_cast<std::size_t>(y) * static_cast<std::size_t>(drawn.frame.width) +
+                                    static_cast<std::size_t>(x)] &
+                        255U)
+                   ? 1
+                   : 0;
+  unit.count_checks(drawn.count.size());
+  unit.measure("stencil", "pixels", static_cast<double>(wrong), 0, builder.scene);
+}
+
+}  // namespace halfplane::stress

@@ -1,0 +1,439 @@
+#include "stages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <variant>
+
+#include "model/engines/hardware.hpp"
+#include "model/packet_words.hpp"
+#include "model/stages/coarse_raster.hpp"
+#include "model/stages/color_packets.hpp"
+#include "model/stages/cull.hpp"
+#include "model/stages/depth_test.hpp"
+#include "model/stages/fine_raster.hpp"
+#include "model/stages/interpolate.hpp"
+#include "model/stages/primitive_join.hpp"
+#include "model/stages/rop.hpp"
+#include "model/stages/state_packets.hpp"
+#include "model/stages/surface.hpp"
+#include "model/stages/texture_packets.hpp"
+#include "model/stages/triangle_setup.hpp"
+#include "sim/nearest_word.hpp"
+
+namespace halfplane::vectors {
+namespace {
+
+/// A stage at work, with its packets as what they are.
+struct Run {
+  StageIo& io;
+  const Config& config;
+  const Widths& widths;
+
+  template <class Packet>
+  [[nodiscard]] std::optional<Packet> take(std::size_t port) const {
+    const auto words = io.take(port);
+    if (words.empty()) return std::nullopt;
+    return unpack_words<Packet>(words.data(), widths);
+  }
+  /// One that must come.
+  template <class Packet>
+  [[nodiscard]] Packet need(std::size_t port, const char* what) const {
+    auto packet = take<Packet>(port);
+    if (!packet) throw InputError(std::string("the packets that go in end too early: there is no ") + what);
+    return *packet;
+  }
+  template <class Packet>
+  void send(std::size_t port, const Packet& packet) const {
+    io.send(port, packed(packet, widths));
+  }
+};
+
+/// What goes through the tests and what does not.
+[[nodiscard]] bool is_tested(const FragmentPacket& fragment) {
+  return (!is_token(fragment.kind) || fragment.kind == PrimitiveKind::line) && fragment.mask.any();
+}
+
+void run_cull(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  CounterPacket counters;
+  while (const auto primitive = run.take<PrimitivePacket>(0))
+    if (const auto triangle = cull(*primitive, widths, counters, config.setup_kind == SetupKind::pipelined))
+      run.send(0, *triangle);
+}
+
+void run_triangle_setup(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  while (const auto triangle = run.take<TrianglePacket>(0)) {
+    if (triangle->kind == PrimitiveKind::triangle && triangle->area == 0)
+      throw InputError("a triangle without area goes into triangle_setup, which cull never sends");
+    run.send(0, setup_packet(*triangle, config, widths));
+  }
+}
+
+/// Each visit retires before the next one looks at HiZ, which sees it `lag` visits later.
+void run_coarse_raster(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  CounterPacket counters;
+  Hiz hiz(config, widths);
+  std::uint8_t slot = 0;
+  while (const auto setup = run.take<SetupPacket>(0)) {
+    run.send(0, make_context(*setup, widths));
+    const EdgeContext edges = make_edge_context(*setup);
+    coarse_raster(*setup, slot, hiz, widths, counters, [&](const TilePacket& tile) {
+      run.send(1, tile);
+      run.send(2, edges);
+      if (tile.is_visit) hiz.retire(run.need<RetirePacket>(1, "retire packet for a tile visit"));
+    });
+    slot = static_cast<std::uint8_t>((slot + 1) % config.context_slots);
+  }
+}
+
+void run_fine_raster(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  while (const auto tile = run.take<TilePacket>(0))
+    fine_raster(*tile, run.need<EdgeContext>(1, "edges packet for a tile"), widths,
+                [&](const StampPacket& stamp) { run.send(0, stamp); });
+}
+
+void run_interpolate(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  std::optional<ContextPacket> context;  // of the primitive at work
+  while (const auto stamp = run.take<StampPacket>(0)) {
+    if (!context) context = run.need<ContextPacket>(1, "context packet for a primitive");
+    run.send(0, interpolate(*stamp, *context, widths));
+    if (stamp->ends_primitive) context.reset();
+  }
+}
+
+void run_line_raster(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  while (const auto line = run.take<LineSetup>(0))
+    line_raster(*line, widths, [&](const LinePixel& pixel) { run.send(0, pixel); });
+}
+
+void run_primitive_join(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  while (const auto fragment = run.take<FragmentPacket>(0)) {
+    bool has_more = fragment->kind == PrimitiveKind::line;
+    if (!has_more) run.send(0, *fragment);
+    while (has_more) {
+      const auto pixel = run.need<LinePixel>(1, "line_pixel for the place of a line");
+      run.send(0, line_fragment(*fragment, pixel, widths));
+      has_more = !pixel.is_last;
+    }
+  }
+}
+
+/// A token may set what is done with colours.
+void set_colors(const FragmentPacket& fragment, ColorState& colors, const Widths& widths) {
+  if (fragment.kind != PrimitiveKind::state) return;
+  const StateRegister which = state_register(fragment.state);
+  if (!is_of_texture(which)) colors.set(which, state_word(fragment, widths));
+}
+
+/// The depths under all stamps, as the fragments themselves leave them.
+class DepthPlane {
+ public:
+  explicit DepthPlane(const Widths& widths)
+      : widths_(widths),
+        code_(static_cast<std::size_t>(widths.tiles_x) * static_cast<std::size_t>(widths.tiles_y) *
+              static_cast<std::size_t>(widths.stamps.stamps() * widths.samples)) {}
+  void fill(std::uint32_t code) { std::ranges::fill(code_, code); }
+  [[nodiscard]] std::span<std::uint32_t> under(const TileKey& key, int stamp) {
+    const auto samples = static_cast<std::size_t>(widths_.samples);
+    const std::size_t tile = std::size_t{key.tile_y} * static_cast<std::size_t>(widths_.tiles_x) + key.tile_x;
+    const std::size_t at =
+        (tile * static_cast<std::size_t>(widths_.stamps.stamps()) + static_cast<std::size_t>(stamp)) * samples;
+    if (at + samples > code_.size()) throw InputError("a fragment lies outside of the largest target");
+    return std::span(code_).subspan(at, samples);
+  }
+
+ private:
+  const Widths& widths_;
+  std::vector<std::uint32_t> code_;
+};
+
+void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  DepthPlane depths(widths);
+  TileVisit visit;
+  ColorState colors;
+  while (const auto fragment = run.take<FragmentPacket>(0)) {
+    const bool is_clear = fragment->kind == PrimitiveKind::fast_clear;
+    if (is_clear && fragment->state.depth_write) depths.fill(fragment->code[0][kDepthPlane]);
+    set_colors(*fragment, colors, widths);
+    if (is_token(fragment->kind) && fragment->kind != PrimitiveKind::line) continue;
+    if (fragment->mask.any()) {
+      const auto stored = depths.under(fragment->key, fragment->stamp);
+      WritePacket tested = depth_test(*fragment, stored, widths);
+      SampleMask kept = tested.passed;
+      if (!has_texture_planes(config)) {
+        kept = alpha_passes(colors.alpha, kept, [&](std::size_t s) { return color_channels(fragment->code[s])[3]; });
+        keep(kept, tested);
+      }
+      run.send(0, tested);
+      const bool may_fail = is_late(fragment->state, colors.alpha, config);
+      if (may_fail)
+        throw InputError(
+            "depths are written behind a texture's alpha test here, which this stage does not see; judge "
+            "the whole by cosim, or use texture.unit=off");
+      tested.write_depth.for_each([&](std::size_t s) { stored[s] = tested.depth[s]; });
+      if (fragment->kind != PrimitiveKind::line) visit.add(*fragment, kept, kept, widths);
+    }
+    if (!fragment->ends_visit) continue;
+    run.send(1, visit.retire(*fragment, config, widths));
+    visit = {};
+  }
+}
+
+void run_rop(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  while (const auto fragment = run.take<FragmentPacket>(0))
+    if (is_tested(*fragment))
+      run.send(0, rop(*fragment, run.need<WritePacket>(1, "tested packet for a stamp"), config, widths));
+}
+
+/// Samples that a texture unit colours: what is written, or what an alpha test behind it looks at.
+SampleMask shaded_samples(const WritePacket& write, const ColorState& colors) {
+  return colors.alpha.func != DepthFunc::always ? write.passed : write.write_color;
+}
+
+/// The memory behind a cache, as packets.
+class PacketMemory final : public MemoryPort {
+ public:
+  PacketMemory(const Run& run, std::size_t requests, std::size_t responses)
+      : run_(run), requests_(requests), responses_(responses) {}
+  void request(const MemoryRequest& request) override { run_.send(requests_, request); }
+  const MemoryResponse& response() override {
+    response_ = run_.need<MemoryResponse>(responses_, "response to a read");
+    return response_;
+  }
+
+ private:
+  const Run& run_;
+  std::size_t requests_, responses_;
+  MemoryResponse response_;
+};
+
+void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  PacketMemory memory(run, 0, 2);
+  CounterPacket counters;
+  std::variant<TileCache, BlockCache> either(std::in_place_type<TileCache>, config, widths);
+  if (config.cache_kind == CacheKind::blocks) either.emplace<BlockCache>(config, widths);
+  const bool has_texture = has_texture_planes(config);
+  ColorState colors;
+  std::visit(
+      [&](auto& cache) {
+        constexpr bool has_colors = std::is_same_v<std::remove_cvref_t<decltype(cache)>, BlockCache>;
+        while (const auto fragment = run.take<FragmentPacket>(0)) {
+          set_colors(*fragment, colors, widths);
+          if constexpr (has_colors) cache.set(colors);
+          if (fragment->kind == PrimitiveKind::fast_clear)
+            cache.fast_clear(*fragment, stored_color(fragment->code[0], config), memory, counters);
+          if (fragment->kind == PrimitiveKind::flush) cache.flush(*fragment, memory, counters);
+          if (!is_tested(*fragment)) continue;
+          (void)cache.access(*fragment, memory, counters);
+          WritePacket write = run.need<WritePacket>(1, "write packet for a stamp");
+          if (has_texture) {
+            const SampleMask shaded = shaded_samples(write, colors);
+            write.color = {};
+            if (colors.alpha.func != DepthFunc::always && !packs_at_write(config) &&
+                config.color_format == ColorFormat::rgb565)
+              throw InputError(
+                  "an alpha test behind a texture, but no packet of this configuration tells alpha; judge the "
+                  "whole by cosim, or use blend.lanes");
+            if (shaded.any()) write.color = run.need<ColorPacket>(3, "color packet for a write").color;
+            keep(alpha_passes(colors.alpha, shaded, [&](std::size_t s) { return write.color[s] >> 24; }), write);
+          }
+          if constexpr (has_colors)
+            if (packs_at_write(config))
+              written_colors(colors.ops, {fragment->key.tile_x, fragment->key.tile_y, fragment->stamp},
+                             write.write_color, cache.colors(), write.color, config, widths);
+          cache.write(*fragment, write);
+        }
+      },
+      either);
+}
+
+void run_memory_port(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  PortStage port(widths, default_layout(widths));
+  while (const auto request = run.take<MemoryRequest>(0))
+    port.take(*request, [&](const MemoryBeat& beat) {
+      run.send(0, beat);
+      const int answers = beat.is_write ? (beat.length == 1 ? 1 : 0) : beat.length;
+      for (int n = 0; n < answers; ++n) {
+        const auto answer = run.need<MemoryAnswer>(1, "answer to a burst");
+        if (!beat.is_write) port.answer(answer, [&](const MemoryResponse& response) { run.send(1, response); });
+      }
+    });
+}
+
+void run_memory(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  TileMemory memory(config);
+  while (const auto beat = run.take<MemoryBeat>(0)) {
+    MemoryBeat last = *beat;
+    last.address += static_cast<std::uint32_t>(std::max(1, int{beat->length}) - 1) << widths.memory.port;
+    if (!memory.has(*beat) || !memory.has(last)) throw InputError("a burst lies outside of the target's memory");
+    if (beat->is_write) {
+      memory.write(*beat);
+      if (beat->length == 1) run.send(0, MemoryAnswer{true, {}});
+      continue;
+    }
+    MemoryAnswer answer;
+    for (std::uint32_t n = 0; n < beat->length; ++n) {
+      memory.read(beat->address + (n << widths.memory.port), answer.data);
+      run.send(0, answer);
+    }
+  }
+}
+
+void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
+  const Run run{io, config, widths};
+  TextureUnit unit(texture_settings(config, widths), perspective_format(config));
+  ColorState colors;
+  const auto read = [&](std::uint32_t address, int beats) {
+    run.send(0, TextureRequest{address, static_cast<std::uint16_t>(beats)});
+    TextureLine line{};
+    const auto bytes = static_cast<std::size_t>(widths.texture_port_bytes);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(beats); ++n)
+      std::copy_n(run.need<TexelBeat>(2, "texel beat of a line").data.begin(), bytes,
+                  line.begin() + static_cast<std::ptrdiff_t>(n * bytes));
+    return line;
+  };
+  while (const auto fragment = run.take<FragmentPacket>(0)) {
+    set_colors(*fragment, colors, widths);
+    if (fragment->kind == PrimitiveKind::state && is_of_texture(state_register(fragment->state)))
+      set_register(unit, state_register(fragment->state), *fragment, widths);
+    if (!is_tested(*fragment)) continue;
+    const auto write = run.need<WritePacket>(1, "write packet for a stamp");
+    const SampleMask live = shaded_samples(write, colors);
+    const PixelOffset origin = widths.stamps.origin_of(fragment->stamp);
+    std::array<TextureSample, kMaxSamples> sample;
+    std::array<Texel, kMaxSamples> color;
+    live.for_each([&](std::size_t s) {
+      sample[s] = texture_sample(fragment->code[s], widths);
+      const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
+      sample[s].x = (fragment->key.tile_x << widths.tile_shift) + origin.x + pixel.x;
+      sample[s].y = (fragment->key.tile_y << widths.tile_shift) + origin.y + pixel.y;
+      for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(write.color[s] >> 8 * c);
+    });
+    if (unit.is_textured(fragment->kind == PrimitiveKind::triangle, live))
+      unit.take(live, sample, texture_frame(fragment->coordinates), color, read);
+    ColorPacket packet{live, {}};
+    live.for_each([&](std::size_t s) {
+      const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};
+      packet.color[s] = packs_at_write(config) ? static_cast<std::uint32_t>(wrap_unsigned(
+                                                     pack_rgba8888(c[0], c[1], c[2], c[3]), widths.shaded_color.bits))
+                                               : pack_color(config.color_format, c);
+    });
+    if (live.any()) run.send(1, packet);
+  }
+}
+
+constexpr Port port(Arrow arrow) { return {info(arrow).name, arrow}; }
+constexpr Port kInterpolated{"interpolated", Arrow::fragment}, kTested{"tested", Arrow::write};
+constexpr std::string_view kOfHost = "it is the host's: what goes into it is a scene, no packets";
+
+}  // namespace
+
+std::span<const JudgedStage> judged_stages() {
+  using enum Arrow;
+  static const std::vector<JudgedStage> all{
+      {Stage::viewport, {}, {port(primitive)}, nullptr, kOfHost},
+      {Stage::line_setup, {}, {port(line)}, nullptr, kOfHost},
+      {Stage::cull, {port(primitive)}, {port(triangle)}, run_cull},
+      {Stage::triangle_setup, {port(triangle)}, {port(setup)}, run_triangle_setup},
+      {Stage::coarse_raster, {port(setup), port(retire)}, {port(context), port(tile), port(edges)}, run_coarse_raster},
+      {Stage::fine_raster, {port(tile), port(edges)}, {port(stamp)}, run_fine_raster},
+      {Stage::interpolate, {port(stamp), port(context)}, {kInterpolated}, run_interpolate},
+      {Stage::line_raster, {port(line)}, {port(line_pixel)}, run_line_raster},
+      {Stage::primitive_join, {kInterpolated, port(line_pixel)}, {port(fragment)}, run_primitive_join},
+      {Stage::depth_test, {port(fragment)}, {kTested, port(retire)}, run_depth_test},
+      {Stage::rop, {port(fragment), kTested}, {port(write)}, run_rop},
+      {Stage::texture_unit, {port(fragment), port(write), port(texel)}, {port(texture), port(color)}, run_texture_unit},
+      {Stage::framebuffer,
+       {port(fragment), port(write), port(response), port(color)},
+       {port(request)},
+       run_framebuffer},
+      {Stage::memory_port, {port(request), port(answer)}, {port(beat), port(response)}, run_memory_port},
+      {Stage::memory, {port(beat)}, {port(answer)}, run_memory},
+      {Stage::texture_memory,
+       {port(texture)},
+       {port(texel)},
+       nullptr,
+       "its texels are the scene's, which the file does not hold"}};
+  return all;
+}
+
+const JudgedStage& judged_stage(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const JudgedStage& stage : judged_stages()) {
+    if (info(stage.stage).name == name) return stage;
+    names.push_back(info(stage.stage).name);
+  }
+  std::string list;
+  for (const std::string_view word : names) list += (list.empty() ? "" : ", ") + std::string(word);
+  throw InputError("--stage: no stage '" + std::string(name) + "' sends packets;" + did_you_mean(name, names) +
+                   " give one of " + list);
+}
+
+void require_stage(const JudgedStage& stage, const Config& config) {
+  const bool is_of_texture = stage.stage == Stage::texture_unit || stage.stage == Stage::texture_memory;
+  if (is_of_texture && !has_texture_planes(config))
+    throw InputError("--stage " + std::string(info(stage.stage).name) +
+                     ": this hardware has no texture unit; use --set texture.unit=nearest or bilinear");
+  const bool is_of_lines = stage.stage == Stage::line_setup || stage.stage == Stage::line_raster;
+  if (is_of_lines && config.line_units == 0)
+    throw InputError("--stage " + std::string(info(stage.stage).name) +
+                     ": this hardware has no unit that draws lines; use --set lines.unit=1");
+}
+
+std::vector<FieldName> fields_of(Arrow like, const Widths& widths) {
+  return with_packet_type(like, [&]<class Packet>(std::type_identity<Packet>) {
+    std::vector<FieldName> fields;
+    for (const auto& [name, width] : element_names<Packet>(widths))
+      fields.push_back({name, width.bits, width.is_signed});
+    return fields;
+  });
+}
+
+int bits_of(Arrow like, const Widths& widths) {
+  return with_packet_type(like, [&]<class Packet>(std::type_identity<Packet>) { return packet_bits<Packet>(widths); });
+}
+
+std::size_t packet_words(Arrow like, const Widths& widths) { return words_of(bits_of(like, widths)); }
+
+std::vector<std::uint64_t> values_of(Arrow like, const Widths& widths, std::span<const std::uint32_t> words) {
+  return with_packet_type(
+      like, [&]<class Packet>(std::type_identity<Packet>) { return element_values<Packet>(words.data(), widths); });
+}
+
+namespace {
+
+/// "code[3][red]" in its parts: "code", then what stands in brackets.
+std::string_view stem_of(std::string_view name) { return name.substr(0, name.find('[')); }
+
+}  // namespace
+
+std::vector<std::uint32_t> words_from(std::span<const FieldName> fields, std::span<const std::uint64_t> values) {
+  // Fields go highest first; the elements of one array lie lowest first.
+  int bits = 0;
+  for (const FieldName& field : fields) bits += field.bits;
+  std::vector<std::uint32_t> words(words_of(bits));
+  WordWriter writer(words.data());
+  for (std::size_t end = fields.size(); end > 0;) {
+    std::size_t first = end - 1;
+    const bool is_array = fields[first].name.find('[') != std::string::npos;
+    while (is_array && first > 0 && stem_of(fields[first - 1].name) == stem_of(fields[end - 1].name)) --first;
+    for (std::size_t i = first; i < end; ++i) writer.put(values[i], fields[i].bits);
+    end = first;
+  }
+  writer.finish();
+  return words;
+}
+
+}  // namespace halfplane::vectors

@@ -1,0 +1,69 @@
+// The stages as judges: what goes into each, what comes out of it, and the specification that makes the one of the other.
+//
+// Ports are arrows of the pipeline graph, and two hand-overs inside a cycle that are none: `interpolated`, what interpolate
+// gives primitive_join, and `tested`, what depth_test gives rop. A stage reads each of its ports in order; in which order it
+// turns from one to the other follows from the data alone, so that the packets of a port need no time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/pipeline_graph.hpp"
+#include "model/widths.hpp"
+
+namespace halfplane::vectors {
+
+/// A port of a stage.
+struct Port {
+  std::string_view name;  ///< the arrow's, or `interpolated`, or `tested`
+  Arrow like;             ///< whose packet type it has
+};
+
+/// The packets of a stage's ports, as its specification takes and gives them: packed words (model/packet_words.hpp).
+class StageIo {
+ public:
+  virtual ~StageIo() = default;
+  /// The next packet of port `port` of those that go in; none at the end. Valid until the next call.
+  [[nodiscard]] virtual std::span<const std::uint32_t> take(std::size_t port) = 0;
+  /// The next packet of port `port` of those that come out.
+  virtual void send(std::size_t port, std::span<const std::uint32_t> words) = 0;
+};
+
+struct JudgedStage {
+  Stage stage;
+  std::vector<Port> in, out;
+  /// Runs the stage from reset until its first port ends. Throws InputError when another port ends before. None: its packets
+  /// cannot be judged from what goes in.
+  void (*run)(StageIo& io, const Config& config, const Widths& widths) = nullptr;
+  std::string_view why_not{};  ///< with no `run`
+};
+
+/// Every stage of the graph that sends packets.
+[[nodiscard]] std::span<const JudgedStage> judged_stages();
+
+/// The stage of that name. Throws InputError that lists the names, and one for a stage that this configuration does not have.
+[[nodiscard]] const JudgedStage& judged_stage(std::string_view name);
+void require_stage(const JudgedStage& stage, const Config& config);
+
+/// A field of a packet, as files name it.
+struct FieldName {
+  std::string name;
+  int bits = 0;
+  bool is_signed = false;
+};
+/// Those of a packet type, highest first.
+[[nodiscard]] std::vector<FieldName> fields_of(Arrow like, const Widths& widths);
+[[nodiscard]] std::size_t packet_words(Arrow like, const Widths& widths);
+[[nodiscard]] int bits_of(Arrow like, const Widths& widths);
+/// The bits of every field of a packet, and back. Precondition of the way back: each value fits its field.
+[[nodiscard]] std::vector<std::uint64_t> values_of(Arrow like, const Widths& widths,
+                                                   std::span<const std::uint32_t> words);
+[[nodiscard]] std::vector<std::uint32_t> words_from(std::span<const FieldName> fields,
+                                                    std::span<const std::uint64_t> values);
+
+}  // namespace halfplane::vectors

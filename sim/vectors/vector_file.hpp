@@ -1,0 +1,41 @@
+// Files of vectors: a header that names stage, configuration, fields and widths, then packets, as docs/your-rtl.md has it.
+//
+//   jsonl   a line for the header, then one for each packet, those that go in and those that come out as the stage takes
+//           and gives them
+//   csv     the same as rows
+//   hex     a folder: header.json, and PACKET.hex for each port, a packed packet a line, for $readmemh
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "packets.hpp"
+#include "record.hpp"
+
+namespace halfplane::vectors {
+
+enum class Format : std::uint8_t { jsonl, csv, hex };
+inline constexpr std::array<std::string_view, 3> kFormats{"jsonl", "csv", "hex"};
+
+struct WrittenFile {
+  std::string path;
+  std::size_t bytes = 0;
+};
+
+/// Replays the stage into `path`, a file or for hex a folder, whole or not at all. `source`: for people.
+std::vector<WrittenFile> write_vectors(const std::string& path, Format format, const JudgedStage& stage,
+                                       const Config& config, const StagePackets& packets, const std::string& source);
+
+/// What a file holds.
+struct VectorFile {
+  const JudgedStage* stage = nullptr;
+  Config config;
+  StagePackets packets;
+};
+
+/// A file of any of the formats, told apart by what it is: a folder is hex, a first line that begins with '{' jsonl. Throws InputError with file and line.
+[[nodiscard]] VectorFile read_vectors(const std::string& path);
+
+}  // namespace halfplane::vectors

@@ -1,0 +1,282 @@
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "sim/config_file.hpp"
+#include "vector_file.hpp"
+
+namespace halfplane::vectors {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Where a message points.
+struct SourceLine {
+  const std::string& path;
+  std::size_t number = 0;
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(path + ":" + std::to_string(number) + ": " + what);
+  }
+};
+
+std::vector<std::string_view> split_at_commas(std::string_view text) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    cells.push_back(text.substr(0, comma));
+    if (comma == std::string_view::npos) return cells;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+/// A hexadecimal number of at most `bits` bits, with 0x or without.
+std::uint64_t parse_hex(std::string_view text, const FieldName& field, const SourceLine& at) {
+  std::string_view digits = text;
+  if (digits.starts_with("0x") || digits.starts_with("0X")) digits.remove_prefix(2);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+    at.fail("'" + field.name + "' is '" + std::string(text.substr(0, 40)) +
+            "', which is no hexadecimal number; give one as 0x1f");
+  if (field.bits < 64 && value >> field.bits != 0)
+    at.fail("'" + field.name + "' has " + std::to_string(field.bits) + " bits, and " + std::string(text) +
+            " needs more; give it in two's complement");
+  return value;
+}
+
+/// The file as it is read.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {}
+
+  void begin(std::string_view stage, const std::map<std::string, std::string>& config, const SourceLine& at) {
+    try {
+      file_.stage = &judged_stage(stage);
+      const auto preset_name = config.find("preset");
+      file_.config = preset(preset_name == config.end() ? "embedded" : preset_name->second);
+      for (const auto& [key, value] : config)
+        if (key != "preset") set_by_key(file_.config, key, value);
+      validate(file_.config);
+      require_stage(*file_.stage, file_.config);
+    } catch (const InputError& error) {
+      at.fail(std::string("in the header, ") + error.what());
+    }
+    widths_ = derive_widths(file_.config);
+    file_.packets = StagePackets(*file_.stage, widths_);
+    for (const Port& port : file_.stage->in) in_.push_back(fields_of(port.like, widths_));
+    for (const Port& port : file_.stage->out) out_.push_back(fields_of(port.like, widths_));
+  }
+
+  [[nodiscard]] bool has_begun() const { return file_.stage != nullptr; }
+
+  struct Place {
+    std::size_t port;
+    bool is_out;
+  };
+  [[nodiscard]] Place place_of(std::string_view direction, std::string_view packet, const SourceLine& at) const {
+    if (direction != "in" && direction != "out") at.fail("'dir' is '" + std::string(direction) + "'; give in or out");
+    const bool is_out = direction == "out";
+    const std::vector<Port>& ports = is_out ? file_.stage->out : file_.stage->in;
+    std::string names;
+    for (std::size_t p = 0; p < ports.size(); ++p) {
+      if (ports[p].name == packet) return {p, is_out};
+      names += (names.empty() ? "" : ", ") + std::string(ports[p].name);
+    }
+    at.fail("'" + std::string(packet) + "' is no packet that goes " + (is_out ? "out of " : "into ") +
+            std::string(info(file_.stage->stage).name) + "; give one of " + names);
+  }
+  [[nodiscard]] const std::vector<FieldName>& fields(const Place& place) const {
+    return place.is_out ? out_[place.port] : in_[place.port];
+  }
+  [[nodiscard]] PacketList& list(const Place& place) {
+    return place.is_out ? file_.packets.out[place.port] : file_.packets.in[place.port];
+  }
+  /// Packets of a port are numbered from 0 on.
+  void check_number(const Place& place, std::uint64_t number, const SourceLine& at) {
+    if (number != list(place).size())
+      at.fail("packet " + std::to_string(number) + " where " + std::to_string(list(place).size()) +
+              " is due; give them in order, from 0");
+  }
+
+  /// A packet that is read: places must lie in the largest target, or nobody has a tile or a pixel there.
+  void add(const Place& place, std::span<const std::uint64_t> values, const SourceLine& at) {
+    const Config& config = file_.config;
+    const auto most = [&](std::string_view name) -> std::uint64_t {
+      const bool is_x = name == "x" || name == "left" || name == "right";
+      const bool is_y = name == "y" || name == "top" || name == "bottom";
+      const int limit = is_x               ? config.target_width
+                        : is_y             ? config.target_height
+                        : name == "tile_x" ? widths_.tiles_x
+                        : name == "tile_y" ? widths_.tiles_y
+                                           : 0;
+      return limit == 0 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(limit) - 1;
+    };
+    const auto& names = fields(place);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (values[i] > most(names[i].name))
+        at.fail("'" + names[i].name + "' is " + std::to_string(values[i]) + ", and the largest target ends at " +
+                std::to_string(most(names[i].name)));
+    list(place).push(words_from(names, values));
+  }
+  void add_words(const Place& place, std::span<const std::uint32_t> words, const SourceLine& at) {
+    const Port& port = (place.is_out ? file_.stage->out : file_.stage->in)[place.port];
+    add(place, values_of(port.like, widths_, words), at);
+  }
+
+  const std::string& path_;
+  VectorFile file_;
+
+ private:
+  Widths widths_;
+  std::vector<std::vector<FieldName>> in_, out_;
+};
+
+void read_header(Reader& reader, const Json& header, const SourceLine& at) {
+  if (!header.is_object() || !header.contains("schema") || header["schema"] != "halfplane.vectors/1")
+    at.fail("the header is not that of vectors: \"schema\" must be \"halfplane.vectors/1\"");
+  if (!header.contains("stage") || !header["stage"].is_string() || !header.contains("config") ||
+      !header["config"].is_object())
+    at.fail("the header lacks \"stage\" or \"config\"; keep the one that `halfplane vectors` wrote");
+  std::map<std::string, std::string> config;
+  for (const auto& [key, value] : header["config"].items())
+    config[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  reader.begin(header["stage"].get<std::string>(), config, at);
+}
+
+void read_jsonl_packet(Reader& reader, const Json& line, const SourceLine& at) {
+  const auto word = [&](const char* key) {
+    if (!line.contains(key) || !line[key].is_string()) at.fail(std::string("there is no \"") + key + "\"");
+    return line[key].get<std::string>();
+  };
+  const Reader::Place place = reader.place_of(word("dir"), word("packet"), at);
+  if (!line.contains("n") || !line["n"].is_number_unsigned()) at.fail("there is no \"n\", the packet's number");
+  reader.check_number(place, line["n"].get<std::uint64_t>(), at);
+  const auto& fields = reader.fields(place);
+  std::vector<std::uint64_t> values;
+  for (const FieldName& field : fields) values.push_back(parse_hex(word(field.name.c_str()), field, at));
+  if (line.size() != fields.size() + 3) {
+    for (const auto& [key, value] : line.items())
+      if (key != "dir" && key != "packet" && key != "n" &&
+          std::ranges::find(fields, key, &FieldName::name) == fields.end())
+        at.fail("no field is called '" + key + "'; the header names them");
+  }
+  reader.add(place, values, at);
+}
+
+VectorFile read_jsonl(std::istream& in, const std::string& path) {
+  Reader reader(path);
+  std::string text;
+  for (std::size_t number = 1; std::getline(in, text); ++number) {
+    const SourceLine at{path, number};
+    if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const Json line = Json::parse(text, nullptr, false);
+    if (line.is_discarded() || !line.is_object()) at.fail("this is no JSON object; give one a line");
+    reader.has_begun() ? read_jsonl_packet(reader, line, at) : read_header(reader, line, at);
+  }
+  if (!reader.has_begun()) throw InputError(path + ": the file is empty; give one that `halfplane vectors` wrote");
+  return std::move(reader.file_);
+}
+
+void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, const SourceLine& at) {
+  if (cells.size() < 3) at.fail("a row has at least dir, packet and n");
+  const Reader::Place place = reader.place_of(cells[0], cells[1], at);
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(cells[2].data(), cells[2].data() + cells[2].size(), number);
+  if (error != std::errc() || end != cells[2].data() + cells[2].size()) at.fail("the third cell is no number");
+  reader.check_number(place, number, at);
+  const auto& fields = reader.fields(place);
+  if (cells.size() != fields.size() + 3)
+    at.fail(std::to_string(cells.size() - 3) + " values where " + std::to_string(fields.size()) + " are due");
+  std::vector<std::uint64_t> values;
+  for (std::size_t i = 0; i < fields.size(); ++i) values.push_back(parse_hex(cells[i + 3], fields[i], at));
+  reader.add(place, values, at);
+}
+
+VectorFile read_csv(std::istream& in, const std::string& path) {
+  Reader reader(path);
+  std::string text, stage;
+  for (std::size_t number = 1; std::getline(in, text); ++number) {
+    const SourceLine at{path, number};
+    if (text.ends_with('\r')) text.pop_back();
+    if (text.empty()) continue;
+    const auto cells = split_at_commas(text);
+    if (number == 1) {
+      if (cells[0] != "halfplane.vectors/1" || cells.size() < 2)
+        at.fail("these are no vectors: the first line must begin with halfplane.vectors/1,STAGE");
+      stage = cells[1];
+    } else if (cells[0] == "config") {
+      std::map<std::string, std::string> config;
+      for (std::size_t i = 1; i < cells.size(); ++i) {
+        const std::size_t equals = cells[i].find('=');
+        if (equals == std::string_view::npos) at.fail("'" + std::string(cells[i]) + "' is no key=value");
+        config[std::string(cells[i].substr(0, equals))] = cells[i].substr(equals + 1);
+      }
+      reader.begin(stage, config, at);
+    } else if (cells[0] != "fields") {
+      if (!reader.has_begun()) at.fail("a packet comes before the line that begins with config");
+      read_csv_row(reader, cells, at);
+    }
+  }
+  if (!reader.has_begun()) throw InputError(path + ": there is no line that begins with config");
+  return std::move(reader.file_);
+}
+
+/// A packed packet, the highest digit first; '_' and comments as $readmemh has them.
+void read_hex_line(Reader& reader, std::string text, int bits, const Reader::Place& place, const SourceLine& at) {
+  text = text.substr(0, text.find("//"));
+  std::erase_if(text, [](unsigned char c) { return c == '_' || std::isspace(c) != 0; });
+  if (text.empty()) return;
+  if (text.front() == '@') at.fail("addresses are not read; give the packets in order");
+  std::vector<std::uint32_t> words(static_cast<std::size_t>((bits + 31) / 32));
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::string_view digit(&text[text.size() - 1 - i], 1);
+    const std::uint64_t value = parse_hex(digit, {"packet", 4, false}, at);
+    const int low = static_cast<int>(4 * i);
+    const bool fits = low < bits && (low + 4 <= bits || value >> (bits - low) == 0);
+    if (!fits && value != 0) at.fail("a packet of " + std::to_string(bits) + " bits, and this line has more");
+    if (fits) words[i / 8] |= static_cast<std::uint32_t>(value << 4 * (i % 8));
+  }
+  reader.add_words(place, words, at);
+}
+
+VectorFile read_hex(const std::string& folder) {
+  const std::string header_path = (fs::path(folder) / "header.json").string();
+  std::ifstream header_file(header_path);
+  if (!header_file)
+    throw InputError(header_path + ": there is no such file; give a folder that `halfplane vectors` wrote");
+  Reader reader(header_path);
+  const SourceLine first{header_path, 1};
+  const Json header = Json::parse(header_file, nullptr, false);
+  if (header.is_discarded()) first.fail("this is no JSON");
+  read_header(reader, header, first);
+  VectorFile& file = reader.file_;
+  const Widths widths = derive_widths(file.config);
+  const auto read_ports = [&](const std::vector<Port>& ports, bool is_out) {
+    for (std::size_t p = 0; p < ports.size(); ++p) {
+      const std::string path = (fs::path(folder) / (std::string(ports[p].name) + ".hex")).string();
+      std::ifstream in(path);
+      if (!in) throw InputError(path + ": there is no such file; give one with a packet a line");
+      std::string text;
+      for (std::size_t number = 1; std::getline(in, text); ++number)
+        read_hex_line(reader, text, bits_of(ports[p].like, widths), {p, is_out}, {path, number});
+    }
+  };
+  read_ports(file.stage->in, false);
+  read_ports(file.stage->out, true);
+  return std::move(reader.file_);
+}
+
+}  // namespace
+
+VectorFile read_vectors(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return read_hex(path);
+  std::ifstream in(path);
+  if (!in) throw InputError(path + ": there is no such file; give one that `halfplane vectors` wrote");
+  return in.peek() == '{' ? read_jsonl(in, path) : read_csv(in, path);
+}
+
+}  // namespace halfplane::vectors

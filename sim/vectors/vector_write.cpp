@@ -1,0 +1,158 @@
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "sim/show/image/whole_file.hpp"
+#include "vector_file.hpp"
+
+namespace halfplane::vectors {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kSchema = "halfplane.vectors/1";
+
+/// As many digits as the bits need.
+void append_hex(std::string& text, std::uint64_t value, int bits) {
+  for (int digit = (bits + 3) / 4 - 1; digit >= 0; --digit) text += "0123456789abcdef"[value >> 4 * digit & 15];
+}
+
+Json header_config(const Config& config) {
+  Json json{{"preset", config.preset}};
+  for (const Setting& setting : settings()) {
+    const std::string value = get(config, setting);
+    if (std::holds_alternative<int Config::*>(setting.member))
+      json[std::string(setting.key)] = std::stoi(value);
+    else
+      json[std::string(setting.key)] = value;
+  }
+  return json;
+}
+
+Json ports_json(const std::vector<Port>& ports, const Widths& widths) {
+  Json list = Json::array();
+  for (const Port& port : ports) {
+    Json fields = Json::array();
+    for (const FieldName& field : fields_of(port.like, widths))
+      fields.push_back({{"name", field.name}, {"bits", field.bits}, {"signed", field.is_signed}});
+    list.push_back({{"packet", port.name}, {"bits", bits_of(port.like, widths)}, {"fields", fields}});
+  }
+  return list;
+}
+
+Json header_json(const JudgedStage& stage, const Config& config, const Widths& widths, const std::string& source) {
+  return {{"schema", kSchema},
+          {"stage", info(stage.stage).name},
+          {"source", source},
+          {"config", header_config(config)},
+          {"in", ports_json(stage.in, widths)},
+          {"out", ports_json(stage.out, widths)}};
+}
+
+/// The names of a port's fields, looked up once.
+struct PortFields {
+  std::vector<std::vector<FieldName>> in, out;
+
+  PortFields(const JudgedStage& stage, const Widths& widths) {
+    for (const Port& port : stage.in) in.push_back(fields_of(port.like, widths));
+    for (const Port& port : stage.out) out.push_back(fields_of(port.like, widths));
+  }
+};
+
+std::string jsonl_text(const JudgedStage& stage, const Config& config, const StagePackets& packets,
+                       const std::string& source) {
+  const Widths widths = derive_widths(config);
+  const PortFields fields(stage, widths);
+  std::string text = header_json(stage, config, widths, source).dump() + "\n";
+  replay_stage(stage, config, packets,
+               [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
+                 const Port& port = (is_out ? stage.out : stage.in)[p];
+                 const auto& names = (is_out ? fields.out : fields.in)[p];
+                 const auto values = values_of(port.like, widths, words);
+                 text += is_out ? R"({"dir":"out","packet":")" : R"({"dir":"in","packet":")";
+                 text.append(port.name).append("\",\"n\":").append(std::to_string(n));
+                 for (std::size_t i = 0; i < names.size(); ++i) {
+                   text.append(",\"").append(names[i].name).append("\":\"0x");
+                   append_hex(text, values[i], names[i].bits);
+                   text += '"';
+                 }
+                 text += "}\n";
+               });
+  return text;
+}
+
+std::string csv_text(const JudgedStage& stage, const Config& config, const StagePackets& packets,
+                     const std::string& source) {
+  const Widths widths = derive_widths(config);
+  std::string text = std::string(kSchema) + "," + std::string(info(stage.stage).name) + "," + source +
+                     "\nconfig,preset=" + config.preset;
+  for (const Setting& setting : settings()) text += "," + std::string(setting.key) + "=" + get(config, setting);
+  text += '\n';
+  const auto add_fields = [&](const char* direction, const std::vector<Port>& ports) {
+    for (const Port& port : ports) {
+      text += std::string("fields,") + direction + "," + std::string(port.name);
+      for (const FieldName& field : fields_of(port.like, widths))
+        text += "," + field.name + ":" + std::to_string(field.bits) + (field.is_signed ? "s" : "");
+      text += '\n';
+    }
+  };
+  add_fields("in", stage.in);
+  add_fields("out", stage.out);
+  const PortFields fields(stage, widths);
+  replay_stage(stage, config, packets,
+               [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
+                 const Port& port = (is_out ? stage.out : stage.in)[p];
+                 const auto& names = (is_out ? fields.out : fields.in)[p];
+                 const auto values = values_of(port.like, widths, words);
+                 text.append(is_out ? "out," : "in,").append(port.name).append(",").append(std::to_string(n));
+                 for (std::size_t i = 0; i < names.size(); ++i) {
+                   text += ",0x";
+                   append_hex(text, values[i], names[i].bits);
+                 }
+                 text += '\n';
+               });
+  return text;
+}
+
+WrittenFile write_text(const std::string& path, const std::string& text) {
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  return {path, text.size()};
+}
+
+/// The packed struct as raster_pkg has it, the highest digit first.
+std::string hex_text(const Port& port, const PacketList& list, const Widths& widths) {
+  const int bits = bits_of(port.like, widths);
+  std::string text;
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const auto words = list[n];
+    for (int digit = (bits + 3) / 4 - 1; digit >= 0; --digit)
+      text += "0123456789abcdef"[words[static_cast<std::size_t>(digit / 8)] >> 4 * (digit % 8) & 15];
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<WrittenFile> write_vectors(const std::string& path, Format format, const JudgedStage& stage,
+                                       const Config& config, const StagePackets& packets, const std::string& source) {
+  if (format == Format::jsonl) return {write_text(path, jsonl_text(stage, config, packets, source))};
+  if (format == Format::csv) return {write_text(path, csv_text(stage, config, packets, source))};
+  const Widths widths = derive_widths(config);
+  replay_stage(stage, config, packets, [](bool, std::size_t, std::size_t, std::span<const std::uint32_t>) {});
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw InputError("-o: cannot make the folder '" + path + "'; choose another");
+  std::vector<WrittenFile> written;
+  const auto in_folder = [&path](std::string_view name) { return (std::filesystem::path(path) / name).string(); };
+  const auto add = [&](const std::vector<Port>& ports, const std::vector<PacketList>& lists) {
+    for (std::size_t p = 0; p < ports.size(); ++p)
+      written.push_back(
+          write_text(in_folder(std::string(ports[p].name) + ".hex"), hex_text(ports[p], lists[p], widths)));
+  };
+  add(stage.in, packets.in);
+  add(stage.out, packets.out);
+  written.push_back(write_text(in_folder("header.json"), header_json(stage, config, widths, source).dump(1) + "\n"));
+  return written;
+}
+
+}  // namespace halfplane::vectors

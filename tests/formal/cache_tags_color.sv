@@ -1,0 +1,29 @@
+
+  // With blending, behind cache_tags_data: where the colours of a stamp are that its operations read. `g_` as there.
+  logic [STAMPS-1:0] g_color_known_q;
+  logic              g_reads_q, reads_it;
+  assign reads_it = fragment_q.state.color_write && g_reads_q;
+  always_ff @(posedge clk_i) begin
+    if (leaves && is_it) g_color_known_q <= (here_q ? g_color_known_q : '0) | (reads_it ? stamp_bit : '0);
+    if (leaves && valid_q && !walks_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+        fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_COLOR_OPS)
+      g_reads_q <= fragment_q.code[28];
+    if (!rst_ni) g_reads_q <= 1'b0;
+  end
+  always_comb if (runs_q && is_known_q) begin
+    assert (gen_reads_color.reads_color_q == g_reads_q);
+    if (leaves && is_it) begin
+      assert (item_color_source_o == (!reads_it ? raster_pkg::DEPTH_SOURCE_NONE :
+                                      here_q && g_color_known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP :
+                                      flag_q[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY));
+      assert (order_reads_color_o == (item_color_source_o == raster_pkg::DEPTH_SOURCE_MEMORY));
+      // Known is only what is on the chip, and that leaves with its block.
+      if (item_color_source_o == raster_pkg::DEPTH_SOURCE_CHIP) assert (!item_starts_color_o);
+    end
+    if (here_q) assert ((g_color_known_q & ~colored_q) == '0);
+    if (leaves && !is_access) assert (!order_reads_color_o);
+    if (!is_marking && here_q) assert (word_q[KNOWN-1:0] == g_color_known_q);
+    cover (leaves && is_it && order_reads_color_o && order_reads_o);
+    cover (leaves && is_it && item_color_source_o == raster_pkg::DEPTH_SOURCE_CHIP && g_reads_q);
+  end
+  always_comb if (runs_q && !is_known_q) assert (gen_reads_color.reads_color_q == g_reads_q);

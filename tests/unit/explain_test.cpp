@@ -1,0 +1,297 @@
+#include "sim/study/explain/explain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "model/engines/functional.hpp"
+#include "model/engines/hardware.hpp"
+#include "model/engines/scalar.hpp"
+#include "model/golden/golden.hpp"
+#include "model/texture_memory.hpp"
+#include "sim/config_file.hpp"
+#include "sim/cosim/random_scene.hpp"
+#include "sim/scene/load.hpp"
+#include "sim/scene/random.hpp"
+#include "sim/study/explain/line_walk.hpp"
+#include "sim/study/explain/verify.hpp"
+
+namespace halfplane::explain {
+namespace {
+
+constexpr std::uint64_t kSeed = 26;
+
+/// What every other way through the program says of a scene.
+struct Witnesses {
+  Rendering functional, scalar, hardware;
+  golden::Image golden;
+  std::map<std::pair<int, int>, std::vector<TappedFragment>> fragments;  ///< by x, y
+
+  Witnesses(const Scene& scene, const Config& config) {
+    RenderOptions options;
+    options.want_ids = true;
+    functional = render_functional(scene, config, options);
+    options.want_count = true;
+    options.skip = skip_none();
+    options.fragment_tap = [this](const TappedFragment& f) { fragments[{f.x, f.y}].push_back(f); };
+    scalar = render_scalar(scene, config, options);
+    try {
+      hardware = render_hardware(scene, config);
+    } catch (const InputError&) {  // it cannot draw the scene: there is nothing to compare
+    }
+    golden = golden::render(scene, config);
+  }
+};
+
+void expect_stored(const Framebuffer& frame, const PixelHistory& pixel, const Stored& stored) {
+  const std::size_t at = frame.at(pixel.at.x, pixel.at.y);
+  EXPECT_EQ(frame.depth[at], stored.depth);
+  EXPECT_EQ(frame.color[at], stored.color);
+}
+
+/// Every figure of a pixel that somebody else computes as well. Returns how many fragments there were.
+std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Witnesses& w) {
+  const auto [x, y] = pixel.at;
+  const auto p = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x);
+  expect_stored(w.functional.frame, pixel, pixel.model);
+  expect_stored(w.functional.frame, pixel, pixel.engine);
+  EXPECT_EQ(w.functional.ids[p], pixel.model.owner);
+  if (pixel.hardware) expect_stored(w.hardware.frame, pixel, *pixel.hardware);
+  EXPECT_EQ(w.golden.depth[p], pixel.golden.depth);
+  EXPECT_EQ(w.golden.color[p], pixel.golden.color);
+  EXPECT_EQ(w.golden.ids[p], pixel.golden.rounded.owner);
+
+  const auto found = w.fragments.find({x, y});
+  const std::vector<TappedFragment> none;
+  const std::vector<TappedFragment>& fragments = found == w.fragments.end() ? none : found->second;
+  std::size_t next = 0, golden = 0;
+  std::int32_t owner = -1;
+  for (const Entry& entry : pixel.history) {
+    golden += entry.golden && entry.golden->fragment ? 1 : 0;
+    if (entry.kind == Kind::clear) {
+      if (entry.outcome.verdict == Verdict::written) owner = -1;
+      continue;
+    }
+    if (entry.outcome.verdict == Verdict::written) owner = static_cast<std::int32_t>(*entry.primitive);
+    if (!has_fragment(entry.specification.verdict)) {
+      EXPECT_TRUE(entry.planes.empty());
+      continue;
+    }
+    if (next == fragments.size()) {
+      ADD_FAILURE() << "more fragments are told than there are";
+      return next;
+    }
+    const TappedFragment& fragment = fragments[next++];
+    EXPECT_EQ(fragment.primitive, *entry.primitive);
+    EXPECT_EQ(fragment.draw, entry.draw);
+    for (std::size_t i = 0; i < entry.planes.size(); ++i) {
+      EXPECT_EQ(fragment.plane[i].unrounded, entry.planes[i].unrounded) << entry.planes[i].name;
+      EXPECT_EQ(fragment.plane[i].code, entry.planes[i].code) << entry.planes[i].name;
+      if (!entry.planes[i].parts) continue;
+      const Parts& parts = *entry.planes[i].parts;
+      const double total = entry.planes[i].code - *entry.planes[i].golden;
+      EXPECT_NEAR(std::ldexp(parts.snap + parts.interpolation + parts.storage, -exact::kGridBits), total, 1e-6);
+    }
+    if (fragment.surface) {
+      EXPECT_EQ(fragment.surface->color, entry.surface->sample.color);
+      EXPECT_EQ(fragment.surface->texel, entry.surface->sample.texel);
+    }
+  }
+  EXPECT_EQ(next, fragments.size()) << "fewer fragments are told than there are";
+  EXPECT_EQ(w.scalar.count[p], fragments.size());
+  EXPECT_EQ(w.golden.count[p], golden);
+  EXPECT_EQ(owner, pixel.model.owner);
+  return next;
+}
+
+/// Half of them anywhere, half where something was drawn.
+std::vector<Pixel> some_pixels(Random& random, const Scene& scene, const Witnesses& w, std::size_t count) {
+  std::vector<Pixel> pixels, drawn;
+  for (const auto& [place, list] : w.fragments) drawn.push_back({place.first, place.second});
+  for (std::size_t i = 0; i < count; ++i)
+    if (i % 2 == 0 || drawn.empty())
+      pixels.push_back({static_cast<int>(random.next() % static_cast<unsigned>(scene.width)),
+                        static_cast<int>(random.next() % static_cast<unsigned>(scene.height))});
+    else
+      pixels.push_back(drawn[random.next() % drawn.size()]);
+  return pixels;
+}
+
+TEST(Explain, ThousandRandomPixelsAgreeWithImageGoldenAndHardware) {
+  std::cout << "seed " << kSeed << '\n';
+  Random random(kSeed);
+  std::size_t pixels = 0, fragments = 0;
+  std::uint64_t checks = 0;
+  std::map<std::string_view, int> verdicts;
+  for (int scene_number = 0; pixels < 1000; ++scene_number) {
+    Config config = preset(std::array{"tiny", "small", "embedded", "full"}[static_cast<std::size_t>(scene_number) % 4]);
+    if (scene_number % 3 == 2 && config.cache_kind == CacheKind::blocks) config.frame_order = FrameOrder::bins;
+    const std::uint64_t seed = random.next();
+    SCOPED_TRACE("halfplane convert --random 150 --config " + config.preset + ", scene seed " + std::to_string(seed));
+    const Scene scene = random_scene(config, seed, 150);
+    const Witnesses witnesses(scene, config);
+    const auto at = some_pixels(random, scene, witnesses, 25);
+    const Explanation told = explain(scene, config, at);
+    EXPECT_EQ(told.no_hardware, "");
+    for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
+    checks += told.checks;
+    for (const PixelHistory& pixel : told.pixels) {
+      SCOPED_TRACE("pixel " + std::to_string(pixel.at.x) + " " + std::to_string(pixel.at.y));
+      fragments += expect_told(pixel, scene, witnesses);
+      for (const Entry& entry : pixel.history) ++verdicts[info(entry.outcome.verdict).name];
+      ++pixels;
+    }
+    if (HasFailure()) return;
+  }
+  std::cout << pixels << " pixels, " << fragments << " fragments, " << checks << " figures compared\n";
+  for (const auto& [name, count] : verdicts) std::cout << name << ' ' << count << '\n';
+  EXPECT_GE(pixels, 1000U);
+  EXPECT_GE(fragments, 2000U);
+  for (const char* name :
+       {"zero_area", "backface", "empty", "scissor", "tiles_outside", "uncovered", "depth", "masked", "written"})
+    EXPECT_GT(verdicts[name], 0) << name << " never came";
+}
+
+/// Weights add up to 1, and a texel's address is where the texture unit's memory has it.
+void expect_texels(const SurfaceFigure& surface, const Scene& scene, const Config& config) {
+  if (surface.texture.empty()) return;
+  std::uint64_t sum = 0;
+  const TextureMemory memory(scene, config);
+  for (const TexelFigure& texel : surface.texels) {
+    sum += texel.weight;
+    if (!texel.address) continue;
+    const auto found = std::ranges::find(scene.textures, surface.texture, &Texture::name);
+    const TextureFormat format = stored_format(found->format);
+    std::array<std::uint8_t, 4> bytes{};
+    memory.read(*texel.address, std::span(bytes).first(std::size_t{1} << texel_size_log2(format)));
+    const std::uint32_t code = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | std::uint32_t{bytes[3]} << 24;
+    EXPECT_EQ(decode_texel(format, code, {}), texel.color);
+  }
+  EXPECT_EQ(sum, 1U << 24);
+}
+
+/// What random scenes of the hardware do not have: clip space, clipped pieces, colours over w, textures, edges and corners of
+/// triangles, depth formats of the model alone.
+TEST(Explain, ScenesOfEveryKindAgreeToo) {
+  std::cout << "seed " << kSeed << '\n';
+  Random random(kSeed);
+  struct Case {
+    const char *scene, *preset, *key, *value;
+  };
+  const std::string folder = HALFPLANE_SOURCE_DIR "/docs/texture/";
+  std::size_t fragments = 0, textured = 0, over_w = 0, cut = 0, lines = 0;
+  for (const auto& [name, preset_name, key, value] : {Case{"city", "embedded", "depth.bits", "16"},
+                                                      {"city", "full", "depth.bits", "24"},
+                                                      {"walk", "embedded", "depth.bits", "16"},
+                                                      {"walk", "full", "frame.order", "bins"},
+                                                      {"wireframe", "embedded", "frame.order", "bins"},
+                                                      {"star", "small", "depth.bits", "16"},
+                                                      {"teapot:2", "embedded", "depth.format", "uf4.12"},
+                                                      {"floor.hpt", "full", "texture.unit", "off"},
+                                                      {"hardware.hpt", "embedded", "texture.unit", "bilinear"},
+                                                      {"wall.hpt", "embedded", "texture.unit", "off"}}) {
+    SCOPED_TRACE(name);
+    Config config = preset(preset_name);
+    set_by_key(config, key, value);
+    const bool is_capture = std::string_view(name).ends_with(".hpt");
+    std::vector<std::string> warnings;
+    const SceneRequest request{is_capture ? folder + name : name, is_capture ? 0 : 160, is_capture ? 0 : 120, "", 1};
+    Scene scene = load_scene(request, warnings);
+    if (config.frame_order == FrameOrder::bins && scene.name == "walk")
+      for (State& state : scene.states) state.color_interp = ColorInterp::perspective;
+    const Witnesses witnesses(scene, config);
+    const Explanation told = explain(scene, config, some_pixels(random, scene, witnesses, 60));
+    for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
+    for (const PixelHistory& pixel : told.pixels) {
+      SCOPED_TRACE("pixel " + std::to_string(pixel.at.x) + " " + std::to_string(pixel.at.y));
+      fragments += expect_told(pixel, scene, witnesses);
+      for (const Entry& entry : pixel.history) {
+        textured += entry.surface && !entry.surface->texture.empty() ? 1 : 0;
+        over_w += entry.surface && entry.surface->texture.empty() ? 1 : 0;
+        cut += entry.is_cut ? 1 : 0;
+        if (entry.surface) expect_texels(*entry.surface, scene, config);
+        lines += entry.kind == Kind::line ? 1 : 0;
+      }
+    }
+    if (HasFailure()) return;
+  }
+  std::cout << fragments << " fragments, " << textured << " textured, " << cut << " of clipped pieces, " << lines
+            << " lines, " << over_w << " over w\n";
+  EXPECT_GT(fragments, 300U);
+  EXPECT_GT(textured, 50U);
+  EXPECT_GT(cut, 10U);
+  EXPECT_GT(lines, 50U);
+  EXPECT_GT(over_w, 10U);
+}
+
+TEST(Explain, TextbookLinesAreTheRegisters) {
+  std::cout << "seed " << kSeed << '\n';
+  Random random(kSeed);
+  const Config config = preset("embedded");
+  const Widths widths = derive_widths(config);
+  const PixelBounds limit{-2000, -2000, 2000, 2000};
+  const auto end = [&random] {
+    SnappedVertex v;
+    v.x = static_cast<std::int32_t>(random.next() % 2000) - 1000;
+    v.y = static_cast<std::int32_t>(random.next() % 2000) - 1000;
+    return v;
+  };
+  for (int n = 0; n < 2000; ++n) {
+    DrawnLine line;
+    line.start = end();
+    line.end = n % 8 == 0 ? line.start : end();
+    if (n % 8 == 1) line.end.y = line.start.y + line.end.x - line.start.x;  // a diagonal
+    const auto p = bresenham_steps(line, widths.grid_bits), f = midpoint_steps(line, widths.grid_bits);
+    for (const LineRule rule : {LineRule::bresenham, LineRule::midpoint}) {
+      const auto steps = register_steps(line, rule, false, limit, widths);
+      ASSERT_EQ(steps.size(), p.size());
+      ASSERT_EQ(steps.size(), f.size());
+      for (std::size_t i = 0; i < steps.size(); ++i) {
+        ASSERT_EQ(steps[i].x, p[i].x) << n << " step " << i;
+        ASSERT_EQ(steps[i].y, p[i].y) << n << " step " << i;
+        ASSERT_EQ(f[i].error, p[i].error) << "one integer, added up and evaluated";
+        const bool is_last = i + 1 == steps.size();
+        ASSERT_TRUE(is_last || steps[i].moves == p[i].moves) << n << " step " << i;
+      }
+    }
+  }
+}
+
+/// Changes one figure; whoever compares must notice.
+TEST(Explain, AChangedFigureIsADifference) {
+  const Config config = preset("embedded");
+  const Scene scene = random_scene(config, kSeed, 60);
+  const Explanation told = explain(scene, config, {{scene.width / 2, scene.height / 2}});
+  ASSERT_EQ(told.differences.size(), 0U);
+  using Change = void (*)(Explanation&);
+  const Change changes[] = {[](Explanation& e) { e.pixels[0].engine.depth ^= 1; },
+                            [](Explanation& e) { e.pixels[0].engine.color ^= 1; },
+                            [](Explanation& e) { ++e.pixels[0].engine.owner; },
+                            [](Explanation& e) { e.pixels[0].hardware->color ^= 1; },
+                            [](Explanation& e) {
+                              e.pixels[0].rtl = Stored{e.pixels[0].hardware->depth ^ 1, 0, -1};
+                            },
+                            [](Explanation& e) {
+                              for (Entry& entry : e.pixels[0].history)
+                                if (entry.oracle) entry.oracle->covers = !entry.oracle->covers;
+                            }};
+  for (const Change change : changes) {
+    Explanation changed = told;
+    change(changed);
+    verify(config, changed);
+    EXPECT_GT(changed.differences.size(), 0U) << &change - changes;
+  }
+}
+
+TEST(Explain, PixelsOutsideAreRefused) {
+  const Config config = preset("tiny");
+  const Scene scene = random_scene(config, kSeed, 10);
+  EXPECT_THROW((void)explain(scene, config, {{scene.width, 0}}), InputError);
+  EXPECT_THROW((void)explain(scene, config, {{0, -1}}), InputError);
+}
+
+}  // namespace
+}  // namespace halfplane::explain
