@@ -112,7 +112,7 @@ template <class Lane>
 
 /// floor(value / 255 + 1/2), 0 <= value <= 255^2; above 255 for larger sums of two products.
 template <class Lane>
-[[nodiscard]] constexpr Lane over_255(const Lane& value) {
+[[nodiscard]] constexpr Lane divide_by_255(const Lane& value) {
   const Lane t = value + 128;
   return (t + (t >> 8)) >> 8;
 }
@@ -151,9 +151,9 @@ template <class Lane>
                                            const Lane& fd) {
   const Lane a = s * fs, b = d * fd;
   switch (equation) {
-    case BlendEquation::add: return least<Lane>(over_255<Lane>(a + b), Lane{} + 255);
-    case BlendEquation::subtract: return over_255<Lane>(largest<Lane>(a, b) - b);
-    case BlendEquation::reverse_subtract: return over_255<Lane>(largest<Lane>(a, b) - a);
+    case BlendEquation::add: return least<Lane>(divide_by_255<Lane>(a + b), Lane{} + 255);
+    case BlendEquation::subtract: return divide_by_255<Lane>(largest<Lane>(a, b) - b);
+    case BlendEquation::reverse_subtract: return divide_by_255<Lane>(largest<Lane>(a, b) - a);
     case BlendEquation::min: return least<Lane>(s, d);
     case BlendEquation::max: return largest<Lane>(s, d);
   }
@@ -178,12 +178,15 @@ struct ColorOps {
   }
   /// Whether what is stored takes part in what will be.
   [[nodiscard]] constexpr bool reads_stored() const { return blends() || writes != std::array{true, true, true, true}; }
+  /// Whether a factor is made of the constant.
+  [[nodiscard]] constexpr bool reads_constant() const {
+    const auto is_constant = [](BlendFactor factor) {
+      return factor >= BlendFactor::constant_color && factor <= BlendFactor::one_minus_constant_alpha;
+    };
+    return is_constant(factors.src) || is_constant(factors.dst) || is_constant(factors.src_alpha) ||
+           is_constant(factors.dst_alpha);
+  }
 };
-
-/// Whether a factor is made of the state's constant.
-[[nodiscard]] constexpr bool is_constant(BlendFactor factor) {
-  return factor >= BlendFactor::constant_color && factor <= BlendFactor::one_minus_constant_alpha;
-}
 
 /// What of `state` matters to a format: rgb565 has no alpha, rgba8888 nothing to dither.
 [[nodiscard]] constexpr ColorOps color_ops(const State& state, ColorFormat format) {
@@ -197,11 +200,10 @@ struct ColorOps {
     if (!takes_factors(ops.equation[0])) ops.factors.src = BlendFactor::one, ops.factors.dst = BlendFactor::zero;
     if (!takes_factors(ops.equation[1]) || !has_alpha)
       ops.factors.src_alpha = BlendFactor::one, ops.factors.dst_alpha = BlendFactor::zero;
-    const BlendFactors& f = ops.factors;
-    if (is_constant(f.src) || is_constant(f.dst) || is_constant(f.src_alpha) || is_constant(f.dst_alpha))
-      ops.constant = state.blend_color;
+    if (ops.reads_constant()) ops.constant = state.blend_color;
     // subtract with one and zero takes nothing away.
     for (const std::size_t part : {0U, 1U}) {
+      const BlendFactors& f = ops.factors;
       const bool is_source = part == 0 ? f.src == BlendFactor::one && f.dst == BlendFactor::zero
                                        : f.src_alpha == BlendFactor::one && f.dst_alpha == BlendFactor::zero;
       if (ops.equation[part] == BlendEquation::subtract && is_source) ops.equation[part] = BlendEquation::add;

@@ -79,6 +79,10 @@ const std::array kSettings{
             &Config::blend_lanes},
     Setting{"dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them", 0, 1,
             &Config::dither_units},
+    Setting{
+        "stencil.bits", "bits",
+        "of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
+        0, 8, &Config::stencil_bits},
     Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
             &Config::line_units},
     Setting{"counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0, 1,
@@ -282,6 +286,13 @@ void validate(const Config& config) {
       !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
       "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
       "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
+  refuse_unless(config.stencil_bits == 0 || config.stencil_bits == 8, "stencil.bits must be 0 or 8");
+  refuse_unless(
+      config.stencil_bits == 0 || (config.cache_kind == CacheKind::blocks &&
+                                   config.setup_kind == SetupKind::pipelined && config.depth_bits <= 24),
+      "a stencil stands above the depth in one word of 32 bits at most, in the framebuffer of blocks, by states "
+      "that the pipelined setup lets through: use cache.kind=blocks, setup.kind=pipelined and depth.bits up to "
+      "24, or stencil.bits=0");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
                 "a cache of tiles holds at most 256: lower cache.lines");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_order == FrameOrder::program,

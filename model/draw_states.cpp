@@ -37,6 +37,10 @@ requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) StateValue
 
 /// The numbers of a struct as references, in the order in which they are written.
 constexpr auto numbers_of(
+    auto& fog) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(fog)>>, Fog> {
+  return std::tie(fog.kind, fog.start, fog.end);
+}
+constexpr auto numbers_of(
     auto& alpha) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(alpha)>>, AlphaTest> {
   return std::tie(alpha.func, alpha.reference);
 }
@@ -158,6 +162,7 @@ using Words = std::string_view;
 
 // Rectangles stay small enough that sums of their numbers fit an int: far beyond any target (16384 pixels).
 constexpr double far_away = 1 << 20;    // pixels
+constexpr double farthest = 1e12;       // eye-space units
 constexpr double widest_offset = 1e12;  // more than any slope between two codes of 32 bits
 
 constexpr std::array<Words, 2> space_words{"clip", "window"};
@@ -191,6 +196,8 @@ constexpr std::array<Words, 2> texture_mag_words{"nearest", "linear"};
 constexpr std::array<Words, 3> wrap_words{"repeat", "clamp", "mirror"};
 constexpr std::array<Words, 4> combine_words{"modulate", "replace", "decal", "add"};
 
+constexpr std::array<Words, 3> fog_words{"linear", "exp", "exp2"};
+static_assert(fog_words.size() == enumerators<FogKind>());
 constexpr std::array<Words, 15> factor_words{"zero",
                                              "one",
                                              "src_color",
@@ -231,6 +238,13 @@ constexpr StateNumber byte_number(Words what, double random_step = 51, unsigned 
   return {
       .what = what, .low = 0, .high = 255, .is_whole = true, .random_step = random_step, .random_count = random_count};
 }
+// As far as the vertices of random scenes are, and denser than one sees through.
+constexpr std::array<StateNumber, 3> fog_numbers{
+    {word_number("fog's kind", fog_words),
+     {"fog's start or density", 0, farthest, false, false, 0, 0.125, 9},
+     {.what = "fog's end", .low = 0, .high = farthest, .random_step = 0.25, .random_count = 13, .repeats = 1}}};
+constexpr std::array<StateNumber, 3> fog_color_numbers{
+    {byte_number("fog_color's red"), byte_number("fog_color's green"), byte_number("fog_color's blue")}};
 constexpr std::array<StateNumber, 2> alpha_test_numbers{
     {word_number("alpha_test's function", depth_words), byte_number("alpha_test's reference")}};
 constexpr std::array<StateNumber, 4> blend_numbers{
@@ -396,6 +410,19 @@ constexpr std::array table{
     row<&State::texture_combine>({.name = "texture_combine",
                                   .words = combine_words,
                                   .purpose = "what becomes of the triangle's colour and the texel"}),
+    row<&State::fog>({.name = "fog",
+                      .words = off_words,
+                      .numbers = fog_numbers,
+                      .form = "kind start [end]",
+                      .purpose = "how much of the colour is left at a distance w from the eye: `linear start end` "
+                                 "(end − w) / (end − start), `exp density` e^(−density·w), `exp2 density` "
+                                 "e^(−(density·w)²)",
+                      .home = StateHome::unit}),
+    row<&State::fog_color>({.name = "fog_color",
+                            .numbers = fog_color_numbers,
+                            .form = "r g b",
+                            .purpose = "the colour of fog, which takes the place of the rest",
+                            .home = StateHome::unit}),
     row<&State::alpha_test>({.name = "alpha_test",
                              .numbers = alpha_test_numbers,
                              .form = "func ref",

@@ -64,11 +64,6 @@ struct FragmentOps {
   return {fragment_state(state, format), state.alpha_test, stencil_sides(state), color_ops(state, format)};
 }
 
-/// Whether a state does no more with its fragments than the depth test and colours that replace each other.
-[[nodiscard]] constexpr bool has_plain_fragments(const State& state, const Config& config) {
-  return fragment_ops(state, config.color_format).is_plain();
-}
-
 // --- tests ----------------------------------------------------------------------------------------------------------
 
 /// A fragment's depth code against the stored one. Codes are unsigned integers; 0 is nearest with the default, less.
@@ -121,6 +116,11 @@ struct DepthOutcomes {
 /// Whether a fragment that passes may have a larger code than the one it replaces.
 [[nodiscard]] constexpr bool can_raise_depth(DepthFunc func) { return depth_passes(func, 1, 0); }
 
+/// The stencil test of a stored value.
+[[nodiscard]] constexpr bool stencil_passes(const Stencil& s, std::uint8_t stored) {
+  return depth_passes(s.func, std::uint32_t{s.reference} & s.read_mask, std::uint32_t{stored} & s.read_mask);
+}
+
 // --- one fragment, all of it ----------------------------------------------------------------------------------------
 
 /// What comes of a fragment.
@@ -151,9 +151,7 @@ constexpr Fate apply_fragment(const FragmentOps& ops, ColorFormat format, const 
                               const StoredPixel& stored) {
   using Code = std::uint32_t;
   const Stencil* stencil = ops.stencil ? &(*ops.stencil)[fragment.is_back ? 1 : 0] : nullptr;
-  const bool stencil_passes =
-      stencil == nullptr || depth_passes(stencil->func, Code{stencil->reference} & stencil->read_mask,
-                                         Code{stored.stencil} & stencil->read_mask);
+  const bool stencil_passes = stencil == nullptr || halfplane::stencil_passes(*stencil, stored.stencil);
   const bool passes = stencil_passes && depth_passes(ops.state.depth_test, fragment.depth, stored.depth);
   const bool has_side_effects = stencil != nullptr && writes_stencil(*stencil);
   if (!passes && !has_side_effects) return Fate::failed;
@@ -163,7 +161,7 @@ constexpr Fate apply_fragment(const FragmentOps& ops, ColorFormat format, const 
   if (tests_alpha && !depth_passes(ops.alpha.func, source[3], Code{ops.alpha.reference}))
     return passes ? Fate::killed : Fate::failed;
   if (has_side_effects) {
-    const StencilOp op = !stencil_passes ? stencil->stencil_fails : passes ? stencil->passes : stencil->depth_fails;
+    const StencilOp op = stencil_op(*stencil, stencil_passes, passes);
     stored.stencil = static_cast<std::uint8_t>(apply_stencil<Code>(op, *stencil, Code{stored.stencil}));
   }
   if (!passes) return Fate::failed;

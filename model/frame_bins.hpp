@@ -56,6 +56,7 @@ class FrameBins {
     ColorWords colors{};
     std::uint32_t texture_levels = 0;
     std::optional<TextureLines> texture_lines{};
+    StencilWords stencil{};
   };
 
   [[nodiscard]] PixelBounds box_of(std::size_t bin) const;

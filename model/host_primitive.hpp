@@ -5,6 +5,7 @@
 
 #include "packets.hpp"
 #include "stages/color_packets.hpp"
+#include "stages/stencil_packets.hpp"
 #include "stages/texture_levels.hpp"
 
 namespace halfplane {
@@ -22,6 +23,14 @@ struct HostPrimitive {
   ColorWords colors{};                 ///< of what is drawn: what the units behind it must be set to
   std::uint32_t texture_levels = 0;    ///< likewise TextureLevels
   std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
+  StencilWords stencil{};  ///< of what is drawn: what the depth test must be set to; of a fast clear: its value
 };
+
+/// The stencil value that a fast clear of depth leaves.
+[[nodiscard]] inline std::uint8_t clear_stencil(const HostPrimitive& clear) {
+  StencilState state;
+  if (clear.stencil.test[0]) state.set(StateRegister::stencil_test, front_only(*clear.stencil.test[0]));
+  return state.clear_value();
+}
 
 }  // namespace halfplane

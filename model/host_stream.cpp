@@ -58,15 +58,11 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
   return "";
 }
 
-bool clears_depth(const Scene& scene, const Command& command) {
-  const Clear* clear = whole_clear(scene, command);
-  return clear != nullptr && clear->depth;
-}
-
 }  // namespace
 
 std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
   const PrimitivePacket& packet = primitive.packet;
+  if (is_first && packet.kind == PrimitiveKind::state) return "";
   if (is_first && (packet.kind != PrimitiveKind::fast_clear || !packet.state.depth_write || !packet.state.color_write))
     return "the stream does not begin with a fast clear of depth and colour: the flags of tiles are undefined";
   if (packet.kind == PrimitiveKind::line && !primitive.line)
@@ -89,7 +85,9 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   PrimitivePacket first = fast_clear();
   clear_depth(first, 1.0, config);
   clear_color(first, {0, 0, 0, 255}, config);
-  send(host_primitive(first, 0));
+  HostPrimitive out = host_primitive(first, 0);
+  if (has_stencil(config)) out.stencil.test[0] = pack_test(replacing_stencil(0));
+  send(out);
   pending_.back().command = HostPrimitive::kNoCommand;
 }
 
@@ -98,6 +96,7 @@ std::optional<HostPrimitive> HostStream::next() {
     std::optional<HostPrimitive> primitive = next_primitive();
     if (!primitive) return primitive;
     set_colors(*primitive);
+    set_stencil(*primitive);
     if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) set_texture(*primitive);
     in_front_.push_back(std::move(*primitive));
   }
@@ -119,16 +118,38 @@ void HostStream::set_colors(const HostPrimitive& primitive) {
   set(StateRegister::alpha_test, &ColorWords::alpha);
 }
 
+/// Likewise those of the stencil. What is the same for both sides goes in one token.
+void HostStream::set_stencil(const HostPrimitive& primitive) {
+  const auto set = [&](StateRegister which, auto member) {
+    const auto& wanted = primitive.stencil.*member;
+    auto& held = stencil_.*member;
+    std::uint32_t sides = 0;
+    for (const std::size_t n : {0U, 1U})
+      if (wanted[n] && wanted[n] != held[n]) sides |= 1U << n;
+    if (sides == 3 && wanted[0] == wanted[1])
+      in_front_.push_back(state_token(which, with_sides(which, *wanted[0], sides), primitive));
+    else
+      for (const std::size_t n : {0U, 1U})
+        if ((sides >> n & 1) != 0)
+          in_front_.push_back(state_token(which, with_sides(which, *wanted[n], 1U << n), primitive));
+    for (const std::size_t n : {0U, 1U})
+      if (wanted[n]) held[n] = wanted[n];
+  };
+  set(StateRegister::stencil_test, &StencilWords::test);
+  set(StateRegister::stencil_update, &StencilWords::update);
+}
+
 /// What the texture unit must be told in front of a triangle. The first state of a scene drops what is left of another one's
 /// texels.
 void HostStream::set_texture(const HostPrimitive& triangle) {
-  if (!has_set_texture_ || triangle.texture_state != texture_state_) {
+  if (triangle.texture_state != texture_state_) {
+    TextureState next = TextureState::unpack(triangle.texture_state);
+    next.invalidates = !texture_state_;
     texture_state_ = triangle.texture_state;
-    TextureState next = TextureState::unpack(texture_state_);
-    next.invalidates = !std::exchange(has_set_texture_, true);
     in_front_.push_back(state_token(StateRegister::texture, next.pack(), triangle));
   }
-  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(texture_state_).enable) return;
+  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.texture_state).enable)
+    return;
   if (triangle.texture_levels != texture_levels_) {
     texture_levels_ = triangle.texture_levels;
     in_front_.push_back(state_token(StateRegister::texture_levels, triangle.texture_levels, triangle));
@@ -169,7 +190,7 @@ void HostStream::advance() {
   if (assembled_next_ < assembled_.size()) {
     send_next_primitive();
   } else if (bins_ && !bins_->is_empty() &&
-             (command_ == scene_.commands.size() || clears_depth(scene_, scene_.commands[command_]))) {
+             (command_ == scene_.commands.size() || begins_bins(scene_.commands[command_]))) {
     bins_->close(config_.frame_store == FrameStore::color);
     counters_.bins = bins_->bins();
     counters_.pairs = bins_->pairs();
@@ -195,6 +216,7 @@ void HostStream::start_draw(const Draw& draw) {
     return;
   }
   context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
+  note_words(draw_packet(PrimitiveKind::triangle, {}).state);
   assembled_.clear();
   assembled_next_ = 0;
   for_each_primitive(scene_, draw, context_->state.provoking,
@@ -254,6 +276,7 @@ PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& b
   PrimitivePacket packet;
   packet.kind = kind;
   packet.state = fragment_state(state, config_.color_format);
+  if (const auto& sides = context_->fragment_ops.stencil) (void)set_stencil_flags(packet.state, *sides);
   packet.box = to_box(box);
   return packet;
 }
@@ -323,16 +346,55 @@ PrimitivePacket HostStream::fast_clear() const {
   return packet;
 }
 
+/// Depth and stencil are one word of memory. A clear of one of them clears both where the host knows what the other is.
+void HostStream::fill_word(Clear& clear) const {
+  if (!has_stencil(config_)) {
+    clear.stencil.reset();
+    return;
+  }
+  if (clear.depth && !clear.stencil) clear.stencil = stencil_everywhere_;
+  if (clear.stencil && !clear.depth) clear.depth = depth_everywhere_;
+}
+
+/// Whether new bins begin with a command: with a fast clear of depth.
+bool HostStream::begins_bins(const Command& command) const {
+  const Clear* whole = whole_clear(scene_, command);
+  if (whole == nullptr) return false;
+  Clear clear = *whole;
+  fill_word(clear);
+  return clear.depth && clear.stencil.has_value() == has_stencil(config_);
+}
+
 void HostStream::send_clear(const Clear& command) {
   const Rect rect = clear_rect(scene_, command);
-  if (rect.width <= 0 || rect.height <= 0 || (!command.depth && !command.color)) return;
-  const bool is_fast = rect == Rect{0, 0, scene_.width, scene_.height} && (!bins_ || bins_->is_empty());
+  Clear clear = command;
+  const bool is_whole = rect == Rect{0, 0, scene_.width, scene_.height};
+  if (is_whole || !has_stencil(config_)) fill_word(clear);
+  if (rect.width <= 0 || rect.height <= 0 || (!clear.depth && !clear.color && !clear.stencil)) return;
+  const bool is_word = !has_stencil(config_) || clear.depth.has_value() == clear.stencil.has_value();
+  const bool is_fast = is_whole && is_word && (!bins_ || bins_->is_empty());
   PrimitivePacket packet = is_fast ? fast_clear() : flat_packet(PrimitiveKind::rectangle, rect);
-  if (command.depth) clear_depth(packet, *command.depth, config_);
-  if (command.color) clear_color(packet, *command.color, config_);
+  if (clear.depth) clear_depth(packet, *clear.depth, config_);
+  if (clear.color) clear_color(packet, *clear.color, config_);
   HostPrimitive out = host_primitive(packet, primitive_);
   if (!is_fast) out.colors = color_words({packet.state, {}, {}, {}}, config_);  // whatever has been drawn before
+  if (clear.stencil && is_fast) out.stencil.test[0] = pack_test(replacing_stencil(*clear.stencil));
+  if (clear.stencil && !is_fast) {
+    const Stencil replacing = replacing_stencil(*clear.stencil);
+    (void)set_stencil_flags(out.packet.state, {replacing, replacing});
+    out.stencil.test[0] = pack_test(replacing);  // a rectangle shows its front
+    out.stencil.update[0] = pack_update(replacing);
+  }
+  note_words(out.packet.state);
+  if (is_whole && clear.depth) depth_everywhere_ = clear.depth;
+  if (is_whole && clear.stencil) stencil_everywhere_ = clear.stencil;
   send(out);
+}
+
+/// Of what a primitive may write nobody knows any more that it is the same everywhere.
+void HostStream::note_words(const PrimitiveState& state) {
+  if (state.depth_write) depth_everywhere_.reset();
+  if (state.writes_stencil) stencil_everywhere_.reset();
 }
 
 HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
@@ -344,7 +406,9 @@ HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uin
 /// Of the draw at work.
 HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out = host_primitive(packet, primitive);
-  out.colors = color_words(fragment_ops(context_->state, config_.color_format), config_);
+  const FragmentOps& ops = context_->fragment_ops;
+  out.colors = color_words(ops, config_);
+  if (packet.state.tests_stencil) out.stencil = stencil_words(*ops.stencil);
   return out;
 }
 
@@ -374,14 +438,16 @@ namespace {
 /// What of a state's operations this hardware does not have, and the mend; empty: it has all.
 std::string fragment_fault(const State& state, const Config& config) {
   const FragmentOps ops = fragment_ops(state, config.color_format);
-  const std::string none = ", but this hardware has no unit for it; leave it out";
   const auto unit = [](const char* setting) {
     return std::string(", but this hardware has no unit for it; use --set ") + setting +
            " (with cache.kind=blocks and setup.kind=pipelined), or leave it out";
   };
   if (ops.alpha.func != DepthFunc::always && !tests_alpha(config)) return "alpha_test" + unit("alpha.unit=1");
-  if (ops.stencil) return "stencil" + none;
+  if (ops.stencil && !has_stencil(config))
+    return "stencil, but this hardware keeps none; use --set stencil.bits=8 (with cache.kind=blocks, "
+           "setup.kind=pipelined and depth.bits up to 24), or leave it out";
   if (!ops.state.color_write) return {};
+  if (state.fog) return "fog, but this hardware has no unit for it; leave it out";
   if (ops.color.blends() && config.blend_lanes == 0) return "blend" + unit("blend.lanes=4");
   if (ops.color.reads_stored() && config.blend_lanes == 0) return "color_mask of some channels" + unit("blend.lanes=4");
   if (ops.color.dithers && config.dither_units == 0) return "dither" + unit("dither.unit=1");

@@ -49,6 +49,7 @@ class HostStream {
   void send_triangle(const Triangle& triangle, bool is_culled);
   void set_coordinates(const Triangle& triangle, HostPrimitive& out) const;
   void set_colors(const HostPrimitive& primitive);
+  void set_stencil(const HostPrimitive& primitive);
   void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
                   HostPrimitive& out) const;
   void set_texture(const HostPrimitive& triangle);
@@ -57,6 +58,9 @@ class HostStream {
   void send_line(const LinePrimitive& line);
   [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
   [[nodiscard]] PrimitivePacket fast_clear() const;
+  void fill_word(Clear& clear) const;
+  [[nodiscard]] bool begins_bins(const Command& command) const;
+  void note_words(const PrimitiveState& state);
   [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
   [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
   void send(const HostPrimitive& primitive);
@@ -78,15 +82,17 @@ class HostStream {
   std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
   std::size_t pending_first_ = 0;
   std::optional<TextureMemory> textures_;        ///< with a texture unit
-  std::uint64_t texture_state_ = 0;              ///< what the unit was last set to
-  bool has_set_texture_ = false;                 ///< it was, since the scene began
+  std::optional<std::uint64_t> texture_state_;   ///< what the unit was set to since the scene began
   std::optional<std::uint32_t> texture_levels_;  ///< of one with levels, likewise
   std::optional<TextureLines> texture_lines_;
-  ColorWords colors_;                            ///< what else has been set since the scene began
+  ColorWords colors_;                             ///< what else has been set since the scene began
+  StencilWords stencil_;                          ///< likewise
+  std::optional<double> depth_everywhere_ = 1.0;  ///< what every pixel holds, as far as the host can tell
+  std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
   std::deque<HostPrimitive> in_front_;  ///< what does so, and the triangle that waits for it
 };
 
-/// What the hardware relies on and cannot see: behind reset a fast clear of both planes, without which the flags of tiles are
+/// What the hardware relies on and cannot see: behind reset, and states, a fast clear of both planes, without which the flags of tiles are
 /// undefined, and a setup for the place of every line, for which primitive_join would wait for good. What is wrong with a
 /// primitive of a stream, `is_first` behind reset; empty: nothing.
 [[nodiscard]] std::string stream_fault(const HostPrimitive& primitive, bool is_first);

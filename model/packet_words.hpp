@@ -60,8 +60,6 @@ constexpr void for_each_value_in_order(Packet& packet, const Widths& widths, Vis
     const std::size_t count = element_count(field, widths);
     if constexpr (std::is_same_v<Place, Nested>) {
       for_each_value_in_order<kIsUpwards>(member, widths, visit);
-    } else if constexpr (std::is_same_v<Place, OfPlane>) {
-      elements(member, widths.of_plane(field.width.plane).*field.width.width, count);
     } else if constexpr (std::is_same_v<Place, Width Widths::*>) {
       elements(member, widths.*field.width, count);
     } else if constexpr (kArraySize<std::remove_cvref_t<decltype(std::declval<Member>()[0])>> == 0) {
@@ -203,9 +201,7 @@ template <class Packet>
       const std::size_t count = element_count(field, widths);
       for (std::size_t i = 0; i < count; ++i) {
         const std::string numbered = is_array || count > 1 ? name + "[" + std::to_string(i) + "]" : name;
-        if constexpr (std::is_same_v<Place, OfPlane>)
-          names.push_back({numbered, widths.of_plane(field.width.plane).*field.width.width});
-        else if constexpr (std::is_same_v<Place, Width Widths::*>)
+        if constexpr (std::is_same_v<Place, Width Widths::*>)
           names.push_back({numbered, widths.*field.width});
         else
           planes(numbered, field.width);

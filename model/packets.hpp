@@ -26,15 +26,8 @@ inline constexpr std::size_t kMaxPortBytes = 64;
 /// Stands for the width of a member that has fields of its own.
 struct Nested {};
 
-/// Stands for the width of one plane's values.
-struct OfPlane {
-  Width AttributeWidths::*width;
-  std::size_t plane;
-};
-inline constexpr OfPlane kDepthCode{&AttributeWidths::code, kDepthPlane};
-
 /// One field of a packet. `width`: of an element: a member of Widths, or a member of AttributeWidths for a member that has an
-/// element for each plane, or OfPlane, or Nested. An array is packed element 0 lowest; `count` says how many of its elements this
+/// element for each plane, or Nested. An array is packed element 0 lowest; `count` says how many of its elements this
 /// configuration has, none: all of them.
 template <class Packet, class Member, class Place>
 struct Field {
@@ -140,11 +133,13 @@ enum class StateRegister : std::uint8_t {
   texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
   color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
   blend_constant = 5,  ///< that
-  alpha_test = 6       ///< AlphaTest
+  alpha_test = 6,      ///< AlphaTest
+  stencil_test = 3,    ///< how a side or both are compared (stages/stencil_packets.hpp)
+  stencil_update = 7   ///< what becomes of the stored value, likewise
 };
 
 /// Whether it is one of the texture unit's.
-[[nodiscard]] constexpr bool is_of_texture(StateRegister which) { return which < StateRegister::color_ops; }
+[[nodiscard]] constexpr bool is_of_texture(StateRegister which) { return which <= StateRegister::texture_lines; }
 
 /// What the counters count; clears and flushes are the host's own.
 [[nodiscard]] constexpr bool is_counted(PrimitiveKind kind) {
@@ -198,7 +193,9 @@ struct WireEnum<StateRegister> {
                                                       {StateRegister::texture_lines, "texture_lines"},
                                                       {StateRegister::color_ops, "color_ops"},
                                                       {StateRegister::blend_constant, "blend_constant"},
-                                                      {StateRegister::alpha_test, "alpha_test"}};
+                                                      {StateRegister::alpha_test, "alpha_test"},
+                                                      {StateRegister::stencil_test, "stencil_test"},
+                                                      {StateRegister::stencil_update, "stencil_update"}};
 };
 template <>
 struct WireEnum<DepthFunc> {
@@ -269,8 +266,14 @@ struct PrimitiveState {
   FIELD(DepthFunc, depth_test, &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth(); for a state: which
   FIELD(bool, depth_write, &Widths::flag)            ///< for a fast clear: clears depth
   FIELD(bool, color_write, &Widths::flag)            ///< likewise
+  FIELD(bool, tests_stencil, &Widths::flag, &Widths::stencil_flags)   ///< the stored stencil is looked at, or changes
+  FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it changes, on a side and of some sample
+  FIELD(bool, marks_failed, &Widths::flag, &Widths::stencil_flags)    ///< also where a sample fails one of the tests
+  FIELD(bool, is_back, &Widths::flag, &Widths::stencil_flags)  ///< of a triangle that shows its back, from cull on
   PACKET_END
   [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
+  /// Whether anything of a stored depth may change: it, or the stencil above it.
+  [[nodiscard]] constexpr bool writes_word() const { return depth_write || writes_stencil; }
   /// Of a fast clear: depth of blocks that leave the chip before the next fast clear or flush is lost. Of a flush: that of
   /// those on the chip, and its flags are not written. Only in a framebuffer of blocks.
   [[nodiscard]] constexpr bool drops_depth() const { return depth_test == DepthFunc::never; }
@@ -451,10 +454,12 @@ struct WritePacket {
   using Codes = std::array<std::uint32_t, kMaxSamples>;
   FIELD(TileKey, key, Nested{})
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
-  FIELD(SampleMask, passed, &Widths::sample_mask)       ///< samples that passed the depth test
-  FIELD(SampleMask, write_depth, &Widths::sample_mask)  ///< of those, the ones to write
+  FIELD(SampleMask, passed, &Widths::sample_mask)  ///< samples that passed the depth test
+  FIELD(SampleMask, write_depth,
+        &Widths::sample_mask)  ///< of those, the ones to write; and those whose stencil changes
   FIELD(SampleMask, write_color, &Widths::sample_mask)
-  FIELD(Codes, depth, kDepthCode, &Widths::samples)  ///< codes; also of samples that are not written
+  FIELD(Codes, depth, &Widths::stored_depth,
+        &Widths::samples)  ///< as they are stored; of samples that are not written, the fragment's codes
   FIELD(Codes, color, &Widths::written_color,
         &Widths::samples)  ///< as it is stored, or before the texture or the blend; likewise
   PACKET_END

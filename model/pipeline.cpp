@@ -215,16 +215,17 @@ class OutlineBuilder {
     const VertexCache::Entry &from = cache_.get(context_, a), &to = cache_.get(context_, b);
     const bool crosses = (from.outside_guard_band | to.outside_guard_band) != 0;
     DrawnLine line{number_, context_.command, from.snapped, to.snapped, drops_last()};
+    std::array<Vertex, 2> v{context_.scene.vertices[a], context_.scene.vertices[b]};
     if (crosses) {
-      const std::array<Vertex, 2> v{context_.scene.vertices[a], context_.scene.vertices[b]};
       const auto clipped = clip(context_.guard_band, v[0], v[1]);
       if (!clipped) return;
       require_precision(*clipped, v, context_);
       line.start = snap_clipped((*clipped)[0], context_, a);
       line.end = snap_clipped((*clipped)[1], context_, b);
+      v = *clipped;
     }
-    finish(line.start);
-    finish(line.end);
+    finish(line.start, v[0].w);
+    finish(line.end, v[1].w);
     auto setup =
         setup_line(line.start, line.end, context_.state.line_rule, line.drops_last, bounds_of(context_.rect), widths_);
     if (!setup) return;
@@ -242,7 +243,7 @@ class OutlineBuilder {
     const double pixel = static_cast<double>(std::int64_t{1} << widths_.grid_bits);
     DrawnPoint point{number_, context_.command, entry.snapped,
                      static_cast<std::int32_t>(snap(context_.state.point_size, pixel))};
-    finish(point.at);
+    finish(point.at, context_.scene.vertices[index].w);
     const PixelBounds box = point_bounds(point.at, point.size, bounds_of(context_.rect), widths_.grid_bits);
     if (!box.is_empty()) out_.points.push_back({point, box});
   }
@@ -253,9 +254,18 @@ class OutlineBuilder {
     return state.line_rule == LineRule::diamond ||
            (state.line_last ? !*state.line_last : drops_last_by_default(state.line_rule));
   }
-  void finish(SnappedVertex& v) const {
+  void finish(SnappedVertex& v, double w) const {
     if (color) copy_color(v.code, *color, context_.config);
+    if (context_.fog) add_fog(v, w);
     if (depth_offset != 0) move_depth(v, depth_offset, context_.config.depth_bits);
+  }
+
+  /// Lines and points are fogged at their ends.
+  void add_fog(SnappedVertex& v, double w) const {
+    const FogTable& fog = *context_.fog;
+    const std::uint32_t factor = fog_factor_of_vertex(fog.fog(), w);
+    for (std::size_t c = 0; c < 3; ++c)
+      v.code[kColorPlane + c] = fogged<std::uint32_t>(v.code[kColorPlane + c], fog.color()[c], factor);
   }
 
   const DrawContext& context_;
@@ -279,14 +289,15 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       view_volume(view_volume_planes(state.clip_z)),
       frustum(view_volume_planes(state.clip_z, viewport, 1)),
       depth_encode(config_, scene_.planes),
-      fragment_ops(halfplane::fragment_ops(state, config_.color_format)) {}
+      fragment_ops(halfplane::fragment_ops(state, config_.color_format)),
+      fog(fog_table(state)) {}
 
 void require_positive_w(const DrawContext& context, const Triangle& triangle) {
   if (std::ranges::all_of(triangle.surface, [](const SurfaceVertex& v) { return v.w > 0; })) return;
   throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": triangle " +
                    std::to_string(triangle.primitive) +
                    " has a vertex with w <= 0, by which its attributes cannot be divided; give w > 0, or state "
-                   "texture_interp and color_interp affine and w 1");
+                   "texture_interp and color_interp affine, fog off and w 1");
 }
 
 const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {

@@ -12,6 +12,7 @@
 #include "stages/clip.hpp"
 #include "stages/cull.hpp"
 #include "stages/depth_encode.hpp"
+#include "stages/fog.hpp"
 #include "stages/line_setup.hpp"
 #include "stages/point_raster.hpp"
 #include "stages/primitive_assembly.hpp"
@@ -33,6 +34,7 @@ struct DrawContext {
       frustum;  ///< the view volume and a pixel around it: what is outside of this snaps to no pixel of the viewport
   DepthEncode depth_encode;
   FragmentOps fragment_ops;
+  std::shared_ptr<const FogTable> fog;  ///< none: no fog
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
 };
@@ -101,11 +103,6 @@ struct Outline {
 /// one by one. No side of the view volume drops a line before the clip: a line a hair outside may snap to a pixel inside.
 void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
               std::uint32_t number, Counters& counters, Outline& out);
-
-/// Whether a triangle of that signed area shows its back. Lines and points, a triangle's outline too, show their front.
-[[nodiscard]] constexpr bool shows_back(std::int64_t area, FrontFace front) {
-  return (area > 0) == (front == FrontFace::ccw);  // positive is clockwise
-}
 
 /// validate(scene), then check_fits().
 void check_scene(const Scene& scene, const Config& config);

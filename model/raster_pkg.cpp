@@ -91,12 +91,7 @@ void print_field(std::ostream& out, const Field<Packet, Member, Place>& field, c
     const std::size_t count = element_count(field, widths);
     logic(false, (count > 1 ? std::to_string(count) + "*" : "") + all_bits(field.width));
   } else {
-    const Width& width = [&]() -> const Width& {
-      if constexpr (std::is_same_v<Place, OfPlane>)
-        return widths.of_plane(field.width.plane).*field.width.width;
-      else
-        return widths.*field.width;
-    }();
+    const Width& width = widths.*field.width;
     const std::string bits = constant_name(width.name) + "_BITS";
     if constexpr (kArraySize<Member> !=
                   0)  // flat, because Yosys reads no packed 2-D members: element i is [i*BITS +: BITS]

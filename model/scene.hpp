@@ -51,6 +51,9 @@ enum class TextureWrap { repeat, clamp, mirror };
 /// What becomes of the primitive's colour.
 enum class TextureCombine { modulate, replace, decal, add };
 
+/// How fog thickens with the distance from the eye.
+enum class FogKind { linear, exp, exp2 };
+
 /// What a colour is multiplied with before two of them are added (OpenGL ES 2.0, table 4.2).
 enum class BlendFactor {
   zero,
@@ -73,6 +76,16 @@ enum class BlendFactor {
 enum class BlendEquation { add, subtract, reverse_subtract, min, max };
 /// What becomes of a stored stencil value.
 enum class StencilOp { keep, zero, replace, incr, decr, invert, incr_wrap, decr_wrap };
+
+/// How much of a fragment's own colour is left at a distance w from the eye, 0...1 (OpenGL ES 1.1.12, 3.8). Linear:
+/// (end - w) / (end - start), where a start above end * 255/256 counts as that. exp: e^(-start w), exp2: e^(-(start w)^2),
+/// for which `end` does not count.
+struct Fog {
+  FogKind kind = FogKind::exp;
+  double start = 1;  ///< of linear; of the others the density
+  double end = 1;
+  bool operator==(const Fog&) const = default;
+};
 
 /// A fragment is dropped unless its alpha compares so with `reference`.
 struct AlphaTest {
@@ -146,6 +159,8 @@ struct State {
   std::array<TextureWrap, 2> texture_wrap{};
   std::array<double, 3> texture_lod{0.0, 0.0, 12.0};  ///< bias, least and largest level
   TextureCombine texture_combine = TextureCombine::modulate;
+  std::optional<Fog> fog;  ///< none: colours stay as they are
+  std::array<std::uint8_t, 3> fog_color{};
   AlphaTest alpha_test;
   std::optional<BlendFactors> blend;                       ///< none: the fragment's colour replaces the stored one
   std::array<BlendEquation, 2> blend_equation{};           ///< of colour and of alpha

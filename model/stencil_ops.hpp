@@ -41,6 +41,11 @@ template <class Lane>
   return (result() & mask) | (stored & ~mask);
 }
 
+/// What of a test decides which operation it is.
+[[nodiscard]] constexpr StencilOp stencil_op(const Stencil& s, bool stencil_passes, bool depth_passes) {
+  return !stencil_passes ? s.stencil_fails : depth_passes ? s.passes : s.depth_fails;
+}
+
 /// Whether any outcome changes what is stored.
 [[nodiscard]] constexpr bool writes_stencil(const Stencil& s) {
   return s.write_mask != 0 &&

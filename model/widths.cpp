@@ -135,7 +135,7 @@ void derive_memory(Widths& w, const Config& config) {
   MemoryGrid& m = w.memory;
   w.port_bytes = config.memory_port_bits / 8;
   m.port = log2(w.port_bytes);
-  m.sample = {sample_bytes_log2(w.depth().code.bits), sample_bytes_log2(w.stored_color.bits)};
+  m.sample = {sample_bytes_log2(w.stored_depth.bits), sample_bytes_log2(w.stored_color.bits)};
   for (const std::size_t p : {0U, 1U}) m.stamp[p] = m.sample[p] + log2(w.samples);
   m.flag_word = log2(w.blocks.flag_word) - 3;
   m.plane = std::max(std::max(m.stamp[0], m.stamp[1]) + log2(w.stamps.stamps()), m.port);
@@ -211,6 +211,8 @@ Widths derive_widths(const Config& config) {
   const int color_bits = config.color_format == ColorFormat::rgb565 ? 16 : 32;
   w.sample_mask = bits("sample mask", "one bit a sample", w.samples);
   w.stored_color = bits("stored color", "color.format", color_bits);
+  w.stencil_flags = config.stencil_bits != 0 ? 1 : 0;
+  w.stored_depth = bits("stored depth", "a depth code, stencil.bits above it", config.depth_bits + config.stencil_bits);
 
   // What rides with a primitive.
   w.kind = count("kind", "PrimitiveKind", 8);
@@ -226,7 +228,7 @@ Widths derive_widths(const Config& config) {
   w.counter = bits("counter", "counters.bits", config.counter_bits);
   w.tile_plane = count("tile plane", "TilePlane", 4);
   w.depth_source = count("depth source", "DepthSource", 4);
-  w.memory_lane = bits("memory lane", "a depth code or a stored colour", std::max(w.depth().code.bits, color_bits));
+  w.memory_lane = bits("memory lane", "a stored depth or a stored colour", std::max(w.stored_depth.bits, color_bits));
   const int block = config.cache_kind == CacheKind::tiles ? config.tile_size : std::max(4, config.stamp_size);
   w.blocks = {block / config.stamp_size, config.tile_size / block, 1};
   while (w.blocks.flag_word < 64 && 2 * w.blocks.flag_word <= w.samples * w.memory_lane.bits) w.blocks.flag_word *= 2;
@@ -308,11 +310,11 @@ std::vector<const Width*> Widths::all() const& {
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
   add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &written_color, &shaded_color, &texture_byte,
        &texture_beats});
-  add({&primitive_id,  &slot,         &tile_x,     &tile_y,       &tile_pixel,   &stamp_index, &sample_mask,
-       &stored_color,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,     &pixel_y,
-       &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane, &counter,
-       &run,           &address,      &row_stride, &burst_length, &port_strobe,  &port_byte,   &line_numerator,
-       &line_position, &line_product, &line_error, &line_stay,    &line_move,    &line_count});
+  add({&primitive_id,   &slot,          &tile_x,       &tile_y,     &tile_pixel,   &stamp_index,  &sample_mask,
+       &stored_color,   &stored_depth,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,
+       &pixel_y,        &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane,
+       &counter,        &run,           &address,      &row_stride, &burst_length, &port_strobe,  &port_byte,
+       &line_numerator, &line_position, &line_product, &line_error, &line_stay,    &line_move,    &line_count});
   for (int a = 0; a < attributes.attributes; ++a)
     if (attributes.attribute[static_cast<std::size_t>(a)].is_clamped)
       list.push_back(&attribute[static_cast<std::size_t>(a)].line);

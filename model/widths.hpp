@@ -90,6 +90,7 @@ struct Widths {
   int planes = 0;                        ///< of all attributes together
   int affine_planes = 0;                 ///< depth and colour, which come first
   int alpha_counters = 0;                ///< 1: the alpha test counts
+  int stencil_flags = 0;                 ///< 1: there is a stencil, and primitives say what they do with it
   int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
   std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow
   int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
@@ -108,7 +109,7 @@ struct Widths {
   PerPlane<std::uint64_t> line_mask{};    ///< all ones in AttributeWidths::line
   Width reciprocal, reciprocal_shift;     ///< the widest, which the others are the upper bits of
   // Keys and positions.
-  Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color;
+  Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color, stored_depth;
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane,
       depth_source, memory_lane, counter;
   // The memory port.

@@ -293,7 +293,7 @@ module raster_top (
   logic                                                       moves_tiles;  // for the co-simulation
   /* verilator lint_on UNUSEDSIGNAL */
   logic                                                       access_ready;
-  logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth;
+  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth;
   logic [COUNT-1:0]                                           covered, passed, written, killed, tested_written, tested_killed;
   logic [1:0]                                                 fill, evict, clear;
   /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation

@@ -25,7 +25,7 @@ from prove_list import PROOFS
 
 RTL = pathlib.Path('rtl_ref')
 FORMAL = pathlib.Path('tests/formal')
-PACKAGES = {'embedded': RTL / 'raster_pkg.sv', **{p: RTL / f'presets/{p}/raster_pkg.sv' for p in ('tiny', 'small', 'full')}}
+PACKAGES = {'embedded': RTL / 'raster_pkg.sv', **{p: RTL / f'presets/{p}/raster_pkg.sv' for p in ('tiny', 'small', 'full', 'stencilled')}}
 ENUMERATIONS = 'Proofs.*'
 
 

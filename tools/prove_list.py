@@ -51,14 +51,14 @@ TILES = tuple((name, number, 'embedded') for name, number in
 BLOCKS = (('CACHE_KIND', 1), ('CACHE_LINES', 2), ('LINE_X_BITS', 1), ('LINE_Y_BITS', 0), ('CACHE_QUEUE', 4), ('CACHE_VICTIMS', 2),
           ('BLOCK_SIDE', 2), ('BLOCKS_PER_ROW', 1), ('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2), ('FLAG_WORD', 2),
           ('TILES_X', 2), ('TILES_Y', 2), ('TILE_X_BITS', 1), ('TILE_Y_BITS', 1), ('PRIMITIVE_ID_BITS', 1), ('COLOR_FORMAT', 1),
-          ('DEPTH_CODE_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('WRITTEN_COLOR_BITS', 1), ('SHADED_COLOR_BITS', 1),
+          ('DEPTH_CODE_BITS', 1), ('STORED_DEPTH_BITS', 1), ('VERTEX_COLOR_BITS', 1), ('STORED_COLOR_BITS', 1), ('WRITTEN_COLOR_BITS', 1), ('SHADED_COLOR_BITS', 1),
           ('ALL_CODE_BITS', 2), ('ALL_FRAGMENT_BITS', 2), ('MEMORY_LANE_BITS', 2),
           ('FRAGMENT_PACKET_BITS', 18, 'tiny'), ('FRAGMENT_PACKET_BITS', 27, 'embedded'))
 # The same with two by two of them in a tile, and flags that outlive a flush.
 BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAMP_INDEX_BITS', 4), ('FRAME_CLEARS', 1),
                    ('FRAGMENT_PACKET_BITS', 20, 'tiny'), ('FRAGMENT_PACKET_BITS', 29, 'embedded'))
 # Blocks with blending, a sample a clock; a word of operations fits a depth code.
-BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
+BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
             ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
 # What block_cache's properties call the registers of color_write.
 COLOR_WRITE = tuple((name, f'u_write.{inside}') for name, inside in
@@ -109,6 +109,10 @@ PROOFS = [
           ('state_q == PREPARE ? tile_x_q : next_x', 'tile_x_q'), ('!is_eligible && is_settled)', '!is_eligible)'))),
     Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', quick=TINY,
           twins=(34, ('assign max    = corner > max_q ? corner : max_q;', 'assign max    = corner;'))),
+    Proof('depth_test_hiz_stencil', 'd', 'stages/depth_test.sv', 'the same with a stencil', file='depth_test_hiz',
+          presets=('stencilled',), twins=(34,)),
+    Proof('depth_test_stencil', 'd', 'stages/depth_test.sv', 'a word of depth and stencil keeps what a fragment does not change',
+          presets=('stencilled',), quick=('stencilled',), is_combinational=True, twins=(210, 214, 215)),
     Proof('sram_word', 'd', 'lib/sram.sv', 'a read gives what was written last', has_reset=False,
           parameters=(('WIDTH', 'HIZ_CODE_BITS'), ('DEPTH', 8)),
           quick=TINY, twins=(('if (read_i) data_q <= memory_q[read_address_i];', 'data_q <= memory_q[read_address_i];'),)),

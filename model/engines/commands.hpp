@@ -52,7 +52,8 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
   if (!has_surface(state)) return std::nullopt;
   require_positive_w(context, triangle);
   const Texture* texture = state.texture ? &context.scene.textures[*state.texture] : nullptr;
-  return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.config, widths);
+  return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.fog.get(), context.config,
+                                widths);
 }
 
 /// Its colour as codes.

@@ -67,7 +67,7 @@ void TileMemory::write(const MemoryBeat& beat) {
 void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
                       std::span<std::uint32_t, kMaxSamples> data) const {
   const TilePlane plane = is_color ? TilePlane::color : TilePlane::depth;
-  const Width& code = is_color ? widths_.stored_color : widths_.depth().code;
+  const Width& code = is_color ? widths_.stored_color : widths_.stored_depth;
   std::uint32_t address = byte_address(plane, tile_x, tile_y, stamp, layout_, widths_);
   for (int s = 0; s < samples(); ++s) {
     std::uint32_t value = 0;
@@ -92,11 +92,11 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   Framebuffer frame(width, height, config.tile_size);
   std::ranges::fill(frame.depth, snap_depth(1.0, config.depth_bits));
   std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
+  const Widths widths = derive_widths(config);
   const int tile = config.tile_size, size = config.stamp_size;
   const StampGrid stamps{size, tile / size};
   std::array<std::uint32_t, kMaxSamples> data;
   const auto copy_stamp = [&](bool is_color, int x, int y) {
-    Framebuffer::Image& image = is_color ? frame.color : frame.depth;
     const int stamp = stamps.stamp_at(x % tile, y % tile);
     if (memory.is_cleared(is_color, x / tile, y / tile, stamp))
       data.fill(memory.clear_value(is_color));
@@ -104,8 +104,15 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
       memory.read(is_color, x / tile, y / tile, stamp, data);
     for (int s = 0; s < stamps.samples(); ++s) {
       const PixelOffset pixel = stamps.pixel_of(s);
-      if (x + pixel.x < width && y + pixel.y < height)
-        image[frame.at(x + pixel.x, y + pixel.y)] = data[static_cast<std::size_t>(s)];
+      if (x + pixel.x >= width || y + pixel.y >= height) continue;
+      const std::size_t at = frame.at(x + pixel.x, y + pixel.y);
+      const std::uint32_t code = data[static_cast<std::size_t>(s)];
+      if (is_color) {
+        frame.color[at] = code;
+      } else {
+        frame.depth[at] = depth_of(code, widths);
+        frame.stencil[at] = stencil_of(code, widths);
+      }
     }
   };
   for (int y = 0; y < height; y += size)
@@ -169,8 +176,9 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   switch (fragment.kind) {
     case PrimitiveKind::fast_clear: {
       const std::uint32_t color = stored_color(fragment.code[0], config_);
-      std::visit([&](auto& cache) { cache.fast_clear(fragment, color, *this, counters_); }, cache_);
-      if (fragment.state.depth_write) memory_.set_clear_value(TilePlane::depth, fragment.code[0][kDepthPlane]);
+      const std::uint32_t depth = depth_word(fragment.code[0][kDepthPlane], stencil_.clear_value(), widths_);
+      std::visit([&](auto& cache) { cache.fast_clear(fragment, depth, color, *this, counters_); }, cache_);
+      if (fragment.state.depth_write) memory_.set_clear_value(TilePlane::depth, depth);
       if (fragment.state.color_write) memory_.set_clear_value(TilePlane::color, color);
       return;
     }
@@ -185,11 +193,13 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   }
   if (fragment.mask.any()) {
     const auto stored = std::visit([&](auto& cache) { return cache.access(fragment, *this, counters_); }, cache_);
-    WritePacket packet = rop(fragment, depth_test(fragment, stored, widths_), config_, widths_);
+    WritePacket packet = rop(fragment, depth_test(fragment, stored, stencil_, widths_), config_, widths_);
     SampleMask kept = packet.passed;
     if (!texture_) {
-      kept = alpha_passes(colors_.alpha, kept, [&](std::size_t s) { return color_channels(fragment.code[s])[3]; });
-      keep(kept, packet);
+      const SampleMask opaque = alpha_passes(colors_.alpha, fragment.mask,
+                                             [&](std::size_t s) { return color_channels(fragment.code[s])[3]; });
+      keep(opaque, packet);
+      kept = kept & opaque;
     }
     sink_.take(on<Arrow::write>, packet);
     if (fragment.kind != PrimitiveKind::line) {
@@ -222,6 +232,7 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
 void HardwareModel::set_state(const FragmentPacket& token) {
   const StateRegister which = state_register(token.state);
   if (is_of_texture(which)) return set_register(*texture_, which, token, widths_);
+  stencil_.set(which, state_word(token, widths_));
   colors_.set(which, state_word(token, widths_));
   std::get<BlockCache>(cache_).set(colors_);
 }
@@ -231,7 +242,8 @@ void HardwareModel::set_state(const FragmentPacket& token) {
 SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
   std::array<TextureSample, kMaxSamples> sample;
   std::array<Texel, kMaxSamples> color;
-  const SampleMask live = colors_.alpha.func != DepthFunc::always ? packet.passed : packet.write_color;
+  const bool tests_alpha = colors_.alpha.func != DepthFunc::always;
+  const SampleMask live = tests_alpha ? packet.passed | packet.write_depth : packet.write_color;
   const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp);
   live.for_each([&](std::size_t s) {
     sample[s] = texture_sample(fragment.code[s], widths_);
@@ -251,10 +263,10 @@ SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& p
                                               : pack_color(config_.color_format, c);
   });
   if (live.any()) sink_.take(on<Arrow::color>, ColorPacket{live, packet.color});
-  const SampleMask kept =
-      alpha_passes(colors_.alpha, packet.passed, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
+  if (!tests_alpha) return packet.passed;
+  const SampleMask kept = alpha_passes(colors_.alpha, live, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
   keep(kept, packet);
-  return kept;
+  return kept & packet.passed;
 }
 
 /// A line of texels.

@@ -35,7 +35,7 @@ class TileMemory {
   void read(std::uint32_t address, MemoryBeat::Bytes& data) const;
   /// Whether the target has what a beat is about.
   [[nodiscard]] bool has(const MemoryBeat& beat) const { return beat.address < end_; }
-  /// The codes of a stamp: the first `samples` lanes of `data`; the others are left alone.
+  /// The codes of a stamp, of depth with the stencil above them: the first `samples` lanes of `data`; the others are left alone.
   void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
   /// The value that the last fast clear gave a plane: that of a block whose flag is set.
   void set_clear_value(TilePlane plane, std::uint32_t code) { clear_value_[static_cast<std::size_t>(plane)] = code; }
@@ -99,6 +99,7 @@ class HardwareModel final : private MemoryPort {
   TileMemory memory_;
   std::optional<TextureUnit> texture_;
   ColorState colors_;  ///< of the units that this hardware has
+  StencilState stencil_;
   TextureMemory texels_;
   PortStage port_;
   std::deque<MemoryResponse> responses_;  ///< to what has been asked for

@@ -55,7 +55,7 @@ void shade_sample(const DrawContext& context, const TriangleSetup& setup, const 
   const auto& v = t.triangle.v;
   shade_sample(context, options, x, y, value.code[kDepthPlane], color, setup.primitive,
                static_cast<std::int32_t>(t.index), rendering,
-               shows_back(signed_area(v[0], v[1], v[2]), context.state.front));
+               context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front));
 }
 
 /// What stays the same over a scene.
@@ -173,7 +173,7 @@ void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, st
                       Rendering& rendering) {
   if (has_surface(context.state))
     throw InputError(place_of_draw(context.scene.name, context.draw.line) +
-                     ": --clipping homogeneous has no textures and no colours over w: use --clipping polygon");
+                     ": --clipping homogeneous has no textures, no colours over w and no fog: use --clipping polygon");
   const HomogeneousFrame frame{engine.config, engine.widths, context.state, context.viewport, context.rect};
   Counters& counters = rendering.counters;
   for_each_homogeneous(context.scene, context.draw, frame, [&](const HomogeneousSetup& setup) {

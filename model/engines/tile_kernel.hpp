@@ -84,6 +84,7 @@ class TileKernel {
   struct Fates {
     Mask passed;  ///< the stencil and the depth test
     Mask kept;    ///< of those, what the alpha test has not dropped
+    Mask passed_stencil;
   };
 
   /// Draws the part of tile (tile_x, tile_y) that lies in the triangle's box. `edges`: the edge values at the tile's
@@ -191,7 +192,7 @@ class TileKernel {
     }
     const Mask passed = covered & passes_stencil & is_nearer;
     const bool writes_stencil = tile.stencil != nullptr && halfplane::writes_stencil(*tile.stencil);
-    if (!shades_failed && !is_any(writes_stencil ? covered : passed)) return {passed, passed};
+    if (!shades_failed && !is_any(writes_stencil ? covered : passed)) return {passed, passed, passes_stencil};
     Mask kept = covered;
     Channels<Mask> channel;
     const bool tests_alpha = ops_.alpha.func != DepthFunc::always;
@@ -208,7 +209,7 @@ class TileKernel {
       load(stored, stored_color);
       store(stored_color, write_where(kept, store_row(tile, j, channel, stored), stored));
     }
-    return {passed, kept};
+    return {passed, kept, passes_stencil};
   }
 
   void store_stencil(const Stencil& s, const Mask& kept, const Mask& passes_stencil, const Mask& is_nearer,

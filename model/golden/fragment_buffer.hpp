@@ -22,6 +22,7 @@ struct Fate {
   bool passed = false;   ///< the stencil and the depth test
   bool killed = false;   ///< and then not the alpha test
   bool written = false;  ///< it owns the pixel now: it passed, and its draw writes depth, colour or both
+  bool stencil_failed = false;
 };
 
 /// A fragment as it comes to the operations, beside its colour.
@@ -49,14 +50,14 @@ class FragmentBuffer {
     const bool is_nearer = passes(state.depth_test, fragment.depth, depth_[pixel]);
     const bool tests_pass = stencil_passes && is_nearer;
     if (!passes<double>(state.alpha_test.func, fragment.alpha, state.alpha_test.reference))
-      return {tests_pass, tests_pass, false};
+      return {tests_pass, tests_pass, false, !stencil_passes};
     if (stencil != nullptr) {
       const StencilOp op = !stencil_passes ? stencil->stencil_fails
                            : is_nearer     ? stencil->passes
                                            : stencil->depth_fails;
       stencil_[pixel] = operated(op, *stencil, stencil_[pixel]);
     }
-    if (!tests_pass) return {};
+    if (!tests_pass) return {false, false, false, !stencil_passes};
     const auto& mask = state.color_mask;
     const bool writes_color = state.color_write && (mask[0] || mask[1] || mask[2] || (mask[3] && has_alpha_));
     if (!state.depth_write && !writes_color) return {true, false, false};

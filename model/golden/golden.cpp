@@ -9,6 +9,7 @@
 
 #include "clip.hpp"
 #include "depth_format.hpp"
+#include "fog.hpp"
 #include "fragment_buffer.hpp"
 #include "homogeneous.hpp"
 #include "interpolate.hpp"
@@ -241,7 +242,10 @@ class Renderer {
     std::array<ScreenVertex<Real>, 2> v{screen(a, d), screen(b, d)};
     add_outline(v, d);
     d.was_drawn = true;
-    for (auto& end : v) end.z += d.offset;
+    for (auto& end : v) {
+      end.z += d.offset;
+      add_fog(end.rgba, end.inverse_w, d.state);  // lines and points are fogged at their ends
+    }
     const Line<Real> line{v[0], v[1], d.state.line_rule, drops_last_pixel(d.state)};
     for_each_candidate(line, d.region, 1, [&](int x, int y) {
       if (covers(line, x, y)) shade(x, y, interpolate(line, x, y, rules_of(d)), d);
@@ -252,6 +256,7 @@ class Renderer {
     if (d.state.space == Space::clip && is_outside(v, d.state.clip_z, d.state.point_clip == PointClip::center)) return;
     ScreenVertex<Real> at = screen(v, d);
     add_outline(std::span(&at, 1), d);
+    add_fog(at.rgba, at.inverse_w, d.state);
     d.was_drawn = true;
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
     const Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
@@ -307,7 +312,7 @@ class Renderer {
     return {options_.color_interp.value_or(d.state.color_interp), d.state.texture_interp};
   }
 
-  /// A fragment of a triangle: its texture, if it has one, then shade().
+  /// A fragment of a triangle: its texture and fog, if it has any, then shade().
   void shade_triangle(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
     if (d.state.texture) {
       const Texture& texture = scene_.textures[*d.state.texture];
@@ -315,8 +320,15 @@ class Renderer {
                                    d.state.texture_combine, has_alpha(texture.format));
       for (std::size_t c = 0; c < 4; ++c) fragment.rgba[c] = static_cast<Real>(color[c]);
     }
+    add_fog(fragment.rgba, fragment.inverse_w, d.state);
     shade(x, y, fragment, d);
   }
+  static void add_fog(std::array<Real, 4>& rgba, Real inverse_w, const State& state) {
+    if (!state.fog) return;
+    const Color color = in_fog(state, widen(rgba), fog_part(*state.fog, static_cast<double>(inverse_w)));
+    for (std::size_t c = 0; c < 4; ++c) rgba[c] = static_cast<Real>(color[c]);
+  }
+
   void shade(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
     if (d.offset != 0) fragment.z = std::clamp(fragment.z, Real(0), Real(1));
     const std::size_t p = pixel(x, y);
@@ -328,8 +340,7 @@ class Renderer {
         pixels_.apply(p, d.state, {fragment.z, color[3], d.is_back}, color, static_cast<std::int32_t>(d.primitive));
     if (options_.fragment_tap)
       options_.fragment_tap({d.primitive, d.command, image_.outlines.empty() ? 0 : image_.outlines.size() - 1, x, y,
-                             static_cast<double>(fragment.z) * depth_max_, stored * depth_max_, color, fate.passed,
-                             fate.written});
+                             static_cast<double>(fragment.z) * depth_max_, stored * depth_max_, color, fate});
     image_.counters.depth_passed += fate.passed ? 1 : 0;
     image_.counters.alpha_killed += fate.killed ? 1 : 0;
     image_.counters.written += fate.written ? 1 : 0;

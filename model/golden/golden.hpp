@@ -15,6 +15,7 @@
 #include "../rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
+#include "fragment_buffer.hpp"
 
 namespace halfplane::golden {
 
@@ -50,7 +51,7 @@ struct TappedFragment {
   int x = 0, y = 0;                       ///< pixels
   double depth = 0, stored_depth = 0;     ///< its own, and what lies at its pixel before it
   std::array<double, 4> color{};          ///< 0...255, with its texture
-  bool passed = false, written = false;   ///< the tests; it owns the pixel now
+  Fate fate;
 };
 
 struct Options {

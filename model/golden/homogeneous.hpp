@@ -50,6 +50,7 @@ struct HomogeneousSetup {
   std::array<HomogeneousVertex<Real>, 3> v{};
   std::array<HomogeneousEdge<Real>, 3> edge{};  ///< edge[i] is opposite v[i]
   Real determinant = 0;                         ///< before the turn: its sign is the facing, as that of an area
+  Real scale = 1;                               ///< of its vertices
   bool is_in_front = false;                     ///< every w > 0: affine colour has a meaning
   bool is_outside = false;                      ///< behind the eye, before near or beyond far as a whole
 };
@@ -81,6 +82,7 @@ template <class Real>
   const Real scale = largest > 0 ? std::scalbn(Real(1), -std::ilogb(largest)) : Real(0);
   HomogeneousSetup<Real> t;
   for (std::size_t i = 0; i < 3; ++i) t.v[i] = to_homogeneous(v[i], scale, state, vp);
+  t.scale = scale;
   t.is_in_front = t.v[0].w > 0 && t.v[1].w > 0 && t.v[2].w > 0;
   const auto none = [&t](auto&& holds) { return !(holds(t.v[0]) || holds(t.v[1]) || holds(t.v[2])); };
   t.is_outside = none([](const auto& p) { return p.w > 0; }) || none([](const auto& p) { return p.near >= 0; }) ||
@@ -131,6 +133,7 @@ template <class Real>
   }
   f.texture = texture_at(weight, t.v);
   f.z = (e[0] * v0.z + e[1] * v1.z + e[2] * v2.z) / one;
+  f.inverse_w = inverse_w / one * t.scale;
   for (std::size_t c = 0; c < 4; ++c) {
     const Real d1 = v1.rgba[c] - v0.rgba[c], d2 = v2.rgba[c] - v0.rgba[c];
     f.rgba[c] = is_affine ? v0.rgba[c] + (e[1] * v1.w * d1 + e[2] * v2.w * d2) / one

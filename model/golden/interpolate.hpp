@@ -15,6 +15,7 @@ struct Fragment {
   Real z = 0;                  ///< window depth, 0...1
   std::array<Real, 4> rgba{};  ///< 0...255
   TextureCoordinates texture;  ///< of triangles
+  Real inverse_w = 1;          ///< likewise; 0 or less where a window-space w gives none
 };
 
 /// How colours and texture coordinates run over a primitive.
@@ -79,11 +80,12 @@ template <class Real>
     weight[i] = {q * e[i], q * -t.edge[i].sign * t.edge[i].dy, q * t.edge[i].sign * t.edge[i].dx};
   }
   f.texture = texture_at(weight, t.v);
+  const Real inverse_w = blend(v0.inverse_w, v1.inverse_w, v2.inverse_w, b1, b2);
+  f.inverse_w = has_w ? inverse_w : Real(0);
   if (rules.color == ColorInterp::affine) {
     for (std::size_t c = 0; c < 4; ++c) f.rgba[c] = blend(v0.rgba[c], v1.rgba[c], v2.rgba[c], b1, b2);
     return f;
   }
-  const Real inverse_w = blend(v0.inverse_w, v1.inverse_w, v2.inverse_w, b1, b2);
   const Real p1 = has_w ? b1 * v1.inverse_w / inverse_w : b1, p2 = has_w ? b2 * v2.inverse_w / inverse_w : b2;
   for (std::size_t c = 0; c < 4; ++c) f.rgba[c] = blend(v0.rgba[c], v1.rgba[c], v2.rgba[c], p1, p2);
   return f;

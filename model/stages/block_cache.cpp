@@ -16,7 +16,7 @@ BlockCache::BlockCache(const Config& config, const Widths& widths)
       directory_(config, widths),
       stored_(static_cast<std::size_t>(widths.samples)),
       stored_color_(static_cast<std::size_t>(widths.samples)),
-      code_mask_{static_cast<std::uint32_t>(widths.depth().code.range.hi),
+      code_mask_{static_cast<std::uint32_t>(widths.stored_depth.range.hi),
                  static_cast<std::uint32_t>(widths.stored_color.range.hi)} {
   const std::size_t stamps = stamp_index(directory_.lines(), 0);
   for (const TilePlane plane : kTilePlanes) {
@@ -131,14 +131,14 @@ void BlockCache::evict_all(MemoryPort& memory, CounterPacket& counters) {
   });
 }
 
-void BlockCache::fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory,
+void BlockCache::fast_clear(const FragmentPacket& token, std::uint32_t depth, std::uint32_t color, MemoryPort& memory,
                             CounterPacket& counters) {
   const std::array<bool, 2> clears{token.state.depth_write, token.state.color_write};
   if (!(clears[0] && clears[1])) evict_all(memory, counters);
   write_victims(directory_.write_all(), memory, counters);
   directory_.mark(token.key.tile_x, token.key.tile_y, clears);
   directory_.drop_depth(token.state.drops_depth());
-  if (clears[0]) clear_value_[0] = token.code[0][kDepthPlane];
+  if (clears[0]) clear_value_[0] = depth;
   if (clears[1]) clear_value_[1] = color;
 }
 

@@ -32,8 +32,9 @@ class BlockCache {
   /// Writes what came of the fragment of the last access.
   void write(const FragmentPacket& fragment, const WritePacket& packet);
 
-  /// `token`: a fragment of kind fast_clear; `color`: its colour as it is stored.
-  void fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory, CounterPacket& counters);
+  /// `token`: a fragment of kind fast_clear; `depth`, `color`: its depth and colour as they are stored.
+  void fast_clear(const FragmentPacket& token, std::uint32_t depth, std::uint32_t color, MemoryPort& memory,
+                  CounterPacket& counters);
 
   /// `token`: a fragment of kind flush.
   void flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters);

@@ -44,6 +44,7 @@ class CacheTags {
   CacheTags(const Config& config, const Widths& widths)
       : widths_(widths),
         victims_(static_cast<std::size_t>(config.cache_victims)),
+        has_stencil_(config.stencil_bits != 0),
         lines_(static_cast<std::size_t>(config.cache_lines)),
         flags_(widths) {}
 
@@ -72,10 +73,10 @@ class CacheTags {
     }
     if ((line.known & stamp) != 0)
       result.source = DepthSource::chip;
-    else if (state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.depth_write))
+    else if (looks_at_depth(state, is_full))
       result.source = line.is_cleared[0] ? DepthSource::clear : DepthSource::memory;
     if (result.source != DepthSource::none || state.depth_write) line.known |= stamp;
-    line.has_depth = line.has_depth || state.depth_write;
+    line.has_depth = line.has_depth || state.writes_word();
     result.starts_color = state.color_write && (line.colored & stamp) == 0;
     if (state.color_write) line.colored |= stamp;
     if (state.color_write && reads_color_) {
@@ -146,6 +147,11 @@ class CacheTags {
     std::array<bool, 2> is_cleared{};  ///< the flags of the block, as long as it is here
   };
 
+  /// Whether a fragment asks for what is stored under it. With a stencil what is written keeps a part of that.
+  [[nodiscard]] bool looks_at_depth(const PrimitiveState& state, bool is_full) const {
+    return state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.writes_word()) ||
+           state.tests_stencil || (has_stencil_ && state.depth_write);
+  }
   [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
   /// Of the words of a row of blocks.
   [[nodiscard]] int word_of(int x) const { return x / widths_.blocks.flag_word; }
@@ -185,6 +191,7 @@ class CacheTags {
 
   Widths widths_;
   std::size_t victims_;
+  bool has_stencil_;
   bool drops_depth_ = false;
   bool reads_color_ = false, tests_alpha_ = false;
   std::vector<Line> lines_;

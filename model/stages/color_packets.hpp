@@ -83,9 +83,7 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
   ColorWords words;
   if (packs_at_write(config) && ops.state.color_write) {
     words.ops = pack(ops.color);
-    const BlendFactors& f = ops.color.factors;
-    if (is_constant(f.src) || is_constant(f.dst) || is_constant(f.src_alpha) || is_constant(f.dst_alpha))
-      words.constant = pack(ops.color.constant);
+    if (ops.color.reads_constant()) words.constant = pack(ops.color.constant);
   }
   if (tests_alpha(config)) words.alpha = pack(ops.alpha);
   return words;

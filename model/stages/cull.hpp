@@ -23,12 +23,19 @@ namespace halfplane {
   return ax * by - ay * bx;
 }
 
+/// Whether a triangle of that area, whatever its unit, shows its back: positive is clockwise. Lines and points, a triangle's
+/// outline too, show their front.
+template <class Area>
+[[nodiscard]] constexpr bool shows_back(const Area& area, FrontFace front) {
+  return (area > 0) == (front == FrontFace::ccw);
+}
+
 enum class CullResult { keep, backface, zero_area };
 
 /// `backface` stands for whichever side `mode` removes.
 [[nodiscard]] constexpr CullResult cull(std::int64_t area, Cull mode, FrontFace front) {
   if (area == 0) return CullResult::zero_area;
-  const bool is_front = (area > 0) == (front == FrontFace::cw);
+  const bool is_front = !shows_back(area, front);
   const bool removed = mode == Cull::both || (mode == Cull::front && is_front) || (mode == Cull::back && !is_front);
   return removed ? CullResult::backface : CullResult::keep;
 }
@@ -154,6 +161,7 @@ template <class Box>
     return kept;
   }
   TrianglePacket& out = keep(to_box(bounds));
+  out.state.is_back = in.state.tests_stencil && shows_back(area, in.front_cw ? FrontFace::cw : FrontFace::ccw);
   const auto order = canonical_order(v, area);
   const int first_x = bounds.left >> widths.tile_shift << widths.tile_shift;  // first pixel of the first tile
   const int first_y = bounds.top >> widths.tile_shift << widths.tile_shift;

@@ -1,6 +1,6 @@
-// Depth test: a stamp's depth codes against the stored ones, and what follows from the result.
+// Depth test: a stamp's depth codes against the stored ones, the stencil before that, and what follows from the result.
 //
-// In: a FragmentPacket and the codes stored under it. Out: a WritePacket but for its colours, which rop adds, and at the end of
+// In: a FragmentPacket and the words stored under it: depth codes, the stencil above each (stencil.bits). Out: a WritePacket but for its colours, which rop adds, and at the end of
 // a tile visit a RetirePacket. The arithmetic of the test is fragment_ops.hpp's.
 //
 // The alpha test stands here where the colour is known: without a texture unit. With one it comes behind that; then a draw
@@ -12,6 +12,7 @@
 
 #include "../fragment_ops.hpp"
 #include "../packets.hpp"
+#include "stencil_packets.hpp"
 
 namespace halfplane {
 
@@ -31,26 +32,64 @@ inline void keep(SampleMask kept, WritePacket& packet) {
   packet.write_color = packet.write_color & kept;
 }
 
-/// The stage, without the alpha test and the end of a visit. `stored`: the depth codes of the stamp's samples in the tile RAM.
+/// A stored depth: the stencil above the depth code, where there is one.
+[[nodiscard]] inline std::uint32_t depth_of(std::uint32_t word, const Widths& widths) {
+  return word & static_cast<std::uint32_t>(widths.depth().code.range.hi);
+}
+[[nodiscard]] inline std::uint8_t stencil_of(std::uint32_t word, const Widths& widths) {
+  return widths.stencil_flags != 0 ? static_cast<std::uint8_t>(word >> widths.depth().code.bits) : std::uint8_t{0};
+}
+[[nodiscard]] inline std::uint32_t depth_word(std::uint32_t depth, std::uint32_t stencil, const Widths& widths) {
+  return widths.stencil_flags != 0 ? stencil << widths.depth().code.bits | depth : depth;
+}
+
+/// What the two tests make of a sample.
+struct TestedSample {
+  bool passes = false;   ///< both
+  bool changes = false;  ///< the word that is stored
+  std::uint32_t word = 0;
+};
+
+/// A covered sample against the stored word. `side`: of the stencil, which a primitive that looks at none ignores.
+[[nodiscard]] inline TestedSample test_sample(const PrimitiveState& state, const Stencil& side, std::uint32_t depth,
+                                              std::uint32_t stored, const Widths& widths) {
+  const std::uint8_t stencil = stencil_of(stored, widths);
+  const bool passes_stencil = !state.tests_stencil || stencil_passes(side, stencil);
+  const bool is_nearer = depth_passes(state.depth_test, depth, depth_of(stored, widths));
+  TestedSample sample;
+  sample.passes = passes_stencil && is_nearer;
+  const StencilOp op = state.tests_stencil ? stencil_op(side, passes_stencil, is_nearer) : StencilOp::keep;
+  const bool marks = op != StencilOp::keep && side.write_mask != 0;
+  const bool takes = sample.passes && state.depth_write;
+  sample.changes = marks || takes;
+  sample.word = depth_word(takes ? depth : depth_of(stored, widths),
+                           marks ? apply_stencil(op, side, std::uint32_t{stencil}) : stencil, widths);
+  return sample;
+}
+
+/// The stage, without the alpha test and the end of a visit. `stored`: the words of the stamp's samples in the depth RAM.
 [[nodiscard]] inline WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
-                                            const Widths& widths) {
+                                            const StencilState& stencil, const Widths& widths) {
   const FragmentState& state = fragment.state;
+  const Stencil& side = stencil.side[state.is_back ? 1 : 0];
   WritePacket packet;
   packet.key = fragment.key;
   packet.stamp = fragment.stamp;
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
     packet.depth[s] = fragment.code[s][kDepthPlane];
-    const bool passes = fragment.mask.has(s) && depth_passes(state.depth_test, packet.depth[s], stored[s]);
-    packet.passed.set(static_cast<int>(s), passes);
+    if (!fragment.mask.has(s)) continue;
+    const TestedSample sample = test_sample(state, side, packet.depth[s], stored[s], widths);
+    packet.passed.set(static_cast<int>(s), sample.passes);
+    packet.write_depth.set(static_cast<int>(s), sample.changes);
+    if (sample.changes) packet.depth[s] = sample.word;
   }
-  if (state.depth_write) packet.write_depth = packet.passed;
   if (state.color_write) packet.write_color = packet.passed;
   return packet;
 }
 
-/// Whether depth is written behind the texture: the alpha test decides there whether it is.
+/// Whether depth, or the stencil above it, is written behind the texture: the alpha test decides there whether it is.
 [[nodiscard]] constexpr bool is_late(const PrimitiveState& state, const AlphaTest& alpha, const Config& config) {
-  return has_texture_planes(config) && alpha.func != DepthFunc::always && state.depth_write;
+  return has_texture_planes(config) && alpha.func != DepthFunc::always && state.writes_word();
 }
 
 /// What a visit that writes depth does to its tile's bound. `is_full`: every sample of the tile was covered and written,

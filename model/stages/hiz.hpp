@@ -39,15 +39,15 @@ class Hiz {
         unseen_(static_cast<std::size_t>(lag_)),
         quiet_(lag_ - 1) {}
 
-  /// Whether the primitive may be tested at all. Those of up to 2 x 2 tiles are not: reading the bound would cost more
-  /// than it saves.
+  /// Whether the primitive may be tested at all. Not where what fails leaves a mark in the stencil; and those of up to
+  /// 2 x 2 tiles are not: reading the bound would cost more than it saves.
   [[nodiscard]] bool is_eligible(const SetupPacket& setup, const Widths& widths) const {
     const auto tiles = [&widths](int first, int last) {
       return (last >> widths.tile_shift) - (first >> widths.tile_shift) + 1;
     };
     const DepthFunc func = setup.state.depth_test;
     const PixelBox& box = setup.box;
-    return bits_ > 0 && holds_ && setup.kind == PrimitiveKind::triangle &&
+    return bits_ > 0 && holds_ && setup.kind == PrimitiveKind::triangle && !setup.state.marks_failed &&
            (tiles(box.left, box.right) > untested_tiles_ || tiles(box.top, box.bottom) > untested_tiles_) &&
            (func == DepthFunc::less || func == DepthFunc::lequal || func == DepthFunc::equal);
   }

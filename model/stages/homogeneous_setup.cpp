@@ -231,7 +231,7 @@ HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& vertices, const 
     setup.bound[3] = to_bound(blend(e, v, [](const Corner& c) { return c.near; }), frame.homogeneous);
   if (!all_of(v, [](const Corner& c) { return c.far >= 0; }))
     setup.bound[4] = to_bound(blend(e, v, [](const Corner& c) { return c.far; }), frame.homogeneous);
-  setup.is_back = (facing > 0) == (frame.state.front == FrontFace::ccw);
+  setup.is_back = shows_back(facing, frame.state.front);
   set_depth(setup, e, v, determinant, is_in_front, frame);
   setup.is_perspective = !is_in_front;
   set_attributes(setup, e, v, determinant, frame);

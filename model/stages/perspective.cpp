@@ -16,6 +16,13 @@ std::uint64_t value_at(const Plane& plane, const PixelPlace& place, int bits, co
   return local.anchor + place.i * local.step_x + place.j * local.step_y;
 }
 
+/// 2^e / w, rounded.
+std::uint32_t q_code(double w, int e) {
+  int exponent = 0;  // w = mantissa 2^exponent, 1/2 <= mantissa < 1
+  const double mantissa = std::frexp(w, &exponent);
+  return static_cast<std::uint32_t>(snap(1 / mantissa, std::ldexp(1.0, e - exponent)));
+}
+
 }  // namespace
 
 double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFormat& format,
@@ -35,18 +42,18 @@ double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFo
          + std::ldexp(1.0, -attribute.fraction_bits - 1);  // the result
 }
 
+int q_exponent(const std::array<double, 3>& w, int bits) {
+  const double nearest = std::min({w[0], w[1], w[2]});
+  int exponent = 0;
+  (void)std::frexp(nearest, &exponent);
+  const int e = bits - 1 + exponent;
+  return e - (q_code(nearest, e) >> bits != 0 ? 1 : 0);
+}
+
 QCodes quantize_q(const std::array<double, 3>& w, int bits) {
-  std::array<double, 3> mantissa{};  // w = mantissa 2^exponent, 1/2 <= mantissa < 1
-  std::array<int, 3> exponent{};
-  for (std::size_t i = 0; i < 3; ++i) mantissa[i] = std::frexp(w[i], &exponent[i]);
-  const auto nearest = static_cast<std::size_t>(std::min_element(w.begin(), w.end()) - w.begin());
-  const auto code = [&](std::size_t i, int e) {
-    return static_cast<std::uint32_t>(snap(1 / mantissa[i], std::ldexp(1.0, e - exponent[i])));
-  };
-  int e = bits - 1 + exponent[nearest];
-  if (code(nearest, e) >> bits != 0) --e;
+  const int e = q_exponent(w, bits);
   QCodes q{};
-  for (std::size_t i = 0; i < 3; ++i) q[i] = std::max(1U, code(i, e));
+  for (std::size_t i = 0; i < 3; ++i) q[i] = std::max(1U, q_code(w[i], e));
   return q;
 }
 

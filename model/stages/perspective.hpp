@@ -85,6 +85,8 @@ using QCodes = std::array<std::uint32_t, 3>;  ///< Q_i of the vertices
 
 /// Q_i, the largest with N = `bits` bits. w > 0.
 [[nodiscard]] QCodes quantize_q(const std::array<double, 3>& w, int bits);
+/// Its e: Q_i is 2^e / w_i, rounded.
+[[nodiscard]] int q_exponent(const std::array<double, 3>& w, int bits);
 
 /// One attribute of a triangle as it goes to setup.
 struct OverW {

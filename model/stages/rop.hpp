@@ -33,11 +33,6 @@ namespace halfplane {
   return packet;
 }
 
-/// 8-bit codes as vertex_color() has them, back.
-[[nodiscard]] constexpr Channels<std::uint32_t> unpacked_channels(std::uint32_t color) {
-  return {color & 255, color >> 8 & 255, color >> 16 & 255, color >> 24};
-}
-
 /// What becomes of the colours of `samples` of a stamp as they are written: `color` are vertex_color()s, and then codes as they
 /// are stored. `stored`: the codes before, of samples whose operations read them.
 inline void written_colors(const ColorOps& ops, const StampAddress& at, SampleMask samples,
@@ -48,8 +43,8 @@ inline void written_colors(const ColorOps& ops, const StampAddress& at, SampleMa
     const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
     const int x = at.tile_x * config.tile_size + origin.x + pixel.x,
               y = at.tile_y * config.tile_size + origin.y + pixel.y;
-    color[s] = store_color<std::uint32_t>(ops, config.color_format, unpacked_channels(color[s]), stored[s],
-                                          dither_threshold(x, y));
+    const auto channels = unpack_color<std::uint32_t>(ColorFormat::rgba8888, color[s]);  // as vertex_color() has them
+    color[s] = store_color<std::uint32_t>(ops, config.color_format, channels, stored[s], dither_threshold(x, y));
   });
 }
 

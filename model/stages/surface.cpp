@@ -39,13 +39,15 @@ TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surfa
 }
 
 Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-                 const Config& config, const Widths& widths)
-    : setup_(setup), widths_(widths), format_(perspective_format(config)) {
+                 const FogTable* fog, const Config& config, const Widths& widths)
+    : setup_(setup), widths_(widths), format_(perspective_format(config)), fog_(fog) {
   order_ = canonical_order(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
-  for (std::size_t i = 0; i < 3; ++i) vertex_[i] = triangle.v[order_[i]];
+  std::array<double, 3> w{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    vertex_[i] = triangle.v[order_[i]];
+    w[i] = triangle.surface[order_[i]].w;
+  }
   if (state.color_interp == ColorInterp::perspective) {
-    std::array<double, 3> w{};
-    for (std::size_t i = 0; i < 3; ++i) w[i] = triangle.surface[order_[i]].w;
     color_divisor_ = make_divisor(quantize_q(w, format_.q_bits));
     for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c) {
       const std::size_t p = kColorPlane + c;
@@ -55,6 +57,18 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
     }
   }
   if (texture != nullptr) set_texture(triangle, state, *texture);
+  if (fog != nullptr) set_fog(w, state.texture_interp == TextureInterp::perspective);
+}
+
+/// Q is that of colours or coordinates over w, where there are some: the same codes, and the same plane.
+void Surface::set_fog(const std::array<double, 3>& w, bool is_over_w) {
+  if (color_divisor_)
+    fog_divisor_ = color_divisor_;
+  else if (texture_divisor_ && is_over_w)
+    fog_divisor_ = texture_divisor_;
+  else
+    fog_divisor_ = make_divisor(quantize_q(w, format_.q_bits));
+  fog_scale_ = q_exponent(w, format_.q_bits) + format_.guard_bits;
 }
 
 void Surface::set_texture(const Triangle& triangle, const State& state, const Texture& texture) {
@@ -114,8 +128,14 @@ Texel Surface::primitive_color(int x, int y, const PixelPlace& place) const {
 SurfaceSample Surface::at(int x, int y, int weight_bits) const {
   const PixelPlace pixel = place_of(setup_, widths_, x, y);
   SurfaceSample s;
-  s.primitive = s.color = primitive_color(x, y, pixel);
-  if (!texture_divisor_) return s;
+  s.primitive = s.clear = primitive_color(x, y, pixel);
+  if (texture_divisor_) add_texture(x, y, weight_bits, pixel, s);
+  s.color = s.clear;
+  if (fog_divisor_) add_fog(pixel, s);
+  return s;
+}
+
+void Surface::add_texture(int x, int y, int weight_bits, const PixelPlace& pixel, SurfaceSample& s) const {
   const std::uint64_t q = q_of(*texture_divisor_, pixel);
   const PixelReciprocal reciprocal = divide_by_q(q, format_);
   s.place.fraction_bits = format_.coordinate.fraction_bits;
@@ -128,8 +148,14 @@ SurfaceSample Surface::at(int x, int y, int weight_bits) const {
   }
   s.lod = level_of_detail(lod_, q, x, y);
   s.texel = sample(sampler_, s.place, s.lod);
-  s.color = combined(s.primitive, s.texel, combine_, has_alpha(sampler_.texture->format));
-  return s;
+  s.clear = combined(s.primitive, s.texel, combine_, has_alpha(sampler_.texture->format));
+}
+
+void Surface::add_fog(const PixelPlace& pixel, SurfaceSample& s) const {
+  s.fog_q = q_of(*fog_divisor_, pixel);
+  s.fog = fog_->factor(s.fog_q, fog_scale_);
+  for (std::size_t c = 0; c < 3; ++c)
+    s.color[c] = static_cast<std::uint8_t>(fogged<std::uint32_t>(s.clear[c], fog_->color()[c], s.fog));
 }
 
 }  // namespace halfplane

@@ -1,16 +1,18 @@
 // Surface: the colour of a triangle at a covered sample, where it is more than the codes of its affine planes: colours over
-// w, a texture, and the two combined.
+// w, a texture, the two combined, and what is left of that in fog.
 //
 //   colours      affine codes, or P / Q (perspective.hpp)
 //   coordinates  u, v over w, or affine: the same planes with Q the same at all vertices
 //   level        level_of_detail.hpp, from the coordinates' planes
 //   texel        texture_sample.hpp
+//   fog          fog.hpp, from Q
 #pragma once
 
 #include <array>
 #include <optional>
 
 #include "../config.hpp"
+#include "fog.hpp"
 #include "level_of_detail.hpp"
 #include "perspective.hpp"
 #include "texture_sample.hpp"
@@ -22,7 +24,7 @@ namespace halfplane {
 
 /// Whether the filled triangles of a draw need one.
 [[nodiscard]] constexpr bool has_surface(const State& state) {
-  return state.texture.has_value() || state.color_interp == ColorInterp::perspective;
+  return state.texture.has_value() || state.color_interp == ColorInterp::perspective || state.fog.has_value();
 }
 
 /// What a textured triangle sends to setup, vertices in the order of `surface`; every w > 0. Host.
@@ -42,7 +44,10 @@ struct SurfaceSample {
   TexturePlace place;                  ///< the same as the filter gets it
   Lod lod = 0;                         ///< without bias and bounds
   Texel texel{};                       ///< the texture's colour; without one 0
-  Texel color{};                       ///< R, G, B, A: both together
+  Texel clear{};                       ///< R, G, B, A: both together
+  std::uint64_t fog_q = 0;             ///< Q, 2^-l codes; without fog 0
+  std::uint32_t fog = kFogClear;       ///< f, what of that is left
+  Texel color{};                       ///< in fog
 };
 
 class Surface {
@@ -58,9 +63,9 @@ class Surface {
     Plane plane;
   };
 
-  /// `setup` of `triangle`, not empty; `texture`: that of the state, or none. Every w > 0 (require_positive_w).
+  /// `setup` of `triangle`, not empty; `texture`, `fog`: those of the state, or none. Every w > 0 (require_positive_w).
   Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-          const Config& config, const Widths& widths);
+          const FogTable* fog, const Config& config, const Widths& widths);
 
   [[nodiscard]] SurfaceSample at(int x, int y, int weight_bits = kTexelFraction) const;
   /// R, G, B, A at a covered sample.
@@ -70,6 +75,10 @@ class Surface {
   [[nodiscard]] const PerspectiveFormat& format() const { return format_; }
   [[nodiscard]] const std::optional<Divisor>& color_divisor() const { return color_divisor_; }
   [[nodiscard]] const std::optional<Divisor>& texture_divisor() const { return texture_divisor_; }
+  [[nodiscard]] const std::optional<Divisor>& fog_divisor() const { return fog_divisor_; }
+  [[nodiscard]] const FogTable& fog() const { return *fog_; }
+  /// q is Q 2^-scale.
+  [[nodiscard]] int fog_scale() const { return fog_scale_; }
   [[nodiscard]] const Attribute& channel(std::size_t c) const { return color_[c]; }
   [[nodiscard]] const Attribute& coordinate(std::size_t axis) const { return coordinate_[axis]; }
   [[nodiscard]] std::int32_t reference(std::size_t axis) const { return reference_[axis]; }
@@ -86,6 +95,9 @@ class Surface {
   [[nodiscard]] std::int64_t value_of(const Attribute& attribute, const OverWFormat& of, const PixelReciprocal& q,
                                       const PixelPlace& place) const;
   void set_texture(const Triangle& triangle, const State& state, const Texture& texture);
+  void set_fog(const std::array<double, 3>& w, bool is_over_w);
+  void add_texture(int x, int y, int weight_bits, const PixelPlace& pixel, SurfaceSample& sample) const;
+  void add_fog(const PixelPlace& pixel, SurfaceSample& sample) const;
 
   const TriangleSetup& setup_;
   const Widths& widths_;
@@ -93,6 +105,9 @@ class Surface {
   std::array<std::size_t, 3> order_{};                      ///< canonical
   std::array<SnappedVertex, 3> vertex_{};                   ///< in that order
   std::optional<Divisor> color_divisor_, texture_divisor_;  ///< none: affine colours, no texture
+  std::optional<Divisor> fog_divisor_;                      ///< none: no fog
+  const FogTable* fog_;
+  int fog_scale_ = 0;
   std::array<Attribute, 4> color_{};
   std::array<Attribute, 2> coordinate_{};  ///< u and v, texels
   std::array<std::int32_t, 2> reference_{};

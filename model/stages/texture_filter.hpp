@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "../color_ops.hpp"
 #include "../fixed.hpp"
 #include "../scene.hpp"
 #include "level_of_detail.hpp"
@@ -172,23 +173,18 @@ template <class Fetch>
   return result;
 }
 
-/// floor(value / 255 + 1/2), 0 <= value <= 255^2.
-[[nodiscard]] constexpr std::uint8_t divide_by_255(std::uint32_t value) {
-  const std::uint32_t t = value + 128;
-  return static_cast<std::uint8_t>((t + (t >> 8)) >> 8);
-}
-
 /// The primitive's colour and the texture's together: OpenGL ES 1.1, table 3.17. A format without alpha leaves that of the
 /// primitive as it is; its texels have 255 there.
 [[nodiscard]] constexpr Texel combined(const Texel& color, const Texel& texel, TextureCombine combine, bool has_alpha) {
-  const auto product = [](std::uint32_t a, std::uint32_t b) { return divide_by_255(a * b); };
+  const auto rounded = [](std::uint32_t value) { return static_cast<std::uint8_t>(divide_by_255(value)); };
+  const auto product = [rounded](std::uint32_t a, std::uint32_t b) { return rounded(a * b); };
   Texel result = color;
   for (std::size_t c = 0; c < 3; ++c) {
     switch (combine) {
       case TextureCombine::modulate: result[c] = product(color[c], texel[c]); break;
       case TextureCombine::replace: result[c] = texel[c]; break;
       case TextureCombine::decal:
-        result[c] = divide_by_255(std::uint32_t{color[c]} * (255U - texel[3]) + std::uint32_t{texel[c]} * texel[3]);
+        result[c] = rounded(std::uint32_t{color[c]} * (255U - texel[3]) + std::uint32_t{texel[c]} * texel[3]);
         break;
       case TextureCombine::add: result[c] = static_cast<std::uint8_t>(std::min(color[c] + texel[c], 255)); break;
     }

@@ -109,11 +109,11 @@ void TileCache::write(const FragmentPacket&, const WritePacket& packet) {
                    packet.write_color.any());
 }
 
-void TileCache::fast_clear(const FragmentPacket& token, std::uint32_t color, MemoryPort& memory,
+void TileCache::fast_clear(const FragmentPacket& token, std::uint32_t depth, std::uint32_t color, MemoryPort& memory,
                            CounterPacket& counters) {
   const std::array<bool, 2> clears{token.state.depth_write, token.state.color_write};
   directory_.fast_clear(token.key.tile_x, token.key.tile_y, clears, DataMover{*this, memory}, counters);
-  if (clears[0]) clear_value_[0] = token.code[0][kDepthPlane];
+  if (clears[0]) clear_value_[0] = depth;
   if (clears[1]) clear_value_[1] = color;
 }
 

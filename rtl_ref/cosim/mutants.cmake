@@ -275,7 +275,7 @@ mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the o
 mutant(145 lib/colored_stamps.sv "texture: points and clears have it too"
   [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[fragment_i.kind != raster_pkg::PRIMITIVE_KIND_STATE]=])
 mutant(146 stages/block_cache.sv "texture: samples that fail the depth test are looked up"
-  [=[{SAMPLES{write_valid_i}} & (tests_alpha ? write_i.passed : write_i.write_color)]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
+  [=[{SAMPLES{write_valid_i}} & (tests_alpha ? looked_at : write_i.write_color)]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
 mutant(147 stages/block_cache.sv "texture: idle though its memory has not answered what was asked for before a reset"
   [=[tags_are_idle && drained && texture_is_idle]=] [=[tags_are_idle && drained]=])
 mutant(148 stages/block_cache.sv "texture: one stamp more goes in than there is room for"
@@ -384,3 +384,29 @@ mutant(206 stages/cache_tags.sv "alpha: depth unread where always writes all tha
   [=[(tests_alpha && fragment_q.state.depth_write)]=] [=[1'b0]=])
 mutant(207 stages/block_cache.sv "alpha: counter: samples that fail the depth test are counted too"
   [=[popcount(w_passed & ~alpha_passes)]=] [=[popcount(~alpha_passes)]=])
+
+# stencil
+mutant(208 lib/stencil_test.sv "stencil: the reference is compared without the mask"
+  [=[reference_i & read_i]=] [=[reference_i]=])
+mutant(209 lib/stencil_test.sv "stencil: what fails the depth test alone does what passes"
+  [=[(is_nearer_i[s] ? ops_i[8:6] : ops_i[5:3])]=] [=[ops_i[8:6]]=])
+mutant(210 lib/stencil_test.sv "stencil: bits outside of the write mask become 0"
+  [=[(stored & ~write_i)]=] [=[8'd0]=])
+mutant(211 lib/stencil_test.sv "stencil: incr goes on at 0"
+  [=[stored == 8'hff ? stored : stored + 8'd1]=] [=[stored + 8'd1]=])
+mutant(212 stages/cull.sv "stencil: every triangle shows its front"
+  [=[d_is_triangle && state_q.tests_stencil && !is_front]=] [=[1'b0]=])
+mutant(213 stages/hiz.sv "stencil: tiles are left out where what fails is marked"
+  [=[setup_i.state.marks_failed]=] [=[1'b0]=])
+mutant(214 stages/depth_test.sv "stencil: where it alone changes the fragment's depth is stored"
+  [=[changes[s] && !takes]=] [=[1'b0]=])
+mutant(215 stages/depth_test.sv "stencil: samples that are not covered change"
+  [=[fragment_q.mask[s] && (takes || is_marked)]=] [=[(takes || is_marked)]=])
+mutant(216 stages/cache_tags.sv "stencil: a depth that is overwritten goes unread, and what is above it"
+  [=[fragment_q.state.depth_write || fragment_q.state.tests_stencil]=] [=[fragment_q.state.tests_stencil]=])
+mutant(217 stages/cache_tags.sv "stencil: a clear takes its value of the back"
+  [=[fragment_q.code[SIDES]]=] [=[fragment_q.code[SIDES+1]]=])
+mutant(218 stages/block_cache.sv "stencil: hazard: a stamp of which only that changes is not waited for"
+  [=[item.state.depth_write || item.state.writes_stencil]=] [=[item.state.depth_write]=])
+mutant(219 stages/block_cache.sv "stencil: with a late alpha test, what has failed keeps its value"
+  [=[write_i.passed | write_i.write_depth]=] [=[write_i.passed]=])

@@ -25,7 +25,7 @@ module block_cache (
     // To depth_test, which takes it at once; what is stored under it in the cycle after that
     output logic                                                       tested_valid_o,
     output raster_pkg::fragment_packet_t                               tested_o,
-    output logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth_o,
+    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_o,
 
     // From depth_test: the write of the fragment of the cycle before
     /* verilator lint_off UNUSEDSIGNAL */  // where it goes is known here
@@ -73,7 +73,8 @@ module block_cache (
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int COUNT = $clog2(SAMPLES + 1);
-  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int CODE = raster_pkg::STORED_DEPTH_BITS;  // a depth, the stencil above it where there is one
+  localparam bit HAS_STENCIL = raster_pkg::STENCIL_BITS != 0;
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
   localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
@@ -329,6 +330,7 @@ module block_cache (
   logic              colors_done;  // W takes an item
   logic              finishes;     // an eviction is in memory
   logic              waits_for_late;  // for what W writes of depth (gen_late)
+  logic              writes_word;  // the item may change a depth, or the stencil above it
   logic              tests_alpha, x1_late;  // by the register of the alpha test; the item depth_test has is late
 
   logic               x1_valid_q, x1_starts_color_q, x1_evicts_q;
@@ -382,10 +384,17 @@ module block_cache (
     x1_fills_q        <= fills[1];
     x1_color_q        <= evicts_color;
     answer_q          <= answer;
-    if (item.mask == '0 || (tests_alpha && item.state.depth_write)) x1_writes_q <= '0;
-    else if (on_chip) x1_writes_q <= item.mask & {SAMPLES{item.state.depth_write}};
-    else x1_writes_q <= {SAMPLES{source != raster_pkg::DEPTH_SOURCE_NONE || item.state.depth_write}};
+    if (item.mask == '0 || (tests_alpha && writes_word)) x1_writes_q <= '0;
+    else if (on_chip) x1_writes_q <= item.mask & {SAMPLES{writes_word}};
+    else x1_writes_q <= {SAMPLES{source != raster_pkg::DEPTH_SOURCE_NONE || writes_word}};
   end
+  generate
+    if (HAS_STENCIL) begin : gen_writes_word
+      assign writes_word = item.state.depth_write || item.state.writes_stencil;
+    end else begin : gen_writes_depth
+      assign writes_word = item.state.depth_write;
+    end
+  endgenerate
 
   // The depth RAM: of each sample its code, and whether memory does not have it.
   logic                    v_valid_q, v_last_q, v_fills_q, fills_q;  // a stamp of a victim has been read
@@ -456,7 +465,8 @@ module block_cache (
   // ----------------------------------------------------------------------------------------------------------- W: colours
   localparam int CARRIED = LINE + STAMP + 1 + SAMPLES + 1 + 1 + STAMPS;
   localparam int STATES = 1 + 3 + 32;  // a token: that it is one, which register, its value
-  localparam int LATES = 4 + SAMPLES + 2 * SAMPLES * CODE;  // what W needs to write depths and to count
+  // What W needs to write depths and to count.
+  localparam int LATES = 4 + SAMPLES + (HAS_STENCIL ? SAMPLES : 0) + 2 * SAMPLES * CODE;
   localparam int LATE_AT = CARRIED + (HAS_STATE ? STATES : 0);
   localparam int ALL_CARRIED = LATE_AT + (LATE ? LATES : 0) + (BLENDS ? 2 : 0);
   logic                      w_valid, w_starts_color, w_evicts, w_fills, w_sets_state;
@@ -480,6 +490,14 @@ module block_cache (
     x1_item_q         <= item;
     x1_color_source_q <= color_source;
   end
+  logic [SAMPLES-1:0]        looked_at;  // by the alpha test: what it may keep from being written
+  generate
+    if (HAS_STENCIL) begin : gen_marked
+      assign looked_at = write_i.passed | write_i.write_depth;
+    end else begin : gen_passed
+      assign looked_at = write_i.passed;
+    end
+  endgenerate
   logic                      texture_is_idle;
   assign x1_carried[CARRIED-1:0] = {x1_line_q, x1_stamp_q, x1_starts_color_q, write_i.write_color & {SAMPLES{write_valid_i}},
                                     x1_evicts_q, x1_fills_q, x1_color_q};
@@ -512,7 +530,7 @@ module block_cache (
       .rst_ni,
       .stamp_valid_i  (x1_valid_q),
       .carried_i      (x1_carried),
-      .writes_i       ({SAMPLES{write_valid_i}} & (tests_alpha ? write_i.passed : write_i.write_color)),
+      .writes_i       ({SAMPLES{write_valid_i}} & (tests_alpha ? looked_at : write_i.write_color)),
       .color_i        (write_i.color),
       .fragment_i     (x1_item_q),
       .stamp_valid_o  (w_valid),
@@ -547,11 +565,12 @@ module block_cache (
       logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_q;
       logic [7:0]           reference_q;
       logic                 w_late, w_on_chip, w_counted, w_writes;
-      logic [SAMPLES-1:0]   w_passed, alpha_passes;
+      logic [SAMPLES-1:0]   w_passed, w_changes, alpha_passes;  // passed the tests; the depth or the stencil changes
+      logic                 x1_writes_word;
       logic [SAMPLES*CODE-1:0] w_depth, w_stored;
 
       // X
-      assign is_late      = tests_alpha_q && item.state.depth_write && item.mask != '0;
+      assign is_late      = tests_alpha_q && writes_word && item.mask != '0;
       assign pending_here = pending_q[{item_line[NEAR-1:0], {STAMP{1'b0}}}+:STAMPS];
       assign waits_for_late = (item.mask != '0 && (is_late ? (pending_here & item_bit) != '0 : late_behind_q != '0)) ||
                               (evicts && pending_here != '0);
@@ -573,15 +592,24 @@ module block_cache (
         end
       end
       assign tests_alpha = tests_alpha_q;
-      assign x1_late     = tests_alpha_q && x1_item_q.state.depth_write;
-      assign x1_carried[LATE_AT+:LATES] = {
+      assign x1_late     = tests_alpha_q && x1_writes_word;
+      if (HAS_STENCIL) begin : gen_changes
+        assign x1_carried[LATE_AT+LATES-1-:SAMPLES] = write_i.write_depth;
+        assign w_changes      = w_carried[LATE_AT+LATES-1-:SAMPLES];
+        assign x1_writes_word = x1_item_q.state.depth_write || x1_item_q.state.writes_stencil;
+      end else begin : gen_depths
+        assign w_changes      = w_passed;
+        assign x1_writes_word = x1_item_q.state.depth_write;
+      end
+      localparam int KNOWN = 4 + SAMPLES + 2 * SAMPLES * CODE;
+      assign x1_carried[LATE_AT+:KNOWN] = {
         write_valid_i && x1_late, x1_on_chip,
         write_valid_i && (x1_item_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || x1_item_q.kind[2]),
         x1_item_q.state.depth_write || x1_item_q.state.color_write, write_i.passed, write_i.depth, stored_depth_o
       };
 
       // W
-      assign {w_late, w_on_chip, w_counted, w_writes, w_passed, w_depth, w_stored} = w_carried[LATE_AT+:LATES];
+      assign {w_late, w_on_chip, w_counted, w_writes, w_passed, w_depth, w_stored} = w_carried[LATE_AT+:KNOWN];
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) begin
           func_q      <= raster_pkg::DEPTH_FUNC_ALWAYS;
@@ -601,7 +629,7 @@ module block_cache (
       assign late_valid = leaves;
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
         logic is_kept;
-        assign is_kept        = w_passed[s] && alpha_passes[s];
+        assign is_kept        = w_changes[s] && alpha_passes[s];
         assign late_writes[s] = is_kept || !w_on_chip;
         assign late_word[s*(CODE+1)+:CODE+1] = {is_kept, is_kept ? w_depth[s*CODE+:CODE] : w_stored[s*CODE+:CODE]};
       end

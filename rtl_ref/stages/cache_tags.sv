@@ -57,7 +57,7 @@ module cache_tags #(
     input  logic                        request_ready_i,
     output raster_pkg::memory_request_t request_o,
 
-    output logic [raster_pkg::DEPTH_CODE_BITS-1:0]   clear_depth_o,
+    output logic [raster_pkg::STORED_DEPTH_BITS-1:0] clear_depth_o,
     output logic [raster_pkg::STORED_COLOR_BITS-1:0] clear_color_o,
 
     output logic is_cleared_o,  // a stamp begins with the clear value
@@ -67,7 +67,8 @@ module cache_tags #(
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
-  localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
+  localparam int CODE = raster_pkg::STORED_DEPTH_BITS;  // the stencil above that, where there is one
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
   localparam int LINES = raster_pkg::CACHE_LINES;
@@ -286,11 +287,32 @@ module cache_tags #(
   always_comb begin
     source = raster_pkg::DEPTH_SOURCE_NONE;
     if (is_known) source = raster_pkg::DEPTH_SOURCE_CHIP;
-    else if (fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full ||
+    else if (fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || !is_full || keeps_part ||
              (tests_alpha && fragment_q.state.depth_write))
       source = cleared[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY;
     if (!is_access) source = raster_pkg::DEPTH_SOURCE_NONE;
   end
+  // With a stencil: what is written keeps a part of what was stored, the stencil is looked at; a clear has a value of it.
+  logic           keeps_part;   // so it is asked for
+  logic           writes_word;  // the depth or the stencil may change
+  logic [CODE-1:0] clear_word;
+  generate
+    if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
+      localparam int SIDES = raster_pkg::DEPTH_FUNC_BITS + 16;  // bit of a token that it is about the front
+      logic [7:0] clear_q;
+      always_ff @(posedge clk_i)
+        if (leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST &&
+            fragment_q.code[SIDES])
+          clear_q <= fragment_q.code[raster_pkg::DEPTH_FUNC_BITS+:8];
+      assign keeps_part  = fragment_q.state.depth_write || fragment_q.state.tests_stencil;
+      assign writes_word = fragment_q.state.depth_write || fragment_q.state.writes_stencil;
+      assign clear_word  = {clear_q, fragment_i.code[0+:Z]};
+    end else begin : gen_no_stencil
+      assign keeps_part  = 1'b0;
+      assign writes_word = fragment_q.state.depth_write;
+      assign clear_word  = fragment_i.code[0+:Z];
+    end
+  endgenerate
   assign uses = source != raster_pkg::DEPTH_SOURCE_NONE || fragment_q.state.depth_write;
 
   // What is done with colours: a register that tokens set. Where it reads what is stored, a stamp's colours are asked for once;
@@ -339,7 +361,7 @@ module cache_tags #(
   logic              has_depth_new;
   assign known_new     = known | (uses ? stamp_bit : '0);
   assign colored_new   = colored | (fragment_q.state.color_write ? stamp_bit : '0);
-  assign has_depth_new = (hits && line_has_depth) || fragment_q.state.depth_write;
+  assign has_depth_new = (hits && line_has_depth) || writes_word;
   assign line_writes   = (leaves && (is_access || walks_q)) || state_q == MARK;
   always_comb begin
     line_rest = {
@@ -445,7 +467,7 @@ module cache_tags #(
   logic [COLOR-1:0]        clear_color_q, color;
 
   rop u_rop (
-      .rgba_i (fragment_i.code[CODE+:raster_pkg::VERTEX_COLOR_BITS]),
+      .rgba_i (fragment_i.code[Z+:raster_pkg::VERTEX_COLOR_BITS]),
       .color_o(color)
   );
 
@@ -508,7 +530,7 @@ module cache_tags #(
     else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) bits_q <= bits_q >> 1;
     if (state_q == SEND) stamp_q <= '0;
     else if (request_valid_o && request_ready_i) stamp_q <= ends_block ? '0 : stamp_q + 1'b1;
-    if (state_q == MARK && fragment_i.state.depth_write) clear_depth_q <= fragment_i.code[0+:CODE];
+    if (state_q == MARK && fragment_i.state.depth_write) clear_depth_q <= clear_word;
     if (state_q == MARK && fragment_i.state.color_write) clear_color_q <= color;
   end
 

@@ -347,8 +347,21 @@ module cull (
   assign triangle_o.kind         = kind_q;
   assign triangle_o.primitive_id = id_q;
   assign triangle_o.box          = d_box_q;
-  assign triangle_o.state        = state_q;
   assign triangle_o.area         = A'(is_negative ? -area_q : area_q);
+
+  // With a stencil a triangle says which side it shows.
+  raster_pkg::primitive_state_t state;
+  generate
+    if (raster_pkg::STENCIL_BITS != 0) begin : gen_side
+      always_comb begin
+        state         = state_q;
+        state.is_back = d_is_triangle && state_q.tests_stencil && !is_front;
+      end
+    end else begin : gen_no_side
+      assign state = state_q;
+    end
+  endgenerate
+  assign triangle_o.state = state;
 
   // Of a triangle of negative area vertices 1 and 2 change places: its edges run the other way round, edge i is edge
   // 2 - i, backwards.

@@ -18,7 +18,7 @@ module depth_test (
     input  logic                                                    access_ready_i,
     output raster_pkg::fragment_packet_t                            access_o,
     output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // of sample 0: a clear's colour
-    input  logic [raster_pkg::SAMPLES*raster_pkg::DEPTH_CODE_BITS-1:0] stored_depth_i,
+    input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_i,
 
     // To framebuffer; never waits
     output logic                      write_valid_o,
@@ -38,6 +38,7 @@ module depth_test (
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
+  localparam int WORD = raster_pkg::STORED_DEPTH_BITS;  // a code and above it the stencil, where there is one
   localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample; the lowest is its depth, above that its colours
   localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
   localparam int COLOR = raster_pkg::WRITTEN_COLOR_BITS;
@@ -58,7 +59,11 @@ module depth_test (
   /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
-  logic [SAMPLES-1:0]       passed, kept;  // by the depth test, and of those by the alpha test
+  logic [SAMPLES*WORD-1:0]  word;          // what is written
+  logic [SAMPLES-1:0]       is_nearer, passes_stencil;  // passes the depth test; the stencil test
+  logic [SAMPLES-1:0]       passed, kept;  // by both, and of those by the alpha test
+  logic [SAMPLES-1:0]       opaque;        // by the alpha test, if that is here
+  logic [SAMPLES-1:0]       changes;       // samples whose stored word is another one now, unless the alpha test drops them
   logic                     is_stamp;
 
   assign needs_access = fragment_i.kind[1] || fragment_i.mask != '0;
@@ -125,27 +130,79 @@ module depth_test (
             .alpha_i    (alpha),
             .passes_o   (alpha_passes)
         );
-        assign kept    = passed & alpha_passes;
+        assign opaque  = alpha_passes;
         assign is_late = 1'b0;
       end else begin : gen_late
         /* verilator lint_off UNUSEDSIGNAL */
         logic [7:0] unused;
         assign unused = reference_q;
         /* verilator lint_on UNUSEDSIGNAL */
-        assign kept    = passed;
+        assign opaque  = '1;
         assign is_late = alpha_func_q != raster_pkg::DEPTH_FUNC_ALWAYS;
       end
     end else begin : gen_no_alpha
-      assign kept    = passed;
+      assign opaque  = '1;
       assign is_late = 1'b0;
+    end
+
+    // The stencil, with the side that the triangle shows. Its registers are set by tokens, for one side or for both.
+    if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
+      localparam int TEST = raster_pkg::DEPTH_FUNC_BITS + 16;  // function, reference, read mask, lowest first
+      localparam int UPDATE = 9 + 8;                           // sfail, zfail, zpass, write mask
+      logic [TEST-1:0]      test_q[0:1];
+      logic [UPDATE-1:0]    update_q[0:1];
+      logic [TEST-1:0]      test;
+      logic [UPDATE-1:0]    update;
+      logic                 sets_test, sets_update;
+      logic [8*SAMPLES-1:0] stored, result;
+      logic [SAMPLES-1:0]   side_passes, marks;
+      assign sets_test   = valid_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+                           fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST;
+      assign sets_update = valid_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+                           fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_UPDATE;
+      always_ff @(posedge clk_i) begin
+        for (int i = 0; i < 2; i++) begin
+          if (sets_test && fragment_q.code[TEST+i]) test_q[i] <= fragment_q.code[TEST-1:0];
+          if (sets_update && fragment_q.code[UPDATE+i]) update_q[i] <= fragment_q.code[UPDATE-1:0];
+        end
+      end
+      assign test   = test_q[fragment_q.state.is_back];
+      assign update = update_q[fragment_q.state.is_back];
+      stencil_test u_test (
+          .func_i     (test[2:0]),
+          .reference_i(test[10:3]),
+          .read_i     (test[18:11]),
+          .ops_i      (update[8:0]),
+          .write_i    (update[16:9]),
+          .stored_i   (stored),
+          .is_nearer_i(is_nearer),
+          .passes_o   (side_passes),
+          .marks_o    (marks),
+          .stencil_o  (result)
+      );
+      assign passes_stencil = side_passes | {SAMPLES{!fragment_q.state.tests_stencil}};
+      for (s = 0; s < SAMPLES; s++) begin : gen_word
+        logic takes, is_marked;  // the depth is written; the stencil changes
+        logic [7:0] stencil;
+        assign stored[8*s+:8] = stored_depth_i[s*WORD+CODE+:8];
+        assign takes      = passed[s] && fragment_q.state.depth_write;
+        assign is_marked  = marks[s] && fragment_q.state.tests_stencil;
+        assign changes[s] = fragment_q.mask[s] && (takes || is_marked);
+        assign stencil    = is_marked ? result[8*s+:8] : stored[8*s+:8];
+        assign word[s*WORD+:CODE]     = changes[s] && !takes ? stored_depth_i[s*WORD+:CODE] : depth[s*CODE+:CODE];
+        assign word[s*WORD+CODE+:8] = stencil & {8{changes[s]}};
+      end
+    end else begin : gen_no_stencil
+      assign passes_stencil = '1;
+      assign changes        = passed & {SAMPLES{fragment_q.state.depth_write}};
+      assign word           = depth;
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
       logic is_less, is_equal;
       assign depth[s*CODE+:CODE] = fragment_q.code[s*CODES+:CODE];
-      assign is_less  = depth[s*CODE+:CODE] < stored_depth_i[s*CODE+:CODE];
-      assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*CODE+:CODE];
-      assign passed[s] = fragment_q.mask[s] &&
-                         (is_less ? less_passes : (is_equal ? equal_passes : greater_passes));
+      assign is_less  = depth[s*CODE+:CODE] < stored_depth_i[s*WORD+:CODE];
+      assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*WORD+:CODE];
+      assign is_nearer[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
 
       if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0) begin : gen_rop
         rop u_rop (
@@ -158,14 +215,16 @@ module depth_test (
     end
   endgenerate
 
+  assign passed               = fragment_q.mask & is_nearer & passes_stencil;
+  assign kept                 = passed & opaque;
   assign is_stamp             = valid_q && fragment_q.mask != '0;
   assign write_valid_o        = is_stamp;
   assign write_o.key          = fragment_q.key;
   assign write_o.stamp        = fragment_q.stamp;
   assign write_o.passed       = passed;
-  assign write_o.write_depth  = fragment_q.state.depth_write ? kept : '0;
+  assign write_o.write_depth  = changes & opaque;
   assign write_o.write_color  = fragment_q.state.color_write ? kept : '0;
-  assign write_o.depth        = depth;
+  assign write_o.depth        = word;
   assign write_o.color        = color_q;
 
   // Counters, one cycle late: the sums stay out of the path from the RAM to its write enable.

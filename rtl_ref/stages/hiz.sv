@@ -74,6 +74,12 @@ module hiz (
   generate
     if (HIZ > 0) begin : gen_hiz
       logic can_raise, is_triangle, is_wide, is_high;
+      logic marks_failed;  // what fails shows in the stencil
+      if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
+        assign marks_failed = setup_i.state.marks_failed;
+      end else begin : gen_no_stencil
+        assign marks_failed = 1'b0;
+      end
       assign can_raise   = setup_i.state.depth_test[2];  // the functions that let a farther sample pass
       assign is_triangle = setup_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
       /* verilator lint_off CMPCONST */  // a small target has no such box
@@ -83,7 +89,7 @@ module hiz (
 
       logic         bounds_hold_q;  // no line can have raised a depth since the last fast clear
       logic [N-1:0] quiet_q;        // visits since one that may raise a depth, LAG - 1 at most
-      assign is_eligible_o = bounds_hold_q && is_triangle && (is_wide || is_high) &&
+      assign is_eligible_o = bounds_hold_q && is_triangle && (is_wide || is_high) && !marks_failed &&
                              setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -227,10 +227,20 @@ module memory_port (
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int DEPTH_SHARED = (DEPTH_SHIFT < PORT) ? PORT - DEPTH_SHIFT : 0;  // log2 of the stamps in a beat
   localparam int DEPTH_STAMPS = (STAMPS < (1 << DEPTH_SHARED)) ? STAMPS : 1 << DEPTH_SHARED;  // read with it
-  localparam int PART = (DEPTH_SHIFT > PORT) ? DEPTH_SHIFT - PORT : 1;
-  localparam int PARTS = (PART > DEPTH_SHARED) ? PART : DEPTH_SHARED;
-  localparam int READ_WORD = (DEPTH_SHIFT > PORT) ? 1 << DEPTH_SHIFT : BYTES;
-  localparam int MOST = DEPTH_BEATS * ((HAS_BLOCKS != 0) ? raster_pkg::CACHE_QUEUE : STAMPS);  // that are read at a time
+  // With blending colours are read too. Unless their stamps are as large and fill beats, it must be known whose the next one is.
+  localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
+  localparam bit READS_COLOR = BLENDS && (COLOR_SHIFT != DEPTH_SHIFT || DEPTH_SHIFT < PORT);
+  localparam int COLOR_BEATS = (READS_COLOR && COLOR_SHIFT > PORT) ? 1 << (COLOR_SHIFT - PORT) : 1;
+  localparam int COLOR_SHARED = (READS_COLOR && COLOR_SHIFT < PORT) ? PORT - COLOR_SHIFT : 0;
+  localparam int MOST_BEATS = (COLOR_BEATS > DEPTH_BEATS) ? COLOR_BEATS : DEPTH_BEATS;
+  localparam int PART = (DEPTH_BEATS > 1 || COLOR_BEATS > 1) ? $clog2(MOST_BEATS) : 1;
+  localparam int SHARED = (COLOR_SHARED > DEPTH_SHARED) ? COLOR_SHARED : DEPTH_SHARED;
+  localparam int PARTS = (PART > SHARED) ? PART : SHARED;
+  localparam int READ_WORD = MOST_BEATS * BYTES;
+  // Stamps that are read at a time: with colours those that wait between X and W as well.
+  localparam int PLACES = (raster_pkg::COORDINATES == 0) ? 2 : raster_pkg::TEXTURE_QUEUE / 2;
+  localparam int WAITING = BLENDS ? 1 << $clog2(2 * raster_pkg::CACHE_QUEUE + PLACES) : raster_pkg::CACHE_QUEUE;
+  localparam int MOST = MOST_BEATS * ((HAS_BLOCKS != 0) ? WAITING : STAMPS);
   localparam int READS = $clog2(MOST + 1);
   localparam int TAKEN = (READS < LENGTH) ? READS : LENGTH;
 
@@ -238,10 +248,13 @@ module memory_port (
   logic [PARTS-1:0]       sub;     // number of the next stamp in its beat
   logic [READS-1:0]       reads_q;
   logic [8*READ_WORD-1:0] beats;   // the newest on top
+  logic [SAMPLES*LANE-1:0] depth_data;
   logic                   answers, is_read, responds, is_whole, is_last;
+  logic                   answers_color;  // the next stamp is one of colours
 
   assign is_read           = answer_valid_i && !answer_i.is_write;
-  assign is_whole          = DEPTH_SHARED != 0 || part_q == PARTS'(DEPTH_BEATS - 1);
+  assign is_whole          = (!READS_COLOR && DEPTH_SHARED != 0) ||
+                             part_q == (answers_color ? PARTS'(COLOR_BEATS - 1) : PARTS'(DEPTH_BEATS - 1));
   assign response_valid_o  = is_read && is_whole && !discards;
   assign responds          = response_valid_o && response_ready_i;
   assign answer_ready_o    = answer_i.is_write || discards || !is_whole || (is_last && response_ready_i);
@@ -256,11 +269,32 @@ module memory_port (
       assign beats = answer_i.data;
     end
     if (HAS_BLOCKS == 0) begin : gen_planes
+      assign answers_color = 1'b0;
       assign sub     = part_q;  // whole planes are read
       assign is_last = DEPTH_SHARED == 0 || part_q == PARTS'(DEPTH_STAMPS - 1);
     end else begin : gen_stamps
       assign is_last = 1'b1;  // single stamps are read
-      if (DEPTH_SHARED != 0) begin : gen_subs
+      if (READS_COLOR) begin : gen_both
+        /* verilator lint_off UNUSEDSIGNAL */  // likewise
+        logic read_valid, read_ready;
+        logic [PARTS-1:0] place_in_beat;
+        /* verilator lint_on UNUSEDSIGNAL */
+        assign place_in_beat = PARTS'(place);
+        fifo #(
+            .WIDTH(PARTS + 1),
+            .DEPTH(WAITING)
+        ) u_reads (
+            .clk_i,
+            .rst_ni,
+            .valid_i(takes && !request_i.is_write),
+            .ready_o(read_ready),
+            .data_i ({is_color, place_in_beat}),
+            .valid_o(read_valid),
+            .ready_i(responds),
+            .data_o ({answers_color, sub})
+        );
+      end else if (DEPTH_SHARED != 0) begin : gen_subs
+        assign answers_color = 1'b0;
         /* verilator lint_off UNUSEDSIGNAL */  // there is one for each answer, and room: the framebuffer waits for no more
         logic sub_valid, sub_ready;
         /* verilator lint_on UNUSEDSIGNAL */
@@ -283,20 +317,39 @@ module memory_port (
           assign sub[PARTS-1:DEPTH_SHARED] = '0;
         end
       end else begin : gen_no_subs
+        assign answers_color = 1'b0;
         assign sub = '0;
       end
     end
   endgenerate
   stamp_bytes #(
       .SAMPLE_BYTES(raster_pkg::DEPTH_SAMPLE_BYTES),
-      .WORD        (READ_WORD),
+      .WORD        (DEPTH_SHARED != 0 ? BYTES : READ_WORD),
       .SHARED      (DEPTH_SHARED),
       .PART        (PARTS)
   ) u_depth_stamp (
-      .word_i(beats),
+      .word_i(beats[8*READ_WORD-1-:8*(DEPTH_SHARED!=0?BYTES:READ_WORD)]),
       .sub_i (sub),
-      .data_o(response_o.data)
+      .data_o(depth_data)
   );
+  generate
+    if (READS_COLOR) begin : gen_color_stamp
+      logic [SAMPLES*LANE-1:0] color_data;
+      stamp_bytes #(
+          .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
+          .WORD        (COLOR_SHARED != 0 ? BYTES : READ_WORD),
+          .SHARED      (COLOR_SHARED),
+          .PART        (PARTS)
+      ) u_color_stamp (
+          .word_i(beats[8*READ_WORD-1-:8*(COLOR_SHARED!=0?BYTES:READ_WORD)]),
+          .sub_i (sub),
+          .data_o(color_data)
+      );
+      assign response_o.data = answers_color ? color_data : depth_data;
+    end else begin : gen_depth_alone
+      assign response_o.data = depth_data;
+    end
+  endgenerate
 
   always_ff @(posedge clk_i or negedge power_on_ni) begin
     if (!power_on_ni) begin

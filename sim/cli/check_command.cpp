@@ -18,7 +18,7 @@ struct CheckOptions : CommonOptions {
 
 /// The file to judge: with --vectors what goes in comes from there, and what comes out from FILE.
 vectors::VectorFile checked_file(const CheckOptions& options) {
-  vectors::VectorFile file = vectors::read_vectors(options.file);
+  vectors::VectorFile file = vectors::read_vectors(options.file, options.vectors.empty());
   if (!options.vectors.empty()) {
     vectors::VectorFile given = vectors::read_vectors(options.vectors);
     if (given.stage != file.stage || given.config != file.config)

@@ -99,16 +99,16 @@ Words member_words(const std::string& type) {
 }
 
 Completion completion_of(const OptionText& option, const CLI::Option& source, const std::string& type) {
+  const bool is_list = source.get_delimiter() != '\0';
+  if (const Words words = member_words(type); !words.empty()) return {is_list ? Kind::list : Kind::words, words, {}};
   static const std::map<std::string, Completion> known = known_completions();
   const auto found = known.find(option.names.empty() ? source.get_name(true) : option.names.back());
-  const bool is_list = source.get_delimiter() != '\0';
   if (found != known.end()) {
     Completion completion = found->second;
     if (completion.kind == Kind::scene && is_list) completion.kind = Kind::scenes;
     return completion;
   }
   if (option.value.empty()) return {};
-  if (const Words words = member_words(type); !words.empty()) return {is_list ? Kind::list : Kind::words, words, {}};
   const std::string kind = type.substr(0, type.find(':'));
   if (kind == "FILE") return {Kind::file, {}, {}};
   if (kind == "DIR" || kind == "FOLDER") return {Kind::folder, {}, {}};

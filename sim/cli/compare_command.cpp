@@ -102,6 +102,7 @@ Json comparison_json(const Comparison& c) {
               {"depth_bias", figure_of(c.datapath_bias, c.datapath_bias.mean)},
               {"color_lsb", moments_json(c.color_datapath)},
               {"color_over_w_lsb", part_json(c.color_over_w)},
+              {"fog_lsb", part_json(c.fog)},
               {"color_bias", figure_of(c.color_datapath_bias, c.color_datapath_bias.mean)},
               {"stage_mismatches", c.stage_mismatches}}},
             {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)},
@@ -158,6 +159,7 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
   lines.insert(lines.end(), {row("colour, all channels", c.color_lsb), row("colour datapath", c.color_datapath),
                              row("affine - perspective", c.affine)});
   if (c.color_over_w.count > 0) lines.push_back(row("colour over w", c.color_over_w));
+  if (c.fog.count > 0) lines.push_back(row("colour in fog", c.fog));
   if (c.texture) {
     const TextureErrors& t = *c.texture;
     lines.insert(lines.end(), {row("texel, model - exact", t.total), row("  coordinate", t.part_coordinate),
@@ -330,8 +332,8 @@ int run(const CompareCommand& options) {
   print_lines(out, lines);
   if (against)
     print_against(out, options.against_path, *foreign, *against,
-                  program_word() + " explain" + config_arguments(config) +
-                      (options.size.empty() ? "" : " --size " + quoted(options.size)) + " " + quoted(options.scene));
+                  program_word() + " explain" + scene_arguments(options, config) + " --seed " +
+                      std::to_string(options.seed) + " " + quoted(options.scene));
   return broken.empty() && (!against || against->different == 0) ? exit_ok : exit_mismatch;
 }
 

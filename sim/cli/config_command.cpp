@@ -12,6 +12,7 @@
 #include "sim/cli/options.hpp"
 #include "sim/config_file.hpp"
 #include "sim/show/image/whole_file.hpp"
+#include "sim/vectors/dpi_package.hpp"
 
 namespace halfplane {
 namespace {
@@ -95,7 +96,7 @@ Json widths_json(const std::vector<const Width*>& widths) {
 }
 
 struct ConfigOptions : CommonOptions {
-  bool list = false, widths = false, stages = false, sv = false, taps = false, toml = false;
+  bool list = false, widths = false, stages = false, sv = false, taps = false, dpi = false, toml = false;
   std::string path;
 };
 
@@ -117,6 +118,10 @@ int run(const ConfigOptions& options) {
   }
   if (options.sv) {
     std::cout << raster_pkg(config);
+    return exit_ok;
+  }
+  if (options.dpi) {
+    std::cout << vectors::dpi_package(config);
     return exit_ok;
   }
   if (options.taps) {
@@ -176,10 +181,15 @@ void add_config_command(CLI::App& app, Action& selected) {
   command->add_flag("--taps", options->taps, "prints cosim/taps.svh, the taps of the co-simulation")
       ->excludes("--json")
       ->excludes("--sv");
-  command->add_flag("--toml", options->toml, "prints this configuration as --config reads it")
+  command->add_flag("--dpi", options->dpi, "prints halfplane_dpi.sv, the stages as functions of SystemVerilog")
       ->excludes("--json")
       ->excludes("--sv")
       ->excludes("--taps");
+  command->add_flag("--toml", options->toml, "prints this configuration as --config reads it")
+      ->excludes("--json")
+      ->excludes("--sv")
+      ->excludes("--taps")
+      ->excludes("--dpi");
   add_file_option(*command, "-o", options->path, "writes this configuration as --config reads it, .toml");
   command->footer(
       "\nExample:\n  halfplane config --set depth.bits=20 -o mine.toml\n  halfplane config --list\n  halfplane config "

@@ -103,11 +103,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
     command += " " + quoted(capture) + config_arguments(mapped);
   } else {
     command += options.random != 0 ? " --random " + std::to_string(options.random) : " " + quoted(options.scene);
-    command += config_arguments(config);
-    if (!options.size.empty()) command += " --size " + quoted(options.size);
-    if (!options.camera.empty()) command += " --camera " + quoted(options.camera);
-    if (options.convention != "gl") command += " --convention " + quoted(options.convention);
-    if (options.cull_objects != "box") command += " --cull-objects " + quoted(options.cull_objects);
+    command += scene_arguments(options, config);
   }
   command += " --seed " + std::to_string(lockstep.seed);
   if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);

@@ -306,11 +306,13 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
   for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
     result["traffic_bytes"][std::string(kMoveCauses[cause])] = {{"depth", bytes.bytes[cause][0]},
                                                                 {"color", bytes.bytes[cause][1]}};
-  if (has_texture_planes(hardware.config))
-    result["texture"] = {{"samples", run.totals.texture_samples},
-                         {"hits", run.totals.texture_hits},
-                         {"misses", run.totals.texture_misses},
-                         {"bytes", bytes.texels}};
+  if (has_texture_planes(hardware.config)) {
+    result["traffic_bytes"]["fill"]["texture"] = bytes.texels;
+    const auto requests = run.totals.texture_samples, fills = run.totals.texture_misses;
+    result["texture"] = {{"requests", requests}, {"hits", run.totals.texture_hits},
+                         {"fills", fills},       {"samples", requests},
+                         {"misses", fills},      {"bytes", bytes.texels}};
+  }
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
     Json reliefs = Json::array(), saved = Json::object();

@@ -91,20 +91,21 @@ void check_picture(const ExplainOptions& options) {
 /// The command as it can be repeated.
 std::string explain_repeat(const ExplainOptions& options, const Config& config) {
   std::string command = program_word() + " explain " + quoted(options.scene) + " " + std::to_string(options.x) + " " +
-                        std::to_string(options.y) + config_arguments(config);
-  if (options.box != "1x1") command += " --box " + quoted(options.box);
-  if (!options.size.empty()) command += " --size " + quoted(options.size);
-  if (!options.camera.empty()) command += " --camera " + quoted(options.camera);
+                        std::to_string(options.y) + scene_arguments(options, config) + " --seed " +
+                        std::to_string(options.seed);
+  const ExplainOptions defaults;
+  if (options.box != defaults.box) command += " --box " + quoted(options.box);
+  if (options.near != defaults.near) command += " --near " + Json(options.near).dump();
   if (options.rtl) command += " --rtl";
+  if (options.steps) command += " --steps";
+  if (options.mutant != defaults.mutant) command += " --mutant " + std::to_string(options.mutant);
+  if (options.margin != defaults.margin) command += " --margin " + std::to_string(options.margin);
   return command + " -o " + quoted(options.output);
 }
 
-/// Explains what lies around the box as well, and draws it.
-void write_picture(const ExplainOptions& options, const Rect& box, const Scene& scene, const Config& config,
-                   const explain::Options& how) {
-  const explain::Window window = explain::window_around(box, options.margin, scene);
-  const explain::Explanation around =
-      explain::explain(scene, config, box_pixels(window.left, window.top, window.width, window.height), how);
+/// Draws the box and what lies around it.
+void write_picture(const ExplainOptions& options, const Rect& box, const explain::Window& window,
+                   const explain::Explanation& around, const Scene& scene, const Config& config) {
   if (!is_page(options.output)) {
     const std::string title =
         options.scene + ", " + label(config) + ", pixel " + std::to_string(box.x) + " " + std::to_string(box.y);
@@ -143,10 +144,14 @@ int run(const ExplainOptions& options) {
   how.rtl = dut.get();
   how.mutant = static_cast<std::uint16_t>(options.mutant);
   how.progress = [&progress](double fraction) { progress(fraction); };
-  const explain::Explanation told =
-      explain::explain(scene, config, box_pixels(options.x, options.y, box.width, box.height), how);
-  if (!options.output.empty())
-    write_picture(options, {options.x, options.y, box.width, box.height}, scene, config, how);
+  const Rect told_box{options.x, options.y, box.width, box.height};
+  explain::require_inside(scene, box_pixels(options.x, options.y, box.width, box.height));
+  const bool draws = !options.output.empty();  // what lies around it as well, in one run
+  const explain::Window window = explain::window_around(told_box, draws ? options.margin : 0, scene);
+  explain::Explanation told =
+      explain::explain(scene, config, box_pixels(window.left, window.top, window.width, window.height), how);
+  if (draws) write_picture(options, told_box, window, told, scene, config);
+  std::erase_if(told.pixels, [&](const explain::PixelHistory& p) { return !explain::is_in(told_box, p.at); });
   Json result = explain_json(options, config, scene, told);
   result["wall_s"] = seconds_since(start);
   write_json(options, result);

@@ -81,6 +81,7 @@ Json texel_color(const Texel& texel) { return Json{texel[0], texel[1], texel[2],
 Json surface_json(const SurfaceFigure& figure) {
   const SurfaceSample& s = figure.sample;
   Json json{{"primitive_color", texel_color(s.primitive)}, {"color", texel_color(s.color)}};
+  if (s.fog_q != 0) json["fog"] = {{"q", s.fog_q}, {"factor", std::ldexp(s.fog, -kFogFactorBits)}};
   if (figure.texture.empty()) return json;
   json["texture"] = figure.texture;
   json["coordinate"] = {s.coordinate[0], s.coordinate[1]};
@@ -312,8 +313,12 @@ double to_real(const exact::Rational& value) {
 }
 
 std::string_view golden_verdict(const GoldenFigure& golden) {
-  if (golden.fragment) return golden.fragment->written ? "written" : golden.fragment->passed ? "masked" : "depth";
-  return golden.outline ? "uncovered" : "dropped";
+  if (!golden.fragment) return golden.outline ? "uncovered" : "dropped";
+  const golden::Fate& fate = golden.fragment->fate;
+  if (fate.written) return "written";
+  if (fate.killed) return "alpha";
+  if (fate.passed) return "masked";
+  return fate.stencil_failed ? "stencil" : "depth";
 }
 
 std::string_view state_word(std::string_view state, const State& of) {

@@ -89,8 +89,11 @@ std::string texel_text(const Texel& c) {
 
 void print_surface(std::ostream& out, const SurfaceFigure& figure) {
   const SurfaceSample& s = figure.sample;
+  if (s.fog_q != 0)
+    out << label_text("fog") << "Q " << s.fog_q << ", " << fixed(std::ldexp(s.fog, -kFogFactorBits), 4)
+        << " of the colour is left\n";
   if (figure.texture.empty()) {
-    out << label_text("over w") << texel_text(s.primitive) << '\n';
+    out << label_text("own colour") << texel_text(s.primitive) << '\n';
     return;
   }
   out << label_text("texture") << figure.texture << " at " << fixed(s.coordinate[0], 4) << ' '

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "sim/config_file.hpp"
+#include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/load.hpp"
@@ -181,18 +182,6 @@ Scene load_scene(const CommonOptions& options, const Config& config, double& loa
   return scene;
 }
 
-Json config_json(const Config& config) {
-  Json json{{"preset", config.preset}};
-  for (const Setting& setting : settings()) {
-    const std::string value = get(config, setting);
-    if (std::holds_alternative<int Config::*>(setting.member))
-      json[std::string(setting.key)] = std::stoi(value);
-    else
-      json[std::string(setting.key)] = value;
-  }
-  return json;
-}
-
 Json result_head(const std::string& command, const CommonOptions& options, const Config& config) {
   const bool has_scene = !options.scene.empty();
   return Json{{"schema", "halfplane." + command + "/1"},
@@ -273,6 +262,15 @@ std::string config_arguments(const Config& config) {
   for (const Setting& setting : settings())
     if (const std::string value = get(config, setting); value != get(base, setting))
       text += " --set " + quoted(std::string(setting.key) + "=" + value);
+  return text;
+}
+
+std::string scene_arguments(const CommonOptions& options, const Config& config) {
+  std::string text = config_arguments(config);
+  if (!options.size.empty()) text += " --size " + quoted(options.size);
+  if (!options.camera.empty()) text += " --camera " + quoted(options.camera);
+  if (options.convention != "gl") text += " --convention " + quoted(options.convention);
+  if (options.cull_objects != "box") text += " --cull-objects " + quoted(options.cull_objects);
   return text;
 }
 

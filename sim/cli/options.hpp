@@ -78,9 +78,6 @@ struct Size {
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s,
                                ObjectCounts* objects = nullptr);
 
-/// Every effective value, keyed as in --set.
-[[nodiscard]] Json config_json(const Config& config);
-
 /// {schema, config, scene, seed}: the head of every result; the last two are null for a command without a scene.
 /// `command` as in "render".
 [[nodiscard]] Json result_head(const std::string& command, const CommonOptions& options, const Config& config);
@@ -121,6 +118,9 @@ void set_program_word(const char* name);
 
 /// " --config PRESET --set KEY=VALUE ..." for exactly this configuration, as a shell takes it.
 [[nodiscard]] std::string config_arguments(const Config& config);
+
+/// That, and --size, --camera and what else made the scene of its source; not the scene's name, nor the seed.
+[[nodiscard]] std::string scene_arguments(const CommonOptions& options, const Config& config);
 
 /// "%.*f" as a string.
 [[nodiscard]] std::string fixed(double value, int decimals);

@@ -7,6 +7,7 @@
 #include "model/capture/capture.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/config_json.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/stress/run.hpp"

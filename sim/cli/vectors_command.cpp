@@ -100,7 +100,7 @@ void add_vectors_command(CLI::App& app, Action& selected) {
       ->check(refuse_empty)
       ->type_name("NAME");
   command->add_option("--format", options->format, "how they are written")
-      ->check(CLI::IsMember({"jsonl", "csv", "hex"}))
+      ->check(CLI::IsMember(std::vector<std::string>(vectors::kFormats.begin(), vectors::kFormats.end())))
       ->capture_default_str();
   add_file_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout");
   command->get_option("-o")->required();

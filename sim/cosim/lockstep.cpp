@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "model/stages/depth_test.hpp"
 #include "model/stages/rop.hpp"
 #include "sim/scene/random.hpp"
 
@@ -265,13 +266,14 @@ void Lockstep::offer_primitive(HostStream& host) {
     fail_protocol("host", fault);
     return;
   }
-  is_first_ = false;
+  is_first_ = is_first_ && next->packet.kind == PrimitiveKind::state;
   pack_words(next->packet, widths_, primitive_.data());
   dut_.set_primitive(primitive_.data());
   has_primitive_ = true;
   if (next->packet.kind == PrimitiveKind::fast_clear) {  // what the host knows about blocks whose flags are set
     const PerPlane<std::uint32_t>& code = next->packet.vertex.code[0];
-    if (next->packet.state.depth_write) memory_.tiles().set_clear_value(TilePlane::depth, code[kDepthPlane]);
+    if (next->packet.state.depth_write)
+      memory_.tiles().set_clear_value(TilePlane::depth, depth_word(code[kDepthPlane], clear_stencil(*next), widths_));
     if (next->packet.state.color_write) memory_.tiles().set_clear_value(TilePlane::color, stored_color(code, config_));
   }
   if (next->line) pack_words(*next->line, widths_, lines_.push(0));

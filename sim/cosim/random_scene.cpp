@@ -54,6 +54,7 @@ class Generator {
     }
     set_newer();
     set_units();
+    if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
     return std::move(scene_);
   }
@@ -81,6 +82,7 @@ class Generator {
   void set_any(State& s, std::string_view name);
   void set_newer();
   void set_units();
+  void set_stencils();
   void set_textures();
   void clear();
   void line_and_point_state(State& s);
@@ -160,6 +162,40 @@ void Generator::set_units() {
     if (random.next() % 4 == 0) has_units = !has_units;
     if (has_units) state = random_state(state, rows, chooser(random));
   }
+}
+
+/// Stencil tests in runs of draws, with few values so that they meet, and clears of the stencil, alone and with others. By random
+/// numbers of their own, as above.
+void Generator::set_stencils() {
+  Random random(seed_ ^ 0x57e4c11u);
+  const auto below = [&random](std::uint64_t n) { return random.next() % n; };
+  const auto value = [&] { return static_cast<std::uint8_t>(below(4) == 0 ? below(256) : below(3)); };
+  const auto side = [&] {
+    Stencil s;
+    s.func = below(2) == 0 ? DepthFunc::always : static_cast<DepthFunc>(below(8));
+    s.reference = value();
+    if (below(3) == 0) s.read_mask = static_cast<std::uint8_t>(below(256));
+    if (below(3) == 0) s.write_mask = below(4) == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(below(256));
+    const auto op = [&] { return below(3) == 0 ? StencilOp::keep : static_cast<StencilOp>(below(8)); };
+    const bool marks_failed = below(2) == 0;
+    s.passes = op();
+    if (marks_failed) s.stencil_fails = op();
+    if (marks_failed) s.depth_fails = op();
+    return s;
+  };
+  bool has_stencil = false;
+  for (State& state : scene_.states) {
+    if (below(4) == 0) has_stencil = !has_stencil;
+    if (!has_stencil) continue;
+    state.stencil = side();
+    if (below(3) == 0) state.stencil_back = side();
+  }
+  for (Command& command : scene_.commands)
+    if (auto* clear = std::get_if<Clear>(&command)) {
+      if (below(2) == 0) clear->stencil = value();
+      if (clear->stencil && below(4) == 0) clear->depth.reset();
+      if (clear->stencil && below(4) == 0) clear->color.reset();
+    }
 }
 
 /// A few small textures, with levels where the unit has them, and triangles that show them: w ratios up to 2^10, coordinates

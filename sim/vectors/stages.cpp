@@ -132,7 +132,12 @@ void set_colors(const FragmentPacket& fragment, ColorState& colors, const Widths
   if (!is_of_texture(which)) colors.set(which, state_word(fragment, widths));
 }
 
-/// The depths under all stamps, as the fragments themselves leave them.
+/// Likewise the stencil test.
+void set_stencil(const FragmentPacket& fragment, StencilState& stencil, const Widths& widths) {
+  if (fragment.kind == PrimitiveKind::state) stencil.set(state_register(fragment.state), state_word(fragment, widths));
+}
+
+/// The depths under all stamps, with the stencil above them, as the fragments themselves leave them.
 class DepthPlane {
  public:
   explicit DepthPlane(const Widths& widths)
@@ -159,18 +164,23 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
   DepthPlane depths(widths);
   TileVisit visit;
   ColorState colors;
+  StencilState stencil;
   while (const auto fragment = run.take<FragmentPacket>(0)) {
     const bool is_clear = fragment->kind == PrimitiveKind::fast_clear;
-    if (is_clear && fragment->state.depth_write) depths.fill(fragment->code[0][kDepthPlane]);
+    if (is_clear && fragment->state.depth_write)
+      depths.fill(depth_word(fragment->code[0][kDepthPlane], stencil.clear_value(), widths));
+    set_stencil(*fragment, stencil, widths);
     set_colors(*fragment, colors, widths);
     if (is_token(fragment->kind) && fragment->kind != PrimitiveKind::line) continue;
     if (fragment->mask.any()) {
       const auto stored = depths.under(fragment->key, fragment->stamp);
-      WritePacket tested = depth_test(*fragment, stored, widths);
+      WritePacket tested = depth_test(*fragment, stored, stencil, widths);
       SampleMask kept = tested.passed;
       if (!has_texture_planes(config)) {
-        kept = alpha_passes(colors.alpha, kept, [&](std::size_t s) { return color_channels(fragment->code[s])[3]; });
-        keep(kept, tested);
+        const SampleMask opaque = alpha_passes(colors.alpha, fragment->mask,
+                                               [&](std::size_t s) { return color_channels(fragment->code[s])[3]; });
+        keep(opaque, tested);
+        kept = kept & opaque;
       }
       run.send(0, tested);
       const bool may_fail = is_late(fragment->state, colors.alpha, config);
@@ -196,7 +206,7 @@ void run_rop(StageIo& io, const Config& config, const Widths& widths) {
 
 /// Samples that a texture unit colours: what is written, or what an alpha test behind it looks at.
 SampleMask shaded_samples(const WritePacket& write, const ColorState& colors) {
-  return colors.alpha.func != DepthFunc::always ? write.passed : write.write_color;
+  return colors.alpha.func != DepthFunc::always ? write.passed | write.write_depth : write.write_color;
 }
 
 /// The memory behind a cache, as packets.
@@ -224,14 +234,17 @@ void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
   if (config.cache_kind == CacheKind::blocks) either.emplace<BlockCache>(config, widths);
   const bool has_texture = has_texture_planes(config);
   ColorState colors;
+  StencilState stencil;
   std::visit(
       [&](auto& cache) {
         constexpr bool has_colors = std::is_same_v<std::remove_cvref_t<decltype(cache)>, BlockCache>;
         while (const auto fragment = run.take<FragmentPacket>(0)) {
           set_colors(*fragment, colors, widths);
+          set_stencil(*fragment, stencil, widths);
           if constexpr (has_colors) cache.set(colors);
           if (fragment->kind == PrimitiveKind::fast_clear)
-            cache.fast_clear(*fragment, stored_color(fragment->code[0], config), memory, counters);
+            cache.fast_clear(*fragment, depth_word(fragment->code[0][kDepthPlane], stencil.clear_value(), widths),
+                             stored_color(fragment->code[0], config), memory, counters);
           if (fragment->kind == PrimitiveKind::flush) cache.flush(*fragment, memory, counters);
           if (!is_tested(*fragment)) continue;
           (void)cache.access(*fragment, memory, counters);
@@ -245,7 +258,8 @@ void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
                   "an alpha test behind a texture, but no packet of this configuration tells alpha; judge the "
                   "whole by cosim, or use blend.lanes");
             if (shaded.any()) write.color = run.need<ColorPacket>(3, "color packet for a write").color;
-            keep(alpha_passes(colors.alpha, shaded, [&](std::size_t s) { return write.color[s] >> 24; }), write);
+            if (colors.alpha.func != DepthFunc::always)
+              keep(alpha_passes(colors.alpha, shaded, [&](std::size_t s) { return write.color[s] >> 24; }), write);
           }
           if constexpr (has_colors)
             if (packs_at_write(config))
@@ -385,7 +399,7 @@ void require_stage(const JudgedStage& stage, const Config& config) {
   const bool is_of_texture = stage.stage == Stage::texture_unit || stage.stage == Stage::texture_memory;
   if (is_of_texture && !has_texture_planes(config))
     throw InputError("--stage " + std::string(info(stage.stage).name) +
-                     ": this hardware has no texture unit; use --set texture.unit=nearest or bilinear");
+                     ": this hardware has no texture unit; use --set texture.unit=nearest, bilinear or trilinear");
   const bool is_of_lines = stage.stage == Stage::line_setup || stage.stage == Stage::line_raster;
   if (is_of_lines && config.line_units == 0)
     throw InputError("--stage " + std::string(info(stage.stage).name) +

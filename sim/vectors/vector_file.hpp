@@ -35,7 +35,8 @@ struct VectorFile {
   StagePackets packets;
 };
 
-/// A file of any of the formats, told apart by what it is: a folder is hex, a first line that begins with '{' jsonl. Throws InputError with file and line.
-[[nodiscard]] VectorFile read_vectors(const std::string& path);
+/// A file of any of the formats, told apart by what it is: a folder is hex, a first line that begins with '{' jsonl.
+/// `needs_in`: a folder without the files of what goes in is refused. Throws InputError with file and line.
+[[nodiscard]] VectorFile read_vectors(const std::string& path, bool needs_in = true);
 
 }  // namespace halfplane::vectors

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "sim/config_json.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "vector_file.hpp"
 
@@ -14,18 +15,6 @@ constexpr std::string_view kSchema = "halfplane.vectors/1";
 /// As many digits as the bits need.
 void append_hex(std::string& text, std::uint64_t value, int bits) {
   for (int digit = (bits + 3) / 4 - 1; digit >= 0; --digit) text += "0123456789abcdef"[value >> 4 * digit & 15];
-}
-
-Json header_config(const Config& config) {
-  Json json{{"preset", config.preset}};
-  for (const Setting& setting : settings()) {
-    const std::string value = get(config, setting);
-    if (std::holds_alternative<int Config::*>(setting.member))
-      json[std::string(setting.key)] = std::stoi(value);
-    else
-      json[std::string(setting.key)] = value;
-  }
-  return json;
 }
 
 Json ports_json(const std::vector<Port>& ports, const Widths& widths) {
@@ -43,7 +32,7 @@ Json header_json(const JudgedStage& stage, const Config& config, const Widths& w
   return {{"schema", kSchema},
           {"stage", info(stage.stage).name},
           {"source", source},
-          {"config", header_config(config)},
+          {"config", config_json(config)},
           {"in", ports_json(stage.in, widths)},
           {"out", ports_json(stage.out, widths)}};
 }
@@ -62,7 +51,7 @@ std::string jsonl_text(const JudgedStage& stage, const Config& config, const Sta
                        const std::string& source) {
   const Widths widths = derive_widths(config);
   const PortFields fields(stage, widths);
-  std::string text = header_json(stage, config, widths, source).dump() + "\n";
+  std::string text = header_json(stage, config, widths, source).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   replay_stage(stage, config, packets,
                [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
                  const Port& port = (is_out ? stage.out : stage.in)[p];
@@ -151,7 +140,7 @@ std::vector<WrittenFile> write_vectors(const std::string& path, Format format, c
   };
   add(stage.in, packets.in);
   add(stage.out, packets.out);
-  written.push_back(write_text(in_folder("header.json"), header_json(stage, config, widths, source).dump(1) + "\n"));
+  written.push_back(write_text(in_folder("header.json"), header_json(stage, config, widths, source).dump(1, ' ', false, Json::error_handler_t::replace) + "\n"));
   return written;
 }
 

@@ -59,6 +59,27 @@ TEST_F(ExplainCommand, TellsOfEveryPixelWhatRenderDraws) {
   EXPECT_GT(fragments, 50u);
 }
 
+TEST_F(ExplainCommand, GoldenAndModelNameTheTestThatFailed) {
+  write("t.hpt",
+        "halfplane 1\ntarget 8 8\nspace window\nclear color 0 0 0 255 depth 1 stencil 3\n"
+        "v 0 0 0.5 1 255 255 255 100\nv 8 0 0.5 1 255 255 255 100\nv 0 8 0.5 1 255 255 255 100\n"
+        "state stencil equal 4 255 255 keep keep keep\nt 0 1 2\n"
+        "state stencil off\nstate alpha_test gequal 128\nt 0 1 2\n"
+        "state alpha_test always 0\nstate depth_test greater\nt 0 1 2\n");
+  const Json told = pixel("t.hpt", 1, 1);
+  const Json& history = told["pixels"][0]["history"];
+  const std::array expected{"stencil", "alpha", "depth"};
+  std::size_t seen = 0;
+  for (const Json& entry : history) {
+    if (entry["kind"] == "clear") continue;
+    ASSERT_LT(seen, expected.size());
+    EXPECT_EQ(entry["model"]["verdict"], expected[seen]);
+    EXPECT_EQ(entry["golden"]["verdict"], expected[seen]);
+    ++seen;
+  }
+  EXPECT_EQ(seen, expected.size());
+}
+
 TEST_F(ExplainCommand, ATieIsTheTopOrLeftEdges) {
   // Two triangles share the edge from (0, 8) to (8, 0): it runs through the centre of pixel 3 4.
   write("t.hpt",

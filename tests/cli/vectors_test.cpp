@@ -1,4 +1,5 @@
 // `halfplane vectors` and `halfplane check`: another implementation's stage, judged.
+#include <filesystem>
 #include <fstream>
 
 #include "program.hpp"
@@ -75,6 +76,24 @@ TEST_F(VectorsCommand, HexIsWhatReadmemhReads) {
   EXPECT_EQ(run({"check", "--stage", "cull", "v"}).status, 0);
 }
 
+TEST_F(VectorsCommand, HexOfWhatCameOutIsJudgedBesideTheVectors) {
+  ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "cull", "--format", "hex", "-o", "v"}).status, 0);
+  ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "cull", "-o", "v.jsonl"}).status, 0);
+  ASSERT_TRUE(std::filesystem::remove(folder_ / "v" / "primitive.hex"));
+  expect_refused({"check", "--stage", "cull", "v"}, "primitive.hex");
+  EXPECT_EQ(run({"check", "--stage", "cull", "v", "--vectors", "v.jsonl"}).status, 0);
+}
+
+TEST_F(VectorsCommand, APlaceOutsideTheTargetIsAMismatchOfWhatCameOut) {
+  ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "cull", "-o", "v.jsonl"}).status, 0);
+  std::string all = text("v.jsonl");
+  const std::string right = "\"right\":\"0x00";
+  const std::size_t at = all.find(right, all.find("\"dir\":\"out\""));
+  ASSERT_NE(at, std::string::npos);
+  write("out.jsonl", all.replace(at, right.size(), "\"right\":\"0x7f"));
+  EXPECT_EQ(run({"check", "--stage", "cull", "out.jsonl"}).status, 1);
+}
+
 TEST_F(VectorsCommand, NothingComparedIsNoSuccess) {
   ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "line_raster", "-o", "v.jsonl"}).status, 0);
   const Outcome outcome = run({"check", "--stage", "line_raster", "v.jsonl"});
@@ -107,6 +126,12 @@ TEST_F(VectorsCommand, BadInputIsRefusedWithFileAndLine) {
   expect_refused({"check", "--stage", "cull", "i.jsonl"}, "i.jsonl:2: 'right' is 20");
   write("g.jsonl", "{\"schema\":1}\n");
   expect_refused({"check", "--stage", "cull", "g.jsonl"}, "g.jsonl:1:");
+  ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "cull", "--format", "csv", "-o", "v.csv"}).status,
+            0);
+  const auto rows = lines_of(text("v.csv"));
+  ASSERT_EQ(rows[1].substr(0, 7), "config,");
+  write("j.csv", rows[0] + "\n" + rows[1] + "\n" + rows[1] + "\n");
+  expect_refused({"check", "--stage", "cull", "j.csv"}, "j.csv:3: a second line begins with config");
   write("h.csv", "a,b\n");
   expect_refused({"check", "--stage", "cull", "h.csv"}, "h.csv:1: these are no vectors");
   ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "viewport", "-o", "w.jsonl"}).status, 0);

@@ -2,7 +2,8 @@
 # The steps of a stranger who uses the library; the first that fails stops the script, and so the test.
 
 file(REMOVE_RECURSE "${WORK}")
-set(common -G "${GENERATOR}" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${COMPILER}"
+# Unoptimised: what is looked at is whether it is found, links and runs.
+set(common -G "${GENERATOR}" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 "-DCMAKE_CXX_COMPILER=${COMPILER}"
   "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
 
 macro(step)
@@ -17,3 +18,4 @@ step("${CMAKE_COMMAND}" -S "${SOURCE}/tests/consumer" -B "${WORK}/consumer" ${co
   "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
 step("${CMAKE_COMMAND}" --build "${WORK}/consumer")
 step("${WORK}/consumer/consumer")
+step("${WORK}/consumer/c_consumer")

@@ -31,6 +31,7 @@ Config random_config(Random& random) {
         if (setting.key.ends_with(".size") || setting.key.ends_with(".slots") || setting.key.ends_with(".lag") ||
             setting.key.starts_with("cache.") || setting.key.starts_with("texture."))
           value = 1 << below(7);
+        if (setting.key == "stencil.bits") value = 8 * static_cast<int>(below(2));
         config.** number = value;
       } else {  // "rgb565|rgba8888": one of them
         std::string_view words = setting.unit;

@@ -7,6 +7,10 @@ foreach(file IN ITEMS
     share/bash-completion/completions/halfplane
     share/zsh/site-functions/_halfplane
     share/fish/vendor_completions.d/halfplane.fish
+    share/halfplane/rtl_ref/raster_top.sv
+    share/halfplane/rtl_ref/raster_pkg.sv
+    share/halfplane/rtl_ref/stages/cull.sv
+    share/halfplane/rtl_ref/presets/tiny/raster_pkg.sv
     share/man/man1/halfplane.1
     share/man/man1/halfplane-render.1)
   if(NOT EXISTS "${WORK}/${file}")

@@ -171,6 +171,24 @@ TEST(CycleModel, RulesThatAreSwitchedOffChangeCyclesAndNoBits) {
   }
 }
 
+// A clear that is drawn is stored as it is, whatever the draw before it does with colours.
+TEST(CycleModel, ADrawnClearIsNotBlended) {
+  State state = SceneBuilder::window_state();
+  state.alpha_test = {DepthFunc::less, 1};
+  state.blend = {BlendFactor::zero, BlendFactor::one, BlendFactor::zero, BlendFactor::one};
+  state.color_mask = {true, false, false, true};
+  SceneBuilder builder(32, 32, state);
+  builder.triangle(at(2, 2), at(30, 2), at(2, 30));
+  builder.scene.commands.push_back(Clear{0, std::array<double, 4>{10, 20, 30, 255}, 0.25});
+  const Config config = with("embedded", {{"blend.lanes", "4"}, {"alpha.unit", "1"}, {"color.format", "rgba8888"}});
+  CycleOptions drawn;
+  drawn.parameters.fast_clear = 0;
+  const CycleRendering fast = render(builder.scene, config), slow = render(builder.scene, config, drawn);
+  EXPECT_NE(slow.run.cycles, fast.run.cycles);
+  EXPECT_EQ(slow.rendering.frame.color, fast.rendering.frame.color);
+  EXPECT_EQ(slow.rendering.frame.depth, fast.rendering.frame.depth);
+}
+
 /// A scene at 640x480, `embedded`, an ideal memory of 64 bits, latency 8: a frame from the first clear to the last write of
 /// the flush. Bounds: thousand cycles, and KB of traffic.
 struct WholeFrame {
@@ -203,10 +221,9 @@ TEST(WholeFrames, InBinsTakeNoMoreCyclesAndBytesThanTheirBounds) {
 TEST(WholeFrames, TakeNoMoreCyclesThanTheirBoundsOnANarrowPort) {
   const MemorySettings slow{MemoryKind::fixed, 12, 50};
   const Config config = with("embedded", {{"frame.clears", "flags"}, {"memory.port_bits", "16"}});
-  const Config bins = with("embedded", {{"frame.clears", "flags"},
-                                        {"memory.port_bits", "16"},
-                                        {"frame.order", "bins"},
-                                        {"frame.store", "color"}});
+  const Config bins =
+      with("embedded",
+           {{"frame.clears", "flags"}, {"memory.port_bits", "16"}, {"frame.order", "bins"}, {"frame.store", "color"}});
   for (const auto& [name, in_order, in_bins] : {std::tuple{"teapot", 360U, 158U},
                                                 {"city", 480U, 122U},
                                                 {"ball", 1110U, 380U},
@@ -219,8 +236,9 @@ TEST(WholeFrames, TakeNoMoreCyclesThanTheirBoundsOnANarrowPort) {
 }
 
 TEST(WholeFrames, OfTilesTakeNoMoreCyclesAndBytesThanTheirBounds) {  // 16 of them on the chip
-  expect_bounds(with("embedded", {{"frame.clears", "flags"}, {"cache.kind", "tiles"}, {"cache.lines", "16"}}),
-                {{"teapot", 338, 1160}, {"city", 348, 1325}, {"ball", 846, 2060}, {"knot", 266, 890}, {"walk", 426, 1555}});
+  expect_bounds(
+      with("embedded", {{"frame.clears", "flags"}, {"cache.kind", "tiles"}, {"cache.lines", "16"}}),
+      {{"teapot", 338, 1160}, {"city", 348, 1325}, {"ball", 846, 2060}, {"knot", 266, 890}, {"walk", 426, 1555}});
 }
 
 /// A quad over the whole target: a clear, two triangles, a flush.

@@ -151,6 +151,9 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   blended.alpha_units = blended.dither_units = 1;
   blended.blend_lanes = 4;
   EXPECT_EQ(file_text("presets/blended/raster_pkg.sv"), raster_pkg(blended));
+  Config stencilled = blended;
+  stencilled.stencil_bits = 8;
+  EXPECT_EQ(file_text("presets/stencilled/raster_pkg.sv"), raster_pkg(stencilled));
 }
 
 TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("cosim/taps.svh"), raster_taps()); }

@@ -173,26 +173,44 @@ void expect_texels(const SurfaceFigure& surface, const Scene& scene, const Confi
   EXPECT_EQ(sum, 1U << 24);
 }
 
-/// What random scenes of the hardware do not have: clip space, clipped pieces, colours over w, textures, edges and corners of
-/// triangles, depth formats of the model alone.
+/// Whether the table of operations has fog, and leaves of the colour what the surface has. Which alpha it has does not matter.
+bool is_told_in_fog(const Entry& entry) {
+  for (const OperationStep& step : entry.operations) {
+    if (step.name != "fog") continue;
+    const SurfaceSample& sample = entry.surface->sample;
+    EXPECT_EQ(step.figures[1].values[0], sample.fog);
+    for (std::size_t c = 0; c < 4; ++c) {
+      EXPECT_EQ(step.figures[3].values[c], sample.clear[c]);
+      EXPECT_EQ(step.figures[4].values[c], sample.color[c]);
+    }
+    return true;
+  }
+  return false;
+}
+
+/// What random scenes of the hardware do not have: clip space, clipped pieces, colours over w, textures, fog, edges and corners
+/// of triangles, depth formats of the model alone.
 TEST(Explain, ScenesOfEveryKindAgreeToo) {
   std::cout << "seed " << kSeed << '\n';
   Random random(kSeed);
   struct Case {
     const char *scene, *preset, *key, *value;
+    bool has_fog = false;
   };
   const std::string folder = HALFPLANE_SOURCE_DIR "/docs/texture/";
-  std::size_t fragments = 0, textured = 0, over_w = 0, cut = 0, lines = 0;
-  for (const auto& [name, preset_name, key, value] : {Case{"city", "embedded", "depth.bits", "16"},
-                                                      {"city", "full", "depth.bits", "24"},
-                                                      {"walk", "embedded", "depth.bits", "16"},
-                                                      {"walk", "full", "frame.order", "bins"},
-                                                      {"wireframe", "embedded", "frame.order", "bins"},
-                                                      {"star", "small", "depth.bits", "16"},
-                                                      {"teapot:2", "embedded", "depth.format", "uf4.12"},
-                                                      {"floor.hpt", "full", "texture.unit", "off"},
-                                                      {"hardware.hpt", "embedded", "texture.unit", "bilinear"},
-                                                      {"wall.hpt", "embedded", "texture.unit", "off"}}) {
+  std::size_t fragments = 0, textured = 0, over_w = 0, cut = 0, lines = 0, fogged = 0;
+  for (const auto& [name, preset_name, key, value, has_fog] : {Case{"city", "embedded", "depth.bits", "16"},
+                                                               {"city", "full", "depth.bits", "24"},
+                                                               {"walk", "embedded", "depth.bits", "16"},
+                                                               {"walk", "full", "frame.order", "bins"},
+                                                               {"wireframe", "embedded", "frame.order", "bins"},
+                                                               {"star", "small", "depth.bits", "16"},
+                                                               {"teapot:2", "embedded", "depth.format", "uf4.12"},
+                                                               {"floor.hpt", "full", "texture.unit", "off"},
+                                                               {"hardware.hpt", "embedded", "texture.unit", "bilinear"},
+                                                               {"floor.hpt", "embedded", "depth.bits", "16", true},
+                                                               {"walk", "full", "depth.bits", "24", true},
+                                                               {"wall.hpt", "embedded", "texture.unit", "off"}}) {
     SCOPED_TRACE(name);
     Config config = preset(preset_name);
     set_by_key(config, key, value);
@@ -202,6 +220,8 @@ TEST(Explain, ScenesOfEveryKindAgreeToo) {
     Scene scene = load_scene(request, warnings);
     if (config.frame_order == FrameOrder::bins && scene.name == "walk")
       for (State& state : scene.states) state.color_interp = ColorInterp::perspective;
+    for (State& state : scene.states)
+      if (has_fog) state.fog = Fog{FogKind::exp2, 0.2, 0.2}, state.fog_color = {200, 100, 50};
     const Witnesses witnesses(scene, config);
     const Explanation told = explain(scene, config, some_pixels(random, scene, witnesses, 60));
     for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
@@ -214,17 +234,48 @@ TEST(Explain, ScenesOfEveryKindAgreeToo) {
         cut += entry.is_cut ? 1 : 0;
         if (entry.surface) expect_texels(*entry.surface, scene, config);
         lines += entry.kind == Kind::line ? 1 : 0;
+        fogged += is_told_in_fog(entry) ? 1 : 0;
       }
     }
     if (HasFailure()) return;
   }
   std::cout << fragments << " fragments, " << textured << " textured, " << cut << " of clipped pieces, " << lines
-            << " lines, " << over_w << " over w\n";
+            << " lines, " << over_w << " over w, " << fogged << " in fog\n";
   EXPECT_GT(fragments, 300U);
   EXPECT_GT(textured, 50U);
   EXPECT_GT(cut, 10U);
   EXPECT_GT(lines, 50U);
   EXPECT_GT(over_w, 10U);
+  EXPECT_GT(fogged, 30U);
+}
+
+TEST(Explain, StencilsOfTheHardwareAgreeToo) {
+  std::cout << "seed " << kSeed << '\n';
+  Random random(kSeed);
+  Config config = preset("embedded");
+  config.stencil_bits = 8;
+  config.alpha_units = 1;
+  std::size_t changed = 0, failed = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    config.frame_order = seed % 4 == 0 ? FrameOrder::bins : FrameOrder::program;
+    SCOPED_TRACE("scene seed " + std::to_string(seed));
+    const Scene scene = random_scene(config, seed, 80);
+    const Witnesses witnesses(scene, config);
+    const Explanation told = explain(scene, config, some_pixels(random, scene, witnesses, 30));
+    for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
+    for (const PixelHistory& pixel : told.pixels) {
+      ASSERT_TRUE(pixel.hardware.has_value());
+      EXPECT_EQ(pixel.hardware->stencil, pixel.model.stencil);
+      for (const Entry& entry : pixel.history) {
+        failed += entry.specification.verdict == Verdict::stencil ? 1 : 0;
+        for (const OperationStep& step : entry.operations)
+          changed += entry.kind != Kind::clear && step.name == "write_stencil" ? 1 : 0;
+      }
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(changed, 100U);
+  EXPECT_GT(failed, 50U);
 }
 
 TEST(Explain, TextbookLinesAreTheRegisters) {
@@ -271,6 +322,7 @@ TEST(Explain, AChangedFigureIsADifference) {
                             [](Explanation& e) { e.pixels[0].engine.color ^= 1; },
                             [](Explanation& e) { ++e.pixels[0].engine.owner; },
                             [](Explanation& e) { e.pixels[0].hardware->color ^= 1; },
+                            [](Explanation& e) { e.pixels[0].engine.stencil ^= 1; },
                             [](Explanation& e) {
                               e.pixels[0].rtl = Stored{e.pixels[0].hardware->depth ^ 1, 0, -1};
                             },

@@ -17,7 +17,7 @@ using test::Random;
 
 TEST(Blend, AQuotientBy255IsTheNearestForEverySumOfTwoProducts) {
   for (std::uint32_t sum = 0; sum <= 2 * 255 * 255; ++sum)
-    ASSERT_EQ(std::min(over_255(sum), 255U), static_cast<std::uint32_t>(std::floor(std::min(sum / 255.0, 255.0) + 0.5)))
+    ASSERT_EQ(std::min(divide_by_255(sum), 255U), static_cast<std::uint32_t>(std::floor(std::min(sum / 255.0, 255.0) + 0.5)))
         << sum;
 }
 

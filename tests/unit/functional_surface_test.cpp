@@ -128,8 +128,8 @@ TEST(FunctionalSurface, FragmentOperationsOnSurfacesAreTheSameOnEveryPath) {
       SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
       Scene scene = random_surfaces(seed, 12);
       Random random(seed + 50);
-      StateRows rows =
-          states_named({"alpha_test", "blend", "blend_equation", "blend_color", "color_mask", "dither", "stencil"});
+      StateRows rows = states_named({"alpha_test", "blend", "blend_equation", "blend_color", "color_mask", "dither",
+                                     "fog", "fog_color", "stencil"});
       if (seed % 4 != 0) rows.pop_back();  // the lanes leave a stencil to the plain path
       for (State& state : scene.states) state = random_state(state, rows, chooser(random));
       for (const ColorFormat format : {ColorFormat::rgba8888, ColorFormat::rgb565}) {
@@ -152,7 +152,11 @@ TEST(FunctionalSurface, EveryPrecisionIsTheSameOnEveryPath) {
       config.perspective_mantissa_bits = mantissa_bits;
       SCOPED_TRACE("perspective.bits " + std::to_string(bits) + ", mantissa_bits " + std::to_string(mantissa_bits) +
                    ", seed " + std::to_string(seed));
-      expect_all_same(random_surfaces(seed++, 6), config);
+      Scene scene = random_surfaces(seed++, 6);
+      Random random(seed);
+      for (State& state : scene.states)
+        state = random_state(state, states_named({"fog", "fog_color"}), chooser(random));
+      expect_all_same(scene, config);
     }
 }
 
@@ -254,6 +258,7 @@ TEST(FunctionalSurface, WhatIsUsualIsDrawnInLanes) {
     SceneBuilder builder(kWidth, kHeight);
     State state = SceneBuilder::window_state();
     state.texture = 0;
+    if (seed % 2 == 0) state.fog = Fog{};
     builder.scene.states.push_back(state);
     builder.scene.textures.push_back(noise(random, 64, 64, TextureFormat::rgba8888, Mips::none));
     add_triangles(builder.scene, random, 1, 200, 10, 500);

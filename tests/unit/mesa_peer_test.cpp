@@ -127,6 +127,19 @@ TEST_F(MesaPeerTest, FragmentOperationsMeanTheSame) {
   EXPECT_GT(states.size(), 70u);
 }
 
+TEST_F(MesaPeerTest, FogMeansTheSame) {
+  start(24);
+  const std::string head =
+      "halfplane 1\ntarget 96 64\nclear color 200 120 30 90 depth 1\nspace window\n"
+      "v 50 2 0.25 1 255 0 0 20\nv 3 60 0.5 4 0 255 0 130\nv 92 55 0.75 9 0 0 255 255\n"
+      "v 5 5 0.6 3 200 90 0 240\nv 91 30 0.4 1 10 90 200 10\nv 20 60 0.3 7 255 255 255 128\n";
+  for (const char* fog : {"linear 2 6", "linear 0 9", "exp 0.2", "exp2 0.3", "linear 5 5", "exp 0"}) {
+    const std::string state = "state fog " + std::string(fog) + "\nstate fog_color 250 128 9\n";
+    EXPECT_LE(differing(read_capture(head + state + "t 0 1 2\nt 3 4 5\np 1\n", "fog.hpt")), 12) << fog;
+  }
+  EXPECT_THROW(peer_->upload(read_capture(head + "state fog exp 1\nl 0 1\n", "line.hpt")), InputError);
+}
+
 TEST_F(MesaPeerTest, WhatItDoesNotHaveIsRefusedByName) {
   try {
     peer_->upload(make_builtin("star", kWidth, kHeight, {}, 1));

@@ -210,7 +210,7 @@ TEST(FragmentOps, APacketThroughDepthTestAndRopIsEachOfItsFragmentsThroughTheOpe
         color[s] = static_cast<std::uint32_t>(words());
         if (config.color_format == ColorFormat::rgb565) color[s] &= 0xffff;
       }
-      const WritePacket written = rop(fragment, depth_test(fragment, depth, widths), config, widths);
+      const WritePacket written = rop(fragment, depth_test(fragment, depth, {}, widths), config, widths);
       for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
         std::uint32_t expected_depth = depth[s], expected_color = color[s];
         std::uint8_t stencil = 0;

@@ -30,6 +30,7 @@ const std::vector<Config>& configurations() {
                                        with_setting("embedded", "cache.lines", "16"),
                                        with_setting("embedded", "frame.order", "bins"),
                                        with_setting("embedded", "texture.unit", "bilinear"),
+                                       with_setting("embedded", "stencil.bits", "8"),
                                        with_setting("full", "hiz.lag", "2")};
   return all;
 }

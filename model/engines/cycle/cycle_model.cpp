@@ -78,13 +78,38 @@ class CycleModelOf final : public CycleModel {
   }
 
   void run(const HostPrimitive& host) override {
-    std::optional<PrimitivePacket> drawn_clear;
-    if (host.packet.kind == PrimitiveKind::fast_clear && options_.parameters.fast_clear == 0) {
-      drawn_clear.emplace(host.packet).kind = PrimitiveKind::rectangle;
-      drawn_clear->state.depth_test = DepthFunc::always;
-    }
-    const PrimitivePacket& primitive = drawn_clear ? *drawn_clear : host.packet;
     if (options_.sink != nullptr) options_.sink->primitive(host);
+    if (host.packet.kind != PrimitiveKind::fast_clear || options_.parameters.fast_clear != 0) {
+      send(host, host.packet);
+      return;
+    }
+    PrimitivePacket drawn = host.packet;
+    drawn.kind = PrimitiveKind::rectangle;
+    drawn.state.depth_test = DepthFunc::always;
+    const ColorState held = colors_;
+    const StencilState held_stencil = stencil_;
+    set_colors({});  // nobody has set them for a clear
+    if (drawn.state.depth_write && has_stencil(config_)) {
+      stencil_.side[0] = replacing_stencil(stencil_.clear_value());
+      (void)set_stencil_flags(drawn.state, stencil_.side);
+    }
+    send(host, drawn);
+    set_colors(held);
+    stencil_ = held_stencil;
+  }
+
+  [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
+  [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
+  [[nodiscard]] const Stream& stream(Arrow boundary) const override { return timing_.stream(boundary); }
+  [[nodiscard]] Rendering& rendering() override { return rendering_; }
+  [[nodiscard]] std::vector<float>& cost() override { return cost_; }
+
+ private:
+  using Kernel = TileKernel<T, Lane>;
+  using Mask = typename Kernel::Mask;
+
+  /// Sends a primitive of the host's down the pipeline as `primitive`.
+  void send(const HostPrimitive& host, const PrimitivePacket& primitive) {
     const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
     timing_.take(work_of(primitive, !triangle));
     if (!triangle) return;
@@ -120,16 +145,6 @@ class CycleModelOf final : public CycleModel {
     walk(setup, packet, host.primitive);
   }
 
-  [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
-  [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
-  [[nodiscard]] const Stream& stream(Arrow boundary) const override { return timing_.stream(boundary); }
-  [[nodiscard]] Rendering& rendering() override { return rendering_; }
-  [[nodiscard]] std::vector<float>& cost() override { return cost_; }
-
- private:
-  using Kernel = TileKernel<T, Lane>;
-  using Mask = typename Kernel::Mask;
-
   void fast_clear(const TrianglePacket& clear) {
     const int last_x = clear.box.right >> widths_.tile_shift, last_y = clear.box.bottom >> widths_.tile_shift;
     const PerPlane<std::uint32_t>& code = clear.vertex.code[0];
@@ -140,6 +155,7 @@ class CycleModelOf final : public CycleModel {
         timing_.clear_bounds(static_cast<std::uint64_t>((last_x >> widths_.hiz_group_bits) + 1) *
                              static_cast<std::uint64_t>(last_y + 1));
       fill_target(rendering_.frame.depth, code[kDepthPlane]);
+      if (has_stencil(config_)) fill_target(rendering_.frame.stencil, stencil_.clear_value());
     }
     if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
@@ -159,7 +175,8 @@ class CycleModelOf final : public CycleModel {
   }
 
   /// Leaves the padding alone.
-  void fill_target(Framebuffer::Image& image, std::uint32_t code) const {
+  template <class Image>
+  void fill_target(Image& image, typename Image::value_type code) const {
     const Framebuffer& frame = rendering_.frame;
     for (int y = 0; y < frame.height; ++y)
       std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), frame.width, code);
@@ -178,7 +195,8 @@ class CycleModelOf final : public CycleModel {
     LineState next = first_state(line);
     FragmentPlace place;
     place.depth_write = state.depth_write;
-    Fate fate = Fate::failed;
+    PixelFate pixel_fate;
+    const Fate& fate = pixel_fate.fate;
     const auto step = [&] {
       const LinePixel pixel = pixel_of(next, line, widths_);
       const int x = pixel.x & (T - 1), y = pixel.y & (T - 1);
@@ -186,7 +204,7 @@ class CycleModelOf final : public CycleModel {
       place.tile_y = pixel.y / T;
       place.stamp = stamps.stamp_at(x, y);
       place.mask = SampleMask::only(stamps.sample_at(x % stamps.size, y % stamps.size));
-      fate = shade_pixel(state, pixel, primitive);
+      pixel_fate = shade_pixel(state, pixel, primitive);
       if (!pixel.is_last) advance(next, line, widths_);
       return !pixel.is_last;
     };
@@ -198,8 +216,9 @@ class CycleModelOf final : public CycleModel {
     };
     const auto look_up_block = [&](BlockItem& item) {
       const TagResult tags = block_access(place, state, item);
-      note_result(state, fate != Fate::failed ? place.mask : SampleMask(),
-                  fate == Fate::passed ? place.mask : SampleMask(), item);
+      note_result(
+          state, fate != Fate::failed ? place.mask : SampleMask(), fate == Fate::passed ? place.mask : SampleMask(),
+          {pixel_fate.changes ? place.mask : SampleMask(), pixel_fate.writes ? place.mask : SampleMask()}, item);
       return tags;
     };
     const Cycle before = timing_.last_fragment();
@@ -218,39 +237,64 @@ class CycleModelOf final : public CycleModel {
                           static_cast<std::uint16_t>(place.stamp)};
     item.mask = place.mask;
     item.stamp = block_stamp(at, widths_).stamp;
-    item.depth_write = state.depth_write;
+    item.depth_write = state.writes_word();
     item.color_write = state.color_write;
     item.blends = colors_.ops.blends();
     item.is_late = is_late(state, colors_.alpha, config_);
     return blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
   }
 
+  /// Samples of a fragment whose stored depth, or the stencil above it, the tests change, and where that is written: the alpha
+  /// test may keep it from being so.
+  struct Changes {
+    SampleMask wanted, written;
+  };
+  /// The same of a pixel, and its fate.
+  struct PixelFate {
+    Fate fate = Fate::failed;
+    bool changes = false, writes = false;
+  };
+
   /// What became of it: of its samples some passed the depth test, and of those the alpha test kept some.
-  void note_result(const PrimitiveState& state, SampleMask passed, SampleMask kept, BlockItem& item) const {
-    item.wrote_depth = state.depth_write && kept.any();
+  void note_result(const PrimitiveState& state, SampleMask passed, SampleMask kept, const Changes& changes,
+                   BlockItem& item) const {
+    item.wrote_depth = changes.written.any();
     if (state.color_write) item.colors = kept;
-    item.is_shaded = (tests_alpha() ? passed : item.colors).any();
+    item.is_shaded = (tests_alpha() ? passed | changes.wanted : item.colors).any();
   }
   [[nodiscard]] bool tests_alpha() const { return colors_.alpha.func != DepthFunc::always; }
 
   /// depth_test and rop of a pixel of a line.
-  Fate shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive) {
+  PixelFate shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive) {
     Framebuffer& frame = rendering_.frame;
     const std::size_t at = frame.at(pixel.x, pixel.y);
     ++counters_.covered;
     const std::size_t plain = plain_index(pixel.x, pixel.y);
     if (!rendering_.count.empty()) ++rendering_.count[plain];
-    const Fate fate =
-        apply_fragment(FragmentOps{state, colors_.alpha, {}, colors_.ops}, config_.color_format,
+    PixelFate result;
+    result.changes = test_sample(state, stencil_.side[0], pixel.code[kDepthPlane], stored_word(at), widths_).changes;
+    result.writes = result.changes && (!tests_alpha() || depth_passes(colors_.alpha.func, color_channels(pixel.code)[3],
+                                                                      colors_.alpha.reference));
+    result.fate =
+        apply_fragment(FragmentOps{state, colors_.alpha, sides_of(state), colors_.ops}, config_.color_format,
                        {pixel.code[kDepthPlane], pixel.x, pixel.y}, [&pixel] { return color_channels(pixel.code); },
                        {frame.depth[at], frame.color[at], frame.stencil[at]});
-    if (fate == Fate::failed) return fate;
+    if (result.fate == Fate::failed) return result;
     ++counters_.depth_passed;
-    if (fate == Fate::killed) ++counters_.alpha_killed;
-    if (fate == Fate::killed || !state.writes()) return fate;
+    if (result.fate == Fate::killed) ++counters_.alpha_killed;
+    if (result.fate == Fate::killed || !state.writes()) return result;
     ++counters_.written;
     if (!rendering_.ids.empty()) rendering_.ids[plain] = static_cast<std::int32_t>(primitive);
-    return fate;
+    return result;
+  }
+
+  /// The stencil test of a primitive.
+  [[nodiscard]] std::optional<StencilSides> sides_of(const PrimitiveState& state) const {
+    return state.tests_stencil ? std::optional(stencil_.side) : std::nullopt;
+  }
+  /// What is stored at a pixel, as hardware has it.
+  [[nodiscard]] std::uint32_t stored_word(std::size_t at) const {
+    return depth_word(rendering_.frame.depth[at], rendering_.frame.stencil[at], widths_);
   }
 
   [[nodiscard]] std::size_t plain_index(int x, int y) const {
@@ -259,7 +303,7 @@ class CycleModelOf final : public CycleModel {
 
   /// coarse_raster, and for each visit the rest of the pipeline.
   void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
-    const Kernel kernel({state_of_kernel(packet.state), {}, {}, {}}, config_, widths_);
+    const Kernel kernel({state_of_kernel(packet.state), {}, stencil_of_kernel(packet.state), {}}, config_, widths_);
     const TriangleLanes<T, Lane> lanes(setup, widths_);
     CounterPacket uncounted;
     CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
@@ -306,20 +350,29 @@ class CycleModelOf final : public CycleModel {
     return state;
   }
 
+  /// Likewise.
+  [[nodiscard]] std::optional<StencilSides> stencil_of_kernel(const PrimitiveState& state) const {
+    std::optional<StencilSides> sides = sides_of(state);
+    if (sides && tests_alpha())
+      for (Stencil& side : *sides) side.write_mask = 0;
+    return sides;
+  }
+
   void visit(const Kernel& kernel, const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
              const EdgeValues& edges, bool is_inside, const SetupPacket& packet, const PixelBounds& box, int tile_x,
              int tile_y, bool ends_primitive, std::uint32_t primitive) {
     const int size = config_.stamp_size;
-    TileMask covered_rows{}, passed_rows{};
+    TileMask covered_rows{}, passed_rows{}, stencil_rows{};
     TileVisitWork work{ends_primitive, box.top / size, box.bottom / size, box.left / size, box.right / size, {}};
     Mask covered_count{}, passed_count{};
     const bool wants_bits = options_.want_count || options_.want_ids;
-    kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, false, rendering_.frame,
+    kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, packet.state.is_back, rendering_.frame,
                 [&](int j, const Mask& covered_lanes, const typename Kernel::Fates& fates) {
                   const Mask& passed_lanes = fates.passed;
                   const std::uint32_t row = kernel.to_bits(covered_lanes);
                   covered_rows[static_cast<std::size_t>(j)] = row;
                   passed_rows[static_cast<std::size_t>(j)] = kernel.to_bits(passed_lanes);
+                  stencil_rows[static_cast<std::size_t>(j)] = kernel.to_bits(fates.passed_stencil);
                   work.columns[static_cast<std::size_t>(j / size)] |= row;  // pixels so far
                   covered_count += covered_lanes;
                   passed_count += passed_lanes;
@@ -357,9 +410,14 @@ class CycleModelOf final : public CycleModel {
       if (blocks_) {
         BlockItem item;
         const TagResult tags = block_access(place, packet.state, item);
-        const SampleMask live = samples(passed_rows), kept = shade_stamp(setup, packet, place, live, item, primitive);
+        const SampleMask live = samples(passed_rows);
+        Changes changes;
+        changes.wanted = changed_samples(packet.state, place.mask, samples(stencil_rows), live);
+        const SampleMask opaque = shade_stamp(setup, packet, place, live, changes.wanted, item, primitive),
+                         kept = live & opaque;
+        changes.written = changes.wanted & opaque;
         killed += static_cast<std::uint32_t>(live.count() - kept.count());
-        note_result(packet.state, live, kept, item);
+        note_result(packet.state, live, kept, changes, item);
         return timing_.access(offered, tags, item);
       }
       const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
@@ -386,13 +444,28 @@ class CycleModelOf final : public CycleModel {
           cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(covered);
   }
 
-  /// What comes behind the depth test for a stamp, `passed` of whose samples passed: texture unit, alpha test, operations on
-  /// colours; what the kernel did not write is. Returns the samples that the alpha test keeps.
+  /// The covered samples of a stamp whose stored word the tests change.
+  [[nodiscard]] SampleMask changed_samples(const PrimitiveState& state, SampleMask covered, SampleMask passed_stencil,
+                                           SampleMask passed) const {
+    SampleMask changed = state.depth_write ? passed : SampleMask();
+    const Stencil& side = stencil_.side[state.is_back ? 1 : 0];
+    if (state.tests_stencil && side.write_mask != 0)
+      covered.for_each([&](std::size_t s) {
+        // One that passes the stencil test and not both fails the depth test.
+        if (stencil_op(side, passed_stencil.has(s), passed.has(s)) != StencilOp::keep) changed.set(static_cast<int>(s));
+      });
+    return changed;
+  }
+
+  /// What comes behind the depth test for a stamp, `passed` of whose samples passed, and `changed`: texture unit, alpha test,
+  /// operations on colours; what the kernel did not write is. Returns samples of which the alpha test drops none, and all of
+  /// those if they passed or changed.
   SampleMask shade_stamp(const TriangleSetup& setup, const SetupPacket& packet, const FragmentPlace& place,
-                         SampleMask passed, BlockItem& item, std::uint32_t primitive) {
-    const SampleMask live = tests_alpha() || packet.state.color_write ? passed : SampleMask();
+                         SampleMask passed, SampleMask changed, BlockItem& item, std::uint32_t primitive) {
+    const SampleMask live = tests_alpha() ? passed | changed : packet.state.color_write ? passed : SampleMask();
     const bool is_textured = texture_ && texture_->is_textured(packet.kind == PrimitiveKind::triangle, live);
-    if (!live.any() || !(is_textured || tests_alpha() || !colors_.ops.is_plain())) return passed;
+    const SampleMask all = SampleMask::all(widths_.samples);
+    if (!live.any() || !(is_textured || tests_alpha() || !colors_.ops.is_plain())) return all;
     std::array<Texel, kMaxSamples> color{};
     std::array<PixelOffset, kMaxSamples> at;  // pixels of the target
     const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
@@ -409,8 +482,8 @@ class CycleModelOf final : public CycleModel {
         alpha_passes(colors_.alpha, live, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
     kept.for_each([&](std::size_t s) {
       const Texel& c = color[s];
-      if (tests_alpha() && packet.state.depth_write)
-        frame.depth[index(s)] = plane_at(setup, kDepthPlane, widths_, at[s].x, at[s].y).code;
+      if (tests_alpha() && changed.has(s)) change_word(setup, packet.state, at[s]);
+      if (!passed.has(s)) return;
       if (packet.state.color_write)
         frame.color[index(s)] = store_color<std::uint32_t>(colors_.ops, config_.color_format, {c[0], c[1], c[2], c[3]},
                                                            frame.color[index(s)], dither_threshold(at[s].x, at[s].y));
@@ -418,7 +491,18 @@ class CycleModelOf final : public CycleModel {
         rendering_.ids[plain_index(at[s].x, at[s].y)] =
             is_counted(packet.kind) ? static_cast<std::int32_t>(primitive) : -1;
     });
-    return kept;
+    return tests_alpha() ? kept : all;
+  }
+
+  /// A pixel's depth and stencil, as the tests leave them.
+  void change_word(const TriangleSetup& setup, const PrimitiveState& state, const PixelOffset& at) {
+    Framebuffer& frame = rendering_.frame;
+    const std::size_t pixel = frame.at(at.x, at.y);
+    const std::uint32_t depth = plane_at(setup, kDepthPlane, widths_, at.x, at.y).code;
+    const std::uint32_t word =
+        test_sample(state, stencil_.side[state.is_back ? 1 : 0], depth, stored_word(pixel), widths_).word;
+    frame.depth[pixel] = depth_of(word, widths_);
+    frame.stencil[pixel] = stencil_of(word, widths_);
   }
 
   /// The texture unit: the colours of the samples of a stamp that live, and how they were looked up.
@@ -451,8 +535,15 @@ class CycleModelOf final : public CycleModel {
       texture.invalidates = which == StateRegister::texture && texture_->state().invalidates;
       return;
     }
-    colors_.set(which, state_word(token.vertex.code[0], widths_));
-    blocks_->set(colors_.ops.reads_stored(), tests_alpha());
+    stencil_.set(which, state_word(token.vertex.code[0], widths_));
+    ColorState colors = colors_;
+    colors.set(which, state_word(token.vertex.code[0], widths_));
+    set_colors(colors);
+  }
+
+  void set_colors(const ColorState& colors) {
+    colors_ = colors;
+    if (blocks_) blocks_->set(colors_.ops.reads_stored(), tests_alpha());
   }
 
   /// The news of a visit for HiZ.
@@ -498,6 +589,7 @@ class CycleModelOf final : public CycleModel {
   std::optional<CacheTags> blocks_;
   std::optional<TextureUnit> texture_;
   ColorState colors_;
+  StencilState stencil_;
   PerspectiveFormat perspective_ = perspective_format(config_);
   TextureFrame frame_;  ///< of the triangle at work
   TextureMemory texels_;

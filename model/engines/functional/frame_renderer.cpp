@@ -342,7 +342,9 @@ void FrameRenderer::draw(std::uint32_t command) {
     rendering_.counters.culled += count;
     return;
   }
-  if (is_prepared) return draw_prepared(command);
+  // The ends of lines are fogged on the host side of the stages.
+  const bool has_own_colors = type != PrimitiveType::line || !scene_->states[draw.state].fog;
+  if (is_prepared && has_own_colors) return draw_prepared(command);
   open_ = nullptr;
   draw_outlines(contexts_.emplace_back(*scene_, config_, draw, command));
 }

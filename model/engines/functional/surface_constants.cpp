@@ -64,7 +64,8 @@ bool is_nearest(TextureMin min) {
 StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record)
     : triangle(triangle_of(slice, record, frame.widths)),
       setup(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect)),
-      surface(triangle, setup, slice.context->state, texture_of(*slice.context), frame.config, frame.widths) {}
+      surface(triangle, setup, slice.context->state, texture_of(*slice.context), slice.context->fog.get(), frame.config,
+              frame.widths) {}
 
 LaneDivision::LaneDivision(const PerspectiveFormat& format)
     : up(32 - q_local_bits(format)),
@@ -93,6 +94,8 @@ SurfaceConstants::SurfaceConstants(const StageSurface& from, const FrameContext&
     color_high[c] = is_stored ? from.setup.range.high[kColorPlane + c] : 255;
   }
   if (has_texture) set_texture(from, frame.widths, *texels);
+  has_fog = from.surface.fog_divisor().has_value();
+  if (has_fog) set_fog(from, frame.widths);
   has_color = !has_texture || !sees_texture_alone(from);
   if (has_color && is_color_over_w) set_color(from, frame.widths);
 }
@@ -175,6 +178,18 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   texture.magnified = sampler.mag == TextureMag::linear && is_nearest(sampler.min) && has_levels ? 128 : 0;
   texture.combine = surface.combine();
   texture.has_alpha = has_alpha(sampler.texture->format);
+}
+
+void SurfaceConstants::set_fog(const StageSurface& from, const Widths& widths) {
+  const Surface& surface = from.surface;
+  const FogTable& table = surface.fog();
+  fog.q = lanes_of(surface.fog_divisor()->plane, from.setup, surface.format().guard_bits, division.up, widths);
+  fog.lines = table.lines().data();
+  fog.first = (table.first() + surface.fog_scale() + kFloatBias) * (1 << kFogPlaceBits);
+  fog.last = table.last_position();
+  fog.place_bits = table.place_bits();
+  fog.drop = table.place_bits() + kFogStartFraction - kFogFactorBits;
+  for (std::size_t c = 0; c < 3; ++c) fog.color[c] = table.color()[c];
 }
 
 }  // namespace halfplane::functional

@@ -101,6 +101,15 @@ struct LaneTexture {
   bool has_alpha = false;
 };
 
+/// How a fog is looked up, from Q in binary32 whose exponent and upper mantissa are one number.
+struct LaneFog {
+  LanePlane q;
+  const FogTable::Line* lines = nullptr;
+  std::int32_t first = 0, last = 0;  ///< that number at the first place; the last place
+  int place_bits = 0, drop = 0;      ///< of a line; from a line's sum to f
+  std::array<std::int32_t, 3> color{};
+};
+
 struct SurfaceConstants {
   SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels);
 
@@ -108,16 +117,19 @@ struct SurfaceConstants {
   bool has_texture = false;  ///< else the colour is all
   bool has_color = true;     ///< else the texture's colour is all
   bool is_color_over_w = false;
+  bool has_fog = false;
   LaneDivision division;
   LaneOverW of_coordinate, of_color;
   LaneQuotients<2> coordinate;
   LaneQuotients<4> color;
   std::array<std::uint32_t, 4> color_low{}, color_high{};  ///< of the vertices
   LaneTexture texture;
+  LaneFog fog;
 
  private:
   void set_color(const StageSurface& from, const Widths& widths);
   void set_texture(const StageSurface& from, const Widths& widths, const TexelBlocks& texels);
+  void set_fog(const StageSurface& from, const Widths& widths);
   [[nodiscard]] bool sees_texture_alone(const StageSurface& from) const;
   [[nodiscard]] static bool is_never_held(const OverWFormat& format, const PerspectiveFormat& all, const QCodes& q);
   [[nodiscard]] LaneAttribute attribute_of(const Surface::Attribute& from, const OverWFormat& format,

@@ -32,10 +32,11 @@ package raster_pkg;
   localparam int ALPHA_UNIT = 1;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
   localparam int BLEND_LANES = 4;  // blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks
   localparam int DITHER_UNIT = 1;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
+  localparam int STENCIL_BITS = 0;  // of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'h9b526140f7233991;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h2804e3b4d7cc389e;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -137,6 +138,7 @@ package raster_pkg;
   localparam int STAMP_INDEX_BITS = 4;  // (T / stamp)^2
   localparam int SAMPLE_MASK_BITS = 4;  // one bit a sample
   localparam int STORED_COLOR_BITS = 16;  // color.format
+  localparam int STORED_DEPTH_BITS = 16;  // a depth code, stencil.bits above it
   localparam int KIND_BITS = 3;  // PrimitiveKind
   localparam int FLAG_BITS = 1;  // yes or no
   localparam int DEPTH_FUNC_BITS = 3;  // DepthFunc
@@ -148,7 +150,7 @@ package raster_pkg;
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
   localparam int TILE_PLANE_BITS = 2;  // TilePlane
   localparam int DEPTH_SOURCE_BITS = 2;  // DepthSource
-  localparam int MEMORY_LANE_BITS = 16;  // a depth code or a stored colour
+  localparam int MEMORY_LANE_BITS = 16;  // a stored depth or a stored colour
   localparam int COUNTER_BITS = 32;  // counters.bits
   localparam int RUN_BITS = 5;  // stamps of a tile, words of a row of flags
   localparam int ADDRESS_BITS = 32;  // bytes
@@ -215,7 +217,9 @@ package raster_pkg;
     STATE_REGISTER_TEXTURE_LINES = 3'd2,
     STATE_REGISTER_COLOR_OPS = 3'd4,
     STATE_REGISTER_BLEND_CONSTANT = 3'd5,
-    STATE_REGISTER_ALPHA_TEST = 3'd6
+    STATE_REGISTER_ALPHA_TEST = 3'd6,
+    STATE_REGISTER_STENCIL_TEST = 3'd3,
+    STATE_REGISTER_STENCIL_UPDATE = 3'd7
   } state_register_t;
 
   typedef enum logic [DEPTH_FUNC_BITS-1:0] {
@@ -436,7 +440,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] passed;
     logic [SAMPLE_MASK_BITS-1:0] write_depth;
     logic [SAMPLE_MASK_BITS-1:0] write_color;
-    logic [4*DEPTH_CODE_BITS-1:0] depth;
+    logic [4*STORED_DEPTH_BITS-1:0] depth;
     logic [4*WRITTEN_COLOR_BITS-1:0] color;
   } write_packet_t;
   localparam int WRITE_PACKET_BITS = 240;  // of the struct above

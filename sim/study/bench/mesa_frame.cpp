@@ -27,7 +27,8 @@ struct Shaders {
 };
 
 Shaders shaders_of(const State& state, bool has_texture, bool has_alpha) {
-  const std::string head = "#version 330 core\n", test = gl::alpha_test_source(state.alpha_test);
+  const std::string head = "#version 330 core\n",
+                    test = gl::fog_source(state) + gl::alpha_test_source(state.alpha_test);
   const std::string color = state.shade == Shade::flat                  ? "flat"
                             : state.color_interp == ColorInterp::affine ? "noperspective"
                                                                         : "smooth";
@@ -50,6 +51,7 @@ void check_draw_state(const State& state, Topology topology) {
   if (state.origin != Origin::top_left) refuse("origin bottom_left");
   if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
   const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
+  if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
   const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
   if (!is_line) return;
   if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");

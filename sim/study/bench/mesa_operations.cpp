@@ -1,7 +1,9 @@
 #include "sim/study/bench/mesa_operations.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdio>
 
 namespace halfplane::gl {
 namespace {
@@ -51,6 +53,24 @@ std::string alpha_test_source(const AlphaTest& test) {
   if (test.func == DepthFunc::never) return "discard;";
   return "if (!(floor(result.a * 255.0 + 0.5)" + std::string(kComparisons[static_cast<std::size_t>(test.func)]) +
          std::to_string(test.reference) + ".0)) discard;";
+}
+
+std::string fog_source(const State& state) {
+  if (!state.fog) return "";
+  const auto number = [](double value) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.9e", value);
+    return std::string(text.data());
+  };
+  const Fog& fog = *state.fog;
+  const std::string w = "float w = 1.0 / gl_FragCoord.w; ", depth = "(w * " + number(fog.start) + ")";
+  const double start = std::min(fog.start, fog.end * 255 / 256);
+  const std::string part = fog.kind == FogKind::exp    ? "exp(-" + depth + ")"
+                           : fog.kind == FogKind::exp2 ? "exp(-" + depth + " * " + depth + ")"
+                                                       : "(" + number(fog.end) + " - w) / " + number(fog.end - start);
+  std::string color;
+  for (const std::uint8_t channel : state.fog_color) color += (color.empty() ? "" : ", ") + number(channel / 255.0);
+  return w + "result.rgb = mix(vec3(" + color + "), result.rgb, clamp(" + part + ", 0.0, 1.0));";
 }
 
 }  // namespace halfplane::gl

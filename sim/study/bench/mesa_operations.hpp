@@ -17,4 +17,7 @@ void apply_operations(const Functions& gl, const State& state);
 /// The alpha test as a statement of a fragment shader that has put the colour into `result`; empty: there is none.
 [[nodiscard]] std::string alpha_test_source(const AlphaTest& test);
 
+/// Fog likewise, by the w of the fragment; comes before the alpha test.
+[[nodiscard]] std::string fog_source(const State& state);
+
 }  // namespace halfplane::gl

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 
 #include "model/capture/capture_textures.hpp"
 #include "model/engines/functional.hpp"
@@ -95,22 +96,6 @@ std::vector<std::uint32_t> cleared_values(const Scene& scene, const Config& conf
   return values;
 }
 
-/// The scene with other subpixel bits, where it can be drawn so; and the golden, which snaps nothing.
-std::vector<std::vector<std::uint32_t>> snap_variants(const Scene& scene, const Config& config,
-                                                      const Comparison& comparison, bool is_depth) {
-  std::vector<std::vector<std::uint32_t>> variants{values_of(comparison.golden.frame, config.color_format, is_depth)};
-  for (int bits = 0; bits <= kMostSubpixelBits; ++bits) {
-    if (bits == config.subpixel_bits) continue;
-    Config other = config;
-    other.subpixel_bits = bits;
-    try {
-      variants.push_back(values_of(render_functional(scene, other).frame, config.color_format, is_depth));
-    } catch (const InputError&) {  // too wide together with the rest of this configuration
-    }
-  }
-  return variants;
-}
-
 /// Distance of a pixel's centre from the side from a to b, subpixels.
 double distance_from_side(const SnappedVertex& a, const SnappedVertex& b, double px, double py) {
   const double dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
@@ -142,15 +127,31 @@ std::vector<bool> pixels_at_sides(const std::vector<Triangle>& triangles, const 
   return is_near;
 }
 
-/// The variant that explains three quarters of the differing pixels, if one does: then it is no coincidence.
-const std::vector<std::uint32_t>* common_variant(const std::vector<std::vector<std::uint32_t>>& variants,
-                                                 const std::vector<std::uint32_t>& differing,
-                                                 const ForeignImage& image) {
-  for (const auto& variant : variants) {
+/// The scene with another snap, if one explains three quarters of the differing pixels, which is no coincidence: the golden,
+/// which snaps nothing, and other subpixel bits, where the scene can be drawn so.
+std::optional<std::vector<std::uint32_t>> common_variant(const Scene& scene, const Config& config,
+                                                         const Comparison& comparison, const StudyRules& rules,
+                                                         const std::vector<std::uint32_t>& differing,
+                                                         const ForeignImage& image) {
+  const auto explains = [&](const std::vector<std::uint32_t>& variant) {
     const auto same = std::ranges::count_if(differing, [&](std::uint32_t p) { return variant[p] == image.value[p]; });
-    if (4 * static_cast<std::size_t>(same) >= 3 * differing.size()) return &variant;
+    return 4 * static_cast<std::size_t>(same) >= 3 * differing.size();
+  };
+  if (auto unsnapped = values_of(comparison.golden.frame, config.color_format, image.is_depth); explains(unsnapped))
+    return unsnapped;
+  for (int bits = 0; bits <= kMostSubpixelBits; ++bits) {
+    if (bits == config.subpixel_bits) continue;
+    Config other = config;
+    other.subpixel_bits = bits;
+    try {
+      RenderOptions options;
+      options.rules = rules;
+      const Rendering drawn = rules == StudyRules{} ? render_functional(scene, other) : render_scalar(scene, other, options);
+      if (auto variant = values_of(drawn.frame, config.color_format, image.is_depth); explains(variant)) return variant;
+    } catch (const InputError&) {  // too wide together with the rest of this configuration
+    }
   }
-  return nullptr;
+  return {};
 }
 
 bool holds(const std::vector<std::uint32_t>& values, std::uint32_t value) {
@@ -175,8 +176,7 @@ AgainstResult compare_against(const Scene& scene, const Config& config, const Co
   if (differing.empty()) return result;
   const auto candidates = candidates_at(scene, config, rules, differing, image.is_depth);
   const auto cleared = cleared_values(scene, config, image.is_depth);
-  const auto variants = snap_variants(scene, config, comparison, image.is_depth);
-  const auto* variant = common_variant(variants, differing, image);
+  const auto variant = common_variant(scene, config, comparison, rules, differing, image);
   const auto is_at_side = pixels_at_sides(comparison.rendering.triangles, differing, scene.width, scene.height,
                                           derive_widths(config).grid_bits);
   // A code of 5 bits is 8 or 9 of 8 bits.
@@ -187,7 +187,7 @@ AgainstResult compare_against(const Scene& scene, const Config& config, const Co
     const bool is_another = holds(here.fragments, got) || holds(cleared, got);
     const double distance = distance_between(ours[p], got, image.is_depth);
     ForeignDifference kind = ForeignDifference::other;
-    if (variant != nullptr && (*variant)[p] == got)
+    if (variant && (*variant)[p] == got)
       kind = ForeignDifference::snap;
     else if (!here.border.empty() && (is_another || holds(here.border, got)))
       kind = ForeignDifference::edge_rule;

@@ -129,6 +129,7 @@ class AttributeComparison {
     result_.line_datapath = line_datapath_.stats();
     result_.color_datapath = color_datapath_.stats();
     result_.color_over_w = color_over_w_.stats();
+    result_.fog = fog_.stats();
     if (has_texture_) result_.texture = std::move(texture_).result();
     result_.layers = layers_.rows();
     result_.datapath_bias = datapath_bias_.stats();
@@ -256,6 +257,7 @@ class AttributeComparison {
     const TappedFragment& f = frame_.shown(pixel.p);
     const SurfaceErrors errors = surface_oracle_->errors(*pixel.surface, f.x, f.y);
     if (std::isfinite(errors.color.bound)) color_over_w_.add(errors.color.value);
+    if (errors.has_fog) fog_.add(errors.fog.value);
     has_texture_ = has_texture_ || errors.has_texture;
     if (errors.has_texture) texture_.add(pixel.p, errors);
     return errors.exact;
@@ -276,7 +278,7 @@ class AttributeComparison {
   std::optional<SurfaceOracle> surface_oracle_;  // likewise
   std::uint32_t oracle_item_ = 0;                // its number
   ErrorSet depth_, color_, eye_;
-  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_;
+  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_, fog_;
   TextureErrorSets texture_;
   LayeredColors layers_;
   bool has_texture_ = false;

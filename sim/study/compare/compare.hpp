@@ -64,6 +64,7 @@ struct Comparison {
   // H - S as well: the storage rounding of a plane that climbs by halves has a mean of its own.
   ErrorMoments datapath_bias, color_datapath_bias;
   ErrorMoments color_over_w;             ///< of surfaces: their primitive's own colour before a texture, LSB of 8 bits
+  ErrorMoments fog;                      ///< of a colour in fog, against its own in real fog; LSB of 8 bits
   ErrorMoments line_datapath;            ///< the depth of lines and points, whose bound is another; not in `datapath`
   std::optional<TextureErrors> texture;  ///< of the pixels that show one; none: no pixel does
   std::vector<LayerRow> layers;          ///< pixels whose colour is more than one fragment's; not in `color_parts`

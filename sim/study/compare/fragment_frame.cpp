@@ -25,7 +25,7 @@ std::array<std::uint8_t, 4> color_of(const TappedFragment& fragment) {
 std::uint32_t alpha_of(const TappedFragment& fragment) { return color_of(fragment)[3]; }
 
 bool shows_back(const TappedFragment& fragment, const State& state) {
-  if (fragment.triangle == nullptr) return false;
+  if (!state.stencil || fragment.triangle == nullptr) return false;
   const auto& v = fragment.triangle->v;
   return halfplane::shows_back(signed_area(v[0], v[1], v[2]), state.front);
 }

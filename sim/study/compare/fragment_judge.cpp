@@ -25,6 +25,8 @@ void raise(Held& worst, const Held& candidate) {
 
 void raise(SurfaceVerdict& worst, const SurfaceErrors& errors) {
   raise(worst.color, errors.color);
+  raise(worst.fog_factor, errors.fog_factor);
+  raise(worst.fog, errors.fog);
   if (!errors.has_texture) return;
   raise(worst.coordinate, errors.coordinate);
   raise(worst.level, errors.level_size);
@@ -131,6 +133,8 @@ std::vector<std::string> broken_fragment_bounds(const FragmentVerdict& verdict, 
   hold(verdict.surfaces.coordinate, "fragments: a texture coordinate is %.4f texels from the exact one (bound %.4f)");
   hold(verdict.surfaces.level, "fragments: a level of detail is %.3f from the exact one (bound %.2f)");
   hold(verdict.surfaces.filter, "fragments: a texel is %.3f LSB from the real filter at its place (bound %.2f)");
+  hold(verdict.surfaces.fog_factor, "fragments: the factor of fog is %.3f LSB from the real one (bound %.3f)");
+  hold(verdict.surfaces.fog, "fragments: a colour is %.3f LSB from the same one in real fog (bound %.3f)");
   return broken;
 }
 

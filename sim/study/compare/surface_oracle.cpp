@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/golden/exact.hpp"
+#include "model/golden/fog.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane {
@@ -76,6 +77,7 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
   setup_ = golden::setup_triangle(v);
   if (state_.color_interp == ColorInterp::perspective)
     color_bound_ = over_w_bound(largest_code, ratio_of(w), format, format.color, config.tile_size);
+  if (state_.fog) set_fog(w, format, config.tile_size);
   if (texture_ == nullptr) return;
   sampler_ = Sampler(*texture_, state_);
   const double w_ratio = state_.texture_interp == TextureInterp::affine ? 1 : ratio_of(w);
@@ -89,6 +91,16 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
   }
 }
 
+/// Q_i is rounded, one below 1/2 to 1, and its plane is off by delta; the reciprocal of the area is off in all of it.
+void SurfaceOracle::set_fog(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size) {
+  fog_ = fog_table(state_);
+  q_code_ = std::ldexp(1.0, -q_exponent(w, format.q_bits));
+  const double smallest = 1 / std::max({w[0], w[1], w[2]}) / q_code_;
+  const double delta = std::ldexp(tile_size + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);
+  q_lost_ = (smallest < 0.5 ? 1 : 0.5) + delta;
+  q_relative_ = std::ldexp(1.0, -format.reciprocal_bits);
+}
+
 SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) const {
   const double px = x + 0.5, py = y + 0.5;
   const std::array e{setup_.edge[0].value(px, py), setup_.edge[1].value(px, py), setup_.edge[2].value(px, py)};
@@ -99,7 +111,25 @@ SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) c
   for (std::size_t c = 0; c < 4 && color_bound_ < HUGE_VAL; ++c)
     errors.color.value = std::max(errors.color.value, std::abs(sample.primitive[c] - exact.rgba[c]));
   if (texture_ != nullptr) compare_texels(sample, exact, errors);
+  if (fog_) compare_fog(sample, exact.inverse_w, errors);
   return errors;
+}
+
+/// Of the model's own colour before the fog: what is off is the factor, and the rounding of its product.
+void SurfaceOracle::compare_fog(const SurfaceSample& sample, double inverse_w, SurfaceErrors& errors) const {
+  const double off = fog_error_bound(*fog_, 1 / inverse_w, q_lost_ * q_code_ / inverse_w + q_relative_);
+  const double part = golden::fog_part(*state_.fog, inverse_w);
+  golden::RealColor clear{};
+  for (std::size_t c = 0; c < 4; ++c) clear[c] = sample.clear[c];
+  const golden::RealColor real = golden::in_fog(state_, clear, part);
+  errors.has_fog = true;
+  errors.fog_factor = {255 * std::abs(std::ldexp(sample.fog, -kFogFactorBits) - part), 255 * off};
+  errors.fog = {0, 0.5};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Held held{std::abs(sample.color[c] - real[c]), std::abs(clear[c] - state_.fog_color[c]) * off + 0.5};
+    if (!(held.ratio() <= errors.fog.ratio())) errors.fog = held;
+  }
+  errors.exact = golden::in_fog(state_, errors.exact, part);
 }
 
 void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact,

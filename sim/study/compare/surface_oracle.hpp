@@ -47,6 +47,9 @@ struct SurfaceErrors {
   Held level_size;           ///< its size
   Held filter;               ///< texel less real one at the hardware's own coordinate and level, LSB of 8 bits
   TexelErrors texel;
+  bool has_fog = false;
+  Held fog_factor;  ///< f, times 255
+  Held fog;         ///< the channel in fog that is nearest to its bound, of the same colour in real fog; LSB of 8 bits
 };
 
 class SurfaceOracle {
@@ -56,6 +59,8 @@ class SurfaceOracle {
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
 
  private:
+  void set_fog(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size);
+  void compare_fog(const SurfaceSample& sample, double inverse_w, SurfaceErrors& errors) const;
   void compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact, SurfaceErrors& errors) const;
 
   const State& state_;
@@ -65,6 +70,8 @@ class SurfaceOracle {
   golden::Setup<double> setup_;
   double color_bound_ = HUGE_VAL, level_bound_ = HUGE_VAL;
   std::array<double, 2> coordinate_bound_{};
+  std::shared_ptr<const FogTable> fog_;              ///< none: no fog
+  double q_code_ = 0, q_lost_ = 0, q_relative_ = 0;  ///< what a code of Q is, how many it is off, and what part besides
 };
 
 /// What real arithmetic allows an attribute over w to be off, texels or LSB: coordinate_error_bound(), which is to first

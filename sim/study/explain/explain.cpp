@@ -13,14 +13,6 @@
 namespace halfplane::explain {
 namespace {
 
-void require_inside(const Scene& scene, const std::vector<Pixel>& pixels) {
-  for (const auto [x, y] : pixels)
-    if (x < 0 || y < 0 || x >= scene.width || y >= scene.height)
-      throw InputError("pixel " + std::to_string(x) + " " + std::to_string(y) + " lies outside the target of " +
-                       std::to_string(scene.width) + "x" + std::to_string(scene.height) + "; give 0 0 to " +
-                       std::to_string(scene.width - 1) + " " + std::to_string(scene.height - 1));
-}
-
 Stored stored_at(const Framebuffer& frame, Pixel pixel) {
   const std::size_t at = frame.at(pixel.x, pixel.y);
   return {frame.depth[at], frame.color[at], -1, frame.stencil[at]};
@@ -57,6 +49,14 @@ void add_engine(const Scene& scene, const Config& config, Explanation& result) {
 }
 
 }  // namespace
+
+void require_inside(const Scene& scene, const std::vector<Pixel>& pixels) {
+  for (const auto [x, y] : pixels)
+    if (x < 0 || y < 0 || x >= scene.width || y >= scene.height)
+      throw InputError("pixel " + std::to_string(x) + " " + std::to_string(y) + " lies outside the target of " +
+                       std::to_string(scene.width) + "x" + std::to_string(scene.height) + "; give 0 0 to " +
+                       std::to_string(scene.width - 1) + " " + std::to_string(scene.height - 1));
+}
 
 Explanation explain(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels,
                     const Options& options) {

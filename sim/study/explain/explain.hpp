@@ -17,6 +17,9 @@ struct Options {
   std::function<void(double fraction)> progress;  ///< 0...1 over all of it; may be empty, may throw to end the work
 };
 
+/// Throws InputError, naming the first pixel outside the target.
+void require_inside(const Scene& scene, const std::vector<Pixel>& pixels);
+
 /// Throws InputError for a pixel outside the target, for a scene that the engines refuse and, with an RTL, for one that the
 /// hardware does.
 [[nodiscard]] Explanation explain(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels,

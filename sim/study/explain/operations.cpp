@@ -89,15 +89,27 @@ Result change_stencil(FragmentAtWork& f, OperationStep& step) {
 }
 
 bool writes_color(const FragmentAtWork& f) { return f.context.fragment_ops.state.color_write; }
-bool is_textured(const FragmentAtWork& f) {
-  const bool is_seen = tests_alpha(f) || (writes_color(f) && !failed_test(f));
-  return f.surface != nullptr && !f.surface->texture.empty() && is_seen;
-}
+bool is_seen(const FragmentAtWork& f) { return tests_alpha(f) || (writes_color(f) && !failed_test(f)); }
+bool is_textured(const FragmentAtWork& f) { return f.surface != nullptr && !f.surface->texture.empty() && is_seen(f); }
 Result texture(FragmentAtWork& f, OperationStep& step) {
   const SurfaceSample& sample = f.surface->sample;
   step.figures = {{"combine", {}, 0, word_of("texture_combine", f.context.state)},
                   channels("before", f.color),
                   channels("texel", sample.texel)};
+  for (std::size_t c = 0; c < 4; ++c) f.color[c] = sample.clear[c];
+  step.figures.push_back(channels("after", f.color));
+  return {};
+}
+
+bool is_fogged(const FragmentAtWork& f) { return f.surface != nullptr && f.context.fog && is_seen(f); }
+Result add_fog(FragmentAtWork& f, OperationStep& step) {
+  const SurfaceSample& sample = f.surface->sample;
+  const FogTable& fog = *f.context.fog;
+  const auto kind = static_cast<std::size_t>(fog.fog().kind);
+  step.figures = {{"kind", {}, 0, draw_state("fog").numbers[0].words[kind]},
+                  {"factor", {sample.fog}, kFogFactorBits + 1},
+                  {"fog", {fog.color().begin(), fog.color().end()}, 8},
+                  channels("before", f.color)};
   for (std::size_t c = 0; c < 4; ++c) f.color[c] = sample.color[c];
   step.figures.push_back(channels("after", f.color));
   return {};
@@ -151,7 +163,8 @@ constexpr Operation kOperations[] = {
     {"stencil_test", Stage::depth_test, has_stencil, test_stencil},
     {"depth_test", Stage::depth_test, always, test_depth},
     {"texture", Stage::texture_unit, is_textured, texture},
-    {"alpha_test", Stage::rop, tests_alpha, test_alpha},
+    {"fog", Stage::rop, is_fogged, add_fog},
+    {"alpha_test", Stage::depth_test, tests_alpha, test_alpha},
     {"write_stencil", Stage::depth_test, changes_stencil, change_stencil},
     {"blend", Stage::rop, blends, blend},
     {"pack_color", Stage::rop, writes_color, pack},

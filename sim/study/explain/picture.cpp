@@ -37,10 +37,6 @@ bool is_piece(const Entry& a, const Entry& b) {
   return a.primitive == b.primitive && a.draw == b.draw && a.piece == b.piece && a.kind == b.kind;
 }
 
-bool is_in(const Rect& box, Pixel at) {
-  return at.x >= box.x && at.x < box.x + box.width && at.y >= box.y && at.y < box.y + box.height;
-}
-
 std::vector<Shown> shown_primitives(const Explanation& around, const Rect& box) {
   std::vector<const Entry*> covering, near;
   const auto add = [](std::vector<const Entry*>& list, const Entry& entry) {
@@ -203,6 +199,10 @@ void draw_legend(Picture& sheet, int x, int y, const std::vector<Shown>& shown, 
 }
 
 }  // namespace
+
+bool is_in(const Rect& box, Pixel at) {
+  return at.x >= box.x && at.x < box.x + box.width && at.y >= box.y && at.y < box.y + box.height;
+}
 
 Window window_around(const Rect& box, int margin, const Scene& scene) {
   const int left = std::max(0, box.x - margin), top = std::max(0, box.y - margin);

@@ -14,6 +14,8 @@ struct Window {
 /// `margin` pixels on each side of the box, where there are any.
 [[nodiscard]] Window window_around(const Rect& box, int margin, const Scene& scene);
 
+[[nodiscard]] bool is_in(const Rect& box, Pixel at);
+
 /// `around`: explained pixels of the window, row by row. Drawn are the primitives that a pixel of `box` tells of: those
 /// that cover one of them, and if there are none those that pass near.
 [[nodiscard]] Picture neighbourhood_picture(const Explanation& around, const Window& window, const Rect& box,

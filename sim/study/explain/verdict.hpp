@@ -26,7 +26,7 @@ namespace halfplane::explain {
   VERDICT(uncovered,     fine_raster,   false, "it does not cover the pixel's sample")                       \
   VERDICT(stencil,       depth_test,    true,  "the stencil test fails")                                     \
   VERDICT(depth,         depth_test,    true,  "the depth test fails")                                       \
-  VERDICT(alpha,         rop,           true,  "it passes the other tests, but not that of its alpha")       \
+  VERDICT(alpha,         depth_test,    true,  "it passes the other tests, but not that of its alpha")       \
   VERDICT(masked,        rop,           true,  "it passes, and neither depth nor colour may be written")     \
   VERDICT(written,       rop,           true,  "it passes and is written")
 // clang-format on

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "model/packet_words.hpp"
+#include "model/stages/depth_test.hpp"
 #include "sim/cosim/arrows.hpp"
 
 namespace halfplane::explain {
@@ -89,7 +90,7 @@ bool agree(const Outcome& hardware, const Outcome& specification) {
   const bool draws = s == Verdict::written || s == Verdict::masked;
   if (s == Verdict::alpha) return drew || h == Verdict::alpha;  // the packets of depth_test do not tell
   if (drew || draws) return h == s;
-  if (s == Verdict::depth) return h == Verdict::depth || h == Verdict::tiles_hiz;
+  if (s == Verdict::depth || s == Verdict::stencil) return h == Verdict::depth || h == Verdict::tiles_hiz;
   return h != Verdict::depth;  // nothing covers: whoever says so first
 }
 
@@ -138,13 +139,24 @@ void check_fragment(const HardwareVisit& visit, const PixelHistory& pixel, const
                   "codes of fragment packet and specification differ");
   if (!visit.write) return;
   const std::size_t s = visit.sample;
-  if (const auto depth = figure_of(entry, "depth_test", "fragment"))
-    checks.same(visit.write->depth[s], *depth, place, "depths of write packet and specification differ");
+  const Widths widths = derive_widths(config);
+  const bool writes = visit.write->write_depth.has(s);
+  // Where the stencil alone changes, the word has the depth that was stored.
+  const PrimitiveState& state = visit.fragment->state;
+  const bool keeps_depth = state.tests_stencil && !(visit.write->passed.has(s) && state.depth_write);
+  if (const auto depth = figure_of(entry, "depth_test", "fragment"); depth && !keeps_depth)
+    checks.same(depth_of(visit.write->depth[s], widths), *depth, place,
+                "depths of write packet and specification differ");
   // Behind a texture no packet says what the alpha test drops.
   const bool is_late = has_texture_planes(config) && figure_of(entry, "alpha_test", "reference");
   if (is_late) return;
-  checks.holds(visit.write->write_depth.has(s) == figure_of(entry, "write_depth", "after").has_value(), place,
-               "write packet and specification differ in whether depth is written");
+  const auto stencil = figure_of(entry, "write_stencil", "after");
+  if (!stencil || !has_stencil(config))
+    checks.holds(writes == figure_of(entry, "write_depth", "after").has_value(), place,
+                 "write packet and specification differ in whether depth is written");
+  else
+    checks.same(writes ? stencil_of(visit.write->depth[s], widths) : *figure_of(entry, "write_stencil", "before"),
+                *stencil, place, "stencil values of write packet and specification differ");
   const auto color = figure_of(entry, "write_color", "after");
   checks.holds(visit.write->write_color.has(s) == color.has_value(), place,
                "write packet and specification differ in whether colour is written");
@@ -219,6 +231,9 @@ void verify(const Config& config, Explanation& result) {
       if (config.frame_store == FrameStore::all)
         checks.same(pixel.model.depth, pixel.hardware->depth, place,
                     "stored depths of specification and hardware differ");
+      if (config.frame_store == FrameStore::all && has_stencil(config))
+        checks.same(pixel.model.stencil, pixel.hardware->stencil, place,
+                    "stored stencil values of specification and hardware differ");
       checks.same(pixel.model.color, pixel.hardware->color, place,
                   "stored colours of specification and hardware differ");
     }
@@ -226,6 +241,9 @@ void verify(const Config& config, Explanation& result) {
       has_rtl = true;
       if (config.frame_store == FrameStore::all)
         checks.same(pixel.hardware->depth, pixel.rtl->depth, place, "stored depths of model and RTL differ");
+      if (config.frame_store == FrameStore::all)
+        checks.same(pixel.hardware->stencil, pixel.rtl->stencil, place,
+                    "stored stencil values of model and RTL differ");
       checks.same(pixel.hardware->color, pixel.rtl->color, place, "stored colours of model and RTL differ");
     }
   }

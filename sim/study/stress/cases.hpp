@@ -80,6 +80,7 @@ void opaque_blend(Unit& unit);
 void alpha_parts(Unit& unit);
 void mask_parts(Unit& unit);
 void stencil_counts(Unit& unit);
+void fog(Unit& unit);
 // engine_cases.cpp
 void traversals(Unit& unit);
 void fill_rules(Unit& unit);

@@ -1,6 +1,7 @@
 // Fragment operations: pictures that must be the same to the bit, and colours under layers against real arithmetic.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "model/engines/scalar.hpp"
 #include "sim/scene/random_state.hpp"
@@ -179,6 +180,38 @@ void stencil_counts(Unit& unit) {
                    : 0;
   unit.count_checks(drawn.count.size());
   unit.measure("stencil", "pixels", static_cast<double>(wrong), 0, builder.scene);
+}
+
+void fog(Unit& unit) {
+  Random& random = unit.random;
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  state = with(unit, state, {"fog_color", "color_interp", "alpha_test", "blend"});
+  const double ratio = std::exp2(random.between(0, 13)), scale = std::exp2(random.between(-20, 20));
+  const auto distance = [&] { return scale * std::pow(ratio, random.unit()); };
+  Fog of{static_cast<FogKind>(random.index(3)), distance(), distance()};
+  if (of.kind != FogKind::linear) of.start = of.end = 1 / of.end;
+  if (of.start > of.end) std::swap(of.start, of.end);
+  if (random.index(8) == 0) of.start = 0;
+  if (of.kind != FogKind::linear) of.end = of.start;
+  state.fog = of;
+  SceneBuilder builder(unit.width(40), unit.height(32), state);
+  add_triangles(unit, builder, 3);
+  for (Vertex& vertex : builder.scene.vertices) vertex.w = distance();
+  const Scene& scene = builder.scene;
+  const Config config = with_alpha(unit.config, scene);
+  FragmentJudge judge(scene, config);
+  RenderOptions options = render_options();
+  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
+  const FragmentVerdict verdict = judge.finish(render_scalar(scene, unit.config, options));
+  unit.count_samples(verdict.fragments);
+  if (verdict.fragments > 0) {
+    unit.measure("fog", "LSB", verdict.surfaces.fog.value, verdict.surfaces.fog.bound, scene);
+    unit.measure("factor", "LSB", verdict.surfaces.fog_factor.value, verdict.surfaces.fog_factor.bound, scene);
+  }
+  const Rendering drawn = rendered(unit, scene);
+  const Rendering plain = unit.engine(scene, unit.config, {});  // without taps, in its own way
+  unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
 }
 
 }  // namespace halfplane::stress

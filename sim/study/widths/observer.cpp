@@ -15,6 +15,7 @@ namespace {
 constexpr std::array kByConstruction{&Widths::primitive_id,
                                      &Widths::slot,
                                      &Widths::stored_color,
+                                     &Widths::stored_depth,
                                      &Widths::kind,
                                      &Widths::flag,
                                      &Widths::depth_func,

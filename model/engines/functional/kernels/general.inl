@@ -38,7 +38,7 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
 inline bool shows_back(const Bin& bin, const Slice& slice, const Record& record) {
   if (!bin.ops->stencil || record.kind() != RecordKind::triangle) return false;
   const VertexRow &a = slice.vertices[record.v[0]], &b = slice.vertices[record.v[1]], &c = slice.vertices[record.v[2]];
-  const std::int64_t area = std::int64_t{b.x - a.x} * (c.y - a.y) - std::int64_t{b.y - a.y} * (c.x - a.x);
+  const std::int64_t area = signed_area({a.x, a.y, {}}, {b.x, b.y, {}}, {c.x, c.y, {}});
   return halfplane::shows_back(area, slice.context->state.front);
 }
 

@@ -150,16 +150,61 @@ HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int ti
   }
 }
 
-/// Colours of a tile's `pixels`, in a format, to the places of the tile's 64.
-HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                            std::uint32_t* const colors, ColorFormat format) {
-  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels, colors, format);
+/// What lanes do, but for fog.
+HALFPLANE_INLINE void shade_in_lanes(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                                     std::uint32_t* const colors, ColorFormat format) {
   switch (sampling_of(surface.constants)) {
     case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels, colors, format);
     case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels, colors, format);
     case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels, colors, format);
     case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels, colors, format);
   }
+}
+
+/// f of pixels, 2^-12: FogTable::factor().
+HALFPLANE_INLINE I16 fog_factors(const I16& q, const LaneFog& fog, int up) {
+  const I16 bits = float_bits(shift_right_logical(q, up));
+  const I16 position = min(max((bits >> (kFloatFraction - kFogPlaceBits)) - fog.first, I16(0)), I16(fog.last));
+  const I16 line = (position >> fog.place_bits) << 1, place = position & ((1 << fog.place_bits) - 1);
+  const auto* const numbers = &fog.lines->start;
+  const I16 sum = (gather(numbers, line) << fog.place_bits) + gather(numbers, line + 1) * place + (1 << (fog.drop - 1));
+  return min(max(sum >> fog.drop, I16(0)), I16(kFogClear));
+}
+
+/// fogged().
+HALFPLANE_INLINE ColorPairs in_fog(const ColorPairs& color, const I16& factor, const LaneFog& fog) {
+  const auto mixed = [&](const I16& channel, std::size_t c) HALFPLANE_LAMBDA {
+    const std::int32_t at_none = (fog.color[c] << kFogFactorBits) + (1 << (kFogFactorBits - 1));
+    return ((channel - fog.color[c]) * factor + at_none) >> kFogFactorBits;
+  };
+  return ColorPairs(mixed(color.red_blue & 0xffff, 0) | (mixed(color.red_blue >> 16, 2) << 16),
+                    mixed(color.green_alpha & 0xffff, 1) | (color.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
+}
+
+/// The same with fog, which is a pass of its own over the colours of 8 bits: so it costs nothing where there is none.
+HALFPLANE_NOINLINE void shade_in_fog(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                                     std::uint32_t* const colors, ColorFormat format) {
+  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> clear{};
+  shade_in_lanes(bin, surface, tile, pixels, clear.data(), ColorFormat::rgba8888);
+  const LaneFog& fog = surface.constants.fog;
+  const BlockRamp<I16> q = over_w_ramp(bin, fog.q, tile % kBinTiles, tile / kBinTiles);
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) return;
+    const I16 factors = fog_factors(q(block), fog, surface.constants.division.up);
+    const ColorPairs pairs = in_fog(ColorPairs(I16::load(clear.data() + block * kBlockPixels)), factors, fog);
+    const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
+    std::uint32_t* const to = colors + block * kBlockPixels;
+    select_by_bits(bits, color, I16::load(to), bin.position.to_sign).store(to);
+  });
+}
+
+/// Colours of a tile's `pixels`, in a format, to the places of the tile's 64.
+HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                            std::uint32_t* const colors, ColorFormat format) {
+  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels, colors, format);
+  if (surface.constants.has_fog) return shade_in_fog(bin, surface, tile, pixels, colors, format);
+  shade_in_lanes(bin, surface, tile, pixels, colors, format);
 }
 /// To memory, as they are stored.
 HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {

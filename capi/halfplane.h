@@ -1,0 +1,97 @@
+/* The C interface of Halfplane: configurations, scenes from memory, rendering, and each stage of the pipeline by itself, for
+ * test benches (DPI-C, ctypes, cffi) and for drivers in other languages. docs/your-rtl.md shows it at work.
+ *
+ * Nothing here throws or aborts. A function that fails returns NULL or a negative number, and halfplane_last_error() says why
+ * in one line. NULL in place of a handle is such an error; every ..._free takes NULL. A handle serves one thread at a time.
+ *
+ * Stable: what is declared here keeps its meaning while HALFPLANE_ABI is the same; additions leave it. */
+#ifndef HALFPLANE_H
+#define HALFPLANE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define HALFPLANE_API __attribute__((visibility("default")))
+#else
+#define HALFPLANE_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define HALFPLANE_ABI 1
+
+/* HALFPLANE_ABI of the library that is loaded. */
+HALFPLANE_API int halfplane_abi(void);
+
+/* What the last call of this thread that failed has to say: one line, "" before any. Valid until the next failure. */
+HALFPLANE_API const char* halfplane_last_error(void);
+
+/* --- configurations ------------------------------------------------------------------------------------------------------ */
+
+typedef struct halfplane_config halfplane_config;
+
+/* A preset: "tiny", "small", "embedded" or "full". */
+HALFPLANE_API halfplane_config* halfplane_config_new(const char* preset);
+/* As `--set key=value`. Returns 0. Whether all values go together is looked at where the configuration is used. */
+HALFPLANE_API int halfplane_config_set(halfplane_config* config, const char* key, const char* value);
+/* Writes the value of a key and a 0, cut to `bytes`. Returns the length of the whole value. */
+HALFPLANE_API int halfplane_config_get(const halfplane_config* config, const char* key, char* value, size_t bytes);
+HALFPLANE_API void halfplane_config_free(halfplane_config* config);
+
+/* --- scenes and images --------------------------------------------------------------------------------------------------- */
+
+typedef struct halfplane_scene halfplane_scene;
+typedef struct halfplane_frame halfplane_frame;
+
+/* A capture (docs/capture.md) that lies in memory: exact to the bit, any state. The files of its
+ * textures are looked for in the current folder; inline ones need none. */
+HALFPLANE_API halfplane_scene* halfplane_scene_read(const char* text, size_t bytes);
+HALFPLANE_API void halfplane_scene_free(halfplane_scene* scene);
+
+/* Draws a scene. Engines: "functional", "scalar" and "cycle" give the same bits; "golden" the exact image, rounded at the end.
+ * "cycle" runs with an ideal memory, from reset to the answer to the last write. */
+HALFPLANE_API halfplane_frame* halfplane_render(const halfplane_scene* scene, const halfplane_config* config,
+                                                const char* engine);
+HALFPLANE_API int halfplane_frame_width(const halfplane_frame* frame); /* pixels */
+HALFPLANE_API int halfplane_frame_height(const halfplane_frame* frame);
+/* Copies a plane, row by row from the top, width * height values, and returns their number. Planes: "depth" (codes), "color"
+ * (stored codes: rgb565, or R in the lowest byte), "stencil". `count`: the room in `values`, which must hold them all. */
+HALFPLANE_API int64_t halfplane_frame_plane(const halfplane_frame* frame, const char* plane, uint32_t* values,
+                                            size_t count);
+/* Of "golden": "depth" in LSB of the interpolated depth, a value a pixel; "color" 0 to 255, R, G, B, A of each pixel. */
+HALFPLANE_API int64_t halfplane_frame_reals(const halfplane_frame* frame, const char* plane, double* values,
+                                            size_t count);
+/* "primitives_in", "drawn", "covered", "depth_passed", "alpha_killed", "written"; of "cycle" also "cycles". */
+HALFPLANE_API int64_t halfplane_frame_counter(const halfplane_frame* frame, const char* name);
+HALFPLANE_API void halfplane_frame_free(halfplane_frame* frame);
+
+/* --- a stage by itself --------------------------------------------------------------------------------------------------- */
+
+/* The specification of one stage, from reset. It has ports, numbered as docs/your-rtl.md lists them; a packet is the packed
+ * struct of raster_pkg.sv, 32 bits a word, the lowest first: what DPI-C passes for a packed struct. */
+typedef struct halfplane_stage halfplane_stage;
+
+HALFPLANE_API halfplane_stage* halfplane_stage_new(const halfplane_config* config, const char* name);
+/* The number of ports that go in (is_out 0) or come out (is_out 1). */
+HALFPLANE_API int halfplane_stage_ports(const halfplane_stage* stage, int is_out);
+/* A port's name, and its packets' size in bits. */
+HALFPLANE_API const char* halfplane_stage_port_name(const halfplane_stage* stage, int is_out, int port);
+HALFPLANE_API int halfplane_stage_port_bits(const halfplane_stage* stage, int is_out, int port);
+/* The fields of its packets, highest bits first: "edge_value[0]"; bits, negative for a signed field. */
+HALFPLANE_API int halfplane_stage_fields(const halfplane_stage* stage, int is_out, int port);
+HALFPLANE_API const char* halfplane_stage_field_name(const halfplane_stage* stage, int is_out, int port, int field);
+HALFPLANE_API int halfplane_stage_field_bits(const halfplane_stage* stage, int is_out, int port, int field);
+/* The next packet of a port that goes in. Bits above the packet's are not looked at. Returns 0. A packet that no stage can
+ * take (a place outside the target) is an error, and the stage takes nothing more. */
+HALFPLANE_API int halfplane_stage_put(halfplane_stage* stage, int port, const uint32_t* words);
+/* The next packet of a port that comes out. Returns 1; or 0 when there is none before more is put in. */
+HALFPLANE_API int halfplane_stage_get(halfplane_stage* stage, int port, uint32_t* words);
+HALFPLANE_API void halfplane_stage_free(halfplane_stage* stage);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

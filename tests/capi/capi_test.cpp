@@ -1,0 +1,189 @@
+// The C interface: the same bits as the engines and stages behind it, and one line for everything that is wrong.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "halfplane.h"
+
+namespace {
+
+constexpr const char* kScene =
+    "halfplane 1\ntarget 16 16\nclear color 10 20 30 255 depth 1 stencil 7\nspace window\n"
+    "v 1 1 0.25 1 255 0 0 255\nv 15 2 0.5 1 0 255 0 255\nv 3 14 0.75 1 0 0 255 255\nt 0 1 2\n";
+
+class Capi : public testing::Test {
+ protected:
+  void SetUp() override {
+    config = halfplane_config_new("tiny");
+    ASSERT_NE(config, nullptr) << halfplane_last_error();
+    scene = halfplane_scene_read(kScene, std::strlen(kScene));
+    ASSERT_NE(scene, nullptr) << halfplane_last_error();
+  }
+  void TearDown() override {
+    halfplane_scene_free(scene);
+    halfplane_config_free(config);
+  }
+  [[nodiscard]] std::vector<std::uint32_t> plane(const char* engine, const char* name) const {
+    halfplane_frame* frame = halfplane_render(scene, config, engine);
+    EXPECT_NE(frame, nullptr) << halfplane_last_error();
+    std::vector<std::uint32_t> values(256);
+    EXPECT_EQ(halfplane_frame_plane(frame, name, values.data(), values.size()), 256) << halfplane_last_error();
+    halfplane_frame_free(frame);
+    return values;
+  }
+  static void expect_error(std::int64_t status, const std::string& part) {
+    EXPECT_LT(status, 0);
+    EXPECT_NE(std::string(halfplane_last_error()).find(part), std::string::npos) << halfplane_last_error();
+  }
+  static void expect_error(const void* made, const std::string& part) { expect_error(made == nullptr ? -1 : 0, part); }
+
+  halfplane_config* config = nullptr;
+  halfplane_scene* scene = nullptr;
+};
+
+TEST_F(Capi, IsTheAbiOfItsHeader) { EXPECT_EQ(halfplane_abi(), HALFPLANE_ABI); }
+
+TEST_F(Capi, EnginesDrawTheSameBits) {
+  for (const char* name : {"depth", "color", "stencil"}) {
+    const auto functional = plane("functional", name);
+    EXPECT_EQ(plane("scalar", name), functional) << name;
+    if (std::strcmp(name, "stencil") != 0) {
+      EXPECT_EQ(plane("cycle", name), functional) << name;
+    }
+  }
+  EXPECT_EQ(plane("functional", "stencil")[0], 7u);
+}
+
+TEST_F(Capi, FramesCountAndTheGoldenIsReal) {
+  halfplane_frame* golden = halfplane_render(scene, config, "golden");
+  ASSERT_NE(golden, nullptr) << halfplane_last_error();
+  EXPECT_EQ(halfplane_frame_width(golden), 16);
+  EXPECT_EQ(halfplane_frame_height(golden), 16);
+  std::vector<double> depth(256), color(1024);
+  EXPECT_EQ(halfplane_frame_reals(golden, "depth", depth.data(), depth.size()), 256);
+  EXPECT_EQ(halfplane_frame_reals(golden, "color", color.data(), color.size()), 1024);
+  EXPECT_NEAR(color[0], 10, 1e-9);
+  const auto codes = plane("functional", "depth");
+  for (std::size_t p = 0; p < 256; ++p) EXPECT_NEAR(depth[p], codes[p], 40) << p;  // snapped by up to 1/32 pixel
+  halfplane_frame* cycle = halfplane_render(scene, config, "cycle");
+  EXPECT_GT(halfplane_frame_counter(cycle, "cycles"), 64);
+  EXPECT_EQ(halfplane_frame_counter(cycle, "written"), halfplane_frame_counter(golden, "written"));
+  expect_error(halfplane_frame_counter(golden, "cycles"), "no counter 'cycles'");
+  expect_error(halfplane_frame_reals(cycle, "depth", depth.data(), depth.size()), "only the golden");
+  expect_error(halfplane_frame_plane(golden, "color", nullptr, 256), "is NULL");
+  std::vector<std::uint32_t> few(255);
+  expect_error(halfplane_frame_plane(golden, "color", few.data(), few.size()), "room for 255 values of 256");
+  halfplane_frame_free(cycle);
+  halfplane_frame_free(golden);
+}
+
+TEST_F(Capi, SettingsAreThoseOfTheProgram) {
+  std::array<char, 8> value{};
+  EXPECT_EQ(halfplane_config_set(config, "depth.bits", "20"), 0);
+  EXPECT_EQ(halfplane_config_get(config, "depth.bits", value.data(), value.size()), 2);
+  EXPECT_STREQ(value.data(), "20");
+  EXPECT_EQ(halfplane_config_get(config, "color.format", value.data(), 4), 6);
+  EXPECT_STREQ(value.data(), "rgb") << "cut";
+  EXPECT_EQ(halfplane_config_get(config, "color.format", nullptr, 0), 6);
+  expect_error(halfplane_config_set(config, "depth.bit", "20"), "no setting 'depth.bit'");
+  expect_error(halfplane_config_set(config, "depth.bits", "99"), "depth.bits");
+  expect_error(halfplane_config_get(config, "none", value.data(), value.size()), "no setting 'none'");
+}
+
+TEST_F(Capi, WhatIsWrongIsSaidInOneLine) {
+  expect_error(halfplane_config_new("big"), "no preset 'big'");
+  expect_error(halfplane_config_new(nullptr), "the preset is NULL");
+  expect_error(halfplane_scene_read("halfplane 1\nnothing\n", 20), "scene:2: ");
+  expect_error(halfplane_render(scene, config, "gpu"), "no engine 'gpu'");
+  expect_error(halfplane_render(nullptr, config, "scalar"), "the scene is NULL");
+  expect_error(halfplane_stage_new(config, "fine_rast"), "did you mean fine_raster?");
+  expect_error(halfplane_stage_new(config, "viewport"), "cannot be run by itself");
+  expect_error(halfplane_stage_new(config, "texture_unit"), "no texture unit");
+  expect_error(halfplane_frame_width(nullptr), "the frame is NULL");
+  std::thread([] { EXPECT_STREQ(halfplane_last_error(), "") << "another thread's"; }).join();
+  halfplane_config_free(nullptr);
+  halfplane_scene_free(nullptr);
+  halfplane_frame_free(nullptr);
+  halfplane_stage_free(nullptr);
+}
+
+/// The words of a packet of which some fields are given, the others 0. Fields count from the highest bit.
+class PacketOf {
+ public:
+  PacketOf(halfplane_stage* stage, int is_out, int port) : stage_(stage), is_out_(is_out), port_(port) {
+    words_.resize(static_cast<std::size_t>((halfplane_stage_port_bits(stage, is_out, port) + 31) / 32));
+  }
+  void set(const std::string& field, std::uint64_t value) {
+    const auto [low, bits] = place(field);
+    for (int i = 0; i < bits; ++i)
+      if ((value >> i & 1) != 0) words_[static_cast<std::size_t>((low + i) / 32)] |= 1U << (low + i) % 32;
+  }
+  [[nodiscard]] std::uint64_t get(const std::string& field) const {
+    const auto [low, bits] = place(field);
+    std::uint64_t value = 0;
+    for (int i = 0; i < bits; ++i)
+      value |= std::uint64_t{words_[static_cast<std::size_t>((low + i) / 32)] >> (low + i) % 32 & 1} << i;
+    return value;
+  }
+  [[nodiscard]] std::uint32_t* words() { return words_.data(); }
+
+ private:
+  [[nodiscard]] std::pair<int, int> place(const std::string& field) const {
+    int low = halfplane_stage_port_bits(stage_, is_out_, port_);
+    for (int f = 0; f < halfplane_stage_fields(stage_, is_out_, port_); ++f) {
+      const int bits = std::abs(halfplane_stage_field_bits(stage_, is_out_, port_, f));
+      low -= bits;
+      if (halfplane_stage_field_name(stage_, is_out_, port_, f) == field) return {low, bits};
+    }
+    ADD_FAILURE() << "no field " << field;
+    return {0, 0};
+  }
+  halfplane_stage* stage_;
+  int is_out_, port_;
+  std::vector<std::uint32_t> words_;
+};
+
+TEST_F(Capi, AStageTakesPacketsAsTheyCome) {
+  halfplane_stage* stage = halfplane_stage_new(config, "fine_raster");
+  ASSERT_NE(stage, nullptr) << halfplane_last_error();
+  EXPECT_EQ(halfplane_stage_ports(stage, 0), 2);
+  EXPECT_EQ(halfplane_stage_ports(stage, 1), 1);
+  EXPECT_STREQ(halfplane_stage_port_name(stage, 0, 0), "tile");
+  EXPECT_STREQ(halfplane_stage_port_name(stage, 0, 1), "edges");
+  PacketOf tile(stage, 0, 0), edges(stage, 0, 1), stamp(stage, 1, 0);
+  tile.set("is_visit", 1);
+  tile.set("ends_primitive", 1);
+  tile.set("right", 3);
+  for (const char* step : {"step_x[0]", "step_x[1]", "step_x[2]"}) edges.set(step, 1);  // inside from the left on
+  EXPECT_EQ(halfplane_stage_get(stage, 0, stamp.words()), 0) << "nothing has gone in";
+  EXPECT_EQ(halfplane_stage_put(stage, 1, edges.words()), 0);
+  EXPECT_EQ(halfplane_stage_get(stage, 0, stamp.words()), 0) << "edges wait for their tile";
+  EXPECT_EQ(halfplane_stage_put(stage, 0, tile.words()), 0);
+  for (unsigned n = 0; n < 4; ++n) {
+    ASSERT_EQ(halfplane_stage_get(stage, 0, stamp.words()), 1);
+    EXPECT_EQ(stamp.get("stamp"), n);
+    EXPECT_EQ(stamp.get("mask"), 1u);
+    EXPECT_EQ(stamp.get("ends_visit"), n == 3 ? 1u : 0u);
+  }
+  EXPECT_EQ(halfplane_stage_get(stage, 0, stamp.words()), 0);
+  expect_error(halfplane_stage_put(stage, 2, tile.words()), "no port 2");
+  expect_error(halfplane_stage_get(stage, 1, stamp.words()), "no port 1");
+  expect_error(halfplane_stage_put(stage, 0, nullptr), "the packet is NULL");
+  expect_error(halfplane_stage_field_name(stage, 0, 0, 99), "no field 99");
+  EXPECT_LT(halfplane_stage_field_bits(stage, 0, 1, 0), 0) << "steps are signed";
+  halfplane_stage_free(stage);
+}
+
+TEST_F(Capi, AStageThatCannotTakeAPacketSaysSoFromThenOn) {
+  halfplane_stage* stage = halfplane_stage_new(config, "triangle_setup");
+  ASSERT_NE(stage, nullptr) << halfplane_last_error();
+  PacketOf flat(stage, 0, 0);  // a triangle of area 0
+  expect_error(halfplane_stage_put(stage, 0, flat.words()), "a triangle without area");
+  expect_error(halfplane_stage_put(stage, 0, flat.words()), "a triangle without area");
+  halfplane_stage_free(stage);
+}
+
+}  // namespace
