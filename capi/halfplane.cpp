@@ -46,6 +46,8 @@ auto guarded(Failure failure, Work&& work) noexcept -> decltype(work()) {
       last_error = "there is not enough memory";
     } catch (const std::exception& error) {
       last_error = error.what();
+      std::ranges::replace_if(
+          last_error, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     }
   } catch (...) {  // of the assignments
   }

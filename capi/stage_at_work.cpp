@@ -1,5 +1,7 @@
 #include "stage_at_work.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 
 namespace halfplane::capi {
@@ -28,15 +30,23 @@ StageAtWork::StageAtWork(const Config& config, std::string_view name)
       in_ports_(described(stage_.in, widths_)),
       out_ports_(described(stage_.out, widths_)),
       in_(in_ports_.size()),
-      out_(out_ports_.size()) {
+      out_(out_ports_.size()),
+      process_(getpid()) {
   vectors::require_stage(stage_, config_);
   if (stage_.run == nullptr)
     throw InputError("stage " + std::string(name) + " cannot be run by itself: " + std::string(stage_.why_not));
   thread_ = std::thread([this] { run(); });
   go_on();
+  if (!error_) return;
+  thread_.join();
+  std::rethrow_exception(error_);
 }
 
 StageAtWork::~StageAtWork() {
+  if (process_ != getpid()) {
+    thread_.detach();
+    return;
+  }
   is_ending_ = true;
   if (!has_ended_) go_on();
   thread_.join();
@@ -77,11 +87,21 @@ void StageAtWork::send(std::size_t port, std::span<const std::uint32_t> words) {
 
 void StageAtWork::put(std::size_t port, const std::uint32_t* words) {
   const PortInfo& info = in_ports_.at(port);
+  if (error_) std::rethrow_exception(error_);
+  require_own_process();
   Packet packet(words, words + words_of(info));
   if (info.bits % 32 != 0) packet.back() &= ~0U >> (32 - info.bits % 32);
+  const auto values = vectors::values_of(stage_.in[port].like, widths_, packet);
+  if (const std::string fault = vectors::place_fault(info.fields, values, config_, widths_); !fault.empty())
+    throw InputError(fault);
   in_[port].push_back(std::move(packet));
   if (!has_ended_ && port == waits_for_) go_on();
   if (error_) std::rethrow_exception(error_);
+}
+
+/// A child of fork() has the stage and not its thread.
+void StageAtWork::require_own_process() const {
+  if (process_ != getpid()) throw InputError("this stage belongs to the process that made it");
 }
 
 bool StageAtWork::get(std::size_t port, std::uint32_t* words) {

@@ -30,8 +30,8 @@ class StageAtWork final : vectors::StageIo {
   };
   [[nodiscard]] const std::vector<PortInfo>& ports(bool is_out) const { return is_out ? out_ports_ : in_ports_; }
 
-  /// `words`: as many as the port's bits need. Throws InputError for a packet that the stage cannot take; then the stage is at
-  /// its end, and says so again whatever else is put.
+  /// `words`: as many as the port's bits need. Throws InputError for a place outside the target; and for a packet that the stage
+  /// cannot take, and then the stage is at its end and says so again whatever else is put.
   void put(std::size_t port, const std::uint32_t* words);
   /// False: there is none.
   [[nodiscard]] bool get(std::size_t port, std::uint32_t* words);
@@ -43,6 +43,7 @@ class StageAtWork final : vectors::StageIo {
   void send(std::size_t port, std::span<const std::uint32_t> words) override;
   void run();
   void go_on();
+  void require_own_process() const;
 
   Config config_;
   Widths widths_;
@@ -55,6 +56,7 @@ class StageAtWork final : vectors::StageIo {
   std::exception_ptr error_;
   std::binary_semaphore stage_turn_{0}, caller_turn_{0};
   std::thread thread_;
+  const long process_;
 };
 
 }  // namespace halfplane::capi

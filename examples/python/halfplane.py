@@ -37,7 +37,7 @@ _c = _load()
 def _checked(result):
     """A handle or a number as it came, unless it says that something failed."""
     if result is None or result < 0:
-        raise Error(_c.halfplane_last_error().decode())
+        raise Error(_c.halfplane_last_error().decode(errors="replace"))
     return result
 
 

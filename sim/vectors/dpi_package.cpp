@@ -71,10 +71,14 @@ void print_config(std::ostream& out, const Config& config) {
   const Config base = preset(config.preset);
   out << "\n  // The configuration of raster_pkg.\n  function automatic chandle new_config();\n"
          "    chandle made = halfplane_config_new(\""
-      << config.preset << "\");\n    int failed = made == null ? 1 : 0;\n";
+      << config.preset
+      << "\");\n    int failed = 0;\n"
+         "    if (halfplane_abi() != 1) $fatal(1, \"libhalfplane_c has another ABI than this package\");\n"
+         "    if (made == null) $fatal(1, \"%s\", halfplane_last_error());\n";
   for (const Setting& setting : settings())
     if (const std::string value = get(config, setting); value != get(base, setting))
-      out << "    failed |= halfplane_config_set(made, \"" << setting.key << "\", \"" << value << "\");\n";
+      out << "    if (failed == 0) failed = halfplane_config_set(made, \"" << setting.key << "\", \"" << value
+          << "\");\n";
   out << "    if (failed != 0) $fatal(1, \"%s\", halfplane_last_error());\n    return made;\n  endfunction\n";
 }
 

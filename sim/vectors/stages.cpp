@@ -450,4 +450,22 @@ std::vector<std::uint32_t> words_from(std::span<const FieldName> fields, std::sp
   return words;
 }
 
+std::string place_fault(std::span<const FieldName> fields, std::span<const std::uint64_t> values, const Config& config,
+                        const Widths& widths) {
+  const auto limit_of = [&](std::string_view name) {
+    const bool is_x = name == "x" || name == "left" || name == "right";
+    const bool is_y = name == "y" || name == "top" || name == "bottom";
+    if (name == "tile_x") return widths.tiles_x;
+    if (name == "tile_y") return widths.tiles_y;
+    return is_x ? config.target_width : is_y ? config.target_height : 0;
+  };
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const int limit = limit_of(fields[i].name);
+    if (limit != 0 && values[i] >= static_cast<std::uint64_t>(limit))
+      return "'" + fields[i].name + "' is " + std::to_string(values[i]) + ", and the largest target ends at " +
+             std::to_string(limit - 1);
+  }
+  return {};
+}
+
 }  // namespace halfplane::vectors

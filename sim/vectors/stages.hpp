@@ -65,5 +65,9 @@ struct FieldName {
                                                    std::span<const std::uint32_t> words);
 [[nodiscard]] std::vector<std::uint32_t> words_from(std::span<const FieldName> fields,
                                                     std::span<const std::uint64_t> values);
+/// What is wrong with a packet that goes in: it has a tile or a pixel outside the largest target, which no specification has a
+/// place for. Empty: nothing.
+[[nodiscard]] std::string place_fault(std::span<const FieldName> fields, std::span<const std::uint64_t> values,
+                                      const Config& config, const Widths& widths);
 
 }  // namespace halfplane::vectors

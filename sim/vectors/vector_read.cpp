@@ -102,22 +102,9 @@ class Reader {
   /// A packet that is read. The specification is given what goes in, and has no tile or pixel outside the largest target; what
   /// comes out is only compared, and may be as wrong as it likes.
   void add(const Place& place, std::span<const std::uint64_t> values, const SourceLine& at) {
-    const Config& config = file_.config;
-    const auto most = [&](std::string_view name) -> std::uint64_t {
-      const bool is_x = name == "x" || name == "left" || name == "right";
-      const bool is_y = name == "y" || name == "top" || name == "bottom";
-      const int limit = is_x               ? config.target_width
-                        : is_y             ? config.target_height
-                        : name == "tile_x" ? widths_.tiles_x
-                        : name == "tile_y" ? widths_.tiles_y
-                                           : 0;
-      return limit == 0 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(limit) - 1;
-    };
     const auto& names = fields(place);
-    for (std::size_t i = 0; !place.is_out && i < names.size(); ++i)
-      if (values[i] > most(names[i].name))
-        at.fail("'" + names[i].name + "' is " + std::to_string(values[i]) + ", and the largest target ends at " +
-                std::to_string(most(names[i].name)));
+    if (!place.is_out)
+      if (const std::string fault = place_fault(names, values, file_.config, widths_); !fault.empty()) at.fail(fault);
     list(place).push(words_from(names, values));
   }
   void add_words(const Place& place, std::span<const std::uint32_t> words, const SourceLine& at) {

@@ -51,7 +51,8 @@ std::string jsonl_text(const JudgedStage& stage, const Config& config, const Sta
                        const std::string& source) {
   const Widths widths = derive_widths(config);
   const PortFields fields(stage, widths);
-  std::string text = header_json(stage, config, widths, source).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text =
+      header_json(stage, config, widths, source).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   replay_stage(stage, config, packets,
                [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
                  const Port& port = (is_out ? stage.out : stage.in)[p];
@@ -140,7 +141,9 @@ std::vector<WrittenFile> write_vectors(const std::string& path, Format format, c
   };
   add(stage.in, packets.in);
   add(stage.out, packets.out);
-  written.push_back(write_text(in_folder("header.json"), header_json(stage, config, widths, source).dump(1, ' ', false, Json::error_handler_t::replace) + "\n"));
+  written.push_back(write_text(
+      in_folder("header.json"),
+      header_json(stage, config, widths, source).dump(1, ' ', false, Json::error_handler_t::replace) + "\n"));
   return written;
 }
 

@@ -1,5 +1,7 @@
 // The C interface: the same bits as the engines and stages behind it, and one line for everything that is wrong.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <string>
@@ -174,6 +176,37 @@ TEST_F(Capi, AStageTakesPacketsAsTheyCome) {
   expect_error(halfplane_stage_put(stage, 0, nullptr), "the packet is NULL");
   expect_error(halfplane_stage_field_name(stage, 0, 0, 99), "no field 99");
   EXPECT_LT(halfplane_stage_field_bits(stage, 0, 1, 0), 0) << "steps are signed";
+  halfplane_stage_free(stage);
+}
+
+TEST_F(Capi, APlaceOutsideTheTargetIsRefusedAndNothingElseHappens) {
+  halfplane_config* small = halfplane_config_new("small");
+  halfplane_stage* stage = halfplane_stage_new(small, "coarse_raster");
+  ASSERT_NE(stage, nullptr) << halfplane_last_error();
+  PacketOf setup(stage, 0, 0), outside(stage, 0, 1), inside(stage, 0, 1), context(stage, 1, 0);
+  outside.set("tile_x", 63);
+  EXPECT_EQ(halfplane_stage_put(stage, 1, inside.words()), 0);
+  expect_error(halfplane_stage_put(stage, 1, outside.words()), "'tile_x' is 63, and the largest target ends at");
+  EXPECT_EQ(halfplane_stage_put(stage, 0, setup.words()), 0);
+  EXPECT_EQ(halfplane_stage_get(stage, 0, context.words()), 1);
+  halfplane_stage_free(stage);
+  halfplane_config_free(small);
+}
+
+TEST_F(Capi, InAChildAStageOfItsParentIsRefused) {
+  halfplane_stage* stage = halfplane_stage_new(config, "fine_raster");
+  ASSERT_NE(stage, nullptr) << halfplane_last_error();
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(10);
+    PacketOf tile(stage, 0, 0);
+    const bool is_refused = halfplane_stage_put(stage, 0, tile.words()) < 0;
+    halfplane_stage_free(stage);
+    _exit(is_refused ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   halfplane_stage_free(stage);
 }
 
