@@ -86,8 +86,8 @@ HALFPLANE_API const char* halfplane_stage_field_name(const halfplane_stage* stag
 HALFPLANE_API int halfplane_stage_field_bits(const halfplane_stage* stage, int is_out, int port, int field);
 /* The next packet of a port that goes in. Bits above the packet's are not looked at. Returns 0. A place outside the
  * largest target is an error, and nothing happens. A packet that the stage cannot take is one too, and the stage takes nothing
- * more. What else no hardware sends is not looked for: on a box
- * that ends before it begins coarse_raster may work for ever. In a child of fork() a stage of its parent takes nothing. */
+ * more. What else no hardware sends is not looked for: on a box that ends before it begins coarse_raster may work for ever. In
+ * a child of fork() a stage of its parent takes nothing. */
 HALFPLANE_API int halfplane_stage_put(halfplane_stage* stage, int port, const uint32_t* words);
 /* The next packet of a port that comes out. Returns 1; or 0 when there is none before more is put in. */
 HALFPLANE_API int halfplane_stage_get(halfplane_stage* stage, int port, uint32_t* words);

@@ -81,24 +81,15 @@ bool FrameBins::add(const HostPrimitive& primitive) {
   } else {
     is_seen = add_to_bins(to_bounds(packet.box), [](const PixelBounds&) { return true; });
   }
-  if (is_seen)
-    items_.push_back({packet, primitive.primitive, primitive.command, kNoLine, primitive.texture_state,
-                      primitive.colors, primitive.texture_levels, primitive.texture_lines, primitive.stencil});
+  if (is_seen) items_.push_back({packet, primitive.primitive, primitive.command, kNoLine, primitive.units});
   return is_seen;
 }
 
 void FrameBins::add(const HostPrimitive& primitive, const WholeLine& line) {
   add_to_bins(bounds_of(line, widths_.grid_bits),
               [&](const PixelBounds& bin) { return setup_in(line, bin, widths_).has_value(); });
-  items_.push_back({primitive.packet,
-                    primitive.primitive,
-                    primitive.command,
-                    static_cast<std::uint32_t>(lines_.size()),
-                    primitive.texture_state,
-                    primitive.colors,
-                    0,
-                    {},
-                    primitive.stencil});
+  items_.push_back({primitive.packet, primitive.primitive, primitive.command, static_cast<std::uint32_t>(lines_.size()),
+                    primitive.units});
   lines_.push_back(line);
 }
 
@@ -130,8 +121,7 @@ std::optional<HostPrimitive> FrameBins::next() {
 
 /// What of a primitive lies in a bin.
 HostPrimitive FrameBins::part(const Item& item, const PixelBounds& bin) const {
-  HostPrimitive out{item.packet,        {},          item.primitive,      item.command,       true,
-                    item.texture_state, item.colors, item.texture_levels, item.texture_lines, item.stencil};
+  HostPrimitive out{item.packet, {}, item.primitive, item.command, true, item.units};
   if (item.line == kNoLine) {
     out.packet.box = to_box(intersection(to_bounds(item.packet.box), bin));
     return out;

@@ -52,11 +52,7 @@ class FrameBins {
     PrimitivePacket packet;
     std::uint32_t primitive = 0, command = 0;
     std::uint32_t line = kNoLine;  ///< index into lines_
-    std::uint64_t texture_state = 0;
-    ColorWords colors{};
-    std::uint32_t texture_levels = 0;
-    std::optional<TextureLines> texture_lines{};
-    StencilWords stencil{};
+    UnitWords units{};
   };
 
   [[nodiscard]] PixelBounds box_of(std::size_t bin) const;

@@ -10,6 +10,15 @@
 
 namespace halfplane {
 
+/// What the units must be set to for a primitive: words of their registers, as tokens carry them.
+struct UnitWords {
+  std::uint64_t texture_state = 0;              ///< of a triangle: TextureState
+  std::uint32_t texture_levels = 0;             ///< likewise TextureLevels
+  std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
+  ColorWords colors{};                          ///< of what is drawn
+  StencilWords stencil{};                       ///< likewise; of a fast clear: its value
+};
+
 /// The packet, and where it came from.
 struct HostPrimitive {
   static constexpr std::uint32_t kNoCommand = ~0U;
@@ -19,17 +28,13 @@ struct HostPrimitive {
   std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise: of the next one
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
   bool is_part = false;                ///< what lies in one bin: the host has counted the whole
-  std::uint64_t texture_state = 0;     ///< of a triangle: what the texture unit must be set to (TextureState)
-  ColorWords colors{};                 ///< of what is drawn: what the units behind it must be set to
-  std::uint32_t texture_levels = 0;    ///< likewise TextureLevels
-  std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
-  StencilWords stencil{};  ///< of what is drawn: what the depth test must be set to; of a fast clear: its value
+  UnitWords units{};
 };
 
 /// The stencil value that a fast clear of depth leaves.
 [[nodiscard]] inline std::uint8_t clear_stencil(const HostPrimitive& clear) {
   StencilState state;
-  if (clear.stencil.test[0]) state.set(StateRegister::stencil_test, front_only(*clear.stencil.test[0]));
+  if (const auto& test = clear.units.stencil.test[0]) state.set(StateRegister::stencil_test, front_only(*test));
   return state.clear_value();
 }
 

@@ -86,7 +86,7 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   clear_depth(first, 1.0, config);
   clear_color(first, {0, 0, 0, 255}, config);
   HostPrimitive out = host_primitive(first, 0);
-  if (has_stencil(config)) out.stencil.test[0] = pack_test(replacing_stencil(0));
+  if (has_stencil(config)) out.units.stencil.test[0] = pack_test(replacing_stencil(0));
   send(out);
   pending_.back().command = HostPrimitive::kNoCommand;
 }
@@ -108,7 +108,7 @@ std::optional<HostPrimitive> HostStream::next() {
 /// The registers of colours that have another value than wanted. At the start of a scene nobody knows what they hold.
 void HostStream::set_colors(const HostPrimitive& primitive) {
   const auto set = [&](StateRegister which, std::optional<std::uint32_t> ColorWords::*word) {
-    const auto& wanted = primitive.colors.*word;
+    const auto& wanted = primitive.units.colors.*word;
     if (!wanted || wanted == colors_.*word) return;
     colors_.*word = wanted;
     in_front_.push_back(state_token(which, *wanted, primitive));
@@ -121,7 +121,7 @@ void HostStream::set_colors(const HostPrimitive& primitive) {
 /// Likewise those of the stencil. What is the same for both sides goes in one token.
 void HostStream::set_stencil(const HostPrimitive& primitive) {
   const auto set = [&](StateRegister which, auto member) {
-    const auto& wanted = primitive.stencil.*member;
+    const auto& wanted = primitive.units.stencil.*member;
     auto& held = stencil_.*member;
     std::uint32_t sides = 0;
     for (const std::size_t n : {0U, 1U})
@@ -142,24 +142,24 @@ void HostStream::set_stencil(const HostPrimitive& primitive) {
 /// What the texture unit must be told in front of a triangle. The first state of a scene drops what is left of another one's
 /// texels.
 void HostStream::set_texture(const HostPrimitive& triangle) {
-  if (triangle.texture_state != texture_state_) {
-    TextureState next = TextureState::unpack(triangle.texture_state);
+  if (triangle.units.texture_state != texture_state_) {
+    TextureState next = TextureState::unpack(triangle.units.texture_state);
     next.invalidates = !texture_state_;
-    texture_state_ = triangle.texture_state;
+    texture_state_ = triangle.units.texture_state;
     in_front_.push_back(state_token(StateRegister::texture, next.pack(), triangle));
   }
-  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.texture_state).enable)
+  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.units.texture_state).enable)
     return;
-  if (triangle.texture_levels != texture_levels_) {
-    texture_levels_ = triangle.texture_levels;
-    in_front_.push_back(state_token(StateRegister::texture_levels, triangle.texture_levels, triangle));
+  if (triangle.units.texture_levels != texture_levels_) {
+    texture_levels_ = triangle.units.texture_levels;
+    in_front_.push_back(state_token(StateRegister::texture_levels, triangle.units.texture_levels, triangle));
   }
-  if (!triangle.texture_lines || triangle.texture_lines == texture_lines_) return;
-  texture_lines_ = triangle.texture_lines;
+  if (!triangle.units.texture_lines || triangle.units.texture_lines == texture_lines_) return;
+  texture_lines_ = triangle.units.texture_lines;
   const int part_bits = line_part_bits(state_word_bits(widths_));
   for (int n = 0; n < line_parts(part_bits); ++n)
     in_front_.push_back(
-        state_token(StateRegister::texture_lines, line_part(*triangle.texture_lines, part_bits, n), triangle));
+        state_token(StateRegister::texture_lines, line_part(*triangle.units.texture_lines, part_bits, n), triangle));
 }
 
 /// A register of a unit has its value from here on.
@@ -314,7 +314,7 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) c
     packet.coordinates.reach[axis] = scale.reach;
     packet.coordinates.origin[axis] = coordinates.reference[axis];
   }
-  out.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
+  out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
   if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
 }
 
@@ -323,7 +323,7 @@ void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& 
                             const PerspectiveFormat& format, HostPrimitive& out) const {
   const State& state = context_->state;
   const TextureLevels levels = texture_levels(scene_.textures[*state.texture], state);
-  out.texture_levels = levels.pack();
+  out.units.texture_levels = levels.pack();
   const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
   if (!needs_level(levels, state.texture_mag) || cull(area, out.packet.cull, state.front) != CullResult::keep) return;
   const auto order = canonical_order(triangle.v, area);
@@ -336,7 +336,7 @@ void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& 
     for (const std::size_t axis : {0U, 1U}) texels[axis][i] = coordinates.texels[axis][order[i]];
   }
   const LodSetup lod = setup_lod(v, std::abs(area), q, texels, format.guard_bits, widths_.grid_bits);
-  out.texture_lines = TextureLines::pack(lod, Sampler(scene_.textures[*state.texture], state).bias);
+  out.units.texture_lines = TextureLines::pack(lod, Sampler(scene_.textures[*state.texture], state).bias);
 }
 
 /// Of the whole target; of no plane so far.
@@ -377,13 +377,13 @@ void HostStream::send_clear(const Clear& command) {
   if (clear.depth) clear_depth(packet, *clear.depth, config_);
   if (clear.color) clear_color(packet, *clear.color, config_);
   HostPrimitive out = host_primitive(packet, primitive_);
-  if (!is_fast) out.colors = color_words({packet.state, {}, {}, {}}, config_);  // whatever has been drawn before
-  if (clear.stencil && is_fast) out.stencil.test[0] = pack_test(replacing_stencil(*clear.stencil));
+  if (!is_fast) out.units.colors = color_words({packet.state, {}, {}, {}}, config_);  // whatever has been drawn before
+  if (clear.stencil && is_fast) out.units.stencil.test[0] = pack_test(replacing_stencil(*clear.stencil));
   if (clear.stencil && !is_fast) {
     const Stencil replacing = replacing_stencil(*clear.stencil);
     (void)set_stencil_flags(out.packet.state, {replacing, replacing});
-    out.stencil.test[0] = pack_test(replacing);  // a rectangle shows its front
-    out.stencil.update[0] = pack_update(replacing);
+    out.units.stencil.test[0] = pack_test(replacing);  // a rectangle shows its front
+    out.units.stencil.update[0] = pack_update(replacing);
   }
   note_words(out.packet.state);
   if (is_whole && clear.depth) depth_everywhere_ = clear.depth;
@@ -407,8 +407,8 @@ HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uin
 HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out = host_primitive(packet, primitive);
   const FragmentOps& ops = context_->fragment_ops;
-  out.colors = color_words(ops, config_);
-  if (packet.state.tests_stencil) out.stencil = stencil_words(*ops.stencil);
+  out.units.colors = color_words(ops, config_);
+  if (packet.state.tests_stencil) out.units.stencil = stencil_words(*ops.stencil);
   return out;
 }
 

@@ -1,7 +1,8 @@
 // Depth test: a stamp's depth codes against the stored ones, the stencil before that, and what follows from the result.
 //
-// In: a FragmentPacket and the words stored under it: depth codes, the stencil above each (stencil.bits). Out: a WritePacket but for its colours, which rop adds, and at the end of
-// a tile visit a RetirePacket. The arithmetic of the test is fragment_ops.hpp's.
+// In: a FragmentPacket and the words stored under it: depth codes, the stencil above each (stencil.bits). Out: a WritePacket
+// but for its colours, which rop adds, and at the end of a tile visit a RetirePacket. The arithmetic of the test is that of
+// fragment_ops.hpp.
 //
 // The alpha test stands here where the colour is known: without a texture unit. With one it comes behind that; then a draw
 // that tests alpha and writes depth is late: what passes here is only written, and counted as written, once its alpha is known.

@@ -77,9 +77,9 @@ mutant(30 lib/fifo.sv "dropped stall: a full queue takes one more"
 mutant(31 stages/depth_test.sv "hazard: the mask of the stamp ahead is ignored, its depth is not seen"
   [=[valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x]=]
   [=[1'b0 && fragment_q.key.tile_x == fragment_i.key.tile_x]=])
-mutant(32 stages/depth_test.sv "depth test: gequal fails on equal codes"
-  [=[func == raster_pkg::DEPTH_FUNC_GEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS]=]
-  [=[func == raster_pkg::DEPTH_FUNC_ALWAYS]=])
+mutant(32 lib/passing_orders.sv "depth test: gequal fails on equal codes"
+  [=[func_i == raster_pkg::DEPTH_FUNC_GEQUAL || func_i == raster_pkg::DEPTH_FUNC_ALWAYS]=]
+  [=[func_i == raster_pkg::DEPTH_FUNC_ALWAYS]=])
 mutant(33 stages/depth_test.sv "HiZ: the bound comes from the stamp's first sample"
   [=[corner > max_q ? corner : max_q]=] [=[corner_00 > max_q ? corner_00 : max_q]=])
 mutant(34 stages/depth_test.sv "stale HiZ: greater and its like leave the bound as it was"

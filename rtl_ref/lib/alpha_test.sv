@@ -7,14 +7,13 @@ module alpha_test (
     output logic [raster_pkg::SAMPLES-1:0]         passes_o
 );
 
-  // The function as the three orders in which it lets a sample pass.
   logic less_passes, equal_passes, greater_passes;
-  assign less_passes    = func_i == raster_pkg::DEPTH_FUNC_LESS || func_i == raster_pkg::DEPTH_FUNC_LEQUAL ||
-                          func_i == raster_pkg::DEPTH_FUNC_NOTEQUAL || func_i == raster_pkg::DEPTH_FUNC_ALWAYS;
-  assign equal_passes   = func_i == raster_pkg::DEPTH_FUNC_EQUAL || func_i == raster_pkg::DEPTH_FUNC_LEQUAL ||
-                          func_i == raster_pkg::DEPTH_FUNC_GEQUAL || func_i == raster_pkg::DEPTH_FUNC_ALWAYS;
-  assign greater_passes = func_i == raster_pkg::DEPTH_FUNC_GREATER || func_i == raster_pkg::DEPTH_FUNC_GEQUAL ||
-                          func_i == raster_pkg::DEPTH_FUNC_NOTEQUAL || func_i == raster_pkg::DEPTH_FUNC_ALWAYS;
+  passing_orders u_orders (
+      .func_i   (func_i),
+      .less_o   (less_passes),
+      .equal_o  (equal_passes),
+      .greater_o(greater_passes)
+  );
 
   genvar s;
   generate

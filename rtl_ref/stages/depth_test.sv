@@ -86,16 +86,13 @@ module depth_test (
     color_q    <= color;
   end
 
-  // The depth function as the three orders in which it lets a sample pass.
-  raster_pkg::depth_func_t func;
   logic less_passes, equal_passes, greater_passes;
-  assign func           = fragment_q.state.depth_test;
-  assign less_passes    = func == raster_pkg::DEPTH_FUNC_LESS || func == raster_pkg::DEPTH_FUNC_LEQUAL ||
-                          func == raster_pkg::DEPTH_FUNC_NOTEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
-  assign equal_passes   = func == raster_pkg::DEPTH_FUNC_EQUAL || func == raster_pkg::DEPTH_FUNC_LEQUAL ||
-                          func == raster_pkg::DEPTH_FUNC_GEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
-  assign greater_passes = func == raster_pkg::DEPTH_FUNC_GREATER || func == raster_pkg::DEPTH_FUNC_GEQUAL ||
-                          func == raster_pkg::DEPTH_FUNC_NOTEQUAL || func == raster_pkg::DEPTH_FUNC_ALWAYS;
+  passing_orders u_orders (
+      .func_i   (fragment_q.state.depth_test),
+      .less_o   (less_passes),
+      .equal_o  (equal_passes),
+      .greater_o(greater_passes)
+  );
 
   // The alpha test, where the colour is known here: without a texture unit. With one W decides, and what writes depth is late.
   // Its register is set by a token.
