@@ -14,7 +14,7 @@
 #include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_mapping.hpp"
-#include "sim/scene/load.hpp"
+#include "sim/scene/text_cursor.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
@@ -82,7 +82,13 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
       ->check(refuse_empty);
   app.add_option("--camera", options.camera,
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT' or "
-                 "'name=NAME' for one of a glTF file's own");
+                 "'name=NAME' for one of a glTF file's own; 'orbit' or 'orbit=DEGREES' turns it about the target");
+  app.add_option("--time", options.time,
+                 "seconds into the animation of a glTF file (without it: as the file is at rest)")
+      ->check(refuse_empty);
+  app.add_option("--animation", options.animation,
+                 "which of the file's animations, by name or number (without it: the first)")
+      ->check(refuse_empty);
   add_seed_option(app, options, "seed of scenes with something random in them");
   app.add_option("--threads", options.threads, "use at most N threads (functional engine, depth)")
       ->check(CLI::Range(1, 1024));
@@ -158,26 +164,51 @@ Skip parse_skip(const std::string& text) {
   return skip;
 }
 
-Scene load_scene(const CommonOptions& options, const Config& config, double& load_s, ObjectCounts* objects) {
-  const Convention convention = parse_convention(options.convention);
-  const CullObjects cull_objects = parse_cull_objects(options.cull_objects);
-  const auto start = std::chrono::steady_clock::now();
+std::optional<TimeSpan> parse_time(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::size_t dots = text.find("..");
+  const std::optional<double> from = parse_number(text.substr(0, dots));
+  const std::optional<double> to =
+      dots == std::string::npos ? from : parse_number(std::string_view(text).substr(dots + 2));
+  if (!from || !to || *from < 0 || *to < *from)
+    throw InputError("--time: '" + text +
+                     "' is no time; give seconds from 0 on, as in 1.5, or with --frames as in 0..2");
+  return TimeSpan{*from, dots == std::string::npos ? std::nullopt : to};
+}
+
+MovingScene open_scene(const CommonOptions& options, const Config& config) {
   const Size size = parse_size(options.size);
-  SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed};
+  SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed, options.animation};
   if (options.size.empty() && !is_capture(options.scene)) {
     request.width = std::min(640, config.target_width);
     request.height = std::min(480, config.target_height);
   }
   std::vector<std::string> warnings;
-  Scene scene = load_scene(request, warnings);
+  MovingScene source = open_scene(request, warnings);
   for (const std::string& warning : warnings) std::cerr << "halfplane: warning: " << warning << '\n';
-  const ObjectCounts counts = select_object_culling(scene, cull_objects);
+  return source;
+}
+
+Scene prepared(Scene scene, const CommonOptions& options, const Config& config, ObjectCounts* objects) {
+  const Convention convention = parse_convention(options.convention);
+  const ObjectCounts counts = select_object_culling(scene, parse_cull_objects(options.cull_objects));
   if (objects != nullptr) *objects = counts;
   scene = in_convention(std::move(scene), convention);
   if (convention.has_reversed_z && config.depth_mapping != DepthMapping::projection)
     throw InputError("--convention " + options.convention +
                      " and depth.mapping both set the order of depth; leave one out");
-  scene = in_depth_mapping(std::move(scene), config.depth_mapping);
+  return in_depth_mapping(std::move(scene), config.depth_mapping);
+}
+
+Scene load_scene(const CommonOptions& options, const Config& config, double& load_s, ObjectCounts* objects) {
+  (void)parse_convention(options.convention);  // before a long file is read
+  (void)parse_cull_objects(options.cull_objects);
+  const std::optional<TimeSpan> time = parse_time(options.time);
+  if (time && time->to)
+    throw InputError("--time: '" + options.time + "' is a span of time, for render --frames; give one time");
+  const auto start = std::chrono::steady_clock::now();
+  const Moment moment{time ? std::optional(time->from) : std::nullopt};
+  Scene scene = prepared(open_scene(options, config).at(moment), options, config, objects);
   load_s = seconds_since(start);
   return scene;
 }
@@ -269,6 +300,8 @@ std::string scene_arguments(const CommonOptions& options, const Config& config) 
   std::string text = config_arguments(config);
   if (!options.size.empty()) text += " --size " + quoted(options.size);
   if (!options.camera.empty()) text += " --camera " + quoted(options.camera);
+  if (!options.time.empty()) text += " --time " + quoted(options.time);
+  if (!options.animation.empty()) text += " --animation " + quoted(options.animation);
   if (options.convention != "gl") text += " --convention " + quoted(options.convention);
   if (options.cull_objects != "box") text += " --cull-objects " + quoted(options.cull_objects);
   return text;

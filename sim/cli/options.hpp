@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <iosfwd>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/scene.hpp"
+#include "sim/scene/load.hpp"
 #include "sim/scene/object_cull.hpp"
 
 namespace halfplane {
@@ -35,6 +37,7 @@ struct CommonOptions {
   std::vector<std::string> settings;  ///< key=value
   std::string size;                   ///< WxH
   std::string camera;
+  std::string time, animation;
   std::uint64_t seed = 1;
   int threads = 1;
   std::string skip = "all";
@@ -72,6 +75,22 @@ struct Size {
 
 /// `--skip all|none|NAME,NAME...`. Throws InputError naming the legal names.
 [[nodiscard]] Skip parse_skip(const std::string& text);
+
+/// `--time T` or `--time A..B`, seconds.
+struct TimeSpan {
+  double from = 0;
+  std::optional<double> to;
+};
+/// Nothing for an empty text. Throws InputError.
+[[nodiscard]] std::optional<TimeSpan> parse_time(const std::string& text);
+
+/// What the options ask for, before a moment is chosen. Prints warnings to stderr. See load_scene().
+[[nodiscard]] MovingScene open_scene(const CommonOptions& options, const Config& config);
+
+/// A scene of open_scene() as the engines take it: objects outside the view left out, in the options' convention and the
+/// configuration's mapping of depth.
+[[nodiscard]] Scene prepared(Scene scene, const CommonOptions& options, const Config& config,
+                             ObjectCounts* objects = nullptr);
 
 /// Loads the scene that the options ask for, in its convention; a size that is not given fits the configuration's target.
 /// Prints warnings to stderr, sets `load_s`, and `objects` if there is one.

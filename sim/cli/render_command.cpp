@@ -9,10 +9,8 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
 #include "sim/cli/commands.hpp"
-#include "sim/cli/cycle_options.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/study_options.hpp"
-#include "sim/cosim/rtl_engine.hpp"
+#include "sim/cli/render_frames.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
@@ -22,21 +20,7 @@
 namespace halfplane {
 namespace {
 
-struct RenderCommand : CommonOptions {
-  std::string engine = "functional";
-  StudyOptions study;
-  CycleCommandOptions cycle;
-  std::string color_path, depth_path, count_path, ids_path, draws_path;
-  int repeat = 0;
-};
-
 constexpr std::array<std::string_view, 6> kEngines{"functional", "scalar", "cycle", "rtl", "golden", "golden32"};
-
-/// What the engines with cycles say besides the picture.
-struct CycleFacts {
-  LockstepResult rtl;
-  std::optional<CycleResult> cycle;
-};
 
 Rendering render_golden(const Scene& scene, const Config& config, golden::Precision precision,
                         const RenderOptions& render) {
@@ -55,7 +39,8 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
   return rendering;
 }
 
-/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted. `progress` may throw Interrupted.
+}  // namespace
+
 Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
                      const std::function<void(double)>& progress) {
   RenderOptions render;
@@ -81,6 +66,8 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
   return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() let no other through
 }
+
+namespace {
 
 // Everything that can be refused before a scene is read.
 void check_options(const RenderCommand& options, const Config& config) {
@@ -109,13 +96,16 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, stored_format(config).bits);
   check_distinct({options.scene, options.json, options.color_path, options.depth_path, options.count_path,
                   options.ids_path, options.draws_path, options.cycle.primitives_path, options.cycle.trace_path,
-                  options.cycle.heat_path});
+                  options.cycle.heat_path, options.csv_path, options.chart_path});
   check_output(options.color_path, ".png");
   check_output(options.depth_path);
   check_output(options.count_path, ".npy");
   check_output(options.ids_path, ".npy");
   check_output(options.draws_path, ".png");
+  check_frames(options);
 }
+
+}  // namespace
 
 Json counters_json(const Counters& c) {
   return {{"primitives", {{"in", c.primitives_in}, {"culled", c.culled}, {"drawn", c.drawn}, {"clipped", c.clipped}}},
@@ -140,6 +130,8 @@ Json counters_json(const Counters& c) {
             {"attributes", c.skipped.attributes},
             {"clear", c.skipped.clear}}}};
 }
+
+namespace {
 
 /// {stage: {busy, stalled, starved, items}}, in cycles of the stage's output.
 Json stages_json(const LockstepResult& run) {
@@ -177,6 +169,8 @@ Json measure(const RenderCommand& options, const Scene& scene, const Config& con
   return json;
 }
 
+}  // namespace
+
 void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config,
                  const std::string& title) {
   const Framebuffer& frame = rendering.frame;
@@ -187,6 +181,8 @@ void write_files(const RenderCommand& options, const Rendering& rendering, const
   if (!options.draws_path.empty())
     write_png(options.draws_path, draws_sheet(title, color_picture(frame, config.color_format), rendering.count));
 }
+
+namespace {
 
 /// "1,234 samples tested", and why that may be fewer than are covered.
 std::string tested_text(const Counters& c) {
@@ -240,6 +236,7 @@ int run(const RenderCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_options(options, config);
+  if (options.frames > 0) return run_frames(options, config);
   double load_s = 0;
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
@@ -317,9 +314,11 @@ void add_render_command(CLI::App& app, Action& selected) {
                   "sheet: the picture, and how often each sample was drawn, .png");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(CLI::Range(1, 100000));
+  add_frames_options(*command, *options);
   command->footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
-      "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json");
+      "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json\n"
+      "  halfplane render teapot --size 160x120 --frames 12 --camera orbit --engine cycle --csv turn.csv");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 

@@ -71,11 +71,13 @@ void read_part(CameraRequest& request, std::string_view key, std::string_view va
     request.near = read_positive(key, value);
   } else if (key == "far") {
     request.far = read_positive(key, value);
+  } else if (key == "orbit") {
+    request.orbit = read_number(key, value);
   } else if (key == "name") {
     if (value.empty()) fail("name= without a name", "write name=NAME");
     request.name = std::string(value);
   } else {
-    fail("unknown part " + in_quotes(key), "the parts are eye, target, up, fov, ortho, near, far and name");
+    fail("unknown part " + in_quotes(key), "the parts are eye, target, up, fov, ortho, near, far, orbit and name");
   }
 }
 
@@ -126,6 +128,19 @@ double fitting_distance(const Camera& camera, const Mesh& mesh, const Vec3& back
   return distance;
 }
 
+// The same for any direction: the sphere within the narrower of the view's two angles.
+double fitting_distance(const Camera& camera, const Sphere& bounds, double aspect) {
+  const double half_height = half_fov(camera.fov), half_width = std::atan(std::tan(half_height) * aspect);
+  const double radius = bounds.radius + length(subtract(camera.target, bounds.center));
+  return kFrameMargin * radius / std::sin(std::min(half_height, half_width));
+}
+
+// `v` turned about a unit axis, counter-clockwise as seen from its tip (Rodrigues).
+Vec3 turned_about(const Vec3& axis, double degrees, const Vec3& v) {
+  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  return add(add(scaled(v, c), scaled(cross(axis, v), s)), scaled(axis, dot(axis, v) * (1 - c)));
+}
+
 // near and far around the vertices' depths along the view, with some room.
 void fit_planes(Camera& camera, const CameraRequest& request, const Mesh& mesh, const Vec3& forward, double radius) {
   double front = dot(subtract(mesh.vertices.front().position, camera.eye), forward), back = front;
@@ -150,11 +165,15 @@ CameraRequest parse_camera(std::string_view text) {
   while (!text.empty()) {
     const std::string_view part = cut(text, ';');
     if (part.empty()) continue;
-    const std::size_t equals = part.find('=');
+    std::size_t equals = part.find('=');
+    if (part == "orbit") equals = part.size();  // without a number: once round
     if (equals == std::string_view::npos) fail("no = in " + in_quotes(part), kExample);
     const std::string_view key = trimmed(part.substr(0, equals));
     if (!seen.emplace(key).second) fail(in_quotes(key) + " is given twice", "leave one of them out");
-    read_part(request, key, trimmed(part.substr(equals + 1)));
+    if (equals == part.size())
+      request.orbit = 360;
+    else
+      read_part(request, key, trimmed(part.substr(equals + 1)));
   }
   if (request.fov && request.ortho) fail("fov and ortho together", "leave one of them out");
   return request;
@@ -167,6 +186,7 @@ CameraRequest merged(const CameraRequest& request, const CameraRequest& defaults
   if (!result.up) result.up = defaults.up;
   if (!result.near) result.near = defaults.near;
   if (!result.far) result.far = defaults.far;
+  if (!result.orbit) result.orbit = defaults.orbit;
   if (!request.ortho && !request.fov) {
     result.fov = defaults.fov;
     result.ortho = defaults.ortho;
@@ -190,13 +210,20 @@ Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect) {
   } else {
     camera.up = usable_up(up, scaled(three_quarter, -1));
     const double distance = camera.ortho > 0 ? 2 * bounds.radius + length(subtract(camera.target, bounds.center))
+                            : request.orbit  ? fitting_distance(camera, bounds, aspect)
                                              : fitting_distance(camera, mesh, three_quarter, bounds.radius, aspect);
     camera.eye = add(camera.target, scaled(three_quarter, distance));
   }
-  const Vec3 view = subtract(camera.target, camera.eye);
+  Vec3 view = subtract(camera.target, camera.eye);
   if (length(view) == 0) fail("eye and target are the same point", "move one of them");
+  camera.up = usable_up(up, normalized(view));
+  if (request.orbit) {
+    const Vec3 axis = normalized(up);
+    view = turned_about(axis, *request.orbit, view);
+    camera.eye = subtract(camera.target, view);
+    camera.up = turned_about(axis, *request.orbit, camera.up);
+  }
   const Vec3 forward = normalized(view);
-  camera.up = usable_up(up, forward);
   fit_planes(camera, request, mesh, forward, bounds.radius);
   if (!(camera.near < camera.far)) {
     fail("near=" + std::to_string(camera.near) + " is not nearer than far=" + std::to_string(camera.far),

@@ -19,6 +19,7 @@ struct CameraRequest {
   std::optional<double> fov;        ///< vertical, degrees
   std::optional<double> ortho;      ///< height of the view in world units: orthographic instead of fov
   std::optional<double> near, far;  ///< distances along the view; far may be infinite with fov
+  std::optional<double> orbit;  ///< degrees by which the eye is turned about `up` through the target, counter-clockwise
   std::optional<std::string> name;  ///< a camera of the file's own, which gives what the rest leaves out
   bool operator==(const CameraRequest&) const = default;
 };
@@ -32,7 +33,8 @@ struct Camera {
 };
 
 /// Reads `eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100` or `ortho=2`; empty asks for nothing. `name=NAME`
-/// asks for a camera of the file's own. Throws InputError that names the part and the mend.
+/// asks for a camera of the file's own; `orbit=DEGREES` turns it, `orbit` alone once round. Throws InputError that names the
+/// part and the mend.
 [[nodiscard]] CameraRequest parse_camera(std::string_view text);
 
 /// `request`, with what it leaves out taken from `defaults`. A user's fov or ortho replaces either default;
@@ -41,7 +43,8 @@ struct Camera {
 
 /// Fills a request in for a mesh with at least one vertex: a three-quarter view (from the front, right and above) of
 /// the middle of its bounding box, as near as holds every vertex at this aspect (width / height); near and far just
-/// around the mesh. An `up` along the view is replaced. Throws InputError if the whole makes no camera: eye = target,
+/// around the mesh. An `up` along the view is replaced. With an orbit the framed distance holds every vertex from any side,
+/// so that it stays the same all the way round. Throws InputError if the whole makes no camera: eye = target,
 /// near >= far; or asks for a name, which whoever has named cameras has looked up before.
 [[nodiscard]] Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect);
 

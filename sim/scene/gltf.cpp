@@ -56,19 +56,27 @@ class GltfMeshBuilder {
         left_(most_triangles),
         materials_(file, mesh_.textures, [this](const std::string& text) { warn(text); }) {}
 
-  GltfModel run() {
-    GltfNodes nodes = walk_nodes(file_, warnings_);
-    for (const GltfInstance& instance : nodes.instances) {
+  /// `world` gets all but its file.
+  void run(GltfWorld& world) {
+    world.nodes = walk_nodes(file_, warnings_);
+    for (const GltfInstance& instance : world.nodes.instances) {
       if (instance.is_skinned) warn("skins are not read: meshes are shown as they were before any joint moved");
-      placing_ = placing_of(instance.world);
       object_ = object_number(instance.name);
       const JsonPlace list = file_.item("meshes", instance.mesh).at("primitives");
-      for (std::size_t i = 0; i < list.size(); ++i) add_primitive(list[i]);
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        GltfRun run{instance.node, mesh_.vertices.size(), 0, mesh_.triangles.size(), 0};
+        add_primitive(list[i]);
+        run.vertices = mesh_.vertices.size() - run.first_vertex;
+        run.triangles = mesh_.triangles.size() - run.first_triangle;
+        run.has_normals = material_.is_lit && attributes_.normal != nullptr;
+        run.is_flat = material_.is_lit && attributes_.normal == nullptr;
+        if (run.vertices > 0) world.runs.push_back(run);
+      }
     }
     if (mesh_.parts.empty()) {
       throw InputError(file_.name() + ": nothing in its scene that could be drawn; export it with its meshes");
     }
-    return {std::move(mesh_), std::move(nodes.cameras)};
+    world.mesh = std::move(mesh_);
   }
 
  private:
@@ -166,7 +174,6 @@ class GltfMeshBuilder {
       std::array<std::uint64_t, 3> at{3 * i, 3 * i + 1, 3 * i + 2};
       if (mode == 5) at = {i, i + 1 + i % 2, i + 2 - i % 2};
       if (mode == 6) at = {i + 1, i + 2, 0};
-      if (placing_.is_mirrored) std::swap(at[1], at[2]);
       for (std::uint64_t& corner : at) corner = source_vertex(corner);
       add_triangle(at);
     }
@@ -218,31 +225,16 @@ class GltfMeshBuilder {
         triangle[i] = shared_vertex(from[i]);
       }
     }
-    if (is_flat) {
-      const auto corner = [&](std::size_t i) -> MeshVertex& { return mesh_.vertices[triangle[i]]; };
-      const Vec3 a = subtract(corner(1).position, corner(0).position);
-      const Vec3 normal = normalized(cross(a, subtract(corner(2).position, corner(0).position)));
-      for (std::size_t i = 0; i < 3; ++i) corner(i).normal = normal;
-    }
     mesh_.triangles.push_back(triangle);
   }
 
   MeshVertex make_vertex(std::uint64_t i) const {
     MeshVertex made;
     const Rgba p = read_element(*attributes_.position, i);
-    const Vec4 world = transform(placing_.world, {p[0], p[1], p[2], 1});
-    for (std::size_t k = 0; k < 3; ++k) {
-      made.position[k] = world[k];
-      if (!(std::abs(world[k]) <= kLargestCoordinate)) {
-        throw InputError(attributes_.position->place + ": element " + std::to_string(i) +
-                         " is beyond 1e30 in the world; scale the model down");
-      }
-    }
+    std::copy_n(p.begin(), 3, made.position.begin());
     if (attributes_.normal != nullptr && material_.is_lit) {
       const Rgba n = read_element(*attributes_.normal, i);
-      Vec3 turned{};
-      for (std::size_t k = 0; k < 3; ++k) turned[k] = dot(placing_.normal_rows[k], {n[0], n[1], n[2]});
-      made.normal = normalized(turned);
+      std::copy_n(n.begin(), 3, made.normal.begin());
     }
     Rgba color = material_.base;
     if (attributes_.color != nullptr) {
@@ -273,11 +265,45 @@ class GltfMeshBuilder {
   std::unordered_map<std::string, std::uint32_t> object_numbers_;
   std::uint32_t object_ = 0;
   GltfMaterials materials_;
-  Placing placing_;        // of the instance at hand
   GltfMaterial material_;  // of the primitive at hand, as are the next two
   Attributes attributes_;
   std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
 };
+
+/// Puts a run's vertices into the world, its triangles the right way round.
+void place_run(const GltfRun& run, const Placing& placing, Mesh& mesh) {
+  for (std::size_t i = 0; i < run.vertices; ++i) {
+    MeshVertex& vertex = mesh.vertices[run.first_vertex + i];
+    const Vec3 p = vertex.position, n = vertex.normal;
+    const Vec4 world = transform(placing.world, {p[0], p[1], p[2], 1});
+    for (std::size_t k = 0; k < 3; ++k) {
+      vertex.position[k] = world[k];
+      if (run.has_normals) vertex.normal[k] = dot(placing.normal_rows[k], n);
+    }
+    if (run.has_normals) vertex.normal = normalized(vertex.normal);
+  }
+  for (std::size_t i = 0; i < run.triangles; ++i) {
+    auto& triangle = mesh.triangles[run.first_triangle + i];
+    if (placing.is_mirrored) std::swap(triangle[1], triangle[2]);
+    if (!run.is_flat) continue;
+    const auto corner = [&](std::size_t k) -> MeshVertex& { return mesh.vertices[triangle[k]]; };
+    const Vec3 side = subtract(corner(1).position, corner(0).position);
+    const Vec3 normal = normalized(cross(side, subtract(corner(2).position, corner(0).position)));
+    for (std::size_t k = 0; k < 3; ++k) corner(k).normal = normal;
+  }
+}
+
+void check_places(const GltfWorld& world, const GltfRun& run, const Mesh& mesh) {
+  for (std::size_t i = 0; i < run.vertices; ++i) {
+    for (const double coordinate : mesh.vertices[run.first_vertex + i].position) {
+      if (!(std::abs(coordinate) <= kLargestCoordinate)) {
+        world.file->item("nodes", world.nodes.nodes[run.node].number)
+            .fail("vertex " + std::to_string(i) + " of what is drawn there is beyond 1e30 in the world",
+                  "scale the model down");
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -287,18 +313,35 @@ double display_code(double linear) {
   return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
 }
 
-GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
-                     std::vector<std::string>& warnings, std::size_t most_triangles) {
-  GltfFile parsed(std::move(bytes), file, source);
-  return GltfMeshBuilder(parsed, warnings, most_triangles).run();
+GltfWorld parse_gltf_world(std::string bytes, const std::string& file, const BufferSource& source,
+                           std::vector<std::string>& warnings, std::size_t most_triangles) {
+  GltfWorld world;
+  world.file = std::make_unique<GltfFile>(std::move(bytes), file, source);
+  GltfMeshBuilder(*world.file, warnings, most_triangles).run(world);
+  return world;
 }
 
-GltfModel read_gltf_file(const std::string& path, std::vector<std::string>& warnings) {
+GltfWorld read_gltf_world(const std::string& path, std::vector<std::string>& warnings) {
   std::optional<std::string> bytes = read_regular_file(path);
   if (!bytes) throw InputError(path + ": cannot be read as a file; check the name and its permissions");
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  const auto beside = [&folder](const std::string& name) { return read_regular_file((folder / name).string()); };
-  return parse_gltf(std::move(*bytes), path, beside, warnings);
+  const auto beside = [folder](const std::string& name) { return read_regular_file((folder / name).string()); };
+  return parse_gltf_world(std::move(*bytes), path, beside, warnings);
+}
+
+GltfModel posed(const GltfWorld& world, const GltfAnimation* animation, double time) {
+  const std::vector<Mat4> matrices = world_matrices(*world.file, world.nodes, animation, time);
+  GltfModel model{world.mesh, placed_cameras(*world.file, world.nodes, matrices)};
+  for (const GltfRun& run : world.runs) {
+    place_run(run, placing_of(matrices[run.node]), model.mesh);
+    check_places(world, run, model.mesh);
+  }
+  return model;
+}
+
+GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
+                     std::vector<std::string>& warnings, std::size_t most_triangles) {
+  return posed(parse_gltf_world(std::move(bytes), file, source, warnings, most_triangles));
 }
 
 }  // namespace halfplane

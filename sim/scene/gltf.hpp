@@ -1,5 +1,5 @@
 // glTF 2.0 files into meshes: positions, normals, colours, texture coordinates, indices, triangle modes, base colours
-// and their textures, culling, node transforms, cameras. What is left out, and the colour space, is in docs/gltf.md.
+// and their textures, culling, node transforms and how they are animated, cameras. What is left out, and the colour space, is in docs/gltf.md.
 //
 // Container, JSON, buffers and accessors are ours, on nlohmann-json: docs/adr/0008-own-gltf-reader.md says why.
 #pragma once
@@ -14,16 +14,41 @@ struct GltfModel {
   std::vector<GltfCamera> cameras;  ///< of the scene that was read
 };
 
+/// What a primitive at a node made.
+struct GltfRun {
+  std::size_t node = 0;  ///< in GltfNodes::nodes
+  std::size_t first_vertex = 0, vertices = 0, first_triangle = 0, triangles = 0;
+  bool has_normals = false;
+  bool is_flat = false;  ///< three vertices for each triangle, whose normal is its face's
+};
+
+/// A scene whose nodes have not been put in their places yet.
+struct GltfWorld {
+  std::unique_ptr<GltfFile> file;
+  Mesh mesh;                  ///< places and normals in the spaces of their nodes
+  std::vector<GltfRun> runs;  ///< all of its vertices and triangles
+  GltfNodes nodes;
+};
+
 /// A small file can ask for any number of triangles (one mesh at many nodes): at most so many are made.
 inline constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 25;
 
 /// Reads the default scene. `file` is the name for messages. Each kind of warning comes once. Throws InputError
 /// "file: place: what; the mend", also when the file has more than `most_triangles`, or none.
-[[nodiscard]] GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
-                                   std::vector<std::string>& warnings, std::size_t most_triangles = kMostGltfTriangles);
+[[nodiscard]] GltfWorld parse_gltf_world(std::string bytes, const std::string& file, const BufferSource& source,
+                                         std::vector<std::string>& warnings,
+                                         std::size_t most_triangles = kMostGltfTriangles);
 
 /// Reads a .gltf or .glb file (its first bytes decide which); external buffers and images are looked for beside it.
-[[nodiscard]] GltfModel read_gltf_file(const std::string& path, std::vector<std::string>& warnings);
+[[nodiscard]] GltfWorld read_gltf_world(const std::string& path, std::vector<std::string>& warnings);
+
+/// The world at `time` of an animation (seconds); without one (null) as the file has it at rest. A node that mirrors turns
+/// its triangles round. Throws InputError for what leaves binary64.
+[[nodiscard]] GltfModel posed(const GltfWorld& world, const GltfAnimation* animation = nullptr, double time = 0);
+
+/// parse_gltf_world(), at rest.
+[[nodiscard]] GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
+                                   std::vector<std::string>& warnings, std::size_t most_triangles = kMostGltfTriangles);
 
 /// A linear colour component of 0...1 (clamped) as an sRGB display code, 0...255, not rounded (IEC 61966-2-1).
 [[nodiscard]] double display_code(double linear);

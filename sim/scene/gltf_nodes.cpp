@@ -26,38 +26,46 @@ std::array<double, N> numbers_of(const JsonPlace& place) {
   return result;
 }
 
-// The rotation of a quaternion x, y, z, w, taken to length 1: exporters write binary32.
-Mat4 rotation_matrix(const JsonPlace& place) {
+// A quaternion x, y, z, w, taken to length 1: exporters write binary32.
+std::array<double, 4> read_rotation(const JsonPlace& place) {
   std::array<double, 4> q = numbers_of<4>(place);
   const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   if (!(norm > 0)) place.fail("a rotation of length 0", "write 0, 0, 0, 1 for none");
   for (double& part : q) part /= norm;
+  return q;
+}
+
+Mat4 rotation_matrix(const std::array<double, 4>& q) {
   const double x = q[0], y = q[1], z = q[2], w = q[3];
   return {Vec4{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0},
           Vec4{2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0},
           Vec4{2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0}, Vec4{0, 0, 0, 1}};
 }
 
-// matrix (16 numbers, column by column), or translation x rotation x scale, each of them optional.
-Mat4 local_transform(const JsonPlace& node) {
-  const std::optional<JsonPlace> matrix = node.find("matrix"), translation = node.find("translation"),
-                                 rotation = node.find("rotation"), scale = node.find("scale");
-  if (matrix) {
-    if (translation || rotation || scale) node.fail("a matrix besides translation, rotation or scale", "keep one");
-    const std::array<double, 16> m = numbers_of<16>(*matrix);
-    Mat4 result{};
-    for (std::size_t i = 0; i < 16; ++i) result[i % 4][i / 4] = m[i];
-    if (result[3] != kIdentity[3]) matrix->fail("a last row that is not 0, 0, 0, 1", "export the file again");
-    return result;
-  }
-  Mat4 result = rotation ? rotation_matrix(*rotation) : kIdentity;
-  const Vec3 factors = scale ? numbers_of<3>(*scale) : Vec3{1, 1, 1};
-  const Vec3 offset = translation ? numbers_of<3>(*translation) : Vec3{};
+Mat4 matrix_of(const NodeTransform& local) {
+  Mat4 result = rotation_matrix(local.rotation);
   for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) result[row][column] *= factors[column];
-    result[row][3] = offset[row];
+    for (std::size_t column = 0; column < 3; ++column) result[row][column] *= local.scale[column];
+    result[row][3] = local.translation[row];
   }
   return result;
+}
+
+// matrix (16 numbers, column by column), or translation x rotation x scale, each of them optional.
+void read_local(const JsonPlace& place, GltfNode& node) {
+  const std::optional<JsonPlace> matrix = place.find("matrix"), translation = place.find("translation"),
+                                 rotation = place.find("rotation"), scale = place.find("scale");
+  if (matrix) {
+    if (translation || rotation || scale) place.fail("a matrix besides translation, rotation or scale", "keep one");
+    const std::array<double, 16> m = numbers_of<16>(*matrix);
+    Mat4& result = node.matrix.emplace();
+    for (std::size_t i = 0; i < 16; ++i) result[i % 4][i / 4] = m[i];
+    if (result[3] != kIdentity[3]) matrix->fail("a last row that is not 0, 0, 0, 1", "export the file again");
+    return;
+  }
+  if (translation) node.local.translation = numbers_of<3>(*translation);
+  if (rotation) node.local.rotation = read_rotation(*rotation);
+  if (scale) node.local.scale = numbers_of<3>(*scale);
 }
 
 Vec3 column(const Mat4& m, std::size_t i) { return {m[0][i], m[1][i], m[2][i]}; }
@@ -97,7 +105,7 @@ class Walker {
     reached_.assign(file_.count("nodes"), false);
     push_roots();
     while (!stack_.empty()) {
-      const Entry entry = std::move(stack_.back());
+      const Entry entry = stack_.back();
       stack_.pop_back();
       visit(entry);
     }
@@ -106,8 +114,8 @@ class Walker {
 
  private:
   struct Entry {
-    std::size_t node = 0;
-    Mat4 parent{};
+    std::size_t node = 0;               // in the file
+    std::optional<std::size_t> parent;  // in result_.nodes
   };
 
   // The stack gives back what was pushed last, so lists are pushed from their ends.
@@ -122,7 +130,7 @@ class Walker {
         }
       }
       for (std::size_t i = nodes; i-- > 0;) {
-        if (!is_child[i]) stack_.push_back({i, kIdentity});
+        if (!is_child[i]) stack_.push_back({i, std::nullopt});
       }
       return;
     }
@@ -132,10 +140,10 @@ class Walker {
       warnings_.push_back(file_.name() + ": scene " + std::to_string(number) + " of " + std::to_string(scenes) +
                           " is drawn, the file's default");
     }
-    if (const std::optional<JsonPlace> roots = file_.item("scenes", number).find("nodes")) push(*roots, kIdentity);
+    if (const std::optional<JsonPlace> roots = file_.item("scenes", number).find("nodes")) push(*roots, std::nullopt);
   }
 
-  void push(const JsonPlace& list, const Mat4& parent) {
+  void push(const JsonPlace& list, std::optional<std::size_t> parent) {
     for (std::size_t i = list.size(); i-- > 0;) stack_.push_back({list[i].index(reached_.size(), "nodes"), parent});
   }
 
@@ -143,35 +151,28 @@ class Walker {
     const JsonPlace node = file_.item("nodes", entry.node);
     if (reached_[entry.node]) node.fail("reached on two ways or in a ring", "give every node one parent");
     reached_[entry.node] = true;
-    const Mat4 world = product(entry.parent, local_transform(node));
-    for (const Vec4& row : world) {
-      for (const double number : row) {
-        if (!(std::abs(number) <= kLargestCoordinate)) node.fail("its place in the world is beyond 1e30", "move it");
-      }
-    }
+    const std::size_t number = result_.nodes.size();
+    GltfNode& made = result_.nodes.emplace_back();
+    made.number = entry.node;
+    made.parent = entry.parent;
+    read_local(node, made);
     if (const std::optional<JsonPlace> index = node.find("mesh")) {
       const std::size_t mesh = index->index(file_.count("meshes"), "meshes");
       const std::string name = node.text_or("name", file_.item("meshes", mesh).text_or("name", ""));
-      result_.instances.push_back({mesh, world, name, node.find("skin").has_value()});
+      result_.instances.push_back({mesh, number, name, node.find("skin").has_value()});
     }
-    if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, world);
-    if (const std::optional<JsonPlace> children = node.find("children")) push(*children, world);
+    if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, number);
+    if (const std::optional<JsonPlace> children = node.find("children")) push(*children, number);
   }
 
-  void add_camera(const JsonPlace& node, const JsonPlace& index, const Mat4& world) {
-    GltfCamera made;
+  void add_camera(const JsonPlace& node, const JsonPlace& index, std::size_t number) {
+    GltfCameraNode& made = result_.cameras.emplace_back();
     made.number = index.index(file_.count("cameras"), "cameras");
     const JsonPlace camera = file_.item("cameras", made.number);
     made.name = camera.text_or("name", "");
     made.node_name = node.text_or("name", "");
-    read_lens(camera, made.request);
-    const Vec3 eye = column(world, 3), back = normalized(column(world, 2)), up = normalized(column(world, 1));
-    if (back == Vec3{} || up == Vec3{}) node.fail("a camera whose axes are scaled to 0", "scale its node by 1");
-    // Far enough away that a target at an eye far from the origin is not lost in binary64.
-    made.request.eye = eye;
-    made.request.target = subtract(eye, scaled(back, std::max(1.0, length(eye))));
-    made.request.up = up;
-    result_.cameras.push_back(made);
+    made.node = number;
+    read_lens(camera, made.lens);
   }
 
   const GltfFile& file_;
@@ -188,6 +189,54 @@ bool is_called(const GltfCamera& camera, const std::string& name) {
 }  // namespace
 
 GltfNodes walk_nodes(const GltfFile& file, std::vector<std::string>& warnings) { return Walker(file, warnings).run(); }
+
+std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes, const GltfAnimation* animation,
+                                 double time) {
+  std::vector<std::size_t> place(file.count("nodes"), nodes.nodes.size());  // in nodes.nodes, of a node of the file
+  std::vector<NodeTransform> locals;
+  locals.reserve(nodes.nodes.size());
+  for (const GltfNode& node : nodes.nodes) {
+    place[node.number] = locals.size();
+    locals.push_back(node.local);
+  }
+  if (animation != nullptr) {
+    for (const GltfTrack& track : animation->tracks) {
+      if (place[track.node] < locals.size()) apply(track, time, locals[place[track.node]]);
+    }
+  }
+  std::vector<Mat4> world;
+  world.reserve(nodes.nodes.size());
+  for (std::size_t i = 0; i < nodes.nodes.size(); ++i) {
+    const GltfNode& node = nodes.nodes[i];
+    const Mat4 local = node.matrix ? *node.matrix : matrix_of(locals[i]);
+    world.push_back(product(node.parent ? world[*node.parent] : kIdentity, local));
+    for (const Vec4& row : world.back()) {
+      for (const double number : row) {
+        if (!(std::abs(number) <= kLargestCoordinate))
+          file.item("nodes", node.number).fail("its place in the world is beyond 1e30", "move it");
+      }
+    }
+  }
+  return world;
+}
+
+std::vector<GltfCamera> placed_cameras(const GltfFile& file, const GltfNodes& nodes, const std::vector<Mat4>& world) {
+  std::vector<GltfCamera> result;
+  for (const GltfCameraNode& camera : nodes.cameras) {
+    const Mat4& matrix = world[camera.node];
+    const Vec3 eye = column(matrix, 3), back = normalized(column(matrix, 2)), up = normalized(column(matrix, 1));
+    if (back == Vec3{} || up == Vec3{}) {
+      file.item("nodes", nodes.nodes[camera.node].number)
+          .fail("a camera whose axes are scaled to 0", "scale its node by 1");
+    }
+    GltfCamera& made = result.emplace_back(GltfCamera{camera.name, camera.node_name, camera.number, camera.lens});
+    made.request.eye = eye;
+    // Far enough away that a target at an eye far from the origin is not lost in binary64.
+    made.request.target = subtract(eye, scaled(back, std::max(1.0, length(eye))));
+    made.request.up = up;
+  }
+  return result;
+}
 
 CameraRequest choose_camera(const std::vector<GltfCamera>& cameras, const CameraRequest& request) {
   if (!request.name) return request == CameraRequest() && !cameras.empty() ? cameras.front().request : request;

@@ -2,35 +2,61 @@
 #pragma once
 
 #include "sim/scene/camera.hpp"
+#include "sim/scene/gltf_animation.hpp"
 #include "sim/scene/gltf_file.hpp"
 
 namespace halfplane {
 
-/// A mesh somewhere in the world.
+/// A node of the scene: where it stands in its parent's space.
+struct GltfNode {
+  std::size_t number = 0;             ///< in the file's list of nodes
+  std::optional<std::size_t> parent;  ///< in GltfNodes::nodes, before this one
+  std::optional<Mat4> matrix;         ///< instead of `local`
+  NodeTransform local;
+};
+
+/// A mesh at a node.
 struct GltfInstance {
   std::size_t mesh = 0;
-  Mat4 world{};
-  std::string name;  ///< the node's, else the mesh's, else empty
+  std::size_t node = 0;  ///< in GltfNodes::nodes
+  std::string name;      ///< the node's, else the mesh's, else empty
   bool is_skinned = false;
 };
 
-/// A camera of the scene, complete: eye, target, up, near, far, and fov or ortho. far may be infinite with fov.
-struct GltfCamera {
+/// A camera at a node: near, far, and fov or ortho. far may be infinite with fov.
+struct GltfCameraNode {
   std::string name, node_name;
   std::size_t number = 0;  ///< in the file's list of cameras
-  CameraRequest request;
+  std::size_t node = 0;    ///< in GltfNodes::nodes
+  CameraRequest lens;
 };
 
 /// In the order of the nodes: a node before its children.
 struct GltfNodes {
+  std::vector<GltfNode> nodes;
   std::vector<GltfInstance> instances;
-  std::vector<GltfCamera> cameras;
+  std::vector<GltfCameraNode> cameras;
+};
+
+/// A camera of the scene, complete: eye, target, up, near, far, and fov or ortho.
+struct GltfCamera {
+  std::string name, node_name;
+  std::size_t number = 0;
+  CameraRequest request;
 };
 
 /// Walks the default scene: `scene`, else the first one, else (a file without scenes) every node that is no child.
-/// Throws InputError when the nodes are no forest, for a transform beyond binary64, and for a camera that shows
-/// nothing. A camera's scale is ignored, as the format says, and so is its aspect ratio: the target's is used.
+/// Throws InputError when the nodes are no forest, and for a camera that shows nothing.
 [[nodiscard]] GltfNodes walk_nodes(const GltfFile& file, std::vector<std::string>& warnings);
+
+/// From each node's space to the world's; with an animation, as it is at `time`. Throws InputError for what leaves binary64.
+[[nodiscard]] std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes,
+                                               const GltfAnimation* animation, double time);
+
+/// The cameras where their nodes stand. Their scale is ignored, as the format says, and so is their aspect ratio: the
+/// target's is used.
+[[nodiscard]] std::vector<GltfCamera> placed_cameras(const GltfFile& file, const GltfNodes& nodes,
+                                                     const std::vector<Mat4>& world);
 
 /// What a user's request means in this scene: with `name=`, that camera with the user's other parts put in; empty, the
 /// first camera; else, or without any camera, the default framing. Throws InputError for an unknown name.

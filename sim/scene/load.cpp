@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -70,30 +71,76 @@ Scene load_capture(const SceneRequest& request) {
   return scene;
 }
 
+/// The camera when that much of its orbit is done.
+CameraRequest at_turn(CameraRequest camera, double turn) {
+  if (camera.orbit) *camera.orbit *= turn;
+  return camera;
+}
+
+/// For scenes in which nothing is animated.
+MovingScene still(const SceneRequest& request, bool has_orbit, std::function<Scene(const Moment&)> make) {
+  if (!request.animation.empty())
+    throw InputError("--animation: " + request.name + " has no animations; leave out --time and --animation");
+  const auto at = [name = request.name, make = std::move(make)](const Moment& moment) {
+    if (moment.time) throw InputError("--time: " + name + " has no animations; leave out --time and --animation");
+    return make(moment);
+  };
+  return {at, [] { return std::optional<double>(); }, has_orbit};
+}
+
+MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, int width, int height,
+                      std::vector<std::string>& warnings) {
+  const auto world = std::make_shared<const GltfWorld>(read_gltf_world(request.name, warnings));
+  // Read when it is asked for: a scene at rest needs none.
+  const auto animation = [world, name = request.animation, known = std::make_shared<std::optional<GltfAnimation>>()] {
+    if (!*known) *known = read_animation(*world->file, choose_animation(*world->file, name));
+    return &**known;
+  };
+  if (!request.animation.empty()) (void)animation();
+  const auto at = [=, name = request.name](const Moment& moment) {
+    const GltfModel model = moment.time ? posed(*world, animation(), *moment.time) : posed(*world);
+    Scene scene = mesh_scene(model.mesh, at_turn(choose_camera(model.cameras, camera), moment.turn), width, height);
+    scene.name = name;
+    return scene;
+  };
+  const auto end = [=] {
+    return world->file->count("animations") > 0 ? std::optional(animation()->end) : std::nullopt;
+  };
+  return {at, end, camera.orbit.has_value()};
+}
+
 }  // namespace
 
-Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings) {
+MovingScene open_scene(const SceneRequest& request, std::vector<std::string>& warnings) {
   if (request.width < 0 || request.height < 0 || (request.width == 0) != (request.height == 0)) {
     throw InputError("--size: " + std::to_string(request.width) + "x" + std::to_string(request.height) +
                      " has no pixels; write for example --size 640x480");
   }
   const std::string extension = lower_extension(request.name);
-  if (extension == ".hpt" || request.name == "-") return load_capture(request);
+  if (extension == ".hpt" || request.name == "-")
+    return still(request, false, [scene = load_capture(request)](const Moment&) { return scene; });
   const bool given = request.width > 0;
   const int width = given ? request.width : 640, height = given ? request.height : 480;
-  if (extension == ".gltf" || extension == ".glb") {
-    const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
-    const GltfModel model = read_gltf_file(request.name, warnings);
-    Scene scene = mesh_scene(model.mesh, choose_camera(model.cameras, camera), width, height);
-    scene.name = request.name;
-    return scene;
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  if (!is_gltf && extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
+  const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
+  const bool has_orbit = camera.orbit.has_value();
+  if (is_gltf) return open_gltf(request, camera, width, height, warnings);
+  if (extension == ".obj") {
+    const auto mesh = std::make_shared<const Mesh>(read_obj_file(request.name, warnings));
+    return still(request, has_orbit, [=, name = request.name](const Moment& moment) {
+      Scene scene = mesh_scene(*mesh, at_turn(camera, moment.turn), width, height);
+      scene.name = name;
+      return scene;
+    });
   }
-  if (extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
-  const CameraRequest camera = parse_camera(request.camera);
-  if (extension != ".obj") return make_builtin(request.name, width, height, camera, request.seed);
-  Scene scene = mesh_scene(read_obj_file(request.name, warnings), camera, width, height);
-  scene.name = request.name;
-  return scene;
+  return still(request, has_orbit, [=, name = request.name, seed = request.seed](const Moment& moment) {
+    return make_builtin(name, width, height, at_turn(camera, moment.turn), seed);
+  });
+}
+
+Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings) {
+  return open_scene(request, warnings).at(request.moment);
 }
 
 }  // namespace halfplane

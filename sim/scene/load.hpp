@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,15 +11,35 @@
 
 namespace halfplane {
 
+/// When and from where a scene that moves is seen.
+struct Moment {
+  std::optional<double> time;  ///< of the animation, seconds; none: at rest
+  double turn = 1;             ///< how much of the camera's orbit is done, 0...1
+};
+
 struct SceneRequest {
   std::string name;           ///< a built-in ("teapot", "city:64") or a file: .obj, .gltf, .glb, .hpt
   int width = 0, height = 0;  ///< pixels; both 0: 640x480, or what a capture says
   std::string camera{};       ///< as `--camera` takes it; empty for the default framing
   std::uint64_t seed = 1;     ///< for the built-in scenes with something random in them
+  std::string animation{};    ///< name or number of one of the file's; empty: the first
+  Moment moment{};            ///< for load_scene()
 };
 
-/// Loads or makes a scene. Warnings are one line each. A size given with a capture replaces its target if the capture
-/// is all in clip space (a scissor or viewport in it keeps its pixels). Throws InputError, one line with the mend.
+/// A scene that has been read and can be seen at several moments.
+struct MovingScene {
+  /// Throws InputError, one line with the mend, also for a time where nothing is animated.
+  std::function<Scene(const Moment&)> at;
+  /// Of the animation, seconds; nothing: nothing is animated. Throws as `at`.
+  std::function<std::optional<double>()> end;
+  bool has_orbit = false;  ///< the camera moves
+};
+
+/// Reads what does not depend on the moment. Warnings are one line each. A size given with a capture replaces its target if
+/// the capture is all in clip space (a scissor or viewport in it keeps its pixels). Throws InputError, one line with the mend.
+[[nodiscard]] MovingScene open_scene(const SceneRequest& request, std::vector<std::string>& warnings);
+
+/// open_scene(), at the request's moment.
 [[nodiscard]] Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings);
 
 }  // namespace halfplane

@@ -54,6 +54,14 @@ TEST_F(JsonSchema, RenderIsDescribed) {
                             "triangle --size 16x16 --engine cycle --set frame.order=bins --set frame.store=color"});
 }
 
+TEST_F(JsonSchema, FramesAreDescribed) {
+  ASSERT_EQ(run({"render", "teapot:2", "--size", "16x16", "--frames", "2", "--camera", "orbit", "--engine", "cycle",
+                 "--quiet", "--json=frames.json"})
+                .status,
+            0);
+  for (const std::string& fault : faults("--described", "frames", "frames.json")) ADD_FAILURE() << fault;
+}
+
 TEST_F(JsonSchema, CompareIsDescribed) {
   write("t.hpt",
         "halfplane 1\ntarget 32 32\ntexture t pattern grid 16 16\nspace window\nstate texture t\n"

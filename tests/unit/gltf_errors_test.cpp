@@ -165,7 +165,7 @@ TEST(GltfErrors, NumbersThatAreNoneAreRefusedWithTheirElement) {
   }
   GltfBuilder b;
   b.mesh(b.accessor(GltfBuilder::f32, 3, {0, 0, 0, 3e38, 0, 0, 0, 1, 0}));
-  expect_refusal(b.text(), "element 1 is beyond 1e30");
+  expect_refusal(b.text(), "nodes[0]: vertex 1 of what is drawn there is beyond 1e30");
 }
 
 TEST(GltfErrors, AnIndexPastTheVerticesIsRefusedWithItsPlace) {

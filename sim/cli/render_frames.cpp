@@ -1,0 +1,182 @@
+#include "sim/cli/render_frames.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include "sim/cli/progress.hpp"
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
+#include "sim/study/frames/report.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr int kMostFrames = 100'000;
+
+/// One frame's figures, in the order of the columns of --csv: those of `halfplane render`.
+Json frame_row(int frame, const Moment& moment, const Rendering& rendering, const CycleFacts& facts,
+               const RenderCommand& options, const Config& config) {
+  Json row{{"frame", frame}, {"time", moment.time ? Json(*moment.time) : Json(nullptr)}, {"turn", moment.turn}};
+  row.update(counters_json(rendering.counters));
+  row["time_s"] = {{"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
+  row["cycles"] = options.engine == "rtl" ? Json(facts.rtl.cycles)
+                  : facts.cycle           ? Json(facts.cycle->frame.run.cycles)
+                                          : Json(nullptr);
+  row["bytes"] =
+      facts.cycle ? Json(traffic(facts.cycle->frame.run, facts.cycle->hardware.config).total()) : Json(nullptr);
+  row["color_hash"] = color_hash(rendering.frame, config.color_format);
+  row["depth_hash"] = config.frame_store == FrameStore::color ? Json(nullptr) : Json(depth_hash(rendering.frame));
+  return row;
+}
+
+/// A table of all rows: a column for each figure, named as its keys with dots between them; nothing where it is null.
+std::string csv_text(const Json& rows) {
+  std::string text;
+  for (const Json& row : rows) {
+    std::string names, values;
+    const Json cells = row.flatten();
+    for (const auto& [pointer, value] : cells.items()) {
+      std::string name = pointer.substr(1);
+      std::replace(name.begin(), name.end(), '/', '.');
+      names += (names.empty() ? "" : ",") + name;
+      values += (values.empty() ? "" : ",") + (value.is_string() ? value.get<std::string>()
+                                               : value.is_null() ? std::string()
+                                                                 : value.dump());
+    }
+    if (text.empty()) text = names + "\n";
+    text += values + "\n";
+  }
+  return text;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+/// The least, the median and the largest of a figure over the frames.
+void print_range(std::ostream& out, const Json& rows, const std::string& name, const char* key) {
+  std::vector<std::uint64_t> values;
+  for (const Json& row : rows) values.push_back(row[key].get<std::uint64_t>());
+  std::sort(values.begin(), values.end());
+  out << left_aligned(name, 12) << "least " << with_commas(values.front()) << ", median "
+      << with_commas(values[values.size() / 2]) << ", most " << with_commas(values.back()) << " a frame\n";
+}
+
+/// The moments of all frames.
+std::vector<Moment> moments(const RenderCommand& options, const MovingScene& source) {
+  std::optional<TimeSpan> time = parse_time(options.time);
+  if (const std::optional<double> end = time ? std::nullopt : source.end()) time = TimeSpan{0, *end};
+  if (!time && !source.has_orbit)
+    throw InputError("--frames: nothing moves in " + options.scene +
+                     "; add --camera orbit, or give a glTF file with an animation");
+  std::vector<Moment> result;
+  for (int i = 0; i < options.frames; ++i) {
+    Moment& moment = result.emplace_back();
+    moment.turn = static_cast<double>(i) / options.frames;
+    if (time) moment.time = time->from + (time->to.value_or(time->from) - time->from) * moment.turn;
+  }
+  return result;
+}
+
+/// The options of one frame: its own files.
+RenderCommand options_of(const RenderCommand& options, int frame) {
+  RenderCommand own = options;
+  for (std::string* path : {&own.color_path, &own.depth_path, &own.count_path, &own.ids_path, &own.draws_path,
+                            &own.cycle.primitives_path, &own.cycle.trace_path, &own.cycle.heat_path})
+    *path = numbered(*path, frame, options.frames);
+  return own;
+}
+
+}  // namespace
+
+void add_frames_options(CLI::App& app, RenderCommand& options) {
+  app.add_option(
+         "--frames", options.frames,
+         "N pictures of a scene that moves: --time A..B of its animation (without it: all), --camera orbit; files "
+         "get a number each")
+      ->check(CLI::Range(1, kMostFrames));
+  add_file_option(app, "--csv", options.csv_path, "of --frames: a row of figures for each, .csv");
+  add_file_option(app, "--chart", options.chart_path, "of --frames: the figures over time, .html");
+}
+
+void check_frames(const RenderCommand& options) {
+  (void)parse_time(options.time);
+  if (options.frames == 0) {
+    if (!options.csv_path.empty() || !options.chart_path.empty())
+      throw InputError("--csv and --chart: figures of several frames; add --frames N");
+    return;
+  }
+  if (options.repeat > 0 || options.cycle.explain || !options.cycle.what_if.empty())
+    throw InputError("--frames: each frame is drawn once; leave out --repeat, --explain and --what-if");
+  for (const std::string* path :
+       {&options.color_path, &options.depth_path, &options.count_path, &options.ids_path, &options.draws_path})
+    if (*path == "-") throw InputError("--frames: several files do not fit on stdout; give a name in place of -");
+  check_output(options.csv_path, ".csv");
+  check_output(options.chart_path, ".html");
+  if (!options.chart_path.empty()) require_chart_library();
+}
+
+std::string numbered(const std::string& path, int frame, int frames) {
+  if (path.empty() || path == "-") return path;
+  const std::size_t width = std::max<std::size_t>(4, std::to_string(frames - 1).size());
+  const std::string digits = std::to_string(frame);
+  const std::size_t dot = path.rfind('.');
+  const bool has_extension = dot != std::string::npos && path.find('/', dot) == std::string::npos;
+  const std::size_t end = has_extension ? dot : path.size();
+  return path.substr(0, end) + "-" + std::string(width - digits.size(), '0') + digits + path.substr(end);
+}
+
+int run_frames(const RenderCommand& options, const Config& config) {
+  const auto start = std::chrono::steady_clock::now();
+  const MovingScene source = open_scene(options, config);
+  const std::vector<Moment> all = moments(options, source);
+  Json rows = Json::array();
+  int width = 0, height = 0;
+  try {
+    Progress progress(options, "rendering", "frames");
+    for (int i = 0; i < options.frames; ++i) {
+      const auto part = [&](double fraction) {
+        progress((i + fraction) / options.frames, static_cast<std::uint64_t>(i));
+      };
+      part(0);
+      const Moment& moment = all[static_cast<std::size_t>(i)];
+      const RenderCommand own = options_of(options, i);
+      const Scene scene = prepared(source.at(moment), options, config);
+      CycleFacts facts;
+      const Rendering rendering = run_engine(own, scene, config, &facts, part);
+      width = scene.width;
+      height = scene.height;
+      write_files(own, rendering, config, "frame " + std::to_string(i) + ", engine " + options.engine);
+      rows.push_back(frame_row(i, moment, rendering, facts, options, config));
+    }
+  } catch (const Interrupted&) {  // the frames so far count
+    if (rows.empty()) throw;
+  }
+  Json result = result_head("frames", options, config);
+  result["engine"] = options.engine;
+  result["width"] = width;
+  result["height"] = height;
+  result["frames"] = rows;
+  result["wall_s"] = seconds_since(start);
+  const bool is_partial = is_interrupted();
+  if (is_partial) mark_partial(result);
+  if (!options.csv_path.empty()) write_text(options.csv_path, csv_text(rows));
+  if (!options.chart_path.empty()) write_text(options.chart_path, frames_report(result.dump()));
+  write_json(options, result);
+  std::ostream& out = human(options);
+  out << options.scene << ", " << width << "x" << height << ", " << label(config) << ", engine " << options.engine
+      << ", seed " << options.seed << '\n'
+      << "frames      " << rows.size() << " in " << fixed(result["wall_s"].get<double>(), 2) << " s";
+  if (all.front().time) out << ", time " << fixed(*all.front().time, 3) << " to " << fixed(*all.back().time, 3) << " s";
+  out << '\n';
+  if (!rows[0]["cycles"].is_null()) print_range(out, rows, "cycles", "cycles");
+  if (!rows[0]["bytes"].is_null()) print_range(out, rows, "bytes", "bytes");
+  if (!options.color_path.empty())
+    out << "pictures    " << numbered(options.color_path, 0, options.frames) << " to "
+        << numbered(options.color_path, static_cast<int>(rows.size()) - 1, options.frames) << '\n';
+  if (is_partial) print_partial(out);
+  return is_partial ? exit_interrupted : exit_ok;
+}
+
+}  // namespace halfplane

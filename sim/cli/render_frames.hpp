@@ -1,0 +1,55 @@
+// `halfplane render`: its options and what one frame of it takes, and `--frames`: a scene that moves, frame by frame.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sim/cli/cycle_options.hpp"
+#include "sim/cli/study_options.hpp"
+#include "sim/cosim/rtl_engine.hpp"
+
+namespace halfplane {
+
+struct RenderCommand : CommonOptions {
+  std::string engine = "functional";
+  StudyOptions study;
+  CycleCommandOptions cycle;
+  std::string color_path, depth_path, count_path, ids_path, draws_path;
+  int repeat = 0;
+  int frames = 0;                    ///< 0: one picture
+  std::string csv_path, chart_path;  ///< of frames
+};
+
+/// What the engines with cycles say besides the picture.
+struct CycleFacts {
+  LockstepResult rtl;
+  std::optional<CycleResult> cycle;
+};
+
+/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted. `progress` may throw Interrupted.
+[[nodiscard]] Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config,
+                                   CycleFacts* facts, const std::function<void(double)>& progress);
+
+/// primitives, fragments, samples_tested, tiles_visited and skipped of a result.
+[[nodiscard]] Json counters_json(const Counters& counters);
+
+/// The pictures and arrays that the options name.
+void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config,
+                 const std::string& title);
+
+/// Adds --frames, --csv and --chart.
+void add_frames_options(CLI::App& app, RenderCommand& options);
+
+/// Throws InputError for what can be refused before a scene is read.
+void check_frames(const RenderCommand& options);
+
+/// "out.png" as "out-0007.png": the file of frame 7 of up to 10,000; longer numbers where there are more. Nothing stays
+/// nothing, and - stays -.
+[[nodiscard]] std::string numbered(const std::string& path, int frame, int frames);
+
+/// Frame i of N shows `--time A..B` at A + i (B - A) / N, and the camera when i/N of its orbit is done, so that what ends as
+/// it began is shown without a frame twice. Without --time all of the animation. Returns the exit status.
+[[nodiscard]] int run_frames(const RenderCommand& options, const Config& config);
+
+}  // namespace halfplane

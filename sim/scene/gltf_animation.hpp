@@ -1,0 +1,46 @@
+// The animations of a glTF file: how the transforms of its nodes change with time.
+#pragma once
+
+#include "sim/scene/gltf_file.hpp"
+
+namespace halfplane {
+
+/// Translation times rotation times scale. A rotation is a quaternion x, y, z, w of length 1.
+struct NodeTransform {
+  std::array<double, 3> translation{};
+  std::array<double, 4> rotation{0, 0, 0, 1};
+  std::array<double, 3> scale{1, 1, 1};
+};
+
+/// What becomes of one part of one node's transform.
+struct GltfTrack {
+  enum class Path : std::uint8_t { translation, rotation, scale };
+  enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
+
+  std::size_t node = 0;  ///< in the file's list of nodes
+  Path path = Path::translation;
+  Interpolation interpolation = Interpolation::linear;
+  std::vector<double> times;                  ///< of the keyframes, seconds, ascending; at least one
+  std::vector<std::array<double, 4>> values;  ///< one a keyframe; of a cubic spline in-tangent, value, out-tangent
+};
+
+struct GltfAnimation {
+  std::vector<GltfTrack> tracks;
+  double end = 0;  ///< of its last keyframe, seconds
+};
+
+/// Which of the file's animations: that of this name or number, the first for an empty one. Throws InputError when there is none.
+[[nodiscard]] std::size_t choose_animation(const GltfFile& file, const std::string& name);
+
+/// Reads entry `number` of the list of animations. Tracks of what is not read here (the weights of morph targets, pointers)
+/// are left out. Throws InputError "file: place: what; the mend".
+[[nodiscard]] GltfAnimation read_animation(GltfFile& file, std::size_t number);
+
+/// What a track says at a time, a rotation taken to length 1: before its first keyframe as there, behind its last as there
+/// (glTF 2.0, 3.11 and appendix C; rotations that are LINEAR go along the shorter arc at constant speed).
+[[nodiscard]] std::array<double, 4> value_at(const GltfTrack& track, double time);
+
+/// Puts what `track` says at a time into the transform of its node.
+void apply(const GltfTrack& track, double time, NodeTransform& transform);
+
+}  // namespace halfplane
