@@ -15,6 +15,10 @@ import shutil
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'rtl_ref/area'))
+import gates  # noqa: E402  what it shares with `halfplane bench --area`
+from gates import cells, places  # noqa: E402
+
 BUILD = pathlib.Path('build/area')
 SYNTH_ECP5 = 'synth_ecp5 -top raster_top -nowidelut'
 # What the options of synth_ecp5 do, shown for one configuration without any module kept apart.
@@ -23,9 +27,7 @@ FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_to
 FLAT = 'embedded, 2x2'
 SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper -abc9'
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
-STAGES = ['cull', 'triangle_setup', 'coarse_raster', 'hiz', 'fine_raster', 'interpolate', 'line_raster', 'primitive_join',
-          'depth_test', 'framebuffer', 'cache_tags', 'block_cache']
-KEEP = ('setattr -mod -set keep_hierarchy 1 raster_top *skid_buffer* ' + ' '.join(f'{s} {s}_serial' for s in STAGES))
+KEEP = gates.KEEP
 PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
 # Title, preset, settings.
 CONFIGURATIONS = [
@@ -82,21 +84,7 @@ def slug(title):
 
 def read_verilog(title, wrapper=False):
     package = BUILD / f'{slug(title)}.sv'
-    sources = [package, *sorted(pathlib.Path('rtl_ref/lib').glob('*.sv')),
-               *sorted(pathlib.Path('rtl_ref/stages').glob('*.sv')), 'rtl_ref/raster_top.sv']
-    if wrapper:
-        sources.append('rtl_ref/area/pin_wrapper.sv')
-    return 'read_verilog -sv ' + ' '.join(map(str, sources))
-
-
-def cells(text):
-    """Cells by type, from the last table that `stat` printed, and by module from all of them."""
-    modules = {}
-    for part in re.split(r'^=== ', text, flags=re.M)[1:]:
-        name = part.split(' ===', 1)[0]
-        modules[name] = collections.Counter(
-            {cell: int(count) for cell, count in re.findall(r'^ {5,}(\S+) +(\d+)$', part, flags=re.M)})
-    return modules
+    return gates.read_verilog('rtl_ref', package) + (' rtl_ref/area/pin_wrapper.sv' if wrapper else '')
 
 
 def yosys(title, tag, script):
@@ -119,18 +107,10 @@ def line_unit(title):
                                          + SYNTH_ECP5.replace('raster_top', top))[top] for top in LINE_TOPS}
 
 
-def module_label(name):
-    return re.sub(r'^\$paramod(\$[0-9a-f]+)?\\?', '', name).split('\\')[0]
-
-
 def blocks(title):
-    """ECP5 cells of each stage, flattened inside, and what is left in raster_top."""
-    found = yosys(title, '-blocks', f'{read_verilog(title)}; hierarchy -top raster_top; {KEEP}; {SYNTH_ECP5}')
-    total = collections.defaultdict(collections.Counter)
-    for name, cells_of in found.items():
-        if name != 'design hierarchy':
-            total[module_label(name)].update({c: n for c, n in cells_of.items() if c not in found})
-    return total
+    """ECP5 cells of each stage, flattened inside, and what is left in raster_top: unit by unit, kept in build/gates."""
+    kept = gates.Gates('build/gates', 'rtl_ref')
+    return kept.cells_of('ecp5', BUILD / f'{slug(title)}.sv')
 
 
 def packed_blocks(title):
@@ -184,11 +164,6 @@ def version(command):
     out = subprocess.run(command, capture_output=True, text=True, check=True)
     first = (out.stdout + out.stderr).strip().splitlines()[0]
     return re.sub(r'.*"?(nextpnr-ice40|nextpnr-ecp5).*Version ([^)]*)\).*', r'\1 \2', first.split(' (git')[0])
-
-
-def places(count):
-    """LUT4 places taken: a CCU2C sits in two, a 16-word RAM in four and its write port in two more."""
-    return count['LUT4'] + 2 * count['CCU2C'] + 6 * count['TRELLIS_DPR16X4']
 
 
 def ecp5_cells(count):

@@ -11,6 +11,7 @@
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/space_study.hpp"
 #include "sim/config_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
@@ -33,6 +34,7 @@ struct BenchCommand : CommonOptions {
   bool has_no_errors = false, wants_skips = false, wants_growth = false, wants_all = false;
   std::size_t growth_max = 1'000'000;
   std::string page;
+  SpaceOptions space;
 
   [[nodiscard]] bool wants_rows() const { return wants_all || !(wants_skips || wants_growth); }
 };
@@ -75,8 +77,9 @@ struct VariedConfig {
   std::string name;  ///< "depth.bits=24 tile.size=16"; empty for the base configuration
 };
 
-/// The base configuration and every combination of the values; those that no hardware can have are left out.
-std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<Variation>& variations) {
+/// Every combination of the values, and before them the base configuration if it is wanted; those that no hardware can have
+/// are left out.
+std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<Variation>& variations, bool has_base) {
   std::vector<VariedConfig> product{{base, ""}};
   for (const Variation& variation : variations) {
     std::vector<VariedConfig> next;
@@ -89,9 +92,10 @@ std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<V
       }
     product = std::move(next);
   }
-  std::vector<VariedConfig> configs{{base, ""}};
+  std::vector<VariedConfig> configs;
+  if (has_base) configs.push_back({base, ""});
   for (VariedConfig& one : product) {
-    if (one.config == base) continue;
+    if (has_base && one.config == base) continue;
     try {
       validate(one.config);
       configs.push_back(std::move(one));
@@ -141,7 +145,7 @@ std::vector<BenchCase> bench_cases(const BenchCommand& options, const std::vecto
       try {
         cases.push_back({name, scenes.get(name, varied.config), varied.config, varied.name});
       } catch (const InputError& error) {
-        if (varied.name.empty()) throw;  // the scene itself is at fault
+        if (varied.name.empty() || configs.size() == 1) throw;  // the scene itself is at fault
         std::cerr << "halfplane: left out: " << name << ", " << varied.name << ": " << error.what() << '\n';
       }
     }
@@ -210,6 +214,10 @@ void check_bench_options(const BenchCommand& options) {
   if (!options.wants_rows() && !(options.engines.empty() && options.variations.empty()))
     throw InputError(
         "--skips and --growth have the functional engine alone; leave out --engines and --vary, or add --all");
+  const bool is_space = options.space.is_wanted();
+  if (is_space && (options.wants_all || options.wants_skips || options.wants_growth || !options.engines.empty()))
+    throw InputError("--area and --space measure the hardware; leave out --engines, --skips, --growth and --all");
+  check_space_options(options, options.space, options.page);
   check_output(options.page, ".html");
   check_distinct({options.json, options.page});
   for (const std::string& scene : options.scenes) check_distinct({options.json, options.page, scene});
@@ -246,14 +254,53 @@ std::string bench_command_line(const BenchCommand& options) {
   if (!options.wants_all && options.wants_skips) text += " --skips";
   if (!options.wants_all && options.wants_growth) text += " --growth";
   if (options.growth_max != BenchCommand{}.growth_max) text += " --growth-max " + std::to_string(options.growth_max);
-  return text + " -o " + quoted(options.page);
+  return text + space_arguments(options.space) + (options.page.empty() ? "" : " -o " + quoted(options.page));
+}
+
+/// --area, --space, --slurm, --collect.
+int run_space(const BenchCommand& options, const Config& config, std::chrono::steady_clock::time_point start) {
+  SpaceStudy study;
+  study.page = options.page;
+  study.command = bench_command_line(options);
+  study.result = result_head("bench", options, config);
+  study.result["seed"] = options.seed;
+  study.result["repeat"] = options.repeat;
+  study.result["label"] = label(config);
+  add_bench_json(study.result, {});
+  study.result["memory"] = memory_json(options.space.memory);
+  study.result["points"] = Json::array();
+  if (!options.space.collect.empty()) {
+    collect_space(options.space, study);
+  } else {
+    const auto configs = varied_configs(config, parse_variations(options.variations, config), false);
+    const std::vector<BenchCase> cases = bench_cases(options, configs);
+    if (!options.space.slurm.empty()) {
+      const auto arguments = [&](const BenchCase& at) {
+        std::string text = scene_arguments(options, config) + " --seed " + std::to_string(options.seed);
+        for (std::size_t begin = 0; begin < at.variation.size();) {
+          const std::size_t end = std::min(at.variation.find(' ', begin), at.variation.size());
+          text += " --vary " + quoted(at.variation.substr(begin, end - begin));
+          begin = end + 1;
+        }
+        return text;
+      };
+      write_cluster(options, options.space, cases, arguments, study);
+      return exit_ok;
+    }
+    measure_space(options, options.space, cases, study);
+  }
+  study.result["wall_s"] = seconds_since(start);
+  if (study.is_partial) mark_partial(study.result);
+  finish_space(options, options.space, study);
+  return study.is_partial ? exit_interrupted : exit_ok;
 }
 
 int run_bench(const BenchCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_bench_options(options);
-  const auto configs = varied_configs(config, parse_variations(options.variations, config));
+  if (options.space.is_wanted()) return run_space(options, config, start);
+  const auto configs = varied_configs(config, parse_variations(options.variations, config), true);
   BenchStudy study;
   if (options.wants_rows()) measure_bench_rows(options, configs, study);
   if ((options.wants_skips || options.wants_all) && !is_interrupted()) measure_bench_skips(options, config, study);
@@ -319,11 +366,13 @@ void add_bench_command(CLI::App& app, Action& selected) {
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
   command->add_flag("--all", options->wants_all, "rows of SCENES, and --skips and --growth on scenes of their own");
+  add_space_options(*command, options->space);
   add_file_option(*command, "-o", options->page, "everything as one HTML page, .html");
   command->footer(
       "\nExamples:\n  halfplane bench teapot --vary subpixel.bits=0,4,8 --vary depth.bits=16,24 -o bench.html\n  "
       "halfplane "
-      "bench city --size 1280x720 --engines functional,cycle --threads 1,2");
+      "bench city --size 1280x720 --engines functional,cycle --threads 1,2\n  halfplane bench city --area --vary depth.bits=16,24 --vary "
+      "stamp.size=1,2,4 -o space.html");
   command->callback([&selected, options] { selected = [options] { return run_bench(*options); }; });
 }
 

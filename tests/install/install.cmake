@@ -10,6 +10,7 @@ foreach(file IN ITEMS
     share/halfplane/rtl_ref/raster_top.sv
     share/halfplane/rtl_ref/raster_pkg.sv
     share/halfplane/rtl_ref/stages/cull.sv
+    share/halfplane/rtl_ref/area/gates.py
     share/halfplane/rtl_ref/presets/tiny/raster_pkg.sv
     share/man/man1/halfplane.1
     share/man/man1/halfplane-render.1)

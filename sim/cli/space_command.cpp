@@ -1,0 +1,224 @@
+// What `bench --area` measures and how it is written.
+#include <algorithm>
+#include <iostream>
+
+#include "sim/cli/progress.hpp"
+#include "sim/cli/space_study.hpp"
+#include "sim/show/image/color_map.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
+#include "sim/study/space/gates.hpp"
+#include "sim/study/space/points.hpp"
+#include "sim/study/space/report.hpp"
+
+namespace halfplane {
+namespace {
+
+std::string csv_of(const Json& points) {
+  std::vector<std::string> settings, figures;
+  for (const Json& point : points) {
+    for (const auto& entry : point.at("settings").items())
+      if (std::find(settings.begin(), settings.end(), entry.key()) == settings.end()) settings.push_back(entry.key());
+    for (const std::string& name : figures_of(Json::array({point})))
+      if (std::find(figures.begin(), figures.end(), name) == figures.end()) figures.push_back(name);
+  }
+  std::string text = "scene";
+  for (const std::string& key : settings) text += "," + key;
+  for (const std::string& name : figures) text += "," + name;
+  text += ",on_front\n";
+  for (const Json& point : points) {
+    const std::string scene = point.at("scene");
+    text += scene.find_first_of(",\"\n") == std::string::npos ? scene : Json(scene).dump();
+    for (const std::string& key : settings) text += "," + point.at("settings").value(key, "");
+    for (const std::string& name : figures) {
+      const auto value = figure(point, name);
+      text += "," + (value ? Json(*value == static_cast<double>(static_cast<std::int64_t>(*value))
+                                      ? Json(static_cast<std::int64_t>(*value))
+                                      : Json(*value))
+                                 .dump()
+                           : std::string());
+    }
+    text += point.at("on_front").get<bool>() ? ",1\n" : ",0\n";
+  }
+  return text;
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::string short_figure(const Json& point, const std::string& name) {
+  const auto value = figure(point, name);
+  if (!value) return "-";
+  return *value == static_cast<double>(static_cast<std::uint64_t>(*value)) && *value >= 0
+             ? with_commas(static_cast<std::uint64_t>(*value))
+             : short_number(*value);
+}
+
+/// The table: columns that nobody has are left out.
+void print_points(std::ostream& out, const Json& points) {
+  struct Column {
+    const char *head, *name;
+  };
+  static constexpr Column kColumns[]{{"depth rms, LSB", "depth_lsb_rms"}, {"depth rms, eye", "depth_eye_rms"},
+                                     {"max, eye", "depth_eye_max"},       {"colour max, LSB", "color_lsb_max"},
+                                     {"cycles", "cycles"},                {"ms", "ms"},
+                                     {"bytes", "bytes"},                  {"ECP5 places", "ecp5.places"},
+                                     {"FF", "ecp5.ff"},                   {"mult.", "ecp5.multipliers"},
+                                     {"block RAM", "ecp5.block_rams"},    {"iCE40 LUT4", "ice40.lut4"},
+                                     {"FF", "ice40.ff"},                  {"RAM", "ice40.block_rams"}};
+  std::vector<std::vector<std::string>> lines{{"scene", "configuration"}};
+  std::vector<const char*> names;
+  for (const Column& column : kColumns)
+    if (std::any_of(points.begin(), points.end(),
+                    [&](const Json& point) { return figure(point, column.name).has_value(); })) {
+      lines[0].emplace_back(column.head);
+      names.push_back(column.name);
+    }
+  lines[0].emplace_back("");
+  for (const Json& point : points) {
+    const std::string label = point.at("label");
+    lines.push_back({point.at("scene"), label.empty() ? "as configured" : label});
+    for (const char* name : names) lines.back().push_back(short_figure(point, name));
+    lines.back().emplace_back(point.at("on_front").get<bool>() ? "front" : "");
+  }
+  std::vector<std::size_t> widths(lines[0].size());
+  for (const auto& line : lines)
+    for (std::size_t k = 0; k < line.size(); ++k) widths[k] = std::max(widths[k], line[k].size());
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t k = 0; k < line.size(); ++k)
+      text += k < 2 || k + 1 == line.size() ? left_aligned(line[k], widths[k] + 2)
+                                            : right_aligned(line[k], widths[k]) + "  ";
+    text.erase(text.find_last_not_of(' ') + 1);
+    out << text << '\n';
+  }
+}
+
+}  // namespace
+
+void add_space_options(CLI::App& command, SpaceOptions& options) {
+  command.add_flag("--area", options.wants_area,
+                   "instead: the design space, a point of each combination of --vary: error, cycles, bytes, milliseconds "
+                   "and the gates of the RTL, by Yosys; the Pareto front marked");
+  command.add_flag("--space", options.wants_space, "the same without gates");
+  command.add_option("--parts", options.parts, "of --area: some of ecp5, ice40")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->default_str("ecp5,ice40")
+      ->type_name("LIST");
+  command
+      .add_option("--front", options.front,
+                  "figures that the front is of, as depth_eye_rms,cycles,ecp5.places (default: error, cycles, places, "
+                  "block RAM)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("LIST");
+  command.add_option("--cache", options.cache, "folder that keeps gates, module by module (default: the user's cache)")
+      ->check(refuse_empty);
+  command.add_option("--rtl", options.rtl, "folder of raster_top.sv (default: that of this program)")
+      ->check(refuse_empty);
+  add_file_option(command, "--csv", options.csv, "the points as CSV; - for stdout");
+  command.add_option("--slurm", options.slurm,
+                     "measures nothing: writes DIR/tasks, a command for each point, and DIR/job.sh for sbatch")
+      ->check(refuse_empty)
+      ->type_name("DIR");
+  command.add_option("--collect", options.collect, "measures nothing: the points that the tasks of DIR have left there")
+      ->check(refuse_empty)
+      ->type_name("DIR");
+  add_memory_options(command, options.memory);
+}
+
+std::string space_arguments(const SpaceOptions& options) {
+  std::string text = options.wants_area ? " --area" : options.is_wanted() ? " --space" : "";
+  const auto add_list = [&text](const char* option, const std::vector<std::string>& words) {
+    text += option;
+    for (std::size_t i = 0; i < words.size(); ++i) text += (i == 0 ? " " : ",") + words[i];
+  };
+  if (options.wants_area && options.parts != SpaceOptions{}.parts) add_list(" --parts", options.parts);
+  if (!options.front.empty()) add_list(" --front", options.front);
+  return text + memory_arguments(options.memory);
+}
+
+void check_space_options(const CommonOptions& common, const SpaceOptions& options, const std::string& page) {
+  if (!options.is_wanted()) {
+    if (!memory_arguments(options.memory).empty())
+      throw InputError("--memory, --memory-latency and --mhz are for --area and --space; add one of them");
+    return;
+  }
+  for (const std::string& part : options.parts)
+    if (std::find(kGateParts.begin(), kGateParts.end(), part) == kGateParts.end())
+      throw InputError("--parts: no part '" + part + "'; give some of ecp5, ice40");
+  if (!options.slurm.empty() && !options.collect.empty())
+    throw InputError("--slurm writes the tasks and --collect reads what they left; give one of them");
+  if (!options.slurm.empty() && !(page.empty() && options.csv.empty() && common.json.empty()))
+    throw InputError("--slurm measures nothing: -o, --csv and --json are for --collect DIR, when the tasks are done");
+  check_output(options.csv);
+  check_distinct({common.json, page, options.csv});
+}
+
+void measure_space(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
+                   SpaceStudy& study) {
+  std::optional<Gates> gates;
+  if (options.wants_area) gates.emplace(options.rtl, options.cache, options.parts);
+  Progress progress(common, options.wants_area ? "measuring and counting gates" : "measuring");
+  PointStudy points(options.memory);
+  Json& out = study.result["points"];
+  try {
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const auto part = [&](double fraction) {
+        progress((static_cast<double>(i) + fraction) / static_cast<double>(cases.size()));
+      };
+      part(0);
+      Json point;
+      try {
+        point = points.measure(cases[i], part);
+      } catch (const InputError& error) {
+        if (cases.size() == 1) throw;
+        std::cerr << "halfplane: left out: " << cases[i].scene_name << ", " << cases[i].variation << ": "
+                  << error.what() << '\n';
+        continue;
+      }
+      if (gates) point.update(gates->of(cases[i].config));
+      out.push_back(std::move(point));
+    }
+  } catch (const Interrupted&) {
+    study.is_partial = true;
+  }
+}
+
+void finish_space(const CommonOptions& common, const SpaceOptions& options, SpaceStudy& study) {
+  Json& points = study.result["points"];
+  const auto axes = options.front.empty() ? default_axes(points) : options.front;
+  if (!points.empty()) {
+    const auto known = figures_of(points);
+    for (const std::string& axis : axes)
+      if (std::find(known.begin(), known.end(), axis) == known.end() && !options.front.empty()) {
+        std::string list;
+        for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+        throw InputError("--front: not every point has a figure '" + axis + "'; give some of " + list);
+      }
+  }
+  mark_front(points, axes);
+  study.result["front_axes"] = axes;
+  if (!study.page.empty()) {
+    Json page = study.result;
+    page["version"] = HALFPLANE_VERSION;
+    page["command"] = study.command;
+    write_text_file(study.page, space_report(page.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  }
+  if (!options.csv.empty()) write_text_file(options.csv, csv_of(points));
+  write_json(common, study.result);
+  std::ostream& out = options.csv == "-" ? std::cerr : human(common);
+  if (common.quiet) return;
+  const auto on_front = std::count_if(points.begin(), points.end(), [](const Json& p) { return p.at("on_front").get<bool>(); });
+  out << points.size() << (points.size() == 1 ? " point, " : " points, ") << on_front << " on the front of";
+  for (std::size_t i = 0; i < axes.size(); ++i) out << (i == 0 ? " " : ", ") << axes[i];
+  out << '\n';
+  print_points(out, points);
+  if (study.result.value("missing", 0) > 0)
+    out << study.result["missing"] << " points are not there yet; the same job, or parallel, goes on with them\n";
+  if (study.is_partial) print_partial(out);
+}
+
+}  // namespace halfplane

@@ -1,0 +1,94 @@
+#include "sim/study/space/points.hpp"
+
+#include <array>
+#include <string_view>
+
+#include "sim/show/image/framebuffer_files.hpp"
+#include "sim/show/report/hardware.hpp"
+
+namespace halfplane {
+namespace {
+
+/// What shapes time and gates and no pixel. Points that differ in nothing else, and whose hardware drew the same bits, have
+/// the same errors, which are then found once.
+constexpr std::array<std::string_view, 21> kNoPixel{
+    "stamp.size",    "key.primitive_bits", "context.slots",    "hiz.bits",     "hiz.lag",      "cache.kind",
+    "cache.lines",   "cache.queue",        "cache.victims",    "frame.clears", "frame.order",  "frame.store",
+    "setup.kind",    "texture.unit",       "texture.cache_kb", "texture.queue", "blend.lanes",  "lines.unit",
+    "counters.unit", "counters.bits",      "memory.port_bits"};
+
+SpaceJson number_or_null(const std::optional<double>& value) { return value ? SpaceJson(*value) : SpaceJson(nullptr); }
+
+/// Where more is more: a point beats no other that can do what it cannot.
+SpaceJson abilities(const Config& config) {
+  return {{"texture", static_cast<int>(config.texture_unit)},
+          {"alpha", config.alpha_units},
+          {"blending", config.blend_lanes > 0 ? 1 : 0},
+          {"dither", config.dither_units},
+          {"stencil", config.stencil_bits},
+          {"lines", config.line_units},
+          {"counters", config.counter_units},
+          {"target_width", config.target_width},
+          {"target_height", config.target_height}};
+}
+
+}  // namespace
+
+const BenchFacts& PointStudy::facts_of(const BenchCase& at, const Rendering& picture,
+                                       const std::function<void(double)>& progress) {
+  Config shown = at.config;
+  for (const std::string_view key : kNoPixel)
+    for (const Setting& setting : settings())
+      if (setting.key == key) set(shown, key, get(preset("embedded"), setting));
+  const std::string key = at.scene_name + '\n' + label(shown) + '\n' +
+                          color_hash(picture.frame, at.config.color_format) + depth_hash(picture.frame);
+  const auto found = facts_.find(key);
+  if (found != facts_.end()) return found->second;
+  return facts_.emplace(key, find_facts(*at.scene, at.config, true, progress)).first->second;
+}
+
+SpaceJson PointStudy::measure(const BenchCase& at, const std::function<void(double)>& progress) {
+  const Hardware hardware{at.config, {}, memory_};
+  check(hardware);
+  RenderOptions options;
+  options.progress = [&progress](double part) { progress(part / 2); };
+  const CycleRendering frame = run_cycles(*at.scene, hardware, options);
+  const BenchFacts& facts =
+      facts_of(at, frame.rendering, [&progress](double part) { progress((1 + part) / 2); });
+  const BenchErrors errors = facts.errors.value_or(BenchErrors{});
+  return {{"scene", at.scene_name},
+          {"label", at.variation},
+          {"config", label(at.config)},
+          {"settings", settings_of(at.variation)},
+          {"width", at.scene->width},
+          {"height", at.scene->height},
+          {"depth_lsb_rms", number_or_null(errors.depth_lsb_rms)},
+          {"depth_lsb_max", number_or_null(errors.depth_lsb_max)},
+          {"depth_range_rms", number_or_null(errors.depth_range_rms)},
+          {"depth_range_max", number_or_null(errors.depth_range_max)},
+          {"depth_eye_rms", number_or_null(errors.depth_eye_rms)},
+          {"depth_eye_max", number_or_null(errors.depth_eye_max)},
+          {"color_lsb_rms", number_or_null(errors.color_lsb_rms)},
+          {"color_lsb_max", number_or_null(errors.color_lsb_max)},
+          {"coverage_mismatches", errors.coverage_mismatches},
+          {"coverage_missing", errors.coverage_missing},
+          {"coverage_extra", errors.coverage_extra},
+          {"cycles", frame.run.cycles},
+          {"ms", static_cast<double>(frame.run.cycles) / (1e3 * memory_.mhz)},
+          {"bytes", traffic(frame.run, at.config).total()},
+          {"abilities", abilities(at.config)}};
+}
+
+SpaceJson settings_of(const std::string& label) {
+  SpaceJson settings = SpaceJson::object();
+  for (std::size_t start = 0; start < label.size();) {
+    const std::size_t end = std::min(label.find(' ', start), label.size());
+    const std::string word = label.substr(start, end - start);
+    const std::size_t equals = word.find('=');
+    settings[word.substr(0, equals)] = word.substr(equals + 1);
+    start = end + 1;
+  }
+  return settings;
+}
+
+}  // namespace halfplane

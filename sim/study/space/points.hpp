@@ -1,0 +1,36 @@
+// A point of the design space: one configuration on one scene, with its error and what a frame costs.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "model/config.hpp"
+#include "model/scene.hpp"
+#include "model/timing/memory.hpp"
+#include "sim/study/bench/rows.hpp"
+#include "sim/study/space/front.hpp"
+
+namespace halfplane {
+
+/// What all points share, so that nothing is found out twice.
+class PointStudy {
+ public:
+  explicit PointStudy(const MemorySettings& memory) : memory_(memory) {}
+
+  /// Errors (those of `compare`), cycles and bytes of a whole frame in the cycle engine, milliseconds at the memory's clock,
+  /// and what the hardware can do; gates are not in it. Throws InputError for a scene that this hardware does not draw.
+  [[nodiscard]] SpaceJson measure(const BenchCase& at, const std::function<void(double)>& progress);
+
+ private:
+  const BenchFacts& facts_of(const BenchCase& at, const Rendering& picture,
+                             const std::function<void(double)>& progress);
+
+  MemorySettings memory_;
+  std::map<std::string, BenchFacts> facts_;
+};
+
+/// Every key of --vary with its value, as `label` "depth.bits=24 stamp.size=4" says it.
+[[nodiscard]] SpaceJson settings_of(const std::string& label);
+
+}  // namespace halfplane
