@@ -1,6 +1,7 @@
 #include "halfplane.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
 #include <map>
@@ -22,6 +23,7 @@ struct halfplane_config {
 };
 struct halfplane_scene {
   Scene scene;
+  State state{};  ///< of the next draw from arrays
 };
 struct halfplane_frame {
   Framebuffer frame;
@@ -65,6 +67,64 @@ const Setting& setting_of(std::string_view key) {
   for (const Setting& setting : settings())
     if (setting.key == key) return setting;
   throw InputError("there is no setting '" + std::string(key) + "'");
+}
+
+Topology topology_of(std::string_view name) {
+  static constexpr std::array<std::string_view, 7> kNames{"triangles",  "triangle_strip", "triangle_fan", "lines",
+                                                          "line_strip", "line_loop",      "points"};
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end())
+    throw InputError("there is no topology '" + std::string(name) + "'; give triangles, lines...");
+  return static_cast<Topology>(found - kNames.begin());
+}
+
+/// Lines of a capture, read by the one reader of captures: as the head of one with a single draw, whose state is taken.
+void say(halfplane_scene& made, std::string_view lines) {
+  Scene& scene = made.scene;
+  const std::string head =
+      "halfplane 1\ntarget " + std::to_string(scene.width) + " " + std::to_string(scene.height) + "\n";
+  const Scene said = read_capture(head + std::string(lines) + "\nv 0 0 0 1\np 0\n", "lines");
+  if (said.vertices.size() != 1) throw InputError("lines: vertices are given by halfplane_scene_vertices");
+  if (said.width != scene.width || said.height != scene.height)
+    throw InputError("lines: the size of the target is given by halfplane_scene_new");
+  const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
+  made.state = said.states.at(std::get<Draw>(said.commands.back()).state);
+  if (made.state.texture) *made.state.texture += first_texture;
+  scene.textures.insert(scene.textures.end(), said.textures.begin(), said.textures.end());
+  scene.commands.insert(scene.commands.end(), said.commands.begin(), said.commands.end() - 1);
+  if (said.planes) scene.planes = said.planes;
+}
+
+std::size_t add_vertices(Scene& scene, const double* values, int numbers, std::size_t count) {
+  if (numbers != 4 && numbers != 8 && numbers != 10)
+    throw InputError("a vertex has 4, 8 or 10 numbers, not " + std::to_string(numbers));
+  const std::size_t first = scene.vertices.size();
+  for (std::size_t i = 0; i < count; ++i, values += numbers) {
+    Vertex v{values[0], values[1], values[2], values[3]};
+    if (numbers >= 8) std::copy_n(values + 4, 4, v.rgba.begin());
+    if (numbers == 10) {
+      v.u = values[8];
+      v.v = values[9];
+    }
+    scene.vertices.push_back(v);
+  }
+  return first;
+}
+
+void add_draw(halfplane_scene& made, Topology topology, const std::uint32_t* indices, std::size_t count) {
+  Scene& scene = made.scene;
+  for (std::size_t i = 0; i < count; ++i)
+    if (indices[i] != kRestart && indices[i] >= scene.vertices.size())
+      throw InputError("index " + std::to_string(i) + " of the draw is " + std::to_string(indices[i]) +
+                       ", and the scene has " + std::to_string(scene.vertices.size()) + " vertices");
+  if (scene.states.empty() || scene.states.back() != made.state) scene.states.push_back(made.state);
+  Draw draw;
+  draw.topology = topology;
+  draw.first = scene.indices.size();
+  draw.count = count;
+  draw.state = static_cast<std::uint32_t>(scene.states.size() - 1);
+  scene.indices.insert(scene.indices.end(), indices, indices + count);
+  scene.commands.emplace_back(draw);
 }
 
 void count(halfplane_frame& made, const Counters& counters) {
@@ -172,6 +232,35 @@ void halfplane_config_free(halfplane_config* config) { delete config; }
 halfplane_scene* halfplane_scene_read(const char* words, size_t bytes) {
   return guarded(nullptr, [&] {
     return new halfplane_scene{read_capture(std::string_view(&required(words, "the text"), bytes), "scene")};
+  });
+}
+halfplane_scene* halfplane_scene_new(int width, int height) {
+  return guarded(nullptr, [&] {
+    auto made = std::make_unique<halfplane_scene>();
+    made->scene.name = "scene";
+    made->scene.width = width;
+    made->scene.height = height;
+    validate(made->scene);
+    return made.release();
+  });
+}
+int halfplane_scene_say(halfplane_scene* scene, const char* lines, size_t bytes) {
+  return guarded(-1, [&] {
+    say(required(scene, "the scene"), std::string_view(&required(lines, "the text"), bytes));
+    return 0;
+  });
+}
+int64_t halfplane_scene_vertices(halfplane_scene* scene, const double* values, int numbers, size_t count) {
+  return guarded(std::int64_t{-1}, [&] {
+    return static_cast<std::int64_t>(
+        add_vertices(required(scene, "the scene").scene, &required(values, "the array of vertices"), numbers, count));
+  });
+}
+int halfplane_scene_draw(halfplane_scene* scene, const char* topology, const uint32_t* indices, size_t count) {
+  return guarded(-1, [&] {
+    add_draw(required(scene, "the scene"), topology_of(text(topology, "the topology")),
+             &required(indices, "the array of indices"), count);
+    return 0;
   });
 }
 void halfplane_scene_free(halfplane_scene* scene) { delete scene; }

@@ -49,6 +49,17 @@ typedef struct halfplane_frame halfplane_frame;
 /* A capture (docs/capture.md) that lies in memory: exact to the bit, any state. The files of its
  * textures are looked for in the current folder; inline ones need none. */
 HALFPLANE_API halfplane_scene* halfplane_scene_read(const char* text, size_t bytes);
+/* An empty scene of width * height pixels, to be filled by the three below. */
+HALFPLANE_API halfplane_scene* halfplane_scene_new(int width, int height);
+/* Lines of a capture that hold from here on: clears, and what a draw depends on (space, state, texture, texels, planes). Each
+ * call begins with a capture's defaults: what an earlier one set is set no more. Returns 0. */
+HALFPLANE_API int halfplane_scene_say(halfplane_scene* scene, const char* lines, size_t bytes);
+/* `count` vertices from an array: x y z w, and where `numbers` is 8 r g b a (0 to 255), where it is 10 u v too. Returns the
+ * index of the first. */
+HALFPLANE_API int64_t halfplane_scene_vertices(halfplane_scene* scene, const double* values, int numbers, size_t count);
+/* A draw: "triangles", "triangle_strip", "triangle_fan", "lines", "line_strip", "line_loop" or "points" of indices that count
+ * from 0 over the whole scene; 0xffffffff starts a strip, fan or loop anew. Returns 0. */
+HALFPLANE_API int halfplane_scene_draw(halfplane_scene* scene, const char* topology, const uint32_t* indices, size_t count);
 HALFPLANE_API void halfplane_scene_free(halfplane_scene* scene);
 
 /* Draws a scene. Engines: "functional", "scalar" and "cycle" give the same bits; "golden" the exact image, rounded at the end.

@@ -22,9 +22,9 @@ def _load():
     library = ctypes.CDLL(path)
     for name in ("last_error", "stage_port_name", "stage_field_name"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_char_p
-    for name in ("config_new", "scene_read", "render", "stage_new"):
+    for name in ("config_new", "scene_read", "scene_new", "render", "stage_new"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_void_p
-    for name in ("frame_plane", "frame_reals", "frame_counter"):
+    for name in ("scene_vertices", "frame_plane", "frame_reals", "frame_counter"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_int64
     if library.halfplane_abi() != ABI:
         raise Error(f"the library has ABI {library.halfplane_abi()}, this module speaks {ABI}")
@@ -78,6 +78,31 @@ class Scene(_Handle):
     def __init__(self, capture):
         text = capture.encode()
         super().__init__(_c.halfplane_scene_read(text, ctypes.c_size_t(len(text))))
+
+
+class ArrayScene(_Handle):
+    """A scene from arrays: vertices [x, y, z, w], [..., r, g, b, a] or [..., u, v], and draws of their indices."""
+
+    kind = "scene"
+
+    def __init__(self, width, height, lines=""):
+        super().__init__(_c.halfplane_scene_new(width, height))
+        self.say(lines)
+
+    def say(self, lines):
+        """Lines of a capture for the draws that follow: "space window", "state cull back"."""
+        text = lines.encode()
+        _checked(_c.halfplane_scene_say(self, text, ctypes.c_size_t(len(text))))
+
+    def vertices(self, rows):
+        """Adds vertices; returns the index of the first."""
+        flat = [float(value) for row in rows for value in row]
+        array = (ctypes.c_double * len(flat))(*flat)
+        return _checked(_c.halfplane_scene_vertices(self, array, len(rows[0]), ctypes.c_size_t(len(rows))))
+
+    def draw(self, indices, topology="triangles"):
+        array = (ctypes.c_uint32 * len(indices))(*indices)
+        _checked(_c.halfplane_scene_draw(self, topology.encode(), array, ctypes.c_size_t(len(indices))))
 
 
 class Frame(_Handle):

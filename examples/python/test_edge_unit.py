@@ -38,11 +38,25 @@ def first_difference(has_bug, tiles=500, seed=1):
     return None
 
 
+def assert_arrays_are_a_capture():
+    """The same scene by arrays and as a capture."""
+    rows = [[1, 1, 0.25, 1, 255, 0, 0, 255], [15, 2, 0.5, 1, 0, 255, 0, 255], [3, 14, 0.75, 1, 0, 0, 255, 255]]
+    arrays = halfplane.ArrayScene(16, 16, "clear color 0 0 0 255 depth 1\nspace window")
+    first = arrays.vertices(rows)
+    arrays.draw([first, first + 1, first + 2])
+    text = "".join("v " + " ".join(map(str, row)) + "\n" for row in rows)
+    head = "halfplane 1\ntarget 16 16\nclear color 0 0 0 255 depth 1\nspace window\n"
+    config = halfplane.Config("tiny")
+    frames = [halfplane.Frame(scene, config) for scene in (arrays, halfplane.Scene(f"{head}{text}t 0 1 2\n"))]
+    assert frames[0].plane("color") == frames[1].plane("color") != [0] * 256
+
+
 def main(words):
     if words:
         difference = first_difference(words == ["bug"])
         print(difference or "equal")
         return 1 if difference else 0
+    assert_arrays_are_a_capture()
     wrong, caught = first_difference(False), first_difference(True)
     print(wrong or "without the bug: equal", caught or "the bug is not caught", sep="\n")
     return 1 if wrong or not caught else 0

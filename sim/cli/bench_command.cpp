@@ -371,7 +371,8 @@ void add_bench_command(CLI::App& app, Action& selected) {
   command->footer(
       "\nExamples:\n  halfplane bench teapot --vary subpixel.bits=0,4,8 --vary depth.bits=16,24 -o bench.html\n  "
       "halfplane "
-      "bench city --size 1280x720 --engines functional,cycle --threads 1,2\n  halfplane bench city --area --vary depth.bits=16,24 --vary "
+      "bench city --size 1280x720 --engines functional,cycle --threads 1,2\n  halfplane bench city --area --vary "
+      "depth.bits=16,24 --vary "
       "stamp.size=1,2,4 -o space.html");
   command->callback([&selected, options] { selected = [options] { return run_bench(*options); }; });
 }

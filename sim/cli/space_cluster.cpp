@@ -27,18 +27,28 @@ std::string point_name(std::size_t index) {
 std::string job_script(const fs::path& folder, std::size_t points) {
   const std::size_t jobs = std::min(points, kMostJobs);
   return "#!/bin/sh\n"
-         "# Submit with `sbatch " + quoted((folder / "job.sh").string()) + "`; again, it does the points that are missing.\n"
+         "# Submit with `sbatch " +
+         quoted((folder / "job.sh").string()) +
+         "`; again, it does the points that are missing.\n"
          "#SBATCH --job-name=halfplane\n"
-         "#SBATCH --array=1-" + std::to_string(jobs) + "\n"
+         "#SBATCH --array=1-" +
+         std::to_string(jobs) +
+         "\n"
          "#SBATCH --ntasks=1\n"
-         "#SBATCH --output=" + (folder / "logs/%a.log").string() + "\n"
-         "cd " + quoted(folder.string()) + " || exit 1\n"
+         "#SBATCH --output=" +
+         (folder / "logs/%a.log").string() +
+         "\n"
+         "cd " +
+         quoted(folder.string()) +
+         " || exit 1\n"
          "count=$(wc -l <tasks)\n"
          "line=$SLURM_ARRAY_TASK_ID\n"
          "status=0\n"
          "while [ \"$line\" -le \"$count\" ]; do\n"
          "  sh -c \"$(sed -n \"${line}p\" tasks)\" || status=1\n"
-         "  line=$((line + " + std::to_string(jobs) + "))\n"
+         "  line=$((line + " +
+         std::to_string(jobs) +
+         "))\n"
          "done\n"
          "exit $status\n";
 }
@@ -55,7 +65,8 @@ Json read_json(const fs::path& path) {
 
 void write_cluster(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    const std::function<std::string(const BenchCase&)>& arguments, const SpaceStudy& study) {
-  if (options.wants_area) (void)Gates(options.rtl, options.cache, options.parts);  // says now what would be missing there
+  if (options.wants_area)
+    (void)Gates(options.rtl, options.cache, options.parts);  // says now what would be missing there
   std::error_code error;
   const fs::path folder = fs::absolute(options.slurm, error).lexically_normal();
   for (const char* part : {"points", "logs"}) {
@@ -88,23 +99,27 @@ void write_cluster(const CommonOptions& common, const SpaceOptions& options, con
   write_text(folder / "job.sh", job_script(folder, cases.size()));
   write_text(folder / "space.json", manifest.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   if (common.quiet) return;
-  std::cout << cases.size() << " tasks. On a cluster: sbatch " << quoted((folder / "job.sh").string())
-            << "\nHere: (cd " << quoted(folder.string()) << " && parallel <tasks)\nThen: " << program_word()
-            << " bench --collect " << quoted(options.slurm) << " -o space.html\n";
+  std::cout << cases.size() << " tasks. On a cluster: sbatch " << quoted((folder / "job.sh").string()) << "\nHere: (cd "
+            << quoted(folder.string()) << " && parallel <tasks)\nThen: " << program_word() << " bench --collect "
+            << quoted(options.slurm) << " -o space.html\n";
 }
 
-std::size_t collect_space(const SpaceOptions& options, SpaceStudy& study) {
-  const fs::path folder = options.collect;
+namespace {
+
+/// Adds the points of one folder to the study, and its head if there is none yet. Returns how many are missing.
+std::size_t collect_folder(const fs::path& folder, SpaceStudy& study, bool is_first) {
   Json manifest = read_json(folder / "space.json");
   if (manifest.value("schema", "") != "halfplane.space/1" || !manifest.contains("labels"))
     throw InputError((folder / "space.json").string() + ": not written by --slurm; give the folder that it has made");
   const Json labels = manifest["labels"];
-  study.command = manifest.value("command", "");
-  manifest.erase("labels");
-  manifest.erase("command");
-  manifest["schema"] = "halfplane.bench/1";
-  study.result = std::move(manifest);
-  study.result["points"] = Json::array();
+  study.command += (study.command.empty() ? "" : "\n") + manifest.value("command", "");
+  if (is_first) {
+    manifest.erase("labels");
+    manifest.erase("command");
+    manifest["schema"] = "halfplane.bench/1";
+    study.result = std::move(manifest);
+    study.result["points"] = Json::array();
+  }
   std::size_t missing = 0;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const fs::path path = folder / point_name(i);
@@ -119,6 +134,16 @@ std::size_t collect_space(const SpaceOptions& options, SpaceStudy& study) {
     study.result["points"].push_back(one["points"][0]);
     study.result["points"].back()["scene"] = labels[i][0];
   }
+  return missing;
+}
+
+}  // namespace
+
+std::size_t collect_space(const SpaceOptions& options, SpaceStudy& study) {
+  study.command.clear();
+  std::size_t missing = 0;
+  for (const std::string& folder : options.collect)
+    missing += collect_folder(folder, study, &folder == &options.collect.front());
   study.result["missing"] = missing;
   return missing;
 }

@@ -60,13 +60,20 @@ void print_points(std::ostream& out, const Json& points) {
   struct Column {
     const char *head, *name;
   };
-  static constexpr Column kColumns[]{{"depth rms, LSB", "depth_lsb_rms"}, {"depth rms, eye", "depth_eye_rms"},
-                                     {"max, eye", "depth_eye_max"},       {"colour max, LSB", "color_lsb_max"},
-                                     {"cycles", "cycles"},                {"ms", "ms"},
-                                     {"bytes", "bytes"},                  {"ECP5 places", "ecp5.places"},
-                                     {"FF", "ecp5.ff"},                   {"mult.", "ecp5.multipliers"},
-                                     {"block RAM", "ecp5.block_rams"},    {"iCE40 LUT4", "ice40.lut4"},
-                                     {"FF", "ice40.ff"},                  {"RAM", "ice40.block_rams"}};
+  static constexpr Column kColumns[]{{"depth rms, LSB", "depth_lsb_rms"},
+                                     {"depth rms, eye", "depth_eye_rms"},
+                                     {"max, eye", "depth_eye_max"},
+                                     {"colour max, LSB", "color_lsb_max"},
+                                     {"cycles", "cycles"},
+                                     {"ms", "ms"},
+                                     {"bytes", "bytes"},
+                                     {"ECP5 places", "ecp5.places"},
+                                     {"FF", "ecp5.ff"},
+                                     {"mult.", "ecp5.multipliers"},
+                                     {"block RAM", "ecp5.block_rams"},
+                                     {"iCE40 LUT4", "ice40.lut4"},
+                                     {"FF", "ice40.ff"},
+                                     {"RAM", "ice40.block_rams"}};
   std::vector<std::vector<std::string>> lines{{"scene", "configuration"}};
   std::vector<const char*> names;
   for (const Column& column : kColumns)
@@ -98,9 +105,10 @@ void print_points(std::ostream& out, const Json& points) {
 }  // namespace
 
 void add_space_options(CLI::App& command, SpaceOptions& options) {
-  command.add_flag("--area", options.wants_area,
-                   "instead: the design space, a point of each combination of --vary: error, cycles, bytes, milliseconds "
-                   "and the gates of the RTL, by Yosys; the Pareto front marked");
+  command.add_flag(
+      "--area", options.wants_area,
+      "instead: the design space, a point of each combination of --vary: error, cycles, bytes, milliseconds "
+      "and the gates of the RTL, by Yosys; the Pareto front marked");
   command.add_flag("--space", options.wants_space, "the same without gates");
   command.add_option("--parts", options.parts, "of --area: some of ecp5, ice40")
       ->delimiter(',')
@@ -119,12 +127,16 @@ void add_space_options(CLI::App& command, SpaceOptions& options) {
   command.add_option("--rtl", options.rtl, "folder of raster_top.sv (default: that of this program)")
       ->check(refuse_empty);
   add_file_option(command, "--csv", options.csv, "the points as CSV; - for stdout");
-  command.add_option("--slurm", options.slurm,
-                     "measures nothing: writes DIR/tasks, a command for each point, and DIR/job.sh for sbatch")
+  command
+      .add_option("--slurm", options.slurm,
+                  "measures nothing: writes DIR/tasks, a command for each point, and DIR/job.sh for sbatch")
       ->check(refuse_empty)
       ->type_name("DIR");
-  command.add_option("--collect", options.collect, "measures nothing: the points that the tasks of DIR have left there")
+  command
+      .add_option("--collect", options.collect,
+                  "measures nothing: the points that the tasks of DIR have left there; repeatable, for one page of all")
       ->check(refuse_empty)
+      ->allow_extra_args(false)
       ->type_name("DIR");
   add_memory_options(command, options.memory);
 }
@@ -211,7 +223,8 @@ void finish_space(const CommonOptions& common, const SpaceOptions& options, Spac
   write_json(common, study.result);
   std::ostream& out = options.csv == "-" ? std::cerr : human(common);
   if (common.quiet) return;
-  const auto on_front = std::count_if(points.begin(), points.end(), [](const Json& p) { return p.at("on_front").get<bool>(); });
+  const auto on_front =
+      std::count_if(points.begin(), points.end(), [](const Json& p) { return p.at("on_front").get<bool>(); });
   out << points.size() << (points.size() == 1 ? " point, " : " points, ") << on_front << " on the front of";
   for (std::size_t i = 0; i < axes.size(); ++i) out << (i == 0 ? " " : ", ") << axes[i];
   out << '\n';

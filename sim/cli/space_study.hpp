@@ -15,7 +15,8 @@ struct SpaceOptions {
   bool wants_area = false, wants_space = false;
   std::vector<std::string> parts{"ecp5", "ice40"};
   std::vector<std::string> front;  ///< figures; empty: default_axes()
-  std::string cache, rtl, csv, slurm, collect;
+  std::string cache, rtl, csv, slurm;
+  std::vector<std::string> collect;  ///< folders
   MemorySettings memory;
 
   [[nodiscard]] bool is_wanted() const {
@@ -49,7 +50,7 @@ void measure_space(const CommonOptions& common, const SpaceOptions& options, con
 void write_cluster(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    const std::function<std::string(const BenchCase&)>& arguments, const SpaceStudy& study);
 
-/// Reads what the tasks left in DIR. Returns how many points are not there yet.
+/// Reads what the tasks left in the folders; the first one's configuration is the base. Returns how many points are not there yet.
 std::size_t collect_space(const SpaceOptions& options, SpaceStudy& study);
 
 /// Marks the front, writes JSON, CSV and page, and prints.

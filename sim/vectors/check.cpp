@@ -78,7 +78,7 @@ std::size_t Judgement::total_differing() const { return sum_of(differing); }
 
 Judgement judge(const JudgedStage& stage, const Config& config, const StagePackets& packets) {
   if (stage.run == nullptr)
-    throw InputError("--stage " + std::string(info(stage.stage).name) +
+    throw InputError("stage " + std::string(info(stage.stage).name) +
                      " cannot be judged: " + std::string(stage.why_not));
   const Widths widths = derive_widths(config);
   Judge judge(stage, widths, packets);

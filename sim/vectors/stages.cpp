@@ -391,19 +391,19 @@ const JudgedStage& judged_stage(std::string_view name) {
   }
   std::string list;
   for (const std::string_view word : names) list += (list.empty() ? "" : ", ") + std::string(word);
-  throw InputError("--stage: no stage '" + std::string(name) + "' sends packets;" + did_you_mean(name, names) +
+  throw InputError("no stage '" + std::string(name) + "' sends packets;" + did_you_mean(name, names) +
                    " give one of " + list);
 }
 
 void require_stage(const JudgedStage& stage, const Config& config) {
   const bool is_of_texture = stage.stage == Stage::texture_unit || stage.stage == Stage::texture_memory;
   if (is_of_texture && !has_texture_planes(config))
-    throw InputError("--stage " + std::string(info(stage.stage).name) +
-                     ": this hardware has no texture unit; use --set texture.unit=nearest, bilinear or trilinear");
+    throw InputError("stage " + std::string(info(stage.stage).name) +
+                     ": this hardware has no texture unit; set texture.unit to nearest, bilinear or trilinear");
   const bool is_of_lines = stage.stage == Stage::line_setup || stage.stage == Stage::line_raster;
   if (is_of_lines && config.line_units == 0)
-    throw InputError("--stage " + std::string(info(stage.stage).name) +
-                     ": this hardware has no unit that draws lines; use --set lines.unit=1");
+    throw InputError("stage " + std::string(info(stage.stage).name) +
+                     ": this hardware has no unit that draws lines; set lines.unit to 1");
 }
 
 std::vector<FieldName> fields_of(Arrow like, const Widths& widths) {

@@ -48,6 +48,46 @@ class Capi : public testing::Test {
 
 TEST_F(Capi, IsTheAbiOfItsHeader) { EXPECT_EQ(halfplane_abi(), HALFPLANE_ABI); }
 
+TEST_F(Capi, ASceneOfArraysIsTheSceneOfItsCapture) {
+  const std::vector<std::uint32_t> color = plane("functional", "color"), depth = plane("functional", "depth");
+  halfplane_scene_free(scene);
+  scene = halfplane_scene_new(16, 16);
+  ASSERT_NE(scene, nullptr) << halfplane_last_error();
+  const std::string lines = "clear color 10 20 30 255 depth 1 stencil 7\nspace window\n";
+  ASSERT_EQ(halfplane_scene_say(scene, lines.data(), lines.size()), 0) << halfplane_last_error();
+  const double vertices[][8]{
+      {1, 1, 0.25, 1, 255, 0, 0, 255}, {15, 2, 0.5, 1, 0, 255, 0, 255}, {3, 14, 0.75, 1, 0, 0, 255, 255}};
+  ASSERT_EQ(halfplane_scene_vertices(scene, &vertices[0][0], 8, 2), 0) << halfplane_last_error();
+  ASSERT_EQ(halfplane_scene_vertices(scene, &vertices[2][0], 8, 1), 2) << "the index of the first";
+  const std::uint32_t indices[]{0, 1, 2};
+  ASSERT_EQ(halfplane_scene_draw(scene, "triangles", indices, 3), 0) << halfplane_last_error();
+  EXPECT_EQ(plane("functional", "color"), color);
+  EXPECT_EQ(plane("functional", "depth"), depth);
+  // Another state for another draw: what an always-drawn triangle behind the first one covers is its own.
+  const std::string always = "space window\nstate depth_test always\n";
+  ASSERT_EQ(halfplane_scene_say(scene, always.data(), always.size()), 0);
+  ASSERT_EQ(halfplane_scene_draw(scene, "points", indices, 1), 0) << halfplane_last_error();
+  const std::string whole = std::string(kScene) + "state depth_test always\np 0\n";
+  const std::vector<std::uint32_t> drawn = plane("functional", "color");
+  halfplane_scene_free(scene);
+  scene = halfplane_scene_read(whole.data(), whole.size());
+  EXPECT_EQ(drawn, plane("functional", "color"));
+}
+
+TEST_F(Capi, ArraysThatAreNoSceneAreRefusedAndLeaveItAsItWas) {
+  const double vertex[]{1, 1, 0.25, 1};
+  const std::uint32_t indices[]{0, 1, 7};
+  const auto before = plane("functional", "color");
+  expect_error(halfplane_scene_new(0, 16), "");
+  expect_error(halfplane_scene_vertices(scene, vertex, 5, 1), "4, 8 or 10 numbers, not 5");
+  expect_error(halfplane_scene_vertices(scene, nullptr, 4, 1), "NULL");
+  expect_error(halfplane_scene_draw(scene, "triangles", indices, 3), "index 2 of the draw is 7");
+  expect_error(halfplane_scene_draw(scene, "hexagons", indices, 3), "no topology 'hexagons'");
+  expect_error(halfplane_scene_say(scene, "state cull none\nv 1 1 1 1\n", 26), "vertices are given by");
+  expect_error(halfplane_scene_say(scene, "state cul none\n", 15), "lines:3");
+  EXPECT_EQ(plane("functional", "color"), before);
+}
+
 TEST_F(Capi, EnginesDrawTheSameBits) {
   for (const char* name : {"depth", "color", "stencil"}) {
     const auto functional = plane("functional", name);

@@ -62,8 +62,8 @@ printf '=== %s ===\n\n     LUT4                           10\n     cull         
   }
 };
 
-const Arguments kSpace{"bench",  "teapot:2", "--size", "64x48", "--space", "--vary", "subpixel.bits=2,6",
-                       "--vary", "stamp.size=1,2"};
+const Arguments kSpace{"bench",  "teapot:2",          "--size", "64x48",         "--space",
+                       "--vary", "subpixel.bits=2,6", "--vary", "stamp.size=1,2"};
 
 Arguments with(Arguments arguments, const Arguments& more) {
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -95,9 +95,9 @@ TEST_F(SpaceCommand, TheFrontIsWhatNoOtherPointBeats) {
   for (const Json& point : json["points"]) {
     bool is_beaten = false;
     for (const Json& other : json["points"])
-      is_beaten = is_beaten ||
-                  (other["cycles"] <= point["cycles"] && other["depth_eye_rms"] <= point["depth_eye_rms"] &&
-                   (other["cycles"] < point["cycles"] || other["depth_eye_rms"] < point["depth_eye_rms"]));
+      is_beaten =
+          is_beaten || (other["cycles"] <= point["cycles"] && other["depth_eye_rms"] <= point["depth_eye_rms"] &&
+                        (other["cycles"] < point["cycles"] || other["depth_eye_rms"] < point["depth_eye_rms"]));
     EXPECT_EQ(point["on_front"], !is_beaten) << point;
     on_front += point["on_front"].get<bool>() ? 1 : 0;
   }
@@ -106,8 +106,8 @@ TEST_F(SpaceCommand, TheFrontIsWhatNoOtherPointBeats) {
 }
 
 TEST_F(SpaceCommand, AUnitThatIsLeftOutDoesNotBeatOneThatIsThere) {
-  const Json json = result({"bench", "teapot:2", "--size", "64x48", "--space", "--vary", "texture.unit=off,nearest",
-                            "--front", "cycles"});
+  const Json json = result(
+      {"bench", "teapot:2", "--size", "64x48", "--space", "--vary", "texture.unit=off,nearest", "--front", "cycles"});
   ASSERT_EQ(json["points"].size(), 2u);
   EXPECT_LE(json["points"][0]["cycles"], json["points"][1]["cycles"]);
   EXPECT_TRUE(json["points"][1]["on_front"]) << "it can do more";
@@ -115,7 +115,8 @@ TEST_F(SpaceCommand, AUnitThatIsLeftOutDoesNotBeatOneThatIsThere) {
 
 TEST_F(SpaceCommand, GatesAreCountedOnceForEveryModuleThatIsTheSame) {
   write_fake_yosys();
-  const std::string run_it = "triangle --config tiny --size 16x16 --area --parts ecp5 --cache kept --json --quiet --vary ";
+  const std::string run_it =
+      "triangle --config tiny --size 16x16 --area --parts ecp5 --cache kept --json --quiet --vary ";
   const Outcome first = with_fake(run_it + "depth.bits=8,9");
   ASSERT_EQ(first.status, 0) << first.err;
   const Json json = Json::parse(first.out);
@@ -153,7 +154,8 @@ TEST_F(SpaceCommand, TasksOfAClusterGiveTheSamePointsAndGoOnWhereTheyStopped) {
   for (const char* task : {"1", "2", "3"})
     ASSERT_EQ(paste("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh job/job.sh").status, 0);
   EXPECT_EQ(result({"bench", "--collect", "job"})["missing"], 1);
-  ASSERT_EQ(paste("echo kept >job/points/00001.json; cp job/points/00002.json second; rm job/points/00003.json").status, 0);
+  ASSERT_EQ(paste("echo kept >job/points/00001.json; cp job/points/00002.json second; rm job/points/00003.json").status,
+            0);
   ASSERT_EQ(paste("cd job && while read -r line; do sh -c \"$line\" || exit 1; done <tasks").status, 0)
       << "as GNU parallel reads them";
   EXPECT_EQ(text("job/points/00001.json"), "kept\n") << "what is there is not made again";

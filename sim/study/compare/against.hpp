@@ -1,8 +1,9 @@
 // Against: a whole foreign rasterizer, judged by its image alone. Pixel by pixel the model's image against it; each that
 // differs is put down to the first rule that explains it.
 //
-//   snap       it shows what the scene shows with more or fewer subpixel bits or not snapped at all, if that explains three
-//              quarters of all pixels that differ; or another fragment, where a side runs past within a subpixel or so
+//   snap       it shows what the scene shows with more or fewer subpixel bits or not snapped at all, if that is the foreign
+//              image but for a quarter as many pixels as differ; or another fragment, or what a pixel beside it
+//              shows, where a side runs past within a subpixel or so
 //   edge_rule  a triangle has the sample exactly on its border, and the image shows what another rule for ties would
 //   depth      it shows another fragment of the pixel, or what lay there before: the depth test came out otherwise; of a
 //              depth image also a depth that is a few codes off

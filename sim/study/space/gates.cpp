@@ -72,13 +72,13 @@ Said run(const std::string& command) {
 /// A file that is gone when nobody looks at it any more.
 class PackageFile {
  public:
-  explicit PackageFile(const std::string& text)
-      : path_((fs::temp_directory_path() / "halfplane-XXXXXX.sv").string()) {
+  explicit PackageFile(const std::string& text) : path_((fs::temp_directory_path() / "halfplane-XXXXXX.sv").string()) {
     const int file = ::mkstemps(path_.data(), 3);
     if (file < 0) throw std::runtime_error("--area: " + path_ + " cannot be written; give TMPDIR a folder that can");
     const auto written = ::write(file, text.data(), text.size());
     ::close(file);
-    if (written != static_cast<ssize_t>(text.size())) throw std::runtime_error("--area: " + path_ + ": the disk is full");
+    if (written != static_cast<ssize_t>(text.size()))
+      throw std::runtime_error("--area: " + path_ + ": the disk is full");
   }
   ~PackageFile() { ::unlink(path_.c_str()); }
   PackageFile(const PackageFile&) = delete;

@@ -12,9 +12,9 @@ namespace {
 /// What shapes time and gates and no pixel. Points that differ in nothing else, and whose hardware drew the same bits, have
 /// the same errors, which are then found once.
 constexpr std::array<std::string_view, 21> kNoPixel{
-    "stamp.size",    "key.primitive_bits", "context.slots",    "hiz.bits",     "hiz.lag",      "cache.kind",
-    "cache.lines",   "cache.queue",        "cache.victims",    "frame.clears", "frame.order",  "frame.store",
-    "setup.kind",    "texture.unit",       "texture.cache_kb", "texture.queue", "blend.lanes",  "lines.unit",
+    "stamp.size",    "key.primitive_bits", "context.slots",    "hiz.bits",      "hiz.lag",     "cache.kind",
+    "cache.lines",   "cache.queue",        "cache.victims",    "frame.clears",  "frame.order", "frame.store",
+    "setup.kind",    "texture.unit",       "texture.cache_kb", "texture.queue", "blend.lanes", "lines.unit",
     "counters.unit", "counters.bits",      "memory.port_bits"};
 
 SpaceJson number_or_null(const std::optional<double>& value) { return value ? SpaceJson(*value) : SpaceJson(nullptr); }
@@ -53,8 +53,7 @@ SpaceJson PointStudy::measure(const BenchCase& at, const std::function<void(doub
   RenderOptions options;
   options.progress = [&progress](double part) { progress(part / 2); };
   const CycleRendering frame = run_cycles(*at.scene, hardware, options);
-  const BenchFacts& facts =
-      facts_of(at, frame.rendering, [&progress](double part) { progress((1 + part) / 2); });
+  const BenchFacts& facts = facts_of(at, frame.rendering, [&progress](double part) { progress((1 + part) / 2); });
   const BenchErrors errors = facts.errors.value_or(BenchErrors{});
   return {{"scene", at.scene_name},
           {"label", at.variation},

@@ -1,0 +1,22 @@
+# halfplane.core against the RTL: every source of rtl_ref is listed, what is listed is there, and, where Verilator is, the
+# list in its order lints.   cmake -DSOURCE= -DVERILATOR= -P core_file.cmake
+file(STRINGS "${SOURCE}/halfplane.core" lines REGEX "^      - ")
+set(listed)
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE "^      - " "" file "${line}")
+  list(APPEND listed "${file}")
+  if(NOT EXISTS "${SOURCE}/${file}")
+    message(SEND_ERROR "halfplane.core lists ${file}, which is not there")
+  endif()
+endforeach()
+file(GLOB sources RELATIVE "${SOURCE}" "${SOURCE}/rtl_ref/lib/*.sv" "${SOURCE}/rtl_ref/stages/*.sv" "${SOURCE}/rtl_ref/*.sv")
+foreach(file IN LISTS sources)
+  if(NOT file IN_LIST listed)
+    message(SEND_ERROR "halfplane.core does not list ${file}")
+  endif()
+endforeach()
+if(VERILATOR)
+  list(FILTER listed INCLUDE REGEX "^rtl_ref/(lib|stages|raster_)")
+  execute_process(COMMAND "${VERILATOR}" --lint-only -Wall --top-module raster_top ${listed}
+    WORKING_DIRECTORY "${SOURCE}" COMMAND_ERROR_IS_FATAL ANY)
+endif()
