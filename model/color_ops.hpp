@@ -188,6 +188,18 @@ struct ColorOps {
   }
 };
 
+/// Whether a source of alpha 255 replaces what is stored, whatever both are.
+[[nodiscard]] constexpr bool replaces_where_opaque(const ColorOps& ops, ColorFormat format) {
+  const auto is_one = [](BlendFactor f) { return f == BlendFactor::one || f == BlendFactor::src_alpha; };
+  const auto is_zero = [](BlendFactor f) { return f == BlendFactor::zero || f == BlendFactor::one_minus_src_alpha; };
+  const auto takes_source = [](BlendEquation e) { return e == BlendEquation::add || e == BlendEquation::subtract; };
+  const BlendFactors& f = ops.factors;
+  const bool has_color = is_one(f.src) && is_zero(f.dst) && takes_source(ops.equation[0]);
+  const bool has_alpha = (is_one(f.src_alpha) || f.src_alpha == BlendFactor::src_alpha_saturate) &&
+                         is_zero(f.dst_alpha) && takes_source(ops.equation[1]);
+  return has_color && (has_alpha || format != ColorFormat::rgba8888) && !ops.dithers && ops.writes == ColorOps{}.writes;
+}
+
 /// What of `state` matters to a format: rgb565 has no alpha, rgba8888 nothing to dither.
 [[nodiscard]] constexpr ColorOps color_ops(const State& state, ColorFormat format) {
   const bool has_alpha = format == ColorFormat::rgba8888;

@@ -22,33 +22,13 @@ struct Skip {
   bool fragments_early_z = true;   ///< fragments that fail the depth test skip the other attributes
   bool attributes = true;          ///< fragments that are drawn over skip the other attributes
   bool clear = true;               ///< a clear waits until somebody touches the tile
+  // Of draws that blend, test alpha, dither or mask channels:
+  bool operations_early_z = true;  ///< tiles behind and fragments that fail the depth test skip all of it
+  bool alpha_tiles = true;         ///< tiles and triangles whose alpha all fails, or passes, skip the alpha test
+  bool opaque_blends = true;       ///< triangles whose source is opaque replace, as if nothing were blended
+  bool masked_draws = true;        ///< draws that write no channel skip colours altogether
   bool operator==(const Skip&) const = default;
 };
-
-/// The switches by name, as --skip takes them.
-struct SkipName {
-  const char* name;
-  bool Skip::*member;
-};
-inline constexpr SkipName kSkipNames[] = {{"frustum", &Skip::frustum},
-                                          {"backface", &Skip::backface},
-                                          {"zero_area", &Skip::zero_area},
-                                          {"empty", &Skip::empty},
-                                          {"no_sample", &Skip::no_sample},
-                                          {"objects_hiz", &Skip::objects_hiz},
-                                          {"tiles_hiz", &Skip::tiles_hiz},
-                                          {"tiles_outside", &Skip::tiles_outside},
-                                          {"trivially_accepted", &Skip::trivially_accepted},
-                                          {"fragments_early_z", &Skip::fragments_early_z},
-                                          {"attributes", &Skip::attributes},
-                                          {"clear", &Skip::clear}};
-
-/// Nothing may be left out.
-[[nodiscard]] inline Skip skip_none() {
-  Skip skip;
-  for (const SkipName& entry : kSkipNames) skip.*entry.member = false;
-  return skip;
-}
 
 /// Work done and work saved. The JSON keys of `render` have the same names.
 struct Counters {
@@ -61,14 +41,52 @@ struct Counters {
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   std::uint64_t bins = 1;            ///< of hardware: parts of the target that the frame is sent in
   std::uint64_t pairs = 0;  ///< of hardware: triangles, lines and points sent; one in several bins counts in each
-  struct {
-    std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, tiles_outside = 0, trivially_accepted = 0,
-                  fragments_early_z = 0, tiles_hiz = 0;
-    std::uint64_t no_sample = 0, objects_hiz = 0;
-    std::uint64_t attributes = 0;  ///< fragments
-    std::uint64_t clear = 0;       ///< tiles of which nobody wrote a pixel between two clears, or a clear and the end
+  /// What was left out, each by the switch of that name.
+  struct Skipped {
+    std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, no_sample = 0;  ///< triangles
+    std::uint64_t objects_hiz = 0;                                                     ///< objects
+    std::uint64_t tiles_hiz = 0, tiles_outside = 0, trivially_accepted = 0;            ///< visits of tiles
+    std::uint64_t fragments_early_z = 0, attributes = 0;                               ///< fragments
+    std::uint64_t clear = 0;  ///< tiles of which nobody wrote a pixel between two clears, or a clear and the end
+    std::uint64_t operations_early_z =
+        0;                            ///< visits of tiles of which no fragment passes; those of tiles_hiz among them
+    std::uint64_t alpha_tiles = 0;    ///< visits of tiles of which the alpha test drops every fragment
+    std::uint64_t opaque_blends = 0;  ///< fragments
+    std::uint64_t masked_draws = 0;   ///< primitives
   } skipped;
 };
+
+/// The switches by name, as --skip takes them, and what each leaves out.
+struct SkipName {
+  const char* name;
+  bool Skip::*member;
+  std::uint64_t Counters::Skipped::*counter;
+};
+inline constexpr SkipName kSkipNames[] = {
+    {"frustum", &Skip::frustum, &Counters::Skipped::frustum},
+    {"backface", &Skip::backface, &Counters::Skipped::backface},
+    {"zero_area", &Skip::zero_area, &Counters::Skipped::zero_area},
+    {"empty", &Skip::empty, &Counters::Skipped::empty},
+    {"no_sample", &Skip::no_sample, &Counters::Skipped::no_sample},
+    {"objects_hiz", &Skip::objects_hiz, &Counters::Skipped::objects_hiz},
+    {"tiles_hiz", &Skip::tiles_hiz, &Counters::Skipped::tiles_hiz},
+    {"tiles_outside", &Skip::tiles_outside, &Counters::Skipped::tiles_outside},
+    {"trivially_accepted", &Skip::trivially_accepted, &Counters::Skipped::trivially_accepted},
+    {"fragments_early_z", &Skip::fragments_early_z, &Counters::Skipped::fragments_early_z},
+    {"attributes", &Skip::attributes, &Counters::Skipped::attributes},
+    {"clear", &Skip::clear, &Counters::Skipped::clear},
+    {"operations_early_z", &Skip::operations_early_z, &Counters::Skipped::operations_early_z},
+    {"alpha_tiles", &Skip::alpha_tiles, &Counters::Skipped::alpha_tiles},
+    {"opaque_blends", &Skip::opaque_blends, &Counters::Skipped::opaque_blends},
+    {"masked_draws", &Skip::masked_draws, &Counters::Skipped::masked_draws},
+};
+
+/// Nothing may be left out.
+[[nodiscard]] inline Skip skip_none() {
+  Skip skip;
+  for (const SkipName& entry : kSkipNames) skip.*entry.member = false;
+  return skip;
+}
 
 /// A line as it went into line_setup, and a point as it went into point_raster.
 struct DrawnLine {

@@ -96,6 +96,20 @@ template <DepthFunc Func, class Code>
   return false;
 }
 
+/// What a test comes to for all values from `low` to `high`.
+enum class Outcome { some_pass, all_pass, none_passes };
+[[nodiscard]] constexpr Outcome test_outcome(DepthFunc func, std::uint32_t reference, std::uint32_t low,
+                                             std::uint32_t high) {
+  const bool may_be[] = {low < reference, low <= reference && reference <= high, high > reference};
+  const bool passes[] = {depth_passes(func, 0, 1), depth_passes(func, 0, 0), depth_passes(func, 1, 0)};
+  bool some_pass = false, some_fail = false;
+  for (int i = 0; i < 3; ++i) {
+    some_pass |= may_be[i] && passes[i];
+    some_fail |= may_be[i] && !passes[i];
+  }
+  return !some_fail ? Outcome::all_pass : !some_pass ? Outcome::none_passes : Outcome::some_pass;
+}
+
 /// The same for lanes, without a branch: a function is the outcomes of one comparison that it lets pass.
 struct DepthOutcomes {
   std::uint32_t less, equal, greater;  ///< all bits set where the outcome passes

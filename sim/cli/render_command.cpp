@@ -108,6 +108,8 @@ void check_options(const RenderCommand& options, const Config& config) {
 }  // namespace
 
 Json counters_json(const Counters& c) {
+  Json skipped = Json::object();
+  for (const SkipName& one : kSkipNames) skipped[one.name] = c.skipped.*one.counter;
   return {{"primitives", {{"in", c.primitives_in}, {"culled", c.culled}, {"drawn", c.drawn}, {"clipped", c.clipped}}},
           {"fragments",
            {{"covered", c.covered},
@@ -116,19 +118,7 @@ Json counters_json(const Counters& c) {
             {"written", c.written}}},
           {"samples_tested", c.samples_tested},
           {"tiles_visited", c.tiles_visited},
-          {"skipped",
-           {{"frustum", c.skipped.frustum},
-            {"trivially_accepted", c.skipped.trivially_accepted},
-            {"backface", c.skipped.backface},
-            {"zero_area", c.skipped.zero_area},
-            {"empty", c.skipped.empty},
-            {"tiles_outside", c.skipped.tiles_outside},
-            {"tiles_hiz", c.skipped.tiles_hiz},
-            {"fragments_early_z", c.skipped.fragments_early_z},
-            {"no_sample", c.skipped.no_sample},
-            {"objects_hiz", c.skipped.objects_hiz},
-            {"attributes", c.skipped.attributes},
-            {"clear", c.skipped.clear}}}};
+          {"skipped", std::move(skipped)}};
 }
 
 namespace {

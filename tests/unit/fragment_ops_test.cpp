@@ -17,7 +17,8 @@ using test::Random;
 
 TEST(Blend, AQuotientBy255IsTheNearestForEverySumOfTwoProducts) {
   for (std::uint32_t sum = 0; sum <= 2 * 255 * 255; ++sum)
-    ASSERT_EQ(std::min(divide_by_255(sum), 255U), static_cast<std::uint32_t>(std::floor(std::min(sum / 255.0, 255.0) + 0.5)))
+    ASSERT_EQ(std::min(divide_by_255(sum), 255U),
+              static_cast<std::uint32_t>(std::floor(std::min(sum / 255.0, 255.0) + 0.5)))
         << sum;
 }
 
@@ -95,6 +96,55 @@ TEST(Blend, WhatDoesNothingIsPlain) {
   state.color_mask = {false, false, false, true};
   EXPECT_FALSE(writes_color(state, ColorFormat::rgb565));
   EXPECT_TRUE(writes_color(state, ColorFormat::rgba8888));
+}
+
+TEST(Blend, WhatReplacesWhereTheSourceIsOpaqueDoesSoWhateverIsStored) {
+  std::uint32_t replacing = 0, others_seen = 0;
+  Random random(5);
+  for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888})
+    for (int n = 0; n < 20000; ++n) {
+      State state;
+      const auto factor = [&] { return static_cast<BlendFactor>(random.index(15)); };
+      const auto equation = [&] { return static_cast<BlendEquation>(random.index(5)); };
+      state.blend = BlendFactors{factor(), factor(), factor(), factor()};
+      if (n % 2 == 0) state.blend_equation = {equation(), equation()};
+      if (n % 5 == 0) state.color_mask[static_cast<std::size_t>(random.index(4))] = false;
+      state.dither = n % 7 == 0;
+      const ColorOps ops = color_ops(state, format);
+      bool is_seen = false;
+      for (int k = 0; k < 20; ++k) {
+        const auto code = [&] { return static_cast<std::uint32_t>(random.index(256)); };
+        const Channels<std::uint32_t> source{code(), code(), code(), 255}, other{code(), code(), code(), code()};
+        const auto stored = pack_color<std::uint32_t>(format, other);
+        const auto now = store_color<std::uint32_t>(ops, format, source, stored, static_cast<std::uint32_t>(n % 16));
+        is_seen |= now != pack_color<std::uint32_t>(format, source);
+      }
+      if (!replaces_where_opaque(ops, format)) {
+        others_seen += is_seen ? 1 : 0;
+        continue;
+      }
+      ++replacing;
+      EXPECT_FALSE(is_seen) << n;
+    }
+  EXPECT_GT(replacing, 100U);
+  EXPECT_GT(others_seen, 30000U);
+}
+
+TEST(AlphaTest, WhatItComesToForARangeIsWhatItSaysOfEachValue) {
+  for (const DepthFunc func : {DepthFunc::never, DepthFunc::less, DepthFunc::lequal, DepthFunc::equal,
+                               DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal, DepthFunc::always})
+    for (const std::uint32_t reference : {0U, 1U, 7U, 8U, 15U})
+      for (std::uint32_t low = 0; low < 16; ++low) {
+        bool all = true, any = false;
+        for (std::uint32_t high = low; high < 16; ++high) {
+          const bool passes = depth_passes(func, high, reference);
+          all = all && passes;
+          any = any || passes;
+          const Outcome outcome = test_outcome(func, reference, low, high);
+          EXPECT_EQ(outcome == Outcome::all_pass, all);
+          EXPECT_EQ(outcome == Outcome::none_passes, !any);
+        }
+      }
 }
 
 TEST(Dither, SixteenPixelsTogetherHaveTheColourThatOneCannotHave) {

@@ -175,6 +175,103 @@ TEST(Functional, LayersOfGlassAreTheSameOnEveryPath) {
   }
 }
 
+/// The layers of a built-in scene, blended by alpha; `alpha` of vertex i.
+template <class Alpha>
+Scene glass_of(const char* name, bool writes_depth, Alpha&& alpha) {
+  Scene scene = make_builtin(name, 192, 130, {}, 1);
+  for (State& state : scene.states) {
+    state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
+                               BlendFactor::one_minus_src_alpha};
+    state.depth_write = writes_depth;
+  }
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) scene.vertices[i].rgba[3] = alpha(i);
+  return scene;
+}
+
+Config config_with(ColorFormat format, int depth_bits = 16) {
+  Config config = config_of("embedded", depth_bits);
+  config.color_format = format;
+  return config;
+}
+
+/// Large triangles, small ones and lines, some of glass, some opaque, some of both, some with a texture: what waits must
+/// be there when another asks for it. More layers than wait at a time.
+TEST(Functional, LayersThatWaitAreThereForWhateverComesNext) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed)
+    for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + (format == ColorFormat::rgb565 ? ", rgb565" : ", rgba8888"));
+      test::Random random(seed);
+      Scene scene = glass_of("layers_nearest:60", seed % 2 == 0, [&](std::size_t i) {
+        return i / 3 % 4 == 0 ? 255.0 : static_cast<double>(random.index(256));
+      });
+      const State textured = scene.states[0];
+      State glass = textured;
+      glass.texture.reset();
+      State plain = glass;
+      plain.blend.reset();
+      plain.depth_write = true;
+      scene.states = {glass, plain, textured};
+      for (State& state : scene.states) state.depth_test = seed % 3 == 0 ? DepthFunc::always : DepthFunc::lequal;
+      const Draw whole = std::get<Draw>(scene.commands.back());
+      scene.commands.pop_back();
+      for (std::size_t first = 0; first < whole.count;) {
+        Draw draw = whole;
+        draw.first = first;
+        draw.count = std::min<std::size_t>(3 * (1 + static_cast<std::size_t>(random.index(25))), whole.count - first);
+        draw.state = std::array<std::uint32_t, 6>{0, 0, 0, 1, 2, 0}[static_cast<std::size_t>(random.index(6))];
+        if (random.index(5) == 0) draw.topology = Topology::lines, draw.count -= draw.count % 2;
+        first += draw.count;
+        scene.commands.emplace_back(draw);
+      }
+      expect_all_same(scene, config_with(format, seed % 4 < 2 ? 16 : 24));
+    }
+}
+
+TEST(Functional, SmallTrianglesOfGlassAreTheSameOnEveryPath) {
+  for (const char* name : {"ball:40", "dust:20000", "teapot"})
+    for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888})
+      for (const bool writes_depth : {false, true}) {
+        SCOPED_TRACE(std::string(name) + (format == ColorFormat::rgb565 ? ", rgb565" : ", rgba8888"));
+        const auto alpha = [](std::size_t i) { return i % 5 == 0 ? 255.0 : static_cast<double>(i * 37 % 256); };
+        expect_all_same(glass_of(name, writes_depth, alpha), config_with(format));
+      }
+}
+
+/// What is known of a triangle's alpha, and of a tile's, may leave the alpha test out.
+TEST(Functional, EveryAlphaTestOfAlphaThatFadesIsTheSameOnEveryPath) {
+  for (const DepthFunc func : {DepthFunc::never, DepthFunc::less, DepthFunc::lequal, DepthFunc::equal,
+                               DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal})
+    for (const bool blends : {false, true}) {
+      SCOPED_TRACE("test " + std::to_string(static_cast<int>(func)) + (blends ? ", blended" : ""));
+      Scene scene = glass_of("layers:24", !blends, [](std::size_t i) {
+        return std::array{0.0, 100.0, 255.0, 128.0, 128.0, 128.0, 255.0, 255.0, 255.0, 200.0, 129.0, 127.0}[i % 12];
+      });
+      for (State& state : scene.states) {
+        state.alpha_test = {func, 128};
+        if (!blends) state.blend.reset();
+      }
+      expect_all_same(scene, config_with(ColorFormat::rgba8888));
+    }
+}
+
+TEST(Functional, BlendsOfOpaqueTrianglesAreDrawnAsIfNothingWereBlended) {
+  const Config config = config_with(ColorFormat::rgba8888);
+  const Scene glass = glass_of("layers:24", true, [](std::size_t) { return 255.0; });
+  Scene plain = glass;
+  for (State& state : plain.states) state.blend.reset();
+  const Rendering blended = render_functional(glass, config), opaque = render_functional(plain, config);
+  expect_same(blended, opaque);
+  EXPECT_GT(opaque.counters.skipped.attributes, 0U);
+  EXPECT_EQ(blended.counters.skipped.attributes, opaque.counters.skipped.attributes) << "tiles are taken, colours wait";
+  EXPECT_EQ(blended.counters.skipped.trivially_accepted, opaque.counters.skipped.trivially_accepted);
+  EXPECT_EQ(blended.counters.skipped.opaque_blends, blended.counters.depth_passed);
+  EXPECT_EQ(opaque.counters.skipped.opaque_blends, 0U);
+  // One vertex of another alpha, and the triangle blends.
+  Scene almost = glass;
+  for (std::size_t i = 0; i < almost.vertices.size(); i += 3) almost.vertices[i].rgba[3] = 254;
+  EXPECT_EQ(render_functional(almost, config).counters.skipped.opaque_blends, 0U);
+}
+
 TEST(Functional, TheWidestReciprocalsAreTheSameOnEveryPath) {
   for (const int extra : {3, 5, 6}) {
     Config config = config_of("full", 24);
@@ -361,6 +458,52 @@ TEST(Functional, EachSwitchLeavesTheImageAloneAndItsCounterShowsTheWorkSaved) {
     alone.skip = skip_none();
     alone.skip.*one.member = true;
     expect_same(render_functional(scene, config, alone), scalar);
+  }
+}
+
+/// The same of draws with operations.
+TEST(Functional, EachSwitchOfOperationsLeavesTheImageAloneAndItsCounterShowsTheWorkSaved) {
+  const auto glass = [](std::size_t i) { return 85 + static_cast<double>(i * 37 % 86); };
+  Scene behind = glass_of("layers_front:24", false, glass);
+  State wall = behind.states[0];
+  wall.blend.reset();
+  wall.depth_write = true;
+  behind.states.push_back(wall);
+  Draw rest = std::get<Draw>(behind.commands.back());
+  auto& first = std::get<Draw>(behind.commands.back());
+  first.count = 6;
+  first.state = 1;
+  rest.first += 6;
+  rest.count -= 6;
+  behind.commands.emplace_back(rest);
+  Scene faint = glass_of("layers:24", true, [](std::size_t i) { return 127.5 * static_cast<double>(i % 3); });
+  for (State& state : faint.states) state.alpha_test = {DepthFunc::gequal, 128};
+  const Scene opaque = glass_of("layers:24", true, [](std::size_t) { return 255.0; });
+  Scene masked = glass_of("layers:24", true, glass);
+  for (State& state : masked.states) state.color_mask = {false, false, false, false};
+  struct Case {
+    const char* name;
+    const Scene& scene;
+  };
+  for (const Case& one : {Case{"operations_early_z", behind}, Case{"alpha_tiles", faint}, Case{"opaque_blends", opaque},
+                          Case{"masked_draws", masked}}) {
+    SCOPED_TRACE(one.name);
+    const SkipName& name =
+        *std::ranges::find_if(kSkipNames, [&](const SkipName& entry) { return std::string(entry.name) == one.name; });
+    for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888}) {
+      const Config config = config_with(format);
+      const Rendering scalar = render_scalar(one.scene, config);
+      RenderOptions off, alone;
+      off.skip.*name.member = false;
+      alone.skip = skip_none();
+      alone.skip.*name.member = true;
+      const Rendering all = render_functional(one.scene, config), without = render_functional(one.scene, config, off);
+      expect_same(all, scalar);
+      expect_same(without, scalar);
+      expect_same(render_functional(one.scene, config, alone), scalar);
+      EXPECT_GT(all.counters.skipped.*name.counter, 0U);
+      EXPECT_EQ(without.counters.skipped.*name.counter, 0U);
+    }
   }
 }
 

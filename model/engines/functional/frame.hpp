@@ -41,6 +41,7 @@ struct SliceState : FragmentState {
   bool is_flat = false;      ///< the colour is that of the first vertex
   bool is_opaque = true;     ///< what passes replaces what is stored, what fails leaves no trace
   bool has_surface = false;  ///< colours are those of surface.hpp
+  bool is_masked = false;    ///< no channel of a colour is written, nor looked at
 };
 
 /// A vertex as this engine stores it, whatever a SnappedVertex looks like: what every draw needs of it is a row of four

@@ -59,20 +59,7 @@ void add(Counters& sum, const Counters& c) {
   sum.written += c.written;
   sum.samples_tested += c.samples_tested;
   sum.tiles_visited += c.tiles_visited;
-  auto& s = sum.skipped;
-  const auto& t = c.skipped;
-  s.frustum += t.frustum;
-  s.backface += t.backface;
-  s.zero_area += t.zero_area;
-  s.empty += t.empty;
-  s.no_sample += t.no_sample;
-  s.objects_hiz += t.objects_hiz;
-  s.tiles_hiz += t.tiles_hiz;
-  s.tiles_outside += t.tiles_outside;
-  s.trivially_accepted += t.trivially_accepted;
-  s.fragments_early_z += t.fragments_early_z;
-  s.attributes += t.attributes;
-  s.clear += t.clear;
+  for (const SkipName& one : kSkipNames) sum.skipped.*one.counter += c.skipped.*one.counter;
 }
 
 /// Whether surfaces are those of the fast path: opaque, and every w > 0. Which of a draw's triangles would be refused the
@@ -355,7 +342,10 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   const State& state = context.state;
   slice.context = &context;
   const FragmentOps& ops = context.fragment_ops;
-  slice.state = {ops.state, state.shade == Shade::flat, is_opaque_ && ops.is_plain(), false};
+  const bool is_masked = !ops.state.color_write && ops.alpha.func == DepthFunc::always && !ops.stencil;
+  slice.state = {ops.state, state.shade == Shade::flat,
+                 is_opaque_ && ops.is_plain() && (!is_masked || skip_.masked_draws), false,
+                 is_masked && skip_.masked_draws};
   slice.state.color_write |= ops.alpha.func != DepthFunc::always;
   slice.parts.clear();
   slice.outlines.clear();
@@ -445,6 +435,7 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
     }
     open_->parts.push_back({chunk.first, chunk.count, command, primitive_});
     open_->triangles += chunk.count;
+    if (open_->state.is_masked) rendering_.counters.skipped.masked_draws += chunk.count;
     open_->low_index = std::min(open_->low_index, chunk.low_index);
     open_->high_index = std::max(open_->high_index, chunk.high_index);
     primitive_ += static_cast<std::uint32_t>(chunk.count);
@@ -460,6 +451,7 @@ void FrameRenderer::draw_outlines(const DrawContext& context) {
       slice->parts.push_back({0, 0, context.command, primitive_});
     }
     slice->outlines.push_back(assembled);
+    if (slice->state.is_masked) ++rendering_.counters.skipped.masked_draws;
     ++primitive_;
     ++pending_primitives_;
   });

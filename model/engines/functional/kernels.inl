@@ -24,6 +24,7 @@ namespace {
 #include "kernels/texture.inl"          // texels of sixteen pixels
 #include "kernels/surface.inl"          // colours of a tile's pixels from them
 #include "kernels/seen.inl"             // whose colours wait
+#include "kernels/layers.inl"           // blended triangles that wait on whole tiles
 #include "kernels/operations.inl"       // alpha test, blending, masks
 #include "kernels/samples.inl"          // small triangles: samples
 #include "kernels/small.inl"            // and blocks

@@ -16,7 +16,10 @@ namespace halfplane {
 namespace {
 
 constexpr std::string_view kObjects = "objects";
-constexpr std::string_view kFineGrid = "grid below a subpixel";  // no built-in: it shows nothing
+// No built-ins: they show nothing that others do not.
+constexpr std::string_view kFineGrid = "grid below a subpixel", kGlassBehind = "glass behind a wall",
+                           kFaint = "layers that fade out", kOpaqueGlass = "opaque glass", kMasked = "masked glass";
+constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked};
 
 /// Why the pairs are what they are. frustum: nearly all of `objects` lies outside, and the teapot inside. backface: a
 /// closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid and
@@ -24,8 +27,11 @@ constexpr std::string_view kFineGrid = "grid below a subpixel";  // no built-in:
 /// to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and triangles that take no tile as a whole. tiles_outside: long diagonal
 /// triangles, whose boxes are mostly empty, and ones of about a pixel. trivially_accepted: large triangles, and ones
 /// that fill no tile. fragments_early_z: overlap that tiles alone do not decide, and layers of which each passes.
-/// clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them.
-constexpr std::array<SkipPair, 13> kPairs{{{kObjects, "objects", "teapot"},
+/// clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them. operations_early_z: blended
+/// layers behind opaque ones, and layers that all are seen. alpha_tiles: layers of which an alpha test drops one half by the
+/// alpha of their vertices, and by that of a texture. opaque_blends: layers that blend, of alpha 1 and of less.
+/// masked_draws: blended layers whose channels are masked, and layers that write all.
+constexpr std::array<SkipPair, 17> kPairs{{{kObjects, "objects", "teapot"},
                                            {"frustum", "objects", "teapot"},
                                            {"backface", "ball", "layers"},
                                            {"zero_area", kFineGrid, "layers"},
@@ -37,26 +43,11 @@ constexpr std::array<SkipPair, 13> kPairs{{{kObjects, "objects", "teapot"},
                                            {"trivially_accepted", "layers", "dust"},
                                            {"fragments_early_z", "blocks", "layers"},
                                            {"attributes", "layers", "dust"},
-                                           {"clear", "teapot", "dust"}}};
-
-/// A counter of Counters::skipped, by the name of its switch.
-std::uint64_t skip_counter(const Counters& counters, std::string_view skip) {
-  const auto& s = counters.skipped;
-  const std::pair<std::string_view, std::uint64_t> all[] = {{"frustum", s.frustum},
-                                                            {"backface", s.backface},
-                                                            {"zero_area", s.zero_area},
-                                                            {"empty", s.empty},
-                                                            {"objects_hiz", s.objects_hiz},
-                                                            {"tiles_hiz", s.tiles_hiz},
-                                                            {"tiles_outside", s.tiles_outside},
-                                                            {"no_sample", s.no_sample},
-                                                            {"trivially_accepted", s.trivially_accepted},
-                                                            {"fragments_early_z", s.fragments_early_z},
-                                                            {"attributes", s.attributes},
-                                                            {"clear", s.clear}};
-  const auto* found = std::find_if(std::begin(all), std::end(all), [&](const auto& one) { return one.first == skip; });
-  return found == std::end(all) ? 0 : found->second;
-}
+                                           {"clear", "teapot", "dust"},
+                                           {"operations_early_z", kGlassBehind, "layers_glass"},
+                                           {"alpha_tiles", kFaint, "layers_leaves"},
+                                           {"opaque_blends", kOpaqueGlass, "layers_glass"},
+                                           {"masked_draws", kMasked, "layers"}}};
 
 /// Frames of an engine of its own, with or without one kind of skipping. `counters`: of the last frame; may be null.
 Frame skip_frame(std::shared_ptr<const Scene> scene, const SkipPlan& plan, std::string_view skip, bool is_on,
@@ -82,6 +73,43 @@ Scene make_fine_grid(const SkipPlan& plan) {
   return make_layered_grid({plan.width, plan.height, cell, cell, kTriangles});
 }
 
+/// The nearest two of `layers_front`, which hide all others: those are glass.
+Scene glass_behind(Scene scene, const State& glass) {
+  constexpr std::uint32_t kWall = 6;  // indices
+  scene.states.push_back(glass);
+  auto& wall = std::get<Draw>(scene.commands.back());
+  Draw behind = wall;
+  behind.state = static_cast<std::uint32_t>(scene.states.size() - 1);
+  behind.first += kWall;
+  behind.count -= kWall;
+  wall.count = kWall;
+  scene.commands.emplace_back(behind);
+  return scene;
+}
+
+/// Alpha from corner to corner of each triangle of a scene.
+Scene with_alpha(Scene scene, const std::array<double, 3>& alpha) {
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) scene.vertices[i].rgba[3] = alpha[i % 3];
+  return scene;
+}
+
+/// A scene that no file has, made of built-in ones.
+Scene make_skip_scene(const SkipPlan& plan, std::string_view name) {
+  if (name == kFineGrid) return make_fine_grid(plan);
+  const auto load = [&plan](const char* built_in) { return *plan.load(built_in, false).scene; };
+  const Scene glass = load("layers_glass");
+  if (name == kGlassBehind) return glass_behind(load("layers_front"), glass.states[0]);
+  if (name == kFaint) {
+    Scene scene = with_alpha(load("layers"), {0, 128, 255});
+    scene.states[0].alpha_test = {DepthFunc::gequal, 128};
+    return scene;
+  }
+  Scene scene = name == kOpaqueGlass ? with_alpha(glass, {255, 255, 255}) : glass;
+  scene.states[0].depth_write = true;
+  if (name == kMasked) scene.states[0].color_mask = {false, false, false, false};
+  return scene;
+}
+
 /// Loads each scene once.
 class SceneShelf {
  public:
@@ -89,8 +117,9 @@ class SceneShelf {
   const SkipScene& get(const std::string& name, bool culls_objects) {
     const auto key = std::pair(name, culls_objects);
     if (const auto found = scenes_.find(key); found != scenes_.end()) return found->second;
-    const SkipScene made = name == kFineGrid ? SkipScene{std::make_shared<const Scene>(make_fine_grid(plan_)), 0}
-                                             : plan_.load(name, culls_objects);
+    const bool is_own = std::ranges::find(kOwn, name) != kOwn.end();
+    const SkipScene made = is_own ? SkipScene{std::make_shared<const Scene>(make_skip_scene(plan_, name)), 0}
+                                  : plan_.load(name, culls_objects);
     return scenes_.emplace(key, made).first->second;
   }
 
@@ -112,7 +141,9 @@ void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan, const s
     if (one.refusal) std::rethrow_exception(one.refusal);
   row.with = std::move(times[0]);
   row.without = std::move(times[1]);
-  row.counter = is_objects ? with.primitives_culled : skip_counter(counters, row.skip);
+  if (is_objects) row.counter = with.primitives_culled;
+  for (const SkipName& entry : kSkipNames)
+    if (entry.name == row.skip) row.counter = counters.skipped.*entry.counter;
 }
 
 }  // namespace

@@ -122,7 +122,8 @@ struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
   static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3,
-                                kSurfaces = -4;  ///< pixel by pixel: BinMemory::surface
+                                kSurfaces = -4,  ///< pixel by pixel: BinMemory::surface
+      kLayers = -5;                              ///< in memory, but for those that wait: layers.inl
 
   explicit Bin(BinJob& job_)
       : job(job_),
@@ -157,7 +158,7 @@ struct Bin {
   BinJob& job;
   const Config& config;
   const Widths& widths;
-  const Skip& skip;
+  Skip skip;  ///< as far as it goes for the draw at work
   LaneFormat depth_format, color_format;
   LaneFormat centred_depth, centred_color;  ///< of small triangles
   bool is_short;                            ///< the arithmetic of small triangles
@@ -172,9 +173,12 @@ struct Bin {
   BinMemory& memory;
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
-  bool has_operations = false;       ///< which are more than plain: operations.inl
-  bool lays_over = false;            ///< of them blending alone, by alpha
-  bool is_back = false;              ///< the triangle at work shows its back, where somebody asks
+  // Of the primitive at work, once its alpha has been looked at:
+  bool has_operations = false;  ///< which are more than plain: operations.inl
+  bool lays_over = false;       ///< of them blending alone, by alpha
+  bool tests_alpha = false;     ///< colours are not known to pass
+  bool is_killed = false;       ///< they are known not to
+  bool is_back = false;         ///< the triangle at work shows its back, where somebody asks
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
@@ -189,6 +193,7 @@ struct Bin {
   bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
   std::size_t surface_count = 0;  ///< of BinMemory::seen
+  std::size_t layer_count = 0;    ///< of LayerMemory
   bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
   std::uint64_t in_memory = 0;    ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found

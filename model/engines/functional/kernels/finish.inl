@@ -107,6 +107,7 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
 /// Everything that is new goes to the target, a row of tiles at a time.
 inline void finish(Bin& bin) {
   if (bin.surface_count != 0) shade_all(bin);
+  if (bin.layer_count != 0) lay_all(bin);
   const int columns = tiles_along(bin.job.target.width - bin.first_x),
             rows = tiles_along(bin.job.target.height - bin.first_y);
   const auto depths = [&bin](int tile) HALFPLANE_LAMBDA { return depths_of(bin, tile); };

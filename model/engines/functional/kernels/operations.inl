@@ -17,20 +17,6 @@ HALFPLANE_INLINE S32 limited_difference(const S32& a, const S32& b) {
   return as<S32>(first - min(first, as<H32>(b)));
 }
 
-/// Alpha in both halves.
-HALFPLANE_INLINE S32 alpha_pairs(const ColorPairs& c) {
-  return as<S32>(shift_right_logical(c.green_alpha, 16) | (c.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
-}
-
-/// What is stored, as codes of 8 bits: widen_color(). Five bits r become 33 r >> 2, six g 65 g >> 4: here as the upper halves
-/// of products, r 2^11 times 264 and g 2^10 times 260.
-HALFPLANE_INLINE ColorPairs widened(const I16& stored, ColorFormat format) {
-  if (format == ColorFormat::rgba8888) return ColorPairs(stored);
-  const I16 red_blue = (stored & 0xf800) | (stored << 27), green = (stored << 5) & 0xfc00;
-  return ColorPairs(as<I16>(multiply_upper(as<S32>(red_blue), 264)),
-                    as<I16>(multiply_upper(as<S32>(green), 260)) | (255 << 16));
-}
-
 /// A block's colours on their way to be stored.
 struct BlendLanes {
   const ColorOps& ops;
@@ -41,8 +27,8 @@ struct BlendLanes {
       : ops(ops_),
         source(source_),
         stored(stored_),
-        source_alpha(alpha_pairs(source)),
-        stored_alpha(alpha_pairs(stored)) {}
+        source_alpha(alpha_pairs(source.green_alpha)),
+        stored_alpha(alpha_pairs(stored.green_alpha)) {}
 
   /// blend_factor() of red with blue, or green with alpha; `is_alpha`: of the latter, alpha's.
   HALFPLANE_INLINE S32 factor(BlendFactor of, const S32& src, const S32& dst, std::size_t first, std::size_t second,
@@ -98,27 +84,6 @@ struct BlendLanes {
     return ColorPairs(red_blue, (green & 0xffff) | (alpha & static_cast<std::int32_t>(0xffff0000U)));
   }
 };
-
-/// src_alpha, one_minus_src_alpha, added, to all channels: what most draws that blend ask for. The two factors are 255
-/// together. Alpha, where it is stored, has the same ones, or one in the place of the first.
-[[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
-  const BlendFactors& f = ops.factors;
-  if (f.src != BlendFactor::src_alpha || f.dst != BlendFactor::one_minus_src_alpha ||
-      ops.equation[0] != BlendEquation::add || ops.dithers || ops.writes != ColorOps{}.writes)
-    return false;
-  return format != ColorFormat::rgba8888 ||
-         ((f.src_alpha == BlendFactor::src_alpha || f.src_alpha == BlendFactor::one) &&
-          f.dst_alpha == BlendFactor::one_minus_src_alpha && ops.equation[1] == BlendEquation::add);
-}
-
-/// The colour of such a draw. `adds_alpha`: alpha's first factor is one.
-HALFPLANE_INLINE ColorPairs laid_over(const ColorPairs& source, const ColorPairs& stored, bool adds_alpha) {
-  const S32 alpha = alpha_pairs(source), rest = 255 - alpha;
-  const S32 of_alpha = adds_alpha ? as<S32>((as<I16>(alpha) & 0xffff) | (255 << 16)) : alpha;
-  return ColorPairs(
-      as<I16>(divide_by_255(as<S32>(source.red_blue) * alpha + as<S32>(stored.red_blue) * rest)),
-      as<I16>(divide_by_255(as<S32>(source.green_alpha) * of_alpha + as<S32>(stored.green_alpha) * rest)));
-}
 
 /// Codes of 8 bits to rgb565, each pixel with its threshold in both halves: pack_rgb565_dithered().
 HALFPLANE_INLINE I16 packed_dithered(const ColorPairs& c, const S32& threshold) {
@@ -199,13 +164,15 @@ HALFPLANE_INLINE void store_colors(Bin& bin, int tile, std::uint64_t pixels, con
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
-  const auto written = static_cast<std::int32_t>(written_bits(ops, format));
-  const bool writes_all = ops.writes == ColorOps{}.writes;
+  const bool writes_some = bin.ops->state.color_write,  // else somebody wants to know what it costs: Skip::masked_draws
+      writes_all = writes_some && ops.writes == ColorOps{}.writes;
+  const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const S32 thresholds = dithers ? block_thresholds() : S32(0);
   std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
+  const bool skips = bin.skip.operations_early_z;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
+    if (bits == 0 && skips) return;
     std::uint32_t* const at = to + block * kBlockPixels;
     const I16 stored = I16::load(at);
     const auto mixed = [&]() HALFPLANE_LAMBDA {
@@ -223,35 +190,71 @@ template <ColorFormat kFormat>
 HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   const TileColors colors(bin, t, tile, pixels);
   need_color(bin, tile);
-  const bool adds_alpha = kFormat == ColorFormat::rgba8888 && bin.ops->color.factors.src_alpha == BlendFactor::one;
+  const std::int32_t own_factor = own_factor_bits(bin.ops->color);
   std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
+  const bool skips = bin.skip.operations_early_z;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
+    if (bits == 0 && skips) return;
     std::uint32_t* const at = to + block * kBlockPixels;
     const I16 stored = I16::load(at);
-    const ColorPairs mixed = laid_over(colors[block], widened(stored, kFormat), adds_alpha);
+    const ColorPairs mixed = laid_over(colors[block], widened(stored, kFormat), own_factor);
     const I16 code = packed(mixed.red_blue, mixed.green_alpha, kFormat);
     (bits == 0xffff ? code : select_by_bits(bits, code, stored, bin.position.to_sign)).store(at);
   });
 }
 
+/// What the alpha test comes to for all pixels of a tile, as far as the alpha of a triangle's plane says it: what lanes
+/// compute from the tile's anchor, where nothing of it wraps.
+HALFPLANE_INLINE Outcome alpha_outcome(const Bin& bin, const BinTriangle& t, int tile) {
+  if (!bin.tests_alpha) return Outcome::all_pass;
+  if (bin.is_killed) return Outcome::none_passes;
+  if (!bin.skip.alpha_tiles || t.surface != 0) return Outcome::some_pass;
+  const LaneFormat& format = bin.color_format;
+  const auto upper = [](std::int32_t pair) HALFPLANE_LAMBDA { return pair >> 16; };
+  const int step_x = upper(t.color.step_x[1]), step_y = upper(t.color.step_y[1]);
+  const int anchor = upper(color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles)[1]) & 0xffff;
+  constexpr int kBefore = kTileSize / 2, kBehind = kTileSize / 2 - 1;
+  const int least =
+                anchor + std::min(-kBefore * step_x, kBehind * step_x) + std::min(-kBefore * step_y, kBehind * step_y),
+            most =
+                anchor + std::max(-kBefore * step_x, kBehind * step_x) + std::max(-kBefore * step_y, kBehind * step_y);
+  int low = upper(t.color.low[1]), high = upper(t.color.high[1]);
+  if (least >= 0 && most < 1 << 16) {
+    const auto code = [&, low, high](int value)
+                          HALFPLANE_LAMBDA { return std::clamp((value >> format.down) - format.bias, low, high); };
+    low = code(least);
+    high = code(most);
+  }
+  return test_outcome(bin.ops->alpha.func, bin.ops->alpha.reference, static_cast<std::uint32_t>(low),
+                      static_cast<std::uint32_t>(high));
+}
+
 /// What becomes of a tile's pixels that have passed the depth test; the alpha test may still drop them.
 HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
   const FragmentOps& ops = *bin.ops;
-  const bool tests_alpha = ops.alpha.func != DepthFunc::always;
-  if (passed == 0 || (!tests_alpha && !ops.state.color_write)) return;
+  if (passed == 0 && bin.skip.operations_early_z) {
+    ++bin.job.counters.skipped.operations_early_z;
+    return;
+  }
+  if (!bin.tests_alpha && !ops.state.color_write && bin.skip.masked_draws) return;
+  const Outcome alpha = alpha_outcome(bin, t, tile);
+  if (alpha == Outcome::none_passes) {
+    count_killed(bin, static_cast<unsigned>(std::popcount(passed)));
+    ++bin.job.counters.skipped.alpha_tiles;
+    return;
+  }
   if (bin.lays_over)
     return bin.config.color_format == ColorFormat::rgb565 ? lay_over<ColorFormat::rgb565>(bin, t, tile, passed)
                                                           : lay_over<ColorFormat::rgba8888>(bin, t, tile, passed);
   const TileColors colors(bin, t, tile, passed);
   std::uint64_t kept = passed;
-  if (tests_alpha) {
+  if (alpha == Outcome::some_pass) {
     kept = test_alpha(bin, passed, colors);
     count_killed(bin, static_cast<unsigned>(std::popcount(passed & ~kept)));
-    if (ops.state.depth_write) write_depths(bin, t, tile, kept);
   }
-  if (!ops.state.color_write || kept == 0) return;
+  if (bin.tests_alpha && ops.state.depth_write) write_depths(bin, t, tile, kept);
+  if ((!ops.state.color_write && bin.skip.masked_draws) || (kept == 0 && bin.skip.operations_early_z)) return;
   need_color(bin, tile);
   store_colors(bin, tile, kept, colors);
 }

@@ -162,24 +162,127 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   draw_lines<Fragments>(bin, slice);
 }
 
-/// The records of a slice whose fragments look at what is stored: one after the other.
-template <class Fragments>
-void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
-  const bool tests_alpha = bin.ops->alpha.func != DepthFunc::always;  // depths wait for it
+/// Records of one slice that are drawn the same way.
+HALFPLANE_INLINE void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first,
+                                   const std::uint32_t* last) {
+  // Twice: for the test that nearly every scene has, and for any.
+  if (bin.state.depth_test == DepthFunc::less)
+    draw_records<OpaqueFragments<true>>(bin, slice, first, last);
+  else
+    draw_records<OpaqueFragments<false>>(bin, slice, first, last);
+  // What another test lets through may lie behind.
+  if (bin.state.depth_test != DepthFunc::less) bin.closed_from = Bin::kOpen;
+}
+
+/// What the operations of a draw come to for one of its primitives, as far as the alpha of its vertices says it.
+enum class RecordWay {
+  plain,      ///< what passes replaces what is stored
+  laid_over,  ///< blended by alpha, and no more
+  killed,     ///< by the alpha test
+  operated,   ///< all of operations.inl
+  general     ///< lines, one fragment after the other
+};
+
+/// The ways of a slice's records.
+struct RecordWays {
+  const Slice& slice;
+  const FragmentOps& ops;
+  bool tests_alpha, knows_alpha, lays_over, replaces, is_plain;
+
+  RecordWays(const Bin& bin, const Slice& of) : slice(of), ops(of.context->fragment_ops) {
+    const ColorFormat format = bin.config.color_format;
+    tests_alpha = ops.alpha.func != DepthFunc::always;
+    // What a texture makes of alpha is not known.
+    const State& state = of.context->state;
+    const bool keeps_alpha = !state.texture || state.texture_combine == TextureCombine::decal ||
+                             !has_alpha(of.context->scene.textures[*state.texture].format);
+    knows_alpha = keeps_alpha;
+    is_plain = !ops.state.color_write || ops.color.is_plain();
+    replaces = ops.state.color_write && bin.skip.opaque_blends && replaces_where_opaque(ops.color, format);
+    lays_over = ops.state.color_write && !of.state.has_surface && are_short_anchors(bin.color_format) &&
+                is_over(ops.color, format);
+  }
+
+  HALFPLANE_INLINE RecordWay operator()(const Bin& bin, const Record& record) const {
+    const RecordKind kind = record.kind();
+    const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
+    const RecordWay otherwise = is_line ? RecordWay::general : RecordWay::operated;
+    if (!knows_alpha || kind == RecordKind::cut_line)
+      return lays_over && !tests_alpha && !is_line ? RecordWay::laid_over : otherwise;
+    std::uint32_t low = 255, high = 0;
+    for (const std::uint32_t at : record.v) {
+      const std::uint32_t alpha = slice.vertices[slice.state.is_flat ? record.v[flat_corner(kind)] : at].rgba >> 24;
+      low = std::min(low, alpha);
+      high = std::max(high, alpha);
+    }
+    const Outcome outcome = !tests_alpha           ? Outcome::all_pass
+                            : bin.skip.alpha_tiles ? test_outcome(ops.alpha.func, ops.alpha.reference, low, high)
+                                                   : Outcome::some_pass;
+    if (outcome == Outcome::none_passes && !is_line) return RecordWay::killed;
+    if (outcome != Outcome::all_pass) return otherwise;
+    if ((is_plain && tests_alpha) || (replaces && low == 255)) return RecordWay::plain;
+    return lays_over && !is_line ? RecordWay::laid_over : otherwise;
+  }
+
+ private:
+  /// Whose colour a flat primitive has.
+  HALFPLANE_INLINE static std::size_t flat_corner(RecordKind kind) { return kind == RecordKind::whole_line ? 2 : 0; }
+};
+
+/// Records whose fragments look at what is stored: one after the other.
+HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first,
+                                              const std::uint32_t* last) {
+  using Fragments = OpaqueFragments<false>;
   while (first != last) {
     const Record& record = slice.records[*first];
     fetch_records(slice, first++, last);
-    const RecordKind kind = record.kind();
-    if (kind == RecordKind::whole_line || kind == RecordKind::cut_line) {
-      bin.state = slice.state;
-      draw_records_general(bin, slice, first - 1, first);
-      continue;
-    }
-    bin.state.depth_write = slice.state.depth_write && !tests_alpha;
     const BinBounds box = box_of(bin, record);
     const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
     if (live != 0) draw_alone<Fragments>(bin, slice, record, box, live);
     bin.is_range_old = true;
+  }
+  bin.closed_from = Bin::kOpen;
+}
+
+/// Records of one slice with operations, as long as they go the same way.
+HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, const std::uint32_t* first,
+                                 const std::uint32_t* last) {
+  const FragmentOps& ops = *bin.ops;
+  bin.state = slice.state;
+  bin.is_range_old = true;
+  if (way == RecordWay::general) return draw_records_general(bin, slice, first, last);
+  if (way == RecordWay::plain) {
+    bin.state.color_write = ops.state.color_write;
+    const std::uint64_t passed = bin.job.counters.depth_passed;
+    bin.skip = bin.job.frame.skip;
+    draw_records(bin, slice, first, last);
+    if (ops.color.blends()) bin.job.counters.skipped.opaque_blends += bin.job.counters.depth_passed - passed;
+    return;
+  }
+  auto& skipped = bin.job.counters.skipped;
+  const std::uint64_t behind = skipped.tiles_hiz;
+  bin.has_operations = true;
+  bin.lays_over = way == RecordWay::laid_over;
+  bin.is_killed = way == RecordWay::killed;
+  bin.tests_alpha = way == RecordWay::killed || (way == RecordWay::operated && ops.alpha.func != DepthFunc::always);
+  bin.skip.tiles_hiz = bin.job.frame.skip.tiles_hiz && bin.skip.operations_early_z;
+  if (bin.tests_alpha) bin.state.depth_write = false;  // depths wait for it
+  bin.lays_over ? draw_records(bin, slice, first, last) : draw_records_in_order(bin, slice, first, last);
+  skipped.operations_early_z += skipped.tiles_hiz - behind;  // of none where nobody asks
+  bin.has_operations = bin.lays_over = bin.is_killed = bin.tests_alpha = false;
+  bin.skip = bin.job.frame.skip;
+}
+
+/// The records of a slice with operations.
+HALFPLANE_NOINLINE void draw_records_by_way(Bin& bin, const Slice& slice, const std::uint32_t* first,
+                                            const std::uint32_t* last) {
+  const RecordWays ways(bin, slice);
+  while (first != last) {
+    const RecordWay way = ways(bin, slice.records[*first]);
+    const std::uint32_t* next = first + 1;
+    while (next != last && ways(bin, slice.records[*next]) == way) ++next;
+    draw_run(bin, slice, way, first, next);
+    first = next;
   }
 }
 
@@ -195,32 +298,16 @@ static void raster(BinJob& job) {
     if (first == last) continue;
     bin.state = slice.state;
     bin.ops = &slice.context->fragment_ops;
-    bin.has_operations = false;
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
-    // Opaque ones twice: for the test that nearly every scene has, and for any.
-    if (bin.state.is_opaque) {
-      // As they are.
-    } else if (job.frame.takes_one_by_one || bin.ops->stencil) {
+    if (bin.state.is_opaque)
+      draw_records(bin, slice, first, last);
+    else if (job.frame.takes_one_by_one || bin.ops->stencil)
       draw_records_general(bin, slice, first, last);
-    } else {
-      bin.has_operations = true;
-      bin.lays_over = bin.ops->alpha.func == DepthFunc::always && bin.state.color_write &&
-                      is_over(bin.ops->color, bin.config.color_format);
-      draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
-      bin.has_operations = false;
-    }
-    if (!bin.state.is_opaque) {
-      bin.closed_from = Bin::kOpen;
-      continue;
-    }
-    if (bin.state.depth_test == DepthFunc::less)
-      draw_records<OpaqueFragments<true>>(bin, slice, first, last);
     else
-      draw_records<OpaqueFragments<false>>(bin, slice, first, last);
-    // What another test lets through may lie behind.
-    if (bin.state.depth_test != DepthFunc::less) bin.closed_from = Bin::kOpen;
+      draw_records_by_way(bin, slice, first, last);
+    if (!bin.state.is_opaque) bin.closed_from = Bin::kOpen;
   }
   finish(bin);
 }

@@ -1,8 +1,8 @@
 // Small triangles within two by two pixels: their samples, of which culling knows which they cover.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-/// What colours are written as; of surfaces, numbers are.
-enum class Writes { nothing, rgba8888, other, surface };
+/// What colours are written as; of surfaces, numbers are. laid_over: of has_operations.
+enum class Writes { nothing, rgba8888, other, surface, laid_over };
 
 /// The samples of triangles that have few, round by round: of each triangle one more.
 struct SampleRounds {

@@ -256,7 +256,13 @@ HALFPLANE_INLINE I16 small_colors(const Bin& bin, std::size_t i, const SmallBatc
             right = left + (step_x << 1);
   const I16 rgba =
       ColorRange::clamped(saturated(left >> down, right >> down), I16(batch.c_low[i]), I16(batch.c_high[i]));
-  return kColor == Writes::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
+  return kColor == Writes::other ? packed(rgba, bin.config.color_format) : rgba;
+}
+
+/// Those of a draw of is_over(), upon what is stored.
+HALFPLANE_INLINE I16 blended_colors(const I16& rgba, const I16& stored, std::int32_t own_factor, ColorFormat format) {
+  const ColorPairs mixed = laid_over(ColorPairs(rgba), widened(stored, format), own_factor);
+  return packed(mixed.red_blue, mixed.green_alpha, format);
 }
 
 /// Depth, test and colour of the blocks that are covered in part. What is written, the state says.
@@ -269,7 +275,9 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   std::uint32_t* const colors = bin.memory.color.data();
   std::uint16_t* const surfaces = bin.memory.surface.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
-  const bool is_skipping = bin.skip.fragments_early_z;
+  const bool is_skipping = kColor == Writes::laid_over ? bin.skip.operations_early_z : bin.skip.fragments_early_z;
+  const ColorFormat format = bin.config.color_format;
+  const std::int32_t own_factor = own_factor_bits(bin.ops->color);
   unsigned passed_pixels = 0;
   for (std::size_t first = 0; first < covered.quads; first += 16)
     for (std::uint64_t rest = covered.blocks(first); rest != 0; rest &= rest - 1) {
@@ -293,14 +301,18 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
         store_narrow(test.choose_color(passed, surface, load_narrow(surfaces + at)), surfaces + at);
         continue;
       }
-      test.choose_color(passed, small_colors<kColor>(bin, i, tile, block, color_down), I16::load(colors + at))
-          .store(colors + at);
+      const I16 color = small_colors<kColor>(bin, i, tile, block, color_down), old = I16::load(colors + at);
+      if constexpr (kColor == Writes::laid_over)
+        test.choose_color(passed, blended_colors(color, old, own_factor, format), old).store(colors + at);
+      else
+        test.choose_color(passed, color, old).store(colors + at);
     }
   count_fragments(bin, covered.pixels, passed_pixels / Test::kCount);
 }
 template <class Fragments, class Test, bool kDepth>
 HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   if (!bin.state.color_write) return draw_blocks<Fragments, Test, kDepth, Writes::nothing>(bin, covered);
+  if (bin.has_operations) return draw_blocks<Fragments, Test, kDepth, Writes::laid_over>(bin, covered);
   if (bin.state.has_surface) return draw_blocks<Fragments, Test, kDepth, Writes::surface>(bin, covered);
   bin.config.color_format == ColorFormat::rgba8888
       ? draw_blocks<Fragments, Test, kDepth, Writes::rgba8888>(bin, covered)
@@ -320,7 +332,7 @@ HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
   const std::uint64_t tiles = batch_tiles(bin);
   const bool is_short = bin.is_short;
   bool is_changed = false;
-  if (bin.small.has_samples) {
+  if (bin.small.has_samples && !bin.has_operations) {
     SampleRounds rounds;
     (is_short ? set_up_samples<ShortArithmetic> : set_up_samples<LongArithmetic>)(bin, slice, rounds);
     is_changed = touch_tiles<Fragments>(bin, tiles);

@@ -101,7 +101,6 @@ struct SurfaceRamps {
 
 template <Sampling kSampling>
 HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
-  if constexpr (kSampling == Sampling::nearest) return ColorPairs(filter_nearest(texture, at, BaseLevel(texture)));
   if constexpr (kSampling == Sampling::linear) return filter_linear(texture, at, BaseLevel(texture));
   return sample(texture, at, lod);
 }
@@ -116,7 +115,14 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
   const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles);
   CoordinateLanes at[4];
   I16 lod[4], red_blue[4], green_alpha[4];
-  if constexpr (kHasTexture) {
+  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
+  if constexpr (kSampling == Sampling::nearest) {
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      (void)ramps.find_coordinates(of, block, at[block]);
+      const Places places(nearest_places(of.texture, at[block], BaseLevel(of.texture)));
+      fetch_texels(of.texture.texels, places, nearest.data() + block * kBlockPixels);
+    });
+  } else if constexpr (kHasTexture) {
     for_each_block([&](auto block) HALFPLANE_LAMBDA { lod[block] = ramps.find_coordinates(of, block, at[block]); });
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
       const ColorPairs texels = texels_at<kSampling>(of.texture, at[block], lod[block]);
@@ -129,7 +135,11 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
     if (bits == 0) return;
     const auto pairs = [&]() HALFPLANE_LAMBDA {
       if constexpr (!kHasTexture) return ramps.own(bin, surface, block);
-      const ColorPairs texels(red_blue[block], green_alpha[block]);
+      const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
+        if constexpr (kSampling == Sampling::nearest)
+          return ColorPairs(I16::load(nearest.data() + block * kBlockPixels));
+        return ColorPairs(red_blue[block], green_alpha[block]);
+      }();
       return of.has_color ? combined(ramps.own(bin, surface, block), texels, of.texture) : texels;
     }();
     const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
@@ -177,8 +187,9 @@ HALFPLANE_INLINE ColorPairs in_fog(const ColorPairs& color, const I16& factor, c
     const std::int32_t at_none = (fog.color[c] << kFogFactorBits) + (1 << (kFogFactorBits - 1));
     return ((channel - fog.color[c]) * factor + at_none) >> kFogFactorBits;
   };
-  return ColorPairs(mixed(color.red_blue & 0xffff, 0) | (mixed(color.red_blue >> 16, 2) << 16),
-                    mixed(color.green_alpha & 0xffff, 1) | (color.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
+  return ColorPairs(
+      mixed(color.red_blue & 0xffff, 0) | (mixed(color.red_blue >> 16, 2) << 16),
+      mixed(color.green_alpha & 0xffff, 1) | (color.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
 }
 
 /// The same with fog, which is a pass of its own over the colours of 8 bits: so it costs nothing where there is none.

@@ -84,12 +84,35 @@ struct ColorPairs {
   ColorPairs& operator=(const ColorPairs&) = delete;
 };
 
+/// Where the nearest texels are.
+template <class Level>
+HALFPLANE_INLINE I16 nearest_places(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
+  const I16 x = wrapped_texel(level.template cut<0>(at.u) >> kTexelFraction, texture.wrap[0], level.template last<0>()),
+            y = wrapped_texel(level.template cut<1>(at.v) >> kTexelFraction, texture.wrap[1], level.template last<1>());
+  return level.first() + column_place(x) + row_place(y, level.pitch());
+}
+
 /// R lowest.
 template <class Level>
 HALFPLANE_INLINE I16 filter_nearest(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
-  const I16 x = wrapped_texel(level.template cut<0>(at.u) >> kTexelFraction, texture.wrap[0], level.template last<0>()),
-            y = wrapped_texel(level.template cut<1>(at.v) >> kTexelFraction, texture.wrap[1], level.template last<1>());
-  return gather(texture.texels, level.first() + column_place(x) + row_place(y, level.pitch()));
+  return gather(texture.texels, nearest_places(texture, at, level));
+}
+
+/// Numbers that lanes have stored, each to be an address. Read as they stand in memory: GCC would take them out of the lanes
+/// one by one instead, by shuffles and moves of which the lanes themselves have need.
+struct Places {
+  alignas(64) std::array<std::uint32_t, 16> place;
+
+  HALFPLANE_INLINE explicit Places(const I16& lanes) { lanes.store(place.data()); }
+  HALFPLANE_INLINE std::size_t operator[](int i) const {
+    return static_cast<const volatile std::uint32_t&>(place[static_cast<std::size_t>(i)]);
+  }
+};
+
+/// Texels by loads and stores of one word each, beside which lanes go on: half the time of a gather. Whoever loads them as
+/// lanes waits until they are in the cache, and so does something else first.
+HALFPLANE_INLINE void fetch_texels(const void* texels, const Places& from, std::uint32_t* to) {
+  for (int i = 0; i < kBlockPixels; ++i) to[i] = static_cast<const std::uint32_t*>(texels)[from[i]];
 }
 
 /// What a linear filter looks at: left and right texels of two rows, R lowest, and how much there is of the second column
@@ -125,12 +148,10 @@ HALFPLANE_INLINE Footprints footprints_of_quads(const LaneTexture& texture, cons
   };
   const I16 x = wrapped_texel(from_middle.u >> kTexelFraction, texture.wrap[0], level.template last<0>()),
             y = wrapped_texel(from_middle.v >> kTexelFraction, texture.wrap[1], level.template last<1>());
-  alignas(64) std::array<std::int32_t, 16> place;
   constexpr int kQuadShift = 4;  // bytes
-  ((level.first() + column_place(x) + row_place(y, level.pitch())) << kQuadShift).store(place.data());
+  const Places place((level.first() + column_place(x) + row_place(y, level.pitch())) << kQuadShift);
   const auto* const quads = reinterpret_cast<const char*>(texture.quads);
-  const Columns texels =
-      turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + place[static_cast<std::size_t>(i)]; });
+  const Columns texels = turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + place[i]; });
   return {texels.first,
           texels.second,
           texels.third,

@@ -166,26 +166,35 @@ HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
       if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
 }
 
-/// Tiles that the triangle takes as a whole.
-HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t taken, const TileDepths& depths) {
+/// In the lanes that are set in a mask.
+template <class Element, class Lanes>
+HALFPLANE_INLINE void replace(const S64& where, const Lanes& with, Element* at) {
+  select(where, with, Lanes::load(at)).store(at);
+}
+
+/// Depths of tiles that the triangle takes as a whole. Returns its number among those that wait.
+HALFPLANE_INLINE S64 take_depths(Bin& bin, const BinTriangle& t, const S64& is_taken, const TileDepths& depths) {
   if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
-  const S64 plane(static_cast<std::int16_t>(bin.plane_count)), is_taken = lanes_of(taken);
+  const S64 plane(static_cast<std::int16_t>(bin.plane_count));
   bin.memory.planes[bin.plane_count++] = t;
-  const auto replace = [&](auto* at, const auto& with) HALFPLANE_LAMBDA {
-    using Lanes = std::remove_cvref_t<decltype(with)>;
-    select(is_taken, with, Lanes::load(at)).store(at);
-  };
+  if (bin.state.depth_write) {
+    replace(is_taken, plane, bin.depth_owner.data());
+    replace(is_taken, depths.low(), bin.tile_low);
+    replace(is_taken, depths.high(), bin.tile_high);
+  }
+  return plane;
+}
+
+/// Tiles that it takes, with their colours.
+HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t taken, const TileDepths& depths) {
+  const S64 is_taken = lanes_of(taken), plane = take_depths(bin, t, is_taken, depths);
   bin.in_memory &= ~taken;
   const auto tiles = static_cast<unsigned>(std::popcount(taken));
-  if (bin.state.depth_write) {
-    replace(bin.depth_owner.data(), plane);
-    replace(bin.tile_low, depths.low());
-    replace(bin.tile_high, depths.high());
-  }
   if (bin.state.color_write) {
     const std::uint64_t unused = taken & ~bits_of(S64::load(bin.color_owner.data()));
     bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(unused));
-    replace(bin.color_owner.data(), plane);
+    if (bin.layer_count != 0) drop_layers(bin, taken & layered_tiles(bin));
+    replace(is_taken, plane, bin.color_owner.data());
   }
   bin.job.counters.skipped.trivially_accepted += tiles;
   count_fragments(bin, 64 * std::uint64_t{tiles}, 64 * std::uint64_t{tiles});
@@ -406,7 +415,9 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.skip.tiles_hiz) take_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
   if (live == 0) return;
   t.surface = 0;
-  if (bin.sees_surfaces() || (bin.has_operations && bin.state.has_surface)) {
+  if (bin.is_killed) {
+    // Nobody looks at a colour.
+  } else if (bin.sees_surfaces() || (bin.has_operations && bin.state.has_surface)) {
     need_surfaces(bin, 1);
     t.surface = add_surface(bin, slice, record);
   } else if (!is_flat && (bin.state.color_write || bin.has_operations)) {
@@ -416,8 +427,15 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
   if (full != 0 && bin.skip.attributes && !bin.has_operations && (bin.state.depth_write || bin.state.color_write))
     taken = full & Fragments::tiles_in_front(bin, depths);
-  if (full != 0 && bin.has_operations && !bin.state.depth_write && bin.ops->alpha.func == DepthFunc::always)
+  if (full != 0 && bin.has_operations && (!bin.tests_alpha || bin.is_killed)) {
     in_front = full & Fragments::tiles_in_front(bin, depths);
+    if (in_front != 0 && bin.lays_over && t.surface == 0 && bin.skip.attributes) {
+      add_layer(bin, t, in_front);
+      if (bin.state.depth_write) (void)take_depths(bin, t, lanes_of(in_front), depths);
+      live &= ~in_front;
+    }
+    if (bin.state.depth_write) in_front = 0;  // pixel by pixel
+  }
   if (taken != 0) take_tiles(bin, t, taken, depths);
   if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full, in_front);
   if (bin.state.depth_write) bin.is_range_old = true;
