@@ -178,14 +178,19 @@ PROOFS = [
     Proof('framebuffer_stream_4_stamps', 'f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',
           cuts=SRAMS, inputs='framebuffer_inputs', file='framebuffer_stream', presets=('tiny',), package=STAMPS_4, k=2,
           cover_depth=30, twins=(('(state_q == EVICT && ends_plane && !plane_q)', '1\'b0'),), twin_depth=30, twin_traces=True),
+    Proof('clear_flags_data', 'd', 'stages/clear_flags.sv', 'of any block: its flags are what tokens have written, less what has '
+          'fallen', cuts=SRAMS, package=BLOCKS, quick=TINY, cover_depth=8,
+          twins=(71, ('is_busy_o = reads_q', 'is_busy_o = 1\'b0'), ('writes_q && write_address == read_address', '1\'b0'),
+                 ('line_x_i == read_x_i && line_y_i == read_y_i', '1\'b0'), ('reads_q && reads_x_q == read_x_i && reads_y_q == read_y_i', '1\'b0'),
+                 ('if (reads_q) read_address', 'if (1\'b0) read_address'))),
     Proof('cache_tags_data', 'd, f', 'stages/cache_tags.sv', 'of any block: where its depth is, what leaves, what is ordered and '
-          'flagged is as specified', cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, cover_depth=32,
-          twins=(70, 71, 72, 73, 75, 91, 92, 93, 94, 95, 96)),
+          'flagged is as specified', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, cover_depth=32,
+          twins=(70, 72, 73, 75, 91, 92, 93, 94, 95, 220, 221, 222, 223)),
     Proof('cache_tags_data_in_tiles', 'd, f', 'stages/cache_tags.sv', 'the same with blocks in tiles, and frame.clears=flags',
-          cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
+          cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
           quick=('embedded',), twins=(70, 74, 75)),
     Proof('cache_tags_color', 'd, f', 'stages/cache_tags.sv', 'with blending: colours are known only if they are on the chip, and '
-          'are asked for where they are not', cuts=SRAMS, inputs='cache_tags_inputs cache_tags_data', package=BLENDING,
+          'are asked for where they are not', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data', package=BLENDING,
           presets=TINY, quick=TINY, twins=(196, 197, ("color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)",
                                           'color_known | stamp_bit'))),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
@@ -193,8 +198,8 @@ PROOFS = [
           presets=('embedded',), quick=('embedded',), cover_depth=9,
           twins=(190, 191, 192, ("| (~mask_i & {SAMPLES{writes_all && is_first}})", "| {SAMPLES{writes_all && is_first}}"))),
     Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
-          cuts=SRAMS, inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
-          twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'),
+          cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
+          twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'), ('if (moves) valid_q <= read_valid_q;', 'valid_q <= read_valid_q;'),
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
           'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,

@@ -36,7 +36,8 @@ struct TagResult {
   bool starts_color = false;  ///< the first colours of this stamp: the others of it are not on the chip
   DepthSource color_source = DepthSource::none;  ///< of the stored colours, where operations read them
 
-  int flag_cycles = 0;  ///< a flag falls: its word is written, and read before unless it is the one that was looked at
+  /// A flag falls with the eviction.
+  [[nodiscard]] bool falls() const { return eviction && (eviction->fills[0] || eviction->fills[1]); }
 };
 
 class CacheTags {
@@ -63,9 +64,6 @@ class CacheTags {
     if (!line.is_valid || line.block != place.block) {
       result.writes = write_up_to(place.block);
       evict(line, result);
-      const BlockAddress old = line.block;
-      if (result.flag_cycles != 0 && old.y == place.block.y && word_of(old.x) == word_of(place.block.x))
-        result.flag_cycles = 1;
       line = {};
       line.is_valid = true;
       line.block = place.block;
@@ -181,7 +179,6 @@ class CacheTags {
       e.fills[number(plane)] = e.stamps[number(plane)] != 0 && line.is_cleared[number(plane)];
       if (e.fills[number(plane)]) flags_.fall(plane, line.block);
     }
-    if (e.fills[0] || e.fills[1]) result.flag_cycles = 2;
     if (unwritten_.size() == victims_) {
       unwritten_.pop_front();
       ++result.writes;

@@ -197,12 +197,11 @@ mutant(64 stages/hiz.sv "fast clear: what earlier visits had to say comes behind
 
 # framebuffer of blocks
 mutant(70 stages/cache_tags.sv "tag: only the block's column is compared"
-  [=[line_read[STATE-4-:TAG_X+TAG_Y] == {TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y)}]=]
-  [=[line_read[STATE-4-:TAG_X] == TAG_X'(block_x >> LINE_X)]=])
-mutant(71 stages/cache_tags.sv "fast clear: the flag of a block outlives its eviction"
-  [=[fills & {2{writes_flag}}]=] [=[2'b00]=])
+  [=[line_read[STATE-4-:TAG_X+TAG_Y] == read_tag]=] [=[line_read[STATE-4-:TAG_X] == read_tag[TAG_Y+:TAG_X]]=])
+mutant(71 stages/clear_flags.sv "fast clear: the flag of a block outlives its eviction"
+  [=[WORD'(1) << bit_of(writes_x_q)]=] [=[WORD'(0)]=])
 mutant(72 stages/cache_tags.sv "order: a block on its way to memory is read as memory has it"
-  [=[!is_access || hits]=] [=[1'b1]=])
+  [=[!is_access || hits_q]=] [=[1'b1]=])
 mutant(73 stages/cache_tags.sv "tags: a line that is read while it is written is seen as it was"
   [=[is_forwarded_q ? forward_q : line_read]=] [=[line_read]=])
 mutant(74 stages/cache_tags.sv "depth unread: always, with some samples of a stamp"
@@ -219,6 +218,16 @@ mutant(79 stages/color_write.sv "fill: what was not drawn into keeps what the co
   [=[dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}}]=] [=[code[s*COLOR+:COLOR]]=])
 mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])
+
+# three steps of the tags
+mutant(220 stages/cache_tags.sv "tags: what the fragment before leaves in its line is not seen by the next one"
+  [=[(is_access || (valid_q && walks_q)) && line_q == read_line_q]=] [=[1'b0]=])
+mutant(221 stages/cache_tags.sv "tags: what the fragment before has brought into the line is not compared"
+  [=[block_x == read_x && block_y == read_y]=] [=[1'b1]=])
+mutant(222 stages/cache_tags.sv "flags: the next fragment's are not looked at where only its row is another"
+  [=[fragment_x == read_x && fragment_y == read_y]=] [=[fragment_x == read_x]=])
+mutant(223 stages/cache_tags.sv "flags: of two that fall in a row the second takes the word from before the first"
+  [=[falls && flags_are_busy]=] [=[1'b0]=])
 
 # memory_port
 mutant(101 lib/beat_bytes.sv "length: a burst of several stamps is a beat short"
@@ -255,13 +264,13 @@ mutant(91 stages/cache_tags.sv "bins: once lost, depth is lost in frames that st
 mutant(92 stages/cache_tags.sv "bins: the flag of a block falls though its depth is lost"
   [=[{line_colored != '0, line_depth != '0}]=] [=[{line_colored != '0, line_has_depth}]=])
 mutant(93 stages/cache_tags.sv "bins: a block begins with the depths of the one that was lost"
-  [=[hits ? line_known : '0]=] [=[hits || drops_depth_q ? line_known : '0]=])
+  [=[hits_q ? line_known : '0]=] [=[hits_q || drops_depth_q ? line_known : '0]=])
 mutant(94 stages/cache_tags.sv "flush: the flags of depth that is lost are written"
   [=[!is_clear && drops_depth_q]=] [=[1'b0]=])
 mutant(95 stages/cache_tags.sv "flush: the depth of the last blocks is stored whatever it says"
   [=[is_clear ? drops_depth_q : drops_depth]=] [=[drops_depth_q]=])
-mutant(96 stages/cache_tags.sv "flags: the word of a block that comes is taken for that of the one that leaves"
-  [=[is_access && word_of(line_x, line_y) == word_of(block_x, block_y)]=] [=[is_access]=])
+mutant_text(96 stages/clear_flags.sv "flags: a fragment looks at the word of a flag that falls, not at its own"
+  [=[is_busy_o = reads_q]=] [=[is_busy_o = reads_q && raster_cosim.mutant_q != 16'd96]=])
 
 # a texture unit and what feeds it
 mutant(141 stages/triangle_setup.sv "texture: planes over w start at vertex 0"
@@ -361,7 +370,7 @@ mutant(195 lib/sample_place.sv "colours: dithering: every stamp begins at the ma
 mutant(196 stages/cache_tags.sv "colours: what a clear has left is asked of memory"
   [=[cleared[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY]=] [=[raster_pkg::DEPTH_SOURCE_MEMORY]=])
 mutant(197 stages/cache_tags.sv "colours: a block begins with what was known of the one before it"
-  [=[hits ? line_state[KNOWN-1:0] : '0]=] [=[line_state[KNOWN-1:0]]=])
+  [=[hits_q ? line_state_q[KNOWN-1:0] : '0]=] [=[line_state_q[KNOWN-1:0]]=])
 mutant(198 stages/block_cache.sv "colours: asked for ahead of depth"
   [=[order_reads_color && (!order_reads || depth_asked_q)]=] [=[order_reads_color && !depth_asked_q]=])
 mutant(199 stages/block_cache.sv "colours: an answer goes to the other plane"

@@ -2,9 +2,10 @@
 // a fragment needs while those before it are still on their way.
 //
 // In: fragments, in program order. Out: items for the test, each with what the tags have found, and orders: so many evicted
-// blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes two cycles to become an item, one a cycle; one or
-// two more where the flag of a cleared block falls. Tokens stay until all they ask for is done: a walk over the lines that evicts
-// what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
+// blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes three cycles to become an
+// item, one a cycle: its line is read, compared, and what follows leaves. Where the flag of a cleared block falls, a fragment of
+// another block than the one before waits a cycle (clear_flags). Tokens stay until all they ask for is done: a walk over the
+// lines that evicts what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
 // Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
@@ -83,8 +84,6 @@ module cache_tags #(
   localparam int WORD = raster_pkg::FLAG_WORD;
   localparam int BIT = $clog2(WORD);
   localparam int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1;  // bits of a word's number in its row
-  localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
-  localparam int FLAG = $clog2(FLAGS);
   localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // with blending: stamps whose colours are here
   localparam int REST = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;
   localparam int STATE = REST + KNOWN;  // of a line
@@ -114,9 +113,6 @@ module cache_tags #(
   function automatic [LINE-1:0] line_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
     line_of = (LINE'(x) & LINE_X_MASK) | ((LINE'(y) & LINE_Y_MASK) << LINE_X);
   endfunction
-  function automatic [FLAG-1:0] word_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
-    word_of = FLAG'({y, WORD_X'(x >> BIT)});
-  endfunction
   function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
     bit_of = BIT'(x);
   endfunction
@@ -137,31 +133,60 @@ module cache_tags #(
   );
   /* verilator lint_on PINCONNECTEMPTY */
 
-  // The fragment, or line of a walk, whose line has been read.
-  logic                             valid_q, walks_q;
+  // The fragment, or line of a walk, whose line is being read; its flags are looked at meanwhile. Of a fragment in the block of
+  // the one before, which has samples, the line is known to have them, and of one without samples nobody asks.
+  logic                             read_valid_q, read_walks_q, has_read_q, moves, looks, needs_flags, flags_are_busy;
+  raster_pkg::fragment_packet_t read_q;
+  logic [LINE-1:0]                  read_line_q;
+  // Where a token is: line of its walk, word of flags.
+  logic               lines_done_q;
+  logic [LINE-1:0]    walk_q;
+  logic [WORD_X-1:0]  word_x_q;
+  logic [BLOCK_Y-1:0] word_y_q;
+  logic [BLOCK_X-1:0]               read_x;
+  logic [BLOCK_Y-1:0]               read_y;
+  logic [1:0]                       read_cleared;
+  // The one whose line has been compared.
+  logic                             valid_q, walks_q, is_access, leaves;
   raster_pkg::fragment_packet_t fragment_q;
-  logic [1:0]                       fall_q;  // a flag falls: 0 its word is read, unless it is here, 1 written, 2 done
-  logic [LINE-1:0]                  walk_q;  // line of a token's walk
-  logic                             leaves, looks;
+  logic [LINE-1:0]                  line_q;
 
-  assign fragment_ready_o = state_q == SERVE ? !is_token && (!valid_q || leaves) : state_q == DONE;
+  assign needs_flags      = fragment_i.mask != '0 && !(has_read_q && fragment_x == read_x && fragment_y == read_y);
+  assign fragment_ready_o = state_q == SERVE ? !is_token && (!read_valid_q || moves) && !(flags_are_busy && needs_flags) :
+                            state_q == DONE;
   assign takes_fragment   = fragment_valid_i && fragment_ready_o && state_q == SERVE;
-  assign looks            = state_q == LOOK && !valid_q;
+  assign looks            = state_q == LOOK && !lines_done_q && (!read_valid_q || moves);
+  assign moves            = !valid_q || leaves;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) valid_q <= 1'b0;
-    else valid_q <= takes_fragment || looks || (valid_q && !leaves);
+    if (!rst_ni) begin
+      read_valid_q <= 1'b0;
+      has_read_q   <= 1'b0;
+      valid_q      <= 1'b0;
+    end else begin
+      read_valid_q <= takes_fragment || looks || (read_valid_q && !moves);
+      if (takes_fragment || state_q != SERVE) has_read_q <= state_q == SERVE && fragment_i.mask != '0;
+      if (moves) valid_q <= read_valid_q;
+    end
   end
 
   always_ff @(posedge clk_i) begin
-    if (takes_fragment) fragment_q <= fragment_i;
-    if (takes_fragment || looks) walks_q <= looks;
+    if (takes_fragment) read_q <= fragment_i;
+    if (takes_fragment || looks) begin
+      read_walks_q <= looks;
+      read_line_q  <= line_read_address;
+    end
+    if (moves) begin
+      fragment_q <= read_q;
+      walks_q    <= read_walks_q;
+      line_q     <= read_line_q;
+    end
   end
 
   // The lines.
-  logic [STATE-1:0]   line_read, line_state, line_new, forward_q;
-  logic               is_forwarded_q, line_writes;
-  logic [LINE-1:0]    line, line_read_address, line_write_address;
+  logic [STATE-1:0]   line_read, read_state, line_state_q, line_new, forward_q;
+  logic               is_forwarded_q, is_next, line_writes;
+  logic [LINE-1:0]    line_read_address, line_write_address;
   /* verilator lint_off UNUSEDSIGNAL */  // wider than a block's y where the cache is larger than the target
   logic [LINE-1:0]    line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
@@ -182,10 +207,19 @@ module cache_tags #(
       .block_y_o(block_y),
       .stamp_o  (stamp)
   );
-  assign line    = walks_q ? walk_q : line_of(block_x, block_y);
+  /* verilator lint_off PINCONNECTEMPTY */
+  block_stamp u_read_stamp (
+      .tile_x_i (read_q.key.tile_x),
+      .tile_y_i (read_q.key.tile_y),
+      .stamp_i  (read_q.stamp),
+      .block_x_o(read_x),
+      .block_y_o(read_y),
+      .stamp_o  ()
+  );
+  /* verilator lint_on PINCONNECTEMPTY */
 
   assign line_read_address  = state_q == LOOK ? walk_q : fragment_line;
-  assign line_write_address = state_q == MARK ? walk_q : line;
+  assign line_write_address = state_q == MARK ? walk_q : line_q;
   sram #(
       .WIDTH    (STATE),
       .DEPTH    (LINES == 1 ? 2 : LINES),
@@ -200,62 +234,73 @@ module cache_tags #(
       .data_i         (line_new)
   );
 
-  // A line that is read while it is written.
+  // A line that is read while it is written; and one that is written by the fragment before, as it leaves.
   always_ff @(posedge clk_i) begin
     if (takes_fragment || looks) begin
       is_forwarded_q <= line_writes && line_read_address == line_write_address;
       forward_q      <= line_new;
     end
   end
-  assign line_state = is_forwarded_q ? forward_q : line_read;
+  assign is_next    = (is_access || (valid_q && walks_q)) && line_q == read_line_q;
+  assign read_state = is_next ? line_new : is_forwarded_q ? forward_q : line_read;
+  always_ff @(posedge clk_i) if (moves) line_state_q <= read_state;
   // What follows from the rest stands in it as well, known at once: the line may have been written; its flags fall then.
-  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state[STATE-1-:REST];
-  assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line) & BLOCK_X'((1 << LINE_X) - 1));
-  assign line_above_x = line >> LINE_X;
+  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state_q[STATE-1-:REST];
+  assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line_q) & BLOCK_X'((1 << LINE_X) - 1));
+  assign line_above_x = line_q >> LINE_X;
   assign line_y = (BLOCK_Y'(tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
 
-  // The words of flags.
-  logic [BLOCK_X-1:0] flag_x;
-  logic [BLOCK_Y-1:0] flag_y;
-  logic [FLAG-1:0]    flag_write_address;
-  logic [WORD-1:0]    word_depth, word_color, word_depth_new, word_color_new, marks;
-  logic [1:0]         flag_writes;  // colour, depth
-  logic               flag_reads;
+  // The tag is compared on each way that the line may come, before one of them is taken.
+  logic [TAG_X+TAG_Y-1:0] read_tag;
+  logic                   read_hits, forward_hits, next_hits, found, hits_q, leaves_line_q;
+  logic [1:0]             cleared_q;
+  assign read_tag     = {TAG_X'(read_x >> LINE_X), TAG_Y'(read_y >> LINE_Y)};
+  assign read_hits    = line_read[STATE-1] && line_read[STATE-4-:TAG_X+TAG_Y] == read_tag;
+  assign forward_hits = forward_q[STATE-1] && forward_q[STATE-4-:TAG_X+TAG_Y] == read_tag;
+  assign next_hits    = block_x == read_x && block_y == read_y;
+  assign found        = is_next ? next_hits : is_forwarded_q ? forward_hits : read_hits;
+  always_ff @(posedge clk_i) begin
+    if (moves) begin
+      hits_q        <= found;
+      leaves_line_q <= read_walks_q || (read_q.mask != '0 && !found);
+      cleared_q     <= read_cleared;
+    end
+  end
 
-  sram #(
-      .WIDTH(WORD),
-      .DEPTH(FLAGS),
-      .READS_OLD(0)
-  ) u_flag_depth (
+  // The flags.
+  logic [WORD-1:0] word_depth, word_color, marks;
+  logic [1:0]      token_writes, fills;  // colour, depth
+  logic            falls;
+  clear_flags u_flags (
       .clk_i,
-      .read_i         (flag_reads),
-      .read_address_i (word_of(flag_x, flag_y)),
-      .data_o         (word_depth),
-      .write_i        (flag_writes[0]),
-      .write_address_i(flag_write_address),
-      .data_i         (word_depth_new)
-  );
-  sram #(
-      .WIDTH(WORD),
-      .DEPTH(FLAGS),
-      .READS_OLD(0)
-  ) u_flag_color (
-      .clk_i,
-      .read_i         (flag_reads),
-      .read_address_i (word_of(flag_x, flag_y)),
-      .data_o         (word_color),
-      .write_i        (flag_writes[1]),
-      .write_address_i(flag_write_address),
-      .data_i         (word_color_new)
+      .rst_ni,
+      .is_busy_o     (flags_are_busy),
+      .reads_i       (takes_fragment && needs_flags),
+      .block_x_i     (fragment_x),
+      .block_y_i     (fragment_y),
+      .read_x_i      (read_x),
+      .read_y_i      (read_y),
+      .cleared_o     (read_cleared),
+      .fills_i       (fills & {2{falls}}),
+      .falls_i       (leaves && falls),
+      .line_x_i      (line_x),
+      .line_y_i      (line_y),
+      .token_reads_i (state_q == READ),
+      .token_writes_i(token_writes),
+      .word_x_i      (word_x_q),
+      .word_y_i      (word_y_q),
+      .word_i        (state_q == MARK ? marks : '0),
+      .word_depth_o  (word_depth),
+      .word_color_o  (word_color)
   );
 
-  // What the tags find. The flags of a block that comes are looked at before those of the one that leaves.
-  logic is_access, read_hits, forward_hits, hits, is_dirty, may_fall, leaves_line, evicts, falls, is_full, is_known;
+  // What the tags find.
+  logic is_dirty, evicts, is_full, is_known;
   logic starts_color, uses, stores_depth;
   /* verilator lint_off UNUSEDSIGNAL */  // without units that have a state
   logic sets_state;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [1:0]        cleared, cleared_q, fills;
+  logic [1:0] cleared;
   raster_pkg::depth_source_t source;
   logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;
   logic              drops_depth_q;  // depth that leaves the chip is lost, and its flag stays
@@ -264,24 +309,16 @@ module cache_tags #(
   assign sets_state = valid_q && !walks_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE;
   assign is_full    = fragment_q.mask == '1;
   assign stamp_bit  = STAMPS'(1) << stamp;
-  // The tag is compared on either way that the line may come, before one of the two is taken.
-  assign read_hits    = line_read[STATE-1] &&
-                        line_read[STATE-4-:TAG_X+TAG_Y] == {TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y)};
-  assign forward_hits = forward_q[STATE-1] &&
-                        forward_q[STATE-4-:TAG_X+TAG_Y] == {TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y)};
-  assign hits         = is_forwarded_q ? forward_hits : read_hits;
   assign stores_depth = line_has_depth && !drops_depth_q;
   assign line_depth   = stores_depth ? line_known : '0;
   assign is_dirty     = line_valid && (drops_depth_q ? line_colored != '0 : line_dirty);
-  assign may_fall     = is_dirty && (drops_depth_q ? fills[1] : line_falls);  // known before the tag is compared
-  assign leaves_line  = walks_q || (is_access && !hits);
-  assign evicts       = is_dirty && leaves_line;
+  assign evicts       = is_dirty && leaves_line_q;
   assign fills        = line_cleared & {line_colored != '0, line_depth != '0};
-  assign falls        = may_fall && leaves_line;
+  assign falls        = valid_q && evicts && (drops_depth_q ? fills[1] : line_falls);
 
-  assign cleared      = hits ? line_cleared : (fall_q == '0 ? {word_color[bit_of(block_x)], word_depth[bit_of(block_x)]} : cleared_q);
-  assign known        = hits ? line_known : '0;
-  assign colored      = hits ? line_colored : '0;
+  assign cleared      = hits_q ? line_cleared : cleared_q;
+  assign known        = hits_q ? line_known : '0;
+  assign colored      = hits_q ? line_colored : '0;
   assign is_known     = (known & stamp_bit) != '0;
   assign starts_color = is_access && fragment_q.state.color_write && (colored & stamp_bit) == '0;
   always_comb begin
@@ -325,7 +362,7 @@ module cache_tags #(
       localparam int READS = 28;  // the bit of a word of operations that says so
       logic              reads_color_q;
       logic [STAMPS-1:0] color_known, color_known_new;
-      assign color_known     = hits ? line_state[KNOWN-1:0] : '0;
+      assign color_known     = hits_q ? line_state_q[KNOWN-1:0] : '0;
       assign color_known_new = color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0);
       assign line_new        = {line_rest, color_known_new};
       always_comb begin
@@ -361,7 +398,7 @@ module cache_tags #(
   logic              has_depth_new;
   assign known_new     = known | (uses ? stamp_bit : '0);
   assign colored_new   = colored | (fragment_q.state.color_write ? stamp_bit : '0);
-  assign has_depth_new = (hits && line_has_depth) || writes_word;
+  assign has_depth_new = (hits_q && line_has_depth) || writes_word;
   assign line_writes   = (leaves && (is_access || walks_q)) || state_q == MARK;
   always_comb begin
     line_rest = {
@@ -386,7 +423,7 @@ module cache_tags #(
       if (WRITES'(age) < waiting_q && victim_x_q[oldest_q+VICTIM'(age)] == block_x &&
           victim_y_q[oldest_q+VICTIM'(age)] == block_y)
         wanted = WRITES'(age + 1);
-    if (!is_access || hits) wanted = '0;
+    if (!is_access || hits_q) wanted = '0;
     writes = evicts && wanted == '0 && waiting_q == WRITES'(VICTIMS) ? WRITES'(1) : wanted;
     if (state_q == ORDER) writes = waiting_q;
   end
@@ -410,9 +447,8 @@ module cache_tags #(
   end
 
   // Items and orders leave together, when there is room for both, whatever is to leave.
-  logic has_word, falls_now, writes_flag;  // of the flag that falls: the word that was looked at has it; it is read; written
   logic is_item, is_order, is_settled;
-  assign is_settled     = valid_q && !(may_fall && fall_q != 2'd2 && leaves_line);
+  assign is_settled     = valid_q && !(falls && flags_are_busy);
   assign is_item        = !walks_q || evicts;
   assign is_order       = writes != '0 || source == raster_pkg::DEPTH_SOURCE_MEMORY ||
                           color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
@@ -433,7 +469,7 @@ module cache_tags #(
       item_o.ends_visit     = 1'b0;
     end
   end
-  assign item_line_o         = line;
+  assign item_line_o         = line_q;
   assign item_stamp_o        = stamp;
   assign item_source_o       = source;
   assign item_starts_color_o = starts_color;
@@ -446,19 +482,11 @@ module cache_tags #(
   assign evicts_fills_o      = fills;
   assign is_cleared_o        = leaves && source == raster_pkg::DEPTH_SOURCE_CLEAR;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) fall_q <= '0;
-    else if (leaves) fall_q <= '0;
-    else if (writes_flag) fall_q <= 2'd2;
-    else if (falls_now) fall_q <= 2'd1;
-  end
-  always_ff @(posedge clk_i) if (fall_q == '0) cleared_q <= {word_color[bit_of(block_x)], word_depth[bit_of(block_x)]};
-
   // Tokens.
-  logic [WORD_X-1:0]       word_x_q, last_word;
-  logic [BLOCK_Y-1:0]      word_y_q, last_y;
+  logic [WORD_X-1:0]       last_word;
+  logic [BLOCK_Y-1:0]      last_y;
   logic [BLOCK_X-1:0]      last_x;
-  logic                    lines_done_q, words_done_q, ends_words, is_last_line, ends_mark, next_word;
+  logic                    words_done_q, ends_words, is_last_line, ends_mark, next_word;
   logic                    plane_q;  // 1: colour
   logic [WORD-1:0]         word, bits_q;
   logic [STAMP-1:0]        stamp_q;
@@ -471,7 +499,7 @@ module cache_tags #(
       .color_o(color)
   );
 
-  assign begins       = state_q == SERVE && fragment_valid_i && is_token && !valid_q;
+  assign begins       = state_q == SERVE && fragment_valid_i && is_token && !read_valid_q && !valid_q;
   assign last_x       = (BLOCK_X'(fragment_i.key.tile_x) << TILE_BITS) | BLOCK_X'((1 << TILE_BITS) - 1);
   assign last_y       = (BLOCK_Y'(fragment_i.key.tile_y) << TILE_BITS) | BLOCK_Y'((1 << TILE_BITS) - 1);
   assign last_word    = WORD_X'(last_x >> BIT);
@@ -488,7 +516,7 @@ module cache_tags #(
     state_d = state_q;
     case (state_q)
       SERVE: if (begins) state_d = clears_all ? ORDER : LOOK;
-      LOOK: if (leaves && is_last_line) state_d = ORDER;
+      LOOK: if (leaves && line_q == LINE'(LINES - 1)) state_d = ORDER;
       ORDER: if (orders_all) state_d = DRAIN;
       DRAIN: if (drained_i) state_d = is_clear ? MARK : READ;
       MARK: if (ends_mark) state_d = DONE;
@@ -515,7 +543,7 @@ module cache_tags #(
       word_y_q     <= '0;
       plane_q      <= !is_clear && drops_depth_q;  // a flush that drops depth writes no flags of it
     end else begin
-      if ((walks_q && leaves) || state_q == MARK) begin
+      if (looks || state_q == MARK) begin
         walk_q <= walk_q + 1'b1;
         if (is_last_line) lines_done_q <= 1'b1;
       end
@@ -545,36 +573,13 @@ module cache_tags #(
   assign clear_depth_o = clear_depth_q;
   assign clear_color_o = clear_color_q;
 
-  // Which word is read and written: of a block that is wanted, of one that leaves, of the walks.
-  logic [BLOCK_X-1:0] resolve_x_q;  // of the flag that is bit 0 of bits_q
-  assign has_word    = is_access && word_of(line_x, line_y) == word_of(block_x, block_y);
-  assign falls_now   = valid_q && falls && fall_q == '0 && !has_word;
-  assign writes_flag = valid_q && falls && (fall_q == 2'd1 || (fall_q == '0 && has_word));
-  assign flag_reads = takes_fragment || falls_now || state_q == READ;
   always_comb begin
-    flag_x = fragment_x;
-    flag_y = fragment_y;
-    if (falls_now) begin
-      flag_x = line_x;
-      flag_y = line_y;
-    end
-    if (state_q == READ) begin
-      flag_x = BLOCK_X'(word_x_q) << BIT;
-      flag_y = word_y_q;
-    end
-    flag_write_address = word_of(line_x, line_y);
-    flag_writes        = fills & {2{writes_flag}};
-    word_depth_new     = word_depth & ~(WORD'(1) << bit_of(line_x));
-    word_color_new     = word_color & ~(WORD'(1) << bit_of(line_x));
-    if (state_q == MARK || state_q == RESOLVE) begin
-      flag_write_address = word_of(BLOCK_X'(word_x_q) << BIT, word_y_q);
-      word_depth_new     = marks;
-      word_color_new     = state_q == MARK ? marks : '0;
-      flag_writes        = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{!words_done_q}};
-      if (state_q == RESOLVE) flag_writes = {next_word, 1'b0};
-    end
+    token_writes = '0;
+    if (state_q == MARK) token_writes = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{!words_done_q}};
+    if (state_q == RESOLVE) token_writes = {next_word, 1'b0};
   end
 
+  logic [BLOCK_X-1:0] resolve_x_q;  // of the flag that is bit 0 of bits_q
   always_ff @(posedge clk_i) begin
     if (state_q == SEND) resolve_x_q <= BLOCK_X'(word_x_q) << BIT;
     else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) resolve_x_q <= resolve_x_q + 1'b1;
@@ -614,6 +619,6 @@ module cache_tags #(
   end
 
   assign at_token_o = state_q > DRAIN;
-  assign idle_o     = state_q == SERVE && !fragment_valid_i && !valid_q;
+  assign idle_o     = state_q == SERVE && !fragment_valid_i && !read_valid_q && !valid_q;
 
 endmodule

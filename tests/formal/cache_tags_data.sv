@@ -1,8 +1,8 @@
 
   // One block, any, and one stamp of it: what a cache with one line for it, and memory behind it, must do with it. `g_` is
-  // the specification (model/stages/cache_tags.hpp), told of what leaves here, in order; the RAMs may answer anything but
-  // for the words in which the block is (sram_word). From the
-  // host: tokens are of all blocks that are ever drawn to.
+  // the specification (model/stages/cache_tags.hpp), told of what leaves here, in order; the RAM may answer anything but for
+  // the words in which the block is (sram_word), and the flags anything but for those of the block (clear_flags_data, what
+  // that assumes is asserted here). From the host: tokens are of all blocks that are ever drawn to.
   (* anyconst *) logic [BLOCK_X-1:0] any_x;
   (* anyconst *) logic [BLOCK_Y-1:0] any_y;
   (* anyconst *) logic [STAMP-1:0]   any_stamp;
@@ -17,7 +17,7 @@
   logic [WRITES-1:0] age;
   assign any_line     = line_of(any_x, any_y);
   assign is_it        = is_access && block_x == any_x && block_y == any_y;
-  assign empties_it   = valid_q && line == any_line && (walks_q || (is_access && !is_it));
+  assign empties_it   = valid_q && line_q == any_line && (walks_q || (is_access && !is_it));
   assign drops        = is_token && !is_clear && state_q != SERVE ? fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER : drops_q;
   assign stores_depth = has_depth_q && !drops;  // a flush speaks for what it finds
   assign is_dirty     = stores_depth || colored_q != '0;
@@ -85,50 +85,67 @@
     if (here_q && !is_marking) assert (!pending_q);
   end
 
-  // The line's word, and that of the flags. What is read in the cycle of a write of it is not looked at.
+  // The line's word. What is read in the cycle of a write of it is not looked at.
   logic [STATE-1:0]   word_q, read_word_q;
-  logic               word_valid, word_dirty, word_falls, word_has_depth, is_marking, read_is_it_q, collided_q, line_stays_q, flags_stay_q;
+  logic               word_valid, word_dirty, word_falls, word_has_depth, is_marking, reads_it_q, collided_q, line_stays_q;
   logic [TAG_X-1:0]   word_tag_x;
   logic [TAG_Y-1:0]   word_tag_y;
   logic [STAMPS-1:0]  word_known, word_colored;
-  logic [1:0]         word_cleared, flag_ram_q, flag_read_q;
+  logic [1:0]         word_cleared;
   logic [BLOCK_X-1:0] word_x;
   logic [BLOCK_Y-1:0] word_y;
-  logic               flag_is_it, flag_reads_it, flag_read_is_it_q;
   logic [STATE-1:0]   line_before_q;
-  logic [WORD-1:0]    depth_before_q, color_before_q;
   assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q[STATE-1-:REST];
-  assign word_x        = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
-  assign word_y        = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
-  assign is_marking    = state_q == MARK || (state_q == DONE && is_clear);
-  assign flag_is_it    = flag_write_address == word_of(any_x, any_y);
-  assign flag_reads_it = word_of(flag_x, flag_y) == word_of(any_x, any_y);
+  assign word_x     = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
+  assign word_y     = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
+  assign is_marking = state_q == MARK || (state_q == DONE && is_clear);
   always_ff @(posedge clk_i) begin
     if (line_writes && line_write_address == any_line) word_q <= line_new;
     if (takes_fragment || looks) begin
-      read_word_q  <= word_q;
-      read_is_it_q <= line_read_address == any_line;
-      collided_q   <= line_writes && line_write_address == any_line;
+      read_word_q <= word_q;
+      reads_it_q  <= line_read_address == any_line;
+      collided_q  <= line_writes && line_write_address == any_line;
     end
     line_stays_q  <= !(takes_fragment || looks);
     line_before_q <= line_read;
-    if (flag_is_it && flag_writes[0]) flag_ram_q[0] <= word_depth_new[bit_of(any_x)];
-    if (flag_is_it && flag_writes[1]) flag_ram_q[1] <= word_color_new[bit_of(any_x)];
-    if (flag_reads) begin
-      flag_read_q       <= flag_ram_q;
-      flag_read_is_it_q <= flag_reads_it;
-    end
-    flags_stay_q   <= !flag_reads;
-    depth_before_q <= word_depth;
-    color_before_q <= word_color;
   end
   always_comb if (runs_q) begin
     if (line_stays_q) assume (line_read == line_before_q);
-    if (read_is_it_q && !collided_q) assume (line_read == read_word_q);
-    if (flags_stay_q) assume (word_depth == depth_before_q && word_color == color_before_q);
-    if (flag_read_is_it_q) assume ({word_color[bit_of(any_x)], word_depth[bit_of(any_x)]} == flag_read_q);
-    // No word of flags is read while it is written.
-    if (flag_reads) assert (flag_writes == '0);
+    if (reads_it_q && !collided_q) assume (line_read == read_word_q);
+  end
+
+  // The block's flags as clear_flags has them.
+  logic [1:0] flag_ram_q;  // colour, depth
+  logic       fell_q, fell_before_q, is_asked_q, line_is_it, read_is_it, waits_q;
+  logic [WORD-1:0] depth_before_q, color_before_q;
+  logic       sends_q, serves_q;
+  assign line_is_it = line_x == any_x && line_y == any_y;
+  assign read_is_it = read_x == any_x && read_y == any_y;
+  always_ff @(posedge clk_i) begin
+    if (leaves && falls && line_is_it) flag_ram_q <= flag_ram_q & ~fills;
+    if (WORD_X'(any_x >> BIT) == word_x_q && any_y == word_y_q) begin
+      if (token_writes[0]) flag_ram_q[0] <= state_q == MARK && marks[bit_of(any_x)];
+      if (token_writes[1]) flag_ram_q[1] <= state_q == MARK && marks[bit_of(any_x)];
+    end
+    fell_q         <= rst_ni && leaves && falls;
+    fell_before_q  <= rst_ni && fell_q;
+    if (takes_fragment) is_asked_q <= needs_flags;
+    sends_q        <= state_q == SEND;
+    serves_q       <= state_q == SERVE;
+    depth_before_q <= word_depth;
+    color_before_q <= word_color;
+    waits_q        <= rst_ni && falls && !leaves;
+  end
+  always_comb if (runs_q) begin
+    assume (flags_are_busy == fell_q);
+    if (is_asked_q && read_is_it) assume (read_cleared == (flag_ram_q & ~(fills & {2{falls && line_is_it}})));
+    if (state_q == SEND && WORD_X'(any_x >> BIT) == word_x_q && any_y == word_y_q)
+      assume ({word_color[bit_of(any_x)], word_depth[bit_of(any_x)]} == flag_ram_q);
+    if (state_q == SEND && sends_q) assume (word_depth == depth_before_q && word_color == color_before_q);
+    assert (!(fell_q && ((takes_fragment && needs_flags) || (leaves && falls))));
+    if (waits_q) assert (falls);
+    if (state_q == READ || token_writes != '0) assert (!falls && !fell_q && !fell_before_q);
+    if (state_q == READ) assert (token_writes == '0);
   end
 
   // For induction: what has been read is what is there; what is under way.
@@ -137,27 +154,51 @@
   assign marked   = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{words_passed}};
   assign words_passed = (is_clear ? words_done_q : state_q == DONE) || word_y_q > any_y ||
                         (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));
-  assign lines_passed = lines_done_q || walk_q > any_line;
+  assign lines_passed = state_q == LOOK ? !((valid_q && line_q <= any_line) || (!valid_q && read_valid_q && read_line_q <= any_line) ||
+                        (!valid_q && !read_valid_q)) : lines_done_q || walk_q > any_line;
   always_comb if (runs_q) begin
     assert (state_q <= DONE);
+    // Three steps: the line that is read is that of the fragment; of one that has not asked for its flags the block is here.
+    if (read_valid_q && !read_walks_q) assert (read_line_q == line_of(read_x, read_y) && (read_q.mask != '0 || !is_asked_q));
+    if (valid_q && !walks_q) assert (line_q == line_of(block_x, block_y) && leaves_line_q == (fragment_q.mask != '0 && !hits_q));
+    if (valid_q && walks_q) assert (leaves_line_q);
+    if (has_read_q) assert ((state_q == SERVE || serves_q) && read_q.mask != '0 && !read_walks_q);
+    if (state_q == DONE) assert (!serves_q);
+    if (has_read_q && state_q == SERVE && read_is_it && !read_valid_q) assert (valid_q ? is_it : here_q);
+    if (read_valid_q && !read_walks_q && read_q.mask != '0 && read_is_it && !is_asked_q) assert (valid_q ? is_it : here_q);
+    if (read_valid_q && !read_walks_q && read_q.mask != '0) assert (has_read_q);
+    if (read_valid_q && read_line_q == any_line) begin
+      assert (reads_it_q && is_forwarded_q == collided_q);
+      assert ((is_forwarded_q ? forward_q : line_read) == word_q);
+    end
+    if (read_valid_q) assert (reads_it_q == (read_line_q == any_line));
     assert (drops_depth_q == drops);
     assert (waiting_q <= WRITES'(VICTIMS) && writes <= waiting_q);
-    if (state_q != SERVE) assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)));
-    if (state_q == SERVE) assert (!valid_q || !walks_q);
-    if (state_q == LOOK) assert (!lines_done_q && !clears_all);
-    if (!valid_q || !falls) assert (fall_q == '0);
-    assert (fall_q != 2'd3);
-    if (state_q > ORDER) assert (waiting_q == '0);
+    if (state_q != SERVE)
+      assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)) && (!read_valid_q || (read_walks_q && state_q == LOOK)));
+    if (state_q == SERVE) assert ((!valid_q || !walks_q) && (!read_valid_q || !read_walks_q));
+    if (state_q == LOOK) begin
+      assert (!clears_all);
+      assert (lines_done_q ? walk_q == '0 || LINES != (1 << LINE) : walk_q < LINE'(LINES) || LINES == (1 << LINE));
+      if (lines_done_q) assert (read_valid_q ? read_line_q == LINE'(LINES - 1) : valid_q && line_q == LINE'(LINES - 1));
+      if (read_valid_q && !lines_done_q) assert (walk_q != '0 && read_line_q == walk_q - 1'b1);
+      if (valid_q) assert (read_valid_q ? read_line_q != '0 && line_q == read_line_q - 1'b1 :
+                           lines_done_q ? line_q == LINE'(LINES - 1) : walk_q != '0 && line_q == walk_q - 1'b1);
+      if (!read_valid_q && !valid_q) assert (walk_q == '0);
+    end
+    if (state_q > ORDER) assert (waiting_q == '0 && !fell_q);
+    if (state_q > DRAIN) assert (!fell_before_q);
     if (state_q == MARK) assert (is_clear);
     if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear);
     if (state_q == RESOLVE) assert (resolves);
     if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
     if (!is_known_q && is_marking) assert ((flag_ram_q & marked) == marked);
     if (!is_known_q)
-      assert (!here_q && !pending_q && !valid_q && (state_q == SERVE || is_marking || state_q == ORDER || state_q == DRAIN) && waiting_q == '0);
-    if (valid_q && line == any_line) begin
-      assert (read_is_it_q && (is_forwarded_q == collided_q));
-      assert (line_state == word_q);
+      assert (!here_q && !pending_q && !valid_q && !read_valid_q && !fell_q && !fell_before_q && (state_q == SERVE || is_marking || state_q == ORDER || state_q == DRAIN) && waiting_q == '0);
+    if (valid_q && line_q == any_line) begin
+      assert (line_state_q == word_q);
+      if (is_it) assert (hits_q == here_q);
+      else if (is_access && word_valid) assert (hits_q == (word_x == block_x && word_y == block_y));
     end
     if (is_known_q && word_valid) begin
       assert (word_dirty == (word_has_depth || word_colored != '0));
@@ -171,17 +212,10 @@
     flag_now = flag_q;
     if (is_marking) flag_now = flag_q | marked;
     else if (state_q > DRAIN) flag_now[1] = flag_q[1] && !(raster_pkg::FRAME_CLEARS == 0 && plane_q && words_passed);
-    else if (evicts_it && fall_q == 2'd2) flag_now = flag_q & ~fills_it;
   end
   always_comb if (runs_q && is_known_q) begin
     assert (flag_ram_q == flag_now);
-    if (valid_q && !walks_q && fall_q == 2'd0 && word_of(block_x, block_y) == word_of(any_x, any_y))
-      assert (flag_read_is_it_q && flag_read_q == flag_ram_q);
-    if (valid_q && fall_q == 2'd1) assert (flag_read_is_it_q == flag_is_it && flag_read_q == flag_ram_q);
-    if (valid_q && fall_q != 2'd0 && is_it && !hits) assert (cleared_q == flag_ram_q);
-    if (state_q == SEND || state_q == RESOLVE)
-      assert (flag_read_is_it_q == (word_of(BLOCK_X'(word_x_q) << BIT, word_y_q) == word_of(any_x, any_y)) &&
-              flag_read_q == flag_ram_q);
+    if (is_it && !hits_q) assert (cleared_q == flag_ram_q);
     // The evictions that wait.
     if (pending_q)
       assert (age_q < waiting_q && victim_x_q[oldest_q+VICTIM'(age_q)] == any_x && victim_y_q[oldest_q+VICTIM'(age_q)] == any_y);

@@ -13,7 +13,11 @@
     if (item_source_o == raster_pkg::DEPTH_SOURCE_CHIP) assert (!evicts_o);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
-    if ($past(takes_fragment)) assert (valid_q && !walks_q && fragment_q == $past(fragment_i));
+    if ($past(takes_fragment)) assert (read_valid_q && !read_walks_q && read_q == $past(fragment_i));
+    if ($past(read_valid_q && !moves)) assert (read_valid_q && read_walks_q == $past(read_walks_q) && (read_walks_q || read_q == $past(read_q)));
+    if ($past(read_valid_q && moves)) assert (valid_q && walks_q == $past(read_walks_q) && (walks_q || fragment_q == $past(read_q)));
+    if ($past(!takes_fragment && !looks && moves)) assert (!read_valid_q);
+    if ($past(!read_valid_q && leaves)) assert (!valid_q);
     if ($past(valid_q && !leaves)) assert (valid_q && walks_q == $past(walks_q) && fragment_q == $past(fragment_q));
     if ($past(is_stuck))
       assert (is_settled && item_o == $past(item_o) && item_line_o == $past(item_line_o) && item_stamp_o == $past(item_stamp_o) &&
@@ -22,32 +26,34 @@
               $past({item_source_o, evicts_depth_o, evicts_color_o, evicts_fills_o}));
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
   end
-  // The RAMs: sram_word.
-  logic              lines_stay_q, flags_stay_q;
+  // The RAMs: sram_word; the flags: clear_flags_data.
+  logic              lines_stay_q, flags_stay_q, fell_q;
   logic [STATE-1:0]  line_before_q;
   logic [2*WORD-1:0] flags_before_q;
   always_ff @(posedge clk_i) begin
     lines_stay_q   <= !(takes_fragment || looks);
-    flags_stay_q   <= !flag_reads;
+    flags_stay_q   <= state_q == SEND;
+    fell_q         <= rst_ni && leaves && falls;
     line_before_q  <= line_read;
     flags_before_q <= {word_color, word_depth};
   end
   always_comb if (runs_q) begin
     if (lines_stay_q) assume (line_read == line_before_q);
-    if (flags_stay_q) assume ({word_color, word_depth} == flags_before_q);
+    assume (flags_are_busy == fell_q);
+    if (flags_stay_q && state_q == SEND) assume ({word_color, word_depth} == flags_before_q);
   end
 
-  // No deadlock: when items, orders and requests are taken and what was ordered is done, a fragment leaves within three cycles,
+  // No deadlock: when items, orders and requests are taken and what was ordered is done, a fragment leaves within four cycles,
   // and what is left to do for a token gets less in every cycle. That is, the most significant first: its parts; lines to
   // look at, or planes; rows and columns of words; lines to mark; flags of a word and stamps of a block.
   logic             others_do;
   logic [2:0]       part;
-  logic [1:0]       step;
+  logic [2:0]       step;
   logic [LINE:0]    lines_left;
   logic [WORD_X:0]  columns_left;
   logic [BLOCK_Y:0] rows_left;
   logic [STAMP:0]   stamps_left;
-  localparam int LEFT = 3 + 1 + BLOCK_Y + 1 + WORD_X + 1 + LINE + 1 + 2 + WORD + STAMP + 1;
+  localparam int LEFT = 3 + 1 + BLOCK_Y + 1 + WORD_X + 1 + LINE + 1 + 3 + WORD + STAMP + 1;
   logic [LEFT-1:0]  left;
   assign others_do = item_ready_i && order_ready_i && drained_i && request_ready_i;
   always_comb begin
@@ -60,8 +66,8 @@
     case (state_q)
       LOOK: begin
         part       = 3'd5;
-        lines_left = (LINE + 1)'(LINES) - (LINE + 1)'(walk_q);
-        step       = valid_q ? 2'd2 - fall_q : 2'd3;
+        lines_left = lines_done_q ? '0 : (LINE + 1)'(LINES) - (LINE + 1)'(walk_q);
+        step       = {read_valid_q, 2'(valid_q) + 2'(valid_q && falls && flags_are_busy)};
       end
       ORDER: part = 3'd4;
       DRAIN: part = 3'd3;
@@ -71,7 +77,7 @@
       end
       READ, SEND, RESOLVE: begin
         part        = 3'd2;
-        step        = 2'(RESOLVE - state_q);
+        step        = 3'(RESOLVE - state_q);
         stamps_left = state_q == RESOLVE ? (STAMP + 1)'(STAMPS) - (STAMP + 1)'(stamp_q) : '0;
       end
       default: part = state_q == DONE ? 3'd1 : 3'd6;
@@ -84,23 +90,29 @@
             state_q == RESOLVE ? bits_q : WORD'(0), stamps_left};
   end
   always_comb if (runs_q) begin
-    assert (state_q <= DONE && fall_q != 2'd3 && waiting_q <= WRITES'(VICTIMS));
-    if (state_q != SERVE) assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)));
-    if (state_q == SERVE) assert (!valid_q || !walks_q);
-    if (!valid_q || !falls) assert (fall_q == '0);
-    if (state_q == LOOK) assert (!lines_done_q);
+    assert (state_q <= DONE && waiting_q <= WRITES'(VICTIMS));
+    if (state_q != SERVE)
+      assert (fragment_valid_i && is_token && (!valid_q || (walks_q && state_q == LOOK)) && (!read_valid_q || (read_walks_q && state_q == LOOK)));
+    if (state_q == SERVE) assert ((!valid_q || !walks_q) && (!read_valid_q || !read_walks_q));
+    if (valid_q) assert (leaves_line_q == (walks_q || (fragment_q.mask != '0 && !hits_q)));
+    if (state_q == LOOK) begin
+      assert (lines_done_q ? walk_q == '0 || LINES != (1 << LINE) : walk_q < LINE'(LINES) || LINES == (1 << LINE));
+      if (lines_done_q) assert (read_valid_q ? read_line_q == LINE'(LINES - 1) : valid_q && line_q == LINE'(LINES - 1));
+      if (read_valid_q && !lines_done_q) assert (walk_q != '0 && read_line_q == walk_q - 1'b1);
+      if (valid_q) assert (read_valid_q ? read_line_q != '0 && line_q == read_line_q - 1'b1 :
+                           lines_done_q ? line_q == LINE'(LINES - 1) : walk_q != '0 && line_q == walk_q - 1'b1);
+    end
     if (state_q == MARK) assert (is_clear);
     if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear && (state_q == RESOLVE || !words_done_q || plane_q));
     if (state_q == RESOLVE) assert (resolves && (bits_q[0] || stamp_q == '0));
     if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
-    if (state_q == SERVE && fragment_valid_i && is_token && !valid_q) assert (state_d != SERVE);
-    if (state_q == SERVE && !valid_q && !is_token) assert (fragment_ready_o);
+    if (state_q == SERVE && fragment_valid_i && is_token && !read_valid_q && !valid_q) assert (state_d != SERVE);
+    if (state_q == SERVE && !read_valid_q && !fell_q && !is_token) assert (fragment_ready_o);
     cover (takes_token && !is_clear && is_known_q);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
-    if ($past(others_do && valid_q && fall_q == 2'd2)) assert ($past(leaves));
-    if ($past(others_do && valid_q && !falls)) assert ($past(leaves));
-    if ($past(valid_q && !leaves && others_do)) assert (fall_q > $past(fall_q));
+    if ($past(others_do && valid_q && !fell_q)) assert ($past(leaves));
+    if ($past(fell_q)) assert (!fell_q);
     if ($past(others_do && state_q != SERVE && state_q != DONE)) assert (left < $past(left));
     if ($past(state_q != SERVE && state_q != DONE)) assert (left <= $past(left));
     if ($past(state_q == DONE)) assert (state_q == SERVE && $past(takes_token));

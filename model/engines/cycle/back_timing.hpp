@@ -190,8 +190,10 @@ class BackTiming {
     const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams(), std::max(offered, blocks_->is_empty()));
     Cycle cycle = begins + 1;
     if (!is_clear) directory.drop_depth(state.drops_depth());
-    if (!(is_clear && clears[0] && clears[1]))
+    if (!(is_clear && clears[0] && clears[1])) {
       directory.evict_all([&](const TagResult& tags) { cycle = blocks_->walk(cycle, tags, ask); });
+      cycle = blocks_->is_empty();
+    }
     const Cycle drained = blocks_->drain(cycle, directory.write_all(), ask) + 1;
     cycle = drained;
     const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);  // of a row
@@ -244,7 +246,10 @@ class BackTiming {
  private:
   /// A fragment into a framebuffer of blocks.
   Cycle take_block(Cycle offered, const TagResult& tags, const BlockItem& item, unsigned others) {
-    const Cycle moved = stream(Arrow::fragment).transfer(offered, blocks_->room(), others);
+    const unsigned streams = stream(Arrow::fragment).streams() | others;
+    Cycle moved = stalls_.next_free(streams, std::max(offered, blocks_->room()));
+    while (blocks_->is_busy(moved, tags, item)) moved = stalls_.next_free(streams, moved + 1);
+    stream(Arrow::fragment).count(offered, moved);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
     const std::uint64_t hazards = blocks_->hazards();

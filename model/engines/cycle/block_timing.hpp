@@ -3,7 +3,9 @@
 // T looks a fragment up, X tests it, W writes its colours; between T and X the fragments wait for memory, in order. Every
 // wait is for an earlier fragment or eviction, so the time of one is a maximum over those before it:
 //
-//   t(m) = max(moved + 1, t(m-1) + 1, x(m-queue) + 1, room for an order), one or two more where a flag falls
+//   s(m) = max(moved + 1, t(m-1))
+//   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, two behind the last flag that fell where one falls)
+//   moved(m) >= s(m-1), and not the cycle behind a t in which a flag fell, unless it is in the block of the one before
 //   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
 //   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2))
 //   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between X and W texture_timing.hpp says when W has it
@@ -65,8 +67,12 @@ class BlockTiming {
     if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths));
   }
 
-  /// When T can take the next fragment.
-  [[nodiscard]] Cycle room() const { return left_; }
+  /// When T can take the next fragment, but for cycles in which it is_busy().
+  [[nodiscard]] Cycle room() const { return looked_; }
+  /// In `cycle` the word of a flag that falls is read, and the fragment wants its own.
+  [[nodiscard]] bool is_busy(Cycle cycle, const TagResult& tags, const BlockItem& item) const {
+    return item.mask.any() && last_block_ != tags.block && (cycle == fall_reads_[0] || cycle == fall_reads_[1]);
+  }
   /// When T holds none.
   [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
   /// When X was through with the last fragment.
@@ -82,8 +88,9 @@ class BlockTiming {
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
     const bool is_order = reads || reads_color || tags.writes > 0;
-    const Cycle t = std::max({moved + 1 + static_cast<Cycle>(tags.flag_cycles), items_.room(), orders_.room()});
-    left_ = t;
+    const Cycle t = leave(moved, tags.falls());
+    last_block_.reset();
+    if (item.mask.any()) last_block_ = tags.block;
     const Answers answers = is_order ? order(t, tags.writes, &item, tags, ask) : Answers{};
     Cycle x = std::max({items_.ready(t), tested_ + 1, texture_ ? texture_->room() : behind_.room()});
     if (reads) x = std::max(x, answers.depth + 1);
@@ -112,19 +119,20 @@ class BlockTiming {
     note_writes(tags, item);
   }
 
-  /// A line on a token's walk, read in `cycle`. Returns when the next one can be.
+  /// A line on a token's walk, read in `cycle`. Returns when the next one can be read.
   template <class Ask>
   Cycle walk(Cycle cycle, const TagResult& tags, Ask&& ask) {
     if (tags.eviction)
       take(cycle, tags, {}, ask);
     else
-      left_ = std::max({cycle + 1, items_.room(), orders_.room()});
-    return left_ + 1;
+      leave(cycle, false);
+    return looked_;
   }
 
   /// All that has left the chip goes to memory, from `cycle` on. Returns when nothing is under way any more.
   template <class Ask>
   Cycle drain(Cycle cycle, int writes, Ask&& ask) {
+    last_block_.reset();
     if (writes > 0) {
       cycle = std::max(cycle, orders_.room());
       (void)order(cycle, writes, nullptr, TagResult{}, ask);
@@ -133,6 +141,17 @@ class BlockTiming {
   }
 
  private:
+  /// T: what came in `moved` is compared, then leaves. Returns when.
+  Cycle leave(Cycle moved, bool falls) {
+    looked_ = std::max(moved + 1, left_);
+    left_ = std::max({looked_ + 1, items_.room(), orders_.room()});
+    if (falls) {
+      left_ = std::max(left_, fall_reads_[0] + 1);
+      fall_reads_ = {left_ + 1, fall_reads_[0]};
+    }
+    return left_;
+  }
+
   struct Victim {
     BlockAddress block;
     std::array<std::uint64_t, 2> stamps;  ///< to be written, by plane
@@ -298,8 +317,10 @@ class BlockTiming {
   Station items_, orders_;
   Station behind_{2, 0, 0};  ///< between X and W; or there is a
   std::optional<TextureTiming> texture_;
-  Cycle left_ = 0, tested_ = 0, colored_ = 0,
-        ordered_ = 0;             ///< when the last one left T, X, W; the last request's cycle
+  Cycle looked_ = 0, left_ = 0, tested_ = 0, colored_ = 0,
+        ordered_ = 0;  ///< when the last one was looked up in T, left it, X, W; the last request's cycle
+  std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first
+  std::optional<BlockAddress> last_block_;  ///< of the last fragment, where it has samples and no token came since
   Cycle depth_free_ = 0;          ///< when the depth RAM has been read for the last eviction
   std::uint64_t left_color_ = 0;  ///< stamps of it that the colour RAM is still to be read for, one a cycle
   std::size_t color_line_ = 0;

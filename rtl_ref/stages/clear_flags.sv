@@ -1,0 +1,159 @@
+// Clear flags: a bit for each block and plane of the target, set where a fast clear stands for what memory should hold, in
+// words of FLAG_WORD blocks of a row. They survive a flush.
+//
+// A fragment's word is read in the cycle in which it comes; cleared_o says in every cycle from the next one on what its block's
+// flags are, with all that have fallen until then. A flag that falls costs nobody a cycle that can do without the read port: its
+// word is read in the cycle behind, when no fragment that needs its own can come (is_busy_o), and written in the one
+// after that. Falls are two cycles apart at least. Tokens read and write words when nothing else is under way.
+// Specification: model/stages/clear_flags.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+module clear_flags #(
+    parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
+    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
+    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
+    parameter int WORD = raster_pkg::FLAG_WORD,
+    parameter int BIT = $clog2(WORD),
+    parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1  // bits of a word's number in its row
+) (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // A fragment that comes and asks for the flags of its block
+    output logic               is_busy_o,  // it has to wait
+    input  logic               reads_i,
+    input  logic [BLOCK_X-1:0] block_x_i,
+    input  logic [BLOCK_Y-1:0] block_y_i,
+
+    // The block that came last, from the cycle after that on
+    input  logic [BLOCK_X-1:0] read_x_i,
+    input  logic [BLOCK_Y-1:0] read_y_i,
+    output logic [1:0]         cleared_o,  // colour, depth
+
+    // A block that leaves the chip: its flags of these planes are about to fall, now
+    input logic [1:0]         fills_i,
+    input logic               falls_i,
+    input logic [BLOCK_X-1:0] line_x_i,
+    input logic [BLOCK_Y-1:0] line_y_i,
+
+    // Tokens: a word is read, and is there in the next cycle; planes of it are written
+    input  logic               token_reads_i,
+    input  logic [1:0]         token_writes_i,
+    input  logic [WORD_X-1:0]  word_x_i,
+    input  logic [BLOCK_Y-1:0] word_y_i,
+    input  logic [WORD-1:0]    word_i,
+    output logic [WORD-1:0]    word_depth_o,
+    output logic [WORD-1:0]    word_color_o
+);
+
+  localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
+  localparam int FLAG = $clog2(FLAGS);
+
+  /* verilator lint_off UNUSEDSIGNAL */  // high bits where a word is wider than a row
+  function automatic [FLAG-1:0] word_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
+    word_of = FLAG'({y, WORD_X'(x >> BIT)});
+  endfunction
+  function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
+    bit_of = BIT'(x & BLOCK_X'((1 << BIT) - 1));
+  endfunction
+  /* verilator lint_on UNUSEDSIGNAL */
+
+  // A fall: its word is read, then written.
+  logic               reads_q, writes_q;
+  logic [BLOCK_X-1:0] reads_x_q, writes_x_q;
+  logic [BLOCK_Y-1:0] reads_y_q, writes_y_q;
+  logic [1:0]         reads_fills_q, writes_fills_q;
+  assign is_busy_o = reads_q;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      reads_q  <= 1'b0;
+      writes_q <= 1'b0;
+    end else begin
+      reads_q  <= falls_i;
+      writes_q <= reads_q;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (falls_i) begin
+      reads_x_q     <= line_x_i;
+      reads_y_q     <= line_y_i;
+      reads_fills_q <= fills_i;
+    end
+    writes_x_q     <= reads_x_q;
+    writes_y_q     <= reads_y_q;
+    writes_fills_q <= reads_fills_q;
+  end
+
+  logic [FLAG-1:0] read_address, write_address;
+  logic [WORD-1:0] word_depth, word_color, fallen, word_depth_new, word_color_new;
+  logic [1:0]      writes;  // colour, depth
+  logic            reads;
+  always_comb begin
+    read_address = word_of(block_x_i, block_y_i);
+    if (reads_q) read_address = word_of(reads_x_q, reads_y_q);
+    if (token_reads_i) read_address = word_of(BLOCK_X'(word_x_i) << BIT, word_y_i);
+    reads  = reads_i || reads_q || token_reads_i;
+    fallen = WORD'(1) << bit_of(writes_x_q);
+    write_address  = word_of(BLOCK_X'(word_x_i) << BIT, word_y_i);
+    writes         = token_writes_i;
+    word_depth_new = word_i;
+    word_color_new = word_i;
+    if (writes_q) begin
+      write_address  = word_of(writes_x_q, writes_y_q);
+      writes         = writes_fills_q;
+      word_depth_new = word_depth & ~fallen;
+      word_color_new = word_color & ~fallen;
+    end
+  end
+
+  // No word is looked at that was written while it was read.
+  sram #(
+      .WIDTH(WORD),
+      .DEPTH(FLAGS),
+      .READS_OLD(0)
+  ) u_depth (
+      .clk_i,
+      .read_i         (reads),
+      .read_address_i (read_address),
+      .data_o         (word_depth),
+      .write_i        (writes[0]),
+      .write_address_i(write_address),
+      .data_i         (word_depth_new)
+  );
+  sram #(
+      .WIDTH(WORD),
+      .DEPTH(FLAGS),
+      .READS_OLD(0)
+  ) u_color (
+      .clk_i,
+      .read_i         (reads),
+      .read_address_i (read_address),
+      .data_o         (word_color),
+      .write_i        (writes[1]),
+      .write_address_i(write_address),
+      .data_i         (word_color_new)
+  );
+  assign word_depth_o = word_depth;
+  assign word_color_o = word_color;
+
+  // The flags of the block that came last: from its word in the cycle after it came, then from here. Of a word that is written
+  // while it would be read, what is written.
+  logic       is_fresh_q;
+  logic [1:0] held_q, read_flags, kept;
+  assign read_flags = is_fresh_q ? {word_color[bit_of(read_x_i)], word_depth[bit_of(read_x_i)]} : held_q;
+  always_comb begin
+    kept = '1;
+    if (line_x_i == read_x_i && line_y_i == read_y_i) kept = ~fills_i;
+    if (reads_q && reads_x_q == read_x_i && reads_y_q == read_y_i) kept = kept & ~reads_fills_q;
+  end
+  assign cleared_o = read_flags & kept;
+
+  always_ff @(posedge clk_i) begin
+    is_fresh_q <= reads_i && !(writes_q && write_address == read_address);
+    held_q     <= cleared_o;
+    if (reads_i && writes_q) begin
+      held_q[0] <= writes_fills_q[0] ? word_depth_new[bit_of(block_x_i)] : word_depth[bit_of(block_x_i)];
+      held_q[1] <= writes_fills_q[1] ? word_color_new[bit_of(block_x_i)] : word_color[bit_of(block_x_i)];
+    end
+  end
+
+endmodule
