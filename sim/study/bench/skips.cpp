@@ -77,6 +77,7 @@ Scene make_fine_grid(const SkipPlan& plan) {
 Scene glass_behind(Scene scene, const State& glass) {
   constexpr std::uint32_t kWall = 6;  // indices
   scene.states.push_back(glass);
+  for (std::size_t i = kWall; i < scene.vertices.size(); ++i) scene.vertices[i].rgba[3] = 128;
   auto& wall = std::get<Draw>(scene.commands.back());
   Draw behind = wall;
   behind.state = static_cast<std::uint32_t>(scene.states.size() - 1);
