@@ -17,6 +17,7 @@ constexpr std::array<std::string_view, 2> kFrameOrderNames{"program", "bins"};
 constexpr std::array<std::string_view, 2> kFrameStoreNames{"all", "color"};
 constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
 constexpr std::array<std::string_view, 4> kTextureUnitNames{"off", "nearest", "bilinear", "trilinear"};
+constexpr std::array<std::string_view, 2> kReciprocalKindNames{"table", "restoring"};
 
 const std::array kSettings{
     Setting{"subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12, &Config::subpixel_bits},
@@ -71,6 +72,9 @@ const std::array kSettings{
     Setting{"texture.queue", "samples",
             "between their coordinates and their texels in the texture unit; a power of two", 8, 128,
             &Config::texture_queue},
+    Setting{"reciprocal.kind", "table|restoring",
+            "what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time",
+            0, 0, &Config::reciprocal_kind},
     Setting{"alpha.unit", "units",
             "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither",
             0, 1, &Config::alpha_units},
@@ -213,6 +217,8 @@ std::string get(const Config& config, const Setting& setting) {
     return std::string(kFrameOrderNames[static_cast<std::size_t>(config.**order)]);
   if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
     return std::string(kFrameStoreNames[static_cast<std::size_t>(config.**store)]);
+  if (const auto* kind = std::get_if<ReciprocalKind Config::*>(&setting.member))
+    return std::string(kReciprocalKindNames[static_cast<std::size_t>(config.**kind)]);
   if (const auto* unit = std::get_if<TextureUnitKind Config::*>(&setting.member))
     return std::string(kTextureUnitNames[static_cast<std::size_t>(config.**unit)]);
   const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
@@ -247,6 +253,8 @@ void set(Config& config, std::string_view key, std::string_view value) {
       config.** store = static_cast<FrameStore>(parse_name(key, value, kFrameStoreNames));
     else if (const auto* unit = std::get_if<TextureUnitKind Config::*>(&setting.member))
       config.** unit = static_cast<TextureUnitKind>(parse_name(key, value, kTextureUnitNames));
+    else if (const auto* kind = std::get_if<ReciprocalKind Config::*>(&setting.member))
+      config.** kind = static_cast<ReciprocalKind>(parse_name(key, value, kReciprocalKindNames));
     else if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
       config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
     else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))

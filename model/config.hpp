@@ -42,6 +42,9 @@ enum class SetupKind : int { pipelined, serial };
 /// and linear between two of them.
 enum class TextureUnitKind : int { off, nearest, bilinear, trilinear };
 
+/// Where the reciprocal of 1/w comes from, a sample a clock either way: a table and a correction, or a row of subtractions.
+enum class ReciprocalKind : int { table, restoring };
+
 /// A hardware configuration. The default is the `embedded` preset.
 struct Config {
   std::string preset = "embedded";  ///< the preset the values started from
@@ -73,6 +76,7 @@ struct Config {
   TextureUnitKind texture_unit = TextureUnitKind::off;
   int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
+  ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit
   int alpha_units = 0;       ///< 1: alpha is interpolated whatever the format stores, and tested
   int blend_lanes = 0;       ///< samples that are blended in a clock: 0 (no unit), 1 or 4
   int dither_units = 0;      ///< 1: the RTL dithers colours of rgb565
@@ -97,7 +101,7 @@ struct Setting {
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
   std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, FrameOrder Config::*,
-               FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, DepthMapping Config::*,
+               FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, ReciprocalKind Config::*, DepthMapping Config::*,
                DepthFormat Config::*>
       member;
 

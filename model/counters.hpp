@@ -41,6 +41,9 @@ struct Counters {
   std::uint64_t tiles_visited = 0;   ///< primitive-tile visits, those skipped included
   std::uint64_t bins = 1;            ///< of hardware: parts of the target that the frame is sent in
   std::uint64_t pairs = 0;  ///< of hardware: triangles, lines and points sent; one in several bins counts in each
+  struct {
+    std::uint64_t samples = 0, hits = 0, fills = 0;
+  } texture;  ///< of hardware: samples looked up in the cache, those whose lines were all there, lines asked for
   /// What was left out, each by the switch of that name.
   struct Skipped {
     std::uint64_t frustum = 0, backface = 0, zero_area = 0, empty = 0, no_sample = 0;  ///< triangles

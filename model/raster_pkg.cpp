@@ -155,6 +155,9 @@ std::string raster_pkg(const Config& config) {
     else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.texture_unit),
                      "0 off, 1 nearest, 2 bilinear, 3 trilinear: " + std::string(setting.meaning));
+    else if (std::holds_alternative<ReciprocalKind Config::*>(setting.member))
+      print_constant(out, constant_name(setting.key), static_cast<int>(config.reciprocal_kind),
+                     "0 table, 1 restoring: " + std::string(setting.meaning));
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
                      "0 pipelined, 1 serial: " + std::string(setting.meaning));

@@ -122,6 +122,7 @@ void derive_texture(Widths& w, const Config& config) {
   w.shaded_color.name = "shaded color";
   w.shaded_color.bound = "a stored colour, or what is blended or dithered";
   w.alpha_counters = tests_alpha(config) ? 1 : 0;
+  w.texture_counters = has_texture_planes(config) ? 1 : 0;
   w.texture_port_bytes = std::min(config.memory_port_bits, 64) / 8;
   w.texture_beats = exact("texture beats", "of a line of 4x4 texels of 4 bytes, of 16 bits at least", {0, 32});
   w.texture_byte = exact("texture byte", "8 bits", {0, 255});

@@ -90,6 +90,7 @@ struct Widths {
   int planes = 0;                        ///< of all attributes together
   int affine_planes = 0;                 ///< depth and colour, which come first
   int alpha_counters = 0;                ///< 1: the alpha test counts
+  int texture_counters = 0;              ///< 1: so does a texture unit
   int stencil_flags = 0;                 ///< 1: there is a stencil, and primitives say what they do with it
   int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
   std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow
@@ -134,6 +135,9 @@ struct Widths {
   [[nodiscard]] std::vector<const Width*> all() const&;
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
 };
+
+/// Whether states go beside the setup of triangles: where a texture unit's planes make that long, and its states many.
+[[nodiscard]] inline bool has_state_lane(const Widths& widths) { return widths.coordinates != 0; }
 
 /// The widest of the attributes: what one datapath for all planes must hold.
 [[nodiscard]] const Width& widest(const Widths& widths, Width AttributeWidths::*width);

@@ -296,6 +296,9 @@ module raster_top (
   logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth;
   logic [COUNT-1:0]                                           covered, passed, written, killed, tested_written, tested_killed;
   logic [1:0]                                                 fill, evict, clear;
+  /* verilator lint_off UNUSEDSIGNAL */  // without the unit of counters, or of textures
+  logic [2:0]                                                 texture_use, texture_use_q;
+  /* verilator lint_on UNUSEDSIGNAL */
   /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
   logic                                                       color_valid, color_ready;
   raster_pkg::color_packet_t                                  color_data;
@@ -361,6 +364,7 @@ module raster_top (
       assign texture_offered = 1'b0;
       assign texture_o       = '0;
       assign texel_accepted  = 1'b0;
+      assign texture_use     = '0;
     end else begin : gen_blocks
       assign access_ready = 1'b1;
       // Samples are counted where alpha is tested.
@@ -401,6 +405,7 @@ module raster_top (
           .clear_o         (clear),
           .written_o       (late_written),
           .killed_o        (late_killed),
+          .texture_use_o   (texture_use),
           .at_token_o      (moves_tiles),
           .idle_o          (framebuffer_idle)
       );
@@ -452,6 +457,7 @@ module raster_top (
   raster_pkg::counter_packet_t counters_q, shown_q;
   logic [COUNTERS-1:0]         highest, highest_q;
   logic [1:0]                  fill_q, evict_q, clear_q;
+  localparam int TEXTURE_AT = raster_pkg::COORDINATES != 0 && raster_pkg::ALPHA_UNIT != 0 ? COUNTER : 0;
   logic                        overflow_q;
   assign counters_o = shown_q;
 
@@ -464,6 +470,7 @@ module raster_top (
       fill_q     <= '0;
       evict_q    <= '0;
       clear_q    <= '0;
+      texture_use_q <= '0;
       highest_q  <= '0;
       overflow_q <= 1'b0;
       counters_q <= '0;
@@ -472,6 +479,7 @@ module raster_top (
       fill_q     <= fill;
       evict_q    <= evict;
       clear_q    <= clear;
+      texture_use_q <= texture_use;
       highest_q  <= highest;
       overflow_q <= overflow_q || (highest_q & ~highest) != '0;
       counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_primitive);
@@ -492,6 +500,10 @@ module raster_top (
       counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear_q);
       if (raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0)
         counters_q[COUNTER-1:0] <= counters_q[COUNTER-1:0] + COUNTER'(killed);  // the last is alpha_killed
+      if (raster_pkg::COORDINATES != 0)  // in front of that texture_samples, texture_hits, texture_fills
+        for (int i = 0; i < 3; i++)
+          counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] <= counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] +
+                                                           COUNTER'(texture_use_q[i]);
       if (!counters_hold_i) begin
         shown_q          <= counters_q;
         shown_q.overflow <= overflow_q;

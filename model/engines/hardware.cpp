@@ -253,8 +253,9 @@ SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& p
     for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(packet.color[s] >> 8 * c);
   });
   if (texture_->is_textured(fragment.kind == PrimitiveKind::triangle, live))
-    texture_->take(live, sample, texture_frame(fragment.coordinates), color,
-                   [this](std::uint32_t address, int beats) { return read_texels(address, beats); });
+    count(use_of(texture_->take(live, sample, texture_frame(fragment.coordinates), color,
+                                [this](std::uint32_t address, int beats) { return read_texels(address, beats); })),
+          counters_);
   packet.color = {};
   live.for_each([&](std::size_t s) {
     const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};
@@ -339,6 +340,7 @@ void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters
   counters.depth_passed = hardware.depth_passed;
   counters.alpha_killed = hardware.alpha_killed;
   counters.written = hardware.written;
+  counters.texture = {hardware.texture_samples, hardware.texture_hits, hardware.texture_fills};
 }
 
 Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options) {

@@ -2,7 +2,8 @@
 // small ones that cover none.
 //
 // In: a PrimitivePacket. Out: a TrianglePacket in canonical order with its area and box, or nothing. Positive area =
-// clockwise as seen on the screen (y down). Other kinds than triangles pass as they are, unless their box is empty.
+// clockwise as seen on the screen (y down). Other kinds than triangles pass as they are, unless their box is empty; of a state
+// that overtakes the setup of triangles only the last vertex's codes do.
 #pragma once
 
 #include <algorithm>
@@ -142,10 +143,12 @@ template <class Box>
   };
   if (is_counted(in.kind)) ++counters.primitives_in;
   if (in.kind != PrimitiveKind::triangle) {
-    if (!to_bounds(in.box).is_empty())
+    if (to_bounds(in.box).is_empty())
+      counters.empty += is_counted(in.kind) ? 1 : 0;
+    else if (in.kind == PrimitiveKind::state && has_state_lane(widths))
+      keep(in.box).vertex.code[2] = in.vertex.code[2];
+    else
       keep(in.box).vertex = in.vertex;
-    else if (is_counted(in.kind))
-      ++counters.empty;
     return kept;
   }
   const auto v = to_snapped(in.vertex);

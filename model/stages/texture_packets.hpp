@@ -36,6 +36,13 @@ void set_register(TextureUnit& unit, StateRegister which, const Codes& token, co
     unit.set(TextureState::unpack(state_word(token, widths)));
 }
 
+/// Counted as the hardware does.
+inline void count(const TextureUse& use, CounterPacket& counters) {
+  counters.texture_samples += use.samples;
+  counters.texture_hits += use.hits;
+  counters.texture_fills += use.fills;
+}
+
 [[nodiscard]] inline TextureFrame texture_frame(const CoordinateFrame& frame) {
   return {{OverWScale{frame.shift[0], frame.reach[0]}, OverWScale{frame.shift[1], frame.reach[1]}}, frame.origin};
 }

@@ -85,6 +85,26 @@ struct TextureLookup {
   bool continues = false;  ///< and the sample goes through again, for another level
 };
 
+/// What samples made of the cache, each counted once however many levels it looked at.
+struct TextureUse {
+  std::uint64_t samples = 0;
+  std::uint64_t hits = 0;   ///< samples that found all of their lines
+  std::uint64_t fills = 0;  ///< lines asked for
+};
+[[nodiscard]] inline TextureUse use_of(std::span<const TextureLookup> lookups) {
+  TextureUse use;
+  bool is_hit = true;
+  for (const TextureLookup& lookup : lookups) {
+    use.fills += lookup.is_miss ? 1 : 0;
+    is_hit = is_hit && !lookup.is_miss;
+    if (!lookup.ends || lookup.continues) continue;
+    ++use.samples;
+    use.hits += is_hit ? 1 : 0;
+    is_hit = true;
+  }
+  return use;
+}
+
 /// Which lines are in the cache.
 class TextureCache {
  public:

@@ -170,7 +170,7 @@ TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& con
     setup.area = static_cast<std::int64_t>(primitive.area);
     finish_setup(setup, v, config, widths);
   } else {
-    finish_flat_setup(setup, v[0], widths);
+    finish_flat_setup(setup, v[primitive.kind == PrimitiveKind::state ? 2 : 0], widths);
   }
   return setup;
 }

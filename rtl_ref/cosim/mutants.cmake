@@ -291,7 +291,7 @@ mutant(148 stages/block_cache.sv "texture: one stamp more goes in than there is 
   [=[behind_q != BEHIND'(PLACES)]=] [=[behind_q <= BEHIND'(PLACES)]=])
 mutant(149 stages/texture_cache_linear.sv "texture: of the tag the lowest bits"
   [=[tag == t_address_q[b*28+:28]]=] [=[tag[5:0] == t_address_q[b*28+:6]]=])
-mutant(150 stages/texture_cache_linear.sv "texture: an answer of before a reset is taken"
+mutant(150 lib/texture_answers.sv "texture: an answer of before a reset is taken"
   [=[answer_valid_i && !discards]=] [=[answer_valid_i]=])
 mutant(151 stages/texture_cache_linear.sv "texture: a line that is still to be read is overwritten"
   [=[(asks & referenced) != '0]=] [=[1'b0]=])
@@ -419,3 +419,19 @@ mutant(218 stages/block_cache.sv "stencil: hazard: a stamp of which only that ch
   [=[item.state.depth_write || item.state.writes_stencil]=] [=[item.state.depth_write]=])
 mutant(219 stages/block_cache.sv "stencil: with a late alpha test, what has failed keeps its value"
   [=[write_i.passed | write_i.write_depth]=] [=[write_i.passed]=])
+
+# The lane of states beside triangle_setup; counters of a texture unit; its division.
+mutant(250 lib/setup_states.sv "states: one overtakes the triangle in front of it"
+  [=[waits && number == left_q]=] [=[waits]=])
+mutant(251 lib/setup_states.sv "states: a triangle overtakes the one in front of it"
+  [=[!is_next && is_free]=] [=[is_free && (!is_next || made_valid_i)]=])
+mutant(252 lib/setup_states.sv "states: one has the range of the triangle behind it"
+  [=[is_next ? own : made_i.range.high[AT+:B]]=] [=[made_i.range.high[AT+:B]]=])
+mutant(253 stages/cull.sv "states: one has the box of the primitive in front"
+  [=[is_empty_q && !is_state]=] [=[is_empty_q]=])
+mutant(254 stages/texture_linear.sv "counter: a sample between two levels is looked up twice"
+  [=[looked_up && !ends_first]=] [=[looked_up]=])
+mutant(255 stages/texture_linear.sv "counter: what a sample's first level lacked does not count"
+  [=[!(ends_second && misses_first_q)]=] [=[1'b1]=])
+mutant(256 lib/texture_answers.sv "texture: a line begins with the last beat of the one before"
+  [=[ends_line_o ? '0 : beat_q + BEATS'(takes)]=] [=[beat_q + BEATS'(takes)]=])

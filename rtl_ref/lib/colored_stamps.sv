@@ -42,7 +42,8 @@ module colored_stamps #(
     output logic                      packet_valid_o,
     output raster_pkg::color_packet_t packet_o,
 
-    output logic texture_is_idle_o  // behind a reset it may wait for answers of before
+    output logic [2:0] texture_use_o,  // a sample was looked up, all of it was there, a line was asked for; lowest first
+    output logic       texture_is_idle_o  // behind a reset it may wait for answers of before
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -68,6 +69,7 @@ module colored_stamps #(
       );
       assign alpha_o           = '0;
       assign texture_is_idle_o = 1'b1;
+      assign texture_use_o     = '0;
       assign texture_valid_o   = 1'b0;
       assign texture_o         = '0;
       assign texel_ready_o     = 1'b0;
@@ -96,10 +98,7 @@ module colored_stamps #(
       logic [SAMPLES*P-1:0]          u, v;
       logic [SAMPLES*8*CHANNELS-1:0] rgba;
       logic [SAMPLES-1:0]            mask;
-      /* verilator lint_off UNUSEDSIGNAL */  // nobody counts them yet
-      logic hits, misses;
       logic is_token;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign stamp_x = (PIXEL'(fragment_i.key.tile_x) << TILE) |
                        ((PIXEL'(fragment_i.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
       assign stamp_y = (PIXEL'(fragment_i.key.tile_y) << TILE) | ((PIXEL'(fragment_i.stamp) >> ROW) << STAMP);
@@ -135,6 +134,7 @@ module colored_stamps #(
           .REFERENCE_BITS(raster_pkg::COORDINATE_REFERENCE_BITS),
           .CHANNELS      (CHANNELS),
           .FILTER        (raster_pkg::TEXTURE_UNIT - 1),
+          .RECIPROCAL    (raster_pkg::RECIPROCAL_KIND),
           .PAYLOAD       (CARRIED),
           .QUEUE         (PLACES),
           .IN_FLIGHT     (raster_pkg::TEXTURE_QUEUE),
@@ -175,8 +175,9 @@ module colored_stamps #(
           .answer_valid_i (texel_valid_i),
           .answer_ready_o (texel_ready_o),
           .answer_data_i  (texel_i.data),
-          .hit_o          (hits),
-          .miss_o         (misses),
+          .sample_o       (texture_use_o[0]),
+          .hit_o          (texture_use_o[1]),
+          .miss_o         (texture_use_o[2]),
           .idle_o         (texture_is_idle_o)
       );
       assign packet_valid_o = stamp_valid_o && mask != '0;

@@ -67,6 +67,9 @@ module block_cache (
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o,
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] killed_o,
 
+    // What the texture unit makes of its cache: a sample was looked up, all of it was there, a line was asked for; lowest first
+    output logic [2:0] texture_use_o,
+
     output logic at_token_o,  // a clear or a flush is at work, behind everything
     output logic idle_o       // nothing is under way
 );
@@ -546,6 +549,7 @@ module block_cache (
       .texel_i,
       .packet_valid_o (color_valid_o),
       .packet_o       (color_o),
+      .texture_use_o,
       .texture_is_idle_o(texture_is_idle)
   );
   assign color_ready_o = colors_done;

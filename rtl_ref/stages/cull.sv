@@ -55,10 +55,13 @@ module cull (
   logic       sort_busy_q;
   logic [1:0] sort_step_q;
   logic       sort_moves, hands_over, decide_ready;
-  logic       is_triangle;
+  logic       is_triangle, is_state, is_sorted;
 
-  assign hands_over        = sort_busy_q && sort_step_q == 2'd3 && decide_ready;
-  assign sort_moves        = sort_busy_q && (sort_step_q != 2'd3 || decide_ready);
+  // Where states overtake the setup of triangles they stay for a cycle in either part.
+  assign is_state          = raster_pkg::COORDINATES != 0 && p_q.kind == raster_pkg::PRIMITIVE_KIND_STATE;
+  assign is_sorted         = sort_step_q == 2'd3 || is_state;
+  assign hands_over        = sort_busy_q && is_sorted && decide_ready;
+  assign sort_moves        = sort_busy_q && (!is_sorted || decide_ready);
   assign primitive_ready_o = !sort_busy_q || hands_over;
   assign is_triangle       = p_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
 
@@ -184,10 +187,12 @@ module cull (
   logic                                     front_cw_q, d_is_empty_q;
   raster_pkg::pixel_box_t               d_box_q;
   logic [3*(2*C+CODES)-1:0]                 vertex_q;
-  logic                                     d_is_triangle, is_counted, is_zero, is_back, is_sampleless, is_dropped;
+  logic                                     d_is_triangle, d_is_state, is_decided, is_counted, is_zero, is_back, is_sampleless, is_dropped;
 
-  assign decide_moves = decide_busy_q && decide_step_q != 2'd3;
-  assign leaves       = decide_busy_q && decide_step_q == 2'd3 && (triangle_ready_i || is_dropped);
+  assign d_is_state   = raster_pkg::COORDINATES != 0 && kind_q == raster_pkg::PRIMITIVE_KIND_STATE;
+  assign is_decided   = decide_step_q == 2'd3 || d_is_state;
+  assign decide_moves = decide_busy_q && !is_decided;
+  assign leaves       = decide_busy_q && is_decided && (triangle_ready_i || is_dropped);
   assign decide_ready = !decide_busy_q || leaves;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -282,8 +287,12 @@ module cull (
       mode_q        <= p_q.cull;
       front_cw_q    <= p_q.front_cw;
       d_box_q       <= box_q;
-      d_is_empty_q  <= is_empty_q;
+      d_is_empty_q  <= is_empty_q && !is_state;
       vertex_q      <= {from_x, from_y, from_code, chain_q};
+      if (is_state) begin  // has no box, and alike vertices, of which the last goes on
+        d_box_q                        <= '0;
+        vertex_q[2*(2*C+CODES)-1:0]    <= '0;
+      end
       area_q        <= '0;
       is_small_q    <= 1'b1;
       has_inside_q  <= '0;
@@ -343,7 +352,7 @@ module cull (
     end
   endgenerate
 
-  assign triangle_valid_o        = decide_busy_q && decide_step_q == 2'd3 && !is_dropped;
+  assign triangle_valid_o        = decide_busy_q && is_decided && !is_dropped;
   assign triangle_o.kind         = kind_q;
   assign triangle_o.primitive_id = id_q;
   assign triangle_o.box          = d_box_q;

@@ -9,8 +9,7 @@
 // has been read. The tags know its number, counted in groups and modulo a power of two: a line that was last read long ago may
 // look as if a sample were still to read it, which costs a wait, and only for samples in front.
 //
-// Reset: power_on_ni resets the request and the count of answers, rst_ni everything else at any time. A request on offer stays
-// on offer until it is taken; answers from before rst_ni are dropped; until the last has come nothing is asked for.
+// Reset: that of texture_answers.sv.
 // Specification: TextureCache of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_cache #(
     parameter int LINES = 64,      // a power of two, at least 2
@@ -61,12 +60,9 @@ module texture_cache #(
   localparam int NUMBER = 7;  // bits of a group's number, as many as fit beside a tag into a block RAM
   localparam int GROUP = 3;   // log2 of a group's samples
   localparam int COUNT = NUMBER + GROUP;
-  localparam int BYTES = $clog2(PORT_BITS / 8);  // of a beat, log2
   localparam int WORD_BITS = (PORT_BITS < 32) ? 32 : PORT_BITS;  // of the RAM
   localparam int WORD = $clog2(WORD_BITS / 8);   // bytes of a word, log2
   localparam int WORDS = 6 - WORD;               // of a line of 64 bytes, log2
-  localparam int BEATS = 6 - BYTES;              // likewise
-  localparam int UNANSWERED = $clog2(IN_FLIGHT) + BEATS + 1;
 
   function automatic [1:0] size_of(input [2:0] format);  // bytes of a texel, log2
     size_of = (format == 3'd0) ? 2'd0 : (format == 3'd5) ? 2'd2 : 2'd1;
@@ -89,8 +85,7 @@ module texture_cache #(
   logic [COUNT-1:0]  last;              // the number of the last that has left
   /* verilator lint_on UNUSEDSIGNAL */
   logic              waiting_ready, waiting_valid, reads;
-  logic              recovers_q, discards, is_done;
-  logic              request_valid_q;
+  logic              may_ask, answers_are_idle;
 
   assign sample_ready_o   = (!t_valid_q || t_goes) && !sweeps_q;
   assign t_enters         = sample_valid_i && sample_ready_o;
@@ -121,7 +116,7 @@ module texture_cache #(
   assign is_referenced = is_occupied &&
                          NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group);
   assign waits  = !waiting_ready ||
-                  (!is_hit && (is_referenced || recovers_q || (request_valid_q && !request_ready_i)));
+                  (!is_hit && (is_referenced || !may_ask));
   assign t_goes = t_valid_q && !waits;
   assign hit_o  = t_goes && is_hit;
   assign miss_o = t_goes && !is_hit;
@@ -152,78 +147,43 @@ module texture_cache #(
       same_line_q  <= address_i == t_address_q;
     end
 
-  // ---------------------------------------------------------------------------------------------------------------- requests
-  logic [27:0]           request_address_q;
-  logic [1:0]            request_size_q;
-  logic [1:0]            t_size;
-  logic [UNANSWERED-1:0] unanswered_q;  // beats
-  assign t_size            = size_of(t_format_q);
-  assign request_valid_o   = request_valid_q;
-  assign request_address_o = {request_address_q, 4'd0};
-  assign request_beats_o   = 6'(6'd1 << request_size_q) << (4 - BYTES);
-  assign discards          = recovers_q || !rst_ni;
-  assign is_done           = !request_valid_q && unanswered_q == '0;
-  assign answer_ready_o    = 1'b1;
-
-  always_ff @(posedge clk_i or negedge power_on_ni) begin
-    if (!power_on_ni) begin
-      request_valid_q <= 1'b0;
-      unanswered_q    <= '0;
-      recovers_q      <= 1'b0;
-    end else begin
-      request_valid_q <= miss_o || (request_valid_q && !request_ready_i);
-      unanswered_q    <= unanswered_q + (miss_o ? UNANSWERED'(1) << (3'(t_size) + 3'(4 - BYTES)) : '0) -
-                         UNANSWERED'(answer_valid_i);
-      recovers_q      <= !rst_ni || (recovers_q && !is_done);
-    end
-  end
-  always_ff @(posedge clk_i)
-    if (miss_o) begin
-      request_address_q <= t_address_q;
-      request_size_q    <= t_size;
-    end
-
-  // ----------------------------------------------------------------------------------------------------------------- answers
-  logic                 fills, fills_word, ends_line, has_come;
+  // -------------------------------------------------------------------------------------------------- requests and answers
+  logic                 fills_word, ends_line, has_come;
   logic [LINE-1:0]      fill_line;
-  logic [1:0]           fill_size;
-  logic [BEATS-1:0]     beat_q;  // of the line
-  logic [BEATS-1:0]     last_beat;
   logic [WORD_BITS-1:0] fill_word;
   logic [WORDS-1:0]     fill_place;
-  /* verilator lint_off UNUSEDSIGNAL */  // each line has a sample that waits, and there is room for so many
-  logic fill_valid, fill_ready;
+  /* verilator lint_off UNUSEDSIGNAL */
+  logic [1:0]           fill_size;
   /* verilator lint_on UNUSEDSIGNAL */
-  fifo #(
-      .WIDTH(LINE + 2),
-      .DEPTH(IN_FLIGHT)
-  ) u_fills (
+  texture_answers #(
+      .LINE     (LINE),
+      .PORT_BITS(PORT_BITS),
+      .WORD_BITS(WORD_BITS),
+      .LINES    (IN_FLIGHT)  // each has a sample that waits
+  ) u_answers (
       .clk_i,
       .rst_ni,
-      .valid_i(miss_o),
-      .ready_o(fill_ready),
-      .data_i ({t_line_q, t_size}),
-      .valid_o(fill_valid),
-      .ready_i(ends_line),
-      .data_o ({fill_line, fill_size})
+      .power_on_ni,
+      .room_o      (may_ask),
+      .asks_i      (miss_o),
+      .address_i   (t_address_q),
+      .size_i      (size_of(t_format_q)),
+      .line_i      (t_line_q),
+      .request_valid_o,
+      .request_ready_i,
+      .request_address_o,
+      .request_beats_o,
+      .answer_valid_i,
+      .answer_ready_o,
+      .answer_data_i,
+      .word_valid_o(fills_word),
+      .word_o      (fill_word),
+      .line_o      (fill_line),
+      .size_o      (fill_size),
+      .place_o     (fill_place),
+      .ends_line_o (ends_line),
+      .idle_o      (answers_are_idle)
   );
-  assign fills     = answer_valid_i && !discards;
-  assign last_beat = BEATS'((7'(PORT_BITS <= 128) << (3'(fill_size) + 3'(4 - BYTES))) - 7'd1);
-  assign ends_line = fills && beat_q == last_beat;
-
-  generate
-    if (PORT_BITS < 32) begin : gen_halves
-      logic [PORT_BITS-1:0] half_q;
-      always_ff @(posedge clk_i) if (fills) half_q <= answer_data_i;
-      assign fill_word  = {answer_data_i, half_q};
-      assign fills_word = fills && beat_q[0];
-      assign fill_place = beat_q[BEATS-1:1];
-    end else begin : gen_words
-      assign fill_word  = answer_data_i;
-      assign fills_word = fills;
-      assign fill_place = beat_q;
-    end
-  endgenerate
 
   // Lines that have come, and whose sample has not been read.
   logic [$clog2(IN_FLIGHT):0] come_q;
@@ -231,10 +191,8 @@ module texture_cache #(
   assign has_come = come_q != '0;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      beat_q <= '0;
       come_q <= '0;
     end else begin
-      beat_q <= ends_line ? '0 : beat_q + BEATS'(fills);
       come_q <= come_q + ($clog2(IN_FLIGHT) + 1)'(ends_line) - ($clog2(IN_FLIGHT) + 1)'(reads_miss);
     end
   end
@@ -310,6 +268,6 @@ module texture_cache #(
   assign code_format_o = d_format_q;
   assign code_tail_o   = d_tail_q;
 
-  assign idle_o = !t_valid_q && !waiting_valid && !d_valid_q && !sweeps_q && !discards && is_done;
+  assign idle_o = !t_valid_q && !waiting_valid && !d_valid_q && !sweeps_q && answers_are_idle;
 
 endmodule

@@ -56,8 +56,10 @@ module texture_cache_linear #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic hit_o,   // a sample has been looked up, and all of it was there
-    output logic miss_o,  // a line has been asked for
+    output logic            looked_up_o,  // a sample, or a pass of one
+    output logic            hit_o,        // and all of it was there
+    output logic [TAIL-1:0] looked_up_tail_o,
+    output logic            miss_o,       // a line has been asked for
     output logic idle_o
 );
 
@@ -71,9 +73,6 @@ module texture_cache_linear #(
   localparam int NUMBER = 7;
   localparam int GROUP = 3;
   localparam int COUNT = NUMBER + GROUP;
-  localparam int BYTES = $clog2(PORT_BITS / 8);
-  localparam int BEATS = 6 - BYTES;
-  localparam int UNANSWERED = $clog2(REQUESTS + 1) + BEATS + 1;
   localparam int COME = $clog2(4 * (IN_FLIGHT + 1) + 1);
 
   // ----------------------------------------------------------------------------------- which columns and rows are in which bank
@@ -119,8 +118,7 @@ module texture_cache_linear #(
   logic [COUNT-1:0] last;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [NUMBER-1:0] last_group, group, oldest_group;
-  logic             waiting_ready, waiting_valid, reads, fill_ready;
-  logic             recovers_q, discards, is_done, request_valid_q;
+  logic             waiting_ready, waiting_valid, reads, may_ask, answers_are_idle;
 
   assign sample_ready_o   = (!t_valid_q || t_goes) && !sweeps_q;
   assign t_enters         = sample_valid_i && sample_ready_o;
@@ -174,9 +172,11 @@ module texture_cache_linear #(
   logic [2:0] misses;
   assign missing  = t_used_q & ~known & ~asked_q;
   assign asks     = missing & (~missing + 1'b1);
-  assign blocked  = (asks & referenced) != '0 || recovers_q || !fill_ready || (request_valid_q && !request_ready_i);
+  assign blocked  = (asks & referenced) != '0 || !may_ask;
   assign any_asks = t_valid_q && missing != '0 && !blocked;
   assign t_goes   = t_valid_q && waiting_ready && (missing == '0 || (!blocked && missing == asks));
+  assign looked_up_o      = t_goes;
+  assign looked_up_tail_o = t_tail_q;
   assign hit_o    = t_goes && (t_used_q & ~known) == '0;
   assign miss_o   = any_asks;
   always_comb begin
@@ -211,12 +211,10 @@ module texture_cache_linear #(
       t_parity_q <= {y_i[SIDE_BITS], y_i[0], x_i[SIDE_BITS], x_i[0]};
     end
 
-  // ---------------------------------------------------------------------------------------------------------------- requests
-  logic [27:0]           asked_address, request_address_q;
-  logic [BANK-1:0]       asked_place;
-  logic [LINE-1:0]       asked_line;
-  logic [1:0]            request_size_q;
-  logic [UNANSWERED-1:0] unanswered_q;
+  // -------------------------------------------------------------------------------------------------- requests and answers
+  logic [27:0]      asked_address;
+  logic [BANK-1:0]  asked_place;
+  logic [LINE-1:0]  asked_line;
   always_comb begin
     asked_address = '0;
     asked_place   = '0;
@@ -227,71 +225,42 @@ module texture_cache_linear #(
       end
   end
   assign asked_line = {asked_place[BANK-1:BANK_X], |asks[3:2], asked_place[BANK_X-1:0], asks[3] || asks[1]};
-  assign request_valid_o   = request_valid_q;
-  assign request_address_o = {request_address_q, 4'd0};
-  assign request_beats_o   = 6'(6'd1 << request_size_q) << (4 - BYTES);
-  assign discards          = recovers_q || !rst_ni;
-  assign is_done           = !request_valid_q && unanswered_q == '0;
-  assign answer_ready_o    = 1'b1;
-  always_ff @(posedge clk_i or negedge power_on_ni) begin
-    if (!power_on_ni) begin
-      request_valid_q <= 1'b0;
-      unanswered_q    <= '0;
-      recovers_q      <= 1'b0;
-    end else begin
-      request_valid_q <= any_asks || (request_valid_q && !request_ready_i);
-      unanswered_q    <= unanswered_q + (any_asks ? UNANSWERED'(1) << (3'(t_size_q) + 3'(4 - BYTES)) : '0) -
-                         UNANSWERED'(answer_valid_i);
-      recovers_q      <= !rst_ni || (recovers_q && !is_done);
-    end
-  end
-  always_ff @(posedge clk_i)
-    if (any_asks) begin
-      request_address_q <= asked_address;
-      request_size_q    <= t_size_q;
-    end
 
-  // ----------------------------------------------------------------------------------------------------------------- answers
-  logic             fills, fills_word, ends_line;
+  logic             fills_word, ends_line;
   logic [LINE-1:0]  fill_line;
   logic [1:0]       fill_size;
-  logic [BEATS-1:0] beat_q, last_beat;
   logic [63:0]      fill_word;
   logic [2:0]       fill_place;  // of the word in its line
   logic [COME-1:0]  come_q;      // lines that have come, and whose sample has not been read
-  /* verilator lint_off UNUSEDSIGNAL */
-  logic             fill_valid;
-  /* verilator lint_on UNUSEDSIGNAL */
-  fifo #(
-      .WIDTH(LINE + 2),
-      .DEPTH(REQUESTS)
-  ) u_fills (
+  texture_answers #(
+      .LINE     (LINE),
+      .PORT_BITS(PORT_BITS),
+      .WORD_BITS(64),
+      .LINES    (REQUESTS)
+  ) u_answers (
       .clk_i,
       .rst_ni,
-      .valid_i(any_asks),
-      .ready_o(fill_ready),
-      .data_i ({asked_line, t_size_q}),
-      .valid_o(fill_valid),
-      .ready_i(ends_line),
-      .data_o ({fill_line, fill_size})
+      .power_on_ni,
+      .room_o      (may_ask),
+      .asks_i      (any_asks),
+      .address_i   (asked_address),
+      .size_i      (t_size_q),
+      .line_i      (asked_line),
+      .request_valid_o,
+      .request_ready_i,
+      .request_address_o,
+      .request_beats_o,
+      .answer_valid_i,
+      .answer_ready_o,
+      .answer_data_i,
+      .word_valid_o(fills_word),
+      .word_o      (fill_word),
+      .line_o      (fill_line),
+      .size_o      (fill_size),
+      .place_o     (fill_place),
+      .ends_line_o (ends_line),
+      .idle_o      (answers_are_idle)
   );
-  assign fills     = answer_valid_i && !discards;
-  assign last_beat = BEATS'((7'd1 << (3'(fill_size) + 3'(4 - BYTES))) - 7'd1);
-  assign ends_line = fills && beat_q == last_beat;
-  generate
-    if (PORT_BITS < 64) begin : gen_parts
-      localparam int PARTS = 64 / PORT_BITS;
-      logic [63-PORT_BITS:0] parts_q;
-      always_ff @(posedge clk_i) if (fills) parts_q <= fill_word[63:PORT_BITS];
-      assign fill_word  = {answer_data_i, parts_q};
-      assign fills_word = fills && beat_q[$clog2(PARTS)-1:0] == '1;
-      assign fill_place = beat_q[BEATS-1-:3];
-    end else begin : gen_word
-      assign fill_word  = answer_data_i;
-      assign fills_word = fills;
-      assign fill_place = beat_q;
-    end
-  endgenerate
 
   // ------------------------------------------------------------------------------------------------ samples that wait, texels
   logic [2:0]         waits_for;
@@ -321,11 +290,9 @@ module texture_cache_linear #(
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      beat_q    <= '0;
       come_q    <= '0;
       d_valid_q <= 1'b0;
     end else begin
-      beat_q    <= ends_line ? '0 : beat_q + BEATS'(fills);
       come_q    <= come_q + COME'(ends_line) - (reads ? COME'(waits_for) : '0);
       d_valid_q <= reads || (d_valid_q && !code_ready_i);
     end
@@ -380,6 +347,6 @@ module texture_cache_linear #(
   assign code_format_o = d_format_q;
   assign code_tail_o   = d_tail_q;
 
-  assign idle_o = !t_valid_q && !waiting_valid && !d_valid_q && !sweeps_q && !discards && is_done;
+  assign idle_o = !t_valid_q && !waiting_valid && !d_valid_q && !sweeps_q && answers_are_idle;
 
 endmodule

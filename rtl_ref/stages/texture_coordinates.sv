@@ -17,6 +17,7 @@ module texture_coordinates #(
     parameter int QUEUE = 16,
     parameter int SIDE_BITS = 12,
     parameter int LINEAR = 0,
+    parameter int RECIPROCAL = 0,  // 0 from a table, 1 by division
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
     parameter int EXPONENT = 5
 ) (
@@ -105,13 +106,25 @@ module texture_coordinates #(
   end
   assign exponent_o = exponent_q;
 
-  reciprocal_table #(
-      .BITS(MANTISSA)
-  ) u_reciprocal (
-      .clk_i,
-      .mantissa_i  (mantissa_q),
-      .reciprocal_o(reciprocal)
-  );
+  generate
+    if (RECIPROCAL == 0) begin : gen_table
+      reciprocal_table #(
+          .BITS(MANTISSA)
+      ) u_reciprocal (
+          .clk_i,
+          .mantissa_i  (mantissa_q),
+          .reciprocal_o(reciprocal)
+      );
+    end else begin : gen_division
+      reciprocal_division #(
+          .BITS(MANTISSA)
+      ) u_reciprocal (
+          .clk_i,
+          .mantissa_i  (mantissa_q),
+          .reciprocal_o(reciprocal)
+      );
+    end
+  endgenerate
 
   genvar n;
   generate

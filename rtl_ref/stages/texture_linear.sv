@@ -63,8 +63,9 @@ module texture_linear #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic hit_o,
-    output logic miss_o,
+    output logic sample_o,  // one has been looked up, on all of its levels
+    output logic hit_o,     // and all of its lines were there
+    output logic miss_o,    // a line has been asked for
     output logic idle_o
 );
 
@@ -85,6 +86,25 @@ module texture_linear #(
   logic                   found_has_room;
   /* verilator lint_on UNUSEDSIGNAL */
   assign pops_o = found_valid && found_ready;
+
+  // What is counted: a sample between two levels once, with its second pass.
+  logic               looked_up, finds_all;
+  /* verilator lint_off UNUSEDSIGNAL */  // of it whether it is a first or a second pass
+  logic [CARRIED-1:0] looked_up_carried;
+  /* verilator lint_on UNUSEDSIGNAL */
+  generate
+    if (LEVELS != 0) begin : gen_passes
+      logic misses_first_q, ends_first, ends_second;
+      assign ends_first  = looked_up && looked_up_carried[TAIL+1];
+      assign ends_second = looked_up_carried[TAIL];
+      always_ff @(posedge clk_i) if (ends_first) misses_first_q <= !finds_all;
+      assign sample_o = looked_up && !ends_first;
+      assign hit_o    = finds_all && !ends_first && !(ends_second && misses_first_q);
+    end else begin : gen_samples
+      assign sample_o = looked_up;
+      assign hit_o    = finds_all;
+    end
+  endgenerate
 
   generate
     if (LEVELS != 0) begin : gen_levels
@@ -240,7 +260,9 @@ module texture_linear #(
       .answer_valid_i,
       .answer_ready_o,
       .answer_data_i,
-      .hit_o,
+      .looked_up_o     (looked_up),
+      .hit_o           (finds_all),
+      .looked_up_tail_o(looked_up_carried),
       .miss_o,
       .idle_o
   );

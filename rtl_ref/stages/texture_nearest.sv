@@ -45,6 +45,7 @@ module texture_nearest #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
+    output logic sample_o,  // one has been looked up
     output logic hit_o,
     output logic miss_o,
     output logic idle_o
@@ -133,5 +134,7 @@ module texture_nearest #(
       .format_i(code_format),
       .texel_o
   );
+
+  assign sample_o = hit_o || miss_o;
 
 endmodule

@@ -21,6 +21,7 @@ module texture_unit #(
     parameter int CHANNELS = 4,         // of a colour
     parameter int SOFT = 0,             // of these, so many are combined without a multiplier
     parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
+    parameter int RECIPROCAL = 0,       // 0 from a table, 1 by division
     parameter int PAYLOAD = 1,          // bits that a stamp carries along
     parameter int QUEUE = 16,           // stamps inside; a power of two
     parameter int IN_FLIGHT = 32,       // samples between address and texel; a power of two
@@ -70,8 +71,9 @@ module texture_unit #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic hit_o,  // a sample has been looked up in the cache
-    output logic miss_o,
+    output logic sample_o,  // one has been looked up in the cache
+    output logic hit_o,     // and all of its lines were there
+    output logic miss_o,    // a line has been asked for
     output logic idle_o  // nothing is under way
 );
 
@@ -263,7 +265,8 @@ module texture_unit #(
       .REFERENCE_BITS(REFERENCE_BITS),
       .QUEUE         (QUEUE),
       .SIDE_BITS     (SIDE_BITS),
-      .LINEAR        (FILTER)
+      .LINEAR        (FILTER),
+      .RECIPROCAL    (RECIPROCAL)
   ) u_texture_coordinates (
       .clk_i,
       .frame_valid_i(is_textured),
@@ -369,6 +372,7 @@ module texture_unit #(
           .answer_valid_i,
           .answer_ready_o,
           .answer_data_i,
+          .sample_o,
           .hit_o,
           .miss_o,
           .idle_o          (cache_is_idle)
@@ -419,6 +423,7 @@ module texture_unit #(
           .answer_valid_i,
           .answer_ready_o,
           .answer_data_i,
+          .sample_o,
           .hit_o,
           .miss_o,
           .idle_o          (cache_is_idle)

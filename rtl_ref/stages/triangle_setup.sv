@@ -14,6 +14,7 @@
 // in the phases around it, in whichever part: nobody is overwritten, because a triangle is never a step behind the one in
 // the part before.
 // Occupancy: a cycle a plane. Latency (embedded): 18. As many triangles are under way as there are parts, five.
+// With the planes of a texture unit states go beside the parts (setup_states.sv), a cycle each.
 // Specification: model/stages/triangle_setup.hpp.
 module triangle_setup (
     input logic clk_i,
@@ -93,7 +94,7 @@ module triangle_setup (
   logic [OFFER-1:0]   moves;       // and goes on
   logic [PARTS-1:0]   ready_q, ready_d;
   logic [SUM:DELTA]   flows;  // some plane goes on: from this phase if it is plane 0
-  logic               leaves;
+  logic               takes, leaves, made_ready;
 
   // A part is ready when nobody is in it, or when who is in its last phase goes on. The last part is free a cycle after its
   // setup was taken: so it is known a cycle ahead which parts will be ready.
@@ -101,15 +102,13 @@ module triangle_setup (
     moves = at_q[OFFER-1:0];
     for (int i = 0; i < LAST_PART; i++) moves[i*STEPS+STEPS-1] = at_q[i*STEPS+STEPS-1] && ready_q[i+1];
     for (int i = DELTA; i <= SUM; i++) flows[i] = moves[i+:STEPS] != '0;
-    at_d               = {moves, triangle_valid_i && triangle_ready_o} | (at_q & ~{leaves, moves});
+    at_d               = {moves, takes} | (at_q & ~{leaves, moves});
     ready_d            = '0;
     ready_d[LAST_PART] = at_d[OFFER:LAST_PART*STEPS] == '0;
     for (int i = LAST_PART - 1; i >= 0; i--)
       ready_d[i] = at_d[i*STEPS+:STEPS] == '0 || (at_d[i*STEPS+STEPS-1] && ready_d[i+1]);
   end
-  assign triangle_ready_o = ready_q[0];
-  assign setup_valid_o    = at_q[OFFER];
-  assign leaves           = setup_valid_o && setup_ready_i;
+  assign leaves = at_q[OFFER] && made_ready;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -482,13 +481,14 @@ module triangle_setup (
     end
   end
 
-  assign setup_o.kind         = last_packet.kind;
-  assign setup_o.primitive_id = last_packet.primitive_id;
-  assign setup_o.box          = last_packet.box;
-  assign setup_o.state        = last_packet.state;
-  assign setup_o.dx           = edges_q[(LAST_PART-EDGE_PART)*6*D+:3*D];
-  assign setup_o.dy           = edges_q[(LAST_PART-EDGE_PART)*6*D+3*D+:3*D];
-  assign setup_o.edge_value   = last_packet.edge_value;
+  raster_pkg::setup_packet_t made;
+  assign made.kind         = last_packet.kind;
+  assign made.primitive_id = last_packet.primitive_id;
+  assign made.box          = last_packet.box;
+  assign made.state        = last_packet.state;
+  assign made.dx           = edges_q[(LAST_PART-EDGE_PART)*6*D+:3*D];
+  assign made.dy           = edges_q[(LAST_PART-EDGE_PART)*6*D+3*D+:3*D];
+  assign made.edge_value   = last_packet.edge_value;
 
   generate
     for (p = 0; p < PLANES; p++) begin : gen_plane
@@ -497,16 +497,42 @@ module triangle_setup (
       localparam int CB = CODE_BITS_OF[32*p+:32];
       localparam int CODE = CODE_AT[32*p+:32];
       localparam int RANGE = (LAST_PART - DELTA_PART - 1) * RANGES;
-      assign setup_o.value[AT+:B]         = setup_values_q[p*P+:B];
-      assign setup_o.step_x[AT+:B]        = setup_steps_x_q[p*P+:B];
-      assign setup_o.step_y[AT+:B]        = setup_steps_y_q[p*P+:B];
+      assign made.value[AT+:B]         = setup_values_q[p*P+:B];
+      assign made.step_x[AT+:B]        = setup_steps_x_q[p*P+:B];
+      assign made.step_y[AT+:B]        = setup_steps_y_q[p*P+:B];
       if (p < AFFINE) begin : gen_range
-        assign setup_o.range.low[CODE+:CB]  = ranges_q[RANGE+p*Z+:CB];
-        assign setup_o.range.high[CODE+:CB] = ranges_q[RANGE+(PLANES+p)*Z+:CB];
+        assign made.range.low[CODE+:CB]  = ranges_q[RANGE+p*Z+:CB];
+        assign made.range.high[CODE+:CB] = ranges_q[RANGE+(PLANES+p)*Z+:CB];
       end
     end
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
-      assign setup_o.coordinates = last_packet.coordinates;
+      assign made.coordinates = last_packet.coordinates;
+    end
+  endgenerate
+
+  generate
+    if (raster_pkg::COORDINATES != 0) begin : gen_states
+      setup_states u_states (
+          .clk_i,
+          .rst_ni,
+          .triangle_valid_i,
+          .triangle_ready_o,
+          .triangle_i,
+          .part_ready_i(ready_q[0]),
+          .part_takes_o(takes),
+          .made_valid_i(at_q[OFFER]),
+          .made_ready_o(made_ready),
+          .made_i      (made),
+          .setup_valid_o,
+          .setup_ready_i,
+          .setup_o
+      );
+    end else begin : gen_triangles
+      assign triangle_ready_o = ready_q[0];
+      assign takes            = triangle_valid_i && triangle_ready_o;
+      assign setup_valid_o    = at_q[OFFER];
+      assign made_ready       = setup_ready_i;
+      assign setup_o          = made;
     end
   endgenerate
 

@@ -175,7 +175,8 @@ std::string CycleCommandOptions::given() const {
                                          {"--explain", explain},
                                          {"--primitives", !primitives_path.empty()},
                                          {"--trace", !trace_path.empty()},
-                                         {"--heat", !heat_path.empty()}})
+                                         {"--heat", !heat_path.empty()},
+                                         {"--misses", !misses_path.empty()}})
     if (is_given) text += (text.empty() ? "" : ", ") + std::string(option);
   return text;
 }
@@ -197,6 +198,8 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
   add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json");
   add_file_option(cycle, "--heat", options.heat_path,
                   "sheet: cycles and draws of each pixel, .png; cycles alone: .npy");
+  add_file_option(cycle, "--misses", options.misses_path,
+                  "sheet: lines of texels that each pixel asked memory for, .png; these alone: .npy");
 }
 
 void check_cycle_options(const CycleCommandOptions& options, const Config& config) {
@@ -212,6 +215,9 @@ void check_cycle_options(const CycleCommandOptions& options, const Config& confi
   check_output(options.primitives_path, ".csv");
   check_output(options.trace_path, ".json");
   check_output(options.heat_path, options.heat_path.ends_with(".npy") ? ".npy" : ".png");
+  check_output(options.misses_path, options.misses_path.ends_with(".npy") ? ".npy" : ".png");
+  if (!options.misses_path.empty() && !has_texture_planes(config))
+    throw InputError("--misses: there is no texture unit, and so no cache; add --set texture.unit=nearest");
 }
 
 Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
@@ -240,20 +246,24 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
   cycle.stalls = {common.seed, stall_threshold(options.stalls)};
   if (!options.primitives_path.empty() || !options.trace_path.empty()) cycle.sink = &tee;
   cycle.want_cost = !options.heat_path.empty();
-  render.want_count |= cycle.want_cost;
+  cycle.want_misses = !options.misses_path.empty();
+  render.want_count |= cycle.want_cost || cycle.want_misses;
   result.frame = run_cycles(scene, hardware, render, cycle);
   const CycleRun& run = result.frame.run;
 
   if (!options.primitives_path.empty()) write_text(options.primitives_path, spans.finish());
   if (!options.trace_path.empty()) write_text(options.trace_path, timeline.finish());
   const Framebuffer& frame = result.frame.rendering.frame;
-  if (options.heat_path.ends_with(".npy")) {
-    write_npy(options.heat_path, frame.width, frame.height, result.frame.cost);
-  } else if (!options.heat_path.empty()) {
-    write_png(options.heat_path,
-              heat_sheet(common.scene + ", " + label(config) + ", " + "memory " + memory_text(hardware.memory),
-                         color_picture(frame, config.color_format), result.frame.cost, result.frame.rendering.count));
-  }
+  const auto write_heat = [&](const std::string& path, const std::vector<float>& values, std::string_view unit) {
+    if (path.ends_with(".npy"))
+      write_npy(path, frame.width, frame.height, values);
+    else if (!path.empty())
+      write_png(path,
+                heat_sheet(common.scene + ", " + label(config) + ", " + "memory " + memory_text(hardware.memory),
+                           color_picture(frame, config.color_format), values, unit, result.frame.rendering.count));
+  };
+  write_heat(options.heat_path, result.frame.cost, "cycles");
+  write_heat(options.misses_path, result.frame.misses, "misses");
 
   result.is_explained = options.explain || run.cycles <= kFewCycles;
   if (result.is_explained) {
@@ -308,10 +318,7 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
                                                                 {"color", bytes.bytes[cause][1]}};
   if (has_texture_planes(hardware.config)) {
     result["traffic_bytes"]["fill"]["texture"] = bytes.texels;
-    const auto requests = run.totals.texture_samples, fills = run.totals.texture_misses;
-    result["texture"] = {{"requests", requests}, {"hits", run.totals.texture_hits},
-                         {"fills", fills},       {"samples", requests},
-                         {"misses", fills},      {"bytes", bytes.texels}};
+    result["texture"]["bytes"] = bytes.texels;
   }
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
@@ -358,9 +365,9 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
     out << (cause == 0 ? " " : ", ") << kMoveCauses[cause] << " " << kilobytes(bytes.bytes[cause][0]) << " depth, "
         << kilobytes(bytes.bytes[cause][1]) << " colour";
   if (has_texture_planes(hardware.config)) {
-    const auto samples = static_cast<double>(std::max<std::uint64_t>(1, run.totals.texture_samples));
-    out << ", texels " << kilobytes(bytes.texels) << "\ntextures    " << with_commas(run.totals.texture_samples)
-        << " samples, " << fixed(100 * static_cast<double>(run.totals.texture_hits) / samples, 1) << " % hit, "
+    const auto samples = static_cast<double>(std::max<std::uint64_t>(1, c.texture.samples));
+    out << ", texels " << kilobytes(bytes.texels) << "\ntextures    " << with_commas(c.texture.samples)
+        << " samples, " << fixed(100 * static_cast<double>(c.texture.hits) / samples, 1) << " % hit, "
         << fixed(static_cast<double>(bytes.texels) / samples, 2) << " bytes each from memory";
   }
   out << "\n\nstage                 items         works   no item       waits for\n";

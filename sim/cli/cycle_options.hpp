@@ -16,7 +16,7 @@ struct CycleCommandOptions {
   std::vector<std::string> what_if;  ///< key=value,value...
   double stalls = 0;
   bool explain = false;
-  std::string primitives_path, trace_path, heat_path;
+  std::string primitives_path, trace_path, heat_path, misses_path;
 
   /// The options that only this engine has and that were given, for a message; empty: none was.
   [[nodiscard]] std::string given() const;

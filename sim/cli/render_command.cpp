@@ -96,7 +96,7 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, stored_format(config).bits);
   check_distinct({options.scene, options.json, options.color_path, options.depth_path, options.count_path,
                   options.ids_path, options.draws_path, options.cycle.primitives_path, options.cycle.trace_path,
-                  options.cycle.heat_path, options.csv_path, options.chart_path});
+                  options.cycle.heat_path, options.cycle.misses_path, options.csv_path, options.chart_path});
   check_output(options.color_path, ".png");
   check_output(options.depth_path);
   check_output(options.count_path, ".npy");
@@ -254,6 +254,11 @@ int run(const RenderCommand& options) {
     result["frame"] = {{"order", result["config"]["frame.order"]},
                        {"bins", rendering.counters.bins},
                        {"pairs", rendering.counters.pairs}};
+  if ((options.engine == "cycle" || options.engine == "rtl") && has_texture_planes(config)) {
+    const auto& texture = rendering.counters.texture;
+    result["texture"] = {{"requests", texture.samples}, {"hits", texture.hits},    {"fills", texture.fills},
+                         {"samples", texture.samples},  {"misses", texture.fills}};
+  }
   if (options.engine == "rtl") {
     result["cycles"] = facts.rtl.cycles;
     result["raster_cycles"] = facts.rtl.raster_cycles;

@@ -7,6 +7,8 @@ module reciprocal_units (
     input  logic [18:0]  mantissa_i,
     output logic [119:0] table_o,         // 20 bits for each of k = 8, 13, 14, 16, 18, 20
     output logic [59:0]  table_faults_o,  // k = 14
+    output logic [119:0] division_o,      // likewise
+    output logic [59:0]  division_faults_o,
 
     input  logic         valid_i,
     input  logic         ready_i,
@@ -24,9 +26,17 @@ module reciprocal_units (
   generate
     for (i = 0; i < 6; i++) begin : gen_width
       localparam int BITS = BITS_OF[32*i+:32];
-      logic [BITS-1:0] from_table, from_division;
+      logic [BITS-1:0] from_table, from_row, from_division;
       assign table_o[20*i+:20]     = 20'(from_table);
+      assign division_o[20*i+:20]  = 20'(from_row);
       assign restoring_o[20*i+:20] = 20'(from_division);
+      reciprocal_division #(
+          .BITS(BITS)
+      ) u_division (
+          .clk_i       (clk_i),
+          .mantissa_i  (mantissa_i[0+:BITS-1]),
+          .reciprocal_o(from_row)
+      );
       reciprocal_table #(
           .BITS(BITS)
       ) u_table (
@@ -58,6 +68,15 @@ module reciprocal_units (
       .reciprocal_o(table_faults_o[20*n+:14]) \
   ); \
   assign table_faults_o[20*n+14+:6] = '0;
+`define DIVISION_FAULT(n) \
+  reciprocal_division_fault_``n #( \
+      .BITS(14) \
+  ) u_division_fault_``n ( \
+      .clk_i       (clk_i), \
+      .mantissa_i  (mantissa_i[12:0]), \
+      .reciprocal_o(division_faults_o[20*n+:14]) \
+  ); \
+  assign division_faults_o[20*n+14+:6] = '0;
 `define RESTORING_FAULT(n) \
   reciprocal_restoring_fault_``n #( \
       .BITS(14) \
@@ -75,6 +94,9 @@ module reciprocal_units (
   `TABLE_FAULT(0)
   `TABLE_FAULT(1)
   `TABLE_FAULT(2)
+  `DIVISION_FAULT(0)
+  `DIVISION_FAULT(1)
+  `DIVISION_FAULT(2)
   `RESTORING_FAULT(0)
   `RESTORING_FAULT(1)
   `RESTORING_FAULT(2)

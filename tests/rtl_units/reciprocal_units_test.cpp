@@ -71,15 +71,18 @@ class ReciprocalUnits : public testing::Test {
   VReciprocalUnits dut;
 };
 
-TEST_F(ReciprocalUnits, TheTableGivesAFloorEachClock) {
+TEST_F(ReciprocalUnits, TheTableAndTheRowOfSubtractionsGiveAFloorEachClock) {
   constexpr std::uint32_t kLatency = 4;
-  Tally tally;
+  Tally table, row;
   for (std::uint32_t n = 0; n < kMantissas + kLatency - 1; ++n) {
     dut.mantissa_i = n & (kMantissas - 1);
     clock();
-    if (n + 1 >= kLatency) tally.compare(n + 1 - kLatency, dut.table_o, dut.table_faults_o);
+    if (n + 1 < kLatency) continue;
+    table.compare(n + 1 - kLatency, dut.table_o, dut.table_faults_o);
+    row.compare(n + 1 - kLatency, dut.division_o, dut.division_faults_o);
   }
-  tally.judge();
+  table.judge();
+  row.judge();
 }
 
 TEST_F(ReciprocalUnits, TheDivisionGivesAFloorAfterKClocksAndKeepsIt) {

@@ -9,6 +9,7 @@ module texture_unit_bench #(
     parameter int CHANNELS = 4,
     parameter int SOFT = 0,
     parameter int FILTER = 0,
+    parameter int RECIPROCAL = 0,
     parameter int QUEUE = 16,
     parameter int IN_FLIGHT = 32,
     parameter int LINES = 64,
@@ -54,6 +55,7 @@ module texture_unit_bench #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
+    output logic sample_o,
     output logic hit_o,
     output logic miss_o,
     output logic idle_o
@@ -69,6 +71,7 @@ module texture_unit_bench #(
       .CHANNELS (CHANNELS),
       .SOFT     (SOFT),
       .FILTER   (FILTER),
+      .RECIPROCAL(RECIPROCAL),
       .PAYLOAD  (32),
       .QUEUE    (QUEUE),
       .IN_FLIGHT(IN_FLIGHT),
@@ -108,6 +111,7 @@ module texture_unit_bench #(
       .answer_valid_i,
       .answer_ready_o,
       .answer_data_i,
+      .sample_o,
       .hit_o,
       .miss_o,
       .idle_o

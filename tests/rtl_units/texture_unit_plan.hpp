@@ -61,7 +61,7 @@ struct Plan {
   std::vector<PlannedStamp> stamps;
   std::vector<PlannedRequest> requests;
   Cycle last = 0;  ///< something crosses in it
-  std::uint64_t hits = 0, misses = 0;
+  TextureUse use;
 };
 
 using Random = std::mt19937_64;
@@ -274,12 +274,10 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
       stamp.offered = timing.pass(x);
     } else {
       const auto lookups = unit.take(stamp.mask, stamp.sample, stamp.frame, stamp.combined, read);
-      bool is_hit = true;
-      for (const TextureLookup& lookup : lookups) {
-        is_hit = is_hit && !lookup.is_miss;
-        plan.misses += lookup.is_miss;
-        if (lookup.ends) plan.hits += is_hit, is_hit = true;
-      }
+      const TextureUse use = use_of(lookups);
+      plan.use.samples += use.samples;
+      plan.use.hits += use.hits;
+      plan.use.fills += use.fills;
       stamp.offered = timing.take(x, lookups, ask);
     }
     stamp.left = world.next_free(1, stamp.offered);

@@ -102,8 +102,9 @@ class Bench {
       while (cycle_ < end)
         if (auto wrong = step(plan); !wrong.empty()) return wrong;
       if (!is_cut && !dut_.idle_o) return at("is not idle");
-      if (!is_cut && (hits_ != plan.hits || misses_ != plan.misses)) return at("counts hits or misses wrong");
-      samples_ += hits_ + misses_;
+      if (!is_cut && (use_.samples != plan.use.samples || use_.hits != plan.use.hits || use_.fills != plan.use.fills))
+        return at("counts samples, hits or lines wrong");
+      samples_ += use_.samples;
       // What was not asked for before the reset never is.
       std::erase_if(plan.requests, [this](const PlannedRequest& r) { return r.offered > cycle_; });
       plan.stamps.clear();
@@ -128,7 +129,7 @@ class Bench {
   void begin(const Plan&) {
     in_ = out_ = request_ = answer_ = 0;
     beat_ = 0;
-    hits_ = misses_ = 0;
+    use_ = {};
   }
 
   std::string reset(const Plan& plan, Cycle cycles) {
@@ -143,8 +144,9 @@ class Bench {
     drive(plan);
     dut_.eval();
     if (auto wrong = compare(plan); !wrong.empty()) return wrong;
-    hits_ += dut_.hit_o;
-    misses_ += dut_.miss_o;
+    use_.samples += dut_.sample_o;
+    use_.hits += dut_.hit_o;
+    use_.fills += dut_.miss_o;
     clock();
     ++cycle_;
     return {};
@@ -233,7 +235,8 @@ class Bench {
   World world_;
   Cycle cycle_ = 0;
   std::size_t in_ = 0, out_ = 0, request_ = 0, answer_ = 0, beat_ = 0;
-  std::uint64_t hits_ = 0, misses_ = 0, samples_ = 0;
+  std::uint64_t samples_ = 0;
+  TextureUse use_;  ///< since the program began
 };
 
 template <class Dut>

@@ -44,9 +44,7 @@ struct TimingTotals {
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kStages> works{};
   std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> beats{};  ///< on the memory port, by MoveCause and plane
-  /// Of a texture unit: samples looked up, lines asked for, beats of them.
-  std::uint64_t texture_samples = 0, texture_hits = 0;  ///< samples, and those that found all of their lines
-  std::uint64_t texture_misses = 0, texel_beats = 0;    ///< lines
+  std::uint64_t texel_beats = 0;                        ///< of the texture unit's port
   bool has_primitive = false;                           ///< first_primitive has been seen
 
   /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
@@ -255,13 +253,6 @@ class BackTiming {
     const std::uint64_t hazards = blocks_->hazards();
     blocks_->take(moved, tags, item, BlockPort{*this});
     totals_.hazard_cycles += blocks_->hazards() - hazards;
-    bool is_hit = true;
-    for (const TextureLookup& lookup : item.texture.lookups) {
-      is_hit = is_hit && !lookup.is_miss;
-      if (!lookup.ends || lookup.continues) continue;
-      ++totals_.texture_samples;
-      totals_.texture_hits += std::exchange(is_hit, true) ? 1 : 0;
-    }
     work(Stage::texture_unit, item.texture.lookups.size());
     if (textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
     if (!item.mask.any()) return moved;
@@ -288,7 +279,6 @@ class BackTiming {
     const LineTimes times =
         texture_port_->ask(cycle, address, beats, [this](int, Cycle at) { note(Arrow::texel, at); });
     note(Arrow::texture, times.asked);
-    ++totals_.texture_misses;
     totals_.texel_beats += static_cast<std::uint64_t>(beats);
     return times;
   }

@@ -34,6 +34,7 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   const PrimitiveKind kind = packet.kind;
   work.is_triangle = kind == PrimitiveKind::triangle;
   work.is_line = kind == PrimitiveKind::line;
+  work.is_state = kind == PrimitiveKind::state;
   work.is_counted = is_counted(kind);
   work.is_dropped = is_dropped;
   if (!work.is_triangle) return work;
@@ -74,6 +75,7 @@ class CycleModelOf final : public CycleModel {
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
     if (options_.want_cost) cost_.assign(pixels, 0);
+    if (options_.want_misses) misses_.assign(pixels, 0);
     timing_.begin(cycle);
   }
 
@@ -103,6 +105,7 @@ class CycleModelOf final : public CycleModel {
   [[nodiscard]] const Stream& stream(Arrow boundary) const override { return timing_.stream(boundary); }
   [[nodiscard]] Rendering& rendering() override { return rendering_; }
   [[nodiscard]] std::vector<float>& cost() override { return cost_; }
+  [[nodiscard]] std::vector<float>& misses() override { return misses_; }
 
  private:
   using Kernel = TileKernel<T, Lane>;
@@ -524,20 +527,33 @@ class CycleModelOf final : public CycleModel {
       texels_.read(address, line);
       return line;
     });
+    count(use_of(item.texture.lookups), counters_);
+    if (options_.want_misses) note_misses(live, at, item.texture.lookups);
+  }
+
+  /// Which pixels the lines are of that were asked for; `lookups` are those of the live samples, one behind the other.
+  void note_misses(SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
+                   std::span<const TextureLookup> lookups) {
+    auto lookup = lookups.begin();
+    live.for_each([&](std::size_t s) {
+      float& misses = misses_[plain_index(at[s].x, at[s].y)];
+      do misses += lookup->is_miss ? 1 : 0;
+      while (!std::exchange(lookup, lookup + 1)->ends || std::prev(lookup)->continues);
+    });
   }
 
   /// What a token sets, here and in the tags; `texture`: what that is to the texture unit.
   void set_state(const TrianglePacket& token, TextureWork& texture) {
     const StateRegister which = state_register(token.state);
     if (is_of_texture(which)) {
-      set_register(*texture_, which, token.vertex.code[0], widths_);
+      set_register(*texture_, which, token.vertex.code[2], widths_);  // what a lane of states leaves
       texture.sets = which;
       texture.invalidates = which == StateRegister::texture && texture_->state().invalidates;
       return;
     }
-    stencil_.set(which, state_word(token.vertex.code[0], widths_));
+    stencil_.set(which, state_word(token.vertex.code[2], widths_));
     ColorState colors = colors_;
-    colors.set(which, state_word(token.vertex.code[0], widths_));
+    colors.set(which, state_word(token.vertex.code[2], widths_));
     set_colors(colors);
   }
 
@@ -594,7 +610,7 @@ class CycleModelOf final : public CycleModel {
   TextureFrame frame_;  ///< of the triangle at work
   TextureMemory texels_;
   Rendering rendering_;
-  std::vector<float> cost_;
+  std::vector<float> cost_, misses_;
 };
 
 // Lanes of 64 bits do for every configuration; only the usual tile size of pipelined hardware has the faster 32 too.
@@ -639,7 +655,7 @@ CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTimi
     drawn.add(*primitive, drawn.dropped(model->counters()) == dropped_before);
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }
-  CycleRendering result{std::move(model->rendering()), {}, std::move(model->cost())};
+  CycleRendering result{std::move(model->rendering()), {}, std::move(model->cost()), std::move(model->misses())};
   result.rendering.counters = host.counters();
   count_hardware(model->counters(), drawn.count(), result.rendering.counters);
   result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

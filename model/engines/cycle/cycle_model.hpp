@@ -23,6 +23,7 @@ struct CycleOptions {
   MemorySettings textures;                    ///< of the memory behind a texture unit, where there is one
   bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
+  bool want_misses = false;                   ///< fill CycleRendering::misses
 };
 
 /// The whole chip after reset, with a memory behind it.
@@ -42,6 +43,8 @@ class CycleModel {
   [[nodiscard]] virtual Rendering& rendering() = 0;
   /// Cycles of each pixel since begin(), width * height of them; empty unless wanted.
   [[nodiscard]] virtual std::vector<float>& cost() = 0;
+  /// Likewise of the lines that a texture unit asked memory for.
+  [[nodiscard]] virtual std::vector<float>& misses() = 0;
 };
 
 /// `memory` must outlive the model. Throws InputError for a configuration or parameters that no hardware has.
@@ -63,6 +66,8 @@ struct CycleRendering {
   /// Cycles of each pixel: what passed between the last fragment of one tile visit and that of the next is shared by the
   /// pixels that the visit covered (or, if there are none, by those of its box). Width * height, or empty.
   std::vector<float> cost;
+  /// Lines of texels that the samples of each pixel asked memory for: what their sum is, Counters::texture.fills. Likewise.
+  std::vector<float> misses;
 };
 
 /// Renders `scene` from reset to the end of its flush. Throws InputError as check_hardware_scene(). Of `render` it takes

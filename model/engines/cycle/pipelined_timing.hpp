@@ -41,27 +41,30 @@ class PipelinedTiming : public BackTiming {
     if (primitive.is_counted) count_primitive(taken);
     if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
-    const Cycle sorted = std::max(sort_.ready(taken), decide_.room());
+    const bool is_beside = primitive.is_state && setup_.has_state_lane;
+    const Cycle sorted =
+        std::max(is_beside ? taken + PipelinedCycles::cull_state : sort_.ready(taken), decide_.room());
     sort_.leave(sorted);
-    const Cycle decided = decide_.ready(sorted);
-    work(Stage::cull, PipelinedCycles::cull_sort);
+    const Cycle decided = is_beside ? sorted + PipelinedCycles::cull_state : decide_.ready(sorted);
+    work(Stage::cull, is_beside ? PipelinedCycles::cull_state : PipelinedCycles::cull_sort);
     if (primitive.is_dropped) {
       decide_.leave(decided);
       return;
     }
-    const Passage triangle = triangle_queue_.pass(stream(Arrow::triangle), decided, parts_.front().room());
+    const Passage triangle =
+        triangle_queue_.pass(stream(Arrow::triangle), decided, is_beside ? states_.room() : parts_.front().room());
     decide_.leave(triangle.left);
     note(Arrow::triangle, triangle.taken);
-    work(Stage::triangle_setup, static_cast<std::uint64_t>(setup_.part));
-    Cycle entered = triangle.taken;
-    for (std::size_t part = 0; part < parts_.size(); ++part) {
-      const Station& next = part + 1 < parts_.size() ? parts_[part + 1] : offer_setup_;
-      entered = std::max(parts_[part].ready(entered), next.room());
-      parts_[part].leave(entered);
+    work(Stage::triangle_setup, static_cast<std::uint64_t>(is_beside ? 1 : setup_.part));
+    Station& lane = is_beside ? states_ : offer_setup_;
+    Cycle ready = lane.ready(is_beside ? triangle.taken : through_parts(triangle.taken));
+    if (setup_.has_state_lane) {
+      const Cycle joined = std::max(ready, joined_.room());
+      lane.leave(joined);
+      ready = joined_.ready(joined);
     }
-    const Cycle ready = offer_setup_.ready(entered);
     const Passage setup = setup_queue_.pass(stream(Arrow::setup), ready, std::max(coarse_.room(), slots_.room()));
-    offer_setup_.leave(setup.left);
+    (setup_.has_state_lane ? joined_ : lane).leave(setup.left);
     note(Arrow::setup, setup.taken);
     if (slots_.room() > std::max(ready, coarse_.room()))
       totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
@@ -155,6 +158,16 @@ class PipelinedTiming : public BackTiming {
   }
 
  private:
+  /// From a triangle's coming to triangle_setup to its last part.
+  Cycle through_parts(Cycle entered) {
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      const Station& next = part + 1 < parts_.size() ? parts_[part + 1] : offer_setup_;
+      entered = std::max(parts_[part].ready(entered), next.room());
+      parts_[part].leave(entered);
+    }
+    return entered;
+  }
+
   static constexpr int kSteps = PipelinedCycles::interpolate_steps;
 
   /// A stamp on offer by fine_raster from `offered` on, through interpolate and its FIFO. Returns when it moves.
@@ -173,6 +186,7 @@ class PipelinedTiming : public BackTiming {
   SetupCycles setup_;
   std::vector<Station> parts_;  ///< of triangle_setup, but for the last
   Station offer_setup_;         ///< the last
+  Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< beside them, and behind both
   Station coarse_{1, 0, 0}, slots_, visits_;
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;

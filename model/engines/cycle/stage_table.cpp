@@ -13,8 +13,11 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
   if (config.setup_kind == SetupKind::pipelined) {
     const SetupCycles setup(widths, parameters.divide_bits);
     const int sort = PipelinedCycles::cull_sort, decide = PipelinedCycles::cull_decide;
-    return {{Stage::cull, number(sort + decide), number(std::max(sort, decide)), "2"},
-            {Stage::triangle_setup, number(setup.latency), number(setup.part), number(setup.parts + 1)},
+    const std::string state = setup.has_state_lane ? ", of a state 1" : "";
+    return {{Stage::cull, number(sort + decide), number(std::max(sort, decide)) + state, "2"},
+            {Stage::triangle_setup, number(setup.latency), number(setup.part) + state,
+             number(setup.parts + 1) +
+                 (setup.has_state_lane ? ", " + number(SetupCycles::kStates) + " states, 1 of either" : "")},
             {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
              "1 a tile, 3 for a visit where HiZ bounds are read",
              number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},

@@ -17,6 +17,7 @@ inline constexpr int kVisitIsSeen = 3;
 /// Cycles of the pipelined stages that are the same in every configuration.
 struct PipelinedCycles {
   static constexpr int cull_sort = 4, cull_decide = 4;  ///< the two parts of cull: from a primitive in to its hand-over
+  static constexpr int cull_state = 1;                  ///< likewise of a state that has a lane
   static constexpr Cycle walk_begins = 2;               ///< coarse_raster: from a setup to its first tile
   static constexpr Cycle verdict = 1, read_again = 1;  ///< where bounds are read: before a visit's offer, and behind it
   static constexpr int interpolate_steps = 6;          ///< each holds one stamp, the last one is the FIFO
@@ -25,6 +26,7 @@ struct PipelinedCycles {
 /// A primitive on its way through cull and triangle_setup.
 struct PrimitiveWork {
   bool is_triangle = false, is_line = false, is_counted = false;
+  bool is_state = false;     ///< a token that sets a register
   bool is_dropped = false;   ///< by cull
   bool is_negative = false;  ///< the signed area, with the vertices as cull_serial has sorted them
   int log2_area = 0;         ///< ceil(log2 of twice the area); 0 for other kinds
@@ -43,13 +45,15 @@ struct SetupCycles {
   int parts;    ///< but for the last, from which the setup is on offer
   int last;     ///< from entering the last one to the offer
   int latency;  ///< from the triangle in to the offer
-  SetupCycles(const Widths& widths, int divide_bits) : part(widths.planes) {
+  bool has_state_lane;  ///< states go beside the phases; what they and the triangles make waits in one more register
+  static constexpr int kStates = 8;  ///< that wait there
+  SetupCycles(const Widths& widths, int divide_bits) : part(widths.planes), has_state_lane(halfplane::has_state_lane(widths)) {
     const int divide = (widths.reciprocal.bits + divide_bits) / divide_bits;  // a bit more, for the rounding
     // The highest bit, the quotient; rounding, product, shift, move; then a plane's value in each.
     const int offer = 1 + divide + 4 + widths.planes;
     parts = offer / part;
     last = offer % part + 1;
-    latency = offer + 1;
+    latency = offer + (has_state_lane ? 2 : 1);
   }
 };
 

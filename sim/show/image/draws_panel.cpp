@@ -38,10 +38,11 @@ Picture draws_sheet(std::string_view title, const Picture& color, std::span<cons
   return compose_sheet(title, panels, 2);
 }
 
-Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> cycles,
+Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> values, std::string_view unit,
                    std::span<const std::uint32_t> counts) {
   std::array<Panel, 3> panels{Panel{},
-                              log_panel("cycles of each pixel", color.width, color.height, cycles, "cycles", "none"),
+                              log_panel(std::string(unit) + " of each pixel", color.width, color.height, values, unit,
+                                        "none"),
                               draws_panel(color.width, color.height, counts)};
   panels[0].caption = "model";
   panels[0].picture = color;

@@ -109,9 +109,9 @@ inline constexpr std::array<std::string_view, 5> kTexturePanelNames{"coordinate"
 /// Colour picture and draws panel side by side.
 [[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);
 
-/// Colour picture, cycles per pixel and draws panel side by side.
-[[nodiscard]] Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> cycles,
-                                 std::span<const std::uint32_t> counts);
+/// Colour picture, `values` of each pixel (cycles, say) and draws panel side by side.
+[[nodiscard]] Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> values,
+                                 std::string_view unit, std::span<const std::uint32_t> counts);
 
 [[nodiscard]] Picture comparison_sheet(const ComparisonSheet& sheet);
 
