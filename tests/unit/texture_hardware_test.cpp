@@ -1,6 +1,8 @@
 // Textured triangles in hardware: the hardware and the cycle engine against the scalar one, and what a texture unit refuses.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <numeric>
 #include <random>
 #include <string>
 
@@ -195,6 +197,64 @@ TEST(TexturedHardware, SendsLinesOnlyWhereTheyMakeADifference) {
   EXPECT_EQ(lines_of("state texture_min linear\nstate texture_mag linear\n"), 0);
   EXPECT_EQ(lines_of("state texture_min nearest_mipmap_nearest\n"), 2);
   EXPECT_EQ(lines_of("state texture_min linear_mipmap_linear\nstate texture_lod 0 2 2\n"), 0);
+}
+
+/// 2,000 triangles in boxes of 2x2 pixels at random places of 640x480, w random, 1.4 texels a pixel of a texture of so many a
+/// side.
+Scene small_triangles(const std::string& states, int side) {
+  std::mt19937_64 random(9);
+  const auto number = [&random](double low, double high) {
+    return std::to_string(low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53);
+  };
+  std::string text =
+      "halfplane 1\ntarget 640 480\nclear color 0 0 0 255 depth 1\ntexture t pattern grid " +
+      std::to_string(side) + " " + std::to_string(side) + " format rgb565 mips box\nspace window\nstate texture t\nstate depth_test always\n" +
+      states;
+  for (int n = 0; n < 2000; ++n) {
+    const int x = static_cast<int>(random() % 637), y = static_cast<int>(random() % 477);
+    for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {2.5, 0.0}, {0.0, 2.5}})
+      text += "v " + std::to_string(x + dx) + " " + std::to_string(y + dy) + " " + number(0, 1) + " " + number(1, 4) +
+              " 255 255 255 255 " + std::to_string((x + dx) * 1.4 / side) + " " + std::to_string((y + dy) * 1.4 / side) + "\n";
+    text += "t " + std::to_string(3 * n) + " " + std::to_string(3 * n + 1) + " " + std::to_string(3 * n + 2) + "\n";
+  }
+  return read_capture(text, "small triangles");
+}
+
+// The whole frame: clear and flush, the framebuffer's memory and the texture's, which the cache holds: what the pipeline takes.
+// Each triangle has lines of its own, two tokens.
+TEST(TexturedHardware, ATriangleOf2x2PixelsTakesAtMost16CyclesBetweenLevelsAndWithoutThem) {
+  const Config config = with("embedded", {{"texture.unit", "trilinear"}, {"frame.clears", "flags"}});
+  MemorySettings ddr3;
+  ddr3.kind = memory_kind("ddr3");
+  for (const std::string states :
+       {"state texture_min linear\nstate texture_mag linear\n", "state texture_min linear_mipmap_linear\n"}) {
+    const auto memory = make_memory(ddr3, config);
+    const CycleRendering run = render_cycle(small_triangles(states, 32), config, *memory, {}, {.textures = ddr3});
+    const double each = static_cast<double>(run.run.cycles) / 2000;
+    std::printf("%.2f cycles each, %llu lines of texels\n", each,
+                static_cast<unsigned long long>(run.rendering.counters.texture.fills));
+    EXPECT_LE(each, 16) << states;
+    EXPECT_EQ(run.rendering.counters.primitives_in, 2000U);
+    EXPECT_GE(run.rendering.counters.texture.samples, 5900U);  // three a triangle
+  }
+}
+
+TEST(TexturedHardware, CountsSamplesHitsAndLinesAsTheCycleEngineDoes) {
+  for (const Config& config : configurations())
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const Scene scene = random_scene(config, seed, 25);
+      const auto memory = make_memory({}, config);
+      CycleOptions options;
+      options.want_misses = true;
+      const CycleRendering cycle = render_cycle(scene, config, *memory, {}, options);
+      const auto &a = cycle.rendering.counters.texture, b = render_hardware(scene, config).counters.texture;
+      EXPECT_EQ(a.samples, b.samples) << label(config);
+      EXPECT_EQ(a.hits, b.hits) << label(config);
+      EXPECT_EQ(a.fills, b.fills) << label(config);
+      EXPECT_LE(a.hits, a.samples);
+      // The map of misses has each line at the pixel that asked for it.
+      EXPECT_EQ(std::accumulate(cycle.misses.begin(), cycle.misses.end(), 0.0), static_cast<double>(a.fills));
+    }
 }
 
 TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
