@@ -72,9 +72,10 @@ const std::array kSettings{
     Setting{"texture.queue", "samples",
             "between their coordinates and their texels in the texture unit; a power of two", 8, 128,
             &Config::texture_queue},
-    Setting{"reciprocal.kind", "table|restoring",
-            "what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time",
-            0, 0, &Config::reciprocal_kind},
+    Setting{
+        "reciprocal.kind", "table|restoring",
+        "what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time",
+        0, 0, &Config::reciprocal_kind},
     Setting{"alpha.unit", "units",
             "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither",
             0, 1, &Config::alpha_units},

@@ -77,13 +77,13 @@ struct Config {
   int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
   ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit
-  int alpha_units = 0;       ///< 1: alpha is interpolated whatever the format stores, and tested
-  int blend_lanes = 0;       ///< samples that are blended in a clock: 0 (no unit), 1 or 4
-  int dither_units = 0;      ///< 1: the RTL dithers colours of rgb565
-  int stencil_bits = 0;      ///< of the stencil that is stored above each depth: 0 (none) or 8
-  int line_units = 1;        ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
-  int counter_units = 1;     ///< 1: the RTL counts its work; 0: its counters are left out
-  int counter_bits = 32;     ///< of each of them
+  int alpha_units = 0;    ///< 1: alpha is interpolated whatever the format stores, and tested
+  int blend_lanes = 0;    ///< samples that are blended in a clock: 0 (no unit), 1 or 4
+  int dither_units = 0;   ///< 1: the RTL dithers colours of rgb565
+  int stencil_bits = 0;   ///< of the stencil that is stored above each depth: 0 (none) or 8
+  int line_units = 1;     ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
+  int counter_units = 1;  ///< 1: the RTL counts its work; 0: its counters are left out
+  int counter_bits = 32;  ///< of each of them
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
   DepthFormat depth_format;                               ///< the RTL has `plane` alone
 
@@ -101,8 +101,8 @@ struct Setting {
   int min;                   ///< smallest legal value (numbers only)
   int max;                   ///< largest legal value (numbers only)
   std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, FrameOrder Config::*,
-               FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, ReciprocalKind Config::*, DepthMapping Config::*,
-               DepthFormat Config::*>
+               FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, ReciprocalKind Config::*,
+               DepthMapping Config::*, DepthFormat Config::*>
       member;
 
   /// Whether the RTL depends on it.

@@ -603,7 +603,7 @@ struct CounterPacket {
   FIELD(std::uint64_t, tile_fills,
         &Widths::counter)  ///< stamps that were read, as the next two; with blending colours too
   FIELD(std::uint64_t, tile_evictions, &Widths::counter)
-  FIELD(std::uint64_t, tile_clears, &Widths::counter)                            ///< of depth alone
+  FIELD(std::uint64_t, tile_clears, &Widths::counter)  ///< of depth alone
   /// With a texture unit alone: samples that were looked up, those whose lines were all in its cache, lines asked for.
   FIELD(std::uint64_t, texture_samples, &Widths::counter, &Widths::texture_counters)
   FIELD(std::uint64_t, texture_hits, &Widths::counter, &Widths::texture_counters)

@@ -366,8 +366,8 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
         << kilobytes(bytes.bytes[cause][1]) << " colour";
   if (has_texture_planes(hardware.config)) {
     const auto samples = static_cast<double>(std::max<std::uint64_t>(1, c.texture.samples));
-    out << ", texels " << kilobytes(bytes.texels) << "\ntextures    " << with_commas(c.texture.samples)
-        << " samples, " << fixed(100 * static_cast<double>(c.texture.hits) / samples, 1) << " % hit, "
+    out << ", texels " << kilobytes(bytes.texels) << "\ntextures    " << with_commas(c.texture.samples) << " samples, "
+        << fixed(100 * static_cast<double>(c.texture.hits) / samples, 1) << " % hit, "
         << fixed(static_cast<double>(bytes.texels) / samples, 2) << " bytes each from memory";
   }
   out << "\n\nstage                 items         works   no item       waits for\n";

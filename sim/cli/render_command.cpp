@@ -256,8 +256,11 @@ int run(const RenderCommand& options) {
                        {"pairs", rendering.counters.pairs}};
   if ((options.engine == "cycle" || options.engine == "rtl") && has_texture_planes(config)) {
     const auto& texture = rendering.counters.texture;
-    result["texture"] = {{"requests", texture.samples}, {"hits", texture.hits},    {"fills", texture.fills},
-                         {"samples", texture.samples},  {"misses", texture.fills}};
+    result["texture"] = {{"requests", texture.samples},
+                         {"hits", texture.hits},
+                         {"fills", texture.fills},
+                         {"samples", texture.samples},
+                         {"misses", texture.fills}};
   }
   if (options.engine == "rtl") {
     result["cycles"] = facts.rtl.cycles;

@@ -208,6 +208,27 @@ TEST_F(CycleCommand, TheHeatMapSharesOutTheCyclesOfTheVisits) {
   EXPECT_TRUE(exists("heat.png"));
 }
 
+TEST_F(CycleCommand, TheMapOfMissesHasEachLineOfTexelsOnce) {
+  const Arguments command{"render",   HALFPLANE_SOURCE_DIR "/docs/texture/hardware.hpt",
+                          "--engine", "cycle",
+                          "--set",    "texture.unit=bilinear",
+                          "--misses", "misses.npy"};
+  const Json json = result(command);
+  const auto pixels = json["width"].get<std::size_t>() * json["height"].get<std::size_t>();
+  const Bytes bytes = read("misses.npy");
+  ASSERT_GT(bytes.size(), 4 * pixels);
+  double sum = 0;
+  for (std::size_t at = bytes.size() - 4 * pixels; at < bytes.size(); at += 4) {
+    float value;
+    std::memcpy(&value, bytes.data() + at, 4);
+    sum += value;
+  }
+  EXPECT_GT(sum, 0);
+  EXPECT_EQ(sum, json["texture"]["fills"].get<double>());
+  expect_refused({"render", "triangle", "--engine", "cycle", "--misses", "m.png"},
+                 "--misses: there is no texture unit");
+}
+
 TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   expect_refused({"render", "triangle", "--memory", "sdram"}, "--memory: the engine functional does not have it");
   expect_refused({"render", "triangle", "--what-if", "queue.tile=2"},

@@ -206,15 +206,15 @@ Scene small_triangles(const std::string& states, int side) {
   const auto number = [&random](double low, double high) {
     return std::to_string(low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53);
   };
-  std::string text =
-      "halfplane 1\ntarget 640 480\nclear color 0 0 0 255 depth 1\ntexture t pattern grid " +
-      std::to_string(side) + " " + std::to_string(side) + " format rgb565 mips box\nspace window\nstate texture t\nstate depth_test always\n" +
-      states;
+  std::string text = "halfplane 1\ntarget 640 480\nclear color 0 0 0 255 depth 1\ntexture t pattern grid " +
+                     std::to_string(side) + " " + std::to_string(side) +
+                     " format rgb565 mips box\nspace window\nstate texture t\nstate depth_test always\n" + states;
   for (int n = 0; n < 2000; ++n) {
     const int x = static_cast<int>(random() % 637), y = static_cast<int>(random() % 477);
     for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {2.5, 0.0}, {0.0, 2.5}})
       text += "v " + std::to_string(x + dx) + " " + std::to_string(y + dy) + " " + number(0, 1) + " " + number(1, 4) +
-              " 255 255 255 255 " + std::to_string((x + dx) * 1.4 / side) + " " + std::to_string((y + dy) * 1.4 / side) + "\n";
+              " 255 255 255 255 " + std::to_string((x + dx) * 1.4 / side) + " " +
+              std::to_string((y + dy) * 1.4 / side) + "\n";
     text += "t " + std::to_string(3 * n) + " " + std::to_string(3 * n + 1) + " " + std::to_string(3 * n + 2) + "\n";
   }
   return read_capture(text, "small triangles");

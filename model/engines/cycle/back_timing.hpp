@@ -44,8 +44,8 @@ struct TimingTotals {
   /// In which each stage was at work: its narrowest part, waits for others left out.
   std::array<std::uint64_t, kStages> works{};
   std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> beats{};  ///< on the memory port, by MoveCause and plane
-  std::uint64_t texel_beats = 0;                        ///< of the texture unit's port
-  bool has_primitive = false;                           ///< first_primitive has been seen
+  std::uint64_t texel_beats = 0;                                         ///< of the texture unit's port
+  bool has_primitive = false;                                            ///< first_primitive has been seen
 
   /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
   [[nodiscard]] std::uint64_t raster_cycles() const {

@@ -42,8 +42,7 @@ class PipelinedTiming : public BackTiming {
     if (primitive.is_line) take_line(offer_);
     offer_ = taken + 1;
     const bool is_beside = primitive.is_state && setup_.has_state_lane;
-    const Cycle sorted =
-        std::max(is_beside ? taken + PipelinedCycles::cull_state : sort_.ready(taken), decide_.room());
+    const Cycle sorted = std::max(is_beside ? taken + PipelinedCycles::cull_state : sort_.ready(taken), decide_.room());
     sort_.leave(sorted);
     const Cycle decided = is_beside ? sorted + PipelinedCycles::cull_state : decide_.ready(sorted);
     work(Stage::cull, is_beside ? PipelinedCycles::cull_state : PipelinedCycles::cull_sort);
@@ -184,8 +183,8 @@ class PipelinedTiming : public BackTiming {
 
   Station sort_{1, PipelinedCycles::cull_sort, 0}, decide_{1, PipelinedCycles::cull_decide, 0};
   SetupCycles setup_;
-  std::vector<Station> parts_;  ///< of triangle_setup, but for the last
-  Station offer_setup_;         ///< the last
+  std::vector<Station> parts_;                                    ///< of triangle_setup, but for the last
+  Station offer_setup_;                                           ///< the last
   Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< beside them, and behind both
   Station coarse_{1, 0, 0}, slots_, visits_;
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;

@@ -41,13 +41,14 @@ struct TileVisitWork {
 
 /// The phases of the pipelined triangle_setup, a cycle each, and its parts, which hold a triangle each.
 struct SetupCycles {
-  int part;     ///< phases of a part
-  int parts;    ///< but for the last, from which the setup is on offer
-  int last;     ///< from entering the last one to the offer
-  int latency;  ///< from the triangle in to the offer
+  int part;             ///< phases of a part
+  int parts;            ///< but for the last, from which the setup is on offer
+  int last;             ///< from entering the last one to the offer
+  int latency;          ///< from the triangle in to the offer
   bool has_state_lane;  ///< states go beside the phases; what they and the triangles make waits in one more register
   static constexpr int kStates = 8;  ///< that wait there
-  SetupCycles(const Widths& widths, int divide_bits) : part(widths.planes), has_state_lane(halfplane::has_state_lane(widths)) {
+  SetupCycles(const Widths& widths, int divide_bits)
+      : part(widths.planes), has_state_lane(halfplane::has_state_lane(widths)) {
     const int divide = (widths.reciprocal.bits + divide_bits) / divide_bits;  // a bit more, for the rounding
     // The highest bit, the quotient; rounding, product, shift, move; then a plane's value in each.
     const int offer = 1 + divide + 4 + widths.planes;

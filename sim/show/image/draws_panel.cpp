@@ -40,10 +40,9 @@ Picture draws_sheet(std::string_view title, const Picture& color, std::span<cons
 
 Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> values, std::string_view unit,
                    std::span<const std::uint32_t> counts) {
-  std::array<Panel, 3> panels{Panel{},
-                              log_panel(std::string(unit) + " of each pixel", color.width, color.height, values, unit,
-                                        "none"),
-                              draws_panel(color.width, color.height, counts)};
+  std::array<Panel, 3> panels{
+      Panel{}, log_panel(std::string(unit) + " of each pixel", color.width, color.height, values, unit, "none"),
+      draws_panel(color.width, color.height, counts)};
   panels[0].caption = "model";
   panels[0].picture = color;
   return compose_sheet(title, panels, 3);
