@@ -102,7 +102,6 @@ module setup_states (
       setup_q.edge_value   <= made_i.edge_value;
       setup_q.step_x       <= made_i.step_x;
       setup_q.step_y       <= made_i.step_y;
-      setup_q.coordinates  <= made_i.coordinates;
       if (is_next) begin
         setup_q.kind        <= raster_pkg::PRIMITIVE_KIND_STATE;
         setup_q.state       <= '0;
@@ -113,7 +112,6 @@ module setup_states (
         setup_q.edge_value  <= '0;
         setup_q.step_x      <= '0;
         setup_q.step_y      <= '0;
-        setup_q.coordinates <= '0;
       end
     end
   end
@@ -123,6 +121,13 @@ module setup_states (
   localparam logic [F-1:0] HALVES_OVER_W = F'(1) << (F - raster_pkg::PERSPECTIVE_GUARD_BITS - 1);
   genvar p;
   generate
+    if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
+      always_ff @(posedge clk_i)
+        if (is_free) begin
+          setup_q.coordinates <= made_i.coordinates;
+          if (is_next) setup_q.coordinates <= '0;
+        end
+    end
     for (p = 0; p < PLANES; p++) begin : gen_plane
       localparam int B = CODE_BITS_OF[32*p+:32];
       localparam int AT = CODE_AT[32*p+:32];

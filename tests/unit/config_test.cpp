@@ -171,6 +171,8 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
       config.frame_clears = FrameClears::flags;
     else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
       config.texture_unit = TextureUnitKind::nearest;
+    else if (std::holds_alternative<ReciprocalKind Config::*>(setting.member))
+      config.reciprocal_kind = ReciprocalKind::restoring;
     else if (std::holds_alternative<FrameOrder Config::*>(setting.member))
       config.frame_order = FrameOrder::bins;
     else if (std::holds_alternative<FrameStore Config::*>(setting.member))
