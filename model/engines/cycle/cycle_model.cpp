@@ -537,7 +537,7 @@ class CycleModelOf final : public CycleModel {
     auto lookup = lookups.begin();
     live.for_each([&](std::size_t s) {
       float& misses = misses_[plain_index(at[s].x, at[s].y)];
-      do misses += lookup->is_miss ? 1 : 0;
+      do misses += lookup->is_miss ? 1.0F : 0.0F;
       while (!std::exchange(lookup, lookup + 1)->ends || std::prev(lookup)->continues);
     });
   }
