@@ -226,10 +226,12 @@ TEST(TexturedHardware, ATriangleOf2x2PixelsTakesAtMost16CyclesBetweenLevelsAndWi
   const Config config = with("embedded", {{"texture.unit", "trilinear"}, {"frame.clears", "flags"}});
   MemorySettings ddr3;
   ddr3.kind = memory_kind("ddr3");
+  CycleOptions options;
+  options.textures = ddr3;
   for (const std::string states :
        {"state texture_min linear\nstate texture_mag linear\n", "state texture_min linear_mipmap_linear\n"}) {
     const auto memory = make_memory(ddr3, config);
-    const CycleRendering run = render_cycle(small_triangles(states, 32), config, *memory, {}, {.textures = ddr3});
+    const CycleRendering run = render_cycle(small_triangles(states, 32), config, *memory, {}, options);
     const double each = static_cast<double>(run.run.cycles) / 2000;
     std::printf("%.2f cycles each, %llu lines of texels\n", each,
                 static_cast<unsigned long long>(run.rendering.counters.texture.fills));
