@@ -108,7 +108,7 @@ TEST_F(VectorsCommand, BadInputIsRefusedWithFileAndLine) {
   expect_refused({"check", "--stage", "cull", "none.jsonl"}, "none.jsonl: there is no such file");
   expect_refused({"vectors", "triangle", "--stage", "cull"}, "-o is required");
   expect_refused({"vectors", "--stage", "cull", "-o", "x"}, "nothing to run");
-  expect_refused({"vectors", "triangle", "--stage", "texture_unit", "-o", "x"}, "texture.unit=nearest");
+  expect_refused({"vectors", "triangle", "--stage", "texture_unit", "-o", "x"}, "set texture.unit to nearest");
   expect_refused({"vectors", "triangle", "--stage", "cull", "--format", "hex", "-o", "-"}, "a folder");
   change("v.jsonl", "a.jsonl", "\"kind\":\"0x", "\"kind\":\"0xg");
   expect_refused({"check", "--stage", "cull", "a.jsonl"}, "a.jsonl:2: 'kind' is '0xg");
