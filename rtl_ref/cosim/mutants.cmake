@@ -421,17 +421,17 @@ mutant(219 stages/block_cache.sv "stencil: with a late alpha test, what has fail
   [=[write_i.passed | write_i.write_depth]=] [=[write_i.passed]=])
 
 # The lane of states beside triangle_setup; counters of a texture unit; its division.
-mutant(250 lib/setup_states.sv "states: one overtakes the triangle in front of it"
+mutant(250 lib/setup_states.sv "texture states: one overtakes the triangle in front of it"
   [=[waits && number == left_q]=] [=[waits]=])
-mutant(251 lib/setup_states.sv "states: a triangle overtakes the one in front of it"
+mutant(251 lib/setup_states.sv "texture states: a triangle overtakes the one in front of it"
   [=[!is_next && is_free]=] [=[is_free && (!is_next || made_valid_i)]=])
-mutant(252 lib/setup_states.sv "states: one has the range of the triangle behind it"
+mutant(252 lib/setup_states.sv "texture states: one has the range of the triangle behind it"
   [=[is_next ? own : made_i.range.high[AT+:B]]=] [=[made_i.range.high[AT+:B]]=])
-mutant(253 stages/cull.sv "states: one has the box of the primitive in front"
+mutant(253 stages/cull.sv "texture states: one has the box of the primitive in front"
   [=[is_empty_q && !is_state]=] [=[is_empty_q]=])
-mutant(254 stages/texture_linear.sv "counter: a sample between two levels is looked up twice"
+mutant(254 stages/texture_linear.sv "texture counter: a sample between two levels is looked up twice"
   [=[looked_up && !ends_first]=] [=[looked_up]=])
-mutant(255 stages/texture_linear.sv "counter: what a sample's first level lacked does not count"
+mutant(255 stages/texture_linear.sv "texture counter: what a sample's first level lacked does not count"
   [=[!(ends_second && misses_first_q)]=] [=[1'b1]=])
 mutant(256 lib/texture_answers.sv "texture: a line begins with the last beat of the one before"
   [=[ends_line_o ? '0 : beat_q + BEATS'(takes)]=] [=[beat_q + BEATS'(takes)]=])

@@ -52,7 +52,7 @@ module clear_flags #(
     word_of = FLAG'({y, WORD_X'(x >> BIT)});
   endfunction
   function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
-    bit_of = BIT'(x & BLOCK_X'((1 << BIT) - 1));
+    bit_of = BIT'(x);
   endfunction
   /* verilator lint_on UNUSEDSIGNAL */
 
