@@ -391,8 +391,8 @@ const JudgedStage& judged_stage(std::string_view name) {
   }
   std::string list;
   for (const std::string_view word : names) list += (list.empty() ? "" : ", ") + std::string(word);
-  throw InputError("no stage '" + std::string(name) + "' sends packets;" + did_you_mean(name, names) +
-                   " give one of " + list);
+  throw InputError("no stage '" + std::string(name) + "' sends packets;" + did_you_mean(name, names) + " give one of " +
+                   list);
 }
 
 void require_stage(const JudgedStage& stage, const Config& config) {

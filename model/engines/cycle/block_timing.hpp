@@ -321,8 +321,8 @@ class BlockTiming {
         ordered_ = 0;  ///< when the last one was looked up in T, left it, X, W; the last request's cycle
   std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first
   std::optional<BlockAddress> last_block_;  ///< of the last fragment, where it has samples and no token came since
-  Cycle depth_free_ = 0;          ///< when the depth RAM has been read for the last eviction
-  std::uint64_t left_color_ = 0;  ///< stamps of it that the colour RAM is still to be read for, one a cycle
+  Cycle depth_free_ = 0;                    ///< when the depth RAM has been read for the last eviction
+  std::uint64_t left_color_ = 0;            ///< stamps of it that the colour RAM is still to be read for, one a cycle
   std::size_t color_line_ = 0;
   Cycle color_at_ = 0;                                   ///< when the next of them is
   std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last ones
