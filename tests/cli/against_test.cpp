@@ -1,4 +1,5 @@
 // `halfplane compare --against`: a whole foreign rasterizer, judged by its image alone.
+#include "halfplane_paths.hpp"
 #include "model/capture/capture_textures.hpp"
 #include "program.hpp"
 #include "sim/show/image/png.hpp"

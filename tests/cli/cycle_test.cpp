@@ -3,6 +3,7 @@
 #include <cstring>
 #include <map>
 
+#include "halfplane_paths.hpp"
 #include "program.hpp"
 
 namespace halfplane::cli {

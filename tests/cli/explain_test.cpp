@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "halfplane_paths.hpp"
 #include "model/capture/capture_textures.hpp"
 #include "program.hpp"
 

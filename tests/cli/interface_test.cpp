@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <regex>
 
+#include "halfplane_paths.hpp"
 #include "model/config.hpp"
 #include "program.hpp"
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "halfplane_paths.hpp"
 #include "program.hpp"
 
 namespace halfplane::cli {

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <thread>
 
+#include "halfplane_paths.hpp"
 #include "sim/cosim/dut.hpp"
 
 namespace halfplane::cli {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <set>
 
+#include "halfplane_paths.hpp"
 #include "program.hpp"
 
 namespace halfplane::cli {

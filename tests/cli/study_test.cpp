@@ -1,6 +1,7 @@
 // `--traversal`, `--fill-rule` and `--clipping`: what they change in results, and who refuses them.
 #include <algorithm>
 
+#include "halfplane_paths.hpp"
 #include "program.hpp"
 
 namespace halfplane::cli {

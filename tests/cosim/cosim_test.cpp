@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 
+#include "halfplane_paths.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/cosim/session.hpp"

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "halfplane_paths.hpp"
 #include "model/raster_pkg.hpp"
 #include "sim/scene/random.hpp"
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "halfplane_paths.hpp"
 #include "model/engines/cycle/stage_table.hpp"
 
 namespace halfplane {

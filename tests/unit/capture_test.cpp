@@ -1,5 +1,6 @@
 // The capture format: what is read and what is written. docs/capture.md is its reference.
 #include "model/capture/capture.hpp"
+#include "halfplane_paths.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "model/config.hpp"
+#include "halfplane_paths.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <sstream>
 
+#include "halfplane_paths.hpp"
 #include "model/config.hpp"
 #include "sim/study/depth/theory.hpp"
 

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "halfplane_paths.hpp"
+
 namespace halfplane {
 namespace {
 

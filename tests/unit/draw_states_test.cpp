@@ -1,5 +1,6 @@
 // The table of draw states, and that what follows from it does.
 #include "model/draw_states.hpp"
+#include "halfplane_paths.hpp"
 
 #include <gtest/gtest.h>
 

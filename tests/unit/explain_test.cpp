@@ -1,4 +1,5 @@
 #include "sim/study/explain/explain.hpp"
+#include "halfplane_paths.hpp"
 
 #include <gtest/gtest.h>
 

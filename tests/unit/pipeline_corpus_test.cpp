@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../pipeline_case.hpp"
+#include "halfplane_paths.hpp"
 #include "sim/scene/random.hpp"
 
 namespace halfplane {

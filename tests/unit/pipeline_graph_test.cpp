@@ -1,5 +1,6 @@
 // The graph of the pipeline against the files it speaks of.
 #include "model/pipeline_graph.hpp"
+#include "halfplane_paths.hpp"
 
 #include <gtest/gtest.h>
 
