@@ -192,7 +192,8 @@ TEST(ColorHardware, WhatAnAlphaTestMayKillNeedsTheDepthBehindItOnlyWhereItWrites
 
 TEST(ColorHardware, TheConstantIsSetWhereAnyFactorReadsIt) {
   const Config config = with("embedded", {{"blend.lanes", "4"}, {"color.format", "rgba8888"}});
-  for (const auto factor : {&BlendFactors::src, &BlendFactors::dst, &BlendFactors::src_alpha, &BlendFactors::dst_alpha}) {
+  for (const auto factor :
+       {&BlendFactors::src, &BlendFactors::dst, &BlendFactors::src_alpha, &BlendFactors::dst_alpha}) {
     State state = blending();
     (*state.blend).*factor = BlendFactor::constant_alpha;
     state.blend_color = {1, 2, 3, 4};

@@ -161,7 +161,8 @@ TEST(MemoryPort, WhatIsReadIsWhatMemoryAnswers) {
         request.plane = plane;
         request.tile_x = 1;
         request.stamp = static_cast<std::uint16_t>(first);
-        request.run = static_cast<std::uint16_t>(first == 0 && widths.blocks.per_tile == 1 ? widths.stamps.stamps() : 1);
+        request.run =
+            static_cast<std::uint16_t>(first == 0 && widths.blocks.per_tile == 1 ? widths.stamps.stamps() : 1);
         std::vector<MemoryResponse> responses;
         port.take(request, [&](const MemoryBeat& beat) {
           EXPECT_TRUE(beat.is_first);
