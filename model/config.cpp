@@ -94,6 +94,12 @@ const std::array kSettings{
             &Config::counter_units},
     Setting{"counters.bits", "bits", "of a performance counter of the RTL; a sticky bit tells that one has wrapped", 16,
             32, &Config::counter_bits},
+    Setting{"msaa.samples", "samples",
+            "of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each; the RTL and the cycle engine have 1",
+            1, kMaxPixelSamples, &Config::msaa_samples},
+    Setting{"msaa.pattern", "standard|<X>,<Y>;...",
+            "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner", 0, 0,
+            &Config::msaa_pattern},
     Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
             "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
             &Config::depth_mapping},
@@ -129,6 +135,14 @@ int parse_name(std::string_view key, std::string_view value, std::span<const std
 DepthFormat depth_format_of(std::string_view key, std::string_view value) {
   try {
     return parse_depth_format(value);
+  } catch (const InputError& error) {
+    throw InputError(std::string(key) + ": " + error.what());
+  }
+}
+
+SamplePattern pattern_of(std::string_view key, std::string_view value) {
+  try {
+    return parse_sample_pattern(value);
   } catch (const InputError& error) {
     throw InputError(std::string(key) + ": " + error.what());
   }
@@ -210,6 +224,7 @@ std::string get(const Config& config, const Setting& setting) {
   if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
     return std::string(depth_mapping_names()[static_cast<std::size_t>(config.**mapping)]);
   if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member)) return to_string(config.**stored);
+  if (const auto* pattern = std::get_if<SamplePattern Config::*>(&setting.member)) return to_string(config.**pattern);
   if (const auto* cache = std::get_if<CacheKind Config::*>(&setting.member))
     return std::string(kCacheKindNames[static_cast<std::size_t>(config.**cache)]);
   if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
@@ -260,12 +275,20 @@ void set(Config& config, std::string_view key, std::string_view value) {
       config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
     else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))
       config.** stored = depth_format_of(key, value);
+    else if (const auto* pattern = std::get_if<SamplePattern Config::*>(&setting.member))
+      config.** pattern = pattern_of(key, value);
     else
       config.*std::get<SetupKind Config::*>(setting.member) =
           static_cast<SetupKind>(parse_name(key, value, kSetupKindNames));
     return;
   }
   throw InputError("no setting '" + std::string(key) + "'; `halfplane config --list` shows them all");
+}
+
+void require_one_sample(const Config& config, std::string_view who) {
+  if (config.msaa_samples != 1)
+    throw InputError("msaa.samples: " + std::string(who) +
+                     " has one sample a pixel; use msaa.samples=1, or the functional, scalar or golden engine");
 }
 
 void validate(const Config& config) {
@@ -311,6 +334,14 @@ void validate(const Config& config) {
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");
+  refuse_unless(is_power_of_two(config.msaa_samples), "msaa.samples must be 1, 2, 4 or 8");
+  refuse_unless(config.stamp_size * config.stamp_size * config.msaa_samples <= 64,
+                "a stamp holds at most 64 samples, stamp.size^2 * msaa.samples: lower one of them");
+  refuse_unless(config.msaa_samples > 1 || config.msaa_pattern == SamplePattern{},
+                "the one sample of a pixel is its centre: raise msaa.samples, or leave msaa.pattern out");
+  refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
+                "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
+                    std::to_string(config.msaa_samples) + ": give as many");
   const Widths widths = derive_widths(config);
   require_bits(widths.coordinate, 32, "a packet's coordinate");
   require_bits(widths.area, 63, "a 64-bit lane");

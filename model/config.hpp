@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "depth_format.hpp"
+#include "sample_pattern.hpp"
 
 namespace halfplane {
 
@@ -84,14 +85,27 @@ struct Config {
   int line_units = 1;     ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
   int counter_units = 1;  ///< 1: the RTL counts its work; 0: its counters are left out
   int counter_bits = 32;  ///< of each of them
+  int msaa_samples = 1;   ///< samples of a pixel, 1, 2, 4 or 8. No RTL has more than one yet
+  SamplePattern msaa_pattern;
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
   DepthFormat depth_format;                               ///< the RTL has `plane` alone
 
   bool operator==(const Config&) const = default;
 };
 
+/// Throws InputError, naming `who`, for a configuration with several samples a pixel.
+void require_one_sample(const Config& config, std::string_view who);
+
 /// The highest bits of a depth code that a tile's HiZ bound keeps: hiz.bits, or all where a code has fewer; 0: no HiZ.
 [[nodiscard]] constexpr int hiz_code_bits(const Config& config) { return std::min(config.hiz_bits, config.depth_bits); }
+
+/// s: fraction bits of the grid on which snapped vertices, pixel centres and samples lie. At S = 0 coordinates are doubled, so
+/// that centres are integers; where samples lie on a finer grid than vertices, those are scaled to it.
+[[nodiscard]] inline int coordinate_grid_bits(const Config& config) {
+  const int centres = std::max(config.subpixel_bits, 1);
+  if (config.msaa_samples == 1) return centres;
+  return std::max(centres, pattern_bits(resolved_pattern(config.msaa_pattern, config.msaa_samples)));
+}
 
 /// One setting: its key in TOML and `--set`, its range, and where it lives.
 struct Setting {
@@ -102,7 +116,7 @@ struct Setting {
   int max;                   ///< largest legal value (numbers only)
   std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, FrameOrder Config::*,
                FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, ReciprocalKind Config::*,
-               DepthMapping Config::*, DepthFormat Config::*>
+               DepthMapping Config::*, DepthFormat Config::*, SamplePattern Config::*>
       member;
 
   /// Whether the RTL depends on it.
@@ -110,7 +124,8 @@ struct Setting {
     return !std::holds_alternative<DepthMapping Config::*>(member) &&
            !std::holds_alternative<DepthFormat Config::*>(member) &&
            !std::holds_alternative<FrameOrder Config::*>(member) &&
-           !std::holds_alternative<FrameStore Config::*>(member);
+           !std::holds_alternative<FrameStore Config::*>(member) &&
+           !std::holds_alternative<SamplePattern Config::*>(member) && key != "msaa.samples";
   }
 };
 

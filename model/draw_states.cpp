@@ -221,6 +221,7 @@ constexpr std::array<Words, 8> stencil_op_words{"keep", "zero",   "replace",   "
 static_assert(stencil_op_words.size() == enumerators<StencilOp>());
 constexpr std::array<Words, 1> off_words{"off"};
 constexpr std::array<Words, 1> same_words{"same"};
+constexpr std::array<Words, 1> all_words{"all"};
 
 /// One of a list of words.
 constexpr StateNumber word_number(Words what, std::span<const Words> words, std::size_t repeats = 0) {
@@ -266,6 +267,13 @@ constexpr std::array<StateNumber, 7> stencil_numbers{
      word_number("what to do where the stencil test fails", stencil_op_words),
      word_number("what to do where the depth test fails", stencil_op_words),
      word_number("what to do where both pass", stencil_op_words)}};
+constexpr std::array<StateNumber, 1> sample_mask_numbers{{{.what = "sample_mask",
+                                                           .low = 0,
+                                                           .high = 255,
+                                                           .is_whole = true,
+                                                           .random_step = 1,
+                                                           .random_count = 256,
+                                                           .is_hex = true}}};
 
 constexpr std::array<StateNumber, 1> texture_numbers{{
     {"texture", 0, 65535, true, false, 0, 1, 0, {}, true},
@@ -468,6 +476,20 @@ constexpr std::array table{
                          .purpose = "whether a colour is spread over its neighbours where it is stored in fewer than 8 "
                                     "bits a channel",
                          .home = StateHome::unit}),
+    row<&State::sample_mask>({.name = "sample_mask",
+                              .words = all_words,
+                              .numbers = sample_mask_numbers,
+                              .form = "HEX",
+                              .purpose =
+                                  "which samples of a pixel are drawn, in hexadecimal digits, sample 0 the lowest "
+                                  "bit; does nothing where a pixel has one sample",
+                              .home = StateHome::unit}),
+    row<&State::alpha_to_coverage>({.name = "alpha_to_coverage",
+                                    .words = switch_words,
+                                    .purpose =
+                                        "whether alpha says how many of a pixel's samples are drawn; does nothing "
+                                        "where a pixel has one sample",
+                                    .home = StateHome::unit}),
 };
 
 static_assert(table.size() == count_members<State>(), "a member of State has no row, or two");

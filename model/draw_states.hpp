@@ -42,6 +42,7 @@ struct StateNumber {
   bool is_texture = false;                    ///< an index into Scene::textures, written as a name
   /// May be left out with all behind it: it is then the number that stands so many places before it. 0: may not.
   std::size_t repeats = 0;
+  bool is_hex = false;  ///< written in hexadecimal digits
 };
 
 /// A row of the table.

@@ -43,7 +43,7 @@ using FragmentState = PrimitiveState;
 /// changes no bit of the others.
 [[nodiscard]] inline Config with_alpha(Config config, const Scene& scene) {
   for (const State& state : scene.states)
-    if (looks_at_alpha(state)) config.alpha_units = 1;
+    if (looks_at_alpha(state) || (config.msaa_samples > 1 && state.alpha_to_coverage)) config.alpha_units = 1;
   return config;
 }
 
@@ -53,15 +53,24 @@ struct FragmentOps {
   AlphaTest alpha;
   std::optional<StencilSides> stencil;
   ColorOps color;
+  int alpha_samples = 0;  ///< of a pixel, where alpha says how many of them are drawn; 0: it says nothing of that
 
   /// Nothing but the depth test and colours that replace each other.
   [[nodiscard]] constexpr bool is_plain() const {
-    return alpha.func == DepthFunc::always && !stencil && (!state.color_write || color.is_plain());
+    return alpha.func == DepthFunc::always && alpha_samples == 0 && !stencil &&
+           (!state.color_write || color.is_plain());
   }
 };
 
 [[nodiscard]] constexpr FragmentOps fragment_ops(const State& state, ColorFormat format) {
   return {fragment_state(state, format), state.alpha_test, stencil_sides(state), color_ops(state, format)};
+}
+
+/// How many of a pixel's samples an alpha of 8 bits draws: samples * alpha / 255, rounded; exact, as in blending.
+template <class Lane>
+[[nodiscard]] constexpr Lane samples_of_alpha(const Lane& alpha, std::uint32_t samples) {
+  const Lane t = alpha * samples + 128U;
+  return (t + (t >> 8)) >> 8;
 }
 
 // --- tests ----------------------------------------------------------------------------------------------------------
@@ -144,6 +153,11 @@ enum class Fate {
   passed
 };
 
+/// Whether alpha to coverage draws that sample: the first ones of a pixel are.
+[[nodiscard]] constexpr bool is_drawn_by_alpha(const FragmentOps& ops, std::uint32_t alpha, std::uint32_t sample) {
+  return ops.alpha_samples == 0 || sample < samples_of_alpha(alpha, static_cast<std::uint32_t>(ops.alpha_samples));
+}
+
 /// What is stored at a fragment's pixel.
 struct StoredPixel {
   std::uint32_t& depth;
@@ -153,9 +167,10 @@ struct StoredPixel {
 
 /// A fragment as it comes to the operations.
 struct TestedFragment {
-  std::uint32_t depth = 0;  ///< the code in the stored format
-  int x = 0, y = 0;         ///< pixels: dithering
-  bool is_back = false;     ///< of a triangle that shows its back
+  std::uint32_t depth = 0;   ///< the code in the stored format
+  int x = 0, y = 0;          ///< pixels: dithering
+  bool is_back = false;      ///< of a triangle that shows its back
+  std::uint32_t sample = 0;  ///< of its pixel
 };
 
 /// Runs the operations on one fragment, in order, on what is stored at its pixel. `color()` gives the four 8-bit codes; asked
@@ -170,10 +185,11 @@ constexpr Fate apply_fragment(const FragmentOps& ops, ColorFormat format, const 
   const bool has_side_effects = stencil != nullptr && writes_stencil(*stencil);
   if (!passes && !has_side_effects) return Fate::failed;
   Channels<Code> source{};
-  const bool tests_alpha = ops.alpha.func != DepthFunc::always;
+  const bool tests_alpha = ops.alpha.func != DepthFunc::always || ops.alpha_samples != 0;
   if (tests_alpha || (passes && ops.state.color_write)) source = color();
-  if (tests_alpha && !depth_passes(ops.alpha.func, source[3], Code{ops.alpha.reference}))
-    return passes ? Fate::killed : Fate::failed;
+  const bool is_dropped = tests_alpha && (!depth_passes(ops.alpha.func, source[3], Code{ops.alpha.reference}) ||
+                                          !is_drawn_by_alpha(ops, source[3], fragment.sample));
+  if (is_dropped) return passes ? Fate::killed : Fate::failed;
   if (has_side_effects) {
     const StencilOp op = stencil_op(*stencil, stencil_passes, passes);
     stored.stencil = static_cast<std::uint8_t>(apply_stencil<Code>(op, *stencil, Code{stored.stencil}));

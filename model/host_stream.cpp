@@ -457,6 +457,7 @@ std::string fragment_fault(const State& state, const Config& config) {
 }  // namespace
 
 void check_hardware_scene(const Scene& scene, const Config& config) {
+  require_one_sample(config, "this hardware");
   check_scene(scene, config);
   if (!DepthEncode(config, scene.planes).is_identity())
     throw InputError(

@@ -93,7 +93,8 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
 PixelBounds bounds_of(const Rect& rect) { return {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}; }
 
 bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& context) {
-  return pixel_bounds(v, bounds_of(context.rect), std::max(context.config.subpixel_bits, 1)).is_empty();
+  return sample_bounds(v, bounds_of(context.rect), coordinate_grid_bits(context.config), context.config.msaa_samples)
+      .is_empty();
 }
 
 /// Codes whose colour is the provoking vertex's.
@@ -161,7 +162,7 @@ std::int64_t offset_codes(const SnappedPolygon& polygon, const DrawContext& cont
                  dz2 = static_cast<double>(c.code[kDepthPlane]) - a.code[kDepthPlane];
     const double per_x = dz1 * (c.y - a.y) - dz2 * (b.y - a.y), per_y = dz2 * (b.x - a.x) - dz1 * (c.x - a.x);
     slope = std::max(std::abs(per_x), std::abs(per_y)) / static_cast<double>(largest) *
-            static_cast<double>(std::int64_t{1} << std::max(context.config.subpixel_bits, 1));
+            static_cast<double>(std::int64_t{1} << coordinate_grid_bits(context.config));
   }
   const double codes = std::ldexp(1.0, context.config.depth_bits);  // enough to reach either end from the other
   return snap(std::clamp(factor * slope + constant, -codes, codes), 1.0);
@@ -290,7 +291,9 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       frustum(view_volume_planes(state.clip_z, viewport, 1)),
       depth_encode(config_, scene_.planes),
       fragment_ops(halfplane::fragment_ops(state, config_.color_format)),
-      fog(fog_table(state)) {}
+      fog(fog_table(state)) {
+  if (state.alpha_to_coverage && config_.msaa_samples > 1) fragment_ops.alpha_samples = config_.msaa_samples;
+}
 
 void require_positive_w(const DrawContext& context, const Triangle& triangle) {
   if (std::ranges::all_of(triangle.surface, [](const SurfaceVertex& v) { return v.w > 0; })) return;

@@ -133,6 +133,7 @@ std::uint64_t config_id(const Config& config) {
 }
 
 std::string raster_pkg(const Config& config) {
+  require_one_sample(config, "the RTL");
   validate(config);
   const Widths widths = derive_widths(config);
   std::ostringstream out;

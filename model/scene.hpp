@@ -169,6 +169,9 @@ struct State {
   std::optional<Stencil> stencil;                          ///< none: no test, nothing is stored
   std::optional<Stencil> stencil_back;                     ///< of triangles that show their back; none: as `stencil`
   bool dither = false;                                     ///< ordered, where a channel has fewer than 8 bits
+  // Of pixels with several samples; with one they do nothing.
+  std::optional<std::uint32_t> sample_mask;  ///< bit k: sample k is drawn; none: all
+  bool alpha_to_coverage = false;            ///< alpha says how many samples are drawn
   bool operator==(const State&) const = default;
 };
 

@@ -159,8 +159,17 @@ void derive_memory(Widths& w, const Config& config) {
 
 Widths derive_widths(const Config& config) {
   Widths w;
-  w.grid_bits = config.subpixel_bits > 1 ? config.subpixel_bits : 1;
+  w.grid_bits = coordinate_grid_bits(config);
   const int s = w.grid_bits;
+  w.pixel_samples = config.msaa_samples;
+  const SamplePattern pattern = resolved_pattern(config.msaa_pattern, config.msaa_samples);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(config.msaa_samples) && k < pattern.place.size(); ++k) {
+    const auto on_grid = [s](int place) {  // exact: s has at least the bits of the pattern
+      const int way = place - (1 << (kPatternFraction - 1));
+      return s < kPatternFraction ? way / (1 << (kPatternFraction - s)) : way * (1 << (s - kPatternFraction));
+    };
+    w.sample_offset[k] = {on_grid(pattern.place[k].x), on_grid(pattern.place[k].y)};
+  }
   const int128 band = config.guard_band;
   w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
   // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor. And more

@@ -79,7 +79,7 @@ struct MemoryGrid {
 /// The derived widths of a configuration, and the few derived constants beside them.
 struct Widths {
   // Constants.
-  int grid_bits = 0;       ///< s = max(S, 1): at S = 0 coordinates are doubled, so that pixel centres are integers
+  int grid_bits = 0;       ///< s, see coordinate_grid_bits()
   int guard_bits = 0;      ///< G: fraction bits of a gradient per pixel below one LSB
   int plane_fraction = 0;  ///< F = G + s: fraction bits of a plane at subpixel resolution
   int tile_shift = 0;      ///< log2 of the tile size
@@ -100,6 +100,10 @@ struct Widths {
   int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's or block's x and y that choose its cache line
   int hiz_group_bits = 0;                ///< HiZ bounds of 2^so many tiles of a row are cleared at once
   int line_guard_bits = 0;               ///< fraction bits of depth and colour along a line
+
+  // Samples of a pixel.
+  int pixel_samples = 1;
+  std::array<SampleOffset, kMaxPixelSamples> sample_offset{};  ///< of each, from the pixel's centre, 2^-s pixel
 
   // Coverage.
   Width coordinate, delta, edge_product, area, edge_value, edge_step, tile_edge, sample_edge;

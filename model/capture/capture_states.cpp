@@ -1,6 +1,8 @@
 #include "capture_states.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace halfplane {
 namespace {
@@ -35,6 +37,29 @@ double read_texture(CaptureText& text, const DrawState& row, std::span<const Tex
   return static_cast<double>(found - textures.begin());
 }
 
+/// A number in hexadecimal digits; a 0x before them is no harm.
+double read_hex(CaptureText& text, const DrawState& row, const StateNumber& number) {
+  const std::string_view word = text.word();
+  std::string_view digits = word;
+  if (digits.starts_with("0x") || digits.starts_with("0X")) digits.remove_prefix(2);
+  double value = digits.empty() ? -1 : 0;
+  for (const char c : digits) value = hex_digit(c) < 0 || value < 0 ? -1 : std::min(value * 16 + hex_digit(c), 1e9);
+  if (value < number.low || value > number.high) {
+    std::array<char, 32> range{};
+    std::snprintf(range.data(), range.size(), "%x to %x", static_cast<unsigned>(number.low),
+                  static_cast<unsigned>(number.high));
+    text.fail(quoted_word(word) + " is no value of " + std::string(row.name) + "; write " +
+              std::string(row.words.back()) + ", or hexadecimal digits from " + range.data());
+  }
+  return value;
+}
+
+void append_hex(std::string& out, unsigned value) {
+  std::array<char, 16> digits{};
+  std::snprintf(digits.data(), digits.size(), "%x", value);
+  out += digits.data();
+}
+
 void read_numbers(CaptureText& text, const DrawState& row, std::span<const Texture> textures, StateValue& value) {
   std::string positive;  // "viewport width and height": what must be above 0
   bool is_refused = false;
@@ -49,6 +74,8 @@ void read_numbers(CaptureText& text, const DrawState& row, std::span<const Textu
       read = read_texture(text, row, textures);
     else if (!number.words.empty())
       read = static_cast<double>(text.choice(number.what, number.words));
+    else if (number.is_hex)
+      read = read_hex(text, row, number);
     else if (number.is_whole)
       read = text.integer(number.what, static_cast<int>(number.low), static_cast<int>(number.high));
     else  // -0 becomes 0: equal states are then equal in every bit
@@ -94,6 +121,8 @@ void write_state_value(const State& state, const DrawState& row, std::span<const
       out += textures[static_cast<std::size_t>(value.numbers[i])].name;
     else if (!number.words.empty())
       out += number.words[static_cast<std::size_t>(value.numbers[i])];
+    else if (number.is_hex)
+      append_hex(out, static_cast<unsigned>(value.numbers[i]));
     else if (number.is_whole)
       out += std::to_string(static_cast<int>(value.numbers[i]));
     else

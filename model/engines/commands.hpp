@@ -13,21 +13,29 @@
 
 namespace halfplane {
 
-/// A covered sample through depth_encode, the tests and rop. `color()` gives its four codes, when they are needed.
-/// `is_back`: of a triangle that shows its back.
+/// Where fragments end: the images and owners of pixels, or of one of their samples.
+struct FragmentTarget {
+  Framebuffer& frame;
+  Owners& owners;
+  std::uint32_t sample = 0;
+};
+
+/// A covered sample through depth_encode, the tests and rop, into `target` of the rendering. `color()` gives its four codes,
+/// when they are needed. `is_back`: of a triangle that shows its back.
 template <class Color>
 void shade_sample(const DrawContext& context, const RenderOptions& options, int x, int y, std::uint32_t plane_code,
-                  Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering,
-                  bool is_back = false) {
+                  Color&& color, std::uint32_t primitive, std::int32_t visible, const FragmentTarget& target,
+                  Rendering& rendering, bool is_back) {
   const FragmentOps& ops = context.fragment_ops;
   const std::uint32_t depth = context.depth_encode(plane_code);
-  const std::size_t pixel = rendering.frame.at(x, y);
+  Framebuffer& frame = target.frame;
+  Owners& owners = target.owners;
+  const std::size_t pixel = frame.at(x, y);
   const auto plain =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering.frame.width) + static_cast<std::size_t>(x);
   ++rendering.counters.covered;
   if (!rendering.count.empty()) ++rendering.count[plain];
-  Framebuffer& frame = rendering.frame;
-  const Fate fate = apply_fragment(ops, context.config.color_format, {depth, x, y, is_back}, color,
+  const Fate fate = apply_fragment(ops, context.config.color_format, {depth, x, y, is_back, target.sample}, color,
                                    {frame.depth[pixel], frame.color[pixel], frame.stencil[pixel]});
   if (fate == Fate::failed) {
     rendering.counters.skipped.fragments_early_z += options.skip.fragments_early_z ? 1 : 0;
@@ -40,8 +48,41 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
   }
   if (!ops.state.writes()) return;
   ++rendering.counters.written;
-  if (!rendering.ids.empty()) rendering.ids[plain] = static_cast<std::int32_t>(primitive);
-  if (!rendering.visible.empty()) rendering.visible[plain] = visible;
+  if (!owners.ids.empty()) owners.ids[plain] = static_cast<std::int32_t>(primitive);
+  if (!owners.visible.empty()) owners.visible[plain] = visible;
+}
+
+/// The samples of a draw that State::sample_mask lets pass, a bit each.
+[[nodiscard]] inline unsigned drawn_samples(const State& state) { return state.sample_mask.value_or(~0U); }
+
+/// A pixel that is covered as a whole, or, where it has several samples, those of them that `covered` names: plane_code(k)
+/// gives the depth of each, `color()` the colour of all.
+template <class Depth, class Color>
+void shade_pixel(const DrawContext& context, const RenderOptions& options, int x, int y, unsigned covered,
+                 Depth&& plane_code, Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering,
+                 bool is_back = false) {
+  if (rendering.frame.samples.empty()) {
+    shade_sample(context, options, x, y, plane_code(0), color, primitive, visible, {rendering.frame, rendering},
+                 rendering, is_back);
+    return;
+  }
+  std::optional<std::array<std::uint32_t, 4>> known;
+  const auto once = [&] {
+    if (!known) known = color();
+    return *known;
+  };
+  covered &= drawn_samples(context.state);
+  for (std::uint32_t k = 0; k < rendering.frame.samples.size(); ++k)
+    if ((covered >> k & 1U) != 0)
+      shade_sample(context, options, x, y, plane_code(static_cast<int>(k)), once, primitive, visible,
+                   {rendering.frame.samples[k], rendering.sample_owners[k], k}, rendering, is_back);
+}
+
+inline constexpr unsigned kAllSamples = ~0U;
+
+/// Taps a fragment of a line or point, which covers all samples of its pixel.
+inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap& tap) {
+  for (fragment.sample = 0; fragment.sample < samples; ++fragment.sample) tap(fragment);
 }
 
 /// The surface of a triangle whose setup is not empty, if its draw has one. Throws InputError for a vertex that is not in
@@ -90,19 +131,20 @@ inline void tap_line(const LinePrimitive& line, const Widths& widths, std::uint3
     fragment.y = pixel.y;
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
       fragment.plane[p] = sample(state.value[p], pixel.code[p]);
-    tap(fragment);
+    tap_samples(fragment, widths.pixel_samples, tap);
     if (state.remaining == 0) return;
   }
 }
 
 /// Those of a point: the vertex everywhere.
-inline void tap_point(const PointPrimitive& point, std::uint32_t item, const FragmentTap& tap) {
+inline void tap_point(const PointPrimitive& point, const Widths& widths, std::uint32_t item, const FragmentTap& tap) {
   const DrawnPoint& drawn = point.drawn;
   TappedFragment fragment{PrimitiveKind::point, drawn.primitive, drawn.draw, item, nullptr, nullptr, &drawn};
   for (std::size_t p = 0; p < kMaxPlanes; ++p)
     fragment.plane[p] = {static_cast<std::int64_t>(drawn.at.code[p]), drawn.at.code[p]};
   for (fragment.y = point.box.top; fragment.y <= point.box.bottom; ++fragment.y)
-    for (fragment.x = point.box.left; fragment.x <= point.box.right; ++fragment.x) tap(fragment);
+    for (fragment.x = point.box.left; fragment.x <= point.box.right; ++fragment.x)
+      tap_samples(fragment, widths.pixel_samples, tap);
 }
 
 inline void draw_line(const DrawContext& context, const Widths& widths, const RenderOptions& options,
@@ -111,22 +153,23 @@ inline void draw_line(const DrawContext& context, const Widths& widths, const Re
     tap_line(line, widths, static_cast<std::uint32_t>(rendering.lines.size()), options.fragment_tap);
   line_raster(line.setup, widths, [&](const LinePixel& pixel) {
     if (options.pixel_tap) options.pixel_tap(line.drawn.primitive, pixel.x, pixel.y);
-    shade_sample(
-        context, options, pixel.x, pixel.y, pixel.code[kDepthPlane], [&pixel] { return color_channels(pixel.code); },
-        line.drawn.primitive, kVisibleOutline, rendering);
+    shade_pixel(
+        context, options, pixel.x, pixel.y, kAllSamples, [&pixel](int) { return pixel.code[kDepthPlane]; },
+        [&pixel] { return color_channels(pixel.code); }, line.drawn.primitive, kVisibleOutline, rendering);
   });
 }
 
-inline void draw_point(const DrawContext& context, const RenderOptions& options, const PointPrimitive& point,
-                       Rendering& rendering) {
-  if (options.fragment_tap) tap_point(point, static_cast<std::uint32_t>(rendering.points.size()), options.fragment_tap);
+inline void draw_point(const DrawContext& context, const Widths& widths, const RenderOptions& options,
+                       const PointPrimitive& point, Rendering& rendering) {
+  if (options.fragment_tap)
+    tap_point(point, widths, static_cast<std::uint32_t>(rendering.points.size()), options.fragment_tap);
   const SnappedVertex& at = point.drawn.at;
   for (int y = point.box.top; y <= point.box.bottom; ++y)
     for (int x = point.box.left; x <= point.box.right; ++x) {
       if (options.pixel_tap) options.pixel_tap(point.drawn.primitive, x, y);
-      shade_sample(
-          context, options, x, y, at.code[kDepthPlane], [&at] { return color_channels(at.code); },
-          point.drawn.primitive, kVisibleOutline, rendering);
+      shade_pixel(
+          context, options, x, y, kAllSamples, [&at](int) { return at.code[kDepthPlane]; },
+          [&at] { return color_channels(at.code); }, point.drawn.primitive, kVisibleOutline, rendering);
     }
 }
 
@@ -143,7 +186,7 @@ inline void draw_outlines(const DrawContext& context, const Widths& widths, Vert
       if (options.keeps_triangles()) rendering.lines.push_back(line.drawn);
     }
     for (const PointPrimitive& point : outline.points) {
-      draw_point(context, options, point, rendering);
+      draw_point(context, widths, options, point, rendering);
       if (options.keeps_triangles()) rendering.points.push_back(point.drawn);
     }
   });
@@ -221,6 +264,9 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
       flush(context);
     }
   }
+  started = Clock::now();
+  finish_samples(rendering, config);
+  rendering.raster_s += seconds_since(started);
   return rendering;
 }
 

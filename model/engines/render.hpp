@@ -23,8 +23,9 @@ namespace halfplane {
 using TileMask = std::array<std::uint32_t, 32>;
 
 /// Called for every tile that was not skipped, also when its mask is empty, in the engine's order: index into Rendering::triangles, tile
-/// column, tile row, mask.
-using CoverageTap = std::function<void(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask)>;
+/// column, tile row, mask; and of which sample of its pixels the mask is, before State::sample_mask.
+using CoverageTap =
+    std::function<void(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask, int sample)>;
 
 /// Called for every covered pixel of a line or a point: its primitive, as in Rendering::ids.
 using PixelTap = std::function<void(std::uint32_t primitive, int x, int y)>;
@@ -40,6 +41,8 @@ struct TappedFragment {
   const DrawnPoint* point = nullptr;             ///< likewise
   int x = 0, y = 0;                              ///< pixels
   int guard_bits = 0;                            ///< l of its planes; of a line's G'
+  int sample = 0;                                ///< of its pixel: each covered one is a fragment of its own
+  int shaded_at = -1;  ///< where its colour is from: -1 the pixel's centre, else a sample (stages/multisample.hpp)
   PerPlane<PlaneSample> plane{};
   std::optional<SurfaceSample> surface{};  ///< of triangles whose colour is more than their planes
 };
@@ -65,12 +68,18 @@ struct RenderOptions {
   [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap || fragment_tap; }
 };
 
-struct Rendering {
+/// Who owns what is stored, width * height.
+struct Owners {
+  std::vector<std::int32_t> ids;      ///< input primitive that owns the stored colour or depth, -1 none
+  std::vector<std::int32_t> visible;  ///< index into `triangles` of the same, -1 none, -2 line or point
+};
+
+/// `ids` and `visible` of the Owners are those of sample 0 where a pixel has several. Counters then count samples.
+struct Rendering : Owners {
   Framebuffer frame;
   Counters counters;
   std::vector<std::uint32_t> count;   ///< covered samples per pixel before the depth test, width * height
-  std::vector<std::int32_t> ids;      ///< input primitive that owns the stored colour or depth, -1 none, width * height
-  std::vector<std::int32_t> visible;  ///< index into `triangles` of the same, -1 none, -2 line or point, width * height
+  std::vector<Owners> sample_owners;  ///< of each sample of a pixel; empty where a pixel has one
   std::vector<Triangle> triangles;    ///< every triangle that reached setup, in program order
   std::vector<DrawnLine> lines;       ///< every line with a pixel inside the scissor; likewise, and kept with them
   std::vector<DrawnPoint> points;     ///< likewise
@@ -80,8 +89,11 @@ struct Rendering {
 /// The frame that the options name, or an empty target: the farthest depth, opaque black. With the buffers that they ask for.
 [[nodiscard]] Rendering make_rendering(const Scene& scene, const Config& config, const RenderOptions& options);
 
-/// Throws InputError when the frame that the options name has another size.
-void check_onto(const Scene& scene, const RenderOptions& options);
+/// Throws InputError when the frame that the options name has another size, or other samples.
+void check_onto(const Scene& scene, const Config& config, const RenderOptions& options);
+
+/// What is left to do when all has been drawn: pixels with several samples get their colour, and sample 0's owners.
+void finish_samples(Rendering& rendering, const Config& config);
 
 /// A clear's colour, channels 0 to 255, as it is stored.
 [[nodiscard]] std::uint32_t clear_color(const std::array<double, 4>& color, ColorFormat format);

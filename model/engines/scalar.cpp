@@ -1,11 +1,14 @@
 #include "scalar.hpp"
 
+#include <bit>
 #include <optional>
+#include <vector>
 
 #include "../stages/coarse_raster.hpp"
 #include "../stages/fine_raster.hpp"
 #include "../stages/homogeneous_setup.hpp"
 #include "../stages/interpolate.hpp"
+#include "../stages/multisample.hpp"
 #include "../stages/plane_rules.hpp"
 #include "../stages/traversal.hpp"
 #include "commands.hpp"
@@ -53,9 +56,10 @@ void shade_sample(const DrawContext& context, const TriangleSetup& setup, const 
     return {c[0], c[1], c[2], c[3]};
   };
   const auto& v = t.triangle.v;
-  shade_sample(context, options, x, y, value.code[kDepthPlane], color, setup.primitive,
-               static_cast<std::int32_t>(t.index), rendering,
-               context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front));
+  shade_pixel(
+      context, options, x, y, kAllSamples, [&value](int) { return value.code[kDepthPlane]; }, color, setup.primitive,
+      static_cast<std::int32_t>(t.index), rendering,
+      context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front));
 }
 
 /// What stays the same over a scene.
@@ -101,10 +105,129 @@ void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const 
                        (tile_x << shift) + i, (tile_y << shift) + j, rendering);
         });
       });
-      if (engine.options.coverage_tap) engine.options.coverage_tap(t.index, tile_x, tile_y, mask);
+      if (engine.options.coverage_tap) engine.options.coverage_tap(t.index, tile_x, tile_y, mask, 0);
     }
   }
 }
+
+/// A triangle whose pixels have several samples, at the centre of pixels and at each sample: what the stages make of each.
+class SampledTriangle {
+ public:
+  SampledTriangle(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
+                  const TriangleSetup& setup)
+      : engine_(engine), context_(context), t_(t), setups_(t.triangle, setup, engine.widths) {
+    places_.reserve(setups_.sample.size() + 1);
+    for (int k = kAtCentre; k < engine.widths.pixel_samples; ++k) {
+      const SampleOffset o = k == kAtCentre ? SampleOffset{} : engine.widths.sample_offset[static_cast<std::size_t>(k)];
+      const TriangleSetup& at = setups_.at(k);
+      places_.push_back({at, to_setup_packet(at, engine.widths),
+                         surface_of(context, moved_to_sample(t.triangle, o), at, engine.widths)});
+    }
+    const auto& v = t.triangle.v;
+    is_back_ = context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front);
+  }
+
+  /// coarse_raster, fine_raster at each sample, and one shading of each pixel.
+  void raster(Rendering& rendering) const {
+    const TriangleSetup& setup = setups_.centre;
+    const int shift = engine_.widths.tile_shift;
+    for (int y = setup.top >> shift; y <= setup.bottom >> shift; ++y)
+      for (int x = setup.left >> shift; x <= setup.right >> shift; ++x) raster_tile(x, y, rendering);
+  }
+
+ private:
+  struct Place {
+    const TriangleSetup& setup;
+    SetupPacket packet;
+    std::optional<Surface> surface;
+  };
+  [[nodiscard]] const Place& at(int place) const { return places_[static_cast<std::size_t>(place + 1)]; }
+
+  [[nodiscard]] TileMask mask_at(const Place& place, int tile_x, int tile_y, bool is_accepted) const {
+    const Widths& widths = engine_.widths;
+    TilePacket tile = make_tile_packet(place.packet, tile_x, tile_y, 0, false, widths);
+    tile.is_inside = is_accepted;
+    TileMask mask{};
+    fine_raster(tile, make_edge_context(place.setup), widths, [&](const StampPacket& covered) {
+      const PixelOffset origin = widths.stamps.origin_of(covered.stamp);
+      covered.mask.for_each([&](std::size_t s) {
+        const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
+        mask[static_cast<std::size_t>(origin.y + pixel.y)] |= 1U << (origin.x + pixel.x);
+      });
+    });
+    return mask;
+  }
+
+  void raster_tile(int tile_x, int tile_y, Rendering& rendering) const {
+    const Widths& widths = engine_.widths;
+    const Skip& skip = engine_.options.skip;
+    Counters& counters = rendering.counters;
+    ++counters.tiles_visited;
+    bool is_outside = true, is_inside = true;
+    for (const Place& place : places_) {
+      const TileClass kind =
+          classify(place.setup, edges_at_tile(place.setup, tile_x, tile_y, widths), engine_.config.tile_size);
+      is_outside &= kind == TileClass::outside || &place == &places_.front();
+      is_inside &= kind == TileClass::inside;
+    }
+    if (is_outside && skip.tiles_outside) {
+      ++counters.skipped.tiles_outside;
+      return;
+    }
+    const bool is_accepted = is_inside && skip.trivially_accepted;
+    const std::uint64_t pixels = tile_box(setups_.centre, tile_x, tile_y, widths).samples();
+    if (is_accepted)
+      ++counters.skipped.trivially_accepted;
+    else
+      counters.samples_tested += pixels * setups_.sample.size();
+    std::vector<TileMask> mask;  // of the centre, and of each sample
+    for (const Place& place : places_) mask.push_back(mask_at(place, tile_x, tile_y, is_accepted));
+    for (int j = 0; j < engine_.config.tile_size; ++j)
+      for (int i = 0; i < engine_.config.tile_size; ++i) {
+        const auto is_set = [&](std::size_t m) { return (mask[m][static_cast<std::size_t>(j)] >> i & 1U) != 0; };
+        unsigned covered = 0;
+        for (std::size_t k = 0; k < setups_.sample.size(); ++k) covered |= is_set(k + 1) ? 1U << k : 0U;
+        if (covered == 0) continue;
+        const int place = is_set(0) ? kAtCentre : std::countr_zero(covered);
+        shade((tile_x << widths.tile_shift) + i, (tile_y << widths.tile_shift) + j, covered, place, rendering);
+      }
+    if (engine_.options.coverage_tap)
+      for (std::size_t k = 0; k < setups_.sample.size(); ++k)
+        engine_.options.coverage_tap(t_.index, tile_x, tile_y, mask[k + 1], static_cast<int>(k));
+  }
+
+  /// One pixel: its colour from `place`, the depth of each covered sample from there.
+  void shade(int x, int y, unsigned covered, int place, Rendering& rendering) const {
+    const Widths& widths = engine_.widths;
+    const Place& shaded = at(place);
+    const auto depth = [&](int k) { return plane_at(setups_.at(k), kDepthPlane, widths, x, y).code; };
+    if (engine_.options.fragment_tap) {
+      TappedFragment fragment = tapped(interpolate_at(shaded.setup, widths, x, y), t_.triangle, t_.index,
+                                       engine_.config.local_guard_bits, x, y);
+      fragment.shaded_at = place;
+      if (shaded.surface) fragment.surface = shaded.surface->at(x, y);
+      for (int k = 0; k < widths.pixel_samples; ++k) {
+        if ((covered >> k & 1U) == 0) continue;
+        fragment.sample = k;
+        fragment.plane[kDepthPlane] = plane_at(setups_.at(k), kDepthPlane, widths, x, y);
+        engine_.options.fragment_tap(fragment);
+      }
+    }
+    const auto color = [&]() -> std::array<std::uint32_t, 4> {
+      return shaded.surface ? surface_channels(*shaded.surface, x, y)
+                            : color_channels(interpolate_at(shaded.setup, widths, x, y).code);
+    };
+    shade_pixel(context_, engine_.options, x, y, covered, depth, color, setups_.centre.primitive,
+                static_cast<std::int32_t>(t_.index), rendering, is_back_);
+  }
+
+  const ScalarEngine& engine_;
+  const DrawContext& context_;
+  const NumberedTriangle& t_;
+  SampledSetup setups_;
+  std::vector<Place> places_;  ///< of the centre, and of each sample
+  bool is_back_ = false;
+};
 
 /// Gathers samples that come in any order into the masks that a coverage tap takes.
 class TapTiles {
@@ -125,7 +248,7 @@ class TapTiles {
 
   void send(const CoverageTap& tap, std::uint32_t index) const {
     for (std::size_t i = 0; i < masks_.size(); ++i)
-      tap(index, first_x_ + static_cast<int>(i) % columns_, first_y_ + static_cast<int>(i) / columns_, masks_[i]);
+      tap(index, first_x_ + static_cast<int>(i) % columns_, first_y_ + static_cast<int>(i) / columns_, masks_[i], 0);
   }
 
  private:
@@ -186,15 +309,20 @@ void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, st
     counters.skipped.empty += setup.rejection == Rejection::empty ? 1 : 0;
     counters.samples_tested += traverse_homogeneous(setup, [&](int x, int y) {
       const Interpolated value = interpolate_at(setup, engine.widths, x, y);
-      shade_sample(
-          context, engine.options, x, y, value.code[kDepthPlane], [&value] { return color_channels(value.code); },
-          number, kVisibleOutline, rendering, setup.is_back);
+      shade_pixel(
+          context, engine.options, x, y, kAllSamples, [&value](int) { return value.code[kDepthPlane]; },
+          [&value] { return color_channels(value.code); }, number, kVisibleOutline, rendering, setup.is_back);
     });
   });
 }
 
-void check_options(const RenderOptions& options) {
+void check_options(const RenderOptions& options, const Config& config) {
   const StudyRules& rules = options.rules;
+  if (config.msaa_samples > 1 && rules != StudyRules{})
+    throw InputError(
+        "msaa.samples: --traversal, --fill-rule, --gradients, --accumulator, --weights and --clipping are of pixels "
+        "with "
+        "one sample; leave them out, or use msaa.samples=1");
   if (rules.clipping == Clipping::polygon) return;
   if (rules != StudyRules{.clipping = rules.clipping})
     throw InputError(
@@ -209,7 +337,7 @@ void check_options(const RenderOptions& options) {
 Rendering render_scalar(const Scene& scene, const Config& plain_config, const RenderOptions& options) {
   validate(plain_config);
   const Config config = with_alpha(plain_config, scene);
-  check_options(options);
+  check_options(options, config);
   const ScalarEngine engine{config, options};
   const bool is_default = options.rules == StudyRules{};
   return run_commands(
@@ -218,7 +346,9 @@ Rendering render_scalar(const Scene& scene, const Config& plain_config, const Re
         TriangleSetup setup = setup_triangle(triangle, config, engine.widths, context.rect);
         // brute visits the whole target whatever the box is.
         if (setup.is_empty() && (options.rules.traversal != Traversal::brute || setup.area == 0)) return;
-        if (is_default)
+        if (config.msaa_samples > 1)
+          SampledTriangle(engine, context, {triangle, index}, setup).raster(rendering);
+        else if (is_default)
           raster_tiles(engine, context, setup, {triangle, index}, rendering);
         else
           raster_by_rules(engine, context, {triangle, index}, setup, rendering);

@@ -146,6 +146,11 @@ void Target::copy_from(const PixelMemory& memory) {
       }
     }
   }
+  // What was taken over is the colour and the depth of each of a pixel's samples.
+  for (Framebuffer& sample : onto.samples) {
+    if (memory.color != nullptr) sample.color = onto.color;
+    if (memory.depth != nullptr) sample.depth = onto.depth;
+  }
   memory_->taken = std::move(onto);
   memory_->frame = &memory_->taken;
 }

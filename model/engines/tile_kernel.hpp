@@ -90,16 +90,18 @@ class TileKernel {
   /// Draws the part of tile (tile_x, tile_y) that lies in the triangle's box. `edges`: the edge values at the tile's
   /// first pixel; `is_accepted`: no need to look at them. Calls on_row(j, covered, fates) for each row with a covered
   /// sample. `shades_failed`: colours are computed even where the depth test has failed. `is_back`: the triangle shows its
-  /// back. color(j, wanted, channels) may replace the colours of a row's wanted lanes.
+  /// back. color(j, wanted, channels) may replace the colours of a row's wanted lanes; a Color with `makes_all` makes them.
+  /// `sample`: of its pixels, where they have several and `setup` is that of a sample.
   template <class OnRow, class Color = PlaneColors<Mask>>
   void draw(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, const EdgeValues& edges, bool is_accepted,
             int tile_x, int tile_y, bool shades_failed, bool is_back, Framebuffer& frame, OnRow&& on_row,
-            Color&& color = {}) const {
+            Color&& color = {}, std::uint32_t sample = 0) const {
     const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
     Mask in_box;
     for (int i = 0; i < T; ++i) in_box[i] = i >= box.left && i <= box.right ? ~0U : 0U;
     const auto anchor = plane_at_tile(setup.plane[kDepthPlane], tile_offset(setup, tile_x, tile_y, widths_), 64);
     Tile tile{tile_x, tile_y, local_plane(anchor, setup.plane[kDepthPlane], lanes.depth_format, widths_).anchor};
+    tile.sample = sample;
     if (ops_.stencil) tile.stencil = &(*ops_.stencil)[is_back ? 1 : 0];
     const std::array<std::int32_t, 3> edge0{saturate_tile_edge(edges[0], widths_),
                                             saturate_tile_edge(edges[1], widths_),
@@ -109,6 +111,29 @@ class TileKernel {
       if (!is_accepted) cover_row(setup, lanes, edge0, j, covered);
       if (is_any(covered)) on_row(j, covered, shade_row(setup, lanes, tile, j, covered, shades_failed, frame, color));
     }
+  }
+
+  /// What draw() takes for covered, row by row; in the tile's box.
+  [[nodiscard]] std::array<Mask, T> coverage(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
+                                             const EdgeValues& edges, bool is_accepted, int tile_x, int tile_y) const {
+    const PixelBounds box = tile_box(setup, tile_x, tile_y, widths_);
+    const std::array<std::int32_t, 3> edge0{saturate_tile_edge(edges[0], widths_),
+                                            saturate_tile_edge(edges[1], widths_),
+                                            saturate_tile_edge(edges[2], widths_)};
+    std::array<Mask, T> rows{};
+    for (int j = box.top; j <= box.bottom; ++j) {
+      Mask& covered = rows[static_cast<std::size_t>(j)];
+      for (int i = box.left; i <= box.right; ++i) covered[i] = ~0U;
+      if (!is_accepted) cover_row(setup, lanes, edge0, j, covered);
+    }
+    return rows;
+  }
+
+  /// The colours of the planes of row j of a tile, of all its lanes.
+  [[nodiscard]] Channels<Mask> plane_colors(const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes, int tile_x,
+                                            int tile_y, int j) const {
+    Tile tile{tile_x, tile_y, 0};
+    return color_row(setup, lanes, tile, j);
   }
 
   /// Set lanes of the masks that were added up in `sum`: a mask lane is -1.
@@ -132,6 +157,7 @@ class TileKernel {
     std::array<std::uint32_t, 4> color{};  ///< likewise; valid when has_color
     bool has_color = false;
     const Stencil* stencil = nullptr;
+    std::uint32_t sample = 0;  ///< of its pixels
   };
 
   static bool is_any(const Mask& mask) {
@@ -195,12 +221,15 @@ class TileKernel {
     if (!shades_failed && !is_any(writes_stencil ? covered : passed)) return {passed, passed, passes_stencil};
     Mask kept = covered;
     Channels<Mask> channel;
-    const bool tests_alpha = ops_.alpha.func != DepthFunc::always;
+    const bool tests_alpha = ops_.alpha.func != DepthFunc::always || ops_.alpha_samples != 0;
     if (tests_alpha || ops_.state.color_write) {
-      channel = color_row(setup, lanes, tile, j);
+      if constexpr (!requires { std::remove_cvref_t<Color>::makes_all; }) channel = color_row(setup, lanes, tile, j);
       color(j, tests_alpha && writes_stencil ? covered : passed, channel);
     }
     if (tests_alpha) kept &= alpha_outcomes_(channel[3], Mask(Mask{} + ops_.alpha.reference));
+    if (ops_.alpha_samples != 0)
+      kept &= lane_mask<Mask>(Mask(Mask{} + tile.sample) <
+                              samples_of_alpha(channel[3], static_cast<std::uint32_t>(ops_.alpha_samples)));
     if (writes_stencil) store_stencil(*tile.stencil, kept, passes_stencil, is_nearer, stencil, &frame.stencil[first]);
     kept &= passed;
     if (ops_.state.depth_write) store(stored_depth, write_where(kept, depth, stored));

@@ -109,6 +109,14 @@ Rational TriangleOracle::color_at(int x, int y, int channel) const {
   return weights_at(x, y).plane({triangle_.v[0].code[p], triangle_.v[1].code[p], triangle_.v[2].code[p]});
 }
 
+Triangle seen_from(Triangle triangle, const SampleOffset& offset) {
+  for (SnappedVertex& v : triangle.v) {
+    v.x -= offset.x;
+    v.y -= offset.y;
+  }
+  return triangle;
+}
+
 std::int64_t on_grid(const Rational& value, int scale_numerator, int scale_denominator) {
   // floor(n / d + 1/2) = floor((2n + d) / 2d); division truncates, so a remainder below zero takes one more.
   const int128 numerator = (value.numerator * scale_numerator) << kGridBits;

@@ -11,6 +11,7 @@
 #include "../fixed.hpp"
 #include "../packets.hpp"
 #include "../rules.hpp"
+#include "../sample_pattern.hpp"
 
 namespace halfplane::exact {
 
@@ -67,6 +68,10 @@ class TriangleOracle {
   std::array<Edge, 3> edge_{};   ///< edge i lies opposite vertex i
   std::int64_t narrow_limit_{};  ///< below it in both coordinates a sample's edge values fit 64 bits; 0: never
 };
+
+/// The triangle as a sample at `offset` from the centre of each pixel sees it, on the same grid: moved the other way, so that
+/// what holds at a centre holds at the sample.
+[[nodiscard]] Triangle seen_from(Triangle triangle, const SampleOffset& offset);
 
 /// floor(value * scale_numerator / scale_denominator * 2^kGridBits + 1/2), scale_numerator < 2^7.
 [[nodiscard]] std::int64_t on_grid(const Rational& value, int scale_numerator = 1, int scale_denominator = 1);

@@ -29,8 +29,9 @@ struct Fate {
 template <class Depth>
 struct Tested {
   Depth depth{};
-  double alpha = 255;    ///< 0...255, behind its texture
-  bool is_back = false;  ///< of a triangle that shows its back
+  double alpha = 255;             ///< 0...255, behind its texture
+  bool is_back = false;           ///< of a triangle that shows its back
+  bool is_drawn_by_alpha = true;  ///< false: alpha to coverage drops this sample, as the alpha test would
 };
 
 /// Depth: what the test compares. Value: what colour writes store: channels, which are blended, or whatever says more about a
@@ -49,7 +50,8 @@ class FragmentBuffer {
     const bool stencil_passes = stencil == nullptr || halfplane::golden::passes(*stencil, stencil_[pixel]);
     const bool is_nearer = passes(state.depth_test, fragment.depth, depth_[pixel]);
     const bool tests_pass = stencil_passes && is_nearer;
-    if (!passes<double>(state.alpha_test.func, fragment.alpha, state.alpha_test.reference))
+    if (!fragment.is_drawn_by_alpha ||
+        !passes<double>(state.alpha_test.func, fragment.alpha, state.alpha_test.reference))
       return {tests_pass, tests_pass, false, !stencil_passes};
     if (stencil != nullptr) {
       const StencilOp op = !stencil_passes ? stencil->stencil_fails

@@ -57,9 +57,14 @@ class Renderer {
         options_(options),
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
         depth_buffer_(config, scene.planes),
-        pixels_(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height), Real(1), {},
+        samples_(static_cast<std::size_t>(config.msaa_samples)),
+        pixels_(static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height) * samples_, Real(1), {},
                 config.color_format == ColorFormat::rgba8888) {
     const auto pixels = static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+    const SamplePattern pattern = resolved_pattern(config.msaa_pattern, config.msaa_samples);
+    const auto in_pixels = [](int place) { return static_cast<Real>(std::ldexp(place, -kPatternFraction)); };
+    for (std::size_t k = 0; k < samples_; ++k)
+      place_[k] = {in_pixels(pattern.place[k].x), in_pixels(pattern.place[k].y)};
     image_.width = scene.width;
     image_.height = scene.height;
     image_.count.assign(pixels, 0);
@@ -74,9 +79,13 @@ class Renderer {
         fill(clear_region(scene_, scene_.states[clear->state]), *clear);
       if (const auto* draw = std::get_if<Draw>(&scene_.commands[i])) this->draw(*draw, static_cast<std::uint32_t>(i));
     }
+    if (samples_ == 1) {
+      image_.ids = pixels_.owners();
+      image_.color = pixels_.values();
+    } else {
+      split_samples();
+    }
     round_frame();
-    image_.ids = pixels_.owners();
-    image_.color = pixels_.values();
     return std::move(image_);
   }
 
@@ -85,15 +94,38 @@ class Renderer {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   }
 
+  /// Its first sample.
+  std::size_t first_sample(std::size_t pixel) const { return pixel * samples_; }
+
+  /// The images of the samples, and of them what a pixel is.
+  void split_samples() {
+    const std::size_t pixels = image_.count.size();
+    image_.samples.resize(samples_);
+    for (std::size_t k = 0; k < samples_; ++k) {
+      Samples& of = image_.samples[k];
+      for (std::size_t p = 0; p < pixels; ++p) {
+        const std::size_t at = first_sample(p) + k;
+        of.ids.push_back(pixels_.owners()[at]);
+        of.color.push_back(pixels_.value(at));
+        of.depth.push_back(static_cast<double>(pixels_.depth(at)) * depth_max_);
+      }
+    }
+    image_.ids = image_.samples.front().ids;
+    image_.color.assign(pixels, {});
+    for (const Samples& of : image_.samples)
+      for (std::size_t p = 0; p < pixels; ++p)
+        for (std::size_t c = 0; c < 4; ++c) image_.color[p][c] += of.color[p][c] / static_cast<double>(samples_);
+  }
+
   /// The real values at the end, rounded: nothing in between depends on the codes.
   void round_frame() {
     for (int y = 0; y < image_.height; ++y) {
       for (int x = 0; x < image_.width; ++x) {
         const std::size_t p = pixel(x, y), at = image_.frame.at(x, y);
-        const auto z = static_cast<double>(pixels_.depth(p));
+        const auto z = static_cast<double>(pixels_.depth(first_sample(p)));
         image_.depth[p] = z * depth_max_;
         image_.frame.depth[at] = depth_buffer_.code(depth_buffer_.stored_depth(z));
-        image_.frame.color[at] = pack_color(pixels_.value(p), config_.color_format);
+        image_.frame.color[at] = pack_color(image_.color[p], config_.color_format);
       }
     }
   }
@@ -101,11 +133,13 @@ class Renderer {
   void fill(const PixelRange& range, const Clear& clear) {
     for (int y = range.begin_y; y < range.end_y; ++y) {
       for (int x = range.begin_x; x < range.end_x; ++x) {
-        const std::size_t p = pixel(x, y);
-        if (clear.depth) pixels_.clear_depth(p, static_cast<Real>(depth_buffer_.window_depth(*clear.depth)));
-        if (clear.color) pixels_.clear_value(p, *clear.color);
-        if (clear.stencil) pixels_.clear_stencil(p, *clear.stencil);
-        pixels_.disown(p);
+        const std::size_t first = first_sample(pixel(x, y));
+        for (std::size_t p = first; p < first + samples_; ++p) {
+          if (clear.depth) pixels_.clear_depth(p, static_cast<Real>(depth_buffer_.window_depth(*clear.depth)));
+          if (clear.color) pixels_.clear_value(p, *clear.color);
+          if (clear.stencil) pixels_.clear_stencil(p, *clear.stencil);
+          pixels_.disown(p);
+        }
       }
     }
   }
@@ -296,15 +330,50 @@ class Renderer {
     const auto [left, right] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
     const auto [top, bottom] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
     // One pixel wider on the far sides: a sample on the very border is decided by the edges, not by the range.
-    const PixelRange range = intersect(d.region, pixel_range(left, top, right + 1, bottom + 1, scene_));
+    const Real margin = samples_ == 1 ? 0 : 1;  // samples lie before the centre too
+    const PixelRange range =
+        intersect(d.region, pixel_range(left - margin, top - margin, right + 1, bottom + 1, scene_));
     for (int y = range.begin_y; y < range.end_y; ++y) {
       for (int x = range.begin_x; x < range.end_x; ++x) {
         const Real px = static_cast<Real>(x) + Real(0.5), py = static_cast<Real>(y) + Real(0.5);
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
+        if (samples_ > 1) {
+          sample_pixel(t, x, y, e, d);
+          continue;
+        }
         ++image_.counters.samples_tested;
         if (!(t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]))) continue;
         shade_triangle(x, y, interpolate(t, e, rules_of(d)), d);
       }
+    }
+  }
+
+  using EdgeValues = std::array<Real, 3>;
+
+  /// A pixel with several samples: coverage and depth of each, one colour: from the centre, whose edge values are given, or
+  /// where that is not covered from the first covered sample.
+  void sample_pixel(const Setup<Real>& t, int x, int y, const EdgeValues& centre, const DrawAtWork& d) {
+    const auto is_inside = [&t](const EdgeValues& e) {
+      return t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]);
+    };
+    std::array<EdgeValues, kMaxPixelSamples> at{};
+    std::optional<EdgeValues> shaded;
+    if (is_inside(centre)) shaded = centre;
+    unsigned covered = 0;
+    for (std::size_t k = 0; k < samples_; ++k) {
+      const Real px = static_cast<Real>(x) + place_[k].first, py = static_cast<Real>(y) + place_[k].second;
+      at[k] = {t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
+      ++image_.counters.samples_tested;
+      if (!is_inside(at[k])) continue;
+      covered |= 1U << k;
+      if (!shaded) shaded = at[k];
+    }
+    if (covered == 0) return;
+    Fragment<Real> fragment = with_surface(interpolate(t, *shaded, rules_of(d)), d);
+    for (std::size_t k = 0; k < samples_; ++k) {
+      if ((covered >> k & 1U) == 0) continue;
+      fragment.z = interpolate(t, at[k], rules_of(d)).z;
+      store(x, y, k, fragment, d);
     }
   }
 
@@ -313,7 +382,11 @@ class Renderer {
   }
 
   /// A fragment of a triangle: its texture and fog, if it has any, then shade().
-  void shade_triangle(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
+  void shade_triangle(int x, int y, const Fragment<Real>& fragment, const DrawAtWork& d) {
+    shade(x, y, with_surface(fragment, d), d);
+  }
+
+  Fragment<Real> with_surface(Fragment<Real> fragment, const DrawAtWork& d) const {
     if (d.state.texture) {
       const Texture& texture = scene_.textures[*d.state.texture];
       const Color color = combined(widen(fragment.rgba), filtered(texture, d.state, fragment.texture),
@@ -321,26 +394,40 @@ class Renderer {
       for (std::size_t c = 0; c < 4; ++c) fragment.rgba[c] = static_cast<Real>(color[c]);
     }
     add_fog(fragment.rgba, fragment.inverse_w, d.state);
-    shade(x, y, fragment, d);
+    return fragment;
   }
+
   static void add_fog(std::array<Real, 4>& rgba, Real inverse_w, const State& state) {
     if (!state.fog) return;
     const Color color = in_fog(state, widen(rgba), fog_part(*state.fog, static_cast<double>(inverse_w)));
     for (std::size_t c = 0; c < 4; ++c) rgba[c] = static_cast<Real>(color[c]);
   }
 
-  void shade(int x, int y, Fragment<Real> fragment, const DrawAtWork& d) {
+  /// A fragment that covers its pixel as a whole.
+  void shade(int x, int y, const Fragment<Real>& fragment, const DrawAtWork& d) {
+    for (std::size_t k = 0; k < samples_; ++k) store(x, y, k, fragment, d);
+  }
+
+  /// Whether alpha to coverage draws a sample: so many first ones as alpha says.
+  [[nodiscard]] bool is_drawn(std::size_t sample, double alpha, const State& state) const {
+    if (samples_ == 1 || !state.alpha_to_coverage) return true;
+    return static_cast<double>(sample) < std::floor(alpha / 255 * static_cast<double>(samples_) + 0.5);
+  }
+
+  void store(int x, int y, std::size_t sample, Fragment<Real> fragment, const DrawAtWork& d) {
+    if (samples_ > 1 && (d.state.sample_mask.value_or(~0U) >> sample & 1U) == 0) return;
     if (d.offset != 0) fragment.z = std::clamp(fragment.z, Real(0), Real(1));
-    const std::size_t p = pixel(x, y);
+    const std::size_t p = first_sample(pixel(x, y)) + sample;
     ++image_.counters.covered;
-    ++image_.count[p];
+    ++image_.count[pixel(x, y)];
     const auto stored = static_cast<double>(pixels_.depth(p));
     const Color color = widen(fragment.rgba);
-    const Fate fate =
-        pixels_.apply(p, d.state, {fragment.z, color[3], d.is_back}, color, static_cast<std::int32_t>(d.primitive));
+    const Fate fate = pixels_.apply(p, d.state, {fragment.z, color[3], d.is_back, is_drawn(sample, color[3], d.state)},
+                                    color, static_cast<std::int32_t>(d.primitive));
     if (options_.fragment_tap)
       options_.fragment_tap({d.primitive, d.command, image_.outlines.empty() ? 0 : image_.outlines.size() - 1, x, y,
-                             static_cast<double>(fragment.z) * depth_max_, stored * depth_max_, color, fate});
+                             static_cast<int>(sample), static_cast<double>(fragment.z) * depth_max_,
+                             stored * depth_max_, color, fate});
     image_.counters.depth_passed += fate.passed ? 1 : 0;
     image_.counters.alpha_killed += fate.killed ? 1 : 0;
     image_.counters.written += fate.written ? 1 : 0;
@@ -352,7 +439,9 @@ class Renderer {
   double depth_max_;  // 2^B - 1
   const DepthBuffer depth_buffer_;
   Image image_;
-  FragmentBuffer<Real, std::array<double, 4>> pixels_;  // window depth, 0...1; colour, 0...255
+  std::size_t samples_;                                          // of a pixel
+  std::array<std::pair<Real, Real>, kMaxPixelSamples> place_{};  // of each, pixels from the upper left corner
+  FragmentBuffer<Real, std::array<double, 4>> pixels_;           // window depth, 0...1; colour, 0...255
 };
 
 }  // namespace
@@ -369,6 +458,8 @@ int stored_channel(std::uint32_t color, ColorFormat format, int channel) {
 Image render(const Scene& scene, const Config& config, const Options& options) {
   validate(config);
   validate(scene);
+  if (config.msaa_samples > 1 && options.clipping == Clipping::homogeneous)
+    throw InputError("msaa.samples: --clipping homogeneous has one sample a pixel; use msaa.samples=1");
   if (scene.width < 1 || scene.height < 1 || scene.width > config.target_width || scene.height > config.target_height)
     throw InputError(scene.name + ": the target of " + std::to_string(scene.width) + "x" +
                      std::to_string(scene.height) + " does not fit " + std::to_string(config.target_width) + "x" +

@@ -32,16 +32,22 @@ struct Outline {
   std::array<double, 3> inverse_w{};
 };
 
-/// All per-pixel vectors have width * height entries, rows from the top.
-struct Image {
-  int width = 0, height = 0;
-  std::vector<std::uint32_t> count;          ///< covered samples before the depth test
+/// What is stored, width * height entries each, rows from the top.
+struct Samples {
   std::vector<std::int32_t> ids;             ///< input primitive that owns the stored colour or depth, -1 none
   std::vector<double> depth;                 ///< window z * (2^B - 1), not rounded: LSB of the interpolated depth
   std::vector<std::array<double, 4>> color;  ///< 0...255, not rounded
-  Framebuffer frame;                         ///< the same, rounded to the stored formats
-  Counters counters;                         ///< primitives, covered, samples_tested, depth_passed, written
-  std::vector<Outline> outlines;             ///< what was not culled, if asked for
+};
+
+/// All per-pixel vectors have width * height entries, rows from the top. Of pixels with several samples: the mean of their
+/// colours; depth and owner of sample 0.
+struct Image : Samples {
+  int width = 0, height = 0;
+  std::vector<std::uint32_t> count;  ///< covered samples before the depth test
+  std::vector<Samples> samples;      ///< of each sample of a pixel; empty where a pixel has one
+  Framebuffer frame;                 ///< the same, rounded to the stored formats
+  Counters counters;                 ///< primitives, covered, samples_tested, depth_passed, written
+  std::vector<Outline> outlines;     ///< what was not culled, if asked for
 };
 
 /// A fragment as it comes to the operations, and what becomes of it. Depths in LSB of the interpolated depth, not rounded.
@@ -49,6 +55,7 @@ struct TappedFragment {
   std::uint32_t primitive = 0, draw = 0;  ///< as in Outline
   std::size_t outline = 0;                ///< its place in Image::outlines; with want_outlines
   int x = 0, y = 0;                       ///< pixels
+  int sample = 0;                         ///< of its pixel: each covered one is a fragment of its own
   double depth = 0, stored_depth = 0;     ///< its own, and what lies at its pixel before it
   std::array<double, 4> color{};          ///< 0...255, with its texture
   Fate fate;

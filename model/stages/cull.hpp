@@ -66,6 +66,16 @@ struct PixelBounds {
           std::min(limit.right, (x_max - half) >> grid_bits), std::min(limit.bottom, (y_max - half) >> grid_bits)};
 }
 
+/// The same where a pixel has `samples` samples: with several, wherever they lie, the pixels that the bounding box touches.
+[[nodiscard]] inline PixelBounds sample_bounds(const std::array<SnappedVertex, 3>& v, const PixelBounds& limit,
+                                               int grid_bits, int samples) {
+  if (samples == 1) return pixel_bounds(v, limit, grid_bits);
+  const auto [x_min, x_max] = std::minmax({v[0].x, v[1].x, v[2].x});
+  const auto [y_min, y_max] = std::minmax({v[0].y, v[1].y, v[2].y});
+  return {std::max(limit.left, x_min >> grid_bits), std::max(limit.top, y_min >> grid_bits),
+          std::min(limit.right, x_max >> grid_bits), std::min(limit.bottom, y_max >> grid_bits)};
+}
+
 /// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one. Their indices in that order.
 [[nodiscard]] inline std::array<std::size_t, 3> canonical_order(const std::array<SnappedVertex, 3>& v,
                                                                 std::int64_t area) {

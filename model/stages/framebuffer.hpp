@@ -2,6 +2,8 @@
 //
 // In: depth-tested stamps, clears. Out: the two images. Depth is one code per pixel, colour one stored code per pixel
 // (Config::color_format), stencil 8 bits. Rows are padded to whole tiles, so that an engine may touch a tile as a whole.
+// Where a pixel has several samples, each of them has images of its own, and those of the pixel are what resolve() makes of
+// them.
 #pragma once
 
 #include <cstddef>
@@ -32,6 +34,7 @@ struct Framebuffer {
   int stride = 0;             ///< pixels from one row to the next; rows below `height` are padding as well
   Image depth, color;
   std::vector<std::uint8_t> stencil;
+  std::vector<Framebuffer> samples;  ///< of each sample of a pixel; empty where a pixel has one
 
   Framebuffer() = default;
   Framebuffer(int width_, int height_, int tile_size)

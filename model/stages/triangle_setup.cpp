@@ -115,7 +115,7 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
   const auto v = canonical(triangle.v, area);
   setup.area = area < 0 ? -area : area;
   const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
-  const PixelBounds box = pixel_bounds(v, limit, widths.grid_bits);
+  const PixelBounds box = sample_bounds(v, limit, widths.grid_bits, widths.pixel_samples);
   setup.left = box.left;
   setup.top = box.top;
   setup.right = box.right;

@@ -104,7 +104,7 @@ SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& 
   // The comparisons are false for a NaN, and coarse enough that the conversions below are in range.
   if (!(std::abs(p.x) <= 2 * band && std::abs(p.y) <= 2 * band && p.z >= -1 && p.z <= 2))
     refuse_vertex(p, source, config);
-  const int S = config.subpixel_bits, grid_bits = std::max(S, 1);
+  const int S = config.subpixel_bits, grid_bits = coordinate_grid_bits(config);
   const double scale = static_cast<double>(std::int64_t{1} << S);
   const std::int64_t x = snap(p.x, scale) << (grid_bits - S), y = snap(p.y, scale) << (grid_bits - S);
   const std::int64_t z =

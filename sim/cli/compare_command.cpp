@@ -262,6 +262,7 @@ int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   const StudyRules rules = study_rules(options.study);
+  if (!options.against_path.empty()) require_one_sample(config, "compare --against");
   for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
     check_output(*path, ".png");
   if (!options.panels.empty() && options.sheet_path.empty())

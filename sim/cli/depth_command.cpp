@@ -217,6 +217,7 @@ void check_depth_options(const DepthCommand& options, const Config& config) {
   if (config.depth_mapping != DepthMapping::projection || config.depth_format.kind != DepthFormat::Kind::plane)
     throw InputError(
         "depth.mapping and depth.format: here --mapping and --format take them; leave them out of --config and --set");
+  require_one_sample(config, "depth");
   for (const std::string& setting : options.settings)
     if (setting.starts_with("depth.bits="))
       throw InputError("depth: the bits that are interpolated follow from the format; leave depth.bits out");

@@ -134,6 +134,7 @@ int run(const ExplainOptions& options) {
   check_distinct({options.scene, options.json, options.output});
   check_picture(options);
   const Config config = effective_config(options);
+  require_one_sample(config, "explain");
   const std::unique_ptr<Dut> dut = explained_rtl(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);

@@ -215,6 +215,8 @@ int run(const StressCommand& options) {
   const Config config = effective_config(options);
   if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
     throw InputError("stress: its cases are of planes; leave depth.format and depth.mapping as they are");
+  if (config.msaa_samples != 1)
+    throw InputError("stress: the case `samples` chooses msaa.samples itself, the others have one; leave it as it is");
   stress::RunOptions run;
   run.seed = options.seed;
   run.threads = options.threads;

@@ -244,6 +244,7 @@ void write_captures(const std::string& folder, const WidthStudy& study, const Co
 int run_table(const WidthsCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
+  require_one_sample(config, "widths");
   if (std::error_code error; !options.captures.empty()) {
     std::filesystem::create_directories(options.captures, error);
     if (error) throw InputError("--captures: cannot make the folder '" + options.captures + "'; choose another");

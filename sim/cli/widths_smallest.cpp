@@ -165,6 +165,7 @@ void print_found(std::ostream& out, const Smallest& smallest, const Config& star
 int run_smallest(const WidthsCommand& options) {
   const auto begin = std::chrono::steady_clock::now();
   const Config start = effective_config(options);
+  require_one_sample(start, "widths");
   const ErrorBounds bounds = parse_bounds(options, start);
   if (options.scenes.empty()) throw InputError("--smallest: no scene; give --scene, as in --scene teapot,city");
   if (start.depth_format != DepthFormat{} || start.depth_mapping != DepthMapping::projection)

@@ -396,6 +396,7 @@ const JudgedStage& judged_stage(std::string_view name) {
 }
 
 void require_stage(const JudgedStage& stage, const Config& config) {
+  require_one_sample(config, "the RTL");
   const bool is_of_texture = stage.stage == Stage::texture_unit || stage.stage == Stage::texture_memory;
   if (is_of_texture && !has_texture_planes(config))
     throw InputError("stage " + std::string(info(stage.stage).name) +

@@ -49,9 +49,9 @@ CompareOptions with_engine(std::function<void(Rendering&)> damage,
     RenderOptions changed = asked;
     CoverageTap original = asked.coverage_tap;
     if (tap) {
-      changed.coverage_tap = [&original, &tap](std::uint32_t triangle, int x, int y, const TileMask& mask) {
+      changed.coverage_tap = [&original, &tap](std::uint32_t triangle, int x, int y, const TileMask& mask, int sample) {
         TileMask copy = mask;
-        if (tap(original, triangle, x, y, copy)) original(triangle, x, y, copy);
+        if (tap(original, triangle, x, y, copy)) original(triangle, x, y, copy, sample);
       };
     }
     Rendering rendering = render_functional(scene, config, changed);
@@ -224,7 +224,7 @@ TEST(CompareMustFail, TileNeverVisitedCountsAllItsSamples) {
 
 TEST(CompareMustFail, TileVisitedTwiceIsReported) {
   const auto repeat = [](CoverageTap& original, std::uint32_t triangle, int tile_x, int tile_y, TileMask& mask) {
-    if (tile_x == 1 && tile_y == 1) original(triangle, tile_x, tile_y, mask);
+    if (tile_x == 1 && tile_y == 1) original(triangle, tile_x, tile_y, mask, 0);
     return true;
   };
   EXPECT_EQ(compare(one_triangle(), preset("embedded"), with_engine({}, repeat)).oracle.mismatches, 64u);

@@ -178,6 +178,10 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
       config.frame_order = FrameOrder::bins;
     else if (std::holds_alternative<FrameStore Config::*>(setting.member))
       config.frame_store = FrameStore::color;
+    else if (std::holds_alternative<SamplePattern Config::*>(setting.member))
+      config.msaa_pattern = parse_sample_pattern("0.25,0.25;0.75,0.75");
+    else if (setting.key == "msaa.samples")
+      config.msaa_samples = 2;
     else if (!setting.is_hardware())
       set(config, setting.key, setting.key == "depth.mapping" ? "rev" : "f16");
     else

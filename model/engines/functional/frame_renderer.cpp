@@ -75,7 +75,7 @@ bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
 
 bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
-  if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
+  if (options.rules != StudyRules{} || config.tile_size != kTileSize || config.msaa_samples != 1) return false;
   if (std::ranges::any_of(scene.states, [](const State& s) { return s.stencil && has_surface(s); })) return false;
   if (std::ranges::any_of(scene.states, has_surface) && !has_plain_surfaces(scene, options)) return false;
   const Widths widths = derive_widths(config);
@@ -125,7 +125,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
     widths_ = derive_widths(config_);
   }
   check_fits(scene, config_);
-  check_onto(scene, options);
+  check_onto(scene, config_, options);
   prepared_ = &prepared;
   scene_ = &scene;
   skip_ = options.skip;

@@ -61,6 +61,7 @@ Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, co
                  const std::function<void()>& poll) {
   RenderOptions options;
   if (poll) options.progress = [poll](double) { poll(); };
+  if (engine == "llvmpipe") require_one_sample(config, "llvmpipe, as it is asked here,");
   if (engine == "functional") return functional_frame(std::move(scene), config, threads);
   if (engine == "llvmpipe") return llvmpipe_frame(*scene, config, threads);
   if (engine == "cycle" || engine == "rtl") check_hardware_scene(*scene, config);

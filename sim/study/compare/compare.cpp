@@ -87,17 +87,25 @@ struct OwnedPixels {
   }
 };
 
+/// Whether model and golden show the same primitive at a pixel, at each of its samples.
+bool shows_same(const Comparison& c, std::size_t p) {
+  if (c.golden.samples.empty()) return c.golden.ids[p] == c.rendering.ids[p];
+  for (std::size_t k = 0; k < c.golden.samples.size(); ++k)
+    if (c.golden.samples[k].ids[p] != c.rendering.sample_owners[k].ids[p]) return false;
+  return true;
+}
+
 /// Holds what is stored against what the fragments leave in a target by the golden's operations, over the pixels that
 /// some fragment owns, and gathers every attribute error.
 class AttributeComparison {
  public:
-  /// `made`: what the specification drew while its fragments came to `frame`. `perspective`: the golden's colours when
-  /// all of them are interpolated so; empty: not asked for.
-  AttributeComparison(const Scene& scene, const Config& config, const FragmentFrame& frame, const Rendering& made,
-                      const std::vector<std::array<double, 4>>& perspective, Comparison& result)
+  /// `made`: what the specification drew while its fragments came to `frames`, one for each sample of a pixel.
+  /// `perspective`: the golden's picture when all colours are interpolated so; empty: not asked for.
+  AttributeComparison(const Scene& scene, const Config& config, const std::vector<FragmentFrame>& frames,
+                      const Rendering& made, const golden::Image& perspective, Comparison& result)
       : scene_(scene),
         config_(config),
-        frame_(frame),
+        frames_(frames),
         made_(made),
         perspective_(perspective),
         widths_(derive_widths(config)),
@@ -106,19 +114,14 @@ class AttributeComparison {
         depth_max_(std::ldexp(1.0, config.depth_bits) - 1),
         depth_encode_(config, scene.planes),
         eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())),
-        texture_(result.depth_error_lsb.size()),
-        layers_(frame.layers()) {}
+        texture_(result.depth_error_lsb.size()) {}
 
   /// `progress` gets the part of the pixels done.
   void run(const std::function<void(double)>& progress) {
-    for (std::size_t p = 0; p < frame_.owners().size(); ++p)
-      result_.stage_mismatches += result_.rendering.ids[p] != frame_.owners()[p] ? 1 : 0;
-    const OwnedPixels owned(frame_);
-    result_.visible_triangles = owned.triangles;
-    for (std::size_t i = 0; i < owned.pixels.size(); ++i) {
-      if (i % 4096 == 0) progress(static_cast<double>(i) / static_cast<double>(owned.pixels.size()));
-      pixel(owned_pixel(owned.pixels[i]));
-    }
+    const double parts = static_cast<double>(frames_.size());
+    for (std::size_t k = 0; k < frames_.size(); ++k)
+      sample(k, [&](double part) { progress((static_cast<double>(k) + part) / parts); });
+    if (frames_.size() > 1) resolved_colors();
     result_.depth_lsb = depth_.stats();
     result_.color_lsb = color_.stats();
     if (const ErrorStats eye = eye_.stats(); eye.count > 0) result_.depth_eye = eye;
@@ -131,30 +134,124 @@ class AttributeComparison {
     result_.color_over_w = color_over_w_.stats();
     result_.fog = fog_.stats();
     if (has_texture_) result_.texture = std::move(texture_).result();
-    result_.layers = layers_.rows();
+    result_.layers = layer_rows_;
     result_.datapath_bias = datapath_bias_.stats();
     result_.color_datapath_bias = color_datapath_bias_.stats();
   }
 
  private:
+  /// What the one sample of pixels, or one of several, holds: in the model, in the specification, in the golden.
+  struct View {
+    const Framebuffer &stored, &made;
+    const std::vector<std::int32_t>& ids;
+    const golden::Samples& golden;
+    const golden::Samples& perspective;
+  };
+  [[nodiscard]] View view(std::size_t k) const {
+    const Rendering& model = result_.rendering;
+    if (frames_.size() == 1) return {model.frame, made_.frame, model.ids, result_.golden, perspective_};
+    const bool has_perspective = !perspective_.samples.empty();
+    return {model.frame.samples[k], made_.frame.samples[k], model.sample_owners[k].ids, result_.golden.samples[k],
+            has_perspective ? perspective_.samples[k] : perspective_};
+  }
+
+  /// All pixels, at one of their samples.
+  void sample(std::size_t k, const std::function<void(double)>& progress) {
+    frame_ = &frames_[k];
+    oracle_.reset();
+    sample_ = k;
+    view_.emplace(view(k));
+    layers_.emplace(frame_->layers());
+    for (std::size_t p = 0; p < frame_->owners().size(); ++p)
+      result_.stage_mismatches += view_->ids[p] != frame_->owners()[p] ? 1 : 0;
+    const OwnedPixels owned(*frame_);
+    result_.visible_triangles = std::max(result_.visible_triangles, owned.triangles);
+    for (std::size_t i = 0; i < owned.pixels.size(); ++i) {
+      if (i % 4096 == 0) progress(static_cast<double>(i) / static_cast<double>(owned.pixels.size()));
+      pixel(owned_pixel(owned.pixels[i]));
+    }
+    for (const LayerRow& row : layers_->rows()) add_layers(row);
+  }
+
+  void add_layers(const LayerRow& row) {
+    const auto same = std::ranges::find(layer_rows_, row.layers, &LayerRow::layers);
+    if (same == layer_rows_.end()) {
+      layer_rows_.insert(std::ranges::find_if(layer_rows_, [&](const LayerRow& r) { return r.layers > row.layers; }),
+                         row);
+      return;
+    }
+    const double squares =
+        same->rms * same->rms * static_cast<double>(same->pixels) + row.rms * row.rms * static_cast<double>(row.pixels);
+    same->pixels += row.pixels;
+    same->rms = std::sqrt(squares / static_cast<double>(same->pixels));
+    same->max = std::max(same->max, row.max);
+    same->bound = std::max(same->bound, row.bound);
+    same->part_of_bound = std::max(same->part_of_bound, row.part_of_bound);
+  }
+
+  /// The one colour of each pixel: the mean of its samples, rounded, and against the golden's.
+  void resolved_colors() {
+    const auto max = golden::channel_max(config_.color_format);
+    const Framebuffer& frame = result_.rendering.frame;
+    const double samples = static_cast<double>(frames_.size());
+    for (int y = 0; y < frame.height; ++y)
+      for (int x = 0; x < frame.width; ++x) {
+        const std::size_t p =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
+        const std::size_t at = frame.at(x, y);
+        double worst = 0;
+        const bool is_same = shows_same(result_, p) && result_.golden.ids[p] >= 0;
+        for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
+          const auto c = static_cast<std::size_t>(channel);
+          double sum = 0;
+          for (const Framebuffer& of : frame.samples)
+            sum += golden::stored_channel(of.color[at], config_.color_format, channel);
+          const int stored = golden::stored_channel(frame.color[at], config_.color_format, channel);
+          result_.stage_mismatches += stored != static_cast<int>(std::floor(sum / samples + 0.5)) ? 1 : 0;
+          if (!is_same) continue;
+          const double error = stored - result_.golden.color[p][c] * max[c] / 255;
+          color_.add(error);
+          if (std::abs(error) > std::abs(worst)) worst = error;
+        }
+        result_.stage_mismatches += frame.depth[at] != frame.samples.front().depth[at] ? 1 : 0;
+        if (is_same) result_.color_error_lsb[p] = static_cast<float>(worst);
+      }
+  }
+
   [[nodiscard]] const State& state_of(std::uint32_t command) const {
     return scene_.states[std::get<Draw>(scene_.commands[command]).state];
   }
 
   [[nodiscard]] OwnedPixel owned_pixel(std::size_t p) {
-    const TappedFragment& f = frame_.shown(p);
+    const TappedFragment& f = frame_->shown(p);
     OwnedPixel pixel{p, made_.frame.at(f.x, f.y), f.draw, f.kind != PrimitiveKind::triangle, {}};
     if (!pixel.is_line && (!oracle_ || oracle_item_ != f.item)) {
-      oracle_.emplace(made_.triangles[f.item], widths_.grid_bits);
-      surface_oracle_.reset();
-      if (f.surface) surface_oracle_.emplace(scene_, config_, made_.triangles[f.item]);
+      oracle_.emplace(seen_triangle(f, static_cast<int>(sample_)), widths_.grid_bits);
       oracle_item_ = f.item;
+      shaded_at_.reset();
+    }
+    if (!pixel.is_line && shaded_at_ != f.shaded_at) {
+      const Triangle shaded = seen_triangle(f, f.shaded_at);
+      color_oracle_.emplace(shaded, widths_.grid_bits);
+      surface_oracle_.reset();
+      if (f.surface) surface_oracle_.emplace(scene_, config_, shaded);
+      shaded_at_ = f.shaded_at;
     }
     if (f.surface) pixel.surface = &*f.surface;
-    const exact::PlaneWeights weights = pixel.is_line ? exact::PlaneWeights{} : oracle_->weights_at(f.x, f.y);
+    const exact::PlaneWeights of_depth = pixel.is_line ? exact::PlaneWeights{} : oracle_->weights_at(f.x, f.y);
+    const exact::PlaneWeights of_color =
+        pixel.is_line || frames_.size() == 1 ? of_depth : color_oracle_->weights_at(f.x, f.y);
     for (std::size_t i = 0; i < planes_.size(); ++i)
-      pixel.plane[i] = {exact_value(f, weights, i), {f.plane[i].unrounded, int128{1} << f.guard_bits}};
+      pixel.plane[i] = {exact_value(f, planes_[i].is_depth ? of_depth : of_color, i),
+                        {f.plane[i].unrounded, int128{1} << f.guard_bits}};
     return pixel;
+  }
+
+  /// The triangle of a fragment as a sample sees it; -1: as the centre does.
+  [[nodiscard]] Triangle seen_triangle(const TappedFragment& f, int place) const {
+    const SampleOffset offset =
+        place < 0 || frames_.size() == 1 ? SampleOffset{} : widths_.sample_offset[static_cast<std::size_t>(place)];
+    return exact::seen_from(made_.triangles[f.item], offset);
   }
 
   [[nodiscard]] exact::Rational exact_value(const TappedFragment& f, const exact::PlaneWeights& weights,
@@ -169,11 +266,11 @@ class AttributeComparison {
   void pixel(const OwnedPixel& pixel) {
     const State& state = state_of(pixel.draw);
     // The same primitive, not merely some primitive: otherwise U - D would be the distance of two surfaces.
-    const std::int32_t owner = frame_.owners()[pixel.p];
-    const bool same_visible = result_.golden.ids[pixel.p] == owner && result_.rendering.ids[pixel.p] == owner;
+    const std::int32_t owner = frame_->owners()[pixel.p];
+    const bool same_visible = view_->golden.ids[pixel.p] == owner && view_->ids[pixel.p] == owner;
     result_.compared_pixels += same_visible ? 1 : 0;
-    if (state.depth_write) depth(pixel, result_.rendering.frame.depth[pixel.at], same_visible);
-    if (writes_color(state, config_.color_format)) color(pixel, result_.rendering.frame.color[pixel.at], same_visible);
+    if (state.depth_write) depth(pixel, view_->stored.depth[pixel.at], same_visible);
+    if (writes_color(state, config_.color_format)) color(pixel, view_->stored.color[pixel.at], same_visible);
   }
 
   void depth(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
@@ -182,7 +279,7 @@ class AttributeComparison {
     v.h = exact::on_grid(pixel.plane[kDepthPlane].hardware);
     v.d = depth_encode_.is_identity() ? std::int64_t{stored} << exact::kGridBits
                                       : on_grid(static_cast<double>(depth_encode_.plane_value(stored)) * depth_max_);
-    result_.stage_mismatches += stored != made_.frame.depth[pixel.at] ? 1 : 0;
+    result_.stage_mismatches += stored != view_->made.depth[pixel.at] ? 1 : 0;
     // Of a format that is not the plane's, storage is a step after the datapath.
     const std::int64_t datapath = depth_encode_.is_identity() ? v.d : v.h;
     if (pixel.is_line) {
@@ -192,11 +289,11 @@ class AttributeComparison {
       datapath_bias_.add(to_lsb(v.h - v.s));
     }
     if (!same_visible) return;
-    const double u = result_.golden.depth[pixel.p];
+    const double u = view_->golden.depth[pixel.p];
     v.u = on_grid(u);
     depth_parts_.add(v);
     depth_.add(to_lsb(v.d - v.u));
-    result_.depth_error_lsb[pixel.p] = static_cast<float>(to_lsb(v.d - v.u));
+    if (sample_ == 0) result_.depth_error_lsb[pixel.p] = static_cast<float>(to_lsb(v.d - v.u));
     if (const auto& mapping = eye_mappings_[pixel.draw]) {
       const auto of_d = mapping->eye_depth(to_lsb(v.d) / depth_max_), of_u = mapping->eye_depth(u / depth_max_);
       if (of_d && of_u)
@@ -208,8 +305,8 @@ class AttributeComparison {
 
   /// A colour of several fragments: what of its error is the operations'.
   void layered_color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
-    layers_.judge(pixel.p, stored);
-    if (!same_visible) return;
+    layers_->judge(pixel.p, stored);
+    if (!same_visible || frames_.size() > 1) return;
     const auto max = golden::channel_max(config_.color_format);
     double worst = 0;
     for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
@@ -224,8 +321,8 @@ class AttributeComparison {
 
   void color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     const auto max = golden::channel_max(config_.color_format);
-    result_.stage_mismatches += stored != made_.frame.color[pixel.at] ? 1 : 0;
-    if (layers_.is_layered(pixel.p)) return layered_color(pixel, stored, same_visible);
+    result_.stage_mismatches += stored != view_->made.color[pixel.at] ? 1 : 0;
+    if (layers_->is_layered(pixel.p)) return layered_color(pixel, stored, same_visible);
     double worst = 0;
     const golden::Color surface = pixel.surface != nullptr ? exact_surface(pixel) : golden::Color{};
     for (int channel = 0; channel < golden::channel_count(config_.color_format); ++channel) {
@@ -242,19 +339,21 @@ class AttributeComparison {
         color_datapath_bias_.add(to_lsb(v.h - v.s));
       }
       if (!same_visible) continue;
-      v.u = on_grid(result_.golden.color[pixel.p][c] * max[c] / 255);
+      v.u = on_grid(view_->golden.color[pixel.p][c] * max[c] / 255);
       color_parts_.add(v);
-      if (!perspective_.empty()) affine_.add(v.u - on_grid(perspective_[pixel.p][c] * max[c] / 255));
+      if (!view_->perspective.color.empty())
+        affine_.add(v.u - on_grid(view_->perspective.color[pixel.p][c] * max[c] / 255));
+      if (frames_.size() > 1) continue;  // the pixel's one colour is compared, when all samples have been looked at
       const double error = to_lsb(v.d - v.u);
       color_.add(error);
       if (std::abs(error) > std::abs(worst)) worst = error;
     }
-    if (same_visible) result_.color_error_lsb[pixel.p] = static_cast<float>(worst);
+    if (same_visible && frames_.size() == 1) result_.color_error_lsb[pixel.p] = static_cast<float>(worst);
   }
 
   /// What the surface of a pixel should show; its errors are gathered.
   [[nodiscard]] golden::Color exact_surface(const OwnedPixel& pixel) {
-    const TappedFragment& f = frame_.shown(pixel.p);
+    const TappedFragment& f = frame_->shown(pixel.p);
     const SurfaceErrors errors = surface_oracle_->errors(*pixel.surface, f.x, f.y);
     if (std::isfinite(errors.color.bound)) color_over_w_.add(errors.color.value);
     if (errors.has_fog) fog_.add(errors.fog.value);
@@ -265,22 +364,28 @@ class AttributeComparison {
 
   const Scene& scene_;
   const Config& config_;
-  const FragmentFrame& frame_;
+  const std::vector<FragmentFrame>& frames_;
+  const FragmentFrame* frame_ = nullptr;  // of the sample at work
+  std::size_t sample_ = 0;                // its number
+  std::optional<View> view_;              // what it holds
   const Rendering& made_;
-  const std::vector<std::array<double, 4>>& perspective_;
+  const golden::Image& perspective_;
   const Widths widths_;
   const std::vector<JudgedPlane> planes_;
   Comparison& result_;
   double depth_max_;  // 2^B - 1
   DepthEncode depth_encode_;
   std::vector<std::optional<EyeMapping>> eye_mappings_;
-  std::optional<exact::TriangleOracle> oracle_;  // of the triangle at work
-  std::optional<SurfaceOracle> surface_oracle_;  // likewise
-  std::uint32_t oracle_item_ = 0;                // its number
+  std::optional<exact::TriangleOracle> oracle_;        // of the triangle at work
+  std::uint32_t oracle_item_ = 0;                      // its number
+  std::optional<exact::TriangleOracle> color_oracle_;  // of it, where the pixel at work is shaded
+  std::optional<SurfaceOracle> surface_oracle_;        // likewise
+  std::optional<int> shaded_at_;                       // that place
   ErrorSet depth_, color_, eye_;
   MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_, fog_;
   TextureErrorSets texture_;
-  LayeredColors layers_;
+  std::optional<LayeredColors> layers_;  // of the sample at work
+  std::vector<LayerRow> layer_rows_;
   bool has_texture_ = false;
   PartSets depth_parts_, color_parts_;
   PartSet affine_;
@@ -293,13 +398,14 @@ CoverageClass classify(std::uint32_t golden_count, std::uint32_t model_count, bo
   return golden_count == 0 ? CoverageClass::none : CoverageClass::both;
 }
 
-std::uint64_t different_pixels(const Scene& scene, const Rendering& a, const Rendering& b) {
+std::uint64_t different_pixels(const Scene& scene, const Framebuffer& a, const Framebuffer& b) {
   std::uint64_t different = 0;
   for (int y = 0; y < scene.height; ++y)
     for (int x = 0; x < scene.width; ++x) {
-      const std::size_t at = a.frame.at(x, y), bt = b.frame.at(x, y);
-      different += a.frame.depth[at] != b.frame.depth[bt] || a.frame.color[at] != b.frame.color[bt] ? 1 : 0;
+      const std::size_t at = a.at(x, y), bt = b.at(x, y);
+      different += a.depth[at] != b.depth[bt] || a.color[at] != b.color[bt] ? 1 : 0;
     }
+  for (std::size_t k = 0; k < a.samples.size(); ++k) different += different_pixels(scene, a.samples[k], b.samples[k]);
   return different;
 }
 
@@ -316,18 +422,18 @@ std::string line(const char* format, double value, double bound) {
 
 /// Draws by the specification, whose every fragment goes to the judge, and through the golden's operations.
 Rendering draw_fragments(const Scene& scene, const Config& config, const CompareOptions& options, FragmentJudge& judge,
-                         FragmentFrame& frame, const std::function<void(double)>& progress) {
+                         std::vector<FragmentFrame>& frames, const std::function<void(double)>& progress) {
   RenderOptions render_options;
   render_options.progress = progress;
   render_options.skip = options.skip;
   render_options.rules = options.rules;
   render_options.fragment_tap = [&](const TappedFragment& fragment) {
     judge.add(fragment);
-    frame.add(fragment);
+    frames[static_cast<std::size_t>(fragment.sample)].add(fragment);
   };
   const Engine specification = options.specification ? options.specification : render_scalar;
   Rendering rendering = specification(scene, config, render_options);
-  frame.finish();
+  for (FragmentFrame& frame : frames) frame.finish();
   return rendering;
 }
 
@@ -336,13 +442,14 @@ Rendering draw_fragments(const Scene& scene, const Config& config, const Compare
 Comparison compare(const Scene& scene, const Config& plain_config, const CompareOptions& options) {
   const Config config = with_alpha(plain_config, scene);
   Comparison result;
-  CoverageLog log(config.tile_size);
+  std::vector<CoverageLog> logs = coverage_logs(config);
   RenderOptions render_options;
   render_options.skip = options.skip;
   render_options.rules = options.rules;
   render_options.want_count = render_options.want_ids = render_options.want_triangles = true;
-  render_options.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
-    log.add(triangle, tile_x, tile_y, mask);
+  render_options.coverage_tap = [&logs](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask,
+                                        int sample) {
+    logs[static_cast<std::size_t>(sample)].add(triangle, tile_x, tile_y, mask);
   };
   PixelLog pixel_log;
   render_options.pixel_tap = [&pixel_log](std::uint32_t primitive, int x, int y) { pixel_log.add(primitive, x, y); };
@@ -360,44 +467,44 @@ Comparison compare(const Scene& scene, const Config& plain_config, const Compare
   const Engine engine = options.engine ? options.engine : is_default ? render_functional : render_scalar;
   result.rendering = engine(scene, config, render_options);
   FragmentJudge judge(scene, config, options.rules.fill_rule);
-  FragmentFrame frame(scene, config);
-  const Rendering made = draw_fragments(scene, config, options, judge, frame, part(0.2, 0.4));
+  std::vector<FragmentFrame> frames;
+  for (int k = 0; k < config.msaa_samples; ++k) frames.emplace_back(scene, config, k);
+  const Rendering made = draw_fragments(scene, config, options, judge, frames, part(0.2, 0.4));
   result.fragments = judge.finish(made);
   if (!has_own_planes(options.rules))
     result.fragments.planes.clear();  // off on purpose; what is stored says by how much
   result.golden = golden::render(scene, config, golden_options);
-  std::vector<std::array<double, 4>> perspective;
+  golden::Image perspective;
   if (options.wants_affine_cost) {
     golden_options.color_interp = ColorInterp::perspective;
     golden_options.want_outlines = false;
     golden_options.progress = part(0.6, 0.8);
-    perspective = golden::render(scene, config, golden_options).color;
+    perspective = golden::render(scene, config, golden_options);
   }
   // With taps the functional engine draws by the stages: what it draws without them must be the same.
   if (is_default && !options.engine) {
     RenderOptions plain;
     plain.skip = options.skip;
     plain.progress = part(0.8, 0.8);
-    result.stage_mismatches += different_pixels(scene, result.rendering, engine(scene, config, plain));
+    result.stage_mismatches += different_pixels(scene, result.rendering.frame, engine(scene, config, plain).frame);
   }
 
-  log.sort();
-  result.oracle = check_coverage(scene, config, result.rendering.triangles, log, options.rules.fill_rule);
+  for (CoverageLog& log : logs) log.sort();
+  result.oracle = check_coverage(scene, config, result.rendering.triangles, logs, options.rules.fill_rule);
   pixel_log.sort();
   check_line_coverage(scene, config, result.rendering, pixel_log, result.oracle);
   result.coverage = compare_counts(scene, result.rendering.count, result.golden, config.subpixel_bits);
   const std::size_t pixels = result.rendering.count.size();
   result.coverage_class.resize(pixels);
   for (std::size_t p = 0; p < pixels; ++p) {
-    result.coverage_class[p] =
-        classify(result.golden.count[p], result.rendering.count[p], result.golden.ids[p] == result.rendering.ids[p]);
+    result.coverage_class[p] = classify(result.golden.count[p], result.rendering.count[p], shows_same(result, p));
     result.missing_pixels += result.coverage_class[p] == CoverageClass::missing ? 1 : 0;
     result.extra_pixels += result.coverage_class[p] == CoverageClass::extra ? 1 : 0;
     result.other_visible += result.coverage_class[p] == CoverageClass::other ? 1 : 0;
   }
   result.depth_error_lsb.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   result.color_error_lsb = result.depth_error_lsb;
-  AttributeComparison(scene, config, frame, made, perspective, result).run(part(0.8, 1));
+  AttributeComparison(scene, config, frames, made, perspective, result).run(part(0.8, 1));
   return result;
 }
 

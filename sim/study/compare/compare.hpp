@@ -41,6 +41,8 @@ struct ErrorParts {
   PartStats snap, interpolation, storage, total;
 };
 
+/// Of pixels with several samples each sample is compared as a pixel otherwise is, and counted; only `color_lsb` and
+/// `color_error_lsb` are of the pixel's one colour, where all of its samples show the same primitives.
 struct Comparison {
   // Coverage.
   PixelCoverage coverage;                              ///< against U

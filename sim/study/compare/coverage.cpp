@@ -161,17 +161,41 @@ std::uint64_t CoverageLog::sample_count(const Visit& visit) const {
   return count;
 }
 
-OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
-                            const CoverageLog& log, FillRule rule) {
+namespace {
+
+OracleResult check_sample(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
+                          const SampleOffset& offset, const CoverageLog& log, FillRule rule) {
   OracleCheck check(config, log, rule);
   auto visit = log.visits().begin();
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const State& state = scene.states[std::get<Draw>(scene.commands[triangles[i].draw]).state];
-    check.triangle(triangles[i], static_cast<std::uint32_t>(i), golden::draw_region(scene, state), visit);
+    check.triangle(exact::seen_from(triangles[i], offset), static_cast<std::uint32_t>(i),
+                   golden::draw_region(scene, state), visit);
   }
   OracleResult result = check.result();
   for (; visit != log.visits().end(); ++visit) result.mismatches += log.sample_count(*visit);  // of no triangle at all
   return result;
+}
+
+}  // namespace
+
+OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
+                            std::span<const CoverageLog> logs, FillRule rule) {
+  const Widths widths = derive_widths(config);
+  OracleResult result;
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const OracleResult of = check_sample(scene, config, triangles, widths.sample_offset[k], logs[k], rule);
+    result.samples += of.samples;
+    result.mismatches += of.mismatches;
+    if (result.first || !of.first) continue;
+    result.first = of.first;
+    result.first->sample = static_cast<int>(k);
+  }
+  return result;
+}
+
+std::vector<CoverageLog> coverage_logs(const Config& config) {
+  return std::vector<CoverageLog>(static_cast<std::size_t>(config.msaa_samples), CoverageLog(config.tile_size));
 }
 
 PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> model, const golden::Image& golden,
@@ -184,7 +208,9 @@ PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> 
     (k > m ? result.missing : result.extra) += difference(k, m);
   }
   if (result.missing + result.extra == 0) return result;
-  EdgeMarker marker(golden.width, golden.height, std::ldexp(1.0, -subpixel_bits), differs);
+  // A sample lies up to half a pixel's diagonal from its centre, to which distances are.
+  const double to_sample = golden.samples.empty() ? 0 : std::sqrt(0.5);
+  EdgeMarker marker(golden.width, golden.height, std::ldexp(1.0, -subpixel_bits) + to_sample, differs);
   for (const golden::Outline& o : golden.outlines) {
     if (o.corners < 3)
       mark_uncertain(o, scene.states[std::get<Draw>(scene.commands[o.draw]).state], subpixel_bits, golden, differs,

@@ -44,6 +44,7 @@ struct CoverageMismatch {
   std::uint32_t primitive = 0;  ///< number of the input primitive
   int x = 0, y = 0;             ///< pixels
   bool oracle_covers = false;
+  int sample = 0;  ///< of its pixel
 };
 
 struct OracleResult {
@@ -55,8 +56,12 @@ struct OracleResult {
 };
 
 /// Holds the logged coverage of every triangle against exact::covers by `rule`, tiles that were never visited included.
+/// `logs`: of each sample of a pixel.
 [[nodiscard]] OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
-                                          const CoverageLog& log, FillRule rule = FillRule::top_left);
+                                          std::span<const CoverageLog> logs, FillRule rule = FillRule::top_left);
+
+/// A log for each sample of a pixel.
+[[nodiscard]] std::vector<CoverageLog> coverage_logs(const Config& config);
 
 struct PixelCoverage {
   std::uint64_t missing = 0;    ///< samples that U covers and the model does not

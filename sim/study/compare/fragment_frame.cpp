@@ -1,5 +1,7 @@
 #include "fragment_frame.hpp"
 
+#include <cmath>
+
 #include "model/fragment_ops.hpp"
 #include "model/golden/viewport.hpp"
 #include "model/pipeline.hpp"
@@ -32,15 +34,17 @@ bool shows_back(const TappedFragment& fragment, const State& state) {
 
 }  // namespace
 
-FragmentFrame::FragmentFrame(const Scene& scene, const Config& config)
+FragmentFrame::FragmentFrame(const Scene& scene, const Config& config, int sample)
     : scene_(scene),
       config_(config),
+      sample_(sample),
       depth_encode_(config, scene.planes),
       pixels_(pixels_of(scene), depth_encode_.of_window(1.0), {}, config.color_format == ColorFormat::rgba8888),
       layers_(pixels_of(scene), config.color_format),
       shown_(pixels_of(scene)) {}
 
 void FragmentFrame::add(const TappedFragment& fragment) {
+  if (fragment.sample != sample_) return;
   clear_until(fragment.draw);
   const bool is_in_target =
       fragment.x >= 0 && fragment.x < scene_.width && fragment.y >= 0 && fragment.y < scene_.height;
@@ -48,8 +52,13 @@ void FragmentFrame::add(const TappedFragment& fragment) {
   const State& state = scene_.states[std::get<Draw>(scene_.commands[fragment.draw]).state];
   const std::size_t p = pixel_of(scene_, fragment.x, fragment.y);
   const auto owner = static_cast<std::int32_t>(fragment.primitive);
-  const golden::Tested<double> tested{static_cast<double>(depth_encode_(fragment.plane[kDepthPlane].code)),
-                                      static_cast<double>(alpha_of(fragment)), shows_back(fragment, state)};
+  const bool has_samples = config_.msaa_samples > 1;
+  if (has_samples && state.sample_mask && (*state.sample_mask >> sample_ & 1U) == 0) return;
+  const double alpha = alpha_of(fragment);
+  const bool is_drawn_by_alpha = !has_samples || !state.alpha_to_coverage ||
+                                 sample_ < static_cast<int>(std::floor(alpha / 255 * config_.msaa_samples + 0.5));
+  const golden::Tested<double> tested{static_cast<double>(depth_encode_(fragment.plane[kDepthPlane].code)), alpha,
+                                      shows_back(fragment, state), is_drawn_by_alpha};
   const golden::Fate fate = pixels_.apply(p, state, tested, {}, owner);
   // Of several lines or points of one primitive that store the same there, the last stands for all.
   const bool is_another = !fate.written && fragment.kind != PrimitiveKind::triangle && pixels_.owners()[p] == owner &&

@@ -17,9 +17,10 @@ namespace halfplane {
 
 class FragmentFrame {
  public:
-  FragmentFrame(const Scene& scene, const Config& config);
+  /// `sample`: the one of a pixel's several that this is the target of.
+  FragmentFrame(const Scene& scene, const Config& config, int sample = 0);
 
-  /// The next fragment in program order.
+  /// The next fragment in program order; those of other samples are no matter here.
   void add(const TappedFragment& fragment);
   /// After the last one.
   void finish() { clear_until(scene_.commands.size()); }
@@ -37,6 +38,7 @@ class FragmentFrame {
 
   const Scene& scene_;
   const Config& config_;
+  int sample_;
   DepthEncode depth_encode_;
   golden::FragmentBuffer<double, Nothing> pixels_;  // stored depth codes
   LayeredColors layers_;

@@ -43,8 +43,11 @@ std::string line(std::string_view plane, const char* what, double value, double 
 }  // namespace
 
 FragmentJudge::FragmentJudge(const Scene& scene, const Config& config, FillRule rule)
-    : scene_(scene), config_(config), widths_(derive_widths(config)), rule_(rule), log_(config.tile_size) {
+    : scene_(scene), config_(config), widths_(derive_widths(config)), rule_(rule) {
   for (const JudgedPlane& plane : judged_planes(config)) verdict_.planes.push_back({plane});
+  logs_ = coverage_logs(config);
+  pixels_.resize(logs_.size());
+  tiles_.resize(logs_.size());
 }
 
 void FragmentJudge::add(const TappedFragment& fragment) {
@@ -55,23 +58,44 @@ void FragmentJudge::add(const TappedFragment& fragment) {
     add_to_line(fragment);
 }
 
-void FragmentJudge::add_to_triangle(const TappedFragment& fragment) {
-  if (!oracle_ || item_ != fragment.item) {
-    finish_triangle();
-    oracle_.emplace(*fragment.triangle, widths_.grid_bits, rule_);
-    surface_.reset();
-    if (fragment.surface) surface_.emplace(scene_, config_, *fragment.triangle);
-    item_ = fragment.item;
+void FragmentJudge::begin_triangle(const TappedFragment& fragment) {
+  finish_triangle();
+  item_ = fragment.item;
+  oracles_.clear();
+  surfaces_.clear();
+  const std::size_t places = config_.msaa_samples == 1 ? 1 : logs_.size() + 1;
+  for (std::size_t place = 0; place < places; ++place) {
+    const SampleOffset offset = place == 0 ? SampleOffset{} : widths_.sample_offset[place - 1];
+    const Triangle seen = exact::seen_from(*fragment.triangle, offset);
+    oracles_.emplace_back(seen, widths_.grid_bits, rule_);
+    if (fragment.surface) surfaces_.emplace_back(scene_, config_, seen);
   }
-  if (fragment.surface) raise(verdict_.surfaces, surface_->errors(*fragment.surface, fragment.x, fragment.y));
+}
+
+std::size_t FragmentJudge::shaded_place(int x, int y) const {
+  if (oracles_.size() == 1) return 0;
+  const auto covered = std::ranges::find_if(oracles_, [x, y](const auto& oracle) { return oracle.covers(x, y); });
+  return static_cast<std::size_t>(covered - oracles_.begin());
+}
+
+void FragmentJudge::add_to_triangle(const TappedFragment& fragment) {
+  if (item_ != fragment.item) begin_triangle(fragment);
+  const auto k = static_cast<std::size_t>(fragment.sample);
+  const auto shaded = static_cast<std::size_t>(fragment.shaded_at + 1);
+  misplaced_ += shaded != shaded_place(fragment.x, fragment.y) ? 1 : 0;
+  if (fragment.surface) raise(verdict_.surfaces, surfaces_[shaded].errors(*fragment.surface, fragment.x, fragment.y));
   const int shift = widths_.tile_shift, last = (1 << shift) - 1;
-  std::uint32_t& row = tiles_[{fragment.y >> shift, fragment.x >> shift}][static_cast<std::size_t>(fragment.y & last)];
+  std::uint32_t& row =
+      tiles_[k][{fragment.y >> shift, fragment.x >> shift}][static_cast<std::size_t>(fragment.y & last)];
   const std::uint32_t bit = 1U << (fragment.x & last);
   repeated_ += (row & bit) != 0 ? 1 : 0;
   row |= bit;
-  const exact::PlaneWeights weights = oracle_->weights_at(fragment.x, fragment.y);
+  const exact::PlaneWeights of_color = oracles_[shaded].weights_at(fragment.x, fragment.y);
+  const exact::PlaneWeights of_depth =
+      oracles_.size() == 1 ? of_color : oracles_[k + 1].weights_at(fragment.x, fragment.y);
   for (std::size_t i = 0; i < verdict_.planes.size(); ++i) {
-    const exact::Rational exact = weights.plane(plane_codes(*fragment.triangle, i));
+    const exact::Rational exact =
+        (verdict_.planes[i].plane.is_depth ? of_depth : of_color).plane(plane_codes(*fragment.triangle, i));
     const PlaneSample& sample = fragment.plane[i];
     raise(verdict_.planes[i].worst, distance(sample.code, 0, exact));
     raise(verdict_.planes[i].worst_unrounded, distance(sample.unrounded, fragment.guard_bits, exact));
@@ -79,7 +103,7 @@ void FragmentJudge::add_to_triangle(const TappedFragment& fragment) {
 }
 
 void FragmentJudge::add_to_line(const TappedFragment& fragment) {
-  pixels_.add(fragment.primitive, fragment.x, fragment.y);
+  pixels_[static_cast<std::size_t>(fragment.sample)].add(fragment.primitive, fragment.x, fragment.y);
   const State& state = scene_.states[std::get<Draw>(scene_.commands[fragment.draw]).state];
   for (std::size_t i = 0; i < verdict_.planes.size(); ++i) {
     exact::Rational exact;
@@ -95,17 +119,21 @@ void FragmentJudge::add_to_line(const TappedFragment& fragment) {
 }
 
 void FragmentJudge::finish_triangle() {
-  for (const auto& [place, mask] : tiles_) log_.add(item_, place.second, place.first, mask);
-  tiles_.clear();
+  for (std::size_t k = 0; k < tiles_.size(); ++k) {
+    for (const auto& [place, mask] : tiles_[k]) logs_[k].add(*item_, place.second, place.first, mask);
+    tiles_[k].clear();
+  }
 }
 
 FragmentVerdict FragmentJudge::finish(const Rendering& rendering) {
   finish_triangle();
-  log_.sort();
-  pixels_.sort();
-  verdict_.coverage = check_coverage(scene_, config_, rendering.triangles, log_, rule_);
-  verdict_.coverage.mismatches += repeated_;
-  check_line_coverage(scene_, config_, rendering, pixels_, verdict_.coverage);
+  for (CoverageLog& log : logs_) log.sort();
+  verdict_.coverage = check_coverage(scene_, config_, rendering.triangles, logs_, rule_);
+  verdict_.coverage.mismatches += repeated_ + misplaced_;
+  for (PixelLog& pixels : pixels_) {
+    pixels.sort();
+    check_line_coverage(scene_, config_, rendering, pixels, verdict_.coverage);
+  }
   return verdict_;
 }
 

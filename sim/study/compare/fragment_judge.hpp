@@ -49,20 +49,24 @@ class FragmentJudge {
  private:
   void add_to_triangle(const TappedFragment& fragment);
   void add_to_line(const TappedFragment& fragment);
+  void begin_triangle(const TappedFragment& fragment);
   void finish_triangle();
+  /// Where a pixel is to be shaded: 0 at its centre, otherwise 1 + a sample.
+  [[nodiscard]] std::size_t shaded_place(int x, int y) const;
 
   const Scene& scene_;
   const Config& config_;
   const Widths widths_;
   const FillRule rule_;
   FragmentVerdict verdict_;
-  CoverageLog log_;
-  PixelLog pixels_;
-  std::uint64_t repeated_ = 0;
-  std::optional<exact::TriangleOracle> oracle_;    // of the triangle at work
-  std::optional<SurfaceOracle> surface_;           // likewise, if it has a surface
-  std::uint32_t item_ = 0;                         // its number
-  std::map<std::pair<int, int>, TileMask> tiles_;  // its samples: by tile row, column
+  std::vector<CoverageLog> logs_;               // of each sample of a pixel
+  std::vector<PixelLog> pixels_;                // likewise
+  std::uint64_t repeated_ = 0;                  // samples
+  std::uint64_t misplaced_ = 0;                 // samples whose colour is from another place than it should be
+  std::optional<std::uint32_t> item_;           // the number of the triangle at work
+  std::vector<exact::TriangleOracle> oracles_;  // of it: at the centre, at each of several samples
+  std::vector<SurfaceOracle> surfaces_;         // likewise, if it has a surface
+  std::vector<std::map<std::pair<int, int>, TileMask>> tiles_;  // of each sample: by tile row, column
 };
 
 /// One line for every bound that a fragment breaks; empty when all hold.

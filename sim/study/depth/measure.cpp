@@ -54,7 +54,7 @@ class Measurer {
     RenderOptions render;
     render.want_ids = true;
     render.progress = [this](double fraction) { report(0.2 * fraction); };
-    render.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
+    render.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask, int) {
       log.add(triangle, tile_x, tile_y, mask);
     };
     rendering_ = render_functional(scene_, config_, render);

@@ -81,6 +81,8 @@ void alpha_parts(Unit& unit);
 void mask_parts(Unit& unit);
 void stencil_counts(Unit& unit);
 void fog(Unit& unit);
+// sample_cases.cpp
+void samples(Unit& unit);
 // engine_cases.cpp
 void traversals(Unit& unit);
 void fill_rules(Unit& unit);

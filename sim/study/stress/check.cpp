@@ -79,11 +79,11 @@ static void check_fragments(Unit& unit, const Scene& scene, const Engine& engine
 }
 
 Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
-  CoverageLog log(unit.config.tile_size);
+  std::vector<CoverageLog> logs = coverage_logs(unit.config);
   RenderOptions options = render_options();
   options.rules.fill_rule = rule;
-  options.coverage_tap = [&log](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask) {
-    log.add(triangle, tile_x, tile_y, mask);
+  options.coverage_tap = [&logs](std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask, int sample) {
+    logs[static_cast<std::size_t>(sample)].add(triangle, tile_x, tile_y, mask);
   };
   // Only the scalar engine has the study rules.
   const Engine engine = rule == FillRule::top_left ? unit.engine : Engine(render_scalar);
@@ -91,8 +91,8 @@ Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule) {
   if (unit.number % kUnitsPerFragmentCheck == 0) check_fragments(unit, scene, engine, rule);
   // With taps the functional engine draws by the stages.
   if (rule == FillRule::top_left) expect_same_image(unit, scene, rendering, unit.engine(scene, unit.config, {}));
-  log.sort();
-  const OracleResult oracle = check_coverage(scene, unit.config, rendering.triangles, log, rule);
+  for (CoverageLog& log : logs) log.sort();
+  const OracleResult oracle = check_coverage(scene, unit.config, rendering.triangles, logs, rule);
   unit.count_triangles(rendering.triangles.size());
   unit.count_samples(oracle.samples);
   unit.measure("coverage", "samples", static_cast<double>(oracle.mismatches), 0, scene);
@@ -123,7 +123,11 @@ void expect_once(Unit& unit, const Scene& scene, const Rendering& rendering, std
 }
 
 void expect_same_image(Unit& unit, const Scene& scene, const Rendering& a, const Rendering& b) {
-  std::uint64_t wrong = 0;
+  std::uint64_t wrong = a.frame.samples.size() == b.frame.samples.size() ? 0 : 1;
+  for (std::size_t k = 0; k < a.frame.samples.size() && k < b.frame.samples.size(); ++k) {
+    const Framebuffer &of_a = a.frame.samples[k], &of_b = b.frame.samples[k];
+    wrong += of_a.depth != of_b.depth || of_a.color != of_b.color || of_a.stencil != of_b.stencil ? 1 : 0;
+  }
   std::size_t p = 0;
   for (int y = 0; y < scene.height; ++y)
     for (int x = 0; x < scene.width; ++x, ++p) {

@@ -1,0 +1,79 @@
+// Several samples a pixel: each against the exact oracle at its own place, and the functional engine against the stages.
+#include "model/engines/scalar.hpp"
+#include "sim/scene/random_state.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
+#include "sim/study/stress/cases.hpp"
+#include "sim/study/stress/shapes.hpp"
+#include "sim/study/stress/triangle_families.hpp"
+
+namespace halfplane::stress {
+namespace {
+
+/// The unit's configuration with 2, 4 or 8 samples where Direct3D has them, or on any grid down to 1/256 pixel.
+Config with_samples(Unit& unit) {
+  Random& random = unit.random;
+  Config config = unit.config;
+  config.msaa_samples = 2 << random.index(3);
+  while (config.stamp_size * config.stamp_size * config.msaa_samples > 64) config.stamp_size /= 2;
+  if (random.coin()) return config;
+  SamplePattern& pattern = config.msaa_pattern;
+  pattern.count = config.msaa_samples;
+  const int step = 1 << random.index(kPatternFraction);  // of 2^-8 pixel
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pattern.count); ++k) {
+    const auto place = [&] { return random.index((1 << kPatternFraction) / step) * step; };
+    pattern.place[k].x = place();
+    pattern.place[k].y = place();
+  }
+  return config;
+}
+
+/// Whether the grid of the samples leaves lanes enough for what lives on it.
+bool has_lanes_enough(const Config& config) {
+  try {
+    validate(config);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void samples(Unit& unit) {
+  const Config config = with_samples(unit);
+  if (!has_lanes_enough(config)) return;
+  Unit here(unit, config);
+  const int width = unit.width(8 + unit.random.index(24)), height = unit.height(8 + unit.random.index(24));
+  TriangleFamilies<Random> families(unit.config, width, height, Random(unit.random.next()));
+  SceneBuilder builder(width, height);
+  const Chooser choose = [&unit](std::uint32_t count) {
+    return static_cast<std::uint32_t>(unit.random.index(static_cast<int>(count)));
+  };
+  for (int k = 0; k < 8; ++k) {
+    if (k % 2 == 1)
+      builder.with_state(random_state(SceneBuilder::window_state(),
+                                      states_named({"depth_test", "cull", "blend", "color_mask", "stencil", "dither",
+                                                    "alpha_test", "sample_mask", "alpha_to_coverage"}),
+                                      choose));
+    const auto v = families.triangle(k % decltype(families)::kFamilies);
+    builder.triangle(v[0], v[1], v[2]);
+  }
+  const Scene& scene = builder.scene;
+  FragmentJudge judge(scene, with_alpha(config, scene));
+  RenderOptions options = render_options();
+  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
+  const Rendering specification = render_scalar(scene, config, options);
+  const FragmentVerdict verdict = judge.finish(specification);
+  here.count_triangles(specification.triangles.size());
+  here.count_samples(verdict.coverage.samples);
+  here.measure("coverage", "samples", static_cast<double>(verdict.coverage.mismatches), 0, scene);
+  for (const PlaneVerdict& plane : verdict.planes) {
+    if (plane.plane.is_depth)
+      here.measure("depth of samples", "LSB", plane.worst, depth_error_bound(config), scene);
+    else
+      here.measure("color of samples", "LSB of 8 bits", plane.worst, 1, scene);
+  }
+  expect_same_image(here, scene, specification, unit.engine(scene, config, render_options()));
+}
+
+}  // namespace halfplane::stress

@@ -1,0 +1,50 @@
+// Several samples a pixel from the command line: what draws them, and who refuses them by name.
+#include "program.hpp"
+
+namespace halfplane::cli {
+namespace {
+
+class AntialiasingCommand : public Cli {};
+
+TEST_F(AntialiasingCommand, EnginesThatHaveSamplesDrawThemAndCompareHoldsEachToItsBounds) {
+  const Json functional =
+      result({"render", "teapot", "--size", "120x90", "--set", "msaa.samples=4", "--set", "color.format=rgba8888"});
+  const Json scalar = result({"render", "teapot", "--size", "120x90", "--set", "msaa.samples=4", "--set",
+                              "color.format=rgba8888", "--engine", "scalar"});
+  const Json one = result({"render", "teapot", "--size", "120x90", "--set", "color.format=rgba8888"});
+  EXPECT_EQ(functional["config"]["msaa.samples"], 4);
+  EXPECT_EQ(functional["config"]["msaa.pattern"], "standard");
+  EXPECT_EQ(functional["color_hash"], scalar["color_hash"]);
+  EXPECT_EQ(functional["fragments"]["written"], scalar["fragments"]["written"]);
+  EXPECT_NE(functional["color_hash"], one["color_hash"]);
+  EXPECT_GT(functional["fragments"]["written"], 3 * one["fragments"]["written"].get<int>());
+  const Json compared = result(
+      {"compare", "teapot", "--size", "80x60", "--set", "msaa.samples=2", "--set", "msaa.pattern=0.125,0.5;0.75,0.25"});
+  EXPECT_EQ(compared["coverage"]["oracle_mismatches"], 0);
+  EXPECT_GT(compared["coverage"]["oracle_samples"], 1000);
+}
+
+TEST_F(AntialiasingCommand, WhoHasOneSampleAPixelSaysSo) {
+  for (const Arguments& arguments : std::vector<Arguments>{{"render", "teapot", "--engine", "cycle"},
+                                                           {"render", "teapot", "--engine", "rtl"},
+                                                           {"cosim", "--random", "3"},
+                                                           {"explain", "teapot", "3", "3"},
+                                                           {"widths"},
+                                                           {"depth"},
+                                                           {"stress"},
+                                                           {"vectors", "--random", "3", "--stage", "cull", "-o", "v"},
+                                                           {"config", "--sv"},
+                                                           {"config", "--dpi"},
+                                                           {"render", "teapot", "--traversal", "bbox"}}) {
+    Arguments with_samples = arguments;
+    with_samples.insert(with_samples.end(), {"--set", "msaa.samples=4"});
+    SCOPED_TRACE(arguments[0] + " " + (arguments.size() > 1 ? arguments.back() : std::string()));
+    expect_refused(with_samples, "msaa.samples");
+  }
+  expect_refused({"render", "teapot", "--config", "full", "--set", "msaa.samples=8"}, "stamp.size");
+  expect_refused({"render", "teapot", "--set", "msaa.samples=2", "--set", "msaa.pattern=0.5,0.5"}, "msaa.pattern");
+  expect_refused({"render", "teapot", "--set", "msaa.samples=2", "--set", "msaa.pattern=0.5"}, "msaa.pattern");
+}
+
+}  // namespace
+}  // namespace halfplane::cli
