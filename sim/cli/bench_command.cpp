@@ -31,7 +31,7 @@ struct BenchCommand : CommonOptions {
   std::vector<std::string> variations;
   std::vector<int> thread_counts{1};
   int repeat = 5;
-  bool has_no_errors = false, wants_skips = false, wants_growth = false, wants_all = false;
+  bool has_no_errors = false, wants_skips = false, wants_growth = false, wants_all = false, wants_antialiasing = false;
   std::size_t growth_max = 1'000'000;
   std::string page;
   SpaceOptions space;
@@ -217,6 +217,10 @@ void check_bench_options(const BenchCommand& options) {
   const bool is_space = options.space.is_wanted();
   if (is_space && (options.wants_all || options.wants_skips || options.wants_growth || !options.engines.empty()))
     throw InputError("--area and --space measure the hardware; leave out --engines, --skips, --growth and --all");
+  if (options.wants_antialiasing &&
+      (is_space || options.wants_all || options.wants_skips || options.wants_growth || !options.scenes.empty() ||
+       !options.engines.empty() || !options.variations.empty() || !options.page.empty()))
+    throw InputError("--antialiasing has a scene of its own, the functional engine and no page; leave the other out");
   check_space_options(options, options.space, options.page);
   check_output(options.page, ".html");
   check_distinct({options.json, options.page});
@@ -295,11 +299,26 @@ int run_space(const BenchCommand& options, const Config& config, std::chrono::st
   return study.is_partial ? exit_interrupted : exit_ok;
 }
 
+/// --antialiasing.
+int run_antialiasing(const BenchCommand& options, const Config& config, std::chrono::steady_clock::time_point start) {
+  require_one_sample(config, "bench --antialiasing sets samples itself and");
+  Json result = result_head("bench", options, config);
+  result["seed"] = options.seed;
+  result["repeat"] = options.repeat;
+  result["label"] = label(config);
+  add_bench_json(result, {});
+  measure_antialiasing(options, config, options.repeat, result);
+  result["wall_s"] = seconds_since(start);
+  write_json(options, result);
+  return exit_ok;
+}
+
 int run_bench(const BenchCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_bench_options(options);
   if (options.space.is_wanted()) return run_space(options, config, start);
+  if (options.wants_antialiasing) return run_antialiasing(options, config, start);
   const auto configs = varied_configs(config, parse_variations(options.variations, config), true);
   BenchStudy study;
   if (options.wants_rows()) measure_bench_rows(options, configs, study);
@@ -365,6 +384,10 @@ void add_bench_command(CLI::App& app, Action& selected) {
   command->add_option("--growth-max", options->growth_max, "triangles of the largest frame of --growth")
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
+  command->add_flag(
+      "--antialiasing", options->wants_antialiasing,
+      "instead: error against the exact area of triangles in pixels, and time, of 1 to 8 samples a pixel and "
+      "of supersampling");
   command->add_flag("--all", options->wants_all, "rows of SCENES, and --skips and --growth on scenes of their own");
   add_space_options(*command, options->space);
   add_file_option(*command, "-o", options->page, "everything as one HTML page, .html");

@@ -83,9 +83,9 @@ std::string processor_name() {
   return "";
 }
 
-/// A table whose columns are as wide as what stands in them; the first `left` columns begin at the left. A column of
-/// nothing but blanks and "-" is left out.
-void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
+}  // namespace
+
+void print_bench_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
   std::vector<std::size_t> widths(lines.front().size());
   std::vector<bool> is_used(widths.size());
   for (std::size_t i = 0; i < lines.size(); ++i)
@@ -102,6 +102,8 @@ void print_table(std::ostream& out, const std::vector<std::vector<std::string>>&
     out << text << '\n';
   }
 }
+
+namespace {
 
 /// How many times as fast as `engine` on the same scene, with as many threads and the same configuration if it has them.
 std::string times_as_fast(const BenchStudy& study, const BenchRow& row, const std::string& engine) {
@@ -182,7 +184,7 @@ void print_bench_rows(std::ostream& out, const BenchStudy& study) {
     lines.push_back(row_cells(study, row));
     is_any_single = is_any_single || is_single(study, row);
   }
-  print_table(out, lines, 3);
+  print_bench_table(out, lines, 3);
   if (is_any_single) out << "* a single frame\n";
   if (!has_many_lsbs(study)) return;
   out << "An LSB is that of each row's own depth.bits; eye depth is in scene units and the same for all rows.\n";
@@ -196,7 +198,7 @@ void print_skips(std::ostream& out, const std::vector<SkipRow>& skips) {
   for (const SkipRow& row : skips)
     lines.push_back({row.skip, row.scene, fixed(1e3 * row.with.median(), 2), fixed(1e3 * row.without.median(), 2),
                      fixed(100 * row.saved(), 1) + " %", with_commas(row.counter)});
-  print_table(out, lines, 2);
+  print_bench_table(out, lines, 2);
 }
 
 void print_growth(std::ostream& out, const std::vector<GrowthRow>& growth) {
@@ -208,7 +210,7 @@ void print_growth(std::ostream& out, const std::vector<GrowthRow>& growth) {
                          fixed(row.mtri_s(), 3), fixed(row.mpix_s(), 2)});
     if (lines.size() == 1) continue;
     out << series.name << ": " << series.meaning << '\n';
-    print_table(out, lines, 0);
+    print_bench_table(out, lines, 0);
   }
 }
 

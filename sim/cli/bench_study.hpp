@@ -19,11 +19,19 @@ struct BenchStudy {
   std::vector<GrowthRow> growth;
 };
 
+/// `bench --antialiasing`: error against the exact area and time of each kind of antialiasing. `size`, `repeat`, `seed` are the
+/// command's. Adds to `result` and prints.
+void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, Json& result);
+
 /// Adds rows, skips and growth, the last two when they were measured.
 void add_bench_json(Json& result, const BenchStudy& study);
 
 /// Writes the page: the result, and what the page alone needs.
 void write_bench_page(const std::string& path, const Json& result, const std::string& command);
+
+/// A table whose columns are as wide as what stands in them; the first `left` columns begin at the left. A column of
+/// nothing but blanks and "-" is left out.
+void print_bench_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left);
 
 /// Tables for people.
 void print_bench(std::ostream& out, const BenchStudy& study);

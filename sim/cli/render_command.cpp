@@ -15,6 +15,7 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/terminal.hpp"
+#include "sim/study/antialiasing/supersample.hpp"
 #include "sim/study/compare/compare.hpp"
 
 namespace halfplane {
@@ -39,10 +40,9 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
   return rendering;
 }
 
-}  // namespace
-
-Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
-                     const std::function<void(double)>& progress) {
+/// One picture of run_engine().
+Rendering draw_once(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
+                    const std::function<void(double)>& progress) {
   RenderOptions render;
   render.skip = parse_skip(options.skip);
   render.threads = options.threads;
@@ -65,6 +65,22 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
   }
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
   return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() let no other through
+}
+
+}  // namespace
+
+Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
+                     const std::function<void(double)>& progress) {
+  if (options.supersample.empty()) return draw_once(options, scene, config, facts, progress);
+  const antialiasing::SupersampleGrid grid = antialiasing::parse_supersample(options.supersample);
+  const double pictures = grid.side * grid.side;
+  int done = 0;
+  return antialiasing::supersampled(scene, config, grid, [&](const Scene& moved) {
+    const int at = done++;
+    return draw_once(options, moved, config, facts, [&progress, at, pictures](double part) {
+      if (progress) progress((at + part) / pictures);
+    });
+  });
 }
 
 namespace {
@@ -91,6 +107,12 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (options.engine == "cycle") check_cycle_options(options.cycle, config);
   if (options.engine == "rtl") (void)find_dut(config);
   (void)parse_skip(options.skip);
+  if (!options.supersample.empty()) {
+    (void)antialiasing::parse_supersample(options.supersample);
+    if (options.engine == "cycle" || options.engine == "rtl")
+      throw InputError("--supersample: the engine " + options.engine +
+                       " counts the cycles of one picture; use functional, scalar, golden or golden32");
+  }
   if (!options.depth_path.empty() && config.frame_store == FrameStore::color)
     throw InputError("--depth: with frame.store=color no depth is stored; leave out --depth, or use frame.store=all");
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, stored_format(config).bits);
@@ -240,6 +262,7 @@ int run(const RenderCommand& options) {
   result["width"] = scene.width;
   result["height"] = scene.height;
   result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
+  result["supersample"] = options.supersample.empty() ? Json(nullptr) : Json(options.supersample);
   result["objects"] = {{"in", objects.in},
                        {"culled_sphere", objects.culled_sphere},
                        {"culled_box", objects.culled_box},
@@ -310,6 +333,12 @@ void add_render_command(CLI::App& app, Action& selected) {
   add_file_option(*command, "--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
   add_file_option(*command, "--draws", options->draws_path,
                   "sheet: the picture, and how often each sample was drawn, .png");
+  command
+      ->add_option(
+          "--supersample", options->supersample,
+          "NxN or NxN:rotated: the mean of so many pictures, each moved by a part of a pixel; depth and ids are "
+          "the first one's, counts those of all")
+      ->type_name("GRID");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(CLI::Range(1, 100000));
   add_frames_options(*command, *options);

@@ -16,6 +16,7 @@ struct RenderCommand : CommonOptions {
   StudyOptions study;
   CycleCommandOptions cycle;
   std::string color_path, depth_path, count_path, ids_path, draws_path;
+  std::string supersample;  ///< "4x4": so many pictures, each moved by a part of a pixel, and their mean; empty: one
   int repeat = 0;
   int frames = 0;                    ///< 0: one picture
   std::string csv_path, chart_path;  ///< of frames

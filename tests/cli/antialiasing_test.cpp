@@ -24,18 +24,34 @@ TEST_F(AntialiasingCommand, EnginesThatHaveSamplesDrawThemAndCompareHoldsEachToI
   EXPECT_GT(compared["coverage"]["oracle_samples"], 1000);
 }
 
+TEST_F(AntialiasingCommand, SupersampledPicturesAreTheMeanOfWholeOnes) {
+  const Json json = result({"render", "teapot", "--size", "60x40", "--supersample", "2x2"});
+  const Json one = result({"render", "teapot", "--size", "60x40"});
+  EXPECT_EQ(json["supersample"], "2x2");
+  EXPECT_TRUE(one["supersample"].is_null());
+  EXPECT_NE(json["color_hash"], one["color_hash"]);
+  EXPECT_GT(json["fragments"]["covered"], 3 * one["fragments"]["covered"].get<int>());
+  EXPECT_EQ(json["color_hash"], result({"render", "teapot", "--size", "60x40", "--supersample", "2x2", "--engine",
+                                        "scalar"})["color_hash"]);
+  expect_refused({"render", "teapot", "--supersample", "2x3"}, "--supersample");
+  expect_refused({"render", "teapot", "--supersample", "4x4", "--engine", "cycle"}, "--supersample");
+  expect_refused({"bench", "teapot", "--antialiasing"}, "--antialiasing");
+  expect_refused({"bench", "--antialiasing", "--set", "msaa.samples=2"}, "msaa.samples");
+}
+
 TEST_F(AntialiasingCommand, WhoHasOneSampleAPixelSaysSo) {
-  for (const Arguments& arguments : std::vector<Arguments>{{"render", "teapot", "--engine", "cycle"},
-                                                           {"render", "teapot", "--engine", "rtl"},
-                                                           {"cosim", "--random", "3"},
-                                                           {"explain", "teapot", "3", "3"},
-                                                           {"widths"},
-                                                           {"depth"},
-                                                           {"stress"},
-                                                           {"vectors", "--random", "3", "--stage", "cull", "-o", "v"},
-                                                           {"config", "--sv"},
-                                                           {"config", "--dpi"},
-                                                           {"render", "teapot", "--traversal", "bbox"}}) {
+  for (const Arguments& arguments :
+       std::vector<Arguments>{{"render", "teapot", "--engine", "cycle"},
+                              {"render", "teapot", "--engine", "rtl"},
+                              {"cosim", "--random", "3"},
+                              {"explain", "teapot", "3", "3"},
+                              {"widths"},
+                              {"depth"},
+                              {"stress"},
+                              {"vectors", "--random", "3", "--stage", "cull", "-o", "v"},
+                              {"config", "--sv"},
+                              {"config", "--dpi"},
+                              {"render", "teapot", "--engine", "scalar", "--traversal", "bbox"}}) {
     Arguments with_samples = arguments;
     with_samples.insert(with_samples.end(), {"--set", "msaa.samples=4"});
     SCOPED_TRACE(arguments[0] + " " + (arguments.size() > 1 ? arguments.back() : std::string()));

@@ -106,6 +106,7 @@ TEST_F(JsonSchema, WidthsAreDescribed) {
 
 TEST_F(JsonSchema, BenchIsDescribed) {
   expect_results("bench", {"triangle --size 16x16 --space --vary stamp.size=1,2"});
+  expect_results("bench", {"--antialiasing --size 48x32 --repeat 1"});
   expect_results("bench", {"triangle --size 16x16 --repeat 1 --engines functional,golden,cycle",
                            "triangle --size 16x16 --repeat 1 --skips --growth --growth-max 100"});
 }

@@ -1,0 +1,132 @@
+#include "sim/study/antialiasing/study.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "model/engines/functional.hpp"
+#include "model/golden/golden.hpp"
+#include "model/widths.hpp"
+#include "sim/scene/random.hpp"
+#include "sim/scene/scene_builder.hpp"
+#include "sim/study/antialiasing/exact_area.hpp"
+
+namespace halfplane::antialiasing {
+namespace {
+
+/// A kind of antialiasing: samples of a pixel, and the grid of pictures, if there is one.
+struct Kind {
+  std::string name;
+  int msaa = 1;
+  std::optional<SupersampleGrid> grid;
+  [[nodiscard]] int samples() const { return grid ? grid->side * grid->side : msaa; }
+};
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> list;
+  for (const int samples : {1, 2, 4, 8})
+    list.push_back({samples == 1 ? "1 sample" : "msaa " + std::to_string(samples), samples, {}});
+  for (const char* grid : {"2x2", "2x2:rotated", "4x4", "4x4:rotated"})
+    list.push_back({"supersample " + std::string(grid), 1, parse_supersample(grid)});
+  return list;
+}
+
+/// How much of a pixel is white, 0 to 1, in the stored format.
+double whiteness(std::uint32_t color, ColorFormat format) {
+  return static_cast<double>(golden::stored_channel(color, format, 1)) / golden::channel_max(format)[1];
+}
+
+/// Fills the errors of a picture.
+void judge(const Framebuffer& frame, ColorFormat format, const std::vector<double>& area, AreaRow& row) {
+  double squares = 0, sum = 0;
+  std::size_t edges = 0, p = 0;
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x, ++p) {
+      const double error = whiteness(frame.color[frame.at(x, y)], format) - area[p];
+      row.max = std::max(row.max, std::abs(error));
+      if (area[p] <= 0 || area[p] >= 1) continue;
+      ++edges;
+      squares += error * error;
+      sum += error;
+    }
+  if (edges == 0) return;
+  row.rms = std::sqrt(squares / static_cast<double>(edges));
+  row.mean = sum / static_cast<double>(edges);
+}
+
+/// The pictures of a kind, drawn as a program would draw them: each scene is prepared once.
+class Frames {
+ public:
+  Frames(const Scene& scene, const Config& config, const Kind& kind)
+      : scene_(scene), kind_(kind), config_(config), engine_(config) {}
+
+  Rendering draw() {
+    if (!kind_.grid) return engine_.render(scene_);
+    return supersampled(scene_, config_, *kind_.grid, [this](const Scene& moved) { return engine_.render(moved); });
+  }
+
+ private:
+  const Scene& scene_;
+  const Kind& kind_;
+  Config config_;
+  FunctionalEngine engine_;
+};
+
+}  // namespace
+
+Scene blades(int width, int height, std::uint64_t seed) {
+  Random random(seed);
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  SceneBuilder builder(width, height, state);
+  const double cx = width / 2.0, cy = height / 2.0, longest = std::min(width, height) * 0.48, inner = longest * 0.2;
+  constexpr int kBlades = 64;
+  const auto at = [&](double radius, double angle) {
+    return Vertex{.x = cx + radius * std::cos(angle), .y = cy + radius * std::sin(angle), .z = 0.5};
+  };
+  for (int i = 0; i < kBlades; ++i) {
+    const double step = 2 * std::acos(-1.0) / kBlades, from = (i + 0.3 * random.uniform(0, 1)) * step;
+    const double width_of = step * 0.6 * std::exp2(-(i % 8));
+    builder.triangle(at(inner, from), at(longest, from), at(longest, from + width_of));
+  }
+  return std::move(builder.scene);
+}
+
+AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
+                        const std::function<void(double)>& progress) {
+  using Clock = std::chrono::steady_clock;
+  AreaStudy study;
+  RenderOptions options;
+  options.want_triangles = true;
+  const auto area = covered_areas(render_functional(scene, config, options).triangles, scene.width, scene.height,
+                                  derive_widths(config).grid_bits);
+  study.edge_pixels = static_cast<std::size_t>(std::ranges::count_if(area, [](double a) { return a > 0 && a < 1; }));
+  const std::vector<Kind> list = kinds();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Kind& kind = list[i];
+    Config own = config;
+    own.msaa_samples = kind.msaa;
+    if (own.stamp_size * own.stamp_size * own.msaa_samples > 64) own.stamp_size = 2;  // no matter to a picture
+    AreaRow row{.kind = kind.name, .samples = kind.samples()};
+    Frames frames(scene, own, kind);
+    judge(frames.draw().frame, own.color_format, area, row);
+    std::vector<double> times;
+    for (int n = 0; n < repeat; ++n) {
+      const auto start = Clock::now();
+      (void)frames.draw();
+      times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      progress((static_cast<double>(i) + static_cast<double>(n + 1) / repeat) / static_cast<double>(list.size()));
+    }
+    std::ranges::nth_element(times, times.begin() + repeat / 2);
+    row.frame_s = times[static_cast<std::size_t>(repeat / 2)];
+    study.rows.push_back(row);
+  }
+  for (AreaRow& row : study.rows)
+    row.is_front = std::ranges::none_of(study.rows, [&row](const AreaRow& other) {
+      return &other != &row && other.rms <= row.rms && other.frame_s <= row.frame_s;
+    });
+  return study;
+}
+
+}  // namespace halfplane::antialiasing

@@ -1,0 +1,38 @@
+// How far from the exact area the coverage of a pixel is by every kind of antialiasing, and what a frame of it takes.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "model/config.hpp"
+#include "model/scene.hpp"
+#include "sim/study/antialiasing/supersample.hpp"
+
+namespace halfplane::antialiasing {
+
+/// One kind on one scene.
+struct AreaRow {
+  std::string kind;       ///< "1 sample", "msaa 4", "supersample 2x2:rotated"
+  int samples = 1;        ///< places of a pixel that are looked at
+  double frame_s = 0;     ///< the median, functional engine, one thread
+  double max = 0;         ///< the largest |shown - exact|, parts of a pixel
+  double rms = 0;         ///< over the pixels that are covered in part
+  double mean = 0;        ///< of shown - exact
+  bool is_front = false;  ///< no other kind is both nearer and faster
+};
+
+struct AreaStudy {
+  std::size_t edge_pixels = 0;  ///< covered in part, by the exact area
+  std::vector<AreaRow> rows;
+};
+
+/// White blades on black round the middle of the target, none over another, from half a circle's sixteenth to a hair wide.
+[[nodiscard]] Scene blades(int width, int height, std::uint64_t seed);
+
+/// Every kind: 1, 2, 4 and 8 samples, supersampling 2x2 and 4x4 in rows and turned; as long as `config` takes them. `repeat`
+/// frames are measured of each.
+[[nodiscard]] AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
+                                      const std::function<void(double)>& progress);
+
+}  // namespace halfplane::antialiasing
