@@ -84,6 +84,8 @@ const std::array kSettings{
             &Config::blend_lanes},
     Setting{"dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them", 0, 1,
             &Config::dither_units},
+    Setting{"fog.unit", "units", "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1,
+            &Config::fog_units},
     Setting{
         "stencil.bits", "bits",
         "of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
@@ -312,6 +314,8 @@ void validate(const Config& config) {
                   "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
     refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
   }
+  refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
+                "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
   refuse_unless(config.blend_lanes == 0 || config.blend_lanes == 1 || config.blend_lanes == 4,
                 "blend.lanes must be 0, 1 or 4");
   refuse_unless(

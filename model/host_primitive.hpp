@@ -1,10 +1,12 @@
 // A primitive on its way from the host to the hardware.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "packets.hpp"
 #include "stages/color_packets.hpp"
+#include "stages/fog_unit.hpp"
 #include "stages/stencil_packets.hpp"
 #include "stages/texture_levels.hpp"
 
@@ -15,8 +17,10 @@ struct UnitWords {
   std::uint64_t texture_state = 0;              ///< of a triangle: TextureState
   std::uint32_t texture_levels = 0;             ///< likewise TextureLevels
   std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
-  ColorWords colors{};                          ///< of what is drawn
-  StencilWords stencil{};                       ///< likewise; of a fast clear: its value
+  std::optional<std::shared_ptr<const FogTable>>
+      fog{};               ///< of a triangle whose colours are written, with a unit for it
+  ColorWords colors{};     ///< of what is drawn
+  StencilWords stencil{};  ///< likewise; of a fast clear: its value
 };
 
 /// The packet, and where it came from.

@@ -40,6 +40,9 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
 std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
   if (state.color_interp == ColorInterp::perspective)
     return "color_interp perspective: this hardware divides no colours by w";
+  if (state.fog && state.color_write && state.texture && state.texture_interp == TextureInterp::affine)
+    return "fog over a texture_interp affine: both look at one plane of 1/w, which is not the same; use texture_interp "
+           "perspective, or fog off";
   if (!state.texture) return "";
   if (config.texture_unit == TextureUnitKind::off)
     return "texture: this hardware has no texture unit; use --set texture.unit=nearest";
@@ -91,19 +94,30 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   pending_.back().command = HostPrimitive::kNoCommand;
 }
 
+// GCC 12 sees no bounds of a deque's move, and holds the table of a primitive without fog for uninitialized.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 std::optional<HostPrimitive> HostStream::next() {
   if (in_front_.empty()) {
     std::optional<HostPrimitive> primitive = next_primitive();
     if (!primitive) return primitive;
     set_colors(*primitive);
     set_stencil(*primitive);
-    if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) set_texture(*primitive);
+    if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) {
+      set_texture(*primitive);
+      set_fog(*primitive);
+    }
     in_front_.push_back(std::move(*primitive));
   }
   HostPrimitive first = std::move(in_front_.front());
   in_front_.pop_front();
   return first;
 }
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 /// The registers of colours that have another value than wanted. At the start of a scene nobody knows what they hold.
 void HostStream::set_colors(const HostPrimitive& primitive) {
@@ -160,6 +174,24 @@ void HostStream::set_texture(const HostPrimitive& triangle) {
   for (int n = 0; n < line_parts(part_bits); ++n)
     in_front_.push_back(
         state_token(StateRegister::texture_lines, line_part(*triangle.units.texture_lines, part_bits, n), triangle));
+}
+
+/// The fog of a triangle, and those lines of its table that differ from what the unit has.
+void HostStream::set_fog(const HostPrimitive& triangle) {
+  if (!triangle.units.fog) return;
+  const std::shared_ptr<const FogTable>& table = *triangle.units.fog;
+  const FogState next = table ? FogState{true, table->octave_bits(), table->color()} : FogState{};
+  const auto send_word = [&](std::uint64_t word) {
+    in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
+  };
+  if (fog_state_ != next) send_word(next.pack());
+  fog_state_ = next;
+  if (!table) return;
+  for (std::size_t n = 0; n < table->lines().size(); ++n) {
+    if (fog_line_[n] == table->lines()[n]) continue;
+    fog_line_[n] = table->lines()[n];
+    send_word(fog_line_word(n, *fog_line_[n]));
+  }
 }
 
 /// A register of a unit has its value from here on.
@@ -290,7 +322,9 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   packet.front_cw = state.front == FrontFace::cw;
   set_vertices(packet.vertex, triangle.v);
   HostPrimitive out = drawn_primitive(packet, triangle.primitive);
+  if (config_.fog_units != 0 && state.color_write) out.units.fog = context_->fog;
   if (textures_ && state.texture) set_coordinates(triangle, out);
+  if (config_.fog_units != 0 && context_->fog && state.color_write) set_distance(triangle, out);
   send(out);
 }
 
@@ -316,6 +350,16 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) c
   }
   out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
   if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
+}
+
+/// Q of the vertices, and where in the fog's table it lies. A texture has brought the same Q.
+void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) const {
+  require_positive_w(*context_, triangle);
+  const PerspectiveFormat format = perspective_format(config_);
+  const std::array<double, 3> w{triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w};
+  const QCodes q = quantize_q(w, format.q_bits);
+  for (std::size_t i = 0; i < 3; ++i) out.packet.vertex.code[i][widths_.q_plane] = q[i];
+  out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
 }
 
 /// And what it must know of levels. A triangle that the hardware drops needs none.
@@ -447,7 +491,9 @@ std::string fragment_fault(const State& state, const Config& config) {
     return "stencil, but this hardware keeps none; use --set stencil.bits=8 (with cache.kind=blocks, "
            "setup.kind=pipelined and depth.bits up to 24), or leave it out";
   if (!ops.state.color_write) return {};
-  if (state.fog) return "fog, but this hardware has no unit for it; leave it out";
+  if (state.fog && config.fog_units == 0)
+    return "fog, but this hardware has no unit for it; use --set fog.unit=1 (with texture.unit=nearest), or leave it "
+           "out";
   if (ops.color.blends() && config.blend_lanes == 0) return "blend" + unit("blend.lanes=4");
   if (ops.color.reads_stored() && config.blend_lanes == 0) return "color_mask of some channels" + unit("blend.lanes=4");
   if (ops.color.dithers && config.dither_units == 0) return "dither" + unit("dither.unit=1");

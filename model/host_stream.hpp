@@ -48,11 +48,13 @@ class HostStream {
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
   void set_coordinates(const Triangle& triangle, HostPrimitive& out) const;
+  void set_distance(const Triangle& triangle, HostPrimitive& out) const;
   void set_colors(const HostPrimitive& primitive);
   void set_stencil(const HostPrimitive& primitive);
   void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
                   HostPrimitive& out) const;
   void set_texture(const HostPrimitive& triangle);
+  void set_fog(const HostPrimitive& triangle);
   [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
   [[nodiscard]] std::optional<HostPrimitive> next_primitive();
   void send_line(const LinePrimitive& line);
@@ -84,6 +86,8 @@ class HostStream {
   std::optional<TextureMemory> textures_;        ///< with a texture unit
   std::optional<std::uint64_t> texture_state_;   ///< what the unit was set to since the scene began
   std::optional<std::uint32_t> texture_levels_;  ///< of one with levels, likewise
+  std::optional<FogState> fog_state_;            ///< likewise, and the lines of its table
+  std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
   std::optional<TextureLines> texture_lines_;
   ColorWords colors_;                             ///< what else has been set since the scene began
   StencilWords stencil_;                          ///< likewise

@@ -129,7 +129,7 @@ enum class PrimitiveKind : std::uint8_t {
 /// What a token of kind state sets.
 enum class StateRegister : std::uint8_t {
   texture = 0,         ///< TextureState
-  texture_levels = 1,  ///< TextureLevels
+  texture_levels = 1,  ///< TextureLevels; FogState and a line of its table too, told apart by kFogWordBit and the next
   texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
   color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
   blend_constant = 5,  ///< that
@@ -307,13 +307,15 @@ struct CodeRange {
   PACKET_END
 };
 
-/// How a triangle's texture coordinates are read back, u and v (stages/perspective.hpp). Only with a texture unit.
+/// How a triangle's texture coordinates are read back, u and v (stages/perspective.hpp), and its fog. Only with a texture unit.
 struct CoordinateFrame {
   PACKET(CoordinateFrame, "coordinate_frame");
   using Pair = std::array<std::int32_t, 2>;
   FIELD(Pair, shift, &Widths::coordinate_shift, &Widths::coordinates)  ///< c = 1 + x - sp - k_P: P goes right by e + c
   FIELD(Pair, reach, &Widths::coordinate_reach, &Widths::coordinates)  ///< x
   FIELD(Pair, origin, &Widths::coordinate_reference, &Widths::coordinates)  ///< u_ref, texels: wrapped_reference()
+  FIELD(std::int32_t, fog_octave, &Widths::fog_octave,
+        &Widths::fog_octaves)  ///< of a fog's table, where Q = 1 would lie
   PACKET_END
   bool operator==(const CoordinateFrame&) const = default;
 };

@@ -114,6 +114,8 @@ void derive_texture(Widths& w, const Config& config) {
   w.coordinate_reach = exact("coordinate reach", "x <= 20", {0, 20});
   w.coordinate_reference =
       exact("coordinate reference", "u_ref: +-2^22, beyond which no clamp can tell", symmetric(int128{1} << 22));
+  w.fog_octaves = config.fog_units;
+  w.fog_octave = exact("fog octave", "of a table of 16 at most, that of Q = 1; held, for Q < 2^32", {-32, 31});
   w.written_color = w.stored_color;
   if (has_unit || packs_at_write(config)) w.written_color = w.vertex_color;
   w.written_color.name = "written color";
@@ -318,8 +320,8 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &written_color, &shaded_color, &texture_byte,
-       &texture_beats});
+  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &fog_octave, &written_color, &shaded_color,
+       &texture_byte, &texture_beats});
   add({&primitive_id,   &slot,          &tile_x,       &tile_y,     &tile_pixel,   &stamp_index,  &sample_mask,
        &stored_color,   &stored_depth,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,
        &pixel_y,        &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane,

@@ -91,6 +91,7 @@ struct Widths {
   int affine_planes = 0;                 ///< depth and colour, which come first
   int alpha_counters = 0;                ///< 1: the alpha test counts
   int texture_counters = 0;              ///< 1: so does a texture unit
+  int fog_octaves = 0;                   ///< 1: triangles say where in the table of a fog they lie
   int stencil_flags = 0;                 ///< 1: there is a stencil, and primitives say what they do with it
   int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
   std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow
@@ -119,6 +120,7 @@ struct Widths {
       depth_source, memory_lane, counter;
   // The memory port.
   Width coordinate_shift, coordinate_reach, coordinate_reference;  // of the texture unit
+  Width fog_octave;
   Width written_color, shaded_color, texture_byte, texture_beats;
   int texture_port_bytes = 0;  ///< of a beat of the texture unit's port
   Width run, address, row_stride, burst_length, port_strobe, port_byte;

@@ -256,6 +256,7 @@ SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& p
     count(use_of(texture_->take(live, sample, texture_frame(fragment.coordinates), color,
                                 [this](std::uint32_t address, int beats) { return read_texels(address, beats); })),
           counters_);
+  add_fog(*texture_, fragment.kind == PrimitiveKind::triangle, live, sample, fragment.coordinates, color);
   packet.color = {};
   live.for_each([&](std::size_t s) {
     const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};

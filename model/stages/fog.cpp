@@ -101,21 +101,28 @@ FogTable::Line FogTable::line_from(double q, double next) const {
   return {rounded(first + off / 2 + middle, -most), rounded(last - first, 0)};
 }
 
-std::int32_t FogTable::position(std::uint64_t code, int scale) const {
+std::int32_t fog_position(std::uint64_t code, int octave, int octave_bits) {
   const int e = floor_log2(code);
   const std::uint64_t mantissa = e >= kFogPlaceBits ? code >> (e - kFogPlaceBits) : code << (kFogPlaceBits - e);
-  const std::int64_t octave = std::int64_t{e} - scale - first_;
-  const std::int64_t position =
-      octave * (std::int64_t{1} << kFogPlaceBits) + static_cast<std::int64_t>(mantissa) - (1 << kFogPlaceBits);
-  return static_cast<std::int32_t>(std::clamp<std::int64_t>(position, 0, last_position()));
+  const std::int64_t position = (std::int64_t{e} + octave) * (std::int64_t{1} << kFogPlaceBits) +
+                                static_cast<std::int64_t>(mantissa) - (1 << kFogPlaceBits);
+  const std::int64_t last = (std::int64_t{1} << (kFogPlaceBits + octave_bits)) - 1;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(position, 0, last));
+}
+
+std::uint32_t fog_factor_on(const FogLine& line, std::int32_t place, int place_bits) {
+  const int drop = place_bits + kFogStartFraction - kFogFactorBits;
+  const std::int32_t sum = line.start * (1 << place_bits) + line.rise * place + (1 << (drop - 1));
+  return static_cast<std::uint32_t>(std::clamp(sum >> drop, 0, static_cast<std::int32_t>(kFogClear)));
+}
+
+std::int32_t FogTable::position(std::uint64_t code, int scale) const {
+  return fog_position(code, -scale - first_, octave_bits_);
 }
 
 std::uint32_t FogTable::factor(std::int32_t position) const {
-  const Line& line = line_[static_cast<std::size_t>(position >> place_bits_)];
-  const std::int32_t place = position & ((1 << place_bits_) - 1);
-  const int drop = place_bits_ + kFogStartFraction - kFogFactorBits;
-  const std::int32_t sum = line.start * (1 << place_bits_) + line.rise * place + (1 << (drop - 1));
-  return static_cast<std::uint32_t>(std::clamp(sum >> drop, 0, static_cast<std::int32_t>(kFogClear)));
+  return fog_factor_on(line_[static_cast<std::size_t>(position >> place_bits_)], position & ((1 << place_bits_) - 1),
+                       place_bits_);
 }
 
 double FogTable::error_bound() const {

@@ -31,17 +31,25 @@ inline constexpr int kFogStartBits = 18;                          ///< with the 
 inline constexpr int kFogFactorBits = 12;                         ///< fraction bits of f
 inline constexpr std::uint32_t kFogClear = 1U << kFogFactorBits;  ///< f = 1
 
+/// A line of a fog's table.
+struct FogLine {
+  std::int32_t start = 0;  ///< at its first place, 2^-15
+  std::int32_t rise = 0;   ///< from there to the next line's, at least 0
+  bool operator==(const FogLine&) const = default;
+};
+
+/// The place of Q = `code` > 0 in a table of 2^octave_bits octaves; `octave`: the one where Q = 1 would lie.
+[[nodiscard]] std::int32_t fog_position(std::uint64_t code, int octave, int octave_bits);
+/// f of a place on its line, which has 2^place_bits of them: 0...2^12.
+[[nodiscard]] std::uint32_t fog_factor_on(const FogLine& line, std::int32_t place, int place_bits);
+
 /// f at a distance w > 0, as real as binary64 is, the same on every machine. `held`: to 0...1, which it is but for linear.
 [[nodiscard]] double fog_factor(const Fog& fog, double w, bool held = true);
 
 /// The table of a fog.
 class FogTable {
  public:
-  struct Line {
-    std::int32_t start = 0;  ///< at its first place, 2^-15
-    std::int32_t rise = 0;   ///< from there to the next line's, at least 0
-    bool operator==(const Line&) const = default;
-  };
+  using Line = FogLine;
 
   explicit FogTable(const Fog& fog, const std::array<std::uint8_t, 3>& color = {}, int line_bits = kFogLines);
 

@@ -25,11 +25,19 @@ namespace halfplane {
   return {code[q], {p(q + 1), p(q + 2)}, 0, 0};
 }
 
+/// Whether a token is one of fog's, which the texture unit lets through.
+template <class Codes>
+[[nodiscard]] bool is_of_fog(StateRegister which, const Codes& token, const Widths& widths) {
+  return which == StateRegister::texture_levels && fog_word(state_word(token, widths)) != FogWord::none;
+}
+
 /// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
   if (which == StateRegister::texture_lines)
     unit.move_in(wide_state_word(token, widths));
+  else if (is_of_fog(which, token, widths))
+    unit.fog().set(state_word(token, widths));
   else if (which == StateRegister::texture_levels)
     unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(state_word(token, widths))));
   else
@@ -41,6 +49,13 @@ inline void count(const TextureUse& use, CounterPacket& counters) {
   counters.texture_samples += use.samples;
   counters.texture_hits += use.hits;
   counters.texture_fills += use.fills;
+}
+
+/// The colours of a stamp's live samples in fog, if there is any.
+inline void add_fog(const TextureUnit& unit, bool is_triangle, SampleMask live, std::span<const TextureSample> samples,
+                    const CoordinateFrame& frame, std::span<Texel> colors) {
+  if (unit.fog().is_fogged(is_triangle))
+    live.for_each([&](std::size_t s) { unit.fog().add(samples[s].q, frame.fog_octave, colors[s]); });
 }
 
 [[nodiscard]] inline TextureFrame texture_frame(const CoordinateFrame& frame) {

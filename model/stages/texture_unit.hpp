@@ -22,6 +22,7 @@
 #include "../samples.hpp"
 #include "../scene.hpp"
 #include "../texture.hpp"
+#include "fog_unit.hpp"
 #include "perspective.hpp"
 #include "texture_filter.hpp"
 #include "texture_levels.hpp"
@@ -183,6 +184,9 @@ class TextureUnit {
     lines_.move_in(line_part);
     lod_ = lines_.lines().unpack();
   }
+  /// What fogs the colours behind it.
+  [[nodiscard]] FogUnit& fog() { return fog_; }
+  [[nodiscard]] const FogUnit& fog() const { return fog_; }
   [[nodiscard]] bool is_textured(bool is_triangle, SampleMask live) const {
     return state_.enable && is_triangle && live.any();
   }
@@ -304,6 +308,7 @@ class TextureUnit {
 
   TextureSettings settings_;
   PerspectiveFormat format_;
+  FogUnit fog_;
   TextureState state_;
   TextureLevels levels_;
   LineRegister lines_;

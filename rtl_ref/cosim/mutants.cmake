@@ -342,7 +342,7 @@ mutant(181 lib/blend_lane.sv "colours: reverse subtract adds"
 mutant(182 lib/blend_lane.sv "colours: a sum above 1 does not hold"
   [=[quotient[15:8] | {8{quotient[16]}}]=] [=[quotient[15:8]]=])
 mutant(183 lib/blend_lane.sv "colours: a difference below 0 does not hold"
-  [=[(sum_q[17] ? '0 : sum_q[16:0])]=] [=[sum_q[16:0]]=])
+  [=[(sum[17] ? '0 : sum[16:0])]=] [=[sum[16:0]]=])
 mutant(184 lib/blend_lane.sv "colours: a blend is cut off"
   [=[17'd128]=] [=[17'd0]=])
 mutant(185 lib/blend_lane.sv "colours: a blend is divided by 256"
@@ -352,17 +352,17 @@ mutant(186 lib/blend_lane.sv "colours: src_alpha_saturate does not look at what 
 mutant(187 lib/blend_lane.sv "colours: max is min"
   [=[(source < stored) == (equation == MIN)]=] [=[source < stored]=])
 mutant(188 stages/color_write.sv "colours: the masks of red and blue are exchanged"
-  [=[{{5{out_3_q[0]}}, {6{out_3_q[1]}}, {5{out_3_q[2]}}}]=] [=[{{5{out_3_q[2]}}, {6{out_3_q[1]}}, {5{out_3_q[0]}}}]=])
+  [=[{{5{out[0]}}, {6{out[1]}}, {5{out[2]}}}]=] [=[{{5{out[2]}}, {6{out[1]}}, {5{out[0]}}}]=])
 mutant(189 stages/color_write.sv "colours: what has been written of a stamp is lost when the rest of it comes"
-  [=[(dirty[s] && !starts_1_q)]=] [=[1'b0]=])
-mutant(190 stages/color_write.sv "colours: hazard: a stamp is read while it is on its way to the RAM"
-  [=[is_same_stamp != '0 && is_first]=] [=[1'b0]=])
+  [=[is_here_1_q || held[s]]=] [=[is_here_1_q]=])
+mutant(190 stages/color_write.sv "colours: hazard: a stamp does not have what the one in front makes of it"
+  [=[is_newer[0]]=] [=[1'b0]=])
 mutant(191 stages/color_write.sv "colours: hazard: a block is evicted while a stamp of it is on its way to the RAM"
   [=[is_same_line != '0]=] [=[1'b0]=])
 mutant(192 stages/color_write.sv "colours: samples that memory does not have pass for read ones"
-  [=[mask_1_q | (starts_1_q ? '0 : dirty)]=] [=[mask_1_q]=])
-mutant_text(193 stages/color_write.sv "colours: a stamp has the masks of the one behind it"
-  [=[out_3_q     <= out_2_q]=] [=[out_3_q <= raster_cosim.mutant_q == 16'd193 ? ops_q[DITHERS:WRITES] : out_2_q]=])
+  [=[mask_1_q | held]=] [=[mask_1_q]=])
+mutant(193 stages/color_write.sv "colours: a stamp has the masks of the one behind it"
+  [=[ops_2_q[DITHERS:WRITES]]=] [=[ops_q[DITHERS:WRITES]]=])
 mutant(194 stages/color_write.sv "colours: dithering: the matrix is turned"
   [=[~{x[0] ^ y[0], y[0], x[1] ^ y[1], y[1]}]=] [=[~{x[0] ^ y[0], x[0], x[1] ^ y[1], x[1]}]=])
 mutant(195 lib/sample_place.sv "colours: dithering: every stamp begins at the matrix' first column"
@@ -435,3 +435,42 @@ mutant(255 stages/texture_linear.sv "texture counter: what a sample's first leve
   [=[!(ends_second && misses_first_q)]=] [=[1'b1]=])
 mutant(256 lib/texture_answers.sv "texture: a line begins with the last beat of the one before"
   [=[ends_line_o ? '0 : beat_q + BEATS'(takes)]=] [=[beat_q + BEATS'(takes)]=])
+
+# Colours that are on their way, given to the stamp behind.
+mutant(300 stages/color_write.sv "colours: hazard: a stamp does not have what the last but one has made of it"
+  [=[is_newer[1]]=] [=[1'b0]=])
+mutant(301 stages/color_write.sv "colours: hazard: a stamp does not have what was written while it was read"
+  [=[is_newer[2]]=] [=[1'b0]=])
+mutant(302 stages/color_write.sv "colours: a sample that is on its way is whole, whatever memory has"
+  [=[{dirty_2_q[s], made[s*COLOR+:COLOR]}]=] [=[{1'b0, made[s*COLOR+:COLOR]}]=])
+mutant(303 stages/color_write.sv "colours: a stamp is blended with the constant of the one behind it"
+  [=[(constant_2_q)]=] [=[constant_q]=])
+
+# fog
+mutant(310 lib/fog_place.sv "fog: what lies nearer than the table begins it again"
+  [=[{19{is_above}}]=] [=[19'd0]=])
+mutant(311 lib/fog_place.sv "fog: what lies farther than the table is at its near end"
+  [=[octave[7]]=] [=[1'b0]=])
+mutant(312 lib/fog_place.sv "fog: lines are spread as those of 16 octaves"
+  [=[(3'd4 - octaves_i)]=] [=[3'd0]=])
+mutant(313 lib/colored_stamps.sv "fog: points and clears are fogged too"
+  [=[enable_q && is_triangle]=] [=[enable_q && !is_token]=])
+mutant(314 lib/colored_stamps.sv "fog: another one has the octaves of the first"
+  [=[is_levels && word[TOKEN+:2] == 2'd1]=] [=[is_levels && word[TOKEN+:2] == 2'd1 && !enable_q]=])
+mutant(315 stages/fog_unit.sv "fog: f is that of the line's first place"
+  [=[$signed({2'b00, product})]=] [=[30'sd0]=])
+mutant(316 stages/fog_unit.sv "fog: f is cut off"
+  [=[30'sd8192]=] [=[30'sd0]=])
+mutant(317 stages/fog_unit.sv "fog: f goes beyond 1"
+  [=[whole > 16'sd4096]=] [=[1'b0]=])
+mutant(318 stages/fog_unit.sv "fog: f goes below 0"
+  [=[whole < 0]=] [=[1'b0]=])
+mutant(319 stages/fog_unit.sv "fog: the mix is cut off"
+  [=[12'd2048]=] [=[12'd0]=])
+mutant_text(320 stages/fog_unit.sv "fog: a stamp has the fog's colour of the one behind it"
+  [=[if (sets_color_1_q) fog_q <= word_1_q;
+    end]=] [=[if (sets_color_1_q && raster_cosim.mutant_q != 16'd320) fog_q <= word_1_q;
+    end
+    if (enters_1 && sets_color_i && raster_cosim.mutant_q == 16'd320) fog_q <= word_i[23:0];]=])
+mutant(321 stages/fog_unit.sv "fog: a stamp that waits reads the line of the one behind it"
+  [=[enters_1 && !sets_line_i]=] [=[!sets_line_i]=])

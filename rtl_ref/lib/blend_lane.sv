@@ -1,22 +1,20 @@
-// Blend lane: one sample's colour and the stored one become the blended one, every channel in its own multipliers. A sample a
-// clock; the result is there two clocks later.
+// Blend lane: one sample's colour and the stored one become the blended one, every channel in its own multipliers.
+// Combinational, so that the next clock may blend what comes of it again.
 //
-//   1  factors are chosen          2  s fs + d fd, or a difference that is at least 0          3  / 255, at most 255
+//   factors are chosen -> s fs + d fd, or a difference that is at least 0 -> / 255, at most 255
 //
 // min and max are sums too: of 255 times the smaller or larger one and 0 times the other.
 // Specification: blended of model/color_ops.hpp.
 module blend_lane #(
     parameter int CHANNELS = 4  // that are stored: 3 or 4
 ) (
-    input logic clk_i,
-
     input logic [31:0] source_i,    // 8 bits a channel, R lowest
     input logic [31:0] stored_i,
     input logic [15:0] factors_i,   // 4 bits each: source, destination, and of alpha
     input logic [5:0]  equation_i,  // 3 bits each: of colour, of alpha
     input logic [31:0] constant_i,
 
-    output logic [8*CHANNELS-1:0] color_o  // two clocks later
+    output logic [8*CHANNELS-1:0] color_o
 );
 
   localparam logic [2:0] SUBTRACT = 3'd1;
@@ -49,10 +47,9 @@ module blend_lane #(
       logic [2:0]  equation;
       logic [7:0]  source, stored, source_factor, stored_factor;
       logic        takes_source, is_extreme;  // min or max: of the two
-      logic [7:0]  source_q, stored_q, source_factor_q, stored_factor_q;
-      logic        subtracts_q, reverses_q;
+      logic        subtracts, reverses;
       logic [15:0] source_product, stored_product;
-      logic [17:0] sum, sum_q;  // with its sign
+      logic [17:0] sum;  // with its sign
       /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
       logic [16:0] rounded, quotient;
       /* verilator lint_on UNUSEDSIGNAL */
@@ -72,22 +69,14 @@ module blend_lane #(
           stored_factor = {8{!takes_source}};
         end
       end
-      always_ff @(posedge clk_i) begin
-        source_q        <= source;
-        stored_q        <= stored;
-        source_factor_q <= source_factor;
-        stored_factor_q <= stored_factor;
-        subtracts_q     <= equation == SUBTRACT;
-        reverses_q      <= equation == REVERSE_SUBTRACT;
-      end
+      assign subtracts      = equation == SUBTRACT;
+      assign reverses       = equation == REVERSE_SUBTRACT;
+      assign source_product = source * source_factor;
+      assign stored_product = stored * stored_factor;
+      assign sum = ({2'd0, source_product} ^ {18{reverses}}) + ({2'd0, stored_product} ^ {18{subtracts}}) +
+                   18'(reverses || subtracts);
 
-      assign source_product = source_q * source_factor_q;
-      assign stored_product = stored_q * stored_factor_q;
-      assign sum = ({2'd0, source_product} ^ {18{reverses_q}}) + ({2'd0, stored_product} ^ {18{subtracts_q}}) +
-                   18'(reverses_q || subtracts_q);
-      always_ff @(posedge clk_i) sum_q <= sum;
-
-      assign rounded  = (sum_q[17] ? '0 : sum_q[16:0]) + 17'd128;
+      assign rounded  = (sum[17] ? '0 : sum[16:0]) + 17'd128;
       assign quotient = rounded + {8'd0, rounded[16:8]};
       assign color_o[8*c+:8] = quotient[15:8] | {8{quotient[16]}};
     end

@@ -1,5 +1,5 @@
 // Colored stamps: what X is through with, on its way to W with the colours that are written: through the texture unit, where
-// there is one, and rop behind it; else as they are, two of them at most.
+// there is one, fog and rop behind it; else as they are, two of them at most.
 //
 // A stamp never waits on its way in: X counts those inside, at most PLACES.
 module colored_stamps #(
@@ -87,6 +87,10 @@ module colored_stamps #(
       localparam int NARROW = raster_pkg::PERSPECTIVE_MANTISSA_BITS - 1;  // k_P
       localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::ALL_CODE_BITS >= 104 ? 104 : 70;
       localparam int PIXEL = 12;
+      localparam int TOKEN = 43;  // of fog's tokens
+      localparam int PLACES_BITS = 19 * SAMPLES > TOKEN ? 19 * SAMPLES : TOKEN;
+      localparam int FOG = raster_pkg::FOG_UNIT == 0 ? 0 : 3 + PLACES_BITS;  // that fog carries along
+      logic [CARRIED+FOG-1:0] entering, unit_carried;
       localparam int TILE = raster_pkg::TILE_SHIFT;
       localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
       localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
@@ -98,13 +102,18 @@ module colored_stamps #(
       logic [SAMPLES*P-1:0]          u, v;
       logic [SAMPLES*8*CHANNELS-1:0] rgba;
       logic [SAMPLES-1:0]            mask;
-      logic is_token;
+      logic is_token, is_triangle, is_levels, unit_valid, unit_ready, sets_fog, sets_fog_line;
+      logic [SAMPLES-1:0]            unit_mask;
+      logic [SAMPLES*8*CHANNELS-1:0] unit_rgba;
       assign stamp_x = (PIXEL'(fragment_i.key.tile_x) << TILE) |
                        ((PIXEL'(fragment_i.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
       assign stamp_y = (PIXEL'(fragment_i.key.tile_y) << TILE) | ((PIXEL'(fragment_i.stamp) >> ROW) << STAMP);
       assign word = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
                      fragment_i.code[0+:AFFINE_BITS]};
       assign is_token = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_STATE;
+      assign is_triangle = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+      assign is_levels = is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS;
+      assign entering[CARRIED-1:0] = carried_i;
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
         assign q[s*Q+:Q] = fragment_i.code[s*FRAGMENT+Q_AT+:Q];
         assign u[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+:P];
@@ -135,7 +144,7 @@ module colored_stamps #(
           .CHANNELS      (CHANNELS),
           .FILTER        (raster_pkg::TEXTURE_UNIT - 1),
           .RECIPROCAL    (raster_pkg::RECIPROCAL_KIND),
-          .PAYLOAD       (CARRIED),
+          .PAYLOAD       (CARRIED + FOG),
           .QUEUE         (PLACES),
           .IN_FLIGHT     (raster_pkg::TEXTURE_QUEUE),
           .LINES         (16 * raster_pkg::TEXTURE_CACHE_KB),
@@ -147,10 +156,10 @@ module colored_stamps #(
           .power_on_ni,
           .rst_ni,
           .stamp_valid_i  (stamp_valid_i),
-          .payload_i      (carried_i),
+          .payload_i      (entering),
           .mask_i         (writes_i),
           .color_i        (color_i),
-          .is_triangle_i  (fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE),
+          .is_triangle_i  (is_triangle),
           .q_i            (q),
           .u_i            (u),
           .v_i            (v),
@@ -158,16 +167,16 @@ module colored_stamps #(
           .reach_i        (fragment_i.coordinates.reach),
           .reference_i    (fragment_i.coordinates.origin),
           .sets_state_i   (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE),
-          .sets_levels_i  (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS),
+          .sets_levels_i  (is_levels && !sets_fog && !sets_fog_line),
           .moves_in_i     (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LINES),
           .x_i            (stamp_x),
           .y_i            (stamp_y),
           .state_i        (word[WORD-1:0]),
-          .stamp_valid_o  (stamp_valid_o),
-          .stamp_ready_i  (stamp_ready_i),
-          .payload_o      (carried_o),
-          .mask_o         (mask),
-          .color_o        (rgba),
+          .stamp_valid_o  (unit_valid),
+          .stamp_ready_i  (unit_ready),
+          .payload_o      (unit_carried),
+          .mask_o         (unit_mask),
+          .color_o        (unit_rgba),
           .request_valid_o(texture_valid_o),
           .request_ready_i(texture_ready_i),
           .request_address_o(texture_o.address),
@@ -180,6 +189,67 @@ module colored_stamps #(
           .miss_o         (texture_use_o[2]),
           .idle_o         (texture_is_idle_o)
       );
+
+      // Fog: where the samples of triangles lie in its table they know at the door, by what has been set there.
+      if (raster_pkg::FOG_UNIT == 0) begin : gen_clear
+        assign sets_fog      = 1'b0;
+        assign sets_fog_line = 1'b0;
+        assign stamp_valid_o = unit_valid;
+        assign unit_ready    = stamp_ready_i;
+        assign carried_o     = unit_carried;
+        assign mask          = unit_mask;
+        assign rgba          = unit_rgba;
+      end else begin : gen_fogged
+        localparam int COLOR_BITS = 24;
+        logic       enable_q;   // there is fog
+        logic [2:0] octaves_q;  // of its table
+        logic [PLACES_BITS-1:0] places;
+        assign sets_fog      = is_levels && word[TOKEN+:2] == 2'd1;
+        assign sets_fog_line = is_levels && word[TOKEN+:2] == 2'd2;
+        always_ff @(posedge clk_i or negedge rst_ni) begin
+          if (!rst_ni) enable_q <= 1'b0;
+          else if (stamp_valid_i && sets_fog) enable_q <= word[COLOR_BITS+3];
+        end
+        always_ff @(posedge clk_i) if (stamp_valid_i && sets_fog) octaves_q <= word[COLOR_BITS+:3];
+        for (s = 0; s < SAMPLES; s++) begin : gen_place
+          fog_place #(
+              .Q_BITS(Q)
+          ) u_place (
+              .q_i      (q[s*Q+:Q]),
+              .octave_i (fragment_i.coordinates.fog_octave),
+              .octaves_i(octaves_q),
+              .place_o  (places[19*s+:19])
+          );
+        end
+        if (PLACES_BITS > 19 * SAMPLES) begin : gen_rest
+          assign places[PLACES_BITS-1:19*SAMPLES] = '0;
+        end
+        assign entering[CARRIED+:PLACES_BITS] = is_token ? PLACES_BITS'(word[TOKEN-1:0]) : places;
+        assign entering[CARRIED+PLACES_BITS+:3] = {sets_fog_line, sets_fog,
+            enable_q && is_triangle};
+
+        fog_unit #(
+            .SAMPLES (SAMPLES),
+            .CHANNELS(CHANNELS),
+            .PAYLOAD (CARRIED + SAMPLES),
+            .WORD    (PLACES_BITS)
+        ) u_fog (
+            .clk_i,
+            .rst_ni,
+            .stamp_valid_i(unit_valid),
+            .stamp_ready_o(unit_ready),
+            .payload_i    ({unit_carried[CARRIED-1:0], unit_mask}),
+            .color_i      (unit_rgba),
+            .is_fogged_i  (unit_carried[CARRIED+PLACES_BITS]),
+            .sets_color_i (unit_carried[CARRIED+PLACES_BITS+1]),
+            .sets_line_i  (unit_carried[CARRIED+PLACES_BITS+2]),
+            .word_i       (unit_carried[CARRIED+:PLACES_BITS]),
+            .stamp_valid_o(stamp_valid_o),
+            .stamp_ready_i(stamp_ready_i),
+            .payload_o    ({carried_o, mask}),
+            .color_o      (rgba)
+        );
+      end
       assign packet_valid_o = stamp_valid_o && mask != '0;
       assign packet_o.mask  = mask;
       assign packet_o.color = color_o;

@@ -4,8 +4,9 @@
 // Without blending nobody reads colours but to write them back, and a stamp takes a clock. With it a stamp also reads what is
 // stored under it, from the RAM and, where that does not have all of it, from the clear value or an answer of memory; it takes
 // a clock for each group of BLEND_LANES samples that are blended, one at least, and what it writes is in the RAM three clocks
-// later, in order. A stamp that reads waits until nothing of an eviction is left to be read and for what is on its way to
-// these samples; an eviction waits for what is on its way to its line. Samples are packed here, rounded or dithered.
+// later, in order. What is on its way to these samples is newer than the RAM and forwarded, so that the same stamp may come
+// every clock; a stamp that reads waits until nothing of an eviction is left to be read, and an eviction for what is on its way
+// to its line. Samples are packed here, rounded or dithered.
 // Specification: model/stages/block_cache.hpp, rop.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module color_write #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
@@ -212,7 +213,7 @@ module color_write #(
       // 0: the stamp at the head, group by group.
       logic               is_here, is_fetched, is_first;
       logic [GROUPS-1:0]  wanted, done_q, group;  // groups with a sample to be blended
-      logic [SAMPLES-1:0] written, looked_at;
+      logic [SAMPLES-1:0] written;
       assign is_here    = source_i == raster_pkg::DEPTH_SOURCE_CHIP;
       assign is_fetched = source_i != raster_pkg::DEPTH_SOURCE_NONE && !is_here;
       assign writes_all = starts_i || is_fetched;
@@ -223,53 +224,53 @@ module color_write #(
       assign group     = wanted & (~wanted + 1'b1);
       assign is_first  = done_q == '0;
       assign ends      = !ops_q[BLENDS] || wanted == group;
-      assign looked_at = is_fetched ? '1 : mask_i;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) done_q <= '0;
         else if (goes) done_q <= ends ? '0 : done_q | group;
       end
 
-      // 1 to 3: what is on its way to the RAM. 1 has read it, 2 multiplies, 3 packs and writes.
-      logic [2:0]           on_way_q;
-      logic [LINE-1:0]      line_1_q, line_2_q, line_3_q;
-      logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q;
-      logic [SAMPLES-1:0]   mask_1_q, mask_2_q, mask_3_q;     // whose colour is written
-      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q;  // that come into the RAM
-      logic [SAMPLES-1:0]   blended_1_q, blended_2_q, blended_3_q;  // by the lanes
-      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q;
-      logic [SAMPLES*SHADED-1:0] color_1_q, color_2_q, color_3_q;
-      logic [SAMPLES*COLOR-1:0]  base_1_q, stored, stored_2_q, stored_3_q;
-      logic [GROUPS-1:0]    group_1_q;
+      // 1 to 3: what is on its way to the RAM. 1 has read it, 2 blends and packs, 3 writes; 4 is what has been written last,
+      // while 1 read.
+      logic [3:0]           on_way_q;
+      logic [LINE-1:0]      line_1_q, line_2_q, line_3_q, line_4_q;
+      logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q, stamp_4_q;
+      logic [SAMPLES-1:0]   mask_1_q, mask_2_q;     // whose colour is written
+      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q, writes_4_q;  // that come into the RAM
+      logic [SAMPLES-1:0]   blended_1_q, blended_2_q;  // by the lanes
+      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q, dirty_4_q, held;  // held: newer than what memory has, as 1 finds it
+      logic [SAMPLES*SHADED-1:0] color_1_q, color_2_q;
+      logic [SAMPLES*COLOR-1:0]  base_1_q, stored, stored_2_q, made, code_3_q, code_4_q;
+      logic [GROUPS-1:0]    group_1_q, group_2_q;
+      logic [BLENDS-1:0]    ops_2_q;
+      logic [31:0]          constant_2_q;
       logic                 starts_1_q, is_here_1_q;
       /* verilator lint_off UNUSEDSIGNAL */  // rgb565 has no alpha, rgba8888 no dithering
-      logic [4:0]           out_2_q, out_3_q;  // of the operations what comes last: channels written, dithers
+      logic [4:0]           out;  // of the operations what comes last: channels written, dithers
       /* verilator lint_on UNUSEDSIGNAL */
-      logic                 collides;
-      logic [2:0]           is_same_line, is_same_stamp;
+      logic [2:0]           is_same_line, is_same_stamp;  // of the head; of 1
 
-      assign is_same_line = on_way_q & {line_3_q == line_i && writes_3_q != '0, line_2_q == line_i && writes_2_q != '0,
-                                        line_1_q == line_i && writes_1_q != '0};
-      assign is_same_stamp = is_same_line & {stamp_3_q == stamp_i && (writes_3_q & looked_at) != '0,
-                                             stamp_2_q == stamp_i && (writes_2_q & looked_at) != '0,
-                                             stamp_1_q == stamp_i && (writes_1_q & looked_at) != '0};
+      assign is_same_line = on_way_q[2:0] & {line_3_q == line_i && writes_3_q != '0, line_2_q == line_i && writes_2_q != '0,
+                                             line_1_q == line_i && writes_1_q != '0};
+      assign is_same_stamp = on_way_q[3:1] & {{line_4_q, stamp_4_q} == {line_1_q, stamp_1_q},
+                                              {line_3_q, stamp_3_q} == {line_1_q, stamp_1_q},
+                                              {line_2_q, stamp_2_q} == {line_1_q, stamp_1_q}};
       assign is_busy  = is_same_line != '0;
-      assign collides = is_same_stamp != '0 && is_first;
       // Where something of the stamp is in the RAM it is read.
       assign waits = (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i) ||
-                     (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i && (left != '0 || collides));
+                     (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i && left != '0);
       assign looks = goes && source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i;
       assign answer_ready_o = stamp_ready_o && source_i == raster_pkg::DEPTH_SOURCE_MEMORY;
-      assign idle_o = on_way_q == '0;
+      assign idle_o = on_way_q[2:0] == '0;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) on_way_q <= '0;
-        else on_way_q <= {on_way_q[1:0], goes};
+        else on_way_q <= {on_way_q[2:0], goes};
       end
       always_ff @(posedge clk_i) begin
         line_1_q    <= line_i;
         stamp_1_q   <= stamp_i;
         mask_1_q    <= written;
-        writes_1_q  <= written | (~mask_i & {SAMPLES{writes_all && is_first}});  // no group reads what another writes
+        writes_1_q  <= written | {SAMPLES{writes_all && is_first}};  // else a group would undo what another has made
         color_1_q   <= color_i;
         base_1_q    <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_i : {SAMPLES{clear_color_i}};
         group_1_q   <= group;
@@ -282,24 +283,36 @@ module color_write #(
         writes_2_q  <= writes_1_q;
         blended_2_q <= blended_1_q;
         color_2_q   <= color_1_q;
-        dirty_2_q   <= mask_1_q | (starts_1_q ? '0 : dirty);
+        dirty_2_q   <= mask_1_q | held;
         stored_2_q  <= stored;
-        out_2_q     <= ops_q[DITHERS:WRITES];
+        group_2_q   <= group_1_q;
+        ops_2_q     <= ops_q[BLENDS-1:0];
+        constant_2_q <= constant_q;
         line_3_q    <= line_2_q;
         stamp_3_q   <= stamp_2_q;
-        mask_3_q    <= mask_2_q;
         writes_3_q  <= writes_2_q;
-        blended_3_q <= blended_2_q;
-        color_3_q   <= color_2_q;
         dirty_3_q   <= dirty_2_q;
-        stored_3_q  <= stored_2_q;
-        out_3_q     <= out_2_q;
+        code_3_q    <= made;
+        line_4_q    <= line_3_q;
+        stamp_4_q   <= stamp_3_q;
+        writes_4_q  <= writes_3_q;
+        dirty_4_q   <= dirty_3_q;
+        code_4_q    <= code_3_q;
       end
 
-      // 1: what is stored, and of the group its samples, as 8 bits a channel.
+      // 1: what is stored: the newest of what is on its way, else what the RAM has.
       for (s = 0; s < SAMPLES; s++) begin : gen_stored
-        assign stored[s*COLOR+:COLOR] = is_here_1_q || (dirty[s] && !starts_1_q) ? code[s*COLOR+:COLOR] : base_1_q[s*COLOR+:COLOR];
+        logic [2:0]       is_newer;  // what 2, 3 and 4 have
+        logic [COLOR:0]   found;     // in the RAM or on the way, and whether memory does not have it
+        assign is_newer = is_same_stamp & {writes_4_q[s], writes_3_q[s], writes_2_q[s]};
+        assign found = is_newer[0] ? {dirty_2_q[s], made[s*COLOR+:COLOR]} :
+                       is_newer[1] ? {dirty_3_q[s], code_3_q[s*COLOR+:COLOR]} :
+                       is_newer[2] ? {dirty_4_q[s], code_4_q[s*COLOR+:COLOR]} : {dirty[s], code[s*COLOR+:COLOR]};
+        assign held[s] = found[COLOR] && !starts_1_q;
+        assign stored[s*COLOR+:COLOR] = is_here_1_q || held[s] ? found[COLOR-1:0] : base_1_q[s*COLOR+:COLOR];
       end
+
+      // 2: of the group its samples, as 8 bits a channel, blended.
       logic [GROUP*8*CHANNELS-1:0] result;
       genvar l;
       for (l = 0; l < GROUP; l++) begin : gen_lane
@@ -310,8 +323,8 @@ module color_write #(
           stored_code = '0;
           source      = '0;
           for (int i = 0; i < GROUPS; i++) begin
-            stored_code = stored_code | (stored[(i*GROUP+l)*COLOR+:COLOR] & {COLOR{group_1_q[i]}});
-            source      = source | (color_1_q[(i*GROUP+l)*SHADED+:SHADED] & {SHADED{group_1_q[i]}});
+            stored_code = stored_code | (stored_2_q[(i*GROUP+l)*COLOR+:COLOR] & {COLOR{group_2_q[i]}});
+            source      = source | (color_2_q[(i*GROUP+l)*SHADED+:SHADED] & {SHADED{group_2_q[i]}});
           end
         end
         if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
@@ -323,26 +336,27 @@ module color_write #(
         blend_lane #(
             .CHANNELS(CHANNELS)
         ) u_lane (
-            .clk_i,
             .source_i  (source),
             .stored_i  (wide),
-            .factors_i (ops_q[15:0]),
-            .equation_i(ops_q[EQUATION+:6]),
-            .constant_i(constant_q),
+            .factors_i (ops_2_q[15:0]),
+            .equation_i(ops_2_q[EQUATION+:6]),
+            .constant_i(constant_2_q),
             .color_o   (result[l*8*CHANNELS+:8*CHANNELS])
         );
       end
 
-      // 3: packed, and of each channel the new or the stored one.
+      // Packed, and of each channel the new or the stored one.
+      assign out           = ops_2_q[DITHERS:WRITES];
       assign write_address = {line_3_q, stamp_3_q};
       assign writes        = writes_3_q & {SAMPLES{on_way_q[2]}};
       assign dirty_new     = dirty_3_q;
+      assign code_new      = code_3_q;
       for (s = 0; s < SAMPLES; s++) begin : gen_rop
         logic [SHADED-1:0] rgba;
         logic [COLOR-1:0]  packed_color, channels;
         always_comb begin
-          rgba = color_3_q[s*SHADED+:SHADED];
-          if (blended_3_q[s]) rgba[8*CHANNELS-1:0] = result[(s%GROUP)*8*CHANNELS+:8*CHANNELS];
+          rgba = color_2_q[s*SHADED+:SHADED];
+          if (blended_2_q[s]) rgba[8*CHANNELS-1:0] = result[(s%GROUP)*8*CHANNELS+:8*CHANNELS];
         end
         if (raster_pkg::DITHER_UNIT == 0) begin : gen_rounded
           rop u_rop (
@@ -354,24 +368,24 @@ module color_write #(
           sample_place #(
               .SAMPLE(s)
           ) u_place (
-              .stamp_i(stamp_3_q),
+              .stamp_i(stamp_2_q),
               .x_o(x),
               .y_o(y)
           );
           dithered_rop u_rop (
               .rgba_i     (rgba),
-              .dithers_i  (out_3_q[4]),
+              .dithers_i  (out[4]),
               .threshold_i(threshold_of(x, y)),
               .color_o    (packed_color)
           );
         end
         if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
-          assign channels = {{5{out_3_q[0]}}, {6{out_3_q[1]}}, {5{out_3_q[2]}}};
+          assign channels = {{5{out[0]}}, {6{out[1]}}, {5{out[2]}}};
         end else begin : gen_rgba8888
-          assign channels = {{8{out_3_q[3]}}, {8{out_3_q[2]}}, {8{out_3_q[1]}}, {8{out_3_q[0]}}};
+          assign channels = {{8{out[3]}}, {8{out[2]}}, {8{out[1]}}, {8{out[0]}}};
         end
-        assign code_new[s*COLOR+:COLOR] = (packed_color & channels & {COLOR{mask_3_q[s]}}) |
-                                          (stored_3_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_3_q[s]}}));
+        assign made[s*COLOR+:COLOR] = (packed_color & channels & {COLOR{mask_2_q[s]}}) |
+                                      (stored_2_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_2_q[s]}}));
       end
     end
   endgenerate

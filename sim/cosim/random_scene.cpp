@@ -56,6 +56,7 @@ class Generator {
     set_units();
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
+    if (config_.fog_units != 0) set_fogs();
     return std::move(scene_);
   }
 
@@ -84,6 +85,7 @@ class Generator {
   void set_units();
   void set_stencils();
   void set_textures();
+  void set_fogs();
   void clear();
   void line_and_point_state(State& s);
   void primitive(std::size_t corners, bool is_again);
@@ -243,6 +245,34 @@ void Generator::set_textures() {
     v.v = random.uniform(-reach, reach);
     if (chance(0.3)) v.u = static_cast<double>(below(65)) / 64;
     if (chance(0.3)) v.v = static_cast<double>(below(65)) / 64;
+  }
+}
+
+/// A few fogs, from one that begins at the eye to one that has a hair of width, at distances that vertices have and beyond; in
+/// runs of draws, since each brings a table. By random numbers of their own, as above.
+void Generator::set_fogs() {
+  Random random(seed_ ^ 0xf06u);
+  const auto below = [&random](std::uint64_t n) { return random.next() % n; };
+  std::vector<State> fogs(1 + below(3));
+  for (State& state : fogs) {
+    Fog fog;
+    fog.kind = static_cast<FogKind>(below(3));
+    const double reach = std::exp2(random.uniform(-7, 7));
+    if (fog.kind == FogKind::linear) {
+      fog.start = below(2) == 0 ? 0 : reach * random.uniform(0, 1.25);
+      fog.end = below(8) == 0 ? 0 : reach;
+    } else {
+      fog.start = below(8) == 0 ? 0 : 1 / reach;
+    }
+    state.fog = fog;
+    for (std::uint8_t& channel : state.fog_color) channel = static_cast<std::uint8_t>(below(256));
+  }
+  const State* fog = nullptr;
+  for (State& state : scene_.states) {
+    if (below(6) == 0) fog = below(3) == 0 ? nullptr : &fogs[below(fogs.size())];
+    if (fog == nullptr || (state.texture && state.texture_interp == TextureInterp::affine)) continue;
+    state.fog = fog->fog;
+    state.fog_color = fog->fog_color;
   }
 }
 

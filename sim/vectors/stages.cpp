@@ -337,6 +337,7 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
     });
     if (unit.is_textured(fragment->kind == PrimitiveKind::triangle, live))
       unit.take(live, sample, texture_frame(fragment->coordinates), color, read);
+    add_fog(unit, fragment->kind == PrimitiveKind::triangle, live, sample, fragment->coordinates, color);
     ColorPacket packet{live, {}};
     live.for_each([&](std::size_t s) {
       const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};

@@ -296,6 +296,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_stencil.alpha_units = with_stencil.dither_units = 1;
   with_stencil.blend_lanes = 4;
   with_stencil.stencil_bits = 8;
+  with_stencil.fog_units = 1;
   const DutFactory &embedded = find_dut(preset("embedded")), &tiny = find_dut(preset("tiny")),
                    &textured = find_dut(with_textures), &blended = find_dut(with_operations),
                    &stencilled = find_dut(with_stencil);
@@ -307,7 +308,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   for (const Mutant& mutant : mutants())  // `tiny` has the framebuffer of tiles
     EXPECT_TRUE((mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
                 (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||
-                (mutant.what.starts_with("stencil") &&
+                ((mutant.what.starts_with("stencil") || mutant.what.starts_with("fog")) &&
                  (is_caught(stencilled, mutant, 0.2) || is_caught(stencilled, mutant, 0))) ||
                 is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
                 is_caught(embedded, mutant, 0.2, true))

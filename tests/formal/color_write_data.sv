@@ -19,23 +19,31 @@
     if (sets_state_i) assume (mask_i == '0 && !evicts_i && !starts_i && source_i == raster_pkg::DEPTH_SOURCE_NONE);
   end
 
-  // One sample of one stamp of a line, any; `word` is what its RAM holds.
+  // One sample of one stamp of a line, any; `word` is what its RAM holds, `newest` what it will hold when all that is on its way
+  // has been written.
   (* anyconst *) logic [LINE-1:0]  any_line;
   (* anyconst *) logic [STAMP-1:0] any_stamp;
   (* anyconst *) logic [$clog2(SAMPLES+1)-1:0] any_sample;
-  logic [COLOR:0] word_q, read_word_q, snapshot_q, ram, found_2_q, found_3_q;
-  logic           writes_it, looks_at_it, reads_it_q, collided_q, looked_q, needs_q, is_first_q, victim_is_it_q, begun_q;
-  logic [2:0]     on_way_to_it;  // items that will write it
+  logic [COLOR:0] word_q, read_word_q, snapshot_q, ram, found_2_q, made_2, newest;
+  logic           writes_it, looks_at_it, reads_it_q, collided_q, looked_q, is_first_q, victim_is_it_q, begun_q;
+  logic [3:0]     is_it;         // items of 1 to 4 that are of this stamp
+  logic [3:0]     on_way_to_it;  // of these, those that will write it, or have in the last clock
   logic [STAMPS-1:0] any_bit;
   localparam int BLENDS = 27;
   assign any_bit      = STAMPS'(1) << any_stamp;
   assign ram          = {dirty[any_sample], code[any_sample*COLOR+:COLOR]};
   assign writes_it    = writes[any_sample] && write_address == {any_line, any_stamp};
   assign looks_at_it  = looks && {line_i, stamp_i} == {any_line, any_stamp};
-  assign on_way_to_it = gen_blends.on_way_q & {
-    gen_blends.line_3_q == any_line && gen_blends.stamp_3_q == any_stamp && gen_blends.writes_3_q[any_sample],
-    gen_blends.line_2_q == any_line && gen_blends.stamp_2_q == any_stamp && gen_blends.writes_2_q[any_sample],
-    gen_blends.line_1_q == any_line && gen_blends.stamp_1_q == any_stamp && gen_blends.writes_1_q[any_sample]};
+  assign is_it        = gen_blends.on_way_q & {{gen_blends.line_4_q, gen_blends.stamp_4_q} == {any_line, any_stamp},
+                                               {gen_blends.line_3_q, gen_blends.stamp_3_q} == {any_line, any_stamp},
+                                               {gen_blends.line_2_q, gen_blends.stamp_2_q} == {any_line, any_stamp},
+                                               {gen_blends.line_1_q, gen_blends.stamp_1_q} == {any_line, any_stamp}};
+  assign on_way_to_it = is_it & {gen_blends.writes_4_q[any_sample], gen_blends.writes_3_q[any_sample],
+                                 gen_blends.writes_2_q[any_sample], gen_blends.writes_1_q[any_sample]};
+  assign made_2 = {gen_blends.dirty_2_q[any_sample], gen_blends.made[any_sample*COLOR+:COLOR]};
+  // As stage 1 must find it: what those in front of it leave.
+  assign newest = on_way_to_it[1] ? made_2 :
+                  on_way_to_it[2] ? {gen_blends.dirty_3_q[any_sample], gen_blends.code_3_q[any_sample*COLOR+:COLOR]} : word_q;
   logic is_left;  // of an eviction its stamp is still to be read
   assign is_left = left_q != '0 && left_line_q == any_line && (left_q & any_bit) != '0;
   always_ff @(posedge clk_i) begin
@@ -46,72 +54,70 @@
       collided_q  <= writes_it;
     end
     looked_q       <= rst_ni && looks_at_it;
-    needs_q        <= gen_blends.looked_at[any_sample];
     is_first_q     <= gen_blends.is_first;
     victim_is_it_q <= rst_ni && reads && !looks && read_address == {any_line, any_stamp};
     if (starts && line_i == any_line) snapshot_q <= word_q;
     begun_q <= rst_ni && (starts ? line_i == any_line : begun_q);
     // What stage 1 has found.
-    found_2_q <= {!gen_blends.starts_1_q && dirty[any_sample], gen_blends.stored[any_sample*COLOR+:COLOR]};
-    found_3_q <= found_2_q;
+    found_2_q <= {gen_blends.held[any_sample], gen_blends.stored[any_sample*COLOR+:COLOR]};
   end
   always_comb begin
     assume (any_sample < SAMPLES);
     if (runs_q) begin
       if (reads_it_q && !collided_q) assume (ram == read_word_q);  // sram_word
       assert (!(looks && reads));
-      // What a stamp looks at has been written, all of it, and is not written meanwhile.
-      if (looks_at_it && gen_blends.is_first && gen_blends.looked_at[any_sample]) assert (on_way_to_it == '0);
-      if (looks_at_it && gen_blends.written[any_sample]) assert (!writes_it);
-      if (looked_q && is_first_q && needs_q) begin
-        assert (reads_it_q && !collided_q && read_word_q == word_q && on_way_to_it[2:1] == '0);
+      // A stamp has what those in front of it leave, be it in the RAM or on its way, one a clock.
+      if (looked_q && gen_blends.on_way_q[0]) begin
+        assert (is_it[0] && reads_it_q && !gen_blends.starts_1_q);
+        assert (gen_blends.held[any_sample] == newest[COLOR]);
         assert (gen_blends.stored[any_sample*COLOR+:COLOR] ==
-                (gen_blends.is_here_1_q || word_q[COLOR] ? word_q[COLOR-1:0] : gen_blends.base_1_q[any_sample*COLOR+:COLOR]));
+                (gen_blends.is_here_1_q || newest[COLOR] ? newest[COLOR-1:0] : gen_blends.base_1_q[any_sample*COLOR+:COLOR]));
       end
+      // Nor does a group of a stamp undo what another has made of it.
+      if (on_way_to_it[0] && !gen_blends.mask_1_q[any_sample] && !is_first_q)
+        assert ({gen_blends.held[any_sample], gen_blends.stored[any_sample*COLOR+:COLOR]} == newest);
       // What is not blended or replaced is written as it was found, with what memory does not have of it.
-      if (writes_it && !gen_blends.mask_3_q[any_sample])
-        assert ({dirty_new[any_sample], code_new[any_sample*COLOR+:COLOR]} == found_3_q);
-      if (writes_it && gen_blends.mask_3_q[any_sample]) assert (dirty_new[any_sample]);
+      if (on_way_to_it[1] && !gen_blends.mask_2_q[any_sample]) assert (made_2 == found_2_q);
+      if (on_way_to_it[1] && gen_blends.mask_2_q[any_sample]) assert (made_2[COLOR]);
+      if (writes_it) assert (on_way_to_it[2]);
       // An eviction takes along what is there when it begins.
-      if (starts && line_i == any_line) assert (on_way_to_it == '0);
+      if (starts && line_i == any_line) assert (on_way_to_it[2:0] == '0);
       if (is_left && begun_q) assert (word_q == snapshot_q);
-      if (is_left) assert (on_way_to_it == '0);
+      if (is_left) assert (on_way_to_it[2:0] == '0);
       if (victim_is_it_q && begun_q) begin
         assert (reads_it_q && !collided_q && read_word_q == snapshot_q && victim_valid_o);
         assert (victim_strobe_o[any_sample] == (fills_q || snapshot_q[COLOR]));
         if (snapshot_q[COLOR]) assert (victim_color_o[any_sample*COLOR+:COLOR] == snapshot_q[COLOR-1:0]);
       end
       // For induction.
+      if (on_way_to_it[3])
+        assert (word_q == {gen_blends.dirty_4_q[any_sample], gen_blends.code_4_q[any_sample*COLOR+:COLOR]});
+      if (looked_q && gen_blends.on_way_q[0]) begin
+        assert (collided_q == on_way_to_it[3]);
+        if (!collided_q) assert (read_word_q == word_q);
+      end
+      if (is_it[0] && gen_blends.on_way_q[0] && !gen_blends.starts_1_q && gen_blends.is_here_1_q) assert (looked_q);
       if (gen_blends.on_way_q[1])
         assert ({gen_blends.dirty_2_q[any_sample], gen_blends.stored_2_q[any_sample*COLOR+:COLOR]} ==
                 {found_2_q[COLOR] || gen_blends.mask_2_q[any_sample], found_2_q[COLOR-1:0]});
-      if (gen_blends.on_way_q[2])
-        assert ({gen_blends.dirty_3_q[any_sample], gen_blends.stored_3_q[any_sample*COLOR+:COLOR]} ==
-                {found_3_q[COLOR] || gen_blends.mask_3_q[any_sample], found_3_q[COLOR-1:0]});
       if (gen_blends.on_way_q[0]) assert ((gen_blends.mask_1_q & ~gen_blends.writes_1_q) == '0);
       if (gen_blends.on_way_q[1]) assert ((gen_blends.mask_2_q & ~gen_blends.writes_2_q) == '0);
-      if (gen_blends.on_way_q[2]) assert ((gen_blends.mask_3_q & ~gen_blends.writes_3_q) == '0);
       if (gen_blends.on_way_q[1]) assert ((gen_blends.mask_2_q & ~gen_blends.dirty_2_q) == '0);
-      if (gen_blends.on_way_q[2]) assert ((gen_blends.mask_3_q & ~gen_blends.dirty_3_q) == '0);
       if (started_q) assert (stamp_valid_i && evicts_i && waits_q);
       if (started_q && gen_blends.done_q == '0) assert (!is_busy);
       if (started_q && (mask_i != '0 || writes_all)) assert (left_line_q == line_i && (left_q & (STAMPS'(1) << stamp_i)) == '0);
-      if (started_q && line_i == any_line && stamp_i != any_stamp) assert (on_way_to_it == '0);
+      if (started_q && line_i == any_line && stamp_i != any_stamp) assert (on_way_to_it[2:0] == '0);
       if (gen_blends.done_q != '0) begin
         if (source_i == raster_pkg::DEPTH_SOURCE_MEMORY) assert (answer_valid_i && answer_waits_q);
         assert (waits_q && gen_blends.wanted != '0 && gen_blends.ops_q[BLENDS]);
         if (left_line_q == line_i) assert ((left_q & (STAMPS'(1) << stamp_i)) == '0);
-        if (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i) begin
-          assert (left_q == '0);
-          if ({line_i, stamp_i} == {any_line, any_stamp} && mask_i[any_sample] && !gen_blends.done_q[any_sample / gen_blends.GROUP])
-            assert (on_way_to_it == '0);
-        end
+        if (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i) assert (left_q == '0);
       end
       if (left != '0 && !looks) assert (next != '0 && (next & ~left) == '0);  // a stamp of an eviction a clock
-      // No deadlock: a stamp waits for what is on its way or is read, each clock one step, or for an answer.
-      if (stamp_valid_i && !goes && left_q == '0 && gen_blends.on_way_q == '0)
+      // Nothing waits but for an eviction or an answer: the same stamp goes every clock. So there is no deadlock either.
+      if (stamp_valid_i && !goes && left_q == '0 && (!evicts_i || gen_blends.on_way_q[2:0] == '0))
         assert (source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? !answer_valid_i || hits : hits);
-      cover (stamp_valid_i && gen_blends.collides && gen_blends.on_way_q[2]);
+      cover (on_way_to_it[3:0] == 4'b1111 && looked_q && gen_blends.stored[any_sample*COLOR+:COLOR] != word_q[COLOR-1:0]);
       cover (victim_is_it_q && begun_q && snapshot_q[COLOR]);
       cover (gen_blends.done_q != '0 && looks_at_it);
     end

@@ -54,6 +54,7 @@ std::vector<Dimension> dimensions() {
          return (s.color_mask[0] ? 1 : 0) + (s.color_mask[1] ? 2 : 0) + (s.color_mask[2] ? 4 : 0);
        }},
       {"dither", 2, [](const State& s) { return s.dither ? 1 : 0; }},
+      {"fog", 4, [](const State& s) { return s.fog ? 1 + static_cast<int>(s.fog->kind) : 0; }},
       {"texture", 2, [](const State& s) { return s.texture ? 1 : 0; }},
       {"texture_combine", 4, [](const State& s) { return s.texture ? static_cast<int>(s.texture_combine) : -1; },
        "texture"},
@@ -66,6 +67,7 @@ TEST(StatePairs, RandomScenesDrawEveryPairOfValues) {
   config.alpha_units = config.dither_units = 1;
   config.blend_lanes = 4;
   config.stencil_bits = 8;
+  config.fog_units = 1;
   const std::vector<Dimension> all = dimensions();
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> seen;  // by pair: draws by both values
   for (std::size_t a = 0; a < all.size(); ++a)

@@ -12,8 +12,8 @@
 //
 // With blending an order may end with a read of colours, and W takes a fragment for as many clocks as blend.lanes wants, one at
 // least: w is the first, and w(m-1) + 1 counts from the last. What it writes is in the RAM kBlendClocks later, in order. An item
-// that reads colours waits at W for its answer, w >= answer + 1, and where it reads the RAM, for what is to be written of these
-// samples before, w >= write + 1, and until nothing of an eviction is left to be read. With the alpha test behind a texture unit
+// that reads colours waits at W for its answer, w >= answer + 1, and where it reads the RAM, until nothing of an eviction is left
+// to be read; what is on its way to the RAM it is given. With the alpha test behind a texture unit
 // a fragment that writes depth is late: W writes it, and at X none goes before that which is in the same place (kLateLines),
 // or is not late itself.
 //
@@ -33,6 +33,30 @@
 #include "texture_timing.hpp"
 
 namespace halfplane {
+
+/// Fog behind a texture unit, rtl_ref/stages/fog_unit.sv: three registers, each of which takes what is in front of it as soon as
+/// what it holds goes on.
+class FogTiming {
+ public:
+  /// A stamp on offer from `offered` on. Returns when it is on offer to W.
+  Cycle take(Cycle offered) {
+    Cycle at = offered;
+    for (std::size_t n = 0; n < entered_.size(); ++n) {
+      const Cycle free = n + 1 < entered_.size() ? entered_[n + 1] : left_;  // when the one before goes on
+      at = std::max(at, free);
+      entered_[n] = at++;
+    }
+    return at;
+  }
+  /// When it was taken.
+  [[nodiscard]] Cycle taken() const { return entered_.front(); }
+  /// W took it.
+  void leave(Cycle w) { left_ = w; }
+
+ private:
+  std::array<Cycle, 3> entered_{};  ///< by the last stamp
+  Cycle left_ = 0;
+};
 
 /// What a fragment is to a texture unit.
 struct TextureWork {
@@ -65,6 +89,7 @@ class BlockTiming {
         dirty_(static_cast<std::size_t>(config.cache_lines)),
         late_(kLateLines * static_cast<std::size_t>(widths.blocks.stamps())) {
     if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths));
+    if (config.fog_units != 0) fog_.emplace();
   }
 
   /// When T can take the next fragment, but for cycles in which it is_busy().
@@ -109,12 +134,18 @@ class BlockTiming {
     const Cycle depth_ready = depth_free_ + 1;
     items_.leave(x);
     tested_ = x;
-    const Cycle color_ready = color(tags, item, shaded(item.texture, ask), answers.color);
+    const Cycle shaded_at = shaded(item.texture, ask);
+    const Cycle fogged_at = fog_ ? fog_->take(shaded_at) : shaded_at;
+    const Cycle color_ready = color(tags, item, fogged_at, answers.color);
     if (item.is_late && item.mask.any()) {
       late_[late_place(tags.line, item.stamp)] = colored_;
       last_late_ = colored_;
     }
-    texture_ ? texture_->leave(colored_) : behind_.leave(colored_);
+    if (texture_)
+      texture_->leave(fog_ ? fog_->taken() : colored_, colored_);
+    else
+      behind_.leave(colored_);
+    if (fog_) fog_->leave(colored_);
     if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready)));
     note_writes(tags, item);
   }
@@ -167,7 +198,6 @@ class BlockTiming {
   struct ColorWrite {
     Cycle taken = 0;
     std::size_t line = 0;
-    int stamp = 0;
     SampleMask samples;
   };
   static constexpr Cycle kBlendClocks = 3;       ///< from W to the RAM, with blending
@@ -226,13 +256,8 @@ class BlockTiming {
       ++w;
     }
     if (source == DepthSource::memory) w = std::max(w, answer + 1);
-    if (source != DepthSource::none && !tags.starts_color) {  // reads the RAM
+    if (source != DepthSource::none && !tags.starts_color)  // reads the RAM
       w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
-      const SampleMask looks = fetches ? SampleMask::all(widths_.samples) : item.colors;
-      for (const ColorWrite& write : color_writes_)
-        if (write.line == tags.line && write.stamp == item.stamp && (write.samples & looks).any())
-          w = std::max(w, write.taken + kBlendClocks + 1);
-    }
     colored_ = lanes_ == 0 ? w : write_colors(w, tags.line, item, writes_all);
     return ready;
   }
@@ -247,7 +272,7 @@ class BlockTiming {
       const SampleMask own = item.colors & SampleMask((SampleMask::all(size).bits()) << group * size);
       if (!own.any() && !(group + 1 == groups && !has_gone)) continue;
       if (has_gone) ++w;
-      color_writes_[next_write_] = {w, line, item.stamp, writes | own};
+      color_writes_[next_write_] = {w, line, writes | own};
       next_write_ = (next_write_ + 1) % color_writes_.size();
       writes = {};
       has_gone = true;
@@ -317,6 +342,7 @@ class BlockTiming {
   Station items_, orders_;
   Station behind_{2, 0, 0};  ///< between X and W; or there is a
   std::optional<TextureTiming> texture_;
+  std::optional<FogTiming> fog_;
   Cycle looked_ = 0, left_ = 0, tested_ = 0, colored_ = 0,
         ordered_ = 0;  ///< when the last one was looked up in T, left it, X, W; the last request's cycle
   std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first

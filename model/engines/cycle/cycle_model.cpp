@@ -144,7 +144,7 @@ class CycleModelOf final : public CycleModel {
       packet.dx[i] = setup.edge[i].dx;
       packet.dy[i] = setup.edge[i].dy;
     }
-    frame_ = texture_frame(triangle->coordinates);
+    coordinates_ = triangle->coordinates;
     walk(setup, packet, host.primitive);
   }
 
@@ -468,7 +468,9 @@ class CycleModelOf final : public CycleModel {
     const SampleMask live = tests_alpha() ? passed | changed : packet.state.color_write ? passed : SampleMask();
     const bool is_textured = texture_ && texture_->is_textured(packet.kind == PrimitiveKind::triangle, live);
     const SampleMask all = SampleMask::all(widths_.samples);
-    if (!live.any() || !(is_textured || tests_alpha() || !colors_.ops.is_plain())) return all;
+    const bool is_fogged =
+        texture_ && texture_->fog().is_fogged(packet.kind == PrimitiveKind::triangle) && packet.state.color_write;
+    if (!live.any() || !(is_textured || is_fogged || tests_alpha() || !colors_.ops.is_plain())) return all;
     std::array<Texel, kMaxSamples> color{};
     std::array<PixelOffset, kMaxSamples> at;  // pixels of the target
     const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
@@ -479,6 +481,9 @@ class CycleModelOf final : public CycleModel {
         color[s][c] = static_cast<std::uint8_t>(plane_at(setup, kColorPlane + c, widths_, at[s].x, at[s].y).code);
     });
     if (is_textured) look_up_texels(setup, live, at, color, item);
+    if (is_fogged)
+      live.for_each(
+          [&](std::size_t s) { texture_->fog().add(q_at_pixel(setup, at[s]), coordinates_.fog_octave, color[s]); });
     Framebuffer& frame = rendering_.frame;
     const auto index = [&](std::size_t s) { return frame.at(at[s].x, at[s].y); };
     const SampleMask kept =
@@ -508,6 +513,10 @@ class CycleModelOf final : public CycleModel {
     frame.stencil[pixel] = stencil_of(word, widths_);
   }
 
+  [[nodiscard]] std::uint64_t q_at_pixel(const TriangleSetup& setup, const PixelOffset& at) const {
+    return q_at(setup.plane[widths_.q_plane], place_of(setup, widths_, at.x, at.y), perspective_, widths_);
+  }
+
   /// The texture unit: the colours of the samples of a stamp that live, and how they were looked up.
   void look_up_texels(const TriangleSetup& setup, SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
                       std::array<Texel, kMaxSamples>& color, BlockItem& item) {
@@ -522,11 +531,12 @@ class CycleModelOf final : public CycleModel {
         sample[s].p[i] = p_at(setup.plane[q + 1 + i], where, perspective_.coordinate, perspective_, widths_);
       if (widths_.color_planes == 3) color[s][3] = 255;
     });
-    item.texture.lookups = texture_->take(live, sample, frame_, color, [this](std::uint32_t address, int) {
-      TextureLine line;
-      texels_.read(address, line);
-      return line;
-    });
+    item.texture.lookups =
+        texture_->take(live, sample, texture_frame(coordinates_), color, [this](std::uint32_t address, int) {
+          TextureLine line;
+          texels_.read(address, line);
+          return line;
+        });
     count(use_of(item.texture.lookups), counters_);
     if (options_.want_misses) note_misses(live, at, item.texture.lookups);
   }
@@ -547,6 +557,7 @@ class CycleModelOf final : public CycleModel {
     const StateRegister which = state_register(token.state);
     if (is_of_texture(which)) {
       set_register(*texture_, which, token.vertex.code[2], widths_);  // what a lane of states leaves
+      if (is_of_fog(which, token.vertex.code[2], widths_)) return;
       texture.sets = which;
       texture.invalidates = which == StateRegister::texture && texture_->state().invalidates;
       return;
@@ -607,7 +618,7 @@ class CycleModelOf final : public CycleModel {
   ColorState colors_;
   StencilState stencil_;
   PerspectiveFormat perspective_ = perspective_format(config_);
-  TextureFrame frame_;  ///< of the triangle at work
+  CoordinateFrame coordinates_;  ///< of the triangle at work
   TextureMemory texels_;
   Rendering rendering_;
   std::vector<float> cost_, misses_;

@@ -136,11 +136,12 @@ class TextureTiming {
     return gone_ + 1;
   }
 
-  /// W took the stamp.
-  void leave(Cycle w) {
-    left_ = w;
+  /// What is behind the unit took the stamp, and W.
+  void leave(Cycle taken, Cycle w) {
+    left_ = taken;
     inside_.leave(w);
   }
+  void leave(Cycle w) { leave(w, w); }
 
  private:
   static constexpr int kAhead = 16, kClocks = 10, kLevelClocks = 12,

@@ -33,11 +33,12 @@ package raster_pkg;
   localparam int ALPHA_UNIT = 0;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
   localparam int BLEND_LANES = 0;  // blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
+  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles behind its texture unit; 0: it has no fog
   localparam int STENCIL_BITS = 0;  // of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)
   localparam int LINES_UNIT = 0;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 0;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'hf7a78d71539be7b9;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'ha8ac753455dab870;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -113,6 +114,7 @@ package raster_pkg;
   localparam int COORDINATE_SHIFT_BITS = 5;  // c = 1 + x - sp - k_P, 0 <= x - sp <= 1 + N_P
   localparam int COORDINATE_REACH_BITS = 5;  // x <= 20
   localparam int COORDINATE_REFERENCE_BITS = 24;  // u_ref: +-2^22, beyond which no clamp can tell
+  localparam int FOG_OCTAVE_BITS = 6;  // of a table of 16 at most, that of Q = 1; held, for Q < 2^32
   localparam int WRITTEN_COLOR_BITS = 16;  // a stored colour, or in front of a unit that changes it the primitive's
   localparam int SHADED_COLOR_BITS = 16;  // a stored colour, or what is blended or dithered
   localparam int TEXTURE_BYTE_BITS = 8;  // 8 bits

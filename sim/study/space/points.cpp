@@ -25,6 +25,7 @@ SpaceJson abilities(const Config& config) {
           {"alpha", config.alpha_units},
           {"blending", config.blend_lanes > 0 ? 1 : 0},
           {"dither", config.dither_units},
+          {"fog", config.fog_units},
           {"stencil", config.stencil_bits},
           {"lines", config.line_units},
           {"counters", config.counter_units},
