@@ -17,10 +17,10 @@ struct UnitWords {
   std::uint64_t texture_state = 0;              ///< of a triangle: TextureState
   std::uint32_t texture_levels = 0;             ///< likewise TextureLevels
   std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
-  std::optional<std::shared_ptr<const FogTable>>
-      fog{};               ///< of a triangle whose colours are written, with a unit for it
-  ColorWords colors{};     ///< of what is drawn
-  StencilWords stencil{};  ///< likewise; of a fast clear: its value
+  bool looks_at_fog = false;                    ///< of a triangle whose colours are written, with a unit for it
+  std::shared_ptr<const FogTable> fog{};        ///< then: what is in the way; none: nothing
+  ColorWords colors{};                          ///< of what is drawn
+  StencilWords stencil{};                       ///< likewise; of a fast clear: its value
 };
 
 /// The packet, and where it came from.

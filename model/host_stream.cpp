@@ -94,11 +94,6 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   pending_.back().command = HostPrimitive::kNoCommand;
 }
 
-// GCC 12 sees no bounds of a deque's move, and holds the table of a primitive without fog for uninitialized.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
 std::optional<HostPrimitive> HostStream::next() {
   if (in_front_.empty()) {
     std::optional<HostPrimitive> primitive = next_primitive();
@@ -115,9 +110,6 @@ std::optional<HostPrimitive> HostStream::next() {
   in_front_.pop_front();
   return first;
 }
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
 
 /// The registers of colours that have another value than wanted. At the start of a scene nobody knows what they hold.
 void HostStream::set_colors(const HostPrimitive& primitive) {
@@ -178,15 +170,15 @@ void HostStream::set_texture(const HostPrimitive& triangle) {
 
 /// The fog of a triangle, and those lines of its table that differ from what the unit has.
 void HostStream::set_fog(const HostPrimitive& triangle) {
-  if (!triangle.units.fog) return;
-  const std::shared_ptr<const FogTable>& table = *triangle.units.fog;
-  const FogState next = table ? FogState{true, table->octave_bits(), table->color()} : FogState{};
+  if (!triangle.units.looks_at_fog) return;
+  const FogTable* table = triangle.units.fog.get();
+  const FogState next = table != nullptr ? FogState{true, table->octave_bits(), table->color()} : FogState{};
   const auto send_word = [&](std::uint64_t word) {
     in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
   };
   if (fog_state_ != next) send_word(next.pack());
   fog_state_ = next;
-  if (!table) return;
+  if (table == nullptr) return;
   for (std::size_t n = 0; n < table->lines().size(); ++n) {
     if (fog_line_[n] == table->lines()[n]) continue;
     fog_line_[n] = table->lines()[n];
@@ -322,9 +314,10 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   packet.front_cw = state.front == FrontFace::cw;
   set_vertices(packet.vertex, triangle.v);
   HostPrimitive out = drawn_primitive(packet, triangle.primitive);
-  if (config_.fog_units != 0 && state.color_write) out.units.fog = context_->fog;
+  out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
+  if (out.units.looks_at_fog) out.units.fog = context_->fog;
   if (textures_ && state.texture) set_coordinates(triangle, out);
-  if (config_.fog_units != 0 && context_->fog && state.color_write) set_distance(triangle, out);
+  if (out.units.fog) set_distance(triangle, out);
   send(out);
 }
 

@@ -441,10 +441,8 @@ mutant(300 stages/color_write.sv "colours: hazard: a stamp does not have what th
   [=[is_newer[1]]=] [=[1'b0]=])
 mutant(301 stages/color_write.sv "colours: hazard: a stamp does not have what was written while it was read"
   [=[is_newer[2]]=] [=[1'b0]=])
-mutant(302 stages/color_write.sv "colours: a sample that is on its way is whole, whatever memory has"
-  [=[{dirty_2_q[s], made[s*COLOR+:COLOR]}]=] [=[{1'b0, made[s*COLOR+:COLOR]}]=])
-mutant(303 stages/color_write.sv "colours: a stamp is blended with the constant of the one behind it"
-  [=[(constant_2_q)]=] [=[constant_q]=])
+mutant(302 stages/color_write.sv "colours: what is left of the block before counts as written"
+  [=[found[COLOR] && !starts_1_q]=] [=[found[COLOR]]=])
 
 # fog
 mutant(310 lib/fog_place.sv "fog: what lies nearer than the table begins it again"
@@ -467,10 +465,7 @@ mutant(318 stages/fog_unit.sv "fog: f goes below 0"
   [=[whole < 0]=] [=[1'b0]=])
 mutant(319 stages/fog_unit.sv "fog: the mix is cut off"
   [=[12'd2048]=] [=[12'd0]=])
-mutant_text(320 stages/fog_unit.sv "fog: a stamp has the fog's colour of the one behind it"
-  [=[if (sets_color_1_q) fog_q <= word_1_q;
-    end]=] [=[if (sets_color_1_q && raster_cosim.mutant_q != 16'd320) fog_q <= word_1_q;
-    end
-    if (enters_1 && sets_color_i && raster_cosim.mutant_q == 16'd320) fog_q <= word_i[23:0];]=])
+mutant(320 stages/fog_unit.sv "fog: two lines of the table lie in one place"
+  [=[word_i[START+RISE+:LINE]]=] [=[word_i[START+RISE+:LINE] & 8'hfe]=])
 mutant(321 stages/fog_unit.sv "fog: a stamp that waits reads the line of the one behind it"
   [=[enters_1 && !sets_line_i]=] [=[!sets_line_i]=])
