@@ -5,6 +5,7 @@
 // observer, random scenes and comparison loop over. Planes of one attribute are alike: they share its widths.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,11 +39,16 @@ struct Attribute {
   StoredAs stored = StoredAs::nothing;
 };
 
-inline constexpr int kMaxAttributes = 4, kMaxPlanes = 8;
+inline constexpr int kMaxAttributes = 5, kMaxPlanes = 12;
 inline constexpr std::size_t kDepthPlane = 0, kColorPlane = 1;  ///< the first colour: red; green, blue and alpha behind
 
 /// What the planes over w share, whatever the configuration: l, and how many bits less than Q the reciprocal of the area has.
 inline constexpr int kPerspectiveGuardBits = 4, kPerspectiveReciprocalLess = 2;
+/// k_P of a colour over w.
+inline constexpr int kColorNarrowBits = 13;
+
+/// N_P of a colour over w: its P has no more bits than Q.
+[[nodiscard]] constexpr int color_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 18); }
 
 /// One value for each plane. Elements from plane_count() on are nobody's.
 template <class T>
@@ -120,12 +126,29 @@ struct AttributeList {
             .is_clamped = false,
             .interpolation = Interpolation::over_w,
             .base = BaseVertex::smallest_q});
+  if (config.perspective_colors != 0)
+    list.add({.name = "color over w",
+              .part = {"red over w", "green over w", "blue over w", "alpha over w"},
+              .planes = needs_alpha(config) ? 4 : 3,
+              .bits = color_over_w_bits(config) + 1,
+              .symbol = "N_C + 1",
+              .reciprocal_bits = bits - kPerspectiveReciprocalLess,
+              .guard_bits = kPerspectiveGuardBits,
+              .is_signed = true,
+              .is_clamped = false,
+              .interpolation = Interpolation::over_w,
+              .base = BaseVertex::smallest_q});
   return list;
 }
 
 /// Whether the list has what a texture unit looks at.
 [[nodiscard]] constexpr bool has_texture_planes(const Config& config) {
   return config.texture_unit != TextureUnitKind::off;
+}
+
+/// Whether it has colours over w, which the texture unit divides.
+[[nodiscard]] constexpr bool has_colors_over_w(const Config& config) {
+  return has_texture_planes(config) && config.perspective_colors != 0;
 }
 
 /// How many planes there are.

@@ -35,6 +35,9 @@ const std::array kSettings{
             &Config::perspective_bits},
     Setting{"perspective.mantissa_bits", "bits", "bits k of 1/w that a pixel's reciprocal looks at", 8, 20,
             &Config::perspective_mantissa_bits},
+    Setting{"perspective.colors", "units",
+            "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1,
+            &Config::perspective_colors},
     Setting{"color.format", "rgb565|rgba8888", "layout of a stored colour", 0, 0, &Config::color_format},
     Setting{"tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32, &Config::tile_size},
     Setting{"stamp.size", "pixels", "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8, &Config::stamp_size},
@@ -316,6 +319,9 @@ void validate(const Config& config) {
   }
   refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
                 "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
+  refuse_unless(config.perspective_colors == 0 || config.texture_unit != TextureUnitKind::off,
+                "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
+                "perspective.colors=0");
   refuse_unless(config.blend_lanes == 0 || config.blend_lanes == 1 || config.blend_lanes == 4,
                 "blend.lanes must be 0, 1 or 4");
   refuse_unless(

@@ -58,6 +58,7 @@ struct Config {
   int reciprocal_extra_bits = 4;       ///< the reciprocal of the area has depth_bits + this many significant bits
   int perspective_bits = 22;           ///< N: bits of 1/w, and of what is interpolated over w
   int perspective_mantissa_bits = 18;  ///< k: bits of 1/w that a pixel's reciprocal looks at
+  int perspective_colors = 0;          ///< 1: the RTL's texture unit divides colours by w as well
   ColorFormat color_format = ColorFormat::rgb565;
   int tile_size = 8;           ///< pixels along the side of a tile
   int stamp_size = 2;          ///< pixels along the side of the stamp that fine_raster tests in one clock

@@ -38,12 +38,17 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
 
 /// What of a textured draw, or one with colours over w, the hardware lacks; empty: nothing.
 std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
-  if (state.color_interp == ColorInterp::perspective)
-    return "color_interp perspective: this hardware divides no colours by w";
+  if (state.color_interp == ColorInterp::perspective && !has_colors_over_w(config))
+    return "color_interp perspective: this hardware divides no colours by w; use --set texture.unit=nearest --set "
+           "perspective.colors=1";
   if (state.fog && state.color_write && state.texture && state.texture_interp == TextureInterp::affine)
     return "fog over a texture_interp affine: both look at one plane of 1/w, which is not the same; use texture_interp "
            "perspective, or fog off";
   if (!state.texture) return "";
+  if (state.color_interp == ColorInterp::perspective && state.texture_interp == TextureInterp::affine)
+    return "texture_interp affine: a triangle of this hardware has one plane of 1/w, and color_interp perspective "
+           "needs "
+           "it; make both perspective or both affine";
   if (config.texture_unit == TextureUnitKind::off)
     return "texture: this hardware has no texture unit; use --set texture.unit=nearest";
   const bool is_linear = state.texture_min == TextureMin::linear && state.texture_mag == TextureMag::linear;
@@ -317,6 +322,7 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
   if (out.units.looks_at_fog) out.units.fog = context_->fog;
   if (textures_ && state.texture) set_coordinates(triangle, out);
+  if (state.color_interp == ColorInterp::perspective) set_colors_over_w(triangle, out.packet);
   if (out.units.fog) set_distance(triangle, out);
   send(out);
 }
@@ -353,6 +359,27 @@ void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) cons
   const QCodes q = quantize_q(w, format.q_bits);
   for (std::size_t i = 0; i < 3; ++i) out.packet.vertex.code[i][widths_.q_plane] = q[i];
   out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
+}
+
+/// Q and P of the colours, and how to read them back. With a texture over w Q is that of its coordinates, to the bit.
+void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const {
+  require_positive_w(*context_, triangle);
+  const PerspectiveFormat format = perspective_format(config_);
+  const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
+  for (std::size_t i = 0; i < 3; ++i) packet.vertex.code[i][widths_.q_plane] = q[i];
+  packet.coordinates.divides_colors = true;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c) {
+    std::array<double, 3> value{};
+    for (std::size_t i = 0; i < 3; ++i) value[i] = triangle.v[i].code[kColorPlane + c];
+    const OverW over_w = quantize_over_w(value, q, format.color);
+    const std::size_t p = widths_.color_over_w_plane() + c;
+    for (std::size_t i = 0; i < 3; ++i)
+      packet.vertex.code[i][p] = static_cast<std::uint32_t>(
+          wrap_unsigned(static_cast<std::uint64_t>(over_w.p[i]), widths_.of_plane(p).code.bits));
+    const OverWScale scale = over_w_scale(over_w, format.color);
+    packet.coordinates.color_shift[c] = scale.shift;
+    packet.coordinates.color_reach[c] = scale.reach;
+  }
 }
 
 /// And what it must know of levels. A triangle that the hardware drops needs none.

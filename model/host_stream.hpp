@@ -49,6 +49,7 @@ class HostStream {
   void send_triangle(const Triangle& triangle, bool is_culled);
   void set_coordinates(const Triangle& triangle, HostPrimitive& out) const;
   void set_distance(const Triangle& triangle, HostPrimitive& out) const;
+  void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;
   void set_colors(const HostPrimitive& primitive);
   void set_stencil(const HostPrimitive& primitive);
   void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,

@@ -307,7 +307,8 @@ struct CodeRange {
   PACKET_END
 };
 
-/// How a triangle's texture coordinates are read back, u and v (stages/perspective.hpp), and its fog. Only with a texture unit.
+/// How a triangle's texture coordinates are read back, u and v, and its colours over w (stages/perspective.hpp), and its fog.
+/// Only with a texture unit.
 struct CoordinateFrame {
   PACKET(CoordinateFrame, "coordinate_frame");
   using Pair = std::array<std::int32_t, 2>;
@@ -316,6 +317,10 @@ struct CoordinateFrame {
   FIELD(Pair, origin, &Widths::coordinate_reference, &Widths::coordinates)  ///< u_ref, texels: wrapped_reference()
   FIELD(std::int32_t, fog_octave, &Widths::fog_octave,
         &Widths::fog_octaves)  ///< of a fog's table, where Q = 1 would lie
+  using Channels = std::array<std::int32_t, 4>;
+  FIELD(bool, divides_colors, &Widths::flag, &Widths::has_colors_over_w)      ///< they are P over Q, not what is affine
+  FIELD(Channels, color_shift, &Widths::color_shift, &Widths::colors_over_w)  ///< c and x of each
+  FIELD(Channels, color_reach, &Widths::color_reach, &Widths::colors_over_w)
   PACKET_END
   bool operator==(const CoordinateFrame&) const = default;
 };
@@ -336,6 +341,14 @@ struct MemoryLayout {
 /// One value for each edge of a triangle.
 using EdgeValues = std::array<std::int64_t, 3>;
 using EdgeDeltas = std::array<std::int32_t, 3>;
+
+/// Colours of a vertex or a sample, 8 bits a channel, R lowest: what goes into a texture unit, which stands in front of rop.
+[[nodiscard]] constexpr std::uint32_t vertex_color(const PerPlane<std::uint32_t>& code, const Widths& widths) {
+  std::uint32_t color = 0;
+  for (int c = widths.color_planes - 1; c >= 0; --c)
+    color = color << 8 | code[kColorPlane + static_cast<std::size_t>(c)];
+  return color;
+}
 
 // ------------------------------------------------------------------------------------------------------------- the packets
 
@@ -446,6 +459,8 @@ struct FragmentPacket {
   FIELD(SampleMask, mask, &Widths::sample_mask)
   FIELD(PrimitiveState, state, Nested{})
   FIELD(CoordinateFrame, coordinates, Nested{})
+  FIELD(std::uint32_t, least_color, &Widths::vertex_color, &Widths::has_colors_over_w)     ///< to which a quotient is
+  FIELD(std::uint32_t, greatest_color, &Widths::vertex_color, &Widths::has_colors_over_w)  ///< held, R lowest
   FIELD(Codes, code, &AttributeWidths::fragment, &Widths::samples)  ///< of each sample: clamped codes, local Q and P
   PACKET_END
 };

@@ -9,6 +9,7 @@
 #include "packet_words.hpp"
 #include "pipeline_graph.hpp"
 #include "raster_taps.hpp"
+#include "stages/state_packets.hpp"
 #include "stages/surface.hpp"
 
 namespace halfplane {
@@ -182,6 +183,9 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "PERSPECTIVE_GUARD_BITS", kPerspectiveGuardBits, "l: fraction bits of those inside a tile");
   print_constant(out, "COORDINATE_FRACTION", perspective_format(config).coordinate.fraction_bits,
                  "f: of a texture coordinate, texels");
+  print_constant(out, "COLORS_OVER_W", widths.colors_over_w, "planes behind those, which the texture unit divides");
+  print_constant(out, "COLOR_NARROW_BITS", kColorNarrowBits, "k_P of those");
+  print_constant(out, "STATE_WORD_BITS", state_word_bits(widths), "of a token: the codes of all planes but those");
   print_constant(out, "TEXTURE_PORT_BITS", 8 * widths.texture_port_bytes, "data of a beat of texels");
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
   print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");

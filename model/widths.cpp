@@ -43,11 +43,13 @@ AttributeWidths derive_attribute(const Attribute& a, int128 side, const Widths& 
   const int128 max = (int128{1} << (a.bits - (a.is_signed ? 1 : 0))) - 1, range = a.is_signed ? 2 * max : max;
   const auto bound = [&a](const char* text) { return with_symbol(text, a.symbol); };
   AttributeWidths d;
-  d.code = a.is_signed ? exact(name + " code", "+-(2^N_P - 1)", symmetric(max))
+  const bool is_color = a.symbol == "N_C + 1";
+  d.code = a.is_signed ? exact(name + " code", is_color ? "+-(2^N_C - 1)" : "+-(2^N_P - 1)", symmetric(max))
                        : exact(name + " code", bound("2^# - 1"), {0, max});
   d.delta = exact(name + " delta", "code - code", symmetric(range));
-  d.numerator =
-      exact(name + " numerator", a.is_signed ? "L * 2 (2^N_P - 1)" : bound("L * (2^# - 1)"), symmetric(side * range));
+  d.numerator = exact(name + " numerator",
+                      a.is_signed ? (is_color ? "L * 2 (2^N_C - 1)" : "L * 2 (2^N_P - 1)") : bound("L * (2^# - 1)"),
+                      symmetric(side * range));
   d.reciprocal = exact(name + " reciprocal",
                        a.is_clamped ? bound("2^(m+r) / A, r = # + extra") : std::string("2^(m+r) / A, r = N - 2"),
                        {0, int128{1} << a.reciprocal_bits});
@@ -116,6 +118,14 @@ void derive_texture(Widths& w, const Config& config) {
       exact("coordinate reference", "u_ref: +-2^22, beyond which no clamp can tell", symmetric(int128{1} << 22));
   w.fog_octaves = config.fog_units;
   w.fog_octave = exact("fog octave", "of a table of 16 at most, that of Q = 1; held, for Q < 2^32", {-32, 31});
+  const bool has_colors = has_colors_over_w(config);
+  const int color_bits = color_over_w_bits(config);  // N_C
+  w.colors_over_w = has_colors ? w.color_planes : 0;
+  w.has_colors_over_w = has_colors ? 1 : 0;
+  w.color_shift =
+      exact("color shift", "c = 1 + x - sp - k_P, k_P = 13, N_C - N <= x - sp <= 1 + N_C",
+            {1 + color_bits - config.perspective_bits - kColorNarrowBits, 2 + color_bits - kColorNarrowBits});
+  w.color_reach = exact("color reach", "x <= 8", {0, 8});
   w.written_color = w.stored_color;
   if (has_unit || packs_at_write(config)) w.written_color = w.vertex_color;
   w.written_color.name = "written color";
@@ -320,8 +330,8 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &fog_octave, &written_color, &shaded_color,
-       &texture_byte, &texture_beats});
+  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &fog_octave, &color_shift, &color_reach,
+       &written_color, &shaded_color, &texture_byte, &texture_beats});
   add({&primitive_id,   &slot,          &tile_x,       &tile_y,     &tile_pixel,   &stamp_index,  &sample_mask,
        &stored_color,   &stored_depth,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,
        &pixel_y,        &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane,

@@ -94,7 +94,9 @@ struct Widths {
   int fog_octaves = 0;                   ///< 1: triangles say where in the table of a fog they lie
   int stencil_flags = 0;                 ///< 1: there is a stencil, and primitives say what they do with it
   int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
-  std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow
+  std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow, and colours over w
+  int colors_over_w = 0;                 ///< how many of those
+  int has_colors_over_w = 0;             ///< 1: there are some
   int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
   int samples = 0;                       ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
@@ -121,6 +123,7 @@ struct Widths {
   // The memory port.
   Width coordinate_shift, coordinate_reach, coordinate_reference;  // of the texture unit
   Width fog_octave;
+  Width color_shift, color_reach;  // likewise, of colours over w
   Width written_color, shaded_color, texture_byte, texture_beats;
   int texture_port_bytes = 0;  ///< of a beat of the texture unit's port
   Width run, address, row_stride, burst_length, port_strobe, port_byte;
@@ -134,6 +137,9 @@ struct Widths {
   [[nodiscard]] const AttributeWidths& of_plane(std::size_t p) const { return attribute[attribute_of[p]]; }
   [[nodiscard]] const AttributeWidths& depth() const { return of_plane(kDepthPlane); }
   [[nodiscard]] const AttributeWidths& color() const { return of_plane(kColorPlane); }
+  /// The first colour over w, and how many planes there are in front of it: those that a token's value is spread over.
+  [[nodiscard]] std::size_t color_over_w_plane() const { return static_cast<std::size_t>(token_planes()); }
+  [[nodiscard]] int token_planes() const { return planes - colors_over_w; }
   /// "depth", "red", ...
   [[nodiscard]] std::string_view plane_name(std::size_t p) const;
 

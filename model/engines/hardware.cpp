@@ -245,15 +245,17 @@ SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& p
   const bool tests_alpha = colors_.alpha.func != DepthFunc::always;
   const SampleMask live = tests_alpha ? packet.passed | packet.write_depth : packet.write_color;
   const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp);
+  const TextureFrame frame = texture_frame(fragment);
   live.for_each([&](std::size_t s) {
     sample[s] = texture_sample(fragment.code[s], widths_);
     const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
     sample[s].x = (fragment.key.tile_x << widths_.tile_shift) + origin.x + pixel.x;
     sample[s].y = (fragment.key.tile_y << widths_.tile_shift) + origin.y + pixel.y;
     for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(packet.color[s] >> 8 * c);
+    if (frame.divides_colors) texture_->divide_colors(sample[s], frame, widths_.color_planes, color[s]);
   });
   if (texture_->is_textured(fragment.kind == PrimitiveKind::triangle, live))
-    count(use_of(texture_->take(live, sample, texture_frame(fragment.coordinates), color,
+    count(use_of(texture_->take(live, sample, frame, color,
                                 [this](std::uint32_t address, int beats) { return read_texels(address, beats); })),
           counters_);
   add_fog(*texture_, fragment.kind == PrimitiveKind::triangle, live, sample, fragment.coordinates, color);

@@ -52,6 +52,10 @@ FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& contex
   fragment.mask = stamp.mask;
   fragment.state = context.state;
   fragment.coordinates = context.coordinates;
+  if (widths.has_colors_over_w != 0) {
+    fragment.least_color = vertex_color(context.range.low, widths);
+    fragment.greatest_color = vertex_color(context.range.high, widths);
+  }
   const PixelOffset origin = widths.stamps.origin_of(stamp.stamp);
   const int half_tile = 1 << (widths.tile_shift - 1);
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {

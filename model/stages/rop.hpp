@@ -15,14 +15,6 @@ namespace halfplane {
   return pack_color(config.color_format, color_channels(code));
 }
 
-/// The colour of the primitive, 8 bits a channel, R lowest: what goes into a texture unit, which stands in front of rop.
-[[nodiscard]] constexpr std::uint32_t vertex_color(const PerPlane<std::uint32_t>& code, const Widths& widths) {
-  std::uint32_t color = 0;
-  for (int c = widths.color_planes - 1; c >= 0; --c)
-    color = color << 8 | code[kColorPlane + static_cast<std::size_t>(c)];
-  return color;
-}
-
 /// The stage.
 [[nodiscard]] inline WritePacket rop(const FragmentPacket& fragment, const WritePacket& tested, const Config& config,
                                      const Widths& widths) {

@@ -19,13 +19,13 @@ namespace halfplane {
 /// Bits of a token's codes; of a value, 128 at most.
 [[nodiscard]] inline int state_word_bits(const Widths& widths) {
   int bits = 0;
-  for (int p = 0; p < widths.planes; ++p) bits += widths.of_plane(static_cast<std::size_t>(p)).code.bits;
+  for (int p = 0; p < widths.token_planes(); ++p) bits += widths.of_plane(static_cast<std::size_t>(p)).code.bits;
   return bits;
 }
 
 /// A value over the codes of a vertex, lowest plane first, and back from the fragment that it has become.
 inline void set_state_word(PerPlane<std::uint32_t>& code, uint128 word, const Widths& widths) {
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.token_planes()); ++p) {
     const int bits = widths.of_plane(p).code.bits;
     code[p] = static_cast<std::uint32_t>(wrap_unsigned(static_cast<std::uint64_t>(word), bits));
     word >>= bits;
@@ -33,7 +33,7 @@ inline void set_state_word(PerPlane<std::uint32_t>& code, uint128 word, const Wi
 }
 [[nodiscard]] inline uint128 wide_state_word(const PerPlane<std::uint32_t>& code, const Widths& widths) {
   uint128 word = 0;
-  for (int p = widths.planes - 1; p >= 0; --p) {
+  for (int p = widths.token_planes() - 1; p >= 0; --p) {
     const int bits = widths.of_plane(static_cast<std::size_t>(p)).code.bits;
     word = word << bits | wrap_unsigned(code[static_cast<std::size_t>(p)], bits);
   }
@@ -41,7 +41,8 @@ inline void set_state_word(PerPlane<std::uint32_t>& code, uint128 word, const Wi
 }
 [[nodiscard]] inline uint128 wide_state_word(const FragmentPacket& token, const Widths& widths) {
   PerPlane<std::uint32_t> code = token.code[0];
-  for (auto p = static_cast<std::size_t>(widths.affine_planes); p < static_cast<std::size_t>(widths.planes); ++p)
+  for (auto p = static_cast<std::size_t>(widths.affine_planes); p < static_cast<std::size_t>(widths.token_planes());
+       ++p)
     code[p] >>= widths.of_plane(p).guard_bits();
   return wide_state_word(code, widths);
 }

@@ -15,7 +15,7 @@ PerspectiveFormat perspective_format(const Config& config) {
           mantissa,
           bits - kPerspectiveReciprocalLess,
           {bits, mantissa - 1, mantissa < kShortMantissa ? 6 : 8, true},
-          {std::min(bits, 18), 13, 0, false}};
+          {color_over_w_bits(config), kColorNarrowBits, 0, false}};
 }
 
 TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surface, const State& state,

@@ -22,7 +22,10 @@ namespace halfplane {
 [[nodiscard]] inline TextureSample texture_sample(const PerPlane<std::uint32_t>& code, const Widths& widths) {
   const std::size_t q = widths.q_plane;
   const auto p = [&](std::size_t plane) { return wrap_signed(code[plane], widths.of_plane(plane).local.bits); };
-  return {code[q], {p(q + 1), p(q + 2)}, 0, 0};
+  TextureSample sample{code[q], {p(q + 1), p(q + 2)}, 0, 0, {}};
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.colors_over_w); ++c)
+    sample.color_p[c] = p(widths.color_over_w_plane() + c);
+  return sample;
 }
 
 /// Whether a token is one of fog's, which the texture unit lets through.
@@ -58,8 +61,24 @@ inline void add_fog(const TextureUnit& unit, bool is_triangle, SampleMask live, 
     live.for_each([&](std::size_t s) { unit.fog().add(samples[s].q, frame.fog_octave, colors[s]); });
 }
 
-[[nodiscard]] inline TextureFrame texture_frame(const CoordinateFrame& frame) {
-  return {{OverWScale{frame.shift[0], frame.reach[0]}, OverWScale{frame.shift[1], frame.reach[1]}}, frame.origin};
+/// `least` and `greatest`: vertex_color() of the range of the vertices' codes.
+[[nodiscard]] inline TextureFrame texture_frame(const CoordinateFrame& frame, std::uint32_t least,
+                                                std::uint32_t greatest) {
+  TextureFrame result{{OverWScale{frame.shift[0], frame.reach[0]}, OverWScale{frame.shift[1], frame.reach[1]}},
+                      frame.origin,
+                      frame.divides_colors,
+                      {},
+                      {},
+                      {}};
+  for (std::size_t c = 0; c < 4; ++c) {
+    result.color_scale[c] = {frame.color_shift[c], frame.color_reach[c]};
+    result.least[c] = static_cast<std::uint8_t>(least >> 8 * c);
+    result.greatest[c] = static_cast<std::uint8_t>(greatest >> 8 * c);
+  }
+  return result;
+}
+[[nodiscard]] inline TextureFrame texture_frame(const FragmentPacket& fragment) {
+  return texture_frame(fragment.coordinates, fragment.least_color, fragment.greatest_color);
 }
 
 }  // namespace halfplane

@@ -9,8 +9,11 @@
 //
 // A sample between two levels goes through cache and filter twice, once where the second would add nothing.
 //
+// Colours over w are divided here, by the reciprocal that the coordinates have; what the texture is combined with is the
+// quotient. A triangle says so by itself.
+//
 // A state holds for the stamps behind it. Stamps of other primitives than triangles, stamps without live samples, and all
-// while the state's texture is off pass as they are.
+// while the state's texture is off and colours are affine pass as they are.
 #pragma once
 
 #include <array>
@@ -144,10 +147,13 @@ class TextureCache {
   int x_bits_ = 0, y_bits_ = 0;
 };
 
-/// What the samples of a triangle share, u and v.
+/// What the samples of a triangle share, u and v; and how its colours are read back where they lie over w too.
 struct TextureFrame {
   std::array<OverWScale, 2> scale{};
   std::array<std::int32_t, 2> reference{};  ///< wrapped_reference()
+  bool divides_colors = false;
+  std::array<OverWScale, 4> color_scale{};
+  Texel least{}, greatest{};  ///< of the vertices' colours
 };
 
 /// A sample's place, local to its tile (q_at, p_at), and its pixel, of which levels take the 12 lowest bits.
@@ -155,6 +161,7 @@ struct TextureSample {
   std::uint64_t q = 1;
   std::array<std::int64_t, 2> p{};
   int x = 0, y = 0;
+  std::array<std::int64_t, 4> color_p{};  ///< of a triangle whose colours lie over w
 };
 
 class TextureUnit {
@@ -189,6 +196,15 @@ class TextureUnit {
   [[nodiscard]] const FogUnit& fog() const { return fog_; }
   [[nodiscard]] bool is_textured(bool is_triangle, SampleMask live) const {
     return state_.enable && is_triangle && live.any();
+  }
+
+  /// Of a frame that divides_colors: P over Q, the sample's own colour; the alpha of three channels stays.
+  void divide_colors(const TextureSample& sample, const TextureFrame& frame, int channels, Texel& color) const {
+    const PixelReciprocal q = divide_by_q(sample.q, format_);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c)
+      color[c] = static_cast<std::uint8_t>(
+          color_over_q(over_q(sample.color_p[c], q, frame.color_scale[c], format_.color, format_), frame.least[c],
+                       frame.greatest[c]));
   }
 
   /// A sample's place on the texture.

@@ -299,7 +299,7 @@ mutant(152 stages/texture_cache_linear.sv "texture: a sample does not wait for i
   [=[come_q >= COME'(waits_for)]=] [=[1'b1]=])
 mutant(153 stages/texture_cache_linear.sv "texture: another texture begins with the lines of the one before"
   [=[drop_i || (sweeps_q && sweep_q != '1)]=] [=[sweeps_q && sweep_q != '1]=])
-mutant(154 lib/texture_axis.sv "texture: P is cut off"
+mutant(154 lib/over_w_narrow.sv "texture: P is cut off"
   [=[(NARROW + 1)'(shifted_q[0])]=] [=[(NARROW + 1)'(1'b0)]=])
 mutant(155 lib/texture_wrap.sv "texture: mirror repeats"
   [=[is_mirrored && turn != '0]=] [=[1'b0]=])
@@ -469,3 +469,22 @@ mutant(320 stages/fog_unit.sv "fog: two lines of the table lie in one place"
   [=[word_i[START+RISE+:LINE]]=] [=[word_i[START+RISE+:LINE] & 8'hfe]=])
 mutant(321 stages/fog_unit.sv "fog: a stamp that waits reads the line of the one behind it"
   [=[enters_1 && !sets_line_i]=] [=[!sets_line_i]=])
+# Colours over w in the texture unit.
+mutant(280 stages/colors_over_w.sv "texture, colours over w: the quotient is cut off"
+  [=[WHOLE'(placed[POINT-1])]=] [=[WHOLE'(1'b0)]=])
+mutant(283 stages/colors_over_w.sv "texture, colours over w: all channels have the reach of red"
+  [=[reach[n*REACH_BITS+:REACH_BITS]]=] [=[reach[0+:REACH_BITS]]=])
+mutant(284 stages/colors_over_w.sv "texture, colours over w: all channels have the binary point of red"
+  [=[shift[n*SHIFT_BITS+:SHIFT_BITS]]=] [=[shift[0+:SHIFT_BITS]]=])
+mutant(285 stages/colors_over_w.sv "texture, colours over w: the range is that of the next sample's triangle"
+  [=[range_ram_q[index_q[6*INDEX+:INDEX]]]=] [=[range_ram_q[index_q[5*INDEX+:INDEX]]]=])
+mutant(287 stages/texture_unit.sv "texture, colours over w: a texel is combined with the affine colour"
+  [=[stamp_divides ? divided : color_of(stamp_color, e_lane_q)]=] [=[color_of(stamp_color, e_lane_q)]=])
+mutant(288 stages/texture_unit.sv "texture, colours over w: a quotient overwrites the stamp before"
+  [=[divided_valid && is_free]=] [=[divided_valid]=])
+mutant(289 stages/texture_unit.sv "texture, colours over w: behind a texel the quotient stays"
+  [=[(e_moves && stamp_divides)]=] [=[(e_moves && stamp_divides && !e_last_q)]=])
+mutant(290 stages/interpolate.sv "texture, colours over w: the range ends where it begins"
+  [=[codes_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[codes_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
+mutant(291 lib/colored_stamps.sv "texture, colours over w: they are affine"
+  [=[fragment_i.coordinates.divides_colors]=] [=[1'b0]=])

@@ -85,7 +85,7 @@ module colored_stamps #(
       localparam int L = raster_pkg::PERSPECTIVE_GUARD_BITS;
       localparam int AFFINE_BITS = raster_pkg::ALL_AFFINE_CODE_BITS;
       localparam int NARROW = raster_pkg::PERSPECTIVE_MANTISSA_BITS - 1;  // k_P
-      localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::ALL_CODE_BITS >= 104 ? 104 : 70;
+      localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::STATE_WORD_BITS >= 104 ? 104 : 70;
       localparam int PIXEL = 12;
       localparam int TOKEN = 43;  // of fog's tokens
       localparam int PLACES_BITS = 19 * SAMPLES > TOKEN ? 19 * SAMPLES : TOKEN;
@@ -95,7 +95,7 @@ module colored_stamps #(
       localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
       localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
       /* verilator lint_off UNUSEDSIGNAL */  // longer than a state
-      logic [raster_pkg::ALL_CODE_BITS-1:0] word;  // of a token: its codes
+      logic [raster_pkg::STATE_WORD_BITS-1:0] word;  // of a token: its codes
       logic [PIXEL-1:0] stamp_x, stamp_y;          // its first pixel, as levels want it
       /* verilator lint_on UNUSEDSIGNAL */
       logic [SAMPLES*Q-1:0]          q;
@@ -105,6 +105,32 @@ module colored_stamps #(
       logic is_token, is_triangle, is_levels, unit_valid, unit_ready, sets_fog, sets_fog_line;
       logic [SAMPLES-1:0]            unit_mask;
       logic [SAMPLES*8*CHANNELS-1:0] unit_rgba;
+      // Colours over w, where there are some.
+      localparam int OVER_W = raster_pkg::COLORS_OVER_W != 0 ? 1 : 0;
+      localparam int COLOR_P = OVER_W != 0 ? raster_pkg::LOCAL_BITS_OF[32*(AFFINE+3*OVER_W)+:32] : 24;
+      logic                                  divides_colors;
+      logic [SAMPLES*CHANNELS*COLOR_P-1:0]   color_p;
+      logic [CHANNELS*raster_pkg::COLOR_SHIFT_BITS-1:0] color_shift;
+      logic [CHANNELS*raster_pkg::COLOR_REACH_BITS-1:0] color_reach;
+      logic [CHANNELS*8-1:0]                 least_color, greatest_color;
+      if (OVER_W != 0) begin : gen_over_w
+        assign divides_colors = fragment_i.coordinates.divides_colors;
+        assign color_shift    = fragment_i.coordinates.color_shift;
+        assign color_reach    = fragment_i.coordinates.color_reach;
+        assign least_color    = fragment_i.least_color;
+        assign greatest_color = fragment_i.greatest_color;
+        for (s = 0; s < SAMPLES; s++) begin : gen_color
+          assign color_p[s*CHANNELS*COLOR_P+:CHANNELS*COLOR_P] =
+              fragment_i.code[s*FRAGMENT+Q_AT+Q+2*P+:CHANNELS*COLOR_P];
+        end
+      end else begin : gen_affine
+        assign divides_colors = 1'b0;
+        assign color_p        = '0;
+        assign color_shift    = '0;
+        assign color_reach    = '0;
+        assign least_color    = '0;
+        assign greatest_color = '0;
+      end
       assign stamp_x = (PIXEL'(fragment_i.key.tile_x) << TILE) |
                        ((PIXEL'(fragment_i.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
       assign stamp_y = (PIXEL'(fragment_i.key.tile_y) << TILE) | ((PIXEL'(fragment_i.stamp) >> ROW) << STAMP);
@@ -150,7 +176,12 @@ module colored_stamps #(
           .LINES         (16 * raster_pkg::TEXTURE_CACHE_KB),
           .PORT_BITS     (raster_pkg::TEXTURE_PORT_BITS),
           .WORD          (WORD),
-          .PIXEL         (PIXEL)
+          .PIXEL         (PIXEL),
+          .OVER_W          (OVER_W),
+          .COLOR_P_BITS    (COLOR_P),
+          .COLOR_NARROW    (raster_pkg::COLOR_NARROW_BITS),
+          .COLOR_SHIFT_BITS(raster_pkg::COLOR_SHIFT_BITS),
+          .COLOR_REACH_BITS(raster_pkg::COLOR_REACH_BITS)
       ) u_texture (
           .clk_i,
           .power_on_ni,
@@ -172,6 +203,12 @@ module colored_stamps #(
           .x_i            (stamp_x),
           .y_i            (stamp_y),
           .state_i        (word[WORD-1:0]),
+          .divides_colors_i(divides_colors),
+          .color_p_i       (color_p),
+          .color_shift_i   (color_shift),
+          .color_reach_i   (color_reach),
+          .least_color_i   (least_color),
+          .greatest_color_i(greatest_color),
           .stamp_valid_o  (unit_valid),
           .stamp_ready_i  (unit_ready),
           .payload_o      (unit_carried),

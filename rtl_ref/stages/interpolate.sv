@@ -207,6 +207,11 @@ module interpolate (
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
       assign made.coordinates = codes_context_q.coordinates;
     end
+    if (raster_pkg::COLORS_OVER_W != 0) begin : gen_color_range
+      localparam int AT = raster_pkg::AFFINE_CODE_AT[32+:32];  // of red
+      assign made.least_color    = codes_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES];
+      assign made.greatest_color = codes_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES];
+    end
   endgenerate
 
   /* verilator lint_off UNUSEDSIGNAL */  // there is a place

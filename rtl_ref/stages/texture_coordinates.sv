@@ -49,7 +49,10 @@ module texture_coordinates #(
 
     // Of a clock ago: floor(log2 q), and what of q follows its highest bit
     output logic [EXPONENT-1:0] exponent_o,
-    output logic [7:0]          below_o
+    output logic [7:0]          below_o,
+
+    // Of five clocks ago: the reciprocal, below its highest bit, which is set
+    output logic [MANTISSA-2:0] reciprocal_o
 );
 
   // The stamp's index, as far as the sample has come.
@@ -104,7 +107,8 @@ module texture_coordinates #(
     p_2_q      <= p_1_q;
     below_o    <= left[30:23];
   end
-  assign exponent_o = exponent_q;
+  assign exponent_o   = exponent_q;
+  assign reciprocal_o = reciprocal[MANTISSA-2:0];
 
   generate
     if (RECIPROCAL == 0) begin : gen_table

@@ -1,6 +1,8 @@
-// Texture unit: the texels of one texture for the samples of stamps, a live sample a clock, combined with their colours.
+// Texture unit: the texels of one texture for the samples of stamps, a live sample a clock, combined with their colours; and
+// those colours, where they lie over w.
 //
 //   stamp --> coordinates -> [split] -> texture_coordinates -> addresses -> texture_cache -> [texel] -.
+//         |                        '--> colors_over_w -------------------------> divided -------------|
 //         '-> stamps -------------------------------------------------------------------> [combine] -> stamp
 //
 // What a stamp carries along waits in `stamps`, its coordinates in `coordinates`; stamps without texture have nothing there and
@@ -28,7 +30,12 @@ module texture_unit #(
     parameter int LINES = 64,           // of the cache; a power of two
     parameter int PORT_BITS = 64,       // of a beat
     parameter int WORD = 46,            // bits that a state brings: of a level's lines 70 or 104, else 46
-    parameter int PIXEL = 12            // of a pixel's column and row
+    parameter int PIXEL = 12,           // of a pixel's column and row
+    parameter int OVER_W = 0,           // 1: it divides colours as well
+    parameter int COLOR_P_BITS = 24,    // of those over w in a tile, with their signs
+    parameter int COLOR_NARROW = 13,    // their k_P
+    parameter int COLOR_SHIFT_BITS = 6, // of their c, with its sign
+    parameter int COLOR_REACH_BITS = 4  // of their x
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -54,6 +61,16 @@ module texture_unit #(
     input logic [PIXEL-1:0]                   y_i,
     /* verilator lint_on UNUSEDSIGNAL */
     input logic [WORD-1:0]                    state_i,        // TextureState::pack, TextureLevels::pack, line_part
+
+    // Of OVER_W: the triangle's colours lie over w, and color_i does not count
+    /* verilator lint_off UNUSEDSIGNAL */
+    input logic                                     divides_colors_i,
+    input logic [SAMPLES*CHANNELS*COLOR_P_BITS-1:0] color_p_i,  // red lowest
+    input logic [CHANNELS*COLOR_SHIFT_BITS-1:0]     color_shift_i,
+    input logic [CHANNELS*COLOR_REACH_BITS-1:0]     color_reach_i,
+    input logic [8*CHANNELS-1:0]                    least_color_i,  // of the vertices
+    input logic [8*CHANNELS-1:0]                    greatest_color_i,
+    /* verilator lint_on UNUSEDSIGNAL */
 
     // The same with their colours
     output logic                          stamp_valid_o,
@@ -82,19 +99,24 @@ module texture_unit #(
   localparam int TAIL = LANE + 1;
   localparam int INDEX = $clog2(QUEUE);
   localparam int COLOR = 8 * CHANNELS;
-  localparam int PLACE = Q_BITS + 2 * P_BITS;
+  localparam int COLOR_P = CHANNELS * COLOR_P_BITS;
+  localparam int PLACE = Q_BITS + 2 * P_BITS + ((OVER_W != 0) ? COLOR_P : 0);
   localparam int COORDINATES = SAMPLES * PLACE;
   localparam int AHEAD = 16;  // samples between split and tags
   localparam int CLOCKS = (FILTER == 2) ? 10 : 8;  // of texture_coordinates, of level_of_detail
   localparam int TOKEN = (FILTER == 2) ? 3 : 1;    // kinds of states
   localparam int PIXELS = COORDINATES + 2 * PIXEL;
-  localparam int WAITING = (FILTER != 2) ? COORDINATES : (PIXELS > WORD) ? PIXELS : WORD + 1;
+  localparam int PLACED = (FILTER != 2) ? COORDINATES : (PIXELS > WORD) ? PIXELS : WORD + 1;
+  localparam int WAITING = PLACED + ((OVER_W != 0) ? 2 : 0);  // with what becomes of the stamp
 
   // ---------------------------------------------------------------------------------------------------------------- the door
-  logic       is_textured, door_enable_q;
+  logic       is_shaded, is_textured, divides, enters, door_enable_q;
   logic [2:0] door_format_q;
   logic [1:0] door_combine_q;
-  assign is_textured = stamp_valid_i && !sets_state_i && is_triangle_i && door_enable_q && mask_i != '0;
+  assign is_shaded   = stamp_valid_i && !sets_state_i && is_triangle_i && mask_i != '0;
+  assign is_textured = is_shaded && door_enable_q;
+  assign divides     = OVER_W != 0 && is_shaded && divides_colors_i;
+  assign enters      = is_textured || divides;  // sample by sample
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) door_enable_q <= 1'b0;
     else if (stamp_valid_i && sets_state_i) door_enable_q <= state_i[0];
@@ -110,7 +132,10 @@ module texture_unit #(
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_place
-      assign places[s*PLACE+:PLACE] = {v_i[s*P_BITS+:P_BITS], u_i[s*P_BITS+:P_BITS], q_i[s*Q_BITS+:Q_BITS]};
+      assign places[s*PLACE+:Q_BITS+2*P_BITS] = {v_i[s*P_BITS+:P_BITS], u_i[s*P_BITS+:P_BITS], q_i[s*Q_BITS+:Q_BITS]};
+      if (OVER_W != 0) begin : gen_color
+        assign places[s*PLACE+Q_BITS+2*P_BITS+:COLOR_P] = color_p_i[s*COLOR_P+:COLOR_P];
+      end
     end
   endgenerate
 
@@ -118,8 +143,12 @@ module texture_unit #(
   logic [TOKEN-1:0]       token, waiting_token;
   logic [SAMPLES-1:0]     waiting_mask;
   logic [WAITING-1:0]     entering, waiting;
-  logic [INDEX-1:0]       entered_q, split_q;  // number of the next textured stamp at the door, and at the split
+  logic [INDEX-1:0]       entered_q, split_q;  // number of the next such stamp at the door, and at the split
   logic                   passes_door, has_alpha, stamp_waits, stamp_is_textured, stamp_has_alpha, stamp_leaves;
+  /* verilator lint_off UNUSEDSIGNAL */  // of OVER_W
+  logic                   waiting_divides;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic                   waiting_is_textured, stamp_divides;
   logic [1:0]             stamp_combine;
   logic [PAYLOAD-1:0]     stamp_payload;
   logic [SAMPLES-1:0]     stamp_mask;
@@ -127,16 +156,32 @@ module texture_unit #(
   /* verilator lint_off UNUSEDSIGNAL */  // there is room
   logic                   waiting_ready, stamps_ready;
   /* verilator lint_on UNUSEDSIGNAL */
-  assign passes_door = is_textured || (stamp_valid_i && token != '0);
+  assign passes_door = enters || (stamp_valid_i && token != '0);
   assign has_alpha   = door_format_q != 3'd0 && door_format_q != 3'd2;
+  // Of a stamp whether it is textured; and of OVER_W whether its colours are divided.
+  localparam int FLAGS = (OVER_W != 0) ? 2 : 1;
+  logic [FLAGS-1:0]  door_flags, stamp_flags;
+  logic [PLACED-1:0] placed;
+  assign door_flags        = FLAGS'({divides, is_textured});
+  assign stamp_is_textured = stamp_flags[0];
+  assign stamp_divides     = stamp_flags[FLAGS-1] && OVER_W != 0;
   generate
+    if (OVER_W != 0) begin : gen_flags
+      assign entering            = {divides, is_textured, placed};
+      assign waiting_is_textured = waiting[PLACED];
+      assign waiting_divides     = waiting[PLACED+1];
+    end else begin : gen_textured  // whoever waits and is no token
+      assign entering            = placed;
+      assign waiting_is_textured = 1'b1;
+      assign waiting_divides     = 1'b0;
+    end
     if (FILTER == 2) begin : gen_pixels
       assign token    = {moves_in_i, sets_levels_i, sets_state_i};
-      assign entering = WAITING'({y_i, x_i, places});
+      assign placed   = PLACED'({y_i, x_i, places});
       assign is_state = waiting_token[1:0] != '0;
     end else begin : gen_places
       assign token    = sets_state_i;
-      assign entering = places;
+      assign placed   = places;
       assign is_state = waiting_token[0];
     end
   endgenerate
@@ -155,17 +200,17 @@ module texture_unit #(
       .data_o ({waiting_token, waiting_mask, waiting})
   );
   fifo #(
-      .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + 4),
+      .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + FLAGS + 3),
       .DEPTH(QUEUE)
   ) u_stamps (
       .clk_i,
       .rst_ni,
       .valid_i(stamp_valid_i),
       .ready_o(stamps_ready),
-      .data_i ({payload_i, mask_i, color_i, is_textured, door_combine_q, has_alpha}),
+      .data_i ({payload_i, mask_i, color_i, door_flags, door_combine_q, has_alpha}),
       .valid_o(stamp_waits),
       .ready_i(stamp_leaves),
-      .data_o ({stamp_payload, stamp_mask, stamp_color, stamp_is_textured, stamp_combine, stamp_has_alpha})
+      .data_o ({stamp_payload, stamp_mask, stamp_color, stamp_flags, stamp_combine, stamp_has_alpha})
   );
 
   // --------------------------------------------------------------------------------------------------------------- the split
@@ -187,7 +232,7 @@ module texture_unit #(
   assign left       = waiting_mask & ~done_q;
   assign lane       = lowest(left);
   assign is_last    = (left & (left - 1'b1)) == '0;
-  assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);
+  assign splits     = waits && !is_token && (!waiting_is_textured || ahead_q != 5'(AHEAD));
   assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
   assign sets_state = can_set && waiting_token[0];
   assign takes      = can_set || moves_in || (splits && is_last);
@@ -202,8 +247,8 @@ module texture_unit #(
       split_q   <= '0;
     end else begin
       if (splits) done_q <= is_last ? '0 : done_q | SAMPLES'(1) << lane;
-      ahead_q   <= ahead_q + 5'(splits) - 5'(leaves_queue);
-      entered_q <= entered_q + INDEX'(is_textured);
+      ahead_q   <= ahead_q + 5'(splits && waiting_is_textured) - 5'(leaves_queue);
+      entered_q <= entered_q + INDEX'(enters);
       split_q   <= split_q + INDEX'(splits && is_last);
     end
   end
@@ -244,13 +289,14 @@ module texture_unit #(
   logic [15:0]                part;
   logic [2*REFERENCE_BITS+15:0] place, coordinate;  // of levels, as far as the level
   logic [4:0]                 exponent;
+  logic [MANTISSA-2:0]        reciprocal;
   logic [7:0]                 below, level_part;
   logic [3:0]                 level;
   logic                       level_is_linear, level_is_between, shares;
   /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
-    else valid_q <= {valid_q[CLOCKS-1:0], splits};
+    else valid_q <= {valid_q[CLOCKS-1:0], splits && waiting_is_textured};
   end
   always_ff @(posedge clk_i) tail_q <= {tail_q[TAIL*CLOCKS-1:0], is_last, lane};
 
@@ -269,7 +315,7 @@ module texture_unit #(
       .RECIPROCAL    (RECIPROCAL)
   ) u_texture_coordinates (
       .clk_i,
-      .frame_valid_i(is_textured),
+      .frame_valid_i(enters),
       .frame_index_i(entered_q),
       .shift_i,
       .reach_i,
@@ -286,7 +332,8 @@ module texture_unit #(
       .part_o       (part),
       .coordinate_o (place),
       .exponent_o   (exponent),
-      .below_o      (below)
+      .below_o      (below),
+      .reciprocal_o (reciprocal)
   );
 
   generate
@@ -431,6 +478,69 @@ module texture_unit #(
     end
   endgenerate
 
+  // ------------------------------------------------------------------------------------------------- colours over w, divided
+  // As many wait as there are samples in the stamps inside, so that no sample waits for a place.
+  /* verilator lint_off UNUSEDSIGNAL */
+  logic              takes_divided;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic              divided_valid, divided_last;
+  logic [LANE-1:0]   divided_lane;
+  logic [COLOR-1:0]  divided;
+  generate
+    if (OVER_W != 0) begin : gen_colors_over_w
+      localparam int COLOR_CLOCKS = 8;  // of colors_over_w
+      logic [COLOR_CLOCKS:0] divides_q;  // of a clock ago lowest
+      logic [COLOR-1:0]      color;
+      /* verilator lint_off UNUSEDSIGNAL */  // there is room
+      logic                  divided_ready;
+      /* verilator lint_on UNUSEDSIGNAL */
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) divides_q <= '0;
+        else divides_q <= {divides_q[COLOR_CLOCKS-1:0], splits && waiting_divides};
+      end
+      colors_over_w #(
+          .CHANNELS  (CHANNELS),
+          .P_BITS    (COLOR_P_BITS),
+          .MANTISSA  (MANTISSA),
+          .NARROW    (COLOR_NARROW),
+          .SHIFT_BITS(COLOR_SHIFT_BITS),
+          .REACH_BITS(COLOR_REACH_BITS),
+          .QUEUE     (QUEUE)
+      ) u_colors_over_w (
+          .clk_i,
+          .frame_valid_i(enters),
+          .frame_index_i(entered_q),
+          .shift_i      (color_shift_i),
+          .reach_i      (color_reach_i),
+          .least_i      (least_color_i),
+          .greatest_i   (greatest_color_i),
+          .index_i      (place_index_q),
+          .p_i          (place_q[Q_BITS+2*P_BITS+:COLOR_P]),
+          .exponent_i   (exponent),
+          .reciprocal_i (reciprocal),
+          .color_o      (color)
+      );
+      fifo #(
+          .WIDTH(TAIL + COLOR),
+          .DEPTH(QUEUE * SAMPLES)
+      ) u_divided (
+          .clk_i,
+          .rst_ni,
+          .valid_i(divides_q[COLOR_CLOCKS]),
+          .ready_o(divided_ready),
+          .data_i ({tail_q[TAIL*COLOR_CLOCKS+:TAIL], color}),
+          .valid_o(divided_valid),
+          .ready_i(takes_divided),
+          .data_o ({divided_last, divided_lane, divided})
+      );
+    end else begin : gen_affine
+      assign divided_valid = 1'b0;
+      assign divided_last  = 1'b0;
+      assign divided_lane  = '0;
+      assign divided       = '0;
+    end
+  endgenerate
+
   // ------------------------------------------------------------------------------------- combine, and the stamp on its way out
   logic                     e_valid_q, e_last_q, e_moves, passes, is_free, out_valid_q;
   logic [LANE-1:0]          e_lane_q;
@@ -446,7 +556,9 @@ module texture_unit #(
     color_of = rest[COLOR-1:0];
   endfunction
 
-  assign e_color = color_of(stamp_color, e_lane_q);
+  // A sample's own colour is divided before its texel comes: that takes fewer clocks.
+  logic d_moves;  // a sample without a texture, whose colour is divided
+  assign e_color = stamp_divides ? divided : color_of(stamp_color, e_lane_q);
   texture_combine #(
       .CHANNELS(CHANNELS),
       .SOFT    (SOFT)
@@ -458,11 +570,13 @@ module texture_unit #(
       .color_o    (combined)
   );
 
-  assign is_free      = !out_valid_q || stamp_ready_i;
-  assign passes       = stamp_waits && !stamp_is_textured && is_free;
-  assign e_moves      = e_valid_q && stamp_is_textured && is_free;  // the first that is textured is its own
-  assign stamp_leaves = passes || (e_moves && e_last_q);
-  assign texel_ready  = !e_valid_q || e_moves;
+  assign is_free       = !out_valid_q || stamp_ready_i;
+  assign passes        = stamp_waits && !stamp_is_textured && !stamp_divides && is_free;
+  assign d_moves       = stamp_waits && !stamp_is_textured && stamp_divides && divided_valid && is_free;
+  assign e_moves       = e_valid_q && stamp_is_textured && is_free;  // the first that is textured is its own
+  assign stamp_leaves  = passes || (e_moves && e_last_q) || (d_moves && divided_last);
+  assign texel_ready   = !e_valid_q || e_moves;
+  assign takes_divided = d_moves || (e_moves && stamp_divides);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -483,8 +597,8 @@ module texture_unit #(
       mask_q    <= stamp_mask;
     end
     for (int i = 0; i < SAMPLES; i++)
-      if (passes || (e_moves && e_lane_q == LANE'(i)))
-        color_q[i*COLOR+:COLOR] <= stamp_is_textured ? combined : stamp_color[i*COLOR+:COLOR];
+      if (passes || (e_moves && e_lane_q == LANE'(i)) || (d_moves && divided_lane == LANE'(i)))
+        color_q[i*COLOR+:COLOR] <= stamp_is_textured ? combined : stamp_divides ? divided : stamp_color[i*COLOR+:COLOR];
   end
 
   assign stamp_valid_o = out_valid_q;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/pipeline.hpp"
 #include "model/widths.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/random_state.hpp"
@@ -57,6 +58,7 @@ class Generator {
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
     if (config_.fog_units != 0) set_fogs();
+    if (has_colors_over_w(config_)) set_colors_over_w();
     return std::move(scene_);
   }
 
@@ -86,6 +88,7 @@ class Generator {
   void set_stencils();
   void set_textures();
   void set_fogs();
+  void set_colors_over_w();
   void clear();
   void line_and_point_state(State& s);
   void primitive(std::size_t corners, bool is_again);
@@ -273,6 +276,21 @@ void Generator::set_fogs() {
     if (fog == nullptr || (state.texture && state.texture_interp == TextureInterp::affine)) continue;
     state.fog = fog->fog;
     state.fog_color = fog->fog_color;
+  }
+}
+
+/// Colours over w in runs of draws, textured and not. By random numbers of their own, as above.
+void Generator::set_colors_over_w() {
+  Random random(seed_ ^ 0xc0107u);
+  bool is_over_w = false;
+  for (const Command& command : scene_.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw == nullptr) continue;
+    if (random.next() % 3 == 0) is_over_w = !is_over_w;
+    State& state = scene_.states[draw->state];
+    if (!is_over_w || drawn_as(state, draw->topology) != PrimitiveType::triangle) continue;
+    state.color_interp = ColorInterp::perspective;
+    state.texture_interp = TextureInterp::perspective;  // one 1/w a triangle
   }
 }
 

@@ -326,6 +326,7 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
     const auto write = run.need<WritePacket>(1, "write packet for a stamp");
     const SampleMask live = shaded_samples(write, colors);
     const PixelOffset origin = widths.stamps.origin_of(fragment->stamp);
+    const TextureFrame frame = texture_frame(*fragment);
     std::array<TextureSample, kMaxSamples> sample;
     std::array<Texel, kMaxSamples> color;
     live.for_each([&](std::size_t s) {
@@ -334,9 +335,9 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
       sample[s].x = (fragment->key.tile_x << widths.tile_shift) + origin.x + pixel.x;
       sample[s].y = (fragment->key.tile_y << widths.tile_shift) + origin.y + pixel.y;
       for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(write.color[s] >> 8 * c);
+      if (frame.divides_colors) unit.divide_colors(sample[s], frame, widths.color_planes, color[s]);
     });
-    if (unit.is_textured(fragment->kind == PrimitiveKind::triangle, live))
-      unit.take(live, sample, texture_frame(fragment->coordinates), color, read);
+    if (unit.is_textured(fragment->kind == PrimitiveKind::triangle, live)) unit.take(live, sample, frame, color, read);
     add_fog(unit, fragment->kind == PrimitiveKind::triangle, live, sample, fragment->coordinates, color);
     ColorPacket packet{live, {}};
     live.for_each([&](std::size_t s) {

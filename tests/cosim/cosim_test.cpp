@@ -287,6 +287,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   };
   Config with_textures = preset("embedded");
   with_textures.texture_unit = TextureUnitKind::trilinear;
+  with_textures.perspective_colors = 1;
   Config with_operations = preset("embedded");
   with_operations.texture_unit = TextureUnitKind::nearest;
   with_operations.alpha_units = with_operations.dither_units = 1;

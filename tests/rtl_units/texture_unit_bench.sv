@@ -14,7 +14,9 @@ module texture_unit_bench #(
     parameter int IN_FLIGHT = 32,
     parameter int LINES = 64,
     parameter int PORT_BITS = 64,
-    parameter int WORD = 46
+    parameter int WORD = 46,
+    parameter int OVER_W = 0,
+    parameter int COLOR_P_BITS = 24
 ) (
     input logic       clk_i,
     input logic       rst_ni,
@@ -40,6 +42,12 @@ module texture_unit_bench #(
     input logic [11:0]                   x_i,
     input logic [11:0]                   y_i,
     input logic [WORD-1:0]               state_i,
+    input logic                          divides_colors_i,
+    input logic [SAMPLES*CHANNELS*COLOR_P_BITS-1:0] color_p_i,
+    input logic [6*CHANNELS-1:0]         color_shift_i,
+    input logic [4*CHANNELS-1:0]         color_reach_i,
+    input logic [8*CHANNELS-1:0]         least_color_i,
+    input logic [8*CHANNELS-1:0]         greatest_color_i,
 
     output logic                          stamp_valid_o,
     input  logic                          stamp_ready_i,
@@ -77,7 +85,9 @@ module texture_unit_bench #(
       .IN_FLIGHT(IN_FLIGHT),
       .LINES    (LINES),
       .PORT_BITS(PORT_BITS),
-      .WORD     (WORD)
+      .WORD     (WORD),
+      .OVER_W   (OVER_W),
+      .COLOR_P_BITS(COLOR_P_BITS)
   ) u_texture_unit (
       .clk_i,
       .rst_ni,
@@ -99,6 +109,12 @@ module texture_unit_bench #(
       .x_i,
       .y_i,
       .state_i,
+      .divides_colors_i,
+      .color_p_i,
+      .color_shift_i,
+      .color_reach_i,
+      .least_color_i,
+      .greatest_color_i,
       .stamp_valid_o,
       .stamp_ready_i,
       .payload_o,

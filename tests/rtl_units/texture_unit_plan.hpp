@@ -21,6 +21,7 @@ struct UnitFormat {
   int samples, channels;
   TextureSettings settings;
   PerspectiveFormat perspective;
+  bool divides_colors = false;  ///< OVER_W
 };
 
 struct PlannedStamp {
@@ -185,12 +186,43 @@ class Program {
       at_[i] = pick(random_, -100, 400);
     }
     q_bits_ = pick(random_, 1, q_bits + 1 + format_.perspective.guard_bits);
+    if (format_.divides_colors) new_colors();
     if (!format_.settings.has_levels) return;
     x_ = pick(random_, 0, pick(random_, 0, 1) != 0 ? 4079 : 31);
     y_ = pick(random_, 0, pick(random_, 0, 1) != 0 ? 4079 : 31);
     const int bits = format_.settings.line_bits;
     const TextureLines lines = new_lines();
     for (int n = 0; n < line_parts(bits); ++n) token(StateRegister::texture_lines, line_part(lines, bits, n));
+  }
+
+  /// Whether they lie over w, and how P is to be read; now and then as no host says it.
+  void new_colors() {
+    const OverWFormat& attribute = format_.perspective.color;
+    frame_.divides_colors = pick(random_, 0, 2) != 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const int reach = pick(random_, 0, 3) == 0 ? pick(random_, 0, 8) : 8;
+      const int least = attribute.bits - format_.perspective.q_bits, most = attribute.bits + 1;  // of x - sp
+      const int above =
+          pick(random_, 0, 1) != 0 ? std::min(most, least + pick(random_, 0, 4)) : pick(random_, least, most);
+      frame_.color_scale[c] = {1 + above - attribute.narrow_bits, reach};
+      color_exponent_[c] = reach - above;
+      frame_.least[c] = static_cast<std::uint8_t>(pick(random_, 0, 1) != 0 ? 0 : pick(random_, 0, 255));
+      frame_.greatest[c] =
+          static_cast<std::uint8_t>(pick(random_, 0, 1) != 0 ? 255 : pick(random_, frame_.least[c], 255));
+    }
+  }
+
+  /// P of a value between the vertices' or a little beyond.
+  void set_colors(TextureSample& sample) {
+    const int p_bits = p_local_bits(format_.perspective.color, format_.perspective);
+    const double limit = std::ldexp(1.0, p_bits - 1);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double value = std::uniform_real_distribution(-2.0, std::ldexp(1.0, frame_.color_scale[c].reach))(random_);
+      const double p = std::floor(value * static_cast<double>(sample.q) * std::ldexp(1.0, -color_exponent_[c]));
+      sample.color_p[c] = static_cast<std::int64_t>(std::clamp(p, -limit, limit - 1));
+      if (pick(random_, 0, 30) == 0)
+        sample.color_p[c] = wrap_signed(static_cast<std::int64_t>(random_()), p_bits) >> pick(random_, 0, p_bits - 1);
+    }
   }
 
   TextureSample new_sample() {
@@ -205,6 +237,7 @@ class Program {
       if (is_wild_ && pick(random_, 0, 3) == 0)
         sample.p[i] = wrap_signed(static_cast<std::int64_t>(random_()), p_bits) >> pick(random_, 0, p_bits - 1);
     }
+    if (frame_.divides_colors) set_colors(sample);
     return sample;
   }
 
@@ -216,6 +249,7 @@ class Program {
   std::array<TextureState, 4> texture_{};
   TextureFrame frame_;
   std::array<int, 2> exponent_{};
+  std::array<int, 4> color_exponent_{};
   std::array<double, 2> at_{};
   double step_ = 1;
   bool is_wild_ = false;
@@ -259,6 +293,10 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
     x = world.next_free(0, std::max(x + 1, timing.room()));
     stamp.enters = x + 1;
     stamp.combined = stamp.color;
+    const bool divides = stamp.frame.divides_colors && !stamp.sets && stamp.is_triangle && stamp.mask.any();
+    if (divides)
+      stamp.mask.for_each(
+          [&](std::size_t s) { unit.divide_colors(stamp.sample[s], stamp.frame, format.channels, stamp.combined[s]); });
     if (stamp.sets == StateRegister::texture) {
       const auto state = TextureState::unpack(static_cast<std::uint64_t>(stamp.word));
       if (state.invalidates) contents = random();
@@ -271,7 +309,7 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
       unit.move_in(stamp.word);
       stamp.offered = timing.set_lines(x);
     } else if (!unit.is_textured(stamp.is_triangle, stamp.mask)) {
-      stamp.offered = timing.pass(x);
+      stamp.offered = divides ? timing.divide(x, stamp.mask.count()) : timing.pass(x);
     } else {
       const auto lookups = unit.take(stamp.mask, stamp.sample, stamp.frame, stamp.combined, read);
       const TextureUse use = use_of(lookups);

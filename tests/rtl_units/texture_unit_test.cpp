@@ -24,13 +24,13 @@
 namespace halfplane::texture_test {
 namespace {
 
-const UnitFormat kEmbedded{4, 4, {64, 64, 16, 32}, kEmbeddedPerspective};
-const UnitFormat kTiny{1, 3, {4, 16, 4, 8}, kTinyPerspective};
+const UnitFormat kEmbedded{4, 4, {64, 64, 16, 32}, kEmbeddedPerspective, true};
+const UnitFormat kTiny{1, 3, {4, 16, 4, 8}, kTinyPerspective, true};
 const UnitFormat kLinear{4, 4, {64, 64, 16, 32, true}, kEmbeddedPerspective};
 const UnitFormat kLinearTiny{1, 3, {16, 16, 4, 8, true}, kTinyPerspective};
-const UnitFormat kLevels{4, 4, {64, 64, 16, 32, true, true, 104}, kEmbeddedPerspective};
+const UnitFormat kLevels{4, 4, {64, 64, 16, 32, true, true, 104}, kEmbeddedPerspective, true};
 const UnitFormat kLevelsTiny{1, 3, {16, 16, 4, 8, true, true, 70}, kTinyPerspective};
-const UnitFormat kFull{16, 4, {256, 128, 16, 64}, kFullPerspective};
+const UnitFormat kFull{16, 4, {256, 128, 16, 64}, kFullPerspective, true};
 
 std::uint64_t seed_of_run() {
   const char* given = std::getenv("HALFPLANE_SEED");
@@ -191,6 +191,18 @@ class Bench {
       put(dut_.v_i, s * static_cast<std::size_t>(p_bits), p_bits, static_cast<std::uint64_t>(stamp.sample[s].p[1]));
       const auto channels = static_cast<std::size_t>(format_.channels);
       for (std::size_t c = 0; c < channels; ++c) put(dut_.color_i, 8 * (s * channels + c), 8, stamp.color[s][c]);
+      if (!format_.divides_colors) continue;
+      const int color_bits = p_local_bits(format_.perspective.color, format_.perspective);
+      for (std::size_t c = 0; c < channels; ++c)
+        put(dut_.color_p_i, (s * channels + c) * static_cast<std::size_t>(color_bits), color_bits,
+            static_cast<std::uint64_t>(stamp.sample[s].color_p[c]));
+    }
+    dut_.divides_colors_i = stamp.frame.divides_colors;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(format_.channels); ++c) {
+      put(dut_.color_shift_i, 6 * c, 6, static_cast<std::uint64_t>(stamp.frame.color_scale[c].shift));
+      put(dut_.color_reach_i, 4 * c, 4, static_cast<std::uint64_t>(stamp.frame.color_scale[c].reach));
+      put(dut_.least_color_i, 8 * c, 8, stamp.frame.least[c]);
+      put(dut_.greatest_color_i, 8 * c, 8, stamp.frame.greatest[c]);
     }
     for (std::size_t i = 0; i < 2; ++i) {
       put(dut_.shift_i, 6 * i, 6, static_cast<std::uint64_t>(stamp.frame.scale[i].shift));
@@ -284,7 +296,10 @@ TEST(TextureUnit, FaultsOfTheLinearFilterAreFound) {
   expect_found<VTextureUnitLinearFaults>(kLinear, TEXTURE_NEAREST_FAULTS + 1, TEXTURE_LINEAR_FAULTS);
 }
 TEST(TextureUnit, FaultsOfLevelsAreFound) {
-  expect_found<VTextureUnitLevelsFaults>(kLevels, TEXTURE_LINEAR_FAULTS + 1, TEXTURE_FAULTS);
+  expect_found<VTextureUnitLevelsFaults>(kLevels, TEXTURE_LINEAR_FAULTS + 1, TEXTURE_LEVELS_FAULTS);
+}
+TEST(TextureUnit, FaultsOfColorsOverWAreFound) {
+  expect_found<VTextureUnitFaults>(kEmbedded, TEXTURE_LEVELS_FAULTS + 1, TEXTURE_FAULTS);
 }
 
 }  // namespace

@@ -146,6 +146,7 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
   Config textured;
   textured.texture_unit = TextureUnitKind::trilinear;
+  textured.perspective_colors = 1;
   EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
   Config blended;
   blended.texture_unit = TextureUnitKind::nearest;

@@ -31,7 +31,20 @@ const std::vector<Config>& configurations() {
       with("full", {{"texture.unit", "trilinear"}, {"frame.order", "bins"}, {"texture.cache_kb", "1"}}),
       with("tiny", {{"texture.unit", "trilinear"}, {"cache.kind", "blocks"}, {"perspective.bits", "12"}}),
       with("full", {{"texture.unit", "nearest"}, {"texture.queue", "8"}}),
-      with("tiny", {{"texture.unit", "nearest"}, {"cache.kind", "blocks"}, {"perspective.bits", "12"}})};
+      with("tiny", {{"texture.unit", "nearest"}, {"cache.kind", "blocks"}, {"perspective.bits", "12"}}),
+      with("embedded", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}}),
+      with("embedded", {{"texture.unit", "trilinear"}, {"perspective.colors", "1"}, {"frame.order", "bins"}}),
+      with("embedded", {{"texture.unit", "bilinear"},
+                        {"perspective.colors", "1"},
+                        {"alpha.unit", "1"},
+                        {"blend.lanes", "4"},
+                        {"stencil.bits", "8"}}),
+      with("full", {{"texture.unit", "trilinear"}, {"perspective.colors", "1"}}),
+      with("full", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}, {"stamp.size", "1"}}),
+      with("tiny", {{"texture.unit", "nearest"},
+                    {"perspective.colors", "1"},
+                    {"cache.kind", "blocks"},
+                    {"perspective.bits", "12"}})};
   return all;
 }
 
@@ -83,6 +96,62 @@ TEST(TexturedHardware, DrawsARoomAsTheScalarEngine) {
 TEST(TexturedHardware, DrawsRandomScenesAsTheScalarEngine) {
   for (const Config& config : configurations())
     for (std::uint64_t seed = 1; seed <= 12; ++seed) expect_equal(random_scene(config, seed, 25), config);
+}
+
+/// The room with colours over w throughout, but for the wall's texture, which is affine.
+std::string room_over_w() {
+  std::string text = kRoom;
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("state texture ground\n", "state texture ground\nstate color_interp perspective\n");
+  replace("state texture_interp affine\n", "state color_interp affine\nstate texture_interp affine\n");
+  replace("state texture off\n", "state texture off\nstate color_interp perspective\n");
+  return text;
+}
+
+// Textured and not, with three channels and four, in front of a blend and an alpha test; and it is another picture.
+TEST(TexturedHardware, DividesColorsByWAsTheScalarEngine) {
+  int divided = 0;
+  for (Config config : configurations()) {
+    if (!has_colors_over_w(config)) continue;
+    ++divided;
+    config.target_width = std::max(config.target_width, 64);
+    config.target_height = std::max(config.target_height, 64);
+    config.guard_band = std::max(config.guard_band, 128);
+    const Scene scene = read_capture(room_over_w(), "room");
+    expect_equal(scene, config);
+    EXPECT_NE(render_hardware(scene, config).frame.color,
+              render_hardware(read_capture(kRoom, "room"), config).frame.color);
+    int over_w = 0, textured = 0, affine = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed)
+      for (const Scene random = random_scene(config, seed, 25); const State& state : random.states) {
+        const bool is_over_w = state.color_interp == ColorInterp::perspective;
+        ++(is_over_w ? over_w : affine);
+        textured += is_over_w && state.texture ? 1 : 0;
+      }
+    EXPECT_GT(over_w, 20) << label(config);
+    EXPECT_GT(textured, 10) << label(config);
+    EXPECT_GT(affine, 20) << label(config);
+  }
+  EXPECT_GE(divided, 6);
+}
+
+// A stamp that has no texture takes a clock for each sample whose colour is divided, and none where colours are affine.
+TEST(TexturedHardware, AColorOverWTakesAClockASample) {
+  const Config config = with("embedded", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}});
+  const auto cycles = [&](const std::string& states) {
+    const Scene scene = read_capture("halfplane 1\ntarget 128 128\nspace window\nstate depth_test always\n" + states +
+                                         "v -130 -2 0.5 1 255 0 0 255\nv 130 -2 0.5 2 0 255 0 255\nv -2 400 0.5 4 0 0 "
+                                         "255 255\nt 0 1 2\n",
+                                     "screen");
+    const auto memory = make_memory({}, config);
+    return static_cast<double>(render_cycle(scene, config, *memory).run.raster_cycles);
+  };
+  const double pixels = 128 * 128, affine = cycles(""), divided = cycles("state color_interp perspective\n");
+  EXPECT_LT(affine, 0.4 * pixels);
+  EXPECT_GT(divided, 0.6 * pixels);
+  EXPECT_LT(divided, 1.1 * pixels);
 }
 
 // Where the upper of two levels is not there, or has no weight, the other is asked once.
@@ -273,7 +342,13 @@ TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
   const auto names = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   EXPECT_EQ(fault(kRoom, with_unit, "", ""), "");
   EXPECT_TRUE(names(fault(kRoom, preset("embedded"), "", ""), "texture.unit=nearest"));
-  EXPECT_TRUE(names(fault(kRoom, with_unit, "state texture off", "state color_interp perspective"), "color_interp"));
+  const std::string over_w = "state color_interp perspective";
+  EXPECT_TRUE(names(fault(kRoom, with_unit, "state texture off", over_w), "perspective.colors=1"));
+  Config divides = with_unit;
+  divides.perspective_colors = 1;
+  EXPECT_EQ(fault(kRoom, divides, "state texture off", "state texture off\n" + over_w), "");
+  EXPECT_TRUE(names(fault(kRoom, divides, "state texture off", over_w), "texture_interp affine"));
+  EXPECT_THROW(validate(with("embedded", {{"perspective.colors", "1"}})), InputError);
   EXPECT_TRUE(names(fault(kRoom, with_unit, "state texture off", "state texture_mag linear"), "texture_mag"));
   const std::string linear = "state texture_mag linear\nstate texture_min linear";
   EXPECT_TRUE(names(fault(kRoom, with_unit, "state texture_wrap", linear + "\nstate texture_wrap"), "bilinear"));

@@ -80,7 +80,7 @@ soak_cosim() {
     "-DHALFPLANE_RTL_CONFIGS=$rtl_presets" "-DHALFPLANE_RTL_EXTRA=$(IFS=';' && echo "${folders[*]}")"
   step 'build them' cmake --build build/soak --parallel "$(jobs)" --target halfplane_program
   say "== $primitives random primitives per configuration; a twentieth of it for full with its stamp of 4, and for corners"
-  local whole=(small tiny embedded 'embedded texture.unit=trilinear' "${sizes[@]}") all
+  local whole=(small tiny embedded 'embedded perspective.colors=1 texture.unit=trilinear' "${sizes[@]}") all
   all=("${whole[@]}" full "${corners[@]}")
   for i in "${!all[@]}"; do
     config=${all[i]} left=$primitives

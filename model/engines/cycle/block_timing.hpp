@@ -63,6 +63,7 @@ struct TextureWork {
   std::optional<StateRegister> sets;       ///< a token
   bool invalidates = false;                ///< and what is in the cache goes
   std::span<const TextureLookup> lookups;  ///< of the samples that are textured
+  int divided = 0;                         ///< samples whose colours lie over w
 };
 
 /// What the test made of a fragment.
@@ -222,7 +223,8 @@ class BlockTiming {
     if (!texture_) return tested_ + 2;
     if (work.sets == StateRegister::texture_lines) return texture_->set_lines(tested_);
     if (work.sets) return texture_->set(tested_, work.invalidates);
-    if (work.lookups.empty()) return texture_->pass(tested_);
+    if (work.lookups.empty())
+      return work.divided != 0 ? texture_->divide(tested_, work.divided) : texture_->pass(tested_);
     return texture_->take(tested_, work.lookups, [&ask](Cycle cycle, std::uint32_t address, int beats) {
       return ask.texture(cycle, address, beats);
     });

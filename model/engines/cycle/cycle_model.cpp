@@ -145,6 +145,8 @@ class CycleModelOf final : public CycleModel {
       packet.dy[i] = setup.edge[i].dy;
     }
     coordinates_ = triangle->coordinates;
+    frame_ = texture_frame(triangle->coordinates, vertex_color(setup.range.low, widths_),
+                           vertex_color(setup.range.high, widths_));
     walk(setup, packet, host.primitive);
   }
 
@@ -470,7 +472,8 @@ class CycleModelOf final : public CycleModel {
     const SampleMask all = SampleMask::all(widths_.samples);
     const bool is_fogged =
         texture_ && texture_->fog().is_fogged(packet.kind == PrimitiveKind::triangle) && packet.state.color_write;
-    if (!live.any() || !(is_textured || is_fogged || tests_alpha() || !colors_.ops.is_plain())) return all;
+    const bool divides = frame_.divides_colors && live.any();
+    if (!live.any() || !(is_textured || divides || is_fogged || tests_alpha() || !colors_.ops.is_plain())) return all;
     std::array<Texel, kMaxSamples> color{};
     std::array<PixelOffset, kMaxSamples> at;  // pixels of the target
     const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
@@ -480,7 +483,13 @@ class CycleModelOf final : public CycleModel {
       for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
         color[s][c] = static_cast<std::uint8_t>(plane_at(setup, kColorPlane + c, widths_, at[s].x, at[s].y).code);
     });
-    if (is_textured) look_up_texels(setup, live, at, color, item);
+    std::array<TextureSample, kMaxSamples> sample;
+    if (is_textured || divides) set_samples(setup, live, at, sample);
+    if (divides) {
+      item.texture.divided = live.count();
+      live.for_each([&](std::size_t s) { texture_->divide_colors(sample[s], frame_, widths_.color_planes, color[s]); });
+    }
+    if (is_textured) look_up_texels(live, at, sample, color, item);
     if (is_fogged)
       live.for_each(
           [&](std::size_t s) { texture_->fog().add(q_at_pixel(setup, at[s]), coordinates_.fog_octave, color[s]); });
@@ -517,11 +526,10 @@ class CycleModelOf final : public CycleModel {
     return q_at(setup.plane[widths_.q_plane], place_of(setup, widths_, at.x, at.y), perspective_, widths_);
   }
 
-  /// The texture unit: the colours of the samples of a stamp that live, and how they were looked up.
-  void look_up_texels(const TriangleSetup& setup, SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
-                      std::array<Texel, kMaxSamples>& color, BlockItem& item) {
-    std::array<TextureSample, kMaxSamples> sample;
-    const std::size_t q = widths_.q_plane;
+  /// What the texture unit gets of the samples of a stamp that live.
+  void set_samples(const TriangleSetup& setup, SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
+                   std::array<TextureSample, kMaxSamples>& sample) const {
+    const std::size_t q = widths_.q_plane, red = widths_.color_over_w_plane();
     live.for_each([&](std::size_t s) {
       sample[s].x = at[s].x;
       sample[s].y = at[s].y;
@@ -529,14 +537,21 @@ class CycleModelOf final : public CycleModel {
       sample[s].q = q_at(setup.plane[q], where, perspective_, widths_);
       for (const std::size_t i : {0U, 1U})
         sample[s].p[i] = p_at(setup.plane[q + 1 + i], where, perspective_.coordinate, perspective_, widths_);
-      if (widths_.color_planes == 3) color[s][3] = 255;
+      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c)
+        sample[s].color_p[c] = p_at(setup.plane[red + c], where, perspective_.color, perspective_, widths_);
     });
-    item.texture.lookups =
-        texture_->take(live, sample, texture_frame(coordinates_), color, [this](std::uint32_t address, int) {
-          TextureLine line;
-          texels_.read(address, line);
-          return line;
-        });
+  }
+
+  /// The texture unit: the colours of those samples, and how they were looked up.
+  void look_up_texels(SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
+                      const std::array<TextureSample, kMaxSamples>& sample, std::array<Texel, kMaxSamples>& color,
+                      BlockItem& item) {
+    if (widths_.color_planes == 3) live.for_each([&](std::size_t s) { color[s][3] = 255; });
+    item.texture.lookups = texture_->take(live, sample, frame_, color, [this](std::uint32_t address, int) {
+      TextureLine line;
+      texels_.read(address, line);
+      return line;
+    });
     count(use_of(item.texture.lookups), counters_);
     if (options_.want_misses) note_misses(live, at, item.texture.lookups);
   }
@@ -619,6 +634,7 @@ class CycleModelOf final : public CycleModel {
   StencilState stencil_;
   PerspectiveFormat perspective_ = perspective_format(config_);
   CoordinateFrame coordinates_;  ///< of the triangle at work
+  TextureFrame frame_;           ///< of it too
   TextureMemory texels_;
   Rendering rendering_;
   std::vector<float> cost_, misses_;

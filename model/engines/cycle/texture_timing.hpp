@@ -10,6 +10,9 @@
 //   e(n) = max(d(n) + 1, g(m-1) + 1, w(m-1))                       combined
 //   g(m) = that of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
 //
+// A sample whose colour is divided and that has no texture goes by the tags: c(n) = max(s(n) + 10, c(n-1) + 1, g(m-1) + 1,
+// w(m-1)) is its e(n), and its split waits for none that does. One with both has its colour before its texel.
+//
 // With a linear filter a sample asks for its lines one by one, and leaves the tags with the last of them or later. It
 // is offered to W in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t + 1); lines of a
 // triangle as soon as they come: max(x(m) + 2, s + 1).
@@ -136,6 +139,16 @@ class TextureTiming {
     return gone_ + 1;
   }
 
+  /// A stamp without a texture, `samples` of whose colours are divided by w: they go by the tags.
+  Cycle divide(Cycle x, int samples) {
+    for (int n = 0; n < samples; ++n) {
+      split_ = std::max(x + kDoor, split_ + 1);
+      divided_ = std::max({split_ + kClocks, divided_ + 1, gone_ + 1, left_});
+    }
+    gone_ = divided_;
+    return gone_ + 1;
+  }
+
   /// What is behind the unit took the stamp, and W.
   void leave(Cycle taken, Cycle w) {
     left_ = taken;
@@ -214,6 +227,7 @@ class TextureTiming {
   Cycle sweep_, swept_;                             ///< how long it takes to sweep the tags; when they have been
   Cycle request_room_;                              ///< when the next request may leave the tags
   Cycle split_ = 0, looked_up_ = 0, combined_ = 0;  ///< of the last sample
+  Cycle divided_ = 0;                               ///< of the last one that has a colour and no texture
   Cycle on_level_ = 0, tag_read_ = 0;               ///< of the last pass, with levels
   std::array<Cycle, 4>
       stages_{};  ///< of the last sample, when it left the data RAM, and what a linear filter has behind it

@@ -12,6 +12,7 @@ package raster_pkg;
   localparam int RECIPROCAL_EXTRA_BITS = 4;  // significant bits of 1/area beyond depth.bits
   localparam int PERSPECTIVE_BITS = 22;  // bits N of 1/w, and of what is interpolated over w
   localparam int PERSPECTIVE_MANTISSA_BITS = 18;  // bits k of 1/w that a pixel's reciprocal looks at
+  localparam int PERSPECTIVE_COLORS = 0;  // 1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL
   localparam int COLOR_FORMAT = 0;  // 0 rgb565, 1 rgba8888: layout of a stored colour
   localparam int TILE_SIZE = 8;  // side of a tile: 4, 8, 16 or 32
   localparam int STAMP_SIZE = 2;  // side of the stamp tested in one clock: 1, 2, 4 or 8
@@ -38,7 +39,7 @@ package raster_pkg;
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'hefd23fe552f1270a;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h8d3f317ba9047f07;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -53,6 +54,9 @@ package raster_pkg;
   localparam int COORDINATES = 2;  // of a texture, planes behind that of 1/w
   localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of those inside a tile
   localparam int COORDINATE_FRACTION = 8;  // f: of a texture coordinate, texels
+  localparam int COLORS_OVER_W = 0;  // planes behind those, which the texture unit divides
+  localparam int COLOR_NARROW_BITS = 13;  // k_P of those
+  localparam int STATE_WORD_BITS = 116;  // of a token: the codes of all planes but those
   localparam int TEXTURE_PORT_BITS = 64;  // data of a beat of texels
   localparam int SAMPLES = 4;  // samples of a stamp
   localparam int TILES_X = 240;  // tiles along the top of the widest target
@@ -129,6 +133,8 @@ package raster_pkg;
   localparam int COORDINATE_REACH_BITS = 5;  // x <= 20
   localparam int COORDINATE_REFERENCE_BITS = 24;  // u_ref: +-2^22, beyond which no clamp can tell
   localparam int FOG_OCTAVE_BITS = 6;  // of a table of 16 at most, that of Q = 1; held, for Q < 2^32
+  localparam int COLOR_SHIFT_BITS = 5;  // c = 1 + x - sp - k_P, k_P = 13, N_C - N <= x - sp <= 1 + N_C
+  localparam int COLOR_REACH_BITS = 4;  // x <= 8
   localparam int WRITTEN_COLOR_BITS = 32;  // a stored colour, or in front of a unit that changes it the primitive's
   localparam int SHADED_COLOR_BITS = 32;  // a stored colour, or what is blended or dithered
   localparam int TEXTURE_BYTE_BITS = 8;  // 8 bits
