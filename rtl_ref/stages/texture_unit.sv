@@ -232,7 +232,7 @@ module texture_unit #(
   assign left       = waiting_mask & ~done_q;
   assign lane       = lowest(left);
   assign is_last    = (left & (left - 1'b1)) == '0;
-  assign splits     = waits && !is_token && (!waiting_is_textured || ahead_q != 5'(AHEAD));
+  assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);  // behind a state that takes the texture away it is 0
   assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
   assign sets_state = can_set && waiting_token[0];
   assign takes      = can_set || moves_in || (splits && is_last);

@@ -11,7 +11,8 @@
 //   g(m) = that of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
 //
 // A sample whose colour is divided and that has no texture goes by the tags: c(n) = max(s(n) + 10, c(n-1) + 1, g(m-1) + 1,
-// w(m-1)) is its e(n), and its split waits for none that does. One with both has its colour before its texel.
+// w(m-1)) is its e(n). A state lies in front of it, so nobody is in front of the tags, and its split waits for no room there. One
+// with both has its colour before its texel.
 //
 // With a linear filter a sample asks for its lines one by one, and leaves the tags with the last of them or later. It
 // is offered to W in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t + 1); lines of a
