@@ -62,10 +62,15 @@ BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('STORED_DEPTH
             ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
 # What block_cache's properties call the registers of color_write.
 COLOR_WRITE = tuple((name, f'u_write.{inside}') for name, inside in
-                    (('w_left_q', 'left_q'), ('w_next', 'next'), ('w_left_line_q', 'left_line_q'), ('w_started_q', 'started_q'),
-                     ('w_starts', 'starts'), ('w_reads', 'reads'), ('w_fills_q', 'victim_fills_q'), ('c_fills_q', 'fills_q'),
-                     ('w_slot_q', 'next_slot_q'), ('w_ram_dirty', 'dirty'), ('w_ram_writes', 'writes'),
-                     ('w_ram_dirty_new', 'dirty_new'), ('w_ram_code', 'code'), ('w_ram_code_new', 'code_new')))
+                    (('w_first_q', 'first_q'), ('w_first_line_q', 'first_line_q'), ('w_first_slot_q', 'first_slot_q'),
+                     ('w_first_fills_q', 'first_fills_q'), ('w_second_q', 'second_q'), ('w_second_line_q', 'second_line_q'),
+                     ('w_second_slot_q', 'second_slot_q'), ('w_second_fills_q', 'second_fills_q'), ('w_two_q', 'second_begun_q'),
+                     ('w_moves_up', 'moves_up'), ('w_delay_q', 'delay_q'), ('w_next', 'next'), ('w_read_address', 'read_address'),
+                     ('w_starts', 'starts'), ('w_reads', 'reads'), ('c_fills_q', 'fills_q'), ('w_slot_q', 'next_slot_q'),
+                     ('w_started_q', 'started_q'), ('w_write_address', 'write_address'), ('w_ram_dirty', 'dirty'),
+                     ('w_ram_writes', 'writes'), ('w_ram_dirty_new', 'dirty_new'), ('w_ram_code', 'code'),
+                     ('w_ram_code_new', 'code_new'), ('w_busy', 'is_busy'), ('w_writes_q', 'gen_replaces.writes_q'),
+                     ('w_write_mask_q', 'gen_replaces.write_mask_q')))
 QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*', '*colored_stamps*')
 
 PROOFS = [
@@ -200,7 +205,7 @@ PROOFS = [
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
           presets=('embedded',), quick=('embedded',), cover_depth=9,
-          twins=(190, 191, 192, 300, 301, ('writes_all && is_first', 'writes_all'),
+          twins=(190, 191, 192, 262, 300, 301, ('writes_all && is_first', 'writes_all'),
                  ('{dirty_2_q[s], made[s*COLOR+:COLOR]}', "{1'b0, made[s*COLOR+:COLOR]}"))),
     Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
@@ -208,9 +213,10 @@ PROOFS = [
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
           'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
-          wires=COLOR_WRITE, quick=TINY, cover_depth=9, twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80)),
+          wires=COLOR_WRITE, quick=TINY, cover_depth=22,
+          twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80, 261, 263, 264)),
     Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
-          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, quick=TINY, cover_depth=9,
+          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, quick=TINY, cover_depth=22,
           twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
     Proof('block_cache_whole', 'd, f', 'stages/block_cache.sv', 'tags and all: the test sees what was written last, or cleared',
           is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs', package=BLOCKS,

@@ -219,6 +219,16 @@ mutant(79 stages/color_write.sv "fill: what was not drawn into keeps what the co
 mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])
 
+# two evictions under way in W
+mutant(261 stages/color_write.sv "evictions: the stamp that is about to be written is not read first"
+  [=[hits ? own : lowest(left)]=] [=[lowest(of_second ? second : first_q)]=])
+mutant(262 stages/color_write.sv "evictions: a third begins while two are under way"
+  [=[!started_q && !second_begun_q]=] [=[!started_q]=])
+mutant(263 stages/color_write.sv "evictions: the colours of the second go to the slot of the first"
+  [=[of_second ? second_slot : first_slot_q]=] [=[first_q == '0 ? second_slot : first_slot_q]=])
+mutant(264 stages/color_write.sv "evictions: a block goes to memory as soon as its eviction begins"
+  [=[delay_q[DELAY-1]]=] [=[delay_q[0]]=])
+
 # three steps of the tags
 mutant(220 stages/cache_tags.sv "tags: what the fragment before leaves in its line is not seen by the next one"
   [=[(is_access || (valid_q && walks_q)) && line_q == read_line_q]=] [=[1'b0]=])

@@ -659,7 +659,7 @@ module block_cache (
     end
   endgenerate
 
-  logic                     c_valid, c_last, leaves_empty, write_is_idle;  // colours of a victim have been read
+  logic                     c_valid, c_ready, write_is_idle;  // colours of a victim have been read; all of one are there
   logic [STAMP-1:0]         c_stamp;
   logic [VICTIM-1:0]        c_slot;
   logic [SAMPLES*COLOR-1:0] c_color;
@@ -686,12 +686,11 @@ module block_cache (
       .answer_i       (stored_color),
       .answer_ready_o (takes_color),
       .victim_valid_o (c_valid),
-      .victim_last_o  (c_last),
       .victim_slot_o  (c_slot),
       .victim_stamp_o (c_stamp),
       .victim_strobe_o(c_color_strobe),
       .victim_color_o (c_color),
-      .leaves_empty_o (leaves_empty),
+      .victim_ready_o (c_ready),
       .idle_o         (write_is_idle)
   );
 
@@ -762,8 +761,7 @@ module block_cache (
       oldest_q      <= oldest_q + VICTIM'(finishes);
       depth_ready_q <= depth_ready_q + (VICTIM + 1)'(goes && evicts && evicts_depth == '0) +
                        (VICTIM + 1)'(v_valid_q && v_last_q) - (VICTIM + 1)'(finishes);
-      color_ready_q <= color_ready_q + (VICTIM + 1)'(leaves_empty) +
-                       (VICTIM + 1)'(c_valid && c_last) - (VICTIM + 1)'(finishes);
+      color_ready_q <= color_ready_q + (VICTIM + 1)'(c_ready) - (VICTIM + 1)'(finishes);
       written_q     <= takes_order ? '0 : written_q + WRITES'(finishes);
     end
   end

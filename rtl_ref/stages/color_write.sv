@@ -1,5 +1,10 @@
-// Color write (W): what X is through with comes to the colour RAM: an evicted block's colours are read first, a stamp a clock,
-// then the stamp's own are written.
+// Color write (W): what X is through with comes to the colour RAM, a clock later; an evicted block's colours are read out of
+// it, a stamp a clock, each before it is written.
+//
+// Two evictions may be under way. The RAM is read for the stamp that this clock takes, where that is still to be read, else for
+// the older one. So no stamp waits for a read, and an eviction waits only where two are before it. The third can overtake none
+// but the second; so the colours of one are in their slot DELAY clocks after it began, whatever comes behind it, and that is
+// when it is said to be there.
 //
 // Without blending nobody reads colours but to write them back, and a stamp takes a clock. With it a stamp also reads what is
 // stored under it, from the RAM and, where that does not have all of it, from the clear value or an answer of memory; it takes
@@ -42,14 +47,13 @@ module color_write #(
     /* verilator lint_on UNUSEDSIGNAL */
     output logic                              answer_ready_o,
 
-    // A stamp that leaves, in a slot for victims; and that one leaves without a colour
+    // A stamp that leaves, in a slot for victims; and that all of the next eviction's are there
     output logic                                                        victim_valid_o,
-    output logic                                                        victim_last_o,
     output logic [VICTIM-1:0]                                           victim_slot_o,
     output logic [STAMP-1:0]                                            victim_stamp_o,
     output logic [raster_pkg::SAMPLES-1:0]                              victim_strobe_o,
     output logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] victim_color_o,
-    output logic                                                        leaves_empty_o,
+    output logic                                                        victim_ready_o,
 
     output logic idle_o  // everything is in the RAM
 );
@@ -68,61 +72,98 @@ module color_write #(
     for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
   endfunction
 
-  // What the stamp at the head does: it begins to read an evicted block, it goes on to the RAM.
-  logic               writes_all;  // all its samples are written into the RAM, that others are known not to be there
-  logic               is_busy;     // something is on its way to its line
-  logic               waits;       // for what it reads
-  logic               ends;        // with this clock
-  logic               goes, started_q, starts, reads, hits;
-  logic [STAMPS-1:0]  left_q, left, next, own;
-  logic [LINE-1:0]    left_line_q;
-  assign own    = stamp_valid_i && (mask_i != '0 || writes_all) && !started_q ? STAMPS'(1) << stamp_i : '0;
-  assign starts = stamp_valid_i && evicts_i && !started_q && left_q == '0 && !is_busy;
-  assign left   = starts ? stamps_i : left_q;
-  assign hits   = (starts || left_line_q == line_i) && (left & own) != '0;
-  assign next   = hits ? own : lowest(left);
-  assign reads  = left != '0;
-  assign goes   = stamp_valid_i && !hits && (!evicts_i || starts || started_q) && !waits;
-  assign stamp_ready_o  = goes && ends;
-  assign leaves_empty_o = starts && stamps_i == '0;
+  // What the stamp at the head does: its eviction begins, it goes on to the RAM.
+  logic              writes_all;  // all its samples are written into the RAM, that others are known not to be there
+  logic              is_busy;     // something is on its way to its line
+  logic              waits;       // for what it reads
+  logic              ends;        // with this clock
+  logic              goes, started_q, starts;
+  logic              second_begun_q;  // two evictions are under way
+  logic [STAMPS-1:0] own;         // the stamp that is about to be written
+  assign starts = stamp_valid_i && evicts_i && !started_q && !second_begun_q && !is_busy;
+  assign goes   = stamp_valid_i && (!evicts_i || starts || started_q) && !waits;
+  assign own    = goes && (mask_i != '0 || writes_all) ? STAMPS'(1) << stamp_i : '0;
+  assign stamp_ready_o = goes && ends;
 
-  logic              valid_q, last_q, fills_q, victim_fills_q;  // colours of a victim have been read
-  logic [STAMP-1:0]  stamp_q;
-  logic [VICTIM-1:0] slot_q, next_slot_q;
+  // The evictions under way: stamps that are left to be read, of the older one and of the one behind it, which becomes the older
+  // one when nothing of that is left.
+  logic [STAMPS-1:0] first_q, first_left, second_q, second, second_left, left, next;
+  logic [LINE-1:0]   first_line_q, second_line_q, second_line;
+  logic [VICTIM-1:0] first_slot_q, second_slot_q, second_slot, next_slot_q;
+  logic              first_fills_q, second_fills_q, second_fills;
+  logic              hits_first, hits_second, hits, of_second, moves_up, reads;
+  assign second      = starts ? stamps_i : second_q;
+  assign second_line = starts ? line_i : second_line_q;
+  assign second_slot = starts ? next_slot_q : second_slot_q;
+  assign second_fills = starts ? fills_i : second_fills_q;
+  assign hits_first  = first_line_q == line_i && (first_q & own) != '0;
+  assign hits_second = second_line == line_i && (second & own) != '0;
+  assign hits        = hits_first || hits_second;
+  assign of_second   = hits_second || (!hits_first && first_q == '0);
+  assign left        = first_q != '0 ? first_q : second;  // of the older one
+  assign next        = hits ? own : lowest(left);
+  assign reads       = left != '0;
+  assign first_left  = of_second ? first_q : first_q & ~next;
+  assign second_left = of_second ? second & ~next : second;
+  assign moves_up    = first_left == '0;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      started_q   <= 1'b0;
-      left_q      <= '0;
-      valid_q     <= 1'b0;
-      next_slot_q <= '0;
+      started_q      <= 1'b0;
+      first_q        <= '0;
+      second_q       <= '0;
+      second_begun_q <= 1'b0;
+      next_slot_q    <= '0;
     end else begin
-      started_q   <= !stamp_ready_o && (started_q || starts);
-      left_q      <= left & ~next;
-      valid_q     <= reads;
-      next_slot_q <= next_slot_q + VICTIM'(starts);
+      started_q      <= !stamp_ready_o && (started_q || starts);
+      first_q        <= moves_up ? second_left : first_left;
+      second_q       <= moves_up ? '0 : second_left;
+      second_begun_q <= !moves_up && (starts || second_begun_q);
+      next_slot_q    <= next_slot_q + VICTIM'(starts);
     end
   end
   always_ff @(posedge clk_i) begin
-    if (starts) begin
-      left_line_q    <= line_i;
-      victim_fills_q <= fills_i;
+    if (moves_up) begin
+      first_line_q  <= second_line;
+      first_slot_q  <= second_slot;
+      first_fills_q <= second_fills;
     end
-    fills_q <= starts ? fills_i : victim_fills_q;
+    second_line_q  <= second_line;
+    second_slot_q  <= second_slot;
+    second_fills_q <= second_fills;
+  end
+
+  // A stamp has been read. What of an eviction is left when it begins is at most what the one before has, its own, and what the
+  // one behind it overtakes it with.
+  localparam int DELAY = 3 * STAMPS;
+  logic              valid_q, fills_q;
+  logic [STAMP-1:0]  stamp_q;
+  logic [VICTIM-1:0] slot_q;
+  logic [DELAY-1:0]  delay_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      valid_q <= 1'b0;
+      delay_q <= '0;
+    end else begin
+      valid_q <= reads;
+      delay_q <= {delay_q[DELAY-2:0], starts};
+    end
+  end
+  always_ff @(posedge clk_i) begin
     stamp_q <= number_of(next);
-    slot_q  <= starts ? next_slot_q : next_slot_q - 1'b1;
-    last_q  <= left == next;
+    slot_q  <= of_second ? second_slot : first_slot_q;
+    fills_q <= of_second ? second_fills : first_fills_q;
   end
   assign victim_valid_o = valid_q;
-  assign victim_last_o  = last_q;
   assign victim_slot_o  = slot_q;
   assign victim_stamp_o = stamp_q;
+  assign victim_ready_o = delay_q[DELAY-1];
 
   // The colour RAM: of each sample its code, and whether memory does not have it.
   logic                     looks;  // the stamp at the head reads the RAM
   logic [ADDRESS-1:0]       read_address, write_address;
   logic [SAMPLES-1:0]       dirty, writes, dirty_new;
   logic [SAMPLES*COLOR-1:0] code, code_new;
-  assign read_address = looks ? {line_i, stamp_i} : {starts ? line_i : left_line_q, number_of(next)};
+  assign read_address = looks ? {line_i, stamp_i} : {of_second ? second_line : first_line_q, number_of(next)};
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_color
@@ -152,17 +193,35 @@ module color_write #(
   generate
     if (LANES == 0) begin : gen_replaces
       assign writes_all    = starts_i;
-      assign is_busy       = 1'b0;
       assign waits         = 1'b0;
       assign ends          = 1'b1;
       assign looks         = 1'b0;
-      assign write_address = {line_i, stamp_i};
-      assign dirty_new     = mask_i;
-      assign writes        = {SAMPLES{stamp_ready_o}} & (mask_i | {SAMPLES{starts_i}});
       assign answer_ready_o = 1'b0;
-      assign idle_o        = 1'b1;
+      // On its way to the RAM.
+      logic                     writes_q;
+      logic [LINE-1:0]          write_line_q;
+      logic [STAMP-1:0]         write_stamp_q;
+      logic [SAMPLES-1:0]       mask_q, write_mask_q;
+      logic [SAMPLES*COLOR-1:0] packed_color, packed_q;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) writes_q <= 1'b0;
+        else writes_q <= own != '0;
+      end
+      always_ff @(posedge clk_i) begin
+        write_line_q  <= line_i;
+        write_stamp_q <= stamp_i;
+        mask_q        <= mask_i;
+        write_mask_q  <= mask_i | {SAMPLES{starts_i}};
+        packed_q      <= packed_color;
+      end
+      assign is_busy       = writes_q && write_line_q == line_i;
+      assign write_address = {write_line_q, write_stamp_q};
+      assign dirty_new     = mask_q;
+      assign writes        = {SAMPLES{writes_q}} & write_mask_q;
+      assign code_new      = packed_q;
+      assign idle_o        = !writes_q;
       if (raster_pkg::DITHER_UNIT == 0) begin : gen_packed
-        assign code_new = color_i;
+        assign packed_color = color_i;
       end else begin : gen_dithered
         localparam int DITHERS = 26;  // the bit of a word of operations that says so
         logic dithers_q;
@@ -184,7 +243,7 @@ module color_write #(
               .rgba_i     (color_i[s*SHADED+:SHADED]),
               .dithers_i  (dithers_q),
               .threshold_i(threshold_of(x, y)),
-              .color_o    (code_new[s*COLOR+:COLOR])
+              .color_o    (packed_color[s*COLOR+:COLOR])
           );
         end
       end

@@ -28,6 +28,12 @@
   logic              sends_any;
   assign any_bit   = STAMPS'(1) << any_stamp;
   assign sends_any = sends && takes_request && oldest_q == any_slot && sent == any_bit;
+  logic [SAMPLES-1:0]       w_mask_q;  // what W took in the clock before
+  logic [SAMPLES*COLOR-1:0] w_color_q;
+  always_ff @(posedge clk_i) begin
+    w_mask_q  <= w_mask;
+    w_color_q <= w_color;
+  end
   genvar p, m;
   generate
     for (p = 0; p < 2; p++) begin : gen_plane
@@ -41,12 +47,13 @@
       assign begins        = p == 0 ? goes && evicts && slot_q == any_slot : w_starts && w_slot_q == any_slot;
       assign begins_line   = p == 0 ? item_line : w_line;
       assign reads         = p == 0 ? reads_victim || goes : w_reads;
-      assign read_address  = p == 0 ? depth_read_address : {w_starts ? w_line : w_left_line_q, number_of(w_next)};
-      assign write_address = p == 0 ? {x1_line_q, x1_stamp_q} : {w_line, w_stamp};
-      // The last eviction that has begun is that of the slot, and its stamp is still to be read, or has been.
-      assign is_begun  = holds_any && (p == 0 || 32'(taken_q) - 32'(evictions_behind) > 32'(age));
-      assign is_left   = is_begun && (p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot &&
-                         ((p == 0 ? left_q : w_left_q) & any_bit) != '0;
+      assign read_address  = p == 0 ? depth_read_address : w_read_address;
+      assign write_address = p == 0 ? {x1_line_q, x1_stamp_q} : w_write_address;
+      // An eviction that is being read is that of the slot, and its stamp is still to be read, or has been.
+      assign is_begun  = p == 0 ? holds_any : any_begun;
+      assign is_left   = is_begun && (p == 0 ? VICTIM'(slot_q - 1'b1) == any_slot && (left_q & any_bit) != '0 :
+                                      (w_first_slot_q == any_slot && (w_first_q & any_bit) != '0) ||
+                                      (w_second_slot_q == any_slot && (w_second_q & any_bit) != '0));
       assign is_read   = p == 0 ? v_valid_q && v_slot_q == any_slot && v_stamp_q == any_stamp :
                                   c_valid && c_slot == any_slot && c_stamp == any_stamp;
       assign slot_left = ((p == 0 ? depth_left_q[any_slot] : color_left_q[any_slot]) & any_bit) != '0;
@@ -56,9 +63,13 @@
         fills_q   <= p == 0 ? fills[0] : w_fills;
       end
       always_comb if (runs_q && is_begun) begin
-        if ((p == 0 ? VICTIM'(slot_q - 1'b1) : VICTIM'(w_slot_q - 1'b1)) == any_slot)
-          if ((p == 0 ? v_valid_q : c_valid))
-            assert (is_line_q == ((p == 0 ? left_line_q : w_left_line_q) == any_line) && fills_q == (p == 0 ? v_fills_q : c_fills_q));
+        if (p == 0 && VICTIM'(slot_q - 1'b1) == any_slot && v_valid_q)
+          assert (is_line_q == (left_line_q == any_line) && fills_q == v_fills_q);
+        if (p == 1 && w_first_slot_q == any_slot && w_first_q != '0)
+          assert (is_line_q == (w_first_line_q == any_line) && fills_q == w_first_fills_q);
+        if (p == 1 && w_second_slot_q == any_slot && w_two_q)
+          assert (is_line_q == (w_second_line_q == any_line) && fills_q == w_second_fills_q);
+        if (p == 1 && c_valid && c_slot == any_slot) assert (fills_q == c_fills_q);
         if (is_left || is_read) assert (is_here_q && slot_left == fills_q);
         if (!is_here_q && slot_left) assert (fills_q);
         if (is_read) assert (is_here_q && !is_left);
@@ -91,7 +102,7 @@
           // What is written: what passed, or what was there (a colour: garbage, under a strobe that says so).
           if (p == 0 && writes) assert (stored == {write_i.write_depth[m], write_i.write_depth[m] ? write_i.depth[m*CODE+:CODE] :
                                                                             stored_depth_o[m*CODE+:CODE]});
-          if (p == 1 && writes) assert (stored[BITS] == w_mask[m] && stored[BITS-1:0] == BITS'(w_color[m*COLOR+:COLOR]));
+          if (p == 1 && writes) assert (stored == (BITS + 1)'({w_mask_q[m], w_color_q[m*COLOR+:COLOR]}));
           // The test sees what was written last.
           if (p == 0 && x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask[m] &&
               {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin

@@ -1,13 +1,76 @@
 
   // Of color_write, which is what the proof is about as well: its registers (tools/prove_list.py connects them).
-  logic [STAMPS-1:0]        w_left_q, w_next;
-  logic [LINE-1:0]          w_left_line_q;
-  logic                     w_started_q, w_starts, w_reads, w_fills_q, c_fills_q;
-  logic [VICTIM-1:0]        w_slot_q;
-  logic [SAMPLES-1:0]       w_ram_dirty, w_ram_writes, w_ram_dirty_new;
+  localparam int DELAY = 3 * STAMPS;
+  localparam int TIME = $clog2(DELAY + 2);
+  logic [STAMPS-1:0]        w_first_q, w_second_q, w_next;
+  logic [LINE-1:0]          w_first_line_q, w_second_line_q;
+  logic [VICTIM-1:0]        w_first_slot_q, w_second_slot_q, w_slot_q;
+  logic                     w_first_fills_q, w_second_fills_q, w_two_q, w_moves_up, w_started_q, w_starts, w_reads, c_fills_q;
+  logic                     w_busy, w_writes_q;
+  logic [DELAY-1:0]         w_delay_q;
+  logic [LINE+STAMP-1:0]    w_read_address, w_write_address;
+  logic [SAMPLES-1:0]       w_ram_dirty, w_ram_writes, w_ram_dirty_new, w_write_mask_q;
   logic [SAMPLES*COLOR-1:0] w_ram_code, w_ram_code_new;
-  logic [SAMPLES-1:0]       w_writes;
-  assign w_writes = w_mask | {SAMPLES{w_starts_color}};
+
+  // Evictions that W has begun: for how many clocks the older one has been, the one behind it, and the one of any_slot, which is
+  // said to be in its slot when it has been for more than DELAY. Stamps that are left are read until then.
+  logic [TIME-1:0] first_time_q, second_time_q, any_time_q, first_left, second_left, started;
+  always_comb begin
+    first_left  = '0;
+    second_left = '0;
+    started     = '0;
+    for (int i = 0; i < STAMPS; i++) begin
+      first_left  = first_left + TIME'(w_first_q[i]);
+      second_left = second_left + TIME'(w_second_q[i]);
+    end
+    for (int i = 0; i < DELAY; i++) started = started + TIME'(w_delay_q[i]);
+  end
+  logic [TIME-1:0] next_time;
+  assign next_time = w_starts ? TIME'(1) : second_time_q + 1'b1;
+  always_ff @(posedge clk_i) begin
+    first_time_q  <= w_moves_up ? next_time : first_time_q + 1'b1;
+    second_time_q <= next_time;
+    if (w_starts && w_slot_q == any_slot) any_time_q <= TIME'(1);
+    else if (any_time_q <= TIME'(DELAY)) any_time_q <= any_time_q + 1'b1;
+  end
+  logic [DELAY-1:0] older;  // begun before that of any_slot, and not said to be there
+  logic [TIME-1:0]  olders;
+  assign older = any_time_q > TIME'(DELAY) ? '0 : w_delay_q >> any_time_q;
+  always_comb begin
+    olders = '0;
+    for (int i = 0; i < DELAY; i++) olders = olders + TIME'(older[i]);
+  end
+  logic any_begun;  // W has begun it, and memory has not all of it
+  assign any_begun = holds_any && 32'(taken_q) - 32'(evictions_behind) > 32'(age);
+  always_comb if (runs_q) begin
+    // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
+    if (w_starts && w_line == w_first_line_q) assume ((w_stamps & w_first_q) == '0);
+    if (w_first_q == '0) assert (w_second_q == '0 && !w_two_q);
+    if (!w_two_q) assert (w_second_q == '0);
+    if (w_first_q != '0 && w_first_line_q == w_second_line_q) assert ((w_first_q & w_second_q) == '0);
+    if (w_first_q != '0) begin
+      assert (w_first_slot_q == VICTIM'(w_slot_q - 1'b1 - VICTIM'(w_two_q)));
+      assert (first_time_q != '0 && 32'(first_left) + (w_two_q ? 32'(second_left) : STAMPS) + 32'(first_time_q) <= DELAY);
+      assert (w_delay_q[first_time_q-1'b1]);
+      if (w_first_slot_q == any_slot) assert (any_time_q == first_time_q);
+    end
+    if (w_two_q) begin
+      assert (w_second_slot_q == VICTIM'(w_slot_q - 1'b1));
+      assert (second_time_q != '0 && second_time_q < first_time_q);
+      assert (32'(first_left) + 32'(second_left) + STAMPS + 32'(second_time_q) <= DELAY);
+      assert (w_delay_q[second_time_q-1'b1]);
+      if (w_second_slot_q == any_slot) assert (any_time_q == second_time_q);
+    end
+    if (any_begun) begin
+      assert (any_time_q != '0 && any_time_q <= TIME'(DELAY + 1));
+      if (any_time_q <= TIME'(DELAY)) assert (w_delay_q[any_time_q-1'b1] && 32'(age) == 32'(color_ready_q) + 32'(olders));
+      else assert (32'(age) < 32'(color_ready_q));
+    end
+    if (c_valid && c_slot == any_slot) assert (any_begun && any_time_q <= TIME'(DELAY));
+    // What is still to come into a slot comes before that is said to be all there.
+    if (c_valid) assert (32'(VICTIM'(c_slot - oldest_q)) >= 32'(color_ready_q));
+    if (w_writes_q) assert (w_write_mask_q != '0);
+  end
 
   // Tags and queues are cut out: items, orders and answers may be any, but for what cache_tags_stream, fifo_stream and
   // skid_buffer_stream prove. One slot of the victims, any.
@@ -61,14 +124,13 @@
     assert (VICTIM'(taken_q) == VICTIM'(slot_q - oldest_q));
     assert (VICTIM'(evictions_behind) == VICTIM'(slot_q - w_slot_q) && 32'(evictions_behind) <= 32'(taken_q));
     assert (32'(depth_ready_q) + 32'(v_valid_q) == 32'(taken_q));
-    assert (32'(color_ready_q) + 32'(c_valid) + 32'(evictions_behind) == 32'(taken_q));
+    assert (32'(color_ready_q) + 32'(started) + 32'(evictions_behind) == 32'(taken_q));
     if (left_q != '0) assert (v_valid_q);
-    if (w_left_q != '0) assert (c_valid);
     if (v_valid_q) assert (v_last_q == (left_q == '0) && v_slot_q == VICTIM'(slot_q - 1'b1) && v_fills_q == fills_q);
-    if (c_valid) assert (c_last == (w_left_q == '0) && c_slot == VICTIM'(w_slot_q - 1'b1) && c_fills_q == w_fills_q);
-    if (w_started_q) assert (w_valid && w_evicts);
+    assert (!w_started_q);
     // What is about to be written is not still to be read.
-    if (w_started_q && w_writes != '0 && w_left_line_q == w_line) assert ((w_left_q & (STAMPS'(1) << w_stamp)) == '0);
+    if (w_writes_q && w_first_line_q == w_write_address[STAMP+:LINE]) assert ((w_first_q & (STAMPS'(1) << w_write_address[STAMP-1:0])) == '0);
+    if (w_writes_q && w_second_line_q == w_write_address[STAMP+:LINE]) assert ((w_second_q & (STAMPS'(1) << w_write_address[STAMP-1:0])) == '0);
     if (x1_valid_q && x1_writes_q != '0 && left_line_q == x1_line_q) assert ((left_q & (STAMPS'(1) << x1_stamp_q)) == '0);
     // What the queue holds of them is what their slots hold.
     if (x1_valid_q && x1_evicts_q && VICTIM'(slot_q - 1'b1) == any_slot)

@@ -110,14 +110,14 @@
     if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
       assert ((evicts && !slot_free) || (source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));
     if (order_valid && !request_valid_o) assert (skips || !is_ready);
-    if (taken_q != '0 && left_q == '0 && w_left_q == '0 && !v_valid_q && !c_valid && behind_q == '0) assert (is_ready);
+    if (taken_q != '0 && left_q == '0 && w_delay_q == '0 && !v_valid_q && behind_q == '0) assert (is_ready);
     cover (reader_waits_q && !unwritten_q && place_q == '0 && wants_read && order_writes != '0);
     cover (item_valid && evicts && !goes && !slot_free);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(left_q != '0 && !(goes && evicts))) assert (left_q < $past(left_q));
     if ($past(x1_valid_q && !goes)) assert (!x1_valid_q);
-    if ($past(w_valid && !colors_done)) assert (w_left_q < $past(w_left_q) || (w_started_q && !$past(w_started_q)));
+    if ($past(w_valid && !colors_done)) assert (!w_writes_q && (!w_two_q || ($past(w_two_q) && w_first_q < $past(w_first_q))));
     if ($past(v_valid_q)) assert (left_q != '0 || !v_valid_q || v_last_q);
     // A run of writes is one behind the other in its block, each with what is left of it.
     if ($past(sends && takes_request) && $past(request_o.run) != RUN'(1))

@@ -16,6 +16,8 @@
     if (answer_waits_q) assume (answer_valid_i && answer_i == answer_before_q);
     if (source_i == raster_pkg::DEPTH_SOURCE_CHIP) assume (!starts_i);
     if (evicts_i && (mask_i != '0 || source_i != raster_pkg::DEPTH_SOURCE_NONE)) assume (starts_i);
+    // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
+    if (starts && line_i == first_line_q) assume ((stamps_i & first_q) == '0);
     if (sets_state_i) assume (mask_i == '0 && !evicts_i && !starts_i && source_i == raster_pkg::DEPTH_SOURCE_NONE);
   end
 
@@ -45,7 +47,10 @@
   assign newest = on_way_to_it[1] ? made_2 :
                   on_way_to_it[2] ? {gen_blends.dirty_3_q[any_sample], gen_blends.code_3_q[any_sample*COLOR+:COLOR]} : word_q;
   logic is_left;  // of an eviction its stamp is still to be read
-  assign is_left = left_q != '0 && left_line_q == any_line && (left_q & any_bit) != '0;
+  assign is_left = (first_line_q == any_line && (first_q & any_bit) != '0) || (second_line_q == any_line && (second_q & any_bit) != '0);
+  logic             own_is_left;  // likewise of the stamp on offer
+  assign own_is_left = (first_line_q == line_i && (first_q & (STAMPS'(1) << stamp_i)) != '0) ||
+                       (second_line_q == line_i && (second_q & (STAMPS'(1) << stamp_i)) != '0);
   always_ff @(posedge clk_i) begin
     if (writes_it) word_q <= {dirty_new[any_sample], code_new[any_sample*COLOR+:COLOR]};
     if (reads || looks) begin
@@ -81,6 +86,7 @@
       if (on_way_to_it[1] && gen_blends.mask_2_q[any_sample]) assert (made_2[COLOR]);
       if (writes_it) assert (on_way_to_it[2]);
       // An eviction takes along what is there when it begins.
+      if (starts) assert (second_q == '0);  // in the place of one that is through
       if (starts && line_i == any_line) assert (on_way_to_it[2:0] == '0);
       if (is_left && begun_q) assert (word_q == snapshot_q);
       if (is_left) assert (on_way_to_it[2:0] == '0);
@@ -105,20 +111,25 @@
       if (gen_blends.on_way_q[1]) assert ((gen_blends.mask_2_q & ~gen_blends.dirty_2_q) == '0);
       if (started_q) assert (stamp_valid_i && evicts_i && waits_q);
       if (started_q && gen_blends.done_q == '0) assert (!is_busy);
-      if (started_q && (mask_i != '0 || writes_all)) assert (left_line_q == line_i && (left_q & (STAMPS'(1) << stamp_i)) == '0);
+      if (first_q == '0) assert (second_q == '0 && !second_begun_q);
+      if (!second_begun_q) assert (second_q == '0);
+      if (first_line_q == second_line_q) assert ((first_q & second_q) == '0);
       if (started_q && line_i == any_line && stamp_i != any_stamp) assert (on_way_to_it[2:0] == '0);
       if (gen_blends.done_q != '0) begin
         if (source_i == raster_pkg::DEPTH_SOURCE_MEMORY) assert (answer_valid_i && answer_waits_q);
         assert (waits_q && gen_blends.wanted != '0 && gen_blends.ops_q[BLENDS]);
-        if (left_line_q == line_i) assert ((left_q & (STAMPS'(1) << stamp_i)) == '0);
-        if (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i) assert (left_q == '0);
+        assert (!own_is_left);
+        if (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i) assert (first_q == '0);
       end
-      if (left != '0 && !looks) assert (next != '0 && (next & ~left) == '0);  // a stamp of an eviction a clock
+      // A stamp of an eviction a clock; and the one that is taken was read before it is written.
+      if (reads) assert (next != '0 && (next & ~(of_second ? second : first_q)) == '0);
+      if (goes && own != '0 && own_is_left) assert (reads && next == own);
       // Nothing waits but for an eviction or an answer: the same stamp goes every clock. So there is no deadlock either.
-      if (stamp_valid_i && !goes && left_q == '0 && (!evicts_i || gen_blends.on_way_q[2:0] == '0))
-        assert (source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? !answer_valid_i || hits : hits);
+      if (stamp_valid_i && !goes && first_q == '0 && (!evicts_i || gen_blends.on_way_q[2:0] == '0))
+        assert (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i);
       cover (on_way_to_it[3:0] == 4'b1111 && looked_q && gen_blends.stored[any_sample*COLOR+:COLOR] != word_q[COLOR-1:0]);
       cover (victim_is_it_q && begun_q && snapshot_q[COLOR]);
       cover (gen_blends.done_q != '0 && looks_at_it);
+      cover (second_begun_q && hits_second);
     end
   end

@@ -17,8 +17,9 @@
 // a fragment that writes depth is late: W writes it, and at X none goes before that which is in the same place (kLateLines),
 // or is not late itself.
 //
-// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own,
-// W writes where nothing is left to be read, and the next eviction waits.
+// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own, and
+// the next eviction waits. In W, where a stamp is in the RAM a cycle after w, that of the stamp at w is read first; so no stamp
+// waits, and an eviction only for the second one before it.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +27,7 @@
 #include <bit>
 #include <deque>
 #include <optional>
+#include <utility>
 
 #include "../../stages/cache_tags.hpp"
 #include "../../stages/texture_packets.hpp"
@@ -84,6 +86,7 @@ class BlockTiming {
   BlockTiming(const Config& config, const Widths& widths)
       : widths_(widths),
         lanes_(std::min(config.blend_lanes, widths.samples)),
+        write_clocks_(lanes_ == 0 ? 1 : kBlendClocks),
         items_(config.cache_queue, 1, 1),
         orders_(config.cache_queue, 1, 1),
         slots_(static_cast<std::size_t>(config.cache_victims)),
@@ -230,37 +233,71 @@ class BlockTiming {
     });
   }
 
+  /// The evictions whose colours are being read out of their RAM, a stamp a cycle: the older one's before those of the one
+  /// behind it, but that of a stamp which W takes before all of them. Two at most.
+  class ColorReads {
+   public:
+    [[nodiscard]] bool has_two() const { return has_two_; }
+    /// When the older one has been read, if no stamp of it is taken before that; then the next can begin.
+    [[nodiscard]] Cycle first_done() const { return at_ + static_cast<Cycle>(std::popcount(left_[0])); }
+    /// Likewise both.
+    [[nodiscard]] Cycle all_done() const { return first_done() + static_cast<Cycle>(std::popcount(left_[1])); }
+
+    /// What is read before `cycle`.
+    void pass(Cycle cycle) {
+      while (left_[0] != 0 && at_ < cycle) remove(0, left_[0] & (~left_[0] + 1));
+      at_ = std::max(at_, cycle);
+    }
+    /// An eviction begins in `cycle`.
+    void begin(Cycle cycle, std::size_t line, std::uint64_t stamps) {
+      at_ = std::max(at_, cycle);
+      const std::size_t place = left_[0] != 0 ? 1 : 0;
+      left_[place] = stamps;
+      line_[place] = line;
+      has_two_ = place == 1;
+    }
+    /// A stamp that is taken in this cycle, where it is still to be read.
+    void read(std::size_t line, std::uint64_t stamp) {
+      for (const std::size_t place : {0U, 1U})
+        if (line_[place] == line && (left_[place] & stamp) != 0) return remove(place, stamp);
+    }
+
+   private:
+    void remove(std::size_t place, std::uint64_t stamp) {
+      left_[place] &= ~stamp;
+      ++at_;
+      if (left_[0] != 0) return;
+      left_[0] = std::exchange(left_[1], 0);
+      line_[0] = line_[1];
+      has_two_ = false;
+    }
+
+    std::array<std::uint64_t, 2> left_{};  ///< stamps to be read
+    std::array<std::size_t, 2> line_{};
+    bool has_two_ = false;  ///< the second has begun, and the first is not through
+    Cycle at_ = 0;          ///< the next read
+  };
+
   /// W: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns when those of what it
-  /// evicts are out of the RAM.
+  /// evicts are known to be in their slot, which does not depend on what comes behind it.
   Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered, Cycle answer) {
     const DepthSource source = tags.color_source;
     const bool fetches = source == DepthSource::clear || source == DepthSource::memory;
     const bool writes_all = tags.starts_color || fetches;
-    const std::uint64_t own = item.colors.any() || writes_all ? std::uint64_t{1} << item.stamp : 0;
-    const auto read = [this](std::uint64_t wanted) {  // the stamp that is about to be written, or the lowest
-      left_color_ &= ~(wanted != 0 ? wanted : left_color_ & (~left_color_ + 1));
-      ++color_at_;
-    };
     Cycle w = std::max(offered, colored_ + 1), ready = 0;
-    if (tags.eviction)
-      for (const ColorWrite& write : color_writes_)
-        if (write.samples.any() && write.line == tags.line) w = std::max(w, write.taken + kBlendClocks + 1);
-    if (tags.eviction) w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
-    while (left_color_ != 0 && color_at_ < w) read(0);
     if (tags.eviction) {
-      left_color_ = tags.eviction->stamps[1];
-      color_line_ = tags.line;
-      color_at_ = w;
-      ready = w + static_cast<Cycle>(std::popcount(left_color_)) + 1;
-    }
-    if (tags.line == color_line_ && (left_color_ & own) != 0) {
-      read(own);
-      ++w;
+      for (const ColorWrite& write : color_writes_)
+        if (write.samples.any() && write.line == tags.line) w = std::max(w, write.taken + write_clocks_ + 1);
+      if (reads_.has_two()) w = std::max(w, reads_.first_done());
+      reads_.pass(w);
+      reads_.begin(w, tags.line, tags.eviction->stamps[1]);
+      ready = w + 3 * static_cast<Cycle>(widths_.blocks.stamps()) + 1;
     }
     if (source == DepthSource::memory) w = std::max(w, answer + 1);
-    if (source != DepthSource::none && !tags.starts_color)  // reads the RAM
-      w = std::max(w, color_at_ + static_cast<Cycle>(std::popcount(left_color_)));
-    colored_ = lanes_ == 0 ? w : write_colors(w, tags.line, item, writes_all);
+    if (source != DepthSource::none && !tags.starts_color) w = std::max(w, reads_.all_done());  // reads the RAM
+    reads_.pass(w);
+    if (item.colors.any() || writes_all) reads_.read(tags.line, std::uint64_t{1} << item.stamp);
+    colored_ = write_colors(w, tags.line, item, writes_all);
     return ready;
   }
 
@@ -340,7 +377,8 @@ class BlockTiming {
   }
 
   Widths widths_;
-  int lanes_;  ///< samples that are blended in a clock; 0: none are
+  int lanes_;           ///< samples that are blended in a clock; 0: none are
+  Cycle write_clocks_;  ///< from W to the RAM
   Station items_, orders_;
   Station behind_{2, 0, 0};  ///< between X and W; or there is a
   std::optional<TextureTiming> texture_;
@@ -350,9 +388,7 @@ class BlockTiming {
   std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first
   std::optional<BlockAddress> last_block_;  ///< of the last fragment, where it has samples and no token came since
   Cycle depth_free_ = 0;                    ///< when the depth RAM has been read for the last eviction
-  std::uint64_t left_color_ = 0;            ///< stamps of it that the colour RAM is still to be read for, one a cycle
-  std::size_t color_line_ = 0;
-  Cycle color_at_ = 0;                                   ///< when the next of them is
+  ColorReads reads_;
   std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last ones
   std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
