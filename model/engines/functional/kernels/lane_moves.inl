@@ -141,8 +141,10 @@ HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
   constexpr int kLanes = S64::kLanes;
   S64::Register bit;
   for (int i = 0; i < kLanes; ++i) bit[i] = static_cast<std::int16_t>(1U << i);
-  for (int i = 0; i < S64::kParts; ++i)
-    r.part[i] = ((S64::Register{} + static_cast<std::int16_t>(bits >> kLanes * i)) & bit) == bit;
+  for (int i = 0; i < S64::kParts; ++i) {
+    const auto part = static_cast<std::int16_t>(bits >> kLanes * i);
+    r.part[i] = ((S64::Register{} + part) & bit) == bit;
+  }
 #endif
   return r;
 }
