@@ -38,6 +38,7 @@ const std::vector<Config>& configurations() {
                         {"perspective.colors", "1"},
                         {"alpha.unit", "1"},
                         {"blend.lanes", "4"},
+                        {"fog.unit", "1"},
                         {"stencil.bits", "8"}}),
       with("full", {{"texture.unit", "trilinear"}, {"perspective.colors", "1"}}),
       with("full", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}, {"stamp.size", "1"}}),
