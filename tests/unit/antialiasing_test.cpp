@@ -35,13 +35,13 @@ TEST(ExactArea, TheAreasOfAllPixelsSumToTheTrianglesExactly) {
     for (int y = 0; y < kSide; ++y)
       for (int x = 0; x < kSide; ++x) {
         const mpq_class area = covered_area(t, x, y, kGrid);
-        EXPECT_GE(area, 0);
-        EXPECT_LE(area, 1);
+        EXPECT_TRUE(area >= 0) << area.get_str();
+        EXPECT_TRUE(area <= 1) << area.get_str();
         sum += area;
       }
     mpq_class whole(std::abs(signed_area(t.v[0], t.v[1], t.v[2])), 2L << (2 * kGrid));
     whole.canonicalize();
-    EXPECT_EQ(sum, whole);
+    EXPECT_TRUE(sum == whole) << sum.get_str() << " of " << whole.get_str();
   }
 }
 
