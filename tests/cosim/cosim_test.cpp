@@ -271,10 +271,11 @@ TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacketAndTakesTheCyclesOfTheBaseline)
 // Must fail: each mutant differs from the design by one expression.
 TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   EXPECT_GE(mutants().size(), 100u);
-  const auto is_caught = [](const DutFactory& factory, const Mutant& mutant, double stalls, bool resets = false) {
+  std::uint64_t seed = 1;
+  const auto is_caught = [&seed](const DutFactory& factory, const Mutant& mutant, double stalls, bool resets = false) {
     LockstepOptions options;
     options.compares_cycles = true;  // some faults cost time alone
-    options.seed = 1;
+    options.seed = seed;
     options.stall_probability = stalls;
     options.mutant = static_cast<std::uint16_t>(mutant.id);
     if (resets) {  // with answers under way
@@ -306,14 +307,19 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   const auto is_of_operations = [](const Mutant& mutant) {
     return mutant.what.starts_with("colours") || mutant.what.starts_with("alpha");
   };
-  for (const Mutant& mutant : mutants())  // `tiny` has the framebuffer of tiles
-    EXPECT_TRUE((mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
-                (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||
-                ((mutant.what.starts_with("stencil") || mutant.what.starts_with("fog")) &&
-                 (is_caught(stencilled, mutant, 0.2) || is_caught(stencilled, mutant, 0))) ||
-                is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
-                is_caught(embedded, mutant, 0.2, true))
-        << "mutant " << mutant.id << " of " << mutant.file << " is not caught: " << mutant.what;
+  const auto is_seen = [&](const Mutant& mutant) {  // `tiny` has the framebuffer of tiles
+    return (mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
+           (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||
+           ((is_of_operations(mutant) || mutant.what.starts_with("stencil") || mutant.what.starts_with("fog")) &&
+            (is_caught(stencilled, mutant, 0.2) || is_caught(stencilled, mutant, 0))) ||
+           is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
+           is_caught(embedded, mutant, 0.2, true);
+  };
+  for (const Mutant& mutant : mutants()) {
+    bool is_told = false;
+    for (seed = 1; seed <= 3 && !is_told; ++seed) is_told = is_seen(mutant);  // what needs three things at once is rare
+    EXPECT_TRUE(is_told) << "mutant " << mutant.id << " of " << mutant.file << " is not caught: " << mutant.what;
+  }
 }
 
 TEST(Cosim, TheStageTableOfTheCycleEngineIsThatOfTheRtl) {
