@@ -7,9 +7,7 @@
 #include <string>
 
 #include "../hardware_scene.hpp"
-#include "model/engines/cycle/block_timing.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
-#include "model/engines/cycle/port_timing.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/host_stream.hpp"
@@ -190,38 +188,6 @@ TEST(ColorHardware, WhatAnAlphaTestMayKillNeedsTheDepthBehindItOnlyWhereItWrites
       EXPECT_EQ(scalar.frame.color, hardware.frame.color) << is_tested << writes;
       EXPECT_EQ(scalar.frame.depth, hardware.frame.depth) << is_tested << writes;
     }
-}
-
-/// A memory that nothing is asked of.
-struct NoMemory {
-  LineTimes texture(Cycle, std::uint32_t, int) const { return {}; }
-  PortTimes operator()(Cycle, TilePlane, const StampAddress&, int, bool) const {
-    ADD_FAILURE() << "asked";
-    return {};
-  }
-};
-
-// Of the same stamp as of different ones; with one lane a clock for each of its samples.
-TEST(ColorHardware, AStampIsBlendedAgainInTheNextClock) {
-  for (const char* lanes : {"4", "1"}) {
-    const Config config = with("embedded", {{"blend.lanes", lanes}});
-    const Widths widths = derive_widths(config);
-    BlockTiming timing(config, widths);
-    TagResult tags;
-    tags.source = DepthSource::none;
-    tags.color_source = DepthSource::chip;
-    BlockItem item;
-    item.mask = item.colors = SampleMask::all(widths.samples);
-    item.color_write = item.blends = true;
-    Cycle before = 0;
-    for (Cycle n = 0; n < 50; ++n) {
-      timing.take(100 + 4 * n / std::stoul(lanes), tags, item, NoMemory{});
-      if (n > 0) {
-        EXPECT_EQ(timing.colored() - before, 4 / std::stoul(lanes)) << lanes << " lanes, " << n;
-      }
-      before = timing.colored();
-    }
-  }
 }
 
 TEST(ColorHardware, TheConstantIsSetWhereAnyFactorReadsIt) {

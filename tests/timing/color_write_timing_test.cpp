@@ -1,0 +1,46 @@
+// When W takes the next stamp: the times of block_timing.hpp without a memory behind them.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/engines/cycle/block_timing.hpp"
+#include "model/engines/cycle/port_timing.hpp"
+
+namespace halfplane {
+namespace {
+
+/// A memory that nothing is asked of.
+struct NoMemory {
+  LineTimes texture(Cycle, std::uint32_t, int) const { return {}; }
+  PortTimes operator()(Cycle, TilePlane, const StampAddress&, int, bool) const {
+    ADD_FAILURE() << "asked";
+    return {};
+  }
+};
+
+// Of the same stamp as of different ones; with one lane a clock for each of its samples.
+TEST(ColorWriteTiming, AStampIsBlendedAgainInTheNextClock) {
+  for (const char* lanes : {"4", "1"}) {
+    Config config = preset("embedded");
+    set(config, "blend.lanes", lanes);
+    const Widths widths = derive_widths(config);
+    BlockTiming timing(config, widths);
+    TagResult tags;
+    tags.source = DepthSource::none;
+    tags.color_source = DepthSource::chip;
+    BlockItem item;
+    item.mask = item.colors = SampleMask::all(widths.samples);
+    item.color_write = item.blends = true;
+    Cycle before = 0;
+    for (Cycle n = 0; n < 50; ++n) {
+      timing.take(100 + 4 * n / std::stoul(lanes), tags, item, NoMemory{});
+      if (n > 0) {
+        EXPECT_EQ(timing.colored() - before, 4 / std::stoul(lanes)) << lanes << " lanes, " << n;
+      }
+      before = timing.colored();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace halfplane
