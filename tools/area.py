@@ -50,7 +50,9 @@ PLACED = ['small, 1x1', 'small, 1x1, counters', 'small, 1x1, lines']
 PLACE_ECP5 = 'nextpnr-ecp5 --25k --speed 6 --package CABGA381 --freq 65 --seed 1'
 # A 25F has 56 block RAMs: too few for bounds of 16 bits at 1920x1080.
 PLACED_ECP5 = ['embedded, 2x2, HiZ 8 bits', 'embedded, 2x2, HiZ 8 bits, no counters', 'embedded, 2x2, HiZ 8 bits, VGA']
-SYNTHS_ECP5 = ['synth_ecp5 -top pin_wrapper -abc9 -nowidelut', 'synth_ecp5 -top pin_wrapper -nowidelut']
+SYNTH_PLACED = 'synth_ecp5 -top pin_wrapper -abc9 -nowidelut'
+# As it is, and without the cells that nextpnr adds to each carry chain: ecp5_carry.v, without_dangling_carries().
+CARRIES = {'plain': False, 'carries': True}
 # The unit that draws lines, alone, and the same with nobody looking at depth and colour.
 LINES = ['tiny, 1x1', 'embedded, 2x2', 'full, 4x4']
 LINE_TOPS = {'line_raster': '`line_raster`', 'line_positions': '`line_raster`, positions alone',
@@ -146,12 +148,30 @@ def placed(title):
             'mhz': min(clock['achieved'] for clock in result['fmax'].values())}
 
 
-def placed_ecp5(title, synth):
+def without_dangling_carries(netlist):
+    """nextpnr leads the carry out of each chain's end into the fabric, by a cell of two places, also where nobody reads it."""
+    design = json.loads(netlist.read_text(encoding='utf-8'))
+    for module in design['modules'].values():
+        read = {bit for port in module['ports'].values() for bit in port['bits']}
+        for cell in module['cells'].values():
+            read.update(bit for port, bits in cell['connections'].items() if cell['port_directions'][port] != 'output'
+                        for bit in bits)
+        for cell in module['cells'].values():
+            if cell['type'] == 'CCU2C' and not read.intersection(cell['connections'].get('COUT', [])):
+                cell['connections']['COUT'] = ['x']
+    netlist.write_text(json.dumps(design), encoding='utf-8')
+
+
+def placed_ecp5(title, tag, carries):
     """ECP5: TRELLIS_COMB, flip-flops, block RAMs, multipliers and MHz after place and route, behind the pin wrapper."""
-    tag = synth.split('pin_wrapper')[1].replace(' ', '')
+    synth, tag = SYNTH_PLACED, f'-{tag}'
+    if carries:
+        synth = (f'{synth} -run :map_gates; techmap -map rtl_ref/area/ecp5_carry.v; {synth} -run map_gates:')
     netlist, report = BUILD / f'{slug(title)}{tag}.json', BUILD / f'{slug(title)}{tag}-report.json'
     run(['yosys', '-q', '-p', f'{read_verilog(title, wrapper=True)}; {synth} -json {netlist}'],
         BUILD / f'{slug(title)}{tag}-ecp5.log')
+    if carries:
+        without_dangling_carries(netlist)
     run([*PLACE_ECP5.split(), '--timing-allow-fail', '--json', netlist, '--report', report],
         BUILD / f'{slug(title)}{tag}-nextpnr-ecp5.log')
     result = json.loads(report.read_text(encoding='utf-8'))
@@ -191,18 +211,21 @@ def ecp5_part(parts, flats, fitted):
     total = {title: sum(part.values(), collections.Counter()) for title, part in parts.items()}
     names = sorted({name for part in parts.values() for name in part}, key=lambda name: -sum(
         places(part[name]) for part in parts.values()))
-    lines = ['## ECP5', '', f'`{SYNTH_ECP5}`, every stage flattened inside and kept apart from the others '
+    placed_lines = ['nextpnr-ecp5 was not there: nothing is placed and routed for ECP5.', '']
+    if fitted:
+        placed_lines = [f'Placed and routed: `{SYNTH_PLACED}`, `{PLACE_ECP5}`, the design flat, behind '
+                        '`rtl_ref/area/pin_wrapper.sv`, whose cells are in these figures. A place is a TRELLIS_COMB. nextpnr '
+                        'puts a cell of two places in front of each carry chain whose carry-in is a constant, and one '
+                        'behind each whose carry-out nobody reads; "carries" is without them: adders by '
+                        '`rtl_ref/area/ecp5_carry.v`, carry-outs that dangle taken off.']
+        placed_lines += table(['configuration', 'carry chains', 'places of 24,288', 'FF', 'DP16KD of 56', 'MULT18X18D of 28',
+                               'MHz'], [[title, tag, *figures] for (title, tag), figures in fitted.items()])
+    lines = ['## ECP5', '', *placed_lines]
+    lines += [f'`{SYNTH_ECP5}`, every stage flattened inside and kept apart from the others '
              '(`keep_hierarchy`), so that each block has its own cells and they add up. "Places" are what the cells '
              'take up in the part, of 24,288 in a 25F: a LUT4 one, a CCU2C (two bits of a carry chain) two, a DPR16X4 (16 '
              'words of 4 bits) four and two more for its write port.']
     lines += table(['configuration', *head], [[title, *ecp5_cells(count)] for title, count in total.items()])
-    if fitted:
-        lines += [f'Placed and routed: `{PLACE_ECP5}`, the design flat, behind `rtl_ref/area/pin_wrapper.sv`, whose cells are '
-                  'in these figures. A place is a TRELLIS_COMB here.']
-        lines += table(['configuration', 'command', 'places of 24,288', 'FF', 'DP16KD of 56', 'MULT18X18D of 28', 'MHz'],
-                       [[title, f'`{synth}`', *figures] for (title, synth), figures in fitted.items()])
-    else:
-        lines += ['nextpnr-ecp5 was not there: nothing is placed and routed for ECP5.', '']
     lines += ['Which block costs what, in places. `raster_top` is the counters, the context RAM and what joins the '
               'stages; `depth_test` contains `rop`; `framebuffer` is that of tiles; of blocks `cache_tags` has the '
               'tags and flags, `block_cache` what is behind them.']
@@ -265,8 +288,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = {
             'fitted': {t: pool.submit(placed, t) for t in PLACED if t in titles},
-            'fitted_ecp5': {(t, s): pool.submit(placed_ecp5, t, s) for t in PLACED_ECP5 if t in titles
-                            for s in SYNTHS_ECP5 if shutil.which('nextpnr-ecp5')},
+            'fitted_ecp5': {(t, tag): pool.submit(placed_ecp5, t, tag, carries) for t in PLACED_ECP5 if t in titles
+                            for tag, carries in CARRIES.items() if shutil.which('nextpnr-ecp5')},
             'packed': {t: pool.submit(packed_blocks, t) for t in PLACED[:1] if t in titles},
             'units': {t: pool.submit(line_unit, t) for t in LINES if t in titles},
             'parts': {t: pool.submit(blocks, t) for t in titles},

@@ -42,6 +42,17 @@ Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, in
   return result;
 }
 
+namespace {
+
+/// What hardware has of decode(): the rounded code modulo 2^bits, without the clamp. The error before rounding stays below
+/// 1/2 LSB (depth_error_bound() is at most 1), so at a covered sample it is that of decode(); at others it may be anything.
+std::uint32_t wrapped_code(std::uint64_t value, const LocalFormat<std::uint64_t>& format) {
+  const std::uint64_t half = std::uint64_t{1} << (format.bits - 1);
+  return static_cast<std::uint32_t>(((value >> format.guard_bits) - half) & (2 * half - 1));
+}
+
+}  // namespace
+
 FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths) {
   FragmentPacket fragment;
   fragment.kind = stamp.kind;
@@ -71,8 +82,7 @@ FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& contex
         continue;
       }
       const LocalFormat<std::uint64_t> format(widths.of_plane(p));
-      fragment.code[s][p] =
-          static_cast<std::uint32_t>(decode<std::int64_t>(value, format, context.range.low[p], context.range.high[p]));
+      fragment.code[s][p] = wrapped_code(value, format);
     }
   }
   return fragment;

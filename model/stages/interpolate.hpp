@@ -3,7 +3,7 @@
 // In: the planes at the tile's anchor. Out: a code for each plane and sample. Inside a tile a plane is narrow:
 // l local guard bits, anchored at the centre of pixel (T/2, T/2), so the rounding of a step acts over at most T/2 pixels a
 // side. The value at a pixel is the closed form anchor + i step_x + j step_y: every traversal computes the same one.
-// Final value: floor(v + 1/2), clamped to the range of the triangle's vertices.
+// Final value: floor(v + 1/2), in the range of the triangle's vertices: engines that look beyond covered samples clamp it.
 #pragma once
 
 #include "coarse_raster.hpp"

@@ -64,8 +64,8 @@ mutant(26 stages/fine_raster.sv "dropped stall: a row moves on before its stamps
   [=[stamps_ready || !row_is_sent]=] [=[1'b1]=])
 
 # interpolate
-mutant(27 stages/interpolate.sv "clamp: nothing is clamped from below"
-  [=[code < $signed((B + 2)'(low))]=] [=[1'b0]=])
+mutant(27 stages/interpolate.sv "offset: half of all codes stays in a code"
+  [=[{!value_q[L+B-1], value_q[L+:B-1]}]=] [=[value_q[L+:B]]=])
 mutant(28 stages/interpolate.sv "dropped stall: a stamp enters without a place for its fragment"
   [=[used_q != USED'(ROOM)]=] [=[used_q != '1]=])
 mutant(29 stages/interpolate.sv "sign: rows of stamps above the tile's centre count as below"
@@ -495,6 +495,6 @@ mutant(288 stages/texture_unit.sv "texture, colours over w: a quotient overwrite
 mutant(289 stages/texture_unit.sv "texture, colours over w: behind a texel the quotient stays"
   [=[(e_moves && stamp_divides)]=] [=[(e_moves && stamp_divides && !e_last_q)]=])
 mutant(290 stages/interpolate.sv "texture, colours over w: the range ends where it begins"
-  [=[codes_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[codes_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
+  [=[samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
 mutant(291 lib/colored_stamps.sv "texture, colours over w: they are affine"
   [=[fragment_i.coordinates.divides_colors]=] [=[1'b0]=])

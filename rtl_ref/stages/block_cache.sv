@@ -77,6 +77,8 @@ module block_cache (
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int COUNT = $clog2(SAMPLES + 1);
   localparam int CODE = raster_pkg::STORED_DEPTH_BITS;  // a depth, the stencil above it where there is one
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample of a fragment; the lowest is its depth
+  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
   localparam bit HAS_STENCIL = raster_pkg::STENCIL_BITS != 0;
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
@@ -94,7 +96,13 @@ module block_cache (
   localparam int VICTIM = $clog2(VICTIMS);
   localparam int WRITES = $clog2(VICTIMS + 1);
   localparam int QUEUE = raster_pkg::CACHE_QUEUE;
-  localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + BLOCK_X + BLOCK_Y + 2 * STAMPS + 2;
+  localparam int LINE_X = raster_pkg::LINE_X_BITS;
+  localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
+  localparam int TAG_X = (BLOCK_X > LINE_X) ? BLOCK_X - LINE_X : 1;
+  localparam int TAG_Y = (BLOCK_Y > LINE_Y) ? BLOCK_Y - LINE_Y : 1;
+  localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + TAG_X + TAG_Y + 2 * STAMPS + 2;
+  localparam bit PACKS = raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
+                         raster_pkg::ALPHA_UNIT == 0;  // items have colours as they are stored
   localparam int ORDER = WRITES + 1 + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS + INDEX;
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit LATE = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::COORDINATES != 0;  // alpha is tested behind the texture
@@ -127,6 +135,8 @@ module block_cache (
       if (set[i] && (gaps & ((STAMPS'(2) << i) - 1'b1)) == '0) run_of = run_of + 1'b1;
   endfunction
 
+  genvar s;
+
   // ------------------------------------------------------------------------------------------------ tags, items, orders
   logic                             made_valid, made_ready, made_starts_color, made_evicts;
   raster_pkg::fragment_packet_t made;
@@ -147,7 +157,10 @@ module block_cache (
   logic [raster_pkg::TILE_Y_BITS-1:0] ordered_y;
   logic [INDEX-1:0]                 ordered_stamp;
   logic                             drained, flush_valid, tags_are_idle, is_cleared, is_resolved;
+  /* verilator lint_off UNUSEDSIGNAL */  // its data are flush_word, or the clear value
   raster_pkg::memory_request_t  flush_request;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [raster_pkg::FLAG_WORD-1:0] flush_word;
   logic [CODE-1:0]                  clear_depth;
   logic [COLOR-1:0]                 clear_color;
 
@@ -183,6 +196,7 @@ module block_cache (
       .request_valid_o    (flush_valid),
       .request_ready_i,
       .request_o          (flush_request),
+      .request_word_o     (flush_word),
       .clear_depth_o      (clear_depth),
       .clear_color_o      (clear_color),
       .is_cleared_o       (is_cleared),
@@ -202,10 +216,41 @@ module block_cache (
   logic [STAMPS-1:0]                evicts_depth, evicts_color;
   localparam int BITS = ITEM + (BLENDS ? 2 : 0);
   logic [BITS-1:0] made_bits, item_bits;
-  assign made_bits[ITEM-1:0] = {made, made_line, made_stamp, made_source, made_starts_color, made_evicts, made_x, made_y,
-                                made_depth, made_color, made_fills};
-  assign {item, item_line, item_stamp, source, starts_color, evicts, evicts_x, evicts_y, evicts_depth, evicts_color,
+  // Of a block that leaves the tag: its line is the item's.
+  logic [TAG_X-1:0] evicts_tag_x;
+  logic [TAG_Y-1:0] evicts_tag_y;
+  /* verilator lint_off UNUSEDSIGNAL */  // wider than a block's y where the cache is larger than the target
+  logic [LINE-1:0]  line_above_x;
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign made_bits[ITEM-1:0] = {made_packed, made_line, made_stamp, made_source, made_starts_color, made_evicts,
+                                TAG_X'(made_x >> LINE_X), TAG_Y'(made_y >> LINE_Y), made_depth, made_color, made_fills};
+  assign {item, item_line, item_stamp, source, starts_color, evicts, evicts_tag_x, evicts_tag_y, evicts_depth, evicts_color,
           fills} = item_bits[ITEM-1:0];
+  assign line_above_x = item_line >> LINE_X;
+  assign evicts_x = (BLOCK_X'(evicts_tag_x) << LINE_X) | (BLOCK_X'(item_line) & BLOCK_X'((1 << LINE_X) - 1));
+  assign evicts_y = (BLOCK_Y'(evicts_tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
+  raster_pkg::fragment_packet_t made_packed;
+  logic [SAMPLES*COLOR-1:0]     made_colors;
+  generate
+    if (PACKS) begin : gen_packed
+      for (s = 0; s < SAMPLES; s++) begin : gen_rop
+        rop u_rop (
+            .rgba_i (made.code[s*CODES+Z+:raster_pkg::VERTEX_COLOR_BITS]),
+            .color_o(made_colors[s*COLOR+:COLOR])
+        );
+      end
+      always_comb begin
+        made_packed = made;
+        for (int i = 0; i < SAMPLES; i++)
+          if (i != 0 || !HAS_STENCIL || made.kind != raster_pkg::PRIMITIVE_KIND_STATE)  // whose word is in the first
+            made_packed.code[i*CODES+Z+:raster_pkg::VERTEX_COLOR_BITS] =
+                raster_pkg::VERTEX_COLOR_BITS'(made_colors[i*COLOR+:COLOR]);
+      end
+    end else begin : gen_whole
+      assign made_colors = '0;
+      assign made_packed = made;
+    end
+  endgenerate
   fifo #(
       .WIDTH(BITS),
       .DEPTH(QUEUE)
@@ -251,14 +296,14 @@ module block_cache (
 
   // Answers: a place for each item that can wait for one, here for depth, and for colour (gen_blends) here and behind X.
   logic                      answer_valid, takes_answer, answers_depth, answers_ready;
-  logic [SAMPLES*CODE-1:0]   answer, response_depth;
+  logic [SAMPLES*CODE-1:0]   answer_q, response_depth;  // the answer that X took last
   /* verilator lint_off UNUSEDSIGNAL */  // without blending
   logic                      read_goes, reads_color, takes_color;  // a read goes out; it is one of colours
   /* verilator lint_on UNUSEDSIGNAL */
   logic                      order_reads_color, color_valid;
   logic [SAMPLES*COLOR-1:0]  stored_color;
   logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] color_source;  // of the item at the head
-  fifo #(
+  sram_fifo #(
       .WIDTH(SAMPLES * CODE),
       .DEPTH(QUEUE)
   ) u_answers (
@@ -269,7 +314,7 @@ module block_cache (
       .data_i (response_depth),
       .valid_o(answer_valid),
       .ready_i(takes_answer),
-      .data_o (answer)
+      .data_o (answer_q)
   );
   generate
     if (BLENDS) begin : gen_blends
@@ -343,7 +388,6 @@ module block_cache (
   logic               x1_fills_q;
   logic [STAMPS-1:0]  x1_color_q;
   logic [SAMPLES-1:0] x1_writes_q;  // samples of the RAM that may be written
-  logic [SAMPLES*CODE-1:0] answer_q;
 
   assign slot_free    = taken_q != (VICTIM + 1)'(VICTIMS);
   assign item_bit     = STAMPS'(1) << item_stamp;
@@ -386,7 +430,6 @@ module block_cache (
     x1_evicts_q       <= evicts;
     x1_fills_q        <= fills[1];
     x1_color_q        <= evicts_color;
-    answer_q          <= answer;
     if (item.mask == '0 || (tests_alpha && writes_word)) x1_writes_q <= '0;
     else if (on_chip) x1_writes_q <= item.mask & {SAMPLES{writes_word}};
     else x1_writes_q <= {SAMPLES{source != raster_pkg::DEPTH_SOURCE_NONE || writes_word}};
@@ -430,7 +473,6 @@ module block_cache (
   logic [SAMPLES-1:0]          late_writes;
   logic [SAMPLES*(CODE+1)-1:0] late_word;
   assign x1_on_chip = x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP;
-  genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_depth
       logic [CODE-1:0] code, stored, written;
@@ -806,6 +848,24 @@ module block_cache (
       .tile_y_o (sent_tile_y),
       .stamp_o  (sent_index)
   );
+  // Its data, from one of five: each by itself, so that nothing is chosen in a row.
+  localparam int DATA = SAMPLES * LANE;
+  logic              sends_flags, sends_here, sends_clear;
+  logic [LANE-1:0]   clear;  // of the plane that is sent
+  logic [DATA-1:0]   request_data, wide_depth, wide_color;
+  assign sends_flags = flush_valid && flush_request.plane[1];
+  assign sends_here  = sends && is_here;
+  assign sends_clear = (sends && !is_here) || (flush_valid && !flush_request.plane[1]);
+  assign clear       = (sends && !is_color) ? LANE'(clear_depth) : LANE'(clear_color);
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_data
+      assign wide_depth[s*LANE+:LANE] = LANE'(sent_depth[s*CODE+:CODE]);
+      assign wide_color[s*LANE+:LANE] = LANE'(sent_color[s*COLOR+:COLOR]);
+    end
+  endgenerate
+  assign request_data = (wide_color & {DATA{sends_here && is_color}}) | (wide_depth & {DATA{sends_here && !is_color}}) |
+                        (DATA'(flush_word) & {DATA{sends_flags}}) | ({SAMPLES{clear}} & {DATA{sends_clear}});
+
   always_comb begin
     request_o          = '0;
     request_o.is_write = sends;
@@ -821,12 +881,9 @@ module block_cache (
       request_o.stamp  = sent_index;
       if (is_color) request_o.plane = raster_pkg::TILE_PLANE_COLOR;
       request_o.strobe = is_here ? (is_color ? sent_color_strobe : sent_depth_strobe) : '1;
-      for (int i = 0; i < SAMPLES; i++) begin
-        if (is_color) request_o.data[i*LANE+:LANE] = is_here ? LANE'(sent_color[i*COLOR+:COLOR]) : LANE'(clear_color);
-        else request_o.data[i*LANE+:LANE] = is_here ? LANE'(sent_depth[i*CODE+:CODE]) : LANE'(clear_depth);
-      end
     end
     if (flush_valid) request_o = flush_request;
+    request_o.data = request_data;
   end
 
   assign drained = !item_valid && behind_q == '0 && !order_valid;

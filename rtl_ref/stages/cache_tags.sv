@@ -57,6 +57,7 @@ module cache_tags #(
     output logic                        request_valid_o,
     input  logic                        request_ready_i,
     output raster_pkg::memory_request_t request_o,
+    output logic [raster_pkg::FLAG_WORD-1:0] request_word_o,  // its data, of a word of flags
 
     output logic [raster_pkg::STORED_DEPTH_BITS-1:0] clear_depth_o,
     output logic [raster_pkg::STORED_COLOR_BITS-1:0] clear_color_o,
@@ -416,13 +417,17 @@ module cache_tags #(
   logic [VICTIM-1:0]   next_victim;
   logic                orders_all;
 
-  assign next_victim = oldest_q + VICTIM'(waiting_q);
+  // Each place is compared where it is; then they stand by age, oldest first.
+  logic [VICTIMS-1:0] is_same, is_same_by_age;
+  assign next_victim    = oldest_q + VICTIM'(waiting_q);
+  assign is_same_by_age = VICTIMS'({is_same, is_same} >> oldest_q);
+  always_comb begin
+    for (int v = 0; v < VICTIMS; v++) is_same[v] = victim_x_q[v] == block_x && victim_y_q[v] == block_y;
+  end
   always_comb begin
     wanted = '0;
     for (int age = 0; age < VICTIMS; age++)
-      if (WRITES'(age) < waiting_q && victim_x_q[oldest_q+VICTIM'(age)] == block_x &&
-          victim_y_q[oldest_q+VICTIM'(age)] == block_y)
-        wanted = WRITES'(age + 1);
+      if (WRITES'(age) < waiting_q && is_same_by_age[age]) wanted = WRITES'(age + 1);
     if (!is_access || hits_q) wanted = '0;
     writes = evicts && wanted == '0 && waiting_q == WRITES'(VICTIMS) ? WRITES'(1) : wanted;
     if (state_q == ORDER) writes = waiting_q;
@@ -488,7 +493,7 @@ module cache_tags #(
   logic [BLOCK_X-1:0]      last_x;
   logic                    words_done_q, ends_words, is_last_line, ends_mark, next_word;
   logic                    plane_q;  // 1: colour
-  logic [WORD-1:0]         word, bits_q;
+  logic [WORD-1:0]         word, bits_q;  // a word of flags on its way to memory; of colours that are resolved
   logic [STAMP-1:0]        stamp_q;
   logic                    resolves, ends_block, begins;
   logic [CODE-1:0]         clear_depth_q;
@@ -554,7 +559,7 @@ module cache_tags #(
         if (ends_words) plane_q <= 1'b1;
       end
     end
-    if (state_q == SEND) bits_q <= word;
+    if (state_q == SEND) bits_q <= word_color;
     else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) bits_q <= bits_q >> 1;
     if (state_q == SEND) stamp_q <= '0;
     else if (request_valid_o && request_ready_i) stamp_q <= ends_block ? '0 : stamp_q + 1'b1;
@@ -585,6 +590,7 @@ module cache_tags #(
     else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) resolve_x_q <= resolve_x_q + 1'b1;
   end
 
+  assign request_word_o  = word;
   assign request_valid_o = (state_q == SEND && !resolves) || (state_q == RESOLVE && bits_q[0]);
   assign is_resolved_o   = state_q == RESOLVE && request_valid_o && request_ready_i;
   logic [raster_pkg::TILE_X_BITS-1:0] resolve_tile_x;

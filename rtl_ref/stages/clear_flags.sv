@@ -91,7 +91,8 @@ module clear_flags #(
     read_address = word_of(block_x_i, block_y_i);
     if (reads_q) read_address = word_of(reads_x_q, reads_y_q);
     if (token_reads_i) read_address = word_of(BLOCK_X'(word_x_i) << BIT, word_y_i);
-    reads  = reads_i || reads_q || token_reads_i;
+  end
+  always_comb begin
     fallen = WORD'(1) << bit_of(writes_x_q);
     write_address  = word_of(BLOCK_X'(word_x_i) << BIT, word_y_i);
     writes         = token_writes_i;
@@ -105,7 +106,9 @@ module clear_flags #(
     end
   end
 
-  // No word is looked at that was written while it was read.
+  assign reads = (reads_i && !(writes_q && write_address == read_address)) || reads_q || token_reads_i;
+
+  // A word that is being written is not read: the RAMs still have it from when it was read to be written.
   sram #(
       .WIDTH(WORD),
       .DEPTH(FLAGS),
@@ -135,11 +138,11 @@ module clear_flags #(
   assign word_depth_o = word_depth;
   assign word_color_o = word_color;
 
-  // The flags of the block that came last: from its word in the cycle after it came, then from here. Of a word that is written
-  // while it would be read, what is written.
+  // The flags of the block that came last: from its word in the cycle after it came, less what was being written then; from here
+  // in the cycles behind.
   logic       is_fresh_q;
-  logic [1:0] held_q, read_flags, kept;
-  assign read_flags = is_fresh_q ? {word_color[bit_of(read_x_i)], word_depth[bit_of(read_x_i)]} : held_q;
+  logic [1:0] held_q, written_q, read_flags, kept;
+  assign read_flags = is_fresh_q ? {word_color[bit_of(read_x_i)], word_depth[bit_of(read_x_i)]} & ~written_q : held_q;
   always_comb begin
     kept = '1;
     if (line_x_i == read_x_i && line_y_i == read_y_i) kept = ~fills_i;
@@ -148,12 +151,9 @@ module clear_flags #(
   assign cleared_o = read_flags & kept;
 
   always_ff @(posedge clk_i) begin
-    is_fresh_q <= reads_i && !(writes_q && write_address == read_address);
+    is_fresh_q <= reads_i;
     held_q     <= cleared_o;
-    if (reads_i && writes_q) begin
-      held_q[0] <= writes_fills_q[0] ? word_depth_new[bit_of(block_x_i)] : word_depth[bit_of(block_x_i)];
-      held_q[1] <= writes_fills_q[1] ? word_color_new[bit_of(block_x_i)] : word_color[bit_of(block_x_i)];
-    end
+    written_q  <= writes_fills_q & {2{writes_q && block_x_i == writes_x_q && block_y_i == writes_y_q}};
   end
 
 endmodule

@@ -201,13 +201,14 @@ module depth_test (
       assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*WORD+:CODE];
       assign is_nearer[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
 
-      if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0) begin : gen_rop
+      if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
+          (raster_pkg::CACHE_KIND == 0 || raster_pkg::ALPHA_UNIT != 0)) begin : gen_rop
         rop u_rop (
             .rgba_i (fragment_i.code[s*CODES+CODE+:COLORS]),
             .color_o(color[s*COLOR+:COLOR])
         );
-      end else begin : gen_whole  // packed behind the texture unit, or where it is written
-        assign color[s*COLOR+:COLOR] = fragment_i.code[s*CODES+CODE+:COLORS];
+      end else begin : gen_whole  // packed by the cache of blocks, behind the texture unit, or where it is written
+        assign color[s*COLOR+:COLOR] = COLOR'(fragment_i.code[s*CODES+CODE+:COLORS]);
       end
     end
   endgenerate

@@ -1,14 +1,14 @@
 // Interpolate: the codes of every plane at the samples of a stamp.
 //
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
-// form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; then its code, clamped to
-// the range of the vertices. Planes behind depth and colours, 1/w and what lies over it, stay as they are. Latency 6 cycles,
+// form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
+// the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
+// behind depth and colours, 1/w and what lies over it, stay as they are. Latency 5 cycles,
 // one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
 // end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
 //   samples  from there to each sample
-//   codes    read back and clamped
 //   FIFO     where fragments wait
 // Specification: model/stages/interpolate.hpp.
 module interpolate (
@@ -51,9 +51,10 @@ module interpolate (
   /* verilator lint_off UNUSEDSIGNAL */  // steps end after the step samples
   raster_pkg::context_packet_t x_context_q, y_context_q, samples_context_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q, codes_valid_q;
+  logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q;
 
-  localparam int ROOM = 8;  // fragments on their way and in the FIFO, a power of two
+  localparam int ROOM = 7;  // fragments on their way and in the FIFO: one a step, and two more
+  localparam int DEPTH = 1 << $clog2(ROOM);
   localparam int USED = $clog2(ROOM) + 1;
   logic [USED-1:0] used_q;
   logic            takes, leaves;
@@ -69,7 +70,6 @@ module interpolate (
       x_valid_q       <= 1'b0;
       y_valid_q       <= 1'b0;
       samples_valid_q <= 1'b0;
-      codes_valid_q   <= 1'b0;
       slot_free_o     <= 1'b0;
       used_q          <= '0;
     end else begin
@@ -77,7 +77,6 @@ module interpolate (
       x_valid_q       <= context_valid_q;
       y_valid_q       <= x_valid_q;
       samples_valid_q <= y_valid_q;
-      codes_valid_q   <= samples_valid_q;
       slot_free_o     <= context_valid_q && context_stamp_q.ends_primitive;
       used_q          <= used_q + USED'(takes) - USED'(leaves);
     end
@@ -108,7 +107,7 @@ module interpolate (
     end
   endgenerate
 
-  logic [SAMPLES*CODES-1:0] code_q;
+  logic [SAMPLES*CODES-1:0] code;
 
   genvar p, s;
   generate
@@ -170,47 +169,33 @@ module interpolate (
         );
         always_ff @(posedge clk_i) value_q <= value;
 
+        // The code that is offset by half of all: modulo 2^B its highest bit is another one, and nothing else.
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
-          logic signed [B+1:0] code;  // of the window [-2^(B-1), 3 * 2^(B-1))
-          logic [B-1:0]        low, high, clamped;
-          assign low     = samples_context_q.range.low[CODE+:B];
-          assign high    = samples_context_q.range.high[CODE+:B];
-          assign code    = $signed({1'b0, value_q[W-1:L]}) - $signed((B + 2)'(1) << (B - 1));
-          assign clamped = code < $signed((B + 2)'(low)) ? low : code > $signed((B + 2)'(high)) ? high : code[B-1:0];
-          always_ff @(posedge clk_i) code_q[s*CODES+CODE+:B] <= clamped;
+          assign code[s*CODES+CODE+:B] = {!value_q[L+B-1], value_q[L+:B-1]};
         end else begin : gen_over_w
-          always_ff @(posedge clk_i) code_q[s*CODES+CODE+:B] <= value_q;
+          assign code[s*CODES+CODE+:B] = value_q;
         end
       end
     end
   endgenerate
 
-  /* verilator lint_off UNUSEDSIGNAL */
-  raster_pkg::stamp_packet_t   codes_stamp_q;
-  raster_pkg::context_packet_t codes_context_q;
-  /* verilator lint_on UNUSEDSIGNAL */
-  always_ff @(posedge clk_i) begin
-    codes_stamp_q   <= samples_stamp_q;
-    codes_context_q <= samples_context_q;
-  end
-
   raster_pkg::fragment_packet_t made;
-  assign made.kind           = codes_stamp_q.kind;
-  assign made.ends_visit     = codes_stamp_q.ends_visit;
-  assign made.ends_primitive = codes_stamp_q.ends_primitive;
-  assign made.key            = codes_stamp_q.key;
-  assign made.stamp          = codes_stamp_q.stamp;
-  assign made.mask           = codes_stamp_q.mask;
-  assign made.state          = codes_context_q.state;
-  assign made.code           = code_q;
+  assign made.kind           = samples_stamp_q.kind;
+  assign made.ends_visit     = samples_stamp_q.ends_visit;
+  assign made.ends_primitive = samples_stamp_q.ends_primitive;
+  assign made.key            = samples_stamp_q.key;
+  assign made.stamp          = samples_stamp_q.stamp;
+  assign made.mask           = samples_stamp_q.mask;
+  assign made.state          = samples_context_q.state;
+  assign made.code           = code;
   generate
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
-      assign made.coordinates = codes_context_q.coordinates;
+      assign made.coordinates = samples_context_q.coordinates;
     end
     if (raster_pkg::COLORS_OVER_W != 0) begin : gen_color_range
       localparam int AT = raster_pkg::AFFINE_CODE_AT[32+:32];  // of red
-      assign made.least_color    = codes_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES];
-      assign made.greatest_color = codes_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES];
+      assign made.least_color    = samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES];
+      assign made.greatest_color = samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES];
     end
   endgenerate
 
@@ -219,11 +204,11 @@ module interpolate (
   /* verilator lint_on UNUSEDSIGNAL */
   fifo #(
       .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS),
-      .DEPTH(ROOM)
+      .DEPTH(DEPTH)
   ) u_fragments (
       .clk_i,
       .rst_ni,
-      .valid_i(codes_valid_q),
+      .valid_i(samples_valid_q),
       .ready_o(made_ready),
       .data_i (made),
       .valid_o(fragment_valid_o),

@@ -2,7 +2,7 @@
 //
 // The context RAM's output is the only copy of a context: it is read when the first stamp of a primitive waits and
 // everything of the primitive before has left. Then one stamp a cycle; latency 2 cycles:
-//   x, y  from the anchor to the stamp's first sample; from there to each sample, read back and clamped
+//   x, y  from the anchor to the stamp's first sample; from there to each sample, of which the code is a part
 // The fragment is not stored: behind this stage is a skid buffer.
 // Specification: model/stages/interpolate.hpp.
 module interpolate_serial (
@@ -17,7 +17,9 @@ module interpolate_serial (
     // Context RAM: a read, and its answer in the next cycle, which stays until the next read
     output logic                             context_read_o,
     output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
+    /* verilator lint_off UNUSEDSIGNAL */  // ranges
     input  raster_pkg::context_packet_t      context_i,
+    /* verilator lint_on UNUSEDSIGNAL */
     output logic                             slot_free_o,  // the oldest slot will not be read again
 
     // To primitive_join
@@ -97,12 +99,9 @@ module interpolate_serial (
       localparam int B = CODE_BITS_OF[32*p+:32];
       localparam int CODE = CODE_AT[32*p+:32];
       logic [W-1:0] anchor, step_x, step_y, x_value, y_value, x_value_q, y_value_q;
-      logic [B-1:0] low, high;
       assign anchor = stamp_i.anchor[LOCAL+:W];
       assign step_x = context_i.step_x[LOCAL+:W];
       assign step_y = context_i.step_y[LOCAL+:W];
-      assign low    = context_i.range.low[CODE+:B];
-      assign high   = context_i.range.high[CODE+:B];
 
       plane_offset #(
           .WIDTH (W),
@@ -133,7 +132,6 @@ module interpolate_serial (
         /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
         logic signed [W-1:0] value;
         /* verilator lint_on UNUSEDSIGNAL */
-        logic [B:0]          code, low_code, high_code;  // plus 2^(B-1): the window [-2^(B-1), 3 * 2^(B-1)) from 0
         edge_offset #(
             .WIDTH (W),
             .OFFSET(PIXEL)
@@ -145,11 +143,7 @@ module interpolate_serial (
             .y_i     (PIXEL'(s / STAMP)),
             .value_o (value)
         );
-        assign code      = value[W-1:L];
-        assign low_code  = {low[B-1], !low[B-1], low[B-2:0]};
-        assign high_code = {high[B-1], !high[B-1], high[B-2:0]};
-        assign fragment_o.code[s*CODES+CODE+:B] =
-            code < low_code ? low : code > high_code ? high : {!code[B-1], code[B-2:0]};
+        assign fragment_o.code[s*CODES+CODE+:B] = {!value[L+B-1], value[L+:B-1]};  // anchors are offset by half of all codes
       end
     end
   endgenerate

@@ -100,5 +100,6 @@
       end
     if (writes_q && word_of(writes_x_q, writes_y_q) == word_of(any_x, any_y)) assert (is_it_q && !collided_q && read_q == ram_q);
     if (is_fresh_q) assert (asks_q);
-    if (is_fresh_q && word_of(asked_x_q, asked_y_q) == word_of(any_x, any_y)) assert (is_it_q && !collided_q && read_q == ram_q && !writes_q);
+    if (is_fresh_q && asked_x_q == any_x && asked_y_q == any_y)
+      assert (is_it_q && !collided_q && (read_q & ~written_q) == ram_q && !writes_q);
   end

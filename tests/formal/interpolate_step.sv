@@ -1,8 +1,8 @@
 
   // Each step of each plane, from what is in the step before it: to the stamp's first column, to its first row, to each
   // sample; x and y from pixel (T/2, T/2), modulo 2^W, as sums of their bits. A stamp's context and values move from step
-  // to step together (interpolate_stream), so that the three add up to anchor + x step_x + y step_y. Then the codes: in the
-  // range of the vertices. Whatever the registers hold.
+  // to step together (interpolate_stream), so that the three add up to anchor + x step_x + y step_y. Then the codes: what
+  // is above the fraction, less the half of all that anchors are offset by. Whatever the registers hold.
   localparam int MIDDLE = raster_pkg::TILE_SIZE / 2;
   genvar k, n;
   generate
@@ -31,16 +31,14 @@
       end
       for (n = 0; n < SAMPLES; n++) begin : gen_proof_sample
         logic [N-1:0] at_sample;
-        logic [B-1:0] low, high, code;
+        logic [B-1:0] floored;
         assign at_sample = gen_plane[k].y_value_q + (((n / STAMP) & 2) ? step_y_2 << 1 : '0) +
                            (((n / STAMP) & 1) ? step_y_2 : '0) + (((n % STAMP) & 2) ? step_x_2 << 1 : '0) +
                            (((n % STAMP) & 1) ? step_x_2 : '0);
-        assign low  = samples_context_q.range.low[CODE+:B];
-        assign high = samples_context_q.range.high[CODE+:B];
-        assign code = gen_plane[k].gen_sample[n].gen_code.clamped;
+        assign floored = B'(gen_plane[k].gen_sample[n].value_q >> L) - (B'(1) << (B - 1));
         always_comb begin
           assert ($unsigned(gen_plane[k].gen_sample[n].value) == at_sample);
-          if (low <= high) assert (low <= code && code <= high);
+          assert (code[n*CODES+CODE+:B] == floored);
         end
       end
     end

@@ -248,7 +248,11 @@ TEST(Hardware, StampInterpolatedFromItsTileEqualsTheClosedFormAtEveryPixel) {
       for (int s = 0; s < size * size; ++s) {
         const auto sample = static_cast<std::size_t>(s);
         const Interpolated expected = interpolate_at(setup, widths, x + s % size, y + s / size);
-        ASSERT_EQ(fragment.code[sample], expected.code);
+        for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {  // modulo 2^bits
+          const int guard_bits = widths.of_plane(p).guard_bits(), bits = widths.of_plane(p).code.bits;
+          const std::int64_t rounded = (expected.unrounded[p] + (std::int64_t{1} << (guard_bits - 1))) >> guard_bits;
+          ASSERT_EQ(fragment.code[sample][p], static_cast<std::uint32_t>(rounded & ((std::int64_t{1} << bits) - 1)));
+        }
         for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
           const PlaneSample alone = plane_at(setup, p, widths, x + s % size, y + s / size);
           ASSERT_EQ(alone.code, expected.code[p]);
@@ -257,6 +261,49 @@ TEST(Hardware, StampInterpolatedFromItsTileEqualsTheClosedFormAtEveryPixel) {
       }
     }
   }
+}
+
+// Hardware does not clamp codes to the range of the vertices; the specification does.
+TEST(Hardware, NoCodeOfACoveredSampleLeavesTheRangeOfTheVertices) {
+  Random random(32);
+  int covered = 0;
+  for (const Config& config : configurations()) {
+    SCOPED_TRACE(label(config));
+    const Widths widths = derive_widths(config);
+    for (int n = 0; n < 1000; ++n) {
+      Triangle triangle;
+      const int reach = 1 << (1 + random.index(widths.coordinate.bits - 2));
+      for (auto& v : triangle.v) {
+        v.x = random.index(reach);
+        v.y = random.index(reach);
+        v.depth() = static_cast<std::uint32_t>(random.between(0, static_cast<double>(widths.depth().code.range.hi)));
+        set_colors(v, widths, [&] { return random.index(256); });
+      }
+      const TriangleSetup setup =
+          setup_triangle(triangle, config, widths, {0, 0, config.target_width, config.target_height});
+      if (setup.area == 0 || setup.is_empty()) continue;
+      const auto& v = triangle.v;
+      const bool turns = (std::int64_t{v[1].x} - v[0].x) * (std::int64_t{v[2].y} - v[0].y) <
+                         (std::int64_t{v[2].x} - v[0].x) * (std::int64_t{v[1].y} - v[0].y);
+      const std::array<std::size_t, 3> order{0, turns ? 2U : 1U, turns ? 1U : 2U};
+      for (int i = 0; i < 30; ++i) {
+        const int x = setup.left + random.index(setup.right - setup.left + 1);
+        const int y = setup.top + random.index(setup.bottom - setup.top + 1);
+        bool is_covered = true;
+        for (std::size_t e = 0; e < 3; ++e)
+          is_covered &= edge_function(v[order[e]], v[order[(e + 1) % 3]], x, y, widths.grid_bits) >= 0;
+        if (!is_covered) continue;
+        ++covered;
+        for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
+          const int guard_bits = widths.of_plane(p).guard_bits();
+          const std::int64_t rounded = (plane_at(setup, p, widths, x, y).unrounded + (std::int64_t{1} << (guard_bits - 1))) >> guard_bits;
+          ASSERT_LE(std::int64_t{setup.range.low[p]}, rounded);
+          ASSERT_GE(std::int64_t{setup.range.high[p]}, rounded);
+        }
+      }
+    }
+  }
+  EXPECT_GT(covered, 10000);
 }
 
 TEST(Hardware, SetupOfAPacketIsTheSetupOfItsTriangle) {

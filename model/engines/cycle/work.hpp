@@ -20,7 +20,7 @@ struct PipelinedCycles {
   static constexpr int cull_state = 1;                  ///< likewise of a state that has a lane
   static constexpr Cycle walk_begins = 2;               ///< coarse_raster: from a setup to its first tile
   static constexpr Cycle verdict = 1, read_again = 1;  ///< where bounds are read: before a visit's offer, and behind it
-  static constexpr int interpolate_steps = 6;          ///< each holds one stamp, the last one is the FIFO
+  static constexpr int interpolate_steps = 5;          ///< each holds one stamp, the last one is the FIFO
 };
 
 /// A primitive on its way through cull and triangle_setup.
