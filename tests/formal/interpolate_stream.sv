@@ -1,6 +1,6 @@
 
   // A stamp of the stream, any: five cycles later its fragment goes into the FIFO, with what the context RAM answered for
-  // it, and there is a place. The FIFO is cut out; what fifo_stream proves of it is assumed: it takes ROOM.
+  // it, and there is a place. The FIFO is cut out; what fifo_stream proves of it is assumed: it takes FIFO.
   (* anyseq *) logic pick;
   logic       done_q;
   logic [4:0] at_q;        // the step that it is in: context, x, y, samples, codes
@@ -19,17 +19,19 @@
     end else begin
       at_q   <= picks ? 5'b00001 : at_q << 1;
       done_q <= done_q || at_q[4];
-      held_q <= held_q + USED'(codes_valid_q && made_ready) - USED'(leaves);
+      held_q <= held_q + USED'(codes_valid_q && made_ready) - USED'(queued && is_free);
     end
     if (picks) g_q <= stamp_i;
     if (at_q[0]) context_q <= context_i;
   end
-  always_comb assume (made_ready == (held_q != USED'(ROOM)) && fragment_valid_o == (held_q != '0));
+  always_comb assume (made_ready == (held_q != USED'(FIFO)) && queued == (held_q != '0));
   logic [4:0] valid;
   assign valid = {codes_valid_q, samples_valid_q, y_valid_q, x_valid_q, context_valid_q};
   always_comb if (runs_q) begin
-    assert (used_q == held_q + USED'(valid[0]) + USED'(valid[1]) + USED'(valid[2]) + USED'(valid[3]) + USED'(valid[4]));
-    assert (used_q <= USED'(ROOM) && held_q <= USED'(ROOM));
+    assert (used_q == held_q + USED'(fragment_valid_o) + USED'(valid[0]) + USED'(valid[1]) + USED'(valid[2]) + USED'(valid[3]) + USED'(valid[4]));
+    assert (used_q <= USED'(ROOM) && held_q <= USED'(FIFO));
+    // The FIFO is full only behind a fragment on offer.
+    if (USED'(valid[0]) + USED'(valid[1]) + USED'(valid[2]) + USED'(valid[3]) + USED'(valid[4]) + held_q > USED'(FIFO)) assert (fragment_valid_o || held_q == '0);
     if (codes_valid_q) assert (made_ready);
     assert ((at_q & (at_q - 5'd1)) == '0 && (at_q & ~valid) == '0 && !(done_q && at_q != '0));
     if (at_q[0]) assert (context_stamp_q == g_q);
@@ -40,7 +42,7 @@
     if (at_q[4])
       assert (made.kind == g_q.kind && made.ends_visit == g_q.ends_visit && made.ends_primitive == g_q.ends_primitive &&
               made.key == g_q.key && made.stamp == g_q.stamp && made.mask == g_q.mask && made.state == context_q.state);
-    if (!stamp_ready_o) assert (held_q != '0 || valid != '0);  // no deadlock: what is under way gets there
+    if (!stamp_ready_o) assert (held_q != '0 || valid != '0 || fragment_valid_o);  // no deadlock: what is under way gets there
     cover (done_q && !stamp_ready_o);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
