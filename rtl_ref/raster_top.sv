@@ -438,7 +438,7 @@ module raster_top (
   );
 
   // Primitives between the host and the end of their last stamp.
-  localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 16);
+  localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 24);
   logic [UNDER_WAY-1:0] under_way_q;
   logic                 enters, ends;
   assign enters = primitive_valid_i && primitive_ready_o;

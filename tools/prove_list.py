@@ -43,7 +43,7 @@ OFFSETS = ('*edge_offset*',)
 HIZ_6 = (('HIZ_BITS', 6), ('HIZ_CODE_BITS', 6))
 STAMPS_4 = (('STAMPS_PER_ROW', 2), ('STAMP_INDEX_BITS', 2))
 LAG_4 = (('HIZ_LAG', 4),)
-HIZ_TWINS = (15, 16, 17, 62, 63, 64, ('depth_min[Z-1-:HIZ] > bound', 'depth_min[Z-1-:HIZ] >= bound'),
+HIZ_TWINS = (15, 16, 17, 62, 63, 64, ("(HIZ + 1)'(depth_min[Z-1-:HIZ]) + ", "(HIZ + 1)'(depth_min[Z-1-:HIZ]) + (HIZ + 1)'(1) + "),
              ("seen_q + (N + 1)'(LAG);", "seen_q + (N + 1)'(LAG - 1);"))
 TILES = tuple((name, number, 'embedded') for name, number in
               (('CACHE_KIND', 0), ('CACHE_LINES', 16), ('LINE_X_BITS', 2), ('LINE_Y_BITS', 2)))
@@ -86,7 +86,7 @@ PROOFS = [
     Proof('fine_raster_samples', 'a, e', 'stages/fine_raster.sv', 'every sample is covered as the closed form says; no sum '
           'overflows', is_combinational=True, twins=(23, 24, ('.x_i     (PIXEL\'(i))', '.x_i     (PIXEL\'(i ^ 1))'))),
     Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
-          cuts=SRAMS, twins=(('assign from   = exits ?', 'assign from   = 1\'b0 ?'), ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
+          cuts=SRAMS, twins=(('assign from   = returns ?', 'assign from   = 1\'b0 ?'), ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
     Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
           is_combinational=True, twins=(27, 29)),
     Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',
@@ -110,8 +110,8 @@ PROOFS = [
     Proof('hiz_bound_6_bits', 'd', 'stages/hiz.sv', 'the same with hiz.bits=6', file='hiz_bound',
           presets=('embedded',), cuts=SRAMS, inputs='hiz_visits', twins=HIZ_TWINS, package=HIZ_6, cover_depth=6),
     Proof('coarse_raster_hiz', 'd', 'stages/coarse_raster.sv', 'a tile is rejected by its own verdict, made when all was settled',
-          presets=('embedded',), cuts=SRAMS, twins=(('is_eligible && !is_settled ? PREPARE : WALK', 'WALK'),
-          ('state_q == PREPARE ? tile_x_q : next_x', 'tile_x_q'), ('!is_eligible && is_settled)', '!is_eligible)'))),
+          presets=('embedded',), cuts=SRAMS, cover_depth=8, twins=(('is_settled && !(left_valid_q && is_visit);', 'is_settled;'),
+          ('reads_next ? next_x : tile_x_q', 'tile_x_q'), ('(is_visit ? is_settled : left_q.ends_primitive)', '(is_visit || left_q.ends_primitive)'))),
     Proof('depth_test_hiz', 'd', 'stages/depth_test.sv', 'the bound of a visit is not below any depth of the tile', quick=TINY,
           twins=(34, ('assign max    = corner > max_q ? corner : max_q;', 'assign max    = corner;'))),
     Proof('depth_test_hiz_stencil', 'd', 'stages/depth_test.sv', 'the same with a stencil', file='depth_test_hiz',
@@ -164,7 +164,8 @@ PROOFS = [
           cuts=(*OFFSETS, '*plane_offset*', '*fifo*'), twins=(28, ('x_valid_q       <= context_valid_q', 'x_valid_q       <= takes')), cover_depth=12),
     Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
           quick=TINY, twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
-    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; no slot is given twice', k=2, cuts=SRAMS, twins=(22, ('(tile_taken && state_q != END)', 'tile_valid_o')), cover_depth=7),
+    Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; no slot is given twice', k=2, cuts=SRAMS, twins=(22, ('left_is_free) left_valid_q <= enters;', 'enters || tile_taken) left_valid_q <= enters;'),
+          ('is_outside ? ends_walk && left_is_free :', 'is_outside ? ends_walk :')), cover_depth=7),
     Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time',
           k=2, cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', cover_depth=34,
           twins=(('at_q[i*STEPS+STEPS-1] && ready_q[i+1]', 'at_q[i*STEPS+STEPS-1]'),

@@ -37,13 +37,13 @@ mutant(14 stages/coarse_raster.sv "saturation: large edge values wrap"
 mutant(15 stages/hiz.sv "early HiZ: an update is seen as soon as it is there"
   [=[(!is_settled_o || (starts_visit_i && started_q + (N + 1)'(1) == full))]=] [=[1'b1]=])
 mutant(16 stages/hiz.sv "HiZ: a bound that equals the smallest depth rejects, whatever the depth test"
-  [=[(setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal)]=] [=[is_equal]=])
+  [=[(HIZ + 1)'(is_equal_behind)]=] [=[(HIZ + 1)'(1)]=])
 mutant(17 stages/hiz.sv "HiZ: greater and its like are tested"
   [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER && !can_raise]=]
   [=[setup_i.state.depth_test != raster_pkg::DEPTH_FUNC_NEVER]=])
 mutant_text(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where the one above ended"
-  [=[assign from   = exits ? row_q : value_q;]=]
-  [=[assign from   = exits && (i != 0 || raster_cosim.mutant_q != 16'd18) ? row_q : value_q;]=])  # depth alone
+  [=[assign from   = returns ? row_q : value_q;]=]
+  [=[assign from   = returns && (i != 0 || raster_cosim.mutant_q != 16'd18) ? row_q : value_q;]=])  # depth alone
 mutant(19 stages/coarse_raster.sv "off by one: the last column of a tile that the box crosses is left out"
   [=[is_rightmost ? s_q.box.right[TS-1:0] : '1]=] [=[is_rightmost ? s_q.box.right[TS-1:0] : ~TS'(1)]=])
 mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is truncated"
@@ -165,8 +165,8 @@ mutant(55 stages/framebuffer.sv "token: pixels of a line are taken for a fast cl
 
 # triangles without a sample, and the phases of triangle_setup
 mutant(56 stages/cull.sv "no sample: the first pixel of the box counts as missed"
-  [=[{columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b0}]=]
-  [=[{columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b1}]=])
+  [=[{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1}]=]
+  [=[{has_column_q && has_row_q, has_row_q, has_column_q, 1'b0}]=])
 mutant(57 stages/cull.sv "no sample: the length of the sides does not matter"
   [=[is_small_q && edge_is_short_q]=] [=[is_small_q]=])
 mutant(58 stages/cull.sv "no sample: a third row of samples is overlooked"
@@ -190,8 +190,8 @@ mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the 
 mutant(62 stages/hiz.sv "stale HiZ: a visit that may raise a depth is believed not to, until it is seen"
   [=[quiet_q == '1]=] [=[1'b1]=])
 mutant(63 stages/hiz.sv "HiZ: a visit that may raise a depth is forgotten a visit too early"
-  [=[setup_i.state.depth_write && can_raise ? '0 : quiet_q + N'(quiet_q != '1)]=]
-  [=[setup_i.state.depth_write && can_raise ? N'(1) : quiet_q + N'(quiet_q != '1)]=])
+  [=[raises_i ? '0 : quiet_q + N'(quiet_q != '1)]=]
+  [=[raises_i ? N'(1) : quiet_q + N'(quiet_q != '1)]=])
 mutant(64 stages/hiz.sv "fast clear: what earlier visits had to say comes behind it"
   [=[clears_i ? started_q : seen_q + (N + 1)'(sees)]=] [=[seen_q + (N + 1)'(sees)]=])
 
@@ -245,10 +245,10 @@ mutant(101 lib/beat_bytes.sv "length: a burst of several stamps is a beat short"
 mutant(102 lib/beat_bytes.sv "strobes: every byte of a stamp is written"
   [=[{SAMPLE_BYTES{strobe_i[s]}}]=] [=[{SAMPLE_BYTES{1'b1}}]=])
 mutant_text(103 stages/memory_port.sv "carry: the column of a tile is not added to its row, but ored"
-  [=[layout_i.row_stride[STRIDE-1:TILE]) +]=]
-  [=[layout_i.row_stride[STRIDE-1:TILE]) + (raster_cosim.mutant_q != 16'd103 ? '0 : (ADDRESS - TILE)'(0) -
-      (((ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE])) &
-       (ADDRESS - TILE)'(request_i.tile_x))) +]=])
+  [=[layout_i.row_stride[STRIDE-1:TILE]);]=]
+  [=[layout_i.row_stride[STRIDE-1:TILE]) - (raster_cosim.mutant_q != 16'd103 ? '0 :
+      ((ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE])) &
+       (ADDRESS - TILE)'(request_i.tile_x));]=])
 mutant(104 stages/memory_port.sv "answers: stamps are counted, not bursts"
   [=[8'(takes && begins)]=] [=[8'(takes && request_i.is_write)]=])
 mutant(105 stages/memory_port.sv "idle: taken is as good as written"

@@ -2,14 +2,17 @@
 //
 // In: a setup packet. Out: a tile packet for each tile that is neither outside an edge (trivial reject) nor behind the
 // tile's HiZ bound; if the last tile of the walk was skipped, a packet without a visit that tells the primitive's end.
-// Two cycles from the setup packet to the first tile; then one tile a cycle, two more for a visit where bounds are read.
+// Three cycles from the setup packet to the first visit; a tile a cycle, and where bounds are read three for a visit.
+//
+// Two steps: the walk, and the tile that it leaves, which waits in a register until fine_raster takes it. So what decides
+// about a tile is registers: its HiZ bound comes with the tile into that register, while the walk is one tile ahead.
 //
 // A row is walked to the right from its start, then from there to the left, each way until an edge has been left that gets
 // no better that way. It starts below the first tile of the row above that was not outside.
 //
 // A primitive whose box touches at most 2x2 tiles reads no bounds. The bound of any other's next tile is read on the way to
-// it, from PREPARE on, where the walk waits until it may be; a visit changes what bounds know, so behind each is a PREPARE.
-// What a bound knows: hiz.sv.
+// it, from PREPARE on, as long as it may be: not while a visit waits to start, which changes what bounds know. A tile whose
+// bound could not be read then, or was read too early, waits and reads it behind that visit. What a bound knows: hiz.sv.
 // Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
 module coarse_raster (
     input logic clk_i,
@@ -62,37 +65,59 @@ module coarse_raster (
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
 
-  localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, OFFER = 3'd3, END = 3'd4, CLEAR = 3'd5;
-  logic [2:0] state_q;
+  localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, CLEAR = 3'd3, PASS = 3'd4;
+  logic [2:0] state_q;  // of the walk. PASS: a token behind its CLEAR
 
   /* verilator lint_off UNUSEDSIGNAL */  // the values are in the registers below
   raster_pkg::setup_packet_t s_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
-  logic [SLOT-1:0] slot_q;   // of the primitive in s_q
+  logic [SLOT-1:0] slot_q;   // of the primitive in s_q, or of the next one
   logic [SLOT:0]   used_q;   // slots that are not free
 
-  logic is_triangle, is_fast_clear, has_walk, clears_bounds;
-  logic takes, steps, is_last_column, is_last_row, is_last_tile, is_eligible, finishes;
-  logic is_outside, is_inside, is_behind, is_settled, visits_are_done;
+  logic is_triangle, has_walk, clears_bounds;
+  logic takes, steps, is_last_column, is_last_row, is_last_tile, is_eligible, is_eligible_q, finishes;
+  logic is_outside, is_inside, is_settled, visits_are_done;
+  logic [raster_pkg::HIZ_CODE_BITS-1:0] bound;
+  logic [raster_pkg::HIZ_CODE_BITS:0]   limit;
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
-  assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign has_walk       = !s_q.kind[1];  // bit 1 of a kind: a token (fast clear, flush, line, state)
-  assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
+  assign clears_bounds  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR && s_q.state.depth_write &&
+                          raster_pkg::HIZ_BITS != 0;
   assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
-  assign setup_ready_o  = (state_q == IDLE || finishes) && used_q != (SLOT + 1)'(SLOTS);
+  assign setup_ready_o  = state_q == IDLE && used_q != (SLOT + 1)'(SLOTS);
   assign takes          = setup_valid_i && setup_ready_o;
-  assign context_slot_o = slot_q + SLOT'(state_q == IDLE ? 0 : 1);
+  assign context_slot_o = slot_q;
 
-  // --- The walk. A tile is left when it is skipped or taken by fine_raster.
-  logic offers_visit, is_skipped, tile_taken;
-  assign offers_visit = (state_q == WALK && !is_outside && !is_eligible && is_settled) || state_q == OFFER;
-  assign is_skipped   = state_q == WALK && (is_outside || (is_eligible && is_behind));
-  assign tile_valid_o = offers_visit || state_q == END;
+  // --- The tile that the walk has left: on offer, or dropped where it is behind its bound. The walk's last one is on offer in
+  // any case, to tell the primitive's end.
+  logic left_valid_q;
+  logic left_behind;    // its verdict, of
+  logic [raster_pkg::HIZ_CODE_BITS-1:0] left_bound_q;
+  logic [raster_pkg::HIZ_CODE_BITS:0]   left_limit_q;
+  logic left_raises_q;  // it may raise a depth by its state
+  raster_pkg::tile_packet_t  left_q;
+  raster_pkg::edge_context_t left_edges_q;
+  logic is_visit, is_dropped, tile_taken, left_is_free;
+  assign left_behind  = {1'b0, left_bound_q} < left_limit_q;
+  assign is_visit     = left_q.is_visit && !left_behind;
+  assign is_dropped   = left_valid_q && left_behind && !left_q.ends_primitive;
+  assign tile_valid_o = left_valid_q && (is_visit ? is_settled : left_q.ends_primitive);
   assign tile_taken   = tile_valid_o && tile_ready_i;
-  assign steps        = is_skipped || (tile_taken && state_q != END);
-  assign finishes     = tile_taken && (state_q == END || is_last_tile);
+  assign left_is_free = !left_valid_q || is_dropped || tile_taken;
+
+  // --- The walk. A tile is left when it is outside, or enters that register.
+  logic ends_walk, passes_token, enters;
+  logic has_bound_q;    // that of this tile has been read, and no visit has started since or waits to
+  logic has_verdict;
+  assign passes_token = (state_q == PREPARE && !has_walk && !clears_bounds) || state_q == PASS;
+  assign has_verdict  = has_bound_q && (!left_valid_q || is_dropped);
+  assign enters       = state_q == WALK ? (is_outside ? ends_walk && left_is_free :
+                                                        is_eligible_q ? has_verdict : left_is_free) :
+                                          passes_token && left_is_free;
+  assign steps        = state_q == WALK && (enters || (is_outside && !ends_walk));
+  assign finishes     = enters && (ends_walk || state_q != WALK);
 
   // From a tile to the next one.
   logic [TX-1:0] start_x_q, next_x;  // start: of this row, then of the one below
@@ -103,7 +128,7 @@ module coarse_raster (
   logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
   logic          clears;     // the bounds of a group of tiles each cycle
   logic [TX-1:0] group_end;  // its last tile
-  logic [2:0]    edge_is_outside, no_better_left, no_better_right;
+  logic [2:0]    edge_is_outside, no_better_left_q, no_better_right_q;
   assign clears         = state_q == CLEAR;
   assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
   assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
@@ -111,10 +136,11 @@ module coarse_raster (
   assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
   assign is_last_column = goes_left_q ? is_leftmost : (clears ? is_last_group : is_rightmost);
   assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
-  assign must_return    = must_return_q && (edge_is_outside & no_better_left) == '0;
-  assign exits          = is_last_column || (edge_is_outside & (goes_left_q ? no_better_left : no_better_right)) != '0;
+  assign must_return    = must_return_q && (edge_is_outside & no_better_left_q) == '0;
+  assign exits          = is_last_column || (edge_is_outside & (goes_left_q ? no_better_left_q : no_better_right_q)) != '0;
   assign turns_back     = exits && must_return;
   assign row_ends       = exits && !must_return;
+  assign ends_walk      = row_ends && is_last_row;
   assign moves_left     = goes_left_q || turns_back;
   assign moves_start    = is_empty_q && is_outside;  // or all of it, down
   assign next_x         = exits ? start_x_q - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
@@ -126,51 +152,46 @@ module coarse_raster (
       slot_q  <= '0;
       used_q  <= '0;
     end else begin
-      if (finishes) begin
-        state_q <= takes ? PREPARE : IDLE;
-        slot_q  <= slot_q + SLOT'(1);
-      end else begin
-        case (state_q)
-          IDLE: if (takes) state_q <= PREPARE;
-          PREPARE:
-          if (has_walk) state_q <= is_eligible && !is_settled ? PREPARE : WALK;
-          else if (!clears_bounds) state_q <= END;
-          else if (visits_are_done) state_q <= CLEAR;
-          WALK:
-          if (is_skipped) state_q <= row_ends && is_last_row ? END : WALK;
-          else if (is_eligible) state_q <= OFFER;
-          OFFER: if (tile_taken) state_q <= PREPARE;
-          CLEAR: if (is_last_tile) state_q <= END;
-          default: state_q <= state_q;
-        endcase
-      end
+      case (state_q)
+        IDLE: if (takes) state_q <= PREPARE;
+        PREPARE:
+        if (has_walk) state_q <= WALK;
+        else if (!clears_bounds) state_q <= enters ? IDLE : PREPARE;
+        else if (visits_are_done && !(left_valid_q && is_visit)) state_q <= CLEAR;
+        CLEAR: if (is_last_tile) state_q <= PASS;
+        default: if (finishes) state_q <= IDLE;
+      endcase
+      if (finishes) slot_q <= slot_q + SLOT'(1);
       used_q <= used_q + (SLOT + 1)'(takes) - (SLOT + 1)'(slot_free_i);
     end
   end
 
-  logic goes_on;
-  assign goes_on = (steps || clears) && !(row_ends && is_last_row);
+  // The values at the row's start come the way that all others come; those of the first row in PREPARE, by no step.
+  logic goes_on, starts, returns, notes_start;
+  assign starts      = state_q == PREPARE;
+  assign returns     = exits && !starts;
+  assign notes_start = starts || (goes_on && (row_ends || moves_start));
+  assign goes_on = steps || (clears && !is_last_tile);  // the last time, to nowhere
 
   always_ff @(posedge clk_i) begin
-    if (takes) begin
+    if (state_q == IDLE) begin
       s_q <= setup_i;
-      if (setup_i.kind[1] && setup_i.kind != raster_pkg::PRIMITIVE_KIND_FAST_CLEAR) begin
+      // A token stands at its last tile; but one that clears bounds gets there group by group.
+      if (setup_i.kind[1] && !(setup_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR && setup_i.state.depth_write &&
+                               raster_pkg::HIZ_BITS != 0)) begin
         tile_x_q <= setup_i.box.right[PX-1:TS];
         tile_y_q <= setup_i.box.bottom[PY-1:TS];
       end else begin
         tile_x_q <= setup_i.box.left[PX-1:TS];
         tile_y_q <= setup_i.box.top[PY-1:TS];
       end
-    end else if (state_q == PREPARE && !has_walk && !clears_bounds) begin
-      tile_x_q <= s_q.box.right[PX-1:TS];  // nothing to clear here
-      tile_y_q <= s_q.box.bottom[PY-1:TS];
     end else if (goes_on) begin
       tile_x_q <= next_x;
       tile_y_q <= next_y;
     end else if (clears) begin
       tile_x_q <= s_q.box.right[PX-1:TS];  // from its group to the last tile itself
     end
-    if (takes) begin
+    if (state_q == IDLE) begin
       start_x_q     <= setup_i.box.left[PX-1:TS];
       goes_left_q   <= 1'b0;
       must_return_q <= 1'b0;
@@ -181,6 +202,7 @@ module coarse_raster (
       must_return_q <= row_ends ? start_x_q != s_q.box.left[PX-1:TS] : must_return && !turns_back;
       is_empty_q    <= row_ends || moves_start;
     end
+    if (state_q == PREPARE) is_eligible_q <= is_eligible;
   end
 
   // --- Edges: one value each at the tile's first pixel, and the offsets to its best and its worst corner.
@@ -202,24 +224,21 @@ module coarse_raster (
       assign dy    = s_q.dy[i*D+:D];
       assign best  = (dx > 0 ? (D + 1)'(dx) : '0) - (dy < 0 ? (D + 1)'(dy) : '0);
       assign worst = (dx < 0 ? (D + 1)'(dx) : '0) - (dy > 0 ? (D + 1)'(dy) : '0);
-      assign from  = exits ? row_q : value_q;
-      assign step  = row_ends ? (V - TS)'(dx) : (V - TS)'(dy) ^ {(V - TS) {!moves_left}};
-      assign sum   = {from[V-1:TS], 1'b1} + {step, !row_ends && !moves_left};
+      assign from  = returns ? row_q : value_q;
+      assign step  = starts ? '0 : row_ends ? (V - TS)'(dx) : (V - TS)'(dy) ^ {(V - TS) {!moves_left}};
+      assign sum   = {from[V-1:TS], 1'b1} + {step, !starts && !row_ends && !moves_left};
       assign next  = {sum[V-TS:1], from[TS-1:0]};
-      assign no_better_left[i]  = !(dy > 0);
-      assign no_better_right[i] = !dy[D-1];
 
       always_ff @(posedge clk_i) begin
-        if (takes) begin
+        if (state_q == IDLE) begin
           value_q <= setup_i.edge_value[i*V+:V];
-          row_q   <= setup_i.edge_value[i*V+:V];
-        end else if (goes_on) begin
-          value_q <= next;
-          if (row_ends || moves_start) row_q <= next;
-        end
+        end else if (goes_on) value_q <= next;
+        if (notes_start) row_q <= next;
         if (state_q == PREPARE) begin  // times T - 1
           best_q  <= (TE'(best) <<< TS) - TE'(best);
           worst_q <= (TE'(worst) <<< TS) - TE'(worst);
+          no_better_left_q[i]  <= !(dy > 0);
+          no_better_right_q[i] <= !dy[D-1];
         end
       end
 
@@ -242,6 +261,7 @@ module coarse_raster (
 
   // --- Planes: the wide value at the tile's anchor, but for the bits that no step changes; setup added what makes the local
   // anchor its high bits. In the context are steps per pixel, narrowed to the local guard bits.
+  logic [raster_pkg::ALL_LOCAL_BITS-1:0] anchor;
   generate
     for (i = 0; i < PLANES; i++) begin : gen_plane
       localparam int P = PLANE_BITS_OF[32*i+:32];
@@ -261,19 +281,16 @@ module coarse_raster (
       assign value  = setup_i.value[PLANE+:P];
       assign step_x = setup_i.step_x[PLANE+:P];
       assign step_y = setup_i.step_y[PLANE+:P];
-      assign from   = exits ? row_q : value_q;
-      assign step   = row_ends ? s_q.step_y[PLANE+:M] : s_q.step_x[PLANE+:M] ^ {M{moves_left}};
-      assign sum    = {from, 1'b1} + {step, !row_ends && moves_left};
+      assign from   = returns ? row_q : value_q;
+      assign step   = starts ? '0 : row_ends ? s_q.step_y[PLANE+:M] : s_q.step_x[PLANE+:M] ^ {M{moves_left}};
+      assign sum    = {from, 1'b1} + {step, !starts && !row_ends && moves_left};
       always_ff @(posedge clk_i) begin
-        if (takes) begin
+        if (state_q == IDLE) begin
           value_q <= value[P-1-:M];
-          row_q   <= value[P-1-:M];
-        end else if (goes_on) begin
-          value_q <= sum[M:1];
-          if (row_ends || moves_start) row_q <= sum[M:1];
-        end
+        end else if (goes_on) value_q <= sum[M:1];
+        if (notes_start) row_q <= sum[M:1];
       end
-      assign tile_o.anchor[LOCAL+:B]    = value_q[M-1-:B];
+      assign anchor[LOCAL+:B]           = value_q[M-1-:B];
       assign context_o.step_x[LOCAL+:B] = B'($signed(step_x) >>> NARROW) + B'(step_x[NARROW-1]);
       assign context_o.step_y[LOCAL+:B] = B'($signed(step_y) >>> NARROW) + B'(step_y[NARROW-1]);
     end
@@ -287,13 +304,18 @@ module coarse_raster (
   endgenerate
 
   // --- Visits under way, and what is known of the depths of a tile
-  logic          starts_visit, reads_bound;
+  logic          starts_visit, reads_bound, reads_next;
   logic [TX-1:0] read_x;
   logic [TY-1:0] read_y;
-  assign starts_visit = tile_taken && state_q != END;
-  assign reads_bound  = state_q == PREPARE || is_skipped;
-  assign read_x       = state_q == PREPARE ? tile_x_q : next_x;
-  assign read_y       = state_q == PREPARE ? tile_y_q : next_y;
+  assign starts_visit = tile_taken && is_visit;
+  assign reads_bound  = (state_q == PREPARE || state_q == WALK) && is_settled && !(left_valid_q && is_visit);
+  assign reads_next   = state_q == WALK && (is_outside || has_verdict);  // where bounds matter it goes on
+  assign read_x       = reads_next ? next_x : tile_x_q;
+  assign read_y       = reads_next ? next_y : tile_y_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) has_bound_q <= 1'b0;
+    else has_bound_q <= reads_bound;
+  end
   hiz u_hiz (
       .clk_i,
       .rst_ni,
@@ -306,9 +328,11 @@ module coarse_raster (
       .read_y_i         (read_y),
       .clears_i         (clears),
       .starts_visit_i   (starts_visit),
+      .raises_i         (left_raises_q),
       .is_eligible_o    (is_eligible),
       .is_settled_o     (is_settled),
-      .is_behind_o      (is_behind),
+      .bound_o          (bound),
+      .limit_o          (limit),
       .visits_are_done_o(visits_are_done),
       .retire_valid_i,
       .retire_i
@@ -321,32 +345,51 @@ module coarse_raster (
   assign box.right  = is_rightmost ? s_q.box.right[TS-1:0] : '1;
   assign box.bottom = is_last_row ? s_q.box.bottom[TS-1:0] : '1;
 
-  assign tile_o.kind           = s_q.kind;
-  assign tile_o.is_visit       = state_q != END;
-  assign tile_o.ends_primitive = state_q == END || is_last_tile;
-  assign tile_o.slot           = slot_q;
-  assign tile_o.box            = box;
-  assign tile_o.is_inside      = is_inside && state_q != END;
-  assign tile_o.edge_value     = edge_value;
-
-  assign tile_o.key.primitive_id = s_q.primitive_id;
-  assign tile_o.key.tile_x       = tile_x_q;
-  assign tile_o.key.tile_y       = tile_y_q;
-
   logic [3*D-1:0] step_x;
   generate
     for (i = 0; i < 3; i++) begin : gen_step
       assign step_x[i*D+:D] = -s_q.dy[i*D+:D];
     end
   endgenerate
-  assign edges_o.step_x = step_x;
-  assign edges_o.step_y = s_q.dx;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) left_valid_q <= 1'b0;
+    else if (left_is_free) left_valid_q <= enters;
+  end
+  always_ff @(posedge clk_i) begin
+    if (left_is_free) begin
+      left_bound_q               <= bound;
+      left_limit_q               <= state_q == WALK && !is_outside && is_eligible_q ? limit : '0;
+      left_raises_q              <= s_q.state.depth_write && s_q.state.depth_test[2];
+      left_q.kind                <= s_q.kind;
+      left_q.is_visit            <= state_q == WALK && !is_outside;  // if it is not behind
+      left_q.ends_primitive      <= state_q != WALK || ends_walk;
+      left_q.key.primitive_id    <= s_q.primitive_id;
+      left_q.key.tile_x          <= tile_x_q;
+      left_q.key.tile_y          <= tile_y_q;
+      left_q.slot                <= slot_q;
+      left_q.box                 <= box;
+      left_q.is_inside           <= is_inside;
+      left_q.edge_value          <= edge_value;
+      left_q.anchor              <= anchor;
+      left_edges_q.step_x        <= step_x;
+      left_edges_q.step_y        <= s_q.dx;
+    end
+  end
+  always_comb begin
+    tile_o           = left_q;
+    tile_o.is_visit  = is_visit;
+    tile_o.is_inside = left_q.is_inside && is_visit;
+  end
+  assign edges_o = left_edges_q;
 
   // --- Counters
+  logic            left_is_triangle;
+  assign left_is_triangle = left_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   logic [TS:0]     width, height;
   logic [2*TS:0]   area;
-  assign width       = (TS + 1)'(box.right) - (TS + 1)'(box.left) + (TS + 1)'(1);
-  assign height      = (TS + 1)'(box.bottom) - (TS + 1)'(box.top) + (TS + 1)'(1);
+  assign width       = (TS + 1)'(left_q.box.right) - (TS + 1)'(left_q.box.left) + (TS + 1)'(1);
+  assign height      = (TS + 1)'(left_q.box.bottom) - (TS + 1)'(left_q.box.top) + (TS + 1)'(1);
   always_comb begin  // no multiplier for a counter
     area = '0;
     for (int b = 0; b <= TS; b++) area = area + (height[b] ? (2 * TS + 1)'(width) << b : '0);
@@ -361,10 +404,10 @@ module coarse_raster (
       samples_tested_o <= '0;
     end else begin
       is_visited_o     <= steps && is_triangle;
-      is_outside_o     <= state_q == WALK && is_outside && is_triangle;
-      is_hiz_o         <= state_q == WALK && !is_outside && is_eligible && is_behind && is_triangle;
-      is_accepted_o    <= starts_visit && is_inside && is_triangle;
-      samples_tested_o <= starts_visit && !is_inside && is_triangle ? area : '0;
+      is_outside_o     <= steps && is_outside && is_triangle;
+      is_hiz_o         <= left_valid_q && left_behind && left_is_free;
+      is_accepted_o    <= starts_visit && left_q.is_inside && left_is_triangle;
+      samples_tested_o <= starts_visit && !left_q.is_inside && left_is_triangle ? area : '0;
     end
   end
 

@@ -75,6 +75,8 @@ module coarse_raster_serial (
   logic is_triangle, is_fast_clear, is_token, clears_bounds;
   logic takes, steps, turns_end, is_last_column, is_last_row, is_last_tile, clears, finishes;
   logic is_eligible, is_eligible_q;  // HiZ may reject tiles
+  logic [raster_pkg::HIZ_CODE_BITS-1:0] bound;
+  logic [raster_pkg::HIZ_CODE_BITS:0]   limit;
   logic is_behind, is_settled, visits_are_done, is_skipped, tile_taken;
   logic outside_q, inside_q;      // some edge, all edges
   logic ends_way_q, ends_left_q;  // outside of an edge that gets no better this way, to the left
@@ -88,6 +90,7 @@ module coarse_raster_serial (
   assign context_slot_o = slot_q;
   assign turns_end      = state_q == TURN && turn_q == 2'd3;
 
+  assign is_behind    = {1'b0, bound} < limit;
   assign is_skipped   = (state_q == WALK && outside_q) || (state_q == BOUND && is_behind);
   assign tile_valid_o = state_q == VISIT || state_q == END;
   assign tile_taken   = tile_valid_o && tile_ready_i;
@@ -325,9 +328,11 @@ module coarse_raster_serial (
       .read_y_i         (tile_y_q),
       .clears_i         (clears),
       .starts_visit_i   (starts_visit),
+      .raises_i         (s_q.state.depth_write && s_q.state.depth_test[2]),
       .is_eligible_o    (is_eligible),
       .is_settled_o     (is_settled),
-      .is_behind_o      (is_behind),
+      .bound_o          (bound),
+      .limit_o          (limit),
       .visits_are_done_o(visits_are_done),
       .retire_valid_i,
       .retire_i

@@ -266,6 +266,7 @@ module cull (
   /* verilator lint_on UNUSEDSIGNAL */
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
+  logic       is_zero_q;                    // area_q is
   logic       is_small_q;                   // all sides are short
   logic [3:0] has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
 
@@ -294,11 +295,13 @@ module cull (
         vertex_q[2*(2*C+CODES)-1:0]    <= '0;
       end
       area_q        <= '0;
+      is_zero_q     <= 1'b1;
       is_small_q    <= 1'b1;
       has_inside_q  <= '0;
       has_outside_q <= '0;
     end else if (decide_moves && d_is_triangle) begin
       area_q        <= area[E:1];
+      is_zero_q     <= area[E:1] == '0;
       edge_q        <= {edge_value[S+:V], edge_q[V+:2*V]};
       is_small_q    <= is_small_q && edge_is_short_q;
       has_inside_q  <= has_inside_q | ~signs;
@@ -311,7 +314,7 @@ module cull (
   assign d_is_triangle = kind_q == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_counted    = d_is_triangle || (kind_q[2] && !kind_q[0]);  // point, line
   assign is_negative   = area_q < 0;
-  assign is_zero       = d_is_triangle && area_q == 0;
+  assign is_zero       = d_is_triangle && is_zero_q;
   assign is_front      = is_negative != front_cw_q;  // positive area: clockwise as seen
   assign is_back       = d_is_triangle && !is_zero && (is_front ? mode_q[1] : mode_q[0]);  // bit 1: front faces
   assign is_dropped    = is_zero || is_back || d_is_empty_q || is_sampleless;
@@ -319,12 +322,17 @@ module cull (
   // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
   // left to fine_raster.
   logic [2:0] columns, rows;  // less one
-  logic [3:0] is_missed;
+  logic       has_2x2_q, has_column_q, has_row_q;  // at most; a second one
   assign columns       = d_box_q.right[2:0] - d_box_q.left[2:0];
   assign rows          = d_box_q.bottom[2:0] - d_box_q.top[2:0];
-  assign is_missed     = (has_inside_q & has_outside_q) |
-                         {columns == 3'd0 || rows == 3'd0, rows == 3'd0, columns == 3'd0, 1'b0};
-  assign is_sampleless = d_is_triangle && is_small_q && columns <= 3'd1 && rows <= 3'd1 && is_missed == '1;
+  always_ff @(posedge clk_i) begin  // known in the steps before
+    has_2x2_q    <= d_is_triangle && columns <= 3'd1 && rows <= 3'd1;
+    has_column_q <= columns != 3'd0;
+    has_row_q    <= rows != 3'd0;
+  end
+  logic [3:0] is_missed;
+  assign is_missed     = (has_inside_q & has_outside_q) | ~{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1};
+  assign is_sampleless = has_2x2_q && is_small_q && is_missed == '1;
 
   assign is_dropped_o   = leaves && is_dropped;
   // Counters, one cycle late: what makes a triangle leave comes late enough without them behind it.

@@ -162,7 +162,13 @@ module fine_raster (
     for (int s = 0; s < PER_ROW; s++) if (COLUMN'(s) == column) pending_d[s*SAMPLES+:SAMPLES] = '0;
   end
 
-  assign is_last_stamp = pending_d == '0;
+  // At most one stamp has samples left.
+  logic [PER_ROW-1:0] has_samples;
+  always_comb begin
+    is_last_stamp = 1'b1;
+    for (int s = 0; s < PER_ROW; s++) has_samples[s] = pending_q[s*SAMPLES+:SAMPLES] != '0;
+    for (int s = 1; s < PER_ROW; s++) if (has_samples[s] && (has_samples & PER_ROW'((1 << s) - 1)) != '0) is_last_stamp = 1'b0;
+  end
   assign stamp_valid_o = stamps_valid_q;
   assign stamp_leaves  = stamps_valid_q && stamp_ready_i;
   assign stamps_ready  = !stamps_valid_q || (stamp_leaves && is_last_stamp);

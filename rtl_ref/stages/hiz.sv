@@ -4,7 +4,8 @@
 // Visit n sees the updates of the visits up to n - LAG, all of them and none of a later one, whenever they come: what a
 // visit brings home waits in a queue until LAG visits have started behind it. So nothing is waited for but visit n - LAG, and
 // no more than LAG are under way. Visits between that may raise a depth make the bounds worthless until they are seen.
-// A bound is read in one cycle and its verdict is there in the next one and until the next read; it holds until a visit starts.
+// A bound is read in one cycle and is there in the next one and until the next read, beside the limit of the primitive: the
+// tile is behind where the bound is below the limit, as long as no visit starts. The primitive stands for a cycle before.
 // Specification: model/stages/hiz.hpp.
 module hiz (
     input logic clk_i,
@@ -22,10 +23,14 @@ module hiz (
     input logic [raster_pkg::TILE_Y_BITS-1:0] read_y_i,
     /* verilator lint_on UNUSEDSIGNAL */
     input logic                               starts_visit_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
+    input logic                               raises_i,  // and may raise a depth by its state
+    /* verilator lint_on UNUSEDSIGNAL */
 
     output logic is_eligible_o,    // bounds may reject its tiles
     output logic is_settled_o,     // visit n - LAG has been seen: a bound may be read, a visit may start
-    output logic is_behind_o,      // of the bound that was read
+    output logic [raster_pkg::HIZ_CODE_BITS-1:0] bound_o,  // that was read, and
+    output logic [raster_pkg::HIZ_CODE_BITS:0]   limit_o,  // the least that is not behind; 0: nothing is
     output logic visits_are_done_o,
 
     // From depth_test: a tile visit has retired
@@ -102,7 +107,7 @@ module hiz (
             if (raster_pkg::LINES_UNIT != 0 && setup_i.kind == raster_pkg::PRIMITIVE_KIND_LINE && can_raise) bounds_hold_q <= 1'b0;
           end
           if (clears_i) quiet_q <= '1;
-          else if (starts_visit_i) quiet_q <= setup_i.state.depth_write && can_raise ? '0 : quiet_q + N'(quiet_q != '1);
+          else if (starts_visit_i) quiet_q <= raises_i ? '0 : quiet_q + N'(quiet_q != '1);
         end
       end
 
@@ -142,6 +147,7 @@ module hiz (
       // An upper bound of the depth codes of each tile, its high bits stored, all others taken as ones.
       logic [Z-1:0]   depth_min;
       logic [HIZ-1:0] bound;
+      logic [HIZ:0]   limit_q;
       assign depth_min = setup_i.range.low[0+:Z];
       logic [(HIZ<<GROUP)-1:0] bounds;  // of the tiles of a group, each in a RAM of its own
       logic [GROUP-1:0]        read_q;  // which of them was asked for
@@ -170,18 +176,20 @@ module hiz (
         );
       end
 
-      // Behind: depth_min > bound; for `less` equality will do.
-      logic is_equal;
+      // Behind: depth_min > bound; for `less` equality will do, of all bits: those that are not stored are ones.
+      logic is_equal_behind;
       if (HIZ == Z) begin : gen_exact
-        assign is_equal = depth_min == bound;
+        assign is_equal_behind = setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS;
       end else begin : gen_high_bits
-        assign is_equal = depth_min[Z-1-:HIZ] == bound && depth_min[Z-HIZ-1:0] == '1;
+        assign is_equal_behind = setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && depth_min[Z-HIZ-1:0] == '1;
       end
-      assign is_behind_o = quiet_q == '1 && (depth_min[Z-1-:HIZ] > bound ||
-                                             (setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS && is_equal));
+      always_ff @(posedge clk_i) limit_q <= (HIZ + 1)'(depth_min[Z-1-:HIZ]) + (HIZ + 1)'(is_equal_behind);
+      assign bound_o = bound;
+      assign limit_o = quiet_q == '1 ? limit_q : '0;
     end else begin : gen_no_hiz
       assign is_eligible_o = 1'b0;
-      assign is_behind_o   = 1'b0;
+      assign bound_o       = '0;
+      assign limit_o       = '0;
     end
   endgenerate
 

@@ -3,13 +3,14 @@
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
 // the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
-// behind depth and colours, 1/w and what lies over it, stay as they are. Latency 5 cycles,
+// behind depth and colours, 1/w and what lies over it, stay as they are. Latency 6 cycles,
 // one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
 // end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
 //   samples  from there to each sample
 //   FIFO     where fragments wait
+//   offer    behind a register, for what looks at a fragment looks far
 // Specification: model/stages/interpolate.hpp.
 module interpolate (
     input logic clk_i,
@@ -53,9 +54,8 @@ module interpolate (
   /* verilator lint_on UNUSEDSIGNAL */
   logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q;
 
-  localparam int ROOM = 7;  // fragments on their way and in the FIFO: one a step, and two more
-  localparam int DEPTH = 1 << $clog2(ROOM);
-  localparam int USED = $clog2(ROOM) + 1;
+  localparam int ROOM = 8;  // fragments on their way, in the FIFO and on offer: one a step, and two more
+  localparam int USED = $clog2(ROOM + 1);
   logic [USED-1:0] used_q;
   logic            takes, leaves;
   assign stamp_ready_o  = used_q != USED'(ROOM);
@@ -202,18 +202,26 @@ module interpolate (
   /* verilator lint_off UNUSEDSIGNAL */  // there is a place
   logic made_ready;
   /* verilator lint_on UNUSEDSIGNAL */
+  logic queued, is_free;
+  raster_pkg::fragment_packet_t queued_fragment;
   fifo #(
       .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS),
-      .DEPTH(DEPTH)
+      .DEPTH(ROOM)
   ) u_fragments (
       .clk_i,
       .rst_ni,
       .valid_i(samples_valid_q),
       .ready_o(made_ready),
       .data_i (made),
-      .valid_o(fragment_valid_o),
-      .ready_i(fragment_ready_i),
-      .data_o (fragment_o)
+      .valid_o(queued),
+      .ready_i(is_free),
+      .data_o (queued_fragment)
   );
+  assign is_free = !fragment_valid_o || fragment_ready_i;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) fragment_valid_o <= 1'b0;
+    else if (is_free) fragment_valid_o <= queued;
+  end
+  always_ff @(posedge clk_i) if (is_free) fragment_o <= queued_fragment;
 
 endmodule

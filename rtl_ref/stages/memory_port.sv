@@ -82,13 +82,14 @@ module memory_port (
   /* verilator lint_off UNUSEDSIGNAL */  // inside a beat it is the place that counts
   logic [ADDRESS-1:0]       address;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [ADDRESS-PLANE-1:0] base, planes;  // planes of tiles up to this one
+  logic [ADDRESS-PLANE-1:0] base, planes;  // planes of tiles up to this one in its row
+  logic [ADDRESS-TILE-1:0]  above;         // tiles in the rows above
   logic [PLANE-1:0]         offset;
   assign is_color = request_i.plane[0];
   assign is_flags = request_i.plane[1];
   assign base     = is_color ? layout_i.color_base[ADDRESS-1:PLANE] : layout_i.depth_base[ADDRESS-1:PLANE];
-  assign planes   = base + {(ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]) +
-                            (ADDRESS - TILE)'(request_i.tile_x), 1'b0};
+  assign planes   = base + (ADDRESS - PLANE)'({request_i.tile_x, 1'b0});
+  assign above    = (ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]);
   assign offset   = is_color ? PLANE'(place) << COLOR_SHIFT : PLANE'(place) << DEPTH_SHIFT;
 
   // The bytes, and the beats that they take.
@@ -159,7 +160,8 @@ module memory_port (
 
   // The word on its way out. While it gathers, it is not complete and not on offer.
   logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
-  logic [ADDRESS-1:PORT] address_q;
+  logic [ADDRESS-1:PORT] address_q;  // without the rows above: a product is long enough by itself
+  logic [ADDRESS-TILE-1:0] above_q;
   logic [LENGTH-1:0]  length_q;  // beats that are left of the burst
   logic [7:0]         more_q;    // of the word behind the one on offer
   logic [8*WORD-1:0]  data_q;
@@ -202,6 +204,7 @@ module memory_port (
         is_write_q <= request_i.is_write;
         is_first_q <= !in_burst_q;
         address_q  <= address[ADDRESS-1:PORT];
+        above_q    <= is_flags ? '0 : above;
         length_q   <= length;
       end
     end else if (sends) begin
@@ -217,7 +220,7 @@ module memory_port (
   assign beat_valid_o    = valid_q;
   assign beat_o.is_write = is_write_q;
   assign beat_o.is_first = is_first_q;
-  assign beat_o.address  = {address_q, PORT'(0)};
+  assign beat_o.address  = {address_q, PORT'(0)} + {above_q, TILE'(0)};
   assign beat_o.length   = length_q;
   assign beat_o.strobe   = strobe_q[BYTES-1:0];
   assign beat_o.data     = data_q[8*BYTES-1:0];

@@ -4,7 +4,7 @@
 // A triangle goes from phase to phase, a cycle each. PLANES phases are a part; a part holds one triangle, which waits in its
 // last phase until the next part is free. Whatever is done for each plane is done p phases later for plane p than for plane
 // 0, so that planes come one a cycle, those of one triangle behind those of the other:
-//   divide       the highest bit of the area; R = floor(2^k / A + 1/2), three quotient bits a cycle
+//   divide       the highest bit of the area; R = floor(2^k / A + 1/2), two quotient bits a cycle
 //                (of each plane as many bits of R as its codes need, rounded for themselves)
 //   differences  of the codes, and their ranges
 //   numerators   N_x, N_y
@@ -13,7 +13,7 @@
 // What a plane leaves behind in a phase stands in one register until the next one. Such a register moves while any plane is
 // in the phases around it, in whichever part: nobody is overwritten, because a triangle is never a step behind the one in
 // the part before.
-// Occupancy: a cycle a plane. Latency (embedded): 18. As many triangles are under way as there are parts, five.
+// Occupancy: a cycle a plane. Latency (embedded): 21. As many triangles are under way as there are parts, six.
 // With the planes of a texture unit states go beside the parts (setup_states.sv), a cycle each.
 // Specification: model/stages/triangle_setup.hpp.
 module triangle_setup (
@@ -73,7 +73,7 @@ module triangle_setup (
   // Phase 0 finds the highest bit. The quotient has one bit before the point and R after it, one more than is kept, for
   // the rounding.
   localparam int STEPS = PLANES;  // of a part
-  localparam int BITS_PER_CYCLE = 3;
+  localparam int BITS_PER_CYCLE = 2;
   localparam int DIVIDE_CYCLES = (R + BITS_PER_CYCLE) / BITS_PER_CYCLE;
   localparam int DIVIDERS = (DIVIDE_CYCLES + STEPS - 1) / STEPS;
   localparam int QUOTIENT = BITS_PER_CYCLE * DIVIDE_CYCLES;

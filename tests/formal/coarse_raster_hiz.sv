@@ -1,6 +1,6 @@
 
   // What hiz.sv takes for granted: a visit starts when it is settled, a clear has no visit under way. And a tile is rejected
-  // by a verdict of its own: read at this tile when all was settled, and no visit has started since.
+  // by a verdict of its own: read at this tile when all was settled, and no visit has started since, nor waits to.
   logic is_good_q;
   logic [TX-1:0] read_x_q;
   logic [TY-1:0] read_y_q;
@@ -10,8 +10,12 @@
   end
   always_comb if (runs_q) begin
     if (starts_visit) assert (is_settled);
-    if (clears) assert (!starts_visit && !reads_bound);
-    if (state_q == WALK && is_eligible) assert (is_settled && is_good_q && {read_y_q, read_x_q} == {tile_y_q, tile_x_q});
-    if (state_q == OFFER) assert (is_settled && is_good_q && is_eligible && !is_outside);
-    if (is_skipped && !is_outside) assert (is_good_q && is_eligible && is_behind);
+    if (clears) assert (!starts_visit && !reads_bound && !(left_valid_q && is_visit));
+    if (has_bound_q) assert (is_good_q && is_settled);
+    if (state_q == WALK && is_eligible_q && has_bound_q && !is_outside)
+      assert ({read_y_q, read_x_q} == {tile_y_q, tile_x_q});
+    if (state_q == WALK && enters && is_eligible_q && !is_outside)
+      assert (is_good_q && !starts_visit && !(left_valid_q && is_visit));
+    if (left_valid_q && is_dropped) assert (!tile_valid_o);
+    cover (left_valid_q && left_behind);
   end

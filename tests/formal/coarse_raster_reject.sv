@@ -6,7 +6,7 @@
   localparam int WIDE = V + 2;  // exact
   localparam logic signed [WIDE-1:0] MOST = 2 * (raster_pkg::TILE_SIZE - 1) * (2 ** (D - 1) - 1);
   logic walks;
-  assign walks = has_walk && (state_q == WALK || state_q == OFFER);
+  assign walks = has_walk && state_q == WALK;
   genvar k;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
@@ -25,7 +25,8 @@
     end
   endgenerate
   always_comb if (walks) begin
-    if (is_skipped && !is_eligible) assert (edge_is_outside != '0);
-    if (tile_valid_o && state_q == WALK) assert (edge_is_outside == '0);
-    if (tile_valid_o && tile_o.is_inside) assert (edge_is_inside == '1);
+    if (steps && !enters) assert (edge_is_outside != '0);
+    if (is_outside) assert (edge_is_outside != '0);
+    else assert (edge_is_outside == '0);
+    if (is_inside) assert (edge_is_inside == '1);
   end

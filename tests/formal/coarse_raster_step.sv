@@ -18,7 +18,7 @@
     end
   end
   logic walks;
-  assign walks = runs_q && (state_q == WALK || state_q == OFFER) && has_walk;
+  assign walks = runs_q && state_q == WALK && has_walk;
   always_comb if (walks) assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
   always_comb if (runs_q && state_q != IDLE) assert (s_q == g_q);
   always_comb if (runs_q && state_q == PREPARE && has_walk)
@@ -41,7 +41,7 @@
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
-        assert (gen_edge[k].value_q == $signed(tile_q) && gen_edge[k].row_q == $signed(row_first_q));
+        assert (gen_edge[k].value_q == $signed(tile_q) && (starts ? row_first_q == tile_q : gen_edge[k].row_q == $signed(row_first_q)));
       // The ways to the tile's corners: T - 1 times those of a pixel (coarse_raster_corners).
       logic signed [TE-1:0] best, worst;
       assign best  = (TE'(gen_edge[k].best) <<< TS) - TE'(gen_edge[k].best);
@@ -70,7 +70,10 @@
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
-        assert (gen_plane[k].value_q == tile_q[P-1-:M] && gen_plane[k].row_q == row_first_q[P-1-:M]);
-      always_comb if (walks) assert (tile_o.anchor[LOCAL+:B] == tile_q[P-1-:B]);
+        assert (gen_plane[k].value_q == tile_q[P-1-:M] && (starts ? row_first_q == tile_q : gen_plane[k].row_q == row_first_q[P-1-:M]));
+      // What is on offer is what the walk was at when it left its tile.
+      logic [B-1:0] left_g;
+      always_ff @(posedge clk_i) if (left_is_free) left_g <= tile_q[P-1-:B];
+      always_comb if (runs_q && left_valid_q && is_visit) assert (tile_o.anchor[LOCAL+:B] == left_g);
     end
   endgenerate

@@ -14,13 +14,14 @@
   logic [N-1:0] newest, retires;  // places in the ring of the visit that starts, that retires
   assign newest  = started_q[N-1:0];
   assign retires = retired_q[N-1:0];
-  logic is_it, reads_it, clears_it, raises;
-  assign is_it     = tile_x_i == any_x && tile_y_i == any_y;
+  (* anyseq *) logic is_it;  // the visit that starts is in this tile
+  logic reads_it, clears_it, raises, line_raises;
   assign reads_it  = read_x_i == any_x && read_y_i == any_y;
   logic clears_group;  // of tiles that are cleared at once: this one is among them
   assign clears_group = tile_x_i >> GROUP == any_x >> GROUP && tile_y_i == any_y;
   assign clears_it    = clears_i && clears_group;
-  assign raises    = setup_i.state.depth_write && setup_i.state.depth_test[2];
+  assign raises      = raises_i;
+  assign line_raises = setup_i.state.depth_write && setup_i.state.depth_test[2];
 
   // Of each visit that has not been seen: whether it is in this tile, may raise depths, will say nothing; the farthest
   // depth behind it; what it said.
@@ -144,11 +145,19 @@
     end
   endgenerate
 
+  // A verdict is that of a primitive that has stood for a cycle.
+  raster_pkg::setup_packet_t was_setup_q;
+  logic is_behind_o, has_stood, was_is_equal_behind;
+  always_ff @(posedge clk_i) was_setup_q <= setup_i;
+  assign was_is_equal_behind = was_setup_q.state.depth_test == raster_pkg::DEPTH_FUNC_LESS &&
+                               (CODE == HIZ || ((CODE + 1)'(was_setup_q.range.low[0+:CODE]) + (CODE + 1)'(1)) << (HIZ + 1) >> (HIZ + 1) == '0);
+  assign has_stood   = was_setup_q == setup_i;
+  assign is_behind_o = {1'b0, bound_o} < limit_o && has_stood;
   // The depth test, with a fragment and stored depths that are only bounded.
   logic raised_q;  // by a line, since the last clear
   always_ff @(posedge clk_i) begin
     if (!rst_ni || forgets) raised_q <= 1'b0;
-    else if (passes_i && setup_i.kind == raster_pkg::PRIMITIVE_KIND_LINE && raises) raised_q <= 1'b1;
+    else if (passes_i && setup_i.kind == raster_pkg::PRIMITIVE_KIND_LINE && line_raises) raised_q <= 1'b1;
   end
   always_comb if (runs_q && raised_q) assert (!gen_hiz.bounds_hold_q && !is_eligible_o);
   (* anyseq *) logic [SAMPLES*CODE-1:0] any_fragment, any_stored;
@@ -188,11 +197,10 @@
   always_comb if (runs_q && rejected_q) assert (write_valid && write.passed == '0);  // (2)
   always_comb if (runs_q) cover (rejected_q);
   // What coarse_raster takes for granted: a verdict stays until the next read.
-  logic was_good_q, was_behind_q;
-  raster_pkg::setup_packet_t was_setup_q;
+  logic was_good_q, was_behind_q, had_stood_q;
   always_ff @(posedge clk_i) begin
     was_good_q   <= rst_ni && !reads_i && is_good_q && !starts_visit_i && !clears_i;
     was_behind_q <= is_behind_o;
-    was_setup_q  <= setup_i;
+    had_stood_q  <= has_stood;
   end
-  always_comb if (runs_q && was_good_q && was_setup_q == setup_i) assert (!is_good_q || is_behind_o == was_behind_q);
+  always_comb if (runs_q && was_good_q && has_stood && had_stood_q) assert (!is_good_q || is_behind_o == was_behind_q);

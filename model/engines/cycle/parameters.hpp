@@ -12,7 +12,7 @@ namespace halfplane {
 struct TimingParameters {
   int triangle_queue = 0, setup_queue = 0, tile_queue = 0, fragment_queue = 0;
   int stamp_queue = 2;  ///< the skid buffer behind interpolate, at least 1
-  int divide_bits = 3;  ///< quotient bits a cycle of the pipelined triangle_setup
+  int divide_bits = 2;  ///< quotient bits a cycle of the pipelined triangle_setup
   int untested_tiles =
       Hiz::kUntestedTiles;  ///< a triangle of at most so many tiles in x and in y never reads HiZ bounds
   int rejects = 1;          ///< 0: tiles outside an edge go to fine_raster like all others

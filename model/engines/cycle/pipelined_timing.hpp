@@ -68,7 +68,7 @@ class PipelinedTiming : public BackTiming {
     if (slots_.room() > std::max(ready, coarse_.room()))
       totals_.slot_cycles += slots_.room() - std::max(ready, coarse_.room());
     walk_ = setup.taken + PipelinedCycles::walk_begins;
-    has_bound_ = false;
+    reads_bounds_ = false;
     work(Stage::coarse_raster, PipelinedCycles::walk_begins);
   }
 
@@ -76,8 +76,8 @@ class PipelinedTiming : public BackTiming {
   void clear_bounds(std::uint64_t groups) {
     const Cycle clears = std::max(walk_ - 1, last_retire_ + 1);
     totals_.bound_cycles += clears - (walk_ - 1);
-    walk_ = clears + 1 + groups;
-    work(Stage::coarse_raster, groups);
+    walk_ = clears + 1 + groups + PipelinedCycles::clear_ends;
+    work(Stage::coarse_raster, groups + PipelinedCycles::clear_ends);
   }
 
   /// The next tile of the walk is outside, and passed over.
@@ -86,16 +86,15 @@ class PipelinedTiming : public BackTiming {
     work(Stage::coarse_raster, 1);
   }
 
-  /// From here on bounds are read, each on the way to its tile: as soon as they know of the visit hiz.lag before.
-  void read_ahead() {
-    const Cycle ready = std::max(walk_, visits_.room() + 1);
-    totals_.bound_cycles += ready - walk_;
-    walk_ = ready;
-    has_bound_ = true;
-  }
+  /// From here on bounds are read, each on the way to its tile.
+  void read_ahead() { reads_bounds_ = true; }
 
-  /// That of the next tile has been read.
-  void read_bound() {}
+  /// The tile goes on with its bound: that was read behind the last visit, and knows of the visit hiz.lag before.
+  void read_bound() {
+    const Cycle unread = std::max(walk_, visit_left_ + 2), ready = std::max(unread, visits_.room() + 1);
+    totals_.bound_cycles += ready - unread;
+    walk_ = std::max(ready, tile_left_ + 1);
+  }
 
   /// The primitive lies behind that bound, and the tile is passed over.
   void skip_behind() {
@@ -107,9 +106,11 @@ class PipelinedTiming : public BackTiming {
   /// depth_test does with it.
   template <class Shade>
   void end_walk(Shade&& shade) {
-    const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), walk_, rows_.room());
+    const Cycle offered = std::max(walk_, tile_left_ + 1);
+    coarse_.leave(offered - 1);
+    const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
     note(Arrow::tile, taken);
-    coarse_.leave(left);
+    tile_left_ = left;
     const Cycle row = std::max(taken + 1, stamps_.room());
     rows_.leave(row);
     stamps_.leave(send(row + 1, true, shade));
@@ -124,15 +125,15 @@ class PipelinedTiming : public BackTiming {
   /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.
   template <class Shade>
   void visit(const TileVisitWork& tile, Shade&& shade) {
-    const Cycle decided = walk_ + (has_bound_ ? PipelinedCycles::verdict : 0);
+    const Cycle decided = std::max(walk_, tile_left_) + 1;
     const Cycle offered = std::max(decided, visits_.room());
     totals_.visit_cycles += offered - decided;
     const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
     note(Arrow::tile, taken);
-    walk_ = left + 1 + (has_bound_ ? PipelinedCycles::read_again : 0);
-    work(Stage::coarse_raster, has_bound_ ? PipelinedCycles::verdict + PipelinedCycles::read_again : 0);
-    has_bound_ = false;
-    if (tile.ends_primitive) coarse_.leave(left);
+    if (tile.ends_primitive) coarse_.leave(decided - 1);
+    walk_ = decided;
+    tile_left_ = visit_left_ = left;
+    if (reads_bounds_) work(Stage::coarse_raster, PipelinedCycles::read_again);
     work(Stage::coarse_raster, 1);
     Cycle row_at = taken + 1;
     for (int row = tile.first_row;; ++row, ++row_at) {
@@ -186,11 +187,13 @@ class PipelinedTiming : public BackTiming {
   std::vector<Station> parts_;                                    ///< of triangle_setup, but for the last
   Station offer_setup_;                                           ///< the last
   Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< beside them, and behind both
-  Station coarse_{1, 0, 0}, slots_, visits_;
+  Station coarse_{1, 0, 1}, slots_, visits_;
   Station rows_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
-  Cycle offer_ = 0, walk_ = 0, last_left_ = 0;
-  bool has_bound_ = false;  ///< the primitive reads bounds
+  Cycle offer_ = 0, last_left_ = 0;
+  Cycle walk_ = 0;                         ///< when coarse_raster's walk is at the next tile
+  Cycle tile_left_ = 0, visit_left_ = 0;  ///< when the last tile packet left it, the last visit
+  bool reads_bounds_ = false;              ///< the primitive does
 };
 
 }  // namespace halfplane

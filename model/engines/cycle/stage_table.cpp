@@ -18,7 +18,7 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
             {Stage::triangle_setup, number(setup.latency), number(setup.part) + state,
              number(setup.parts + 1) +
                  (setup.has_state_lane ? ", " + number(SetupCycles::kStates) + " states, 1 of either" : "")},
-            {Stage::coarse_raster, text(PipelinedCycles::walk_begins) + " to the first tile",
+            {Stage::coarse_raster, text(PipelinedCycles::walk_begins + 1) + " to the first tile",
              "1 a tile, 3 for a visit where HiZ bounds are read",
              number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
             {Stage::fine_raster, "2", "1 a stamp or row of stamps without one", "2 rows"},
