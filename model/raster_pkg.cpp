@@ -13,6 +13,18 @@
 #include "stages/surface.hpp"
 
 namespace halfplane {
+
+/// What becomes of a stored stencil, in the words of tokens: a field of no packet.
+template <>
+struct WireEnum<StencilOp> {
+  static constexpr std::string_view name = "stencil_op";
+  static constexpr Width Widths::*width = &Widths::depth_func;  // eight of either
+  static constexpr Enumerator<StencilOp> all[] = {
+      {StencilOp::keep, "keep"},           {StencilOp::zero, "zero"},          {StencilOp::replace, "replace"},
+      {StencilOp::incr, "incr"},           {StencilOp::decr, "decr"},          {StencilOp::invert, "invert"},
+      {StencilOp::incr_wrap, "incr_wrap"}, {StencilOp::decr_wrap, "decr_wrap"}};
+};
+
 namespace {
 
 std::string constant_name(std::string_view name) {
@@ -214,6 +226,7 @@ std::string raster_pkg(const Config& config) {
   print_enum<PrimitiveKind>(out, widths);
   print_enum<StateRegister>(out, widths);
   print_enum<DepthFunc>(out, widths);
+  print_enum<StencilOp>(out, widths);
   print_enum<Cull>(out, widths);
   print_enum<HizUpdate>(out, widths);
   print_enum<TilePlane>(out, widths);

@@ -294,6 +294,10 @@ module raster_top (
   /* verilator lint_on UNUSEDSIGNAL */
   logic                                                       access_ready;
   logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth;
+  /* verilator lint_off UNUSEDSIGNAL */  // with tiles
+  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word;
+  /* verilator lint_on UNUSEDSIGNAL */
+  raster_pkg::write_packet_t tested_write;
   logic [COUNT-1:0]                                           covered, passed, written, killed, tested_written, tested_killed;
   logic [1:0]                                                 fill, evict, clear;
   /* verilator lint_off UNUSEDSIGNAL */  // without the unit of counters, or of textures
@@ -319,7 +323,8 @@ module raster_top (
       .access_color_o  (access_color),
       .stored_depth_i  (stored_depth),
       .write_valid_o   (write_valid),
-      .write_o         (write_data),
+      .write_o         (tested_write),
+      .word_o          (word),
       .retire_valid_o  (retire_valid),
       .retire_o        (retire_data),
       .covered_o       (covered),
@@ -327,6 +332,14 @@ module raster_top (
       .written_o       (tested_written),
       .killed_o        (tested_killed)
   );
+
+  // The packet as it is specified: words where they are written.
+  localparam int WORD = raster_pkg::STORED_DEPTH_BITS;
+  always_comb begin
+    write_data = tested_write;
+    for (int s = 0; s < raster_pkg::SAMPLES; s++)
+      if (tested_write.write_depth[s]) write_data.depth[s*WORD+:WORD] = word[s*WORD+:WORD];
+  end
 
   generate
     if (raster_pkg::CACHE_KIND == 0) begin : gen_tiles
@@ -385,6 +398,7 @@ module raster_top (
           .stored_depth_o  (stored_depth),
           .write_valid_i   (write_valid),
           .write_i         (write_data),
+          .word_i          (word),
           .request_valid_o (request_offered),
           .request_ready_i (request_ready),
           .request_o       (request_data),

@@ -57,6 +57,23 @@ CARRIES = {'plain': False, 'carries': True}
 LINES = ['tiny, 1x1', 'embedded, 2x2', 'full, 4x4']
 LINE_TOPS = {'line_raster': '`line_raster`', 'line_positions': '`line_raster`, positions alone',
              'primitive_join': '`primitive_join`'}
+# Fragment operations: what a unit adds to a whole design, `embedded` with the settings behind it; and modules by themselves.
+EMBEDDED = 'embedded, 2x2'
+OPERATIONS = [
+    ('alpha test', ['alpha.unit=1'], EMBEDDED),
+    ('blending, one lane', ['blend.lanes=1'], EMBEDDED),
+    ('blending, four lanes', ['blend.lanes=4'], EMBEDDED),
+    ('dithering', ['dither.unit=1'], EMBEDDED),
+    ('stencil', ['stencil.bits=8'], EMBEDDED),
+    ('all of these', ['alpha.unit=1', 'blend.lanes=4', 'dither.unit=1', 'stencil.bits=8'], EMBEDDED),
+    ('a texture unit', ['texture.unit=nearest'], EMBEDDED),
+    ('and fog', ['texture.unit=nearest', 'fog.unit=1'], 'a texture unit'),
+    ('and all of these', ['texture.unit=nearest', 'fog.unit=1', 'alpha.unit=1', 'blend.lanes=4', 'dither.unit=1', 'stencil.bits=8'],
+     'a texture unit'),
+]
+OPERATION_TOPS = {'blend_lane': 'a lane of four channels with alpha', 'alpha_test': 'of four samples', 'stencil_test': 'of four samples',
+                  'dithered_rop': 'a sample', 'fog_place': 'a sample', 'fog_unit': 'four samples', 'color_write': 'W, four lanes'}
+OPERATION_UNITS = 'and all of these'  # the design that has them
 LINE_POSITIONS = '''
 module line_positions (
     input logic clk_i, rst_ni, line_valid_i, pixel_ready_i, output logic line_ready_o, pixel_valid_o, is_last_o,
@@ -107,6 +124,12 @@ def line_unit(title):
     positions = BUILD / 'line_positions.sv'
     return {top: yosys(title, f'-{top}', f'{read_verilog(title)}; read_verilog -sv {positions}; '
                                          + SYNTH_ECP5.replace('raster_top', top))[top] for top in LINE_TOPS}
+
+
+def operation_units(title):
+    """ECP5 cells of each of OPERATION_TOPS by itself."""
+    return {top: sum(yosys(title, f'-{top}', f'{read_verilog(title)}; ' + SYNTH_ECP5.replace('raster_top', top) + '; flatten')
+                     .values(), collections.Counter()) for top in OPERATION_TOPS}
 
 
 def blocks(title):
@@ -206,6 +229,22 @@ def line_part(units):
     return lines
 
 
+def operation_part(operations, tops):
+    """`operations`: cells of each whole design, by title, EMBEDDED among them."""
+    total = {title: sum(part.values(), collections.Counter()) for title, part in operations.items()}
+    head = ['places', 'LUT4', 'CCU2C', 'DPR16X4', 'FF', 'MULT18X18D', 'DP16KD']
+    lines = [f'Fragment operations: `{EMBEDDED}` with what each unit wants, planes included (`{SYNTH_ECP5}`, as above), and how '
+             'much more that is than without it.']
+    rows = []
+    for title, settings, base in OPERATIONS:
+        more = [a - b for a, b in zip(ecp5_cells(total[title]), ecp5_cells(total[base]))]
+        rows.append([title, '`' + '` `'.join(settings) + '`', ecp5_cells(total[title])[0], *(f'{n:+,}' for n in more)])
+    lines += table(['unit', 'settings', 'the whole, places', *head], rows)
+    lines += ['Modules by themselves, in the last of these designs.']
+    lines += table(['module', 'what', *head], [[f'`{top}`', OPERATION_TOPS[top], *ecp5_cells(count)] for top, count in tops.items()])
+    return lines
+
+
 def ecp5_part(parts, flats, fitted):
     head = ['places', 'LUT4', 'CCU2C', 'DPR16X4', 'FF', 'MULT18X18D', 'DP16KD']
     total = {title: sum(part.values(), collections.Counter()) for title, part in parts.items()}
@@ -257,7 +296,7 @@ def ice40_part(fitted, packed):
     return lines
 
 
-def page(parts, flats, fitted_ecp5, fitted, packed, units):
+def page(parts, flats, fitted_ecp5, fitted, packed, units, operations, tops):
     tools = [version(['yosys', '-V']), version(['nextpnr-ice40', '--version'])]
     if shutil.which('nextpnr-ecp5'):
         tools.append(version(['nextpnr-ecp5', '--version']))
@@ -266,6 +305,8 @@ def page(parts, flats, fitted_ecp5, fitted, packed, units):
     lines += ecp5_part(parts, flats, fitted_ecp5)
     if units:
         lines += line_part(units)
+    if tops:
+        lines += operation_part({EMBEDDED: parts[EMBEDDED], **operations}, tops[OPERATION_UNITS])
     if fitted:
         lines += ice40_part(fitted, packed)
     return '\n'.join(lines).replace('\n\n\n', '\n\n').rstrip() + '\n'
@@ -284,6 +325,11 @@ def main():
         sets = [word for setting in settings for word in ('--set', setting)]
         run([options.program, 'config', '--config', preset, *sets, '--sv'], BUILD / f'{slug(title)}.sv')
     titles = [title for title, _, _ in chosen]
+    extra = [title for title, _, _ in OPERATIONS] if EMBEDDED in titles else []
+    for title, settings, _ in OPERATIONS:
+        if extra:
+            sets = [word for setting in settings for word in ('--set', setting)]
+            run([options.program, 'config', '--config', 'embedded', *sets, '--sv'], BUILD / f'{slug(title)}.sv')
     (BUILD / 'line_positions.sv').write_text(LINE_POSITIONS, encoding='utf-8')
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         jobs = {
@@ -293,6 +339,8 @@ def main():
             'packed': {t: pool.submit(packed_blocks, t) for t in PLACED[:1] if t in titles},
             'units': {t: pool.submit(line_unit, t) for t in LINES if t in titles},
             'parts': {t: pool.submit(blocks, t) for t in titles},
+            'operations': {t: pool.submit(blocks, t) for t in extra},
+            'tops': {t: pool.submit(operation_units, t) for t in [OPERATION_UNITS] if extra},
             'flats': {c: pool.submit(flat, FLAT, c) for c in FLAT_ECP5 if FLAT in titles},
         }
         text = page(**{name: {key: job.result() for key, job in group.items()} for name, group in jobs.items()})

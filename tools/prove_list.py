@@ -60,6 +60,13 @@ BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAM
 # Blocks with blending, a sample a clock; a word of operations fits a depth code.
 BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
             ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
+# Blocks whose depths have a stencil above them, without the other units of that preset; a word of its registers fits a code.
+STENCIL = (*BLOCKS, ('ALPHA_UNIT', 0), ('BLEND_LANES', 0), ('DITHER_UNIT', 0), ('FOG_UNIT', 0), ('TEXTURE_UNIT', 0), ('COORDINATES', 0),
+           ('DEPTH_CODE_BITS', 21), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 22), ('ALL_FRAGMENT_BITS', 22), ('MEMORY_LANE_BITS', 29),
+           ('FRAGMENT_PACKET_BITS', 185))
+# The same where nobody looks at such a word: a bit of depth, and one for the stencil.
+STENCIL_BIT = (*STENCIL, ('DEPTH_CODE_BITS', 1), ('STORED_DEPTH_BITS', 2), ('ALL_CODE_BITS', 2), ('ALL_FRAGMENT_BITS', 2), ('MEMORY_LANE_BITS', 2),
+               ('FRAGMENT_PACKET_BITS', 105))
 # What block_cache's properties call the registers of color_write.
 COLOR_WRITE = tuple((name, f'u_write.{inside}') for name, inside in
                     (('w_first_q', 'first_q'), ('w_first_line_q', 'first_line_q'), ('w_first_slot_q', 'first_slot_q'),
@@ -163,7 +170,7 @@ PROOFS = [
     Proof('interpolate_stream', 'f', 'stages/interpolate.sv', 'each stamp gets through, with its context, to a place of its own', k=2,
           cuts=(*OFFSETS, '*plane_offset*', '*fifo*'), twins=(28, ('x_valid_q       <= context_valid_q', 'x_valid_q       <= takes')), cover_depth=12),
     Proof('depth_test_stream', 'f', 'stages/depth_test.sv', 'an access, a write and a retirement for each that needs one', k=2,
-          quick=TINY, twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
+          quick=TINY, package=TILES, twins=(31, ('valid_q <= takes_fragment', 'valid_q <= fragment_valid_i')), cover_depth=5),
     Proof('coarse_raster_stream', 'f', 'stages/coarse_raster.sv', 'each primitive ends once; no slot is given twice', k=2, cuts=SRAMS, twins=(22, ('left_is_free) left_valid_q <= enters;', 'enters || tile_taken) left_valid_q <= enters;'),
           ('is_outside ? ends_walk && left_is_free :', 'is_outside ? ends_walk :')), cover_depth=7),
     Proof('triangle_setup_stream', 'f', 'stages/triangle_setup.sv', 'each triangle leaves once, in its turn; an answer in time',
@@ -203,6 +210,9 @@ PROOFS = [
           'are asked for where they are not', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data', package=BLENDING,
           presets=TINY, quick=TINY, twins=(196, 197, ("color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)",
                                           'color_known | stamp_bit'))),
+    Proof('cache_tags_stencil', 'd, f', 'stages/cache_tags.sv', 'with a stencil: a word of which a draw keeps a part is asked for, one that it '
+          'replaces is not; a clear has the value of the front', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs',
+          file='cache_tags_data', package=STENCIL, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323, 324)),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
           presets=('embedded',), quick=('embedded',), cover_depth=9,
@@ -215,7 +225,11 @@ PROOFS = [
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
           'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
           wires=COLOR_WRITE, quick=TINY, cover_depth=22,
-          twins=(76, ("x1_line_q == item_line && x1_writes_q != '0", "1'b0"), 77, 78, 79, 80, 261, 263, 264)),
+          twins=(76, ("x1_line_q == item_line && x1_writes_q;", "1'b0;"), ('on_chip && !is_forwarded', 'on_chip'), 77, 78, 79, 80, 261, 263, 264)),
+    Proof('block_cache_stencil', 'd, f', 'stages/block_cache.sv', 'the same where a stencil is above the depth, and changes without it',
+          cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', file='block_cache_data', package=STENCIL_BIT,
+          wires=COLOR_WRITE, presets=('stencilled',), cover_depth=22,
+          twins=(76, 78, 218, ('on_chip && !is_forwarded', 'on_chip'))),
     Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
           k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, quick=TINY, cover_depth=22,
           twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),

@@ -234,7 +234,7 @@ void HardwareModel::set_state(const FragmentPacket& token) {
   if (is_of_texture(which)) return set_register(*texture_, which, token, widths_);
   stencil_.set(which, state_word(token, widths_));
   colors_.set(which, state_word(token, widths_));
-  std::get<BlockCache>(cache_).set(colors_);
+  std::get<BlockCache>(cache_).set(colors_, stencil_);
 }
 
 /// texture_unit, and rop behind it: the colours of `packet` become what is stored, or is about to be blended. Returns the

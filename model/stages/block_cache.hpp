@@ -9,6 +9,7 @@
 #include "cache_tags.hpp"
 #include "color_packets.hpp"
 #include "memory_port.hpp"
+#include "stencil_packets.hpp"
 
 namespace halfplane {
 
@@ -24,9 +25,9 @@ class BlockCache {
   /// The stored colours under it, where its operations read them: else 0.
   [[nodiscard]] std::span<const std::uint32_t> colors() const { return stored_color_; }
 
-  /// A token has set what is done with colours.
-  void set(const ColorState& colors) {
-    directory_.set(colors.ops.reads_stored(), colors.alpha.func != DepthFunc::always);
+  /// A token has set what is done with colours, or with the stencil.
+  void set(const ColorState& colors, const StencilState& stencil) {
+    directory_.set(colors.ops.reads_stored(), colors.alpha.func != DepthFunc::always, stencil.replaces());
   }
 
   /// Writes what came of the fragment of the last access.

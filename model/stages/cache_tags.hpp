@@ -88,10 +88,11 @@ class CacheTags {
   }
 
   /// A token has set what is done with colours: whether it reads what is stored, and whether alpha is tested, so that of what
-  /// passes the depth test not all may be written.
-  void set(bool reads_color, bool tests_alpha) {
+  /// passes the depth test not all may be written; and, by side, whether a stencil test passes all and replaces all of them.
+  void set(bool reads_color, bool tests_alpha, const std::array<bool, 2>& replaces_stencil) {
     reads_color_ = reads_color;
     tests_alpha_ = tests_alpha;
+    replaces_stencil_ = replaces_stencil;
   }
 
   /// Whether depth that leaves the chip from now on is lost: the flag of its block stays as it is.
@@ -145,10 +146,12 @@ class CacheTags {
     std::array<bool, 2> is_cleared{};  ///< the flags of the block, as long as it is here
   };
 
-  /// Whether a fragment asks for what is stored under it. With a stencil what is written keeps a part of that.
+  /// Whether a fragment asks for what is stored under it. With a stencil what is written keeps a part of that, unless both
+  /// parts are replaced.
   [[nodiscard]] bool looks_at_depth(const PrimitiveState& state, bool is_full) const {
+    const bool replaces = state.depth_write && state.tests_stencil && replaces_stencil_[state.is_back ? 1 : 0];
     return state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.writes_word()) ||
-           state.tests_stencil || (has_stencil_ && state.depth_write);
+           (has_stencil_ && (state.tests_stencil || state.depth_write) && !replaces);
   }
   [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
   /// Of the words of a row of blocks.
@@ -191,6 +194,7 @@ class CacheTags {
   bool has_stencil_;
   bool drops_depth_ = false;
   bool reads_color_ = false, tests_alpha_ = false;
+  std::array<bool, 2> replaces_stencil_{};  ///< front, back
   std::vector<Line> lines_;
   std::deque<BlockAddress> unwritten_;  ///< evictions whose data wait, oldest first
   ClearFlags flags_;

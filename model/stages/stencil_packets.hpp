@@ -80,6 +80,15 @@ struct StencilState {
     }
   }
 
+  /// By side: every value passes, and of what passes nothing is left.
+  [[nodiscard]] constexpr std::array<bool, 2> replaces() const {
+    const auto replaces = [](const Stencil& s) {
+      return s.func == DepthFunc::always && (s.passes == StencilOp::zero || s.passes == StencilOp::replace) &&
+             s.write_mask == 255;
+    };
+    return {replaces(side[0]), replaces(side[1])};
+  }
+
   /// What a fast clear of depth leaves above it.
   [[nodiscard]] constexpr std::uint8_t clear_value() const { return side[0].reference; }
 };

@@ -208,12 +208,12 @@ mutant(74 stages/cache_tags.sv "depth unread: always, with some samples of a sta
   [=[fragment_q.mask == '1]=] [=[1'b1]=])
 mutant(75 stages/cache_tags.sv "fast clear: marks stop at the last whole word"
   [=[~({WORD{1'b1}} << 1 << bit_of(last_x))]=] [=[{WORD{1'b0}}]=])
-mutant(76 stages/block_cache.sv "hazard: a stamp is read while the one before writes it"
-  [=[(x1_writes_q & item.mask) != '0]=] [=[1'b0]=])
+mutant(76 stages/block_cache.sv "hazard: a stamp does not have what the one before it writes"
+  [=[is_again && writes]=] [=[1'b0]=])
 mutant(77 stages/block_cache.sv "victims: the stamp that is about to be written is not read first"
   [=[goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0]=] [=[1'b0]=])
 mutant(78 stages/block_cache.sv "strobes: samples count as written that only came from memory"
-  [=[{write_i.write_depth[s], written}]=] [=[{1'b1, written}]=])
+  [=[{write_i.write_depth[s], word_i[s*CODE+:CODE]}]=] [=[{1'b1, word_i[s*CODE+:CODE]}]=])
 mutant(79 stages/color_write.sv "fill: what was not drawn into keeps what the colour RAM had"
   [=[dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}}]=] [=[code[s*COLOR+:COLOR]]=])
 mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
@@ -406,29 +406,36 @@ mutant(207 stages/block_cache.sv "alpha: counter: samples that fail the depth te
 
 # stencil
 mutant(208 lib/stencil_test.sv "stencil: the reference is compared without the mask"
-  [=[reference_i & read_i]=] [=[reference_i]=])
+  [=[(stored ^ reference_i) & read_i]=] [=[(stored & read_i) ^ reference_i]=])
 mutant(209 lib/stencil_test.sv "stencil: what fails the depth test alone does what passes"
   [=[(is_nearer_i[s] ? ops_i[8:6] : ops_i[5:3])]=] [=[ops_i[8:6]]=])
 mutant(210 lib/stencil_test.sv "stencil: bits outside of the write mask become 0"
-  [=[(stored & ~write_i)]=] [=[8'd0]=])
+  [=[stored ^ (write_i & (toggles | carries))]=] [=[write_i & (stored ^ (toggles | carries))]=])
 mutant(211 lib/stencil_test.sv "stencil: incr goes on at 0"
-  [=[stored == 8'hff ? stored : stored + 8'd1]=] [=[stored + 8'd1]=])
+  [=[!(saturates && is_at_end)]=] [=[!(saturates && is_at_end && is_down)]=])
 mutant(212 stages/cull.sv "stencil: every triangle shows its front"
   [=[d_is_triangle && state_q.tests_stencil && !is_front]=] [=[1'b0]=])
 mutant(213 stages/hiz.sv "stencil: tiles are left out where what fails is marked"
   [=[setup_i.state.marks_failed]=] [=[1'b0]=])
 mutant(214 stages/depth_test.sv "stencil: where it alone changes the fragment's depth is stored"
-  [=[changes[s] && !takes]=] [=[1'b0]=])
+  [=[takes[s]]=] [=[changes[s]]=])
 mutant(215 stages/depth_test.sv "stencil: samples that are not covered change"
-  [=[fragment_q.mask[s] && (takes || is_marked)]=] [=[(takes || is_marked)]=])
+  [=[fragment_q.mask & opaque & {SAMPLES{fragment_q.state.tests_stencil}}]=] [=[opaque & {SAMPLES{fragment_q.state.tests_stencil}}]=])
 mutant(216 stages/cache_tags.sv "stencil: a depth that is overwritten goes unread, and what is above it"
-  [=[fragment_q.state.depth_write || fragment_q.state.tests_stencil]=] [=[fragment_q.state.tests_stencil]=])
+  [=[!(fragment_q.state.tests_stencil && replaces)]=] [=[fragment_q.state.tests_stencil && !replaces]=])
 mutant(217 stages/cache_tags.sv "stencil: a clear takes its value of the back"
   [=[fragment_q.code[SIDES]]=] [=[fragment_q.code[SIDES+1]]=])
-mutant(218 stages/block_cache.sv "stencil: hazard: a stamp of which only that changes is not waited for"
+mutant(218 stages/block_cache.sv "stencil: a late alpha test, or an eviction, does not wait for a stamp of which only that changes"
   [=[item.state.depth_write || item.state.writes_stencil]=] [=[item.state.depth_write]=])
 mutant(219 stages/block_cache.sv "stencil: with a late alpha test, what has failed keeps its value"
   [=[write_i.passed | write_i.write_depth]=] [=[write_i.passed]=])
+
+mutant(322 stages/cache_tags.sv "stencil: what replaces a part of it goes unread"
+  [=[fragment_q.code[UPDATE_SIDES-1-:8] == 8'hff]=] [=[fragment_q.code[UPDATE_SIDES-1-:8] != 8'h00]=])
+mutant(323 stages/cache_tags.sv "stencil: what replaces it goes unread where not all pass"
+  [=[passes_all_q[fragment_q.state.is_back]]=] [=[1'b1]=])
+mutant(324 stages/cache_tags.sv "stencil: the back goes unread if the front does"
+  [=[replaces_q[fragment_q.state.is_back]]=] [=[replaces_q[0]]=])
 
 # The lane of states beside triangle_setup; counters of a texture unit; its division.
 mutant(250 lib/setup_states.sv "texture states: one overtakes the triangle in front of it"

@@ -5,24 +5,17 @@ module stencil_test (
     input logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,
     input logic [7:0]                             reference_i,
     input logic [7:0]                             read_i,
-    input logic [8:0]                             ops_i,  // sfail, zfail, zpass, lowest first
+    input logic [8:0]                             ops_i,  // sfail, zfail, zpass, lowest first, as depth_test's as_bits
     input logic [7:0]                             write_i,
 
+    input logic [raster_pkg::SAMPLES-1:0]   may_mark_i,
     input logic [8*raster_pkg::SAMPLES-1:0] stored_i,
     input logic [raster_pkg::SAMPLES-1:0]   is_nearer_i,  // it passes the depth test
 
     output logic [raster_pkg::SAMPLES-1:0]   passes_o,
-    output logic [raster_pkg::SAMPLES-1:0]   marks_o,  // the stored value changes
+    output logic [raster_pkg::SAMPLES-1:0]   marks_o,  // the stored value is written; else stencil_o is as it was
     output logic [8*raster_pkg::SAMPLES-1:0] stencil_o
 );
-
-  localparam logic [2:0] KEEP = 3'd0;
-  localparam logic [2:0] ZERO = 3'd1;
-  localparam logic [2:0] REPLACE = 3'd2;
-  localparam logic [2:0] INCR = 3'd3;
-  localparam logic [2:0] DECR = 3'd4;
-  localparam logic [2:0] INVERT = 3'd5;
-  localparam logic [2:0] INCR_WRAP = 3'd6;
 
   logic less_passes, equal_passes, greater_passes;
   passing_orders u_orders (
@@ -32,35 +25,38 @@ module stencil_test (
       .greater_o(greater_passes)
   );
 
-  logic [7:0] wanted;
-  assign wanted = reference_i & read_i;
-
   genvar s;
   generate
     for (s = 0; s < raster_pkg::SAMPLES; s++) begin : gen_sample
-      logic [7:0] stored, looked_at, result;
+      // A bit at a time, each a table of four inputs. What is compared: the highest bit that differs decides. What is stored: a
+      // bit toggles if the operation says so, or where it counts and all bits below are ones (zeros, counting down).
+      logic [7:0] stored, differs, toggles, carries;
       logic [2:0] op;
-      logic       is_less, is_equal;
-      assign stored      = stored_i[8*s+:8];
-      assign looked_at   = stored & read_i;
-      assign is_less     = wanted < looked_at;
-      assign is_equal    = wanted == looked_at;
-      assign passes_o[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
-      assign op          = !passes_o[s] ? ops_i[2:0] : (is_nearer_i[s] ? ops_i[8:6] : ops_i[5:3]);
-      assign marks_o[s]  = op != KEEP && write_i != '0;
+      logic       is_less, counts, is_down, saturates, is_at_end;
+      assign stored  = stored_i[8*s+:8];
+      assign differs = (stored ^ reference_i) & read_i;
       always_comb begin
-        case (op)
-          KEEP: result = stored;
-          ZERO: result = '0;
-          REPLACE: result = reference_i;
-          INCR: result = stored == 8'hff ? stored : stored + 8'd1;
-          DECR: result = stored == 8'h00 ? stored : stored - 8'd1;
-          INVERT: result = ~stored;
-          INCR_WRAP: result = stored + 8'd1;
-          default: result = stored - 8'd1;
-        endcase
+        is_less = 1'b0;  // the reference
+        for (int i = 0; i < 8; i++) if (differs[i]) is_less = stored[i];
       end
-      assign stencil_o[8*s+:8] = (result & write_i) | (stored & ~write_i);
+      assign passes_o[s] = differs == '0 ? equal_passes : (is_less ? less_passes : greater_passes);
+
+      always_comb begin
+        op = !passes_o[s] ? ops_i[2:0] : (is_nearer_i[s] ? ops_i[8:6] : ops_i[5:3]);
+        if (!may_mark_i[s]) op = '0;
+      end
+      assign marks_o[s] = op != '0 && write_i != '0;
+      assign counts     = op[2];
+      assign is_down    = op[1];
+      assign saturates  = op[0];
+      assign is_at_end  = stored == {8{!is_down}};
+      always_comb begin
+        for (int i = 0; i < 8; i++)
+          carries[i] = counts && !(saturates && is_at_end) && ((stored ^ {8{!is_down}}) & ((8'd1 << i) - 8'd1)) == '0;
+        toggles = op[1] ? (op[0] ? '1 : stored ^ reference_i) : (op[0] ? stored : '0);
+        if (counts) toggles = '0;
+      end
+      assign stencil_o[8*s+:8] = stored ^ (write_i & (toggles | carries));
     end
   endgenerate
 

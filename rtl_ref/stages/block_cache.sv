@@ -32,6 +32,7 @@ module block_cache (
     input logic                      write_valid_i,
     input raster_pkg::write_packet_t write_i,
     /* verilator lint_on UNUSEDSIGNAL */
+    input logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word_i,  // what its samples have from now on
 
     // To and from memory_port
     output logic                         request_valid_o,
@@ -370,7 +371,7 @@ module block_cache (
   endgenerate
 
   // --------------------------------------------------------------------------------------------------- X: the depth test
-  logic              on_chip, in_memory, reads_victim, slot_free, goes, hazard, leaves_line;
+  logic              on_chip, in_memory, reads_victim, slot_free, goes, is_again, leaves_line;
   logic [STAMPS-1:0] left_q, left, next, item_bit;  // stamps of the last eviction that are still to be read
   logic [LINE-1:0]   left_line_q;
   logic [VICTIM:0]   taken_q;   // slots of victims that X has given away
@@ -387,17 +388,16 @@ module block_cache (
   logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] x1_source_q;
   logic               x1_fills_q;
   logic [STAMPS-1:0]  x1_color_q;
-  logic [SAMPLES-1:0] x1_writes_q;  // samples of the RAM that may be written
+  logic               x1_writes_q;  // the RAM, perhaps
 
   assign slot_free    = taken_q != (VICTIM + 1)'(VICTIMS);
   assign item_bit     = STAMPS'(1) << item_stamp;
   assign on_chip      = source == raster_pkg::DEPTH_SOURCE_CHIP;
   assign in_memory    = source == raster_pkg::DEPTH_SOURCE_MEMORY;
-  assign hazard       = x1_valid_q && on_chip && x1_line_q == item_line && x1_stamp_q == item_stamp &&
-                        (x1_writes_q & item.mask) != '0;
-  assign leaves_line  = x1_valid_q && x1_line_q == item_line && x1_writes_q != '0;
+  assign is_again     = x1_valid_q && on_chip && x1_line_q == item_line && x1_stamp_q == item_stamp;  // the stamp at depth_test
+  assign leaves_line  = x1_valid_q && x1_line_q == item_line && x1_writes_q;
   assign goes         = item_valid && !waits_for_late && (!evicts || (left_q == '0 && slot_free && !leaves_line)) &&
-                        (!on_chip || left_q == '0) && (!in_memory || answer_valid) && !hazard &&
+                        (!on_chip || left_q == '0) && (!in_memory || answer_valid) &&
                         (behind_q != BEHIND'(PLACES) || (colors_done && raster_pkg::COORDINATES == 0));
   assign left         = goes && evicts ? evicts_depth : left_q;
   assign next         = goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0 ? item_bit : lowest(left);
@@ -430,9 +430,8 @@ module block_cache (
     x1_evicts_q       <= evicts;
     x1_fills_q        <= fills[1];
     x1_color_q        <= evicts_color;
-    if (item.mask == '0 || (tests_alpha && writes_word)) x1_writes_q <= '0;
-    else if (on_chip) x1_writes_q <= item.mask & {SAMPLES{writes_word}};
-    else x1_writes_q <= {SAMPLES{source != raster_pkg::DEPTH_SOURCE_NONE || writes_word}};
+    x1_writes_q       <= item.mask != '0 && !(tests_alpha && writes_word) &&
+                         (writes_word || (!on_chip && source != raster_pkg::DEPTH_SOURCE_NONE));
   end
   generate
     if (HAS_STENCIL) begin : gen_writes_word
@@ -442,7 +441,8 @@ module block_cache (
     end
   endgenerate
 
-  // The depth RAM: of each sample its code, and whether memory does not have it.
+  // The depth RAM: of each sample its code, and whether memory does not have it. What a stamp is tested against comes from there,
+  // from the answer, or stands in a register as it goes: the clear value, or what is written while the RAM is read.
   logic                    v_valid_q, v_last_q, v_fills_q, fills_q;  // a stamp of a victim has been read
   logic [STAMP-1:0]        v_stamp_q;
   logic [VICTIM-1:0]       v_slot_q, slot_q;  // of the next eviction
@@ -475,18 +475,18 @@ module block_cache (
   assign x1_on_chip = x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_depth
-      logic [CODE-1:0] code, stored, written;
-      logic            dirty, writes, strobe;
+      logic [CODE-1:0] code, stored, held_q;
+      logic            dirty, writes, strobe, is_forwarded, in_ram_q;
       logic [CODE:0]   word;
       assign response_depth[s*CODE+:CODE] = response_i.data[s*LANE+:CODE];
-      always_comb begin
-        stored = answer_q[s*CODE+:CODE];
-        if (x1_source_q == raster_pkg::DEPTH_SOURCE_CLEAR) stored = clear_depth;
-        if (x1_on_chip) stored = code;
+      assign stored       = in_ram_q ? code : x1_source_q == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_q[s*CODE+:CODE] : held_q;
+      assign is_forwarded = is_again && writes;  // not of a late one: behind that nothing in its place goes
+      always_ff @(posedge clk_i) begin
+        in_ram_q <= on_chip && !is_forwarded;
+        held_q   <= is_forwarded ? word_i[s*CODE+:CODE] : clear_depth;
       end
       assign writes = write_i.write_depth[s] || (!x1_on_chip && x1_source_q != raster_pkg::DEPTH_SOURCE_NONE);
-      assign written = write_i.write_depth[s] ? write_i.depth[s*CODE+:CODE] : stored;
-      assign word = late_valid ? late_word[s*(CODE+1)+:CODE+1] : {write_i.write_depth[s], written};
+      assign word = late_valid ? late_word[s*(CODE+1)+:CODE+1] : {write_i.write_depth[s], word_i[s*CODE+:CODE]};
       assign stored_depth_o[s*CODE+:CODE] = stored;
       sram #(
           .WIDTH    (CODE + 1),
@@ -651,7 +651,7 @@ module block_cache (
       assign x1_carried[LATE_AT+:KNOWN] = {
         write_valid_i && x1_late, x1_on_chip,
         write_valid_i && (x1_item_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || x1_item_q.kind[2]),
-        x1_item_q.state.depth_write || x1_item_q.state.color_write, write_i.passed, write_i.depth, stored_depth_o
+        x1_item_q.state.depth_write || x1_item_q.state.color_write, write_i.passed, word_i, stored_depth_o
       };
 
       // W

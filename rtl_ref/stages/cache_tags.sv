@@ -337,12 +337,27 @@ module cache_tags #(
   generate
     if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
       localparam int SIDES = raster_pkg::DEPTH_FUNC_BITS + 16;  // bit of a token that it is about the front
+      localparam int OP = raster_pkg::DEPTH_FUNC_BITS;  // eight of either
+      localparam int UPDATE_SIDES = 3 * OP + 8;
       logic [7:0] clear_q;
-      always_ff @(posedge clk_i)
-        if (leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST &&
-            fragment_q.code[SIDES])
-          clear_q <= fragment_q.code[raster_pkg::DEPTH_FUNC_BITS+:8];
-      assign keeps_part  = fragment_q.state.depth_write || fragment_q.state.tests_stencil;
+      logic [1:0] passes_all_q, replaces_q;  // by side: every value passes; what passes leaves none of it
+      logic       sets_test, sets_update, replaces;
+      assign sets_test   = leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST;
+      assign sets_update = leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_UPDATE;
+      always_ff @(posedge clk_i) begin
+        if (sets_test && fragment_q.code[SIDES]) clear_q <= fragment_q.code[raster_pkg::DEPTH_FUNC_BITS+:8];
+        for (int i = 0; i < 2; i++) begin
+          if (sets_test && fragment_q.code[SIDES+i])
+            passes_all_q[i] <= fragment_q.code[raster_pkg::DEPTH_FUNC_BITS-1:0] == raster_pkg::DEPTH_FUNC_ALWAYS;
+          if (sets_update && fragment_q.code[UPDATE_SIDES+i])
+            replaces_q[i] <= (fragment_q.code[2*OP+:OP] == raster_pkg::STENCIL_OP_ZERO ||
+                              fragment_q.code[2*OP+:OP] == raster_pkg::STENCIL_OP_REPLACE) &&
+                             fragment_q.code[UPDATE_SIDES-1-:8] == 8'hff;
+        end
+      end
+      assign replaces    = passes_all_q[fragment_q.state.is_back] && replaces_q[fragment_q.state.is_back];
+      assign keeps_part  = fragment_q.state.depth_write ? !(fragment_q.state.tests_stencil && replaces) :
+                                                          fragment_q.state.tests_stencil;
       assign writes_word = fragment_q.state.depth_write || fragment_q.state.writes_stencil;
       assign clear_word  = {clear_q, fragment_i.code[0+:Z]};
     end else begin : gen_no_stencil

@@ -2,7 +2,8 @@
 //
 // In: fragments. Out: an access of the framebuffer for each stamp with a covered sample and for each token (fast clear,
 // flush); one cycle later, with the stored codes, the write of what passed; another cycle later the retirement of the
-// tile visit. One stamp a cycle. A stamp waits one cycle behind a stamp whose depth it has to see.
+// tile visit. One stamp a cycle. With tiles a stamp waits one cycle behind a stamp whose depth it has to see;
+// a framebuffer of blocks forwards it.
 // Specification: model/stages/depth_test.hpp.
 module depth_test (
     input logic clk_i,
@@ -20,9 +21,11 @@ module depth_test (
     output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // of sample 0: a clear's colour
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_i,
 
-    // To framebuffer; never waits
+    // To framebuffer; never waits. The depths of the packet are those of the fragment
     output logic                      write_valid_o,
     output raster_pkg::write_packet_t write_o,
+    // What a sample has from now on, written or not
+    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word_o,
 
     // To coarse_raster; never waits
     output logic                       retire_valid_o,
@@ -59,15 +62,15 @@ module depth_test (
   /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
-  logic [SAMPLES*WORD-1:0]  word;          // what is written
   logic [SAMPLES-1:0]       is_nearer, passes_stencil;  // passes the depth test; the stencil test
   logic [SAMPLES-1:0]       passed, kept;  // by both, and of those by the alpha test
   logic [SAMPLES-1:0]       opaque;        // by the alpha test, if that is here
-  logic [SAMPLES-1:0]       changes;       // samples whose stored word is another one now, unless the alpha test drops them
+  logic [SAMPLES-1:0]       takes;         // samples whose depth is written
+  logic [SAMPLES-1:0]       changes;       // samples whose stored word is
   logic                     is_stamp;
 
   assign needs_access = fragment_i.kind[1] || fragment_i.mask != '0;
-  assign must_wait = valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x &&
+  assign must_wait = raster_pkg::CACHE_KIND == 0 && valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x &&
                      fragment_q.key.tile_y == fragment_i.key.tile_y && fragment_q.stamp == fragment_i.stamp &&
                      (fragment_q.mask & fragment_i.mask) != '0;
   assign access_valid_o   = fragment_valid_i && needs_access && !must_wait;
@@ -99,6 +102,21 @@ module depth_test (
   /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
   logic is_late;
   /* verilator lint_on UNUSEDSIGNAL */
+  // An operation of the stencil as stencil_test wants it: what counts has bit 2, down bit 1, and bit 0 where it stops at the end;
+  // what does not count keeps, zeroes, replaces, inverts.
+  function automatic [2:0] as_bits(input [2:0] op);
+    case (op)
+      raster_pkg::STENCIL_OP_KEEP: as_bits = 3'b000;
+      raster_pkg::STENCIL_OP_ZERO: as_bits = 3'b001;
+      raster_pkg::STENCIL_OP_REPLACE: as_bits = 3'b010;
+      raster_pkg::STENCIL_OP_INVERT: as_bits = 3'b011;
+      raster_pkg::STENCIL_OP_INCR_WRAP: as_bits = 3'b100;
+      raster_pkg::STENCIL_OP_INCR: as_bits = 3'b101;
+      raster_pkg::STENCIL_OP_DECR_WRAP: as_bits = 3'b110;
+      default: as_bits = 3'b111;
+    endcase
+  endfunction
+
   genvar s;
   generate
     if (HAS_ALPHA) begin : gen_alpha
@@ -151,8 +169,12 @@ module depth_test (
       logic [TEST-1:0]      test;
       logic [UPDATE-1:0]    update;
       logic                 sets_test, sets_update;
+      logic [8:0]           ops;
+      for (s = 0; s < 3; s++) begin : gen_op
+        assign ops[3*s+:3] = as_bits(fragment_q.code[3*s+:3]);
+      end
       logic [8*SAMPLES-1:0] stored, result;
-      logic [SAMPLES-1:0]   side_passes, marks;
+      logic [SAMPLES-1:0]   side_passes, may_mark, marks;
       assign sets_test   = valid_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
                            fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST;
       assign sets_update = valid_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
@@ -160,17 +182,19 @@ module depth_test (
       always_ff @(posedge clk_i) begin
         for (int i = 0; i < 2; i++) begin
           if (sets_test && fragment_q.code[TEST+i]) test_q[i] <= fragment_q.code[TEST-1:0];
-          if (sets_update && fragment_q.code[UPDATE+i]) update_q[i] <= fragment_q.code[UPDATE-1:0];
+          if (sets_update && fragment_q.code[UPDATE+i]) update_q[i] <= {fragment_q.code[UPDATE-1-:8], ops};
         end
       end
       assign test   = test_q[fragment_q.state.is_back];
       assign update = update_q[fragment_q.state.is_back];
+      assign may_mark = fragment_q.mask & opaque & {SAMPLES{fragment_q.state.tests_stencil}};
       stencil_test u_test (
           .func_i     (test[2:0]),
           .reference_i(test[10:3]),
           .read_i     (test[18:11]),
           .ops_i      (update[8:0]),
           .write_i    (update[16:9]),
+          .may_mark_i (may_mark),
           .stored_i   (stored),
           .is_nearer_i(is_nearer),
           .passes_o   (side_passes),
@@ -179,20 +203,13 @@ module depth_test (
       );
       assign passes_stencil = side_passes | {SAMPLES{!fragment_q.state.tests_stencil}};
       for (s = 0; s < SAMPLES; s++) begin : gen_word
-        logic takes, is_marked;  // the depth is written; the stencil changes
-        logic [7:0] stencil;
-        assign stored[8*s+:8] = stored_depth_i[s*WORD+CODE+:8];
-        assign takes      = passed[s] && fragment_q.state.depth_write;
-        assign is_marked  = marks[s] && fragment_q.state.tests_stencil;
-        assign changes[s] = fragment_q.mask[s] && (takes || is_marked);
-        assign stencil    = is_marked ? result[8*s+:8] : stored[8*s+:8];
-        assign word[s*WORD+:CODE]     = changes[s] && !takes ? stored_depth_i[s*WORD+:CODE] : depth[s*CODE+:CODE];
-        assign word[s*WORD+CODE+:8] = stencil & {8{changes[s]}};
+        assign stored[8*s+:8]         = stored_depth_i[s*WORD+CODE+:8];
+        assign word_o[s*WORD+CODE+:8] = result[8*s+:8];
       end
+      assign changes = takes | marks;
     end else begin : gen_no_stencil
       assign passes_stencil = '1;
-      assign changes        = passed & {SAMPLES{fragment_q.state.depth_write}};
-      assign word           = depth;
+      assign changes        = takes;
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
       logic is_less, is_equal;
@@ -200,6 +217,8 @@ module depth_test (
       assign is_less  = depth[s*CODE+:CODE] < stored_depth_i[s*WORD+:CODE];
       assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*WORD+:CODE];
       assign is_nearer[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
+      assign write_o.depth[s*WORD+:WORD] = WORD'(depth[s*CODE+:CODE]);
+      assign word_o[s*WORD+:CODE] = takes[s] ? depth[s*CODE+:CODE] : stored_depth_i[s*WORD+:CODE];
 
       if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
           (raster_pkg::CACHE_KIND == 0 || raster_pkg::ALPHA_UNIT != 0)) begin : gen_rop
@@ -215,14 +234,14 @@ module depth_test (
 
   assign passed               = fragment_q.mask & is_nearer & passes_stencil;
   assign kept                 = passed & opaque;
+  assign takes                = kept & {SAMPLES{fragment_q.state.depth_write}};
   assign is_stamp             = valid_q && fragment_q.mask != '0;
   assign write_valid_o        = is_stamp;
   assign write_o.key          = fragment_q.key;
   assign write_o.stamp        = fragment_q.stamp;
   assign write_o.passed       = passed;
-  assign write_o.write_depth  = changes & opaque;
+  assign write_o.write_depth  = changes;
   assign write_o.write_color  = fragment_q.state.color_write ? kept : '0;
-  assign write_o.depth        = word;
   assign write_o.color        = color_q;
 
   // Counters, one cycle late: the sums stay out of the path from the RAM to its write enable.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 
+#include "../state_pairs.hpp"
 #include "halfplane_paths.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/rtl_engine.hpp"
@@ -121,6 +122,26 @@ TEST(Cosim, StencilsAreDrawnInRandomScenes) {
     }
   }
   EXPECT_GT(units, 0u);
+}
+
+// Fragment operations together with textures: each pair of values of two states (tests/state_pairs.hpp lists them).
+TEST(Cosim, EveryPairOfValuesOfTwoStatesIsEqualInEveryPacket) {
+  const Config config = test::all_operations();
+  const auto scenes = test::paired_scenes(config, test::dimensions(), 1);
+  for (const double stalls : {0.0, 0.3}) {
+    LockstepOptions options;
+    options.seed = 34;
+    options.stall_probability = stalls;
+    std::size_t next = 0;
+    const Session session = run(
+        find_dut(config), options,
+        [&]() -> std::optional<Scene> { return next < scenes.size() ? std::optional(scenes[next++]) : std::nullopt; },
+        HostOrders::drawn);
+    EXPECT_EQ(describe(session), "");
+    EXPECT_EQ(session.result.model_cycles, session.result.cycles);
+    EXPECT_EQ(next, scenes.size());
+    EXPECT_GT(session.result.compared[index(Arrow::color)], 50'000u);
+  }
 }
 
 TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {

@@ -1,21 +1,10 @@
 
-  // No stamp is tested while the one before it writes it, and depth_test never waits: tags have known since the fragment
-  // before that the stamp is on the chip (cache_tags_data), and a stamp has one place.
-  always_comb if (runs_q && tested_valid_o && x1_valid_q && tested_q.mask != '0 && item.mask != '0 && is_same) begin
-    assume (source == raster_pkg::DEPTH_SOURCE_CHIP && item_line == x1_line_q && item_stamp == x1_stamp_q);
-    assert (!(tested_q.state.depth_write && (tested_q.mask & item.mask) != '0));
-  end
-  logic is_same;
-  assign is_same = tested_q.state.depth_write && tested_q.key.tile_x == item.key.tile_x && tested_q.key.tile_y == item.key.tile_y &&
-                   tested_q.stamp == item.stamp;
-  logic [SAMPLES-1:0] x1_mask;
-  assign x1_mask = x1_valid_q ? tested_q.mask : '0;
   always_comb if (runs_q) begin
     assert (x1_valid_q == tested_valid_q);
-    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == raster_pkg::DEPTH_SOURCE_NONE && !x1_starts_color_q && x1_writes_q == '0);
+    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == raster_pkg::DEPTH_SOURCE_NONE && !x1_starts_color_q && !x1_writes_q);
     if (x1_valid_q && tested_q.mask != '0)
-      assert (x1_writes_q == (x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP ? tested_q.mask & {SAMPLES{tested_q.state.depth_write}} :
-                              {SAMPLES{x1_source_q != raster_pkg::DEPTH_SOURCE_NONE || tested_q.state.depth_write}}));
+      assert (x1_writes_q == (tested_writes || (x1_source_q != raster_pkg::DEPTH_SOURCE_CHIP &&
+                                                             x1_source_q != raster_pkg::DEPTH_SOURCE_NONE)));
   end
 
   // One place of the RAMs, any: a sample m of a stamp of a line.
@@ -103,10 +92,11 @@
           if (p == 0 && writes) assert (stored == {write_i.write_depth[m], write_i.write_depth[m] ? write_i.depth[m*CODE+:CODE] :
                                                                             stored_depth_o[m*CODE+:CODE]});
           if (p == 1 && writes) assert (stored == (BITS + 1)'({w_mask_q[m], w_color_q[m*COLOR+:COLOR]}));
-          // The test sees what was written last.
-          if (p == 0 && x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask[m] &&
+          // The test sees what was written last, up to the clock before.
+          if (p == 0 && x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 &&
               {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
-            assert (read_is_it_q && !collided_q && read_word_q == word_q);
+            assert (read_is_it_q && gen_depth[m].in_ram_q == !collided_q);
+            if (!collided_q) assert (read_word_q == word_q);
             assert (stored_depth_o[m*CODE+:CODE] == CODE'(word_q));
           end
           if (begins && begins_line == any_line && (stamps & any_bit) != '0)
@@ -144,5 +134,5 @@
   always_comb if (runs_q) begin
     cover (gen_plane[0].is_begun && gen_plane[0].is_line_q && gen_plane[0].gen_truth[0].owes && sends_any && !is_color);
     cover (gen_plane[1].is_begun && gen_plane[1].is_line_q && gen_plane[1].is_here_q && gen_plane[1].fills_q && sends_any && is_color);
-    cover (x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 && item_valid && hazard);
+    cover (x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 && is_again && goes && !gen_depth[0].in_ram_q);
   end

@@ -1,7 +1,7 @@
 
   // What comes in. A fragment on offer stays as it is until it is taken (primitive_join_stream and what is in front of it); a
   // token has no samples. From depth_test: the write of an item with samples comes in the cycle after it, of no others than
-  // its samples, of all of them for `always`, and of the planes of its state (depth_test_stream). From memory: an answer is
+  // its samples, of all of them for `always`, and of the planes of its state, the depth's where a stencil changes above it; with it what each has from now on (depth_test_stream). From memory: an answer is
   // one to a read that was taken in an earlier cycle, in turn.
   logic is_token, is_clear, takes_fragment, takes_token;
   assign is_clear       = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
@@ -21,13 +21,28 @@
     tested_q       <= tested_o;
     unanswered_q   <= rst_ni ? unanswered_q + ($clog2(QUEUE) + 1)'(takes_read) - ($clog2(QUEUE) + 1)'(takes_response) : '0;
   end
+  // Whether the word of a sample may change, and where a stencil is above its depth also of one that does not pass.
+  logic tested_writes, tested_marks;
+  generate
+    if (raster_pkg::STENCIL_BITS != 0) begin : gen_marks
+      assign tested_writes = tested_q.state.depth_write || tested_q.state.writes_stencil;
+      assign tested_marks  = tested_q.state.writes_stencil;
+    end else begin : gen_no_marks
+      assign tested_writes = tested_q.state.depth_write;
+      assign tested_marks  = 1'b0;
+    end
+  endgenerate
   always_comb if (runs_q) begin
     if (waits_q) assume (fragment_valid_i && fragment_i == before_q);
     if (is_token) assume (fragment_i.mask == '0);
     assume (write_valid_i == (tested_valid_q && tested_q.mask != '0));
     assume ((write_i.passed & ~tested_q.mask) == '0);
     if (tested_q.state.depth_test == raster_pkg::DEPTH_FUNC_ALWAYS) assume (write_i.passed == tested_q.mask);
-    assume (write_i.write_depth == (tested_q.state.depth_write ? write_i.passed : '0));
+    assume ((write_i.write_depth & ~(tested_writes ? tested_q.mask : '0)) == '0);
+    assume ((write_i.write_depth & (tested_q.state.depth_write ? write_i.passed : '0)) == (tested_q.state.depth_write ? write_i.passed : '0));
+    if (!tested_marks) assume ((write_i.write_depth & ~write_i.passed) == '0);
+    for (int i = 0; i < SAMPLES; i++)
+      assume (word_i[i*CODE+:CODE] == (write_i.write_depth[i] ? write_i.depth[i*CODE+:CODE] : stored_depth_o[i*CODE+:CODE]));
     assume (write_i.write_color == (tested_q.state.color_write ? write_i.passed : '0));
     if (response_valid_i) assume (unanswered_q != '0);
   end

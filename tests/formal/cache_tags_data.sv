@@ -25,19 +25,75 @@
   assign fills_it     = flag_q & {colored_q != '0, stores_depth && known_q != '0};
   assign pending      = pending_q && age_q >= writes;
   assign age          = age_q - writes;
-  assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || fragment_q.mask != '1;
+  assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || fragment_q.mask != '1 || keeps_some;
   always_comb begin
     if (fragment_valid_i && is_token) assume (any_x <= last_x && any_y <= last_y);
     assume (32'(any_stamp) < STAMPS && 32'(any_x) < (raster_pkg::TILES_X << TILE_BITS) &&
             32'(any_y) < (raster_pkg::TILES_Y << TILE_BITS));
   end
 
+  // A stencil stands above each depth: a draw that writes one of them, or tests the stencil, keeps a part of what was stored,
+  // unless it replaces all of both. From the host: who tests it has set how, on its side.
+  logic keeps_some, changes_word;
+  generate
+    if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil_claim
+      logic [2:0] func_q[0:1], passes_q[0:1];
+      logic [7:0] write_q[0:1], front_q;
+      logic [1:0] has_test_q, has_update_q, passes_all, replaces_all;
+      logic       is_test, is_update, side;
+      assign is_test   = leaves && valid_q && !walks_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+                         fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST;
+      assign is_update = leaves && valid_q && !walks_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+                         fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_UPDATE;
+      assign side      = fragment_q.state.is_back;
+      always_ff @(posedge clk_i) begin
+        if (is_test && fragment_q.code[19]) front_q <= fragment_q.code[10:3];
+        for (int i = 0; i < 2; i++) begin
+          if (is_test && fragment_q.code[19+i]) begin
+            func_q[i]     <= fragment_q.code[2:0];
+            has_test_q[i] <= 1'b1;
+          end
+          if (is_update && fragment_q.code[17+i]) begin
+            passes_q[i]     <= fragment_q.code[8:6];
+            write_q[i]      <= fragment_q.code[16:9];
+            has_update_q[i] <= 1'b1;
+          end
+        end
+        if (!rst_ni) {has_test_q, has_update_q} <= '0;
+      end
+      always_comb
+        for (int i = 0; i < 2; i++) begin
+          passes_all[i]   = func_q[i] == raster_pkg::DEPTH_FUNC_ALWAYS;
+          replaces_all[i] = (passes_q[i] == raster_pkg::STENCIL_OP_ZERO || passes_q[i] == raster_pkg::STENCIL_OP_REPLACE) &&
+                            write_q[i] == 8'd255;
+        end
+      assign keeps_some   = (fragment_q.state.depth_write || fragment_q.state.tests_stencil) &&
+                            !(fragment_q.state.depth_write && fragment_q.state.tests_stencil && passes_all[side] && replaces_all[side]);
+      assign changes_word = fragment_q.state.depth_write || fragment_q.state.writes_stencil;
+      always_comb if (runs_q) begin
+        if (is_access && fragment_q.state.tests_stencil) assume (has_test_q[side] && has_update_q[side]);
+        for (int i = 0; i < 2; i++) begin
+          if (has_test_q[i]) assert (gen_stencil.passes_all_q[i] == passes_all[i]);
+          if (has_update_q[i]) assert (gen_stencil.replaces_q[i] == replaces_all[i]);
+        end
+        if (has_test_q[0]) assert (gen_stencil.clear_q == front_q);
+        if (has_test_q[0] && state_q == DONE && is_clear && fragment_i.state.depth_write)
+          assert (clear_depth_o == {front_q, fragment_i.code[0+:Z]});
+        cover (leaves && is_it && item_source_o == raster_pkg::DEPTH_SOURCE_NONE && changes_word);
+        cover (leaves && is_it && item_source_o == raster_pkg::DEPTH_SOURCE_CLEAR && !fragment_q.state.depth_write && changes_word);
+      end
+    end else begin : gen_depth_claim
+      assign keeps_some   = 1'b0;
+      assign changes_word = fragment_q.state.depth_write;
+    end
+  endgenerate
+
   always_ff @(posedge clk_i) begin
     if (leaves && is_it) begin
       here_q      <= 1'b1;
       known_q     <= (here_q ? known_q : '0) | (is_looked_at || fragment_q.state.depth_write ? stamp_bit : '0);
       colored_q   <= (here_q ? colored_q : '0) | (fragment_q.state.color_write ? stamp_bit : '0);
-      has_depth_q <= (here_q && has_depth_q) || fragment_q.state.depth_write;
+      has_depth_q <= (here_q && has_depth_q) || changes_word;
     end
     if (leaves && empties_it) here_q <= 1'b0;
     if (leaves && evicts_it) flag_q <= flag_q & ~fills_it;

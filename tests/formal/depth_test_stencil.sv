@@ -9,7 +9,7 @@
       logic            is_written, is_new_depth;
       logic [7:0]      mask;
       assign old_word     = stored_depth_i[f*WORD+:WORD];
-      assign new_word     = write_o.depth[f*WORD+:WORD];
+      assign new_word     = word_o[f*WORD+:WORD];
       assign is_written   = write_o.write_depth[f];
       assign is_new_depth = write_o.passed[f] && fragment_q.state.depth_write;
       assign mask         = gen_stencil.update_q[fragment_q.state.is_back][16:9];
@@ -19,6 +19,7 @@
           assert (new_word[CODE-1:0] == (is_new_depth ? fragment_q.code[f*CODES+:CODE] : old_word[CODE-1:0]));
           assert (((new_word[WORD-1-:8] ^ old_word[WORD-1-:8]) & ~(fragment_q.state.tests_stencil ? mask : 8'd0)) == '0);
         end
+        if (!is_written) assert (new_word == old_word);
         if (is_new_depth && opaque[f]) assert (is_written);
         if (write_o.passed[f]) assert (fragment_q.mask[f] && is_nearer[f]);
       end

@@ -44,6 +44,9 @@
   genvar k;
   generate
     for (k = 0; k < SAMPLES; k++) begin : gen_proof
-      always_comb if (runs_q && write_valid_o) assert (write_o.depth[k*CODE+:CODE] == before_q.code[k*CODES+:CODE]);
+      always_comb if (runs_q && write_valid_o) begin
+        assert (write_o.depth[k*CODE+:CODE] == before_q.code[k*CODES+:CODE]);
+        assert (word_o[k*CODE+:CODE] == (write_o.write_depth[k] ? write_o.depth[k*CODE+:CODE] : stored_depth_i[k*CODE+:CODE]));
+      end
     end
   endgenerate

@@ -42,5 +42,29 @@ TEST(ColorWriteTiming, AStampIsBlendedAgainInTheNextClock) {
   }
 }
 
+// X likewise: what a stamp is tested against is what the one before has made of it, with and without a stencil above the depth.
+TEST(ColorWriteTiming, AStampIsTestedAgainInTheNextClock) {
+  for (const char* stencil : {"0", "8"}) {
+    Config config = preset("embedded");
+    set(config, "stencil.bits", stencil);
+    const Widths widths = derive_widths(config);
+    BlockTiming timing(config, widths);
+    TagResult tags;
+    tags.source = DepthSource::clear;
+    BlockItem item;
+    item.mask = SampleMask::all(widths.samples);
+    item.depth_write = item.wrote_depth = true;
+    Cycle before = 0;
+    for (Cycle n = 0; n < 50; ++n) {
+      timing.take(100 + n, tags, item, NoMemory{});
+      if (n > 0) {
+        EXPECT_EQ(timing.tested() - before, 1U) << "stencil.bits=" << stencil << ", " << n;
+      }
+      before = timing.tested();
+      tags.source = DepthSource::chip;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace halfplane

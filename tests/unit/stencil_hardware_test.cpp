@@ -219,6 +219,52 @@ TEST(StencilHardware, DepthThatIsOverwrittenIsReadOnlyForTheSakeOfTheStencil) {
   EXPECT_EQ(cleared("8"), 16u);
 }
 
+// Where a draw leaves nothing of what was stored, nobody asks for it.
+TEST(StencilHardware, AWordThatIsReplacedAsAWholeGoesUnread) {
+  State over;
+  over.depth_test = DepthFunc::always;
+  const Config config = with("embedded", {{"stencil.bits", "8"}});
+  // Of a square on a cleared target: all that it touches, or what its two triangles share.
+  const auto asked = [&](const State& state) {
+    const Scene scene = squares({state});
+    const Rendering scalar = render_scalar(scene, config), drawn = render_hardware(scene, config);
+    EXPECT_EQ(scalar.frame.stencil, drawn.frame.stencil);
+    EXPECT_EQ(scalar.frame.depth, drawn.frame.depth);
+    PacketSink sink;
+    HardwareModel hardware(config, sink);
+    HostStream host(scene, config);
+    while (const auto next = host.next()) hardware.run(next->packet, next->line);
+    return hardware.counters().tile_clears;
+  };
+  Stencil replacing;
+  replacing.reference = 3;
+  replacing.passes = StencilOp::replace;
+  const auto drawn = [&](const Stencil& front, const std::optional<Stencil>& back = {}) {
+    State state = over;
+    state.stencil = front;
+    state.stencil_back = back;
+    return state;
+  };
+  EXPECT_EQ(asked(over), 16u) << "what is above a depth stays";
+  EXPECT_EQ(asked(drawn(replacing)), 4u) << "the stamps on the diagonal, which no triangle covers";
+  Stencil zero = replacing;
+  zero.passes = StencilOp::zero;
+  EXPECT_EQ(asked(drawn(zero)), 4u);
+  Stencil in_part = replacing;
+  in_part.write_mask = 127;
+  EXPECT_EQ(asked(drawn(in_part)), 16u);
+  Stencil looking = replacing;
+  looking.func = DepthFunc::equal;
+  EXPECT_EQ(asked(drawn(looking)), 16u);
+  Stencil counting = replacing;
+  counting.passes = StencilOp::incr;
+  EXPECT_EQ(asked(drawn(counting)), 16u);
+  EXPECT_NE(asked(drawn(replacing, counting)), asked(drawn(counting, replacing))) << "the square shows one side";
+  State depthless = drawn(replacing);
+  depthless.depth_write = false;
+  EXPECT_EQ(asked(depthless), 16u);
+}
+
 TEST(StencilHardware, WithoutOneItIsRefusedByName) {
   const Scene scene = squares({with_stencil(replacing_stencil(1))});
   for (const Config& config : {preset("embedded"), preset("tiny")}) try {

@@ -35,7 +35,7 @@ struct TimingTotals {
   Cycle first_primitive = 0;        ///< the one in which the first triangle, point or line was taken
   Cycle last_write = 0;             ///< into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and took no access
-  std::uint64_t hazard_cycles = 0;  ///< a fragment waited for the write of the one before
+  std::uint64_t hazard_cycles = 0;  ///< tiles: a fragment waited for the write of the one before
   std::uint64_t move_cycles = 0;    ///< of the whole run: the framebuffer took no access
   std::uint64_t memory_cycles = 0;  ///< of these: a request or an answer was waited for
   std::uint64_t bound_cycles = 0;   ///< coarse_raster waited for a visit to retire before it read a bound
@@ -250,9 +250,7 @@ class BackTiming {
     stream(Arrow::fragment).count(offered, moved);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
-    const std::uint64_t hazards = blocks_->hazards();
     blocks_->take(moved, tags, item, BlockPort{*this});
-    totals_.hazard_cycles += blocks_->hazards() - hazards;
     work(Stage::texture_unit, item.texture.lookups.size());
     if (textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
     if (!item.mask.any()) return moved;

@@ -7,7 +7,7 @@
 //   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, two behind the last flag that fell where one falls)
 //   moved(m) >= s(m-1), and not the cycle behind a t in which a flag fell, unless it is in the block of the one before
 //   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
-//   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2))
+//   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever stamp the one before was
 //   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between X and W texture_timing.hpp says when W has it
 //
 // With blending an order may end with a read of colours, and W takes a fragment for as many clocks as blend.lanes wants, one at
@@ -108,8 +108,6 @@ class BlockTiming {
   [[nodiscard]] Cycle tested() const { return tested_; }
   /// When W took its colours.
   [[nodiscard]] Cycle colored() const { return colored_; }
-  /// A fragment was tested one cycle late because it needs what the one before wrote.
-  [[nodiscard]] std::uint64_t hazards() const { return hazards_; }
 
   /// A fragment that T took in `moved`, or a line that it read then. ask(cycle, plane, stamp, run, is_write): a request, in
   /// `cycle` at the earliest; returns PortTimes.
@@ -125,14 +123,9 @@ class BlockTiming {
     if (reads) x = std::max(x, answers.depth + 1);
     if (tags.source == DepthSource::chip || tags.eviction) x = std::max(x, depth_free_);
     x = std::max(x, late_room(tags, item));
-    if (tags.source == DepthSource::chip && last_line_ == tags.line && last_stamp_ == item.stamp &&
-        (last_writes_ & item.mask).any() && x < tested_ + 2) {
-      x = tested_ + 2;
-      ++hazards_;
-    }
     if (tags.eviction) {
       x = std::max(x, slots_[next_slot_]);
-      if (last_line_ == tags.line && last_writes_.any()) x = std::max(x, tested_ + 2);
+      if (last_line_ == tags.line && last_writes_) x = std::max(x, tested_ + 2);
       depth_free_ = x + static_cast<Cycle>(std::popcount(tags.eviction->stamps[0]));
     }
     const Cycle depth_ready = depth_free_ + 1;
@@ -359,14 +352,11 @@ class BlockTiming {
   }
 
   void note_writes(const TagResult& tags, const BlockItem& item) {
-    last_line_ = tags.line;
-    last_stamp_ = item.stamp;
-    last_writes_ = {};
-    if (!item.mask.any()) return;
     const bool starts_depth = tags.source != DepthSource::chip;
-    if (!starts_depth && item.depth_write && !item.is_late) last_writes_ = item.mask;
-    if (starts_depth && !item.is_late && (tags.source != DepthSource::none || item.depth_write))
-      last_writes_ = SampleMask::all(widths_.samples);
+    last_line_ = tags.line;
+    last_writes_ = item.mask.any() && !item.is_late &&
+                   (item.depth_write || (starts_depth && tags.source != DepthSource::none));
+    if (!item.mask.any()) return;
     const std::uint64_t bit = std::uint64_t{1} << item.stamp;
     const auto note = [&](std::uint64_t& dirty, bool starts, bool writes) {
       if (starts) dirty &= ~bit;
@@ -392,9 +382,7 @@ class BlockTiming {
   std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last ones
   std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
-  int last_stamp_ = 0;
-  SampleMask last_writes_;  ///< samples that the last fragment may have written
-  std::uint64_t hazards_ = 0;
+  bool last_writes_ = false;  ///< the last fragment may have written depths
   std::vector<Cycle> slots_;  ///< of victims: the cycle from which on each is free
   std::size_t next_slot_ = 0;
   std::deque<Victim> victims_;

@@ -90,14 +90,14 @@ class CycleModelOf final : public CycleModel {
     drawn.state.depth_test = DepthFunc::always;
     const ColorState held = colors_;
     const StencilState held_stencil = stencil_;
-    set_colors({});  // nobody has set them for a clear
     if (drawn.state.depth_write && has_stencil(config_)) {
       stencil_.side[0] = replacing_stencil(stencil_.clear_value());
       (void)set_stencil_flags(drawn.state, stencil_.side);
     }
+    set_colors({});  // nobody has set them for a clear
     send(host, drawn);
-    set_colors(held);
     stencil_ = held_stencil;
+    set_colors(held);
   }
 
   [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
@@ -585,7 +585,7 @@ class CycleModelOf final : public CycleModel {
 
   void set_colors(const ColorState& colors) {
     colors_ = colors;
-    if (blocks_) blocks_->set(colors_.ops.reads_stored(), tests_alpha());
+    if (blocks_) blocks_->set(colors_.ops.reads_stored(), tests_alpha(), stencil_.replaces());
   }
 
   /// The news of a visit for HiZ.

@@ -79,8 +79,9 @@ std::vector<StageRow> stage_table(const Config& config) {
   std::vector<StageRow> rows = front_of(config, widths, {});
   if (config.line_units != 0) rows.push_back({Stage::line_raster, "1", "1 a pixel, 1 more a line", "1 line"});
   if (config.line_units != 0) rows.push_back({Stage::primitive_join, "0", "1", "0"});
-  rows.push_back({Stage::depth_test, "1 to the write, 2 to the retired visit",
-                  "1; 2 where a fragment needs the depth of the one before", "2"});
+  rows.push_back(
+      {Stage::depth_test, "1 to the write, 2 to the retired visit",
+       config.cache_kind == CacheKind::blocks ? "1" : "1; 2 where a fragment needs the depth of the one before", "2"});
   rows.push_back({Stage::rop, "0", "1", "0"});
   rows.push_back(framebuffer_of(config, widths));
   rows.push_back(memory_port_of(config, widths));

@@ -242,6 +242,17 @@ package raster_pkg;
     DEPTH_FUNC_ALWAYS = 3'd7
   } depth_func_t;
 
+  typedef enum logic [DEPTH_FUNC_BITS-1:0] {
+    STENCIL_OP_KEEP = 3'd0,
+    STENCIL_OP_ZERO = 3'd1,
+    STENCIL_OP_REPLACE = 3'd2,
+    STENCIL_OP_INCR = 3'd3,
+    STENCIL_OP_DECR = 3'd4,
+    STENCIL_OP_INVERT = 3'd5,
+    STENCIL_OP_INCR_WRAP = 3'd6,
+    STENCIL_OP_DECR_WRAP = 3'd7
+  } stencil_op_t;
+
   typedef enum logic [CULL_MODE_BITS-1:0] {
     CULL_MODE_NONE = 2'd0,
     CULL_MODE_BACK = 2'd1,
