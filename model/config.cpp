@@ -70,6 +70,8 @@ const std::array kSettings{
             &Config::setup_kind},
     Setting{"texture.unit", "off|nearest|bilinear|trilinear", "what the RTL's texture unit can do; off: it has none", 0,
             0, &Config::texture_unit},
+    Setting{"texture.lanes", "pixels", "that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4",
+            1, 4, &Config::texture_lanes},
     Setting{"texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64,
             &Config::texture_cache_kb},
     Setting{"texture.queue", "samples",
@@ -316,6 +318,13 @@ void validate(const Config& config) {
                   "a texture unit stands behind the depth test of blocks, and its planes want the pipelined setup: use "
                   "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
     refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
+  }
+  refuse_unless(config.texture_lanes == 1 || config.texture_lanes == 4, "texture.lanes must be 1 or 4");
+  if (config.texture_lanes != 1) {
+    refuse_unless(config.texture_unit != TextureUnitKind::trilinear,
+                  "four lanes of a texture unit have one level: use texture.unit=bilinear or nearest, or "
+                  "texture.lanes=1");
+    refuse_unless(config.stamp_size >= 2, "four lanes of a texture unit take 2x2 samples of a stamp: raise stamp.size");
   }
   refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
                 "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");

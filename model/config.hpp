@@ -76,6 +76,7 @@ struct Config {
   int memory_port_bits = 64;                     ///< data of one beat of the memory port; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
   TextureUnitKind texture_unit = TextureUnitKind::off;
+  int texture_lanes = 1;     ///< samples that go through it together: 1, or 4 of a stamp
   int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
   ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit

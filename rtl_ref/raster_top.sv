@@ -301,7 +301,8 @@ module raster_top (
   logic [COUNT-1:0]                                           covered, passed, written, killed, tested_written, tested_killed;
   logic [1:0]                                                 fill, evict, clear;
   /* verilator lint_off UNUSEDSIGNAL */  // without the unit of counters, or of textures
-  logic [2:0]                                                 texture_use, texture_use_q;
+  logic [6:0]                                                 texture_use;
+  logic [8:0]                                                 texture_use_q;
   /* verilator lint_on UNUSEDSIGNAL */
   /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
   logic                                                       color_valid, color_ready;
@@ -493,7 +494,7 @@ module raster_top (
       fill_q     <= fill;
       evict_q    <= evict;
       clear_q    <= clear;
-      texture_use_q <= texture_use;
+      texture_use_q <= 9'(texture_use);
       highest_q  <= highest;
       overflow_q <= overflow_q || (highest_q & ~highest) != '0;
       counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_primitive);
@@ -517,7 +518,7 @@ module raster_top (
       if (raster_pkg::COORDINATES != 0)  // in front of that texture_samples, texture_hits, texture_fills
         for (int i = 0; i < 3; i++)
           counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] <= counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] +
-                                                           COUNTER'(texture_use_q[i]);
+                                                           COUNTER'(texture_use_q[3*i+:3]);
       if (!counters_hold_i) begin
         shown_q          <= counters_q;
         shown_q.overflow <= overflow_q;

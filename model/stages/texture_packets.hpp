@@ -7,15 +7,22 @@
 
 namespace halfplane {
 
+/// Stamps between X and W: of several lanes one a clock goes in, and comes out some twenty clocks later.
+[[nodiscard]] inline int texture_stamps(const Config& config) {
+  return config.texture_lanes == 1 ? config.texture_queue / 2 : config.texture_queue;
+}
+
 [[nodiscard]] inline TextureSettings texture_settings(const Config& config, const Widths& widths) {
   const bool has_levels = config.texture_unit == TextureUnitKind::trilinear;
   return {config.texture_cache_kb * 1024 / kTextureLine,
           8 * widths.texture_port_bytes,
-          config.texture_queue / 2,
+          texture_stamps(config),
           config.texture_queue,
           has_levels || config.texture_unit == TextureUnitKind::bilinear,
           has_levels,
-          line_part_bits(state_word_bits(widths))};
+          line_part_bits(state_word_bits(widths)),
+          config.texture_lanes,
+          config.stamp_size};
 }
 
 /// Q and P of a sample, not its pixel.

@@ -9,6 +9,11 @@
 //
 // A sample between two levels goes through cache and filter twice, once where the second would add nothing.
 //
+// Of four lanes the live samples of 2x2 go together. Their texels come from 16 banks, by the two lowest bits of column and row,
+// and their lines from four, by the lowest bits of the blocks'. So a clock gives those of samples that agree: along either axis
+// no two of their texels are in one bank unless in one block, nor their blocks. Where not all agree, the first of those that are
+// left takes with it, in order, each that agrees with all before, and the others follow.
+//
 // Colours over w are divided here, by the reciprocal that the coordinates have; what the texture is combined with is the
 // quotient. A triangle says so by itself.
 //
@@ -75,18 +80,26 @@ struct TextureSettings {
   bool has_linear = false;  ///< FILTER: four texels a sample, lines in four banks
   bool has_levels = false;  ///< likewise: more than level 0; has_linear as well
   int line_bits = 104;      ///< of a TextureLines in a token
+  int lanes = 1;            ///< LANES: samples that go together, 1 or 4; those without levels
+  int stamp_size = 2;       ///< of several lanes: samples along a stamp's side
+  /// Lines in four banks, asked for one by one.
+  [[nodiscard]] bool has_banks() const { return has_linear || lanes != 1; }
   /// Beats of a line.
   [[nodiscard]] int beats(TextureFormat format) const { return (128 << texel_size_log2(format)) / port_bits; }
 };
 
-/// A line on a sample's way through the cache.
+/// A line on the way of a sample, or of those that go together, through the cache.
 struct TextureLookup {
   std::uint32_t address = 0;  ///< of its line
   std::uint32_t line = 0;     ///< the place in the cache
   bool is_miss = false;
-  int beats = 1;           ///< of the line
-  bool ends = true;        ///< the last of its sample's lines, or of those on one of its levels
-  bool continues = false;  ///< and the sample goes through again, for another level
+  int beats = 1;  ///< of the line
+  int bank = 0;
+  std::size_t sample = 0;  ///< of the stamp: the first that wants it
+  bool ends = true;        ///< the last of the lines that are looked up together
+  bool continues = false;  ///< and more come of the sample, of another level, or of those that go together
+  int samples = 0;         ///< of the last: samples that are through
+  int hits = 0;            ///< of those, whose lines were all there
 };
 
 /// What samples made of the cache, each counted once however many levels it looked at.
@@ -97,16 +110,22 @@ struct TextureUse {
 };
 [[nodiscard]] inline TextureUse use_of(std::span<const TextureLookup> lookups) {
   TextureUse use;
-  bool is_hit = true;
   for (const TextureLookup& lookup : lookups) {
     use.fills += lookup.is_miss ? 1 : 0;
-    is_hit = is_hit && !lookup.is_miss;
-    if (!lookup.ends || lookup.continues) continue;
-    ++use.samples;
-    use.hits += is_hit ? 1 : 0;
-    is_hit = true;
+    use.samples += static_cast<std::uint64_t>(lookup.samples);
+    use.hits += static_cast<std::uint64_t>(lookup.hits);
   }
   return use;
+}
+
+/// Columns, or rows, of texels that one clock of several lanes can look at: of one block, or neither their texels nor their
+/// blocks in one bank.
+[[nodiscard]] constexpr bool agree(int a, int b) {
+  const int block_a = a / kTextureBlock, block_b = b / kTextureBlock;
+  return block_a == block_b || (((block_a ^ block_b) & 1) != 0 && (a ^ b) % kTextureBlock != 0);
+}
+[[nodiscard]] constexpr bool agree(const TexelPair& a, const TexelPair& b) {
+  return agree(a.first, b.first) && agree(a.first, b.second) && agree(a.second, b.first) && agree(a.second, b.second);
 }
 
 /// Which lines are in the cache.
@@ -241,47 +260,141 @@ class TextureUnit {
     return texels;
   }
 
+  /// Calls visit(samples) for those of `live` that go together, in order: each of one lane, of four those of a square.
+  template <class Visit>
+  void for_each_group(SampleMask live, Visit&& visit) const {
+    if (settings_.lanes == 1)
+      return live.for_each([&](std::size_t s) { visit(SampleMask::only(static_cast<int>(s))); });
+    const int side = settings_.stamp_size;
+    for (int y = 0; y < side; y += 2)
+      for (int x = 0; x < side; x += 2) {
+        const SampleMask square = live & SampleMask((std::uint64_t{3} | std::uint64_t{3} << side) << (y * side + x));
+        if (square.any()) visit(square);
+      }
+  }
+  [[nodiscard]] int groups(SampleMask live) const {
+    int n = 0;
+    for_each_group(live, [&n](SampleMask) { ++n; });
+    return n;
+  }
+
   /// A stamp whose samples `live` are textured: their colours become those of the result. read(address, beats): the bytes of
-  /// a line, asked for in order. Returns what the samples did, lowest first; it stays until the next stamp.
+  /// a line, asked for in order. Returns what the samples did, in the order in which they go; it stays until the next stamp.
   template <class Read>
   std::span<const TextureLookup> take(SampleMask live, std::span<const TextureSample> samples,
                                       const TextureFrame& frame, std::span<Texel> colors, Read&& read) {
     lookups_.clear();
-    live.for_each([&](std::size_t s) {
-      const TexturePlace place = place_of(samples[s], frame);
-      const SampleFilter filter = filter_at(samples[s]);
-      const LevelPair& levels = filter.levels;
-      const Sums lower = sums(place, filter.is_linear, levels.lower, read);
-      Sums upper = lower;
-      if (filter.is_between && levels.part != 0 && levels.upper != levels.lower) {
-        lookups_.back().continues = true;
-        upper = sums(place, filter.is_linear, levels.upper, read);
-      }
-      Texel texel{};
-      for (std::size_t c = 0; c < 4; ++c)
-        texel[c] = filter.is_between ? blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), levels.part)
-                                     : static_cast<std::uint8_t>(round_shift(lower[c], 16));
-      colors[s] = combined(colors[s], texel, state_.combine, has_alpha(state_.format));
+    for_each_group(live, [&](SampleMask group) {
+      if (settings_.lanes == 1)
+        take_sample(static_cast<std::size_t>(group.first()), samples, frame, colors, read);
+      else
+        take_group(group, samples, frame, colors, read);
     });
     return lookups_;
   }
 
  private:
   using Sums = std::array<std::uint32_t, 4>;
+  using Texels = std::array<TexelPair, 2>;
 
-  /// What the filter gives on a level, 16 fraction bits, behind the look-ups of its lines.
   template <class Read>
-  [[nodiscard]] Sums sums(const TexturePlace& place, bool is_linear, int level, Read&& read) {
-    const auto [x, y] = texels_of(place, is_linear, level);
-    // Bank by bank, by the lowest bits of a block's row and column; without banks the one block that there is.
+  void take_sample(std::size_t s, std::span<const TextureSample> samples, const TextureFrame& frame,
+                   std::span<Texel> colors, Read&& read) {
+    const TexturePlace place = place_of(samples[s], frame);
+    const SampleFilter filter = filter_at(samples[s]);
+    const LevelPair& levels = filter.levels;
+    const std::size_t first = lookups_.size();
+    const auto look_up_on = [&](int level) {
+      look_up(
+          level, SampleMask::only(static_cast<int>(s)),
+          [&](std::size_t) { return texels_of(place, filter.is_linear, level); }, read);
+      return sums(place, filter.is_linear, level);
+    };
+    const Sums lower = look_up_on(levels.lower);
+    Sums upper = lower;
+    if (filter.is_between && levels.part != 0 && levels.upper != levels.lower) {
+      lookups_.back().continues = true;
+      upper = look_up_on(levels.upper);
+    }
+    TextureLookup& last = lookups_.back();
+    last.samples = last.hits = 1;
+    for (std::size_t n = first; n < lookups_.size(); ++n)
+      if (lookups_[n].is_miss) last.hits = 0;
+    Texel texel{};
+    for (std::size_t c = 0; c < 4; ++c)
+      texel[c] = filter.is_between ? blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), levels.part)
+                                   : static_cast<std::uint8_t>(round_shift(lower[c], 16));
+    colors[s] = combined(colors[s], texel, state_.combine, has_alpha(state_.format));
+  }
+
+  /// Samples of a square, those together that agree.
+  template <class Read>
+  void take_group(SampleMask group, std::span<const TextureSample> samples, const TextureFrame& frame,
+                  std::span<Texel> colors, Read&& read) {
+    std::array<TexturePlace, kMaxSamples> place;
+    std::array<Texels, kMaxSamples> texels;
+    group.for_each([&](std::size_t s) {
+      place[s] = place_of(samples[s], frame);
+      texels[s] = texels_of(place[s], state_.is_linear, 0);
+    });
+    for (SampleMask left = group; left.any();) {
+      SampleMask pass;
+      left.for_each([&](std::size_t s) {
+        bool joins = true;
+        pass.for_each([&](std::size_t other) {
+          joins = joins && agree(texels[s][0], texels[other][0]) && agree(texels[s][1], texels[other][1]);
+        });
+        if (joins) pass.set(static_cast<int>(s));
+      });
+      const std::size_t first = lookups_.size();
+      look_up(
+          0, pass, [&](std::size_t s) { return texels[s]; }, read);
+      TextureLookup& last = lookups_.back();
+      left = SampleMask(left.bits() & ~pass.bits());
+      last.continues = left.any();
+      last.samples = last.hits = pass.count();
+      pass.for_each([&](std::size_t s) {
+        bool lacks = false;
+        for (std::size_t n = first; n < lookups_.size(); ++n)
+          lacks = lacks || (lookups_[n].is_miss && wants(texels[s], lookups_[n].bank));
+        if (lacks) --last.hits;
+        const Sums sum = sums(place[s], state_.is_linear, 0);
+        Texel texel{};
+        for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(round_shift(sum[c], 16));
+        colors[s] = combined(colors[s], texel, state_.combine, has_alpha(state_.format));
+      });
+    }
+  }
+
+  /// Whether one of those texels lies in a block of that bank.
+  [[nodiscard]] static bool wants(const Texels& texels, int bank) {
+    return block_in(texels[0], bank & 1) >= 0 && block_in(texels[1], bank >> 1) >= 0;
+  }
+
+  /// The lines of samples that agree, bank by bank, by the lowest bits of a block's row and column; without banks the one block
+  /// that there is.
+  template <class TexelsOf, class Read>
+  void look_up(int level, SampleMask pass, TexelsOf&& texels_of_sample, Read&& read) {
     for (const int bank : {0, 1, 2, 3}) {
-      const auto block_x = block_in(x, bank & 1), block_y = block_in(y, bank >> 1);
-      if (block_x >= 0 && block_y >= 0)
-        look_up(level, static_cast<std::uint32_t>(block_x), static_cast<std::uint32_t>(block_y), read);
+      bool is_wanted = false;
+      pass.for_each([&](std::size_t s) {
+        const Texels texels = texels_of_sample(s);
+        if (is_wanted || !wants(texels, bank)) return;
+        is_wanted = true;
+        look_up(level, static_cast<std::uint32_t>(block_in(texels[0], bank & 1)),
+                static_cast<std::uint32_t>(block_in(texels[1], bank >> 1)), read);
+        lookups_.back().bank = bank;
+        lookups_.back().sample = s;
+      });
     }
     lookups_.back().ends = true;
+  }
+
+  /// What the filter gives on a level, 16 fraction bits, where its lines are there.
+  [[nodiscard]] Sums sums(const TexturePlace& place, bool is_linear, int level) const {
     if (is_linear)
       return linear_sums([this](int l, int u, int v) { return texel(l, u, v); }, state_.axes(), place, level);
+    const auto [x, y] = texels_of(place, is_linear, level);
     const Texel nearest = texel(level, x.first, y.first);
     Sums sums{};
     for (std::size_t c = 0; c < 4; ++c) sums[c] = std::uint32_t{nearest[c]} << 16;

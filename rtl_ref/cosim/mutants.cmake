@@ -299,15 +299,15 @@ mutant(147 stages/block_cache.sv "texture: idle though its memory has not answer
   [=[tags_are_idle && drained && texture_is_idle]=] [=[tags_are_idle && drained]=])
 mutant(148 stages/block_cache.sv "texture: one stamp more goes in than there is room for"
   [=[behind_q != BEHIND'(PLACES)]=] [=[behind_q <= BEHIND'(PLACES)]=])
-mutant(149 stages/texture_cache_linear.sv "texture: of the tag the lowest bits"
+mutant(149 stages/texture_tags.sv "texture: of the tag the lowest bits"
   [=[tag == t_address_q[b*28+:28]]=] [=[tag[5:0] == t_address_q[b*28+:6]]=])
 mutant(150 lib/texture_answers.sv "texture: an answer of before a reset is taken"
   [=[answer_valid_i && !discards]=] [=[answer_valid_i]=])
-mutant(151 stages/texture_cache_linear.sv "texture: a line that is still to be read is overwritten"
+mutant(151 stages/texture_tags.sv "texture: a line that is still to be read is overwritten"
   [=[(asks & referenced) != '0]=] [=[1'b0]=])
-mutant(152 stages/texture_cache_linear.sv "texture: a sample does not wait for its lines"
+mutant(152 stages/texture_tags.sv "texture: a sample does not wait for its lines"
   [=[come_q >= COME'(waits_for)]=] [=[1'b1]=])
-mutant(153 stages/texture_cache_linear.sv "texture: another texture begins with the lines of the one before"
+mutant(153 stages/texture_tags.sv "texture: another texture begins with the lines of the one before"
   [=[drop_i || (sweeps_q && sweep_q != '1)]=] [=[sweeps_q && sweep_q != '1]=])
 mutant(154 lib/over_w_narrow.sv "texture: P is cut off"
   [=[(NARROW + 1)'(shifted_q[0])]=] [=[(NARROW + 1)'(1'b0)]=])
@@ -486,6 +486,18 @@ mutant(320 stages/fog_unit.sv "fog: two lines of the table lie in one place"
   [=[word_i[START+RISE+:LINE]]=] [=[word_i[START+RISE+:LINE] & 8'hfe]=])
 mutant(321 stages/fog_unit.sv "fog: a stamp that waits reads the line of the one behind it"
   [=[enters_1 && !sets_line_i]=] [=[!sets_line_i]=])
+# Four lanes of a texture unit.
+mutant(340 stages/texture_lanes.sv "lanes: two texels of one bank go together"
+  [=[a[1:0] != b[1:0]]=] [=[1'b1]=])
+mutant(341 stages/texture_lanes.sv "lanes: two lines of one bank go together"
+  [=[a[2] != b[2]]=] [=[1'b1]=])
+mutant(342 stages/texture_lanes.sv "lanes: a pass begins again with samples that have been"
+  [=[done_q | joins]=] [=[joins]=])
+mutant(343 stages/texture_lanes.sv "lanes: counter: a sample finds its lines only where all beside it do"
+  [=[(t_uses[4*lane+:4] & lacks) == '0]=] [=[lacks == '0]=])
+mutant(344 stages/texture_unit.sv "lanes: the last pass colours all samples"
+  [=[e_lanes_q[i%LANES]]=] [=[1'b1]=])
+
 # Colours over w in the texture unit.
 mutant(280 stages/colors_over_w.sv "texture, colours over w: the quotient is cut off"
   [=[WHOLE'(placed[POINT-1])]=] [=[WHOLE'(1'b0)]=])
@@ -496,11 +508,11 @@ mutant(284 stages/colors_over_w.sv "texture, colours over w: all channels have t
 mutant(285 stages/colors_over_w.sv "texture, colours over w: the range is that of the next sample's triangle"
   [=[range_ram_q[index_q[6*INDEX+:INDEX]]]=] [=[range_ram_q[index_q[5*INDEX+:INDEX]]]=])
 mutant(287 stages/texture_unit.sv "texture, colours over w: a texel is combined with the affine colour"
-  [=[stamp_divides ? divided : color_of(stamp_color, e_lane_q)]=] [=[color_of(stamp_color, e_lane_q)]=])
+  [=[stamp_divides ? divided : color_of(stamp_color, e_group_q)]=] [=[color_of(stamp_color, e_group_q)]=])
 mutant(288 stages/texture_unit.sv "texture, colours over w: a quotient overwrites the stamp before"
   [=[divided_valid && is_free]=] [=[divided_valid]=])
 mutant(289 stages/texture_unit.sv "texture, colours over w: behind a texel the quotient stays"
-  [=[(e_moves && stamp_divides)]=] [=[(e_moves && stamp_divides && !e_last_q)]=])
+  [=[(e_moves && stamp_divides && e_ends_q)]=] [=[(e_moves && stamp_divides && e_ends_q && !e_last_q)]=])
 mutant(290 stages/interpolate.sv "texture, colours over w: the range ends where it begins"
   [=[samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
 mutant(291 lib/colored_stamps.sv "texture, colours over w: they are affine"

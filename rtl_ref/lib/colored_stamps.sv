@@ -42,7 +42,7 @@ module colored_stamps #(
     output logic                      packet_valid_o,
     output raster_pkg::color_packet_t packet_o,
 
-    output logic [2:0] texture_use_o,  // a sample was looked up, all of it was there, a line was asked for; lowest first
+    output logic [6:0] texture_use_o,  // so many samples were looked up, of so many all was there, a line was asked for; lowest first
     output logic       texture_is_idle_o  // behind a reset it may wait for answers of before
 );
 
@@ -91,6 +91,8 @@ module colored_stamps #(
       localparam int PLACES_BITS = 19 * SAMPLES > TOKEN ? 19 * SAMPLES : TOKEN;
       localparam int FOG = raster_pkg::FOG_UNIT == 0 ? 0 : 3 + PLACES_BITS;  // that fog carries along
       logic [CARRIED+FOG-1:0] entering, unit_carried;
+      logic [$clog2(raster_pkg::TEXTURE_LANES+1)-1:0] samples, hits;
+      assign texture_use_o[5:0] = {3'(hits), 3'(samples)};
       localparam int TILE = raster_pkg::TILE_SHIFT;
       localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
       localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
@@ -159,6 +161,7 @@ module colored_stamps #(
 
       texture_unit #(
           .SAMPLES       (SAMPLES),
+          .LANES         (raster_pkg::TEXTURE_LANES),
           .Q_BITS        (Q),
           .P_BITS        (P),
           .MANTISSA      (raster_pkg::PERSPECTIVE_MANTISSA_BITS),
@@ -221,9 +224,9 @@ module colored_stamps #(
           .answer_valid_i (texel_valid_i),
           .answer_ready_o (texel_ready_o),
           .answer_data_i  (texel_i.data),
-          .sample_o       (texture_use_o[0]),
-          .hit_o          (texture_use_o[1]),
-          .miss_o         (texture_use_o[2]),
+          .sample_o       (samples),
+          .hit_o          (hits),
+          .miss_o         (texture_use_o[6]),
           .idle_o         (texture_is_idle_o)
       );
 

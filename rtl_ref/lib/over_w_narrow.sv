@@ -18,24 +18,24 @@ module over_w_narrow #(
   localparam int BY_4 = NARROW + 5;
   localparam int BY_1 = NARROW + 2;
 
-  function automatic [BY_16-1:0] by_16(input [WIDE-1:0] value, input [1:0] n);
-    case (n)
+  function automatic [BY_16-1:0] by_16(input [WIDE-1:0] value, input [1:0] steps);
+    case (steps)
       2'd0: by_16 = value[BY_16-1:0];
       2'd1: by_16 = value[16+:BY_16];
       2'd2: by_16 = value[32+:BY_16];
       default: by_16 = value[48+:BY_16];
     endcase
   endfunction
-  function automatic [BY_4-1:0] by_4(input [BY_16-1:0] value, input [1:0] n);
-    case (n)
+  function automatic [BY_4-1:0] by_4(input [BY_16-1:0] value, input [1:0] steps);
+    case (steps)
       2'd0: by_4 = value[BY_4-1:0];
       2'd1: by_4 = value[4+:BY_4];
       2'd2: by_4 = value[8+:BY_4];
       default: by_4 = value[12+:BY_4];
     endcase
   endfunction
-  function automatic [BY_1-1:0] by_1(input [BY_4-1:0] value, input [1:0] n);
-    case (n)
+  function automatic [BY_1-1:0] by_1(input [BY_4-1:0] value, input [1:0] steps);
+    case (steps)
       2'd0: by_1 = value[BY_1-1:0];
       2'd1: by_1 = value[1+:BY_1];
       2'd2: by_1 = value[2+:BY_1];

@@ -69,7 +69,7 @@ module block_cache (
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] killed_o,
 
     // What the texture unit makes of its cache: a sample was looked up, all of it was there, a line was asked for; lowest first
-    output logic [2:0] texture_use_o,
+    output logic [6:0] texture_use_o,
 
     output logic at_token_o,  // a clear or a flush is at work, behind everything
     output logic idle_o       // nothing is under way
@@ -110,7 +110,7 @@ module block_cache (
   localparam bit HAS_STATE = BLENDS || LATE || raster_pkg::DITHER_UNIT != 0;  // colours have operations that tokens set
   localparam int SHADED = raster_pkg::SHADED_COLOR_BITS;
 
-  localparam int PLACES = raster_pkg::COORDINATES == 0 ? 2 : raster_pkg::TEXTURE_QUEUE / 2;  // between X and W
+  localparam int PLACES = raster_pkg::COORDINATES == 0 ? 2 : raster_pkg::TEXTURE_STAMPS;  // between X and W
   localparam int BEHIND = $clog2(PLACES + 1);
   localparam int RUN = raster_pkg::RUN_BITS;
 

@@ -241,7 +241,7 @@ module memory_port (
   localparam int PARTS = (PART > SHARED) ? PART : SHARED;
   localparam int READ_WORD = MOST_BEATS * BYTES;
   // Stamps that are read at a time: with colours those that wait between X and W as well.
-  localparam int PLACES = (raster_pkg::COORDINATES == 0) ? 2 : raster_pkg::TEXTURE_QUEUE / 2;
+  localparam int PLACES = (raster_pkg::COORDINATES == 0) ? 2 : raster_pkg::TEXTURE_STAMPS;
   localparam int WAITING = BLENDS ? 1 << $clog2(2 * raster_pkg::CACHE_QUEUE + PLACES) : raster_pkg::CACHE_QUEUE;
   localparam int MOST = MOST_BEATS * ((HAS_BLOCKS != 0) ? WAITING : STAMPS);
   localparam int READS = $clog2(MOST + 1);

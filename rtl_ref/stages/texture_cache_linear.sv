@@ -1,9 +1,7 @@
 // Texture cache for a linear filter: what texture_cache.sv is for one texel a sample, for the four around its place.
 //
-// These lie in one block of 4x4, or in two or four beside each other. So tags are in four banks, by the lowest bits of the
-// block's column and row: each bank looks up at most one line. Texels are in four banks as well, by the lowest bits of their
-// own column and row: each gives one texel. A sample whose lines are all there takes a clock, one with n misses n clocks; they
-// are asked for bank by bank, and the sample waits in the queue until all have come.
+// These lie in one block of 4x4, or in two or four beside each other, whose lines texture_tags.sv looks up. Texels are in four
+// banks as well, by the lowest bits of their own column and row: each gives one texel.
 // Specification and times: those of texture_cache.sv.
 module texture_cache_linear #(
     parameter int LINES = 64,      // a power of two, at least 16
@@ -66,14 +64,7 @@ module texture_cache_linear #(
   localparam int LINE = $clog2(LINES);
   localparam int LINE_X = (LINE + 1) / 2;
   localparam int LINE_Y = LINE / 2;
-  localparam int BANK_X = LINE_X - 1;     // of a line's number in its bank
-  localparam int BANK_Y = LINE_Y - 1;
-  localparam int BANK = BANK_X + BANK_Y;
   localparam int BLOCK = SIDE_BITS - 2;
-  localparam int NUMBER = 7;
-  localparam int GROUP = 3;
-  localparam int COUNT = NUMBER + GROUP;
-  localparam int COME = $clog2(4 * (IN_FLIGHT + 1) + 1);
 
   // ----------------------------------------------------------------------------------- which columns and rows are in which bank
   // Of each bank along one axis: is there a block in it, which; is there a texel, which.
@@ -93,177 +84,20 @@ module texture_cache_linear #(
   localparam int WAY_X = LINE_X + 1;
   localparam int WAY_Y = LINE_Y + 1;
   localparam logic [WAY_Y-1:0] HALF_OF_WAY = WAY_Y'(1) << LINE_Y;  // its highest bit, that of a place along y likewise
-  localparam logic [BANK_Y-1:0] HALF_OF_BANK = BANK_Y'(1) << (BANK_Y - 1);
   logic [2*WAY_X-1:0] way_x;
   logic [2*WAY_Y-1:0] way_y;
   assign way_x = x_i[0] ? {x_i[1+:WAY_X], x_i[SIDE_BITS+1+:WAY_X]} : {x_i[SIDE_BITS+1+:WAY_X], x_i[1+:WAY_X]};
   assign way_y = ((y_i[0] ? {y_i[1+:WAY_Y], y_i[SIDE_BITS+1+:WAY_Y]} : {y_i[SIDE_BITS+1+:WAY_Y], y_i[1+:WAY_Y]}) &
                   ~{2{HALF_OF_WAY & {WAY_Y{shares_i}}}}) | {2{HALF_OF_WAY & {WAY_Y{shares_i && is_odd_i}}}};
 
-  // -------------------------------------------------------------------------------------------------------------------- tags
-  logic             t_valid_q, t_enters, t_goes;
-  logic [2:0]       t_format_q;
-  logic [1:0]       t_size_q;
-  logic [TAIL-1:0]  t_tail_q;
-  logic [2*WAY_X-1:0] t_way_x_q;
-  logic [2*WAY_Y-1:0] t_way_y_q;
-  logic [3:0]       t_parity_q;
-  logic [3:0]       t_used_q, known, referenced, missing, asks, asked_q;
-  logic [4*28-1:0]  t_address_q;
-  logic [4*BANK-1:0] t_place_q;
-  logic             sweeps_q, is_occupied, blocked, any_asks;
-  logic [BANK-1:0]  sweep_q;
-  logic [COUNT-1:0] issued_q, read_q;
-  /* verilator lint_off UNUSEDSIGNAL */
-  logic [COUNT-1:0] last;
-  /* verilator lint_on UNUSEDSIGNAL */
-  logic [NUMBER-1:0] last_group, group, oldest_group;
-  logic             waiting_ready, waiting_valid, reads, may_ask, answers_are_idle;
-
-  assign sample_ready_o   = (!t_valid_q || t_goes) && !sweeps_q;
-  assign t_enters         = sample_valid_i && sample_ready_o;
-  assign tags_are_empty_o = !t_valid_q;
-  assign last             = issued_q - 1'b1;
-  assign last_group       = last[COUNT-1:GROUP];
-  assign group            = issued_q[COUNT-1:GROUP];
-  assign oldest_group     = read_q[COUNT-1:GROUP];
-  assign is_occupied      = issued_q != read_q;
-
-  genvar b;
-  generate
-    for (b = 0; b < 4; b++) begin : gen_tags
-      localparam int X = b % 2;
-      localparam int Y = b / 2;
-      logic              tag_valid, same_place_q, same_line_q;
-      logic [27:0]       tag, address;
-      logic [NUMBER-1:0] tag_group;
-      logic [BANK-1:0]   place;
-      assign address = {base_i, 2'd0} + (28'(block_y[Y*BLOCK+:BLOCK]) << row_i |
-                                         28'(block_x[X*BLOCK+:BLOCK]) << size_i | 28'(offset_i));
-      assign place   = {(block_y[Y*BLOCK+1+:BANK_Y] & ~(HALF_OF_BANK & {BANK_Y{shares_i}})) |
-                        (HALF_OF_BANK & {BANK_Y{shares_i && is_odd_i}}), block_x[X*BLOCK+1+:BANK_X]};
-      sram #(
-          .WIDTH    (1 + 28 + NUMBER),
-          .DEPTH    (LINES / 4),
-          .READS_OLD(0)
-      ) u_tags (
-          .clk_i,
-          .read_i         (t_enters),
-          .read_address_i (place),
-          .data_o         ({tag_valid, tag, tag_group}),
-          .write_i        ((t_goes && t_used_q[b]) || sweeps_q),
-          .write_address_i(sweeps_q ? sweep_q : t_place_q[b*BANK+:BANK]),
-          .data_i         ({!sweeps_q, t_address_q[b*28+:28], sweeps_q ? last_group : group})
-      );
-      assign known[b] = same_place_q ? same_line_q : tag_valid && tag == t_address_q[b*28+:28];
-      assign referenced[b] = is_occupied && NUMBER'(group - (same_place_q ? last_group : tag_group)) <=
-                                            NUMBER'(group - oldest_group);
-      always_ff @(posedge clk_i)
-        if (t_enters) begin
-          t_address_q[b*28+:28]     <= address;
-          t_place_q[b*BANK+:BANK]   <= place;
-          t_used_q[b]               <= used_x[X] && used_y[Y];
-          same_place_q              <= t_goes && t_used_q[b] && place == t_place_q[b*BANK+:BANK];
-          same_line_q               <= address == t_address_q[b*28+:28];
-        end
-    end
-  endgenerate
-
-  logic [2:0] misses;
-  assign missing  = t_used_q & ~known & ~asked_q;
-  assign asks     = missing & (~missing + 1'b1);
-  assign blocked  = (asks & referenced) != '0 || !may_ask;
-  assign any_asks = t_valid_q && missing != '0 && !blocked;
-  assign t_goes   = t_valid_q && waiting_ready && (missing == '0 || (!blocked && missing == asks));
-  assign looked_up_o      = t_goes;
-  assign looked_up_tail_o = t_tail_q;
-  assign hit_o    = t_goes && (t_used_q & ~known) == '0;
-  assign miss_o   = any_asks;
-  always_comb begin
-    misses = '0;
-    for (int i = 0; i < 4; i++) misses = misses + 3'(t_used_q[i] && !known[i]);
-  end
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      t_valid_q <= 1'b0;
-      asked_q   <= '0;
-      sweeps_q  <= 1'b1;
-      sweep_q   <= '0;
-      issued_q  <= '0;
-      read_q    <= '0;
-    end else begin
-      t_valid_q <= t_enters || (t_valid_q && !t_goes);
-      asked_q   <= t_goes ? '0 : asked_q | (asks & {4{any_asks}});
-      sweeps_q  <= drop_i || (sweeps_q && sweep_q != '1);
-      sweep_q   <= drop_i ? '0 : sweep_q + BANK'(sweeps_q);
-      issued_q  <= issued_q + COUNT'(t_goes);
-      read_q    <= read_q + COUNT'(reads);
-    end
-  end
-  always_ff @(posedge clk_i)
-    if (t_enters) begin
-      t_format_q <= format_i;
-      t_size_q   <= size_i;
-      t_tail_q   <= tail_i;
-      t_way_x_q  <= way_x;
-      t_way_y_q  <= way_y;
-      t_parity_q <= {y_i[SIDE_BITS], y_i[0], x_i[SIDE_BITS], x_i[0]};
-    end
-
-  // -------------------------------------------------------------------------------------------------- requests and answers
-  logic [27:0]      asked_address;
-  logic [BANK-1:0]  asked_place;
-  logic [LINE-1:0]  asked_line;
-  always_comb begin
-    asked_address = '0;
-    asked_place   = '0;
-    for (int i = 0; i < 4; i++)
-      if (asks[i]) begin
-        asked_address = t_address_q[i*28+:28];
-        asked_place   = t_place_q[i*BANK+:BANK];
-      end
-  end
-  assign asked_line = {asked_place[BANK-1:BANK_X], |asks[3:2], asked_place[BANK_X-1:0], asks[3] || asks[1]};
-
-  logic             fills_word, ends_line;
-  logic [LINE-1:0]  fill_line;
-  logic [1:0]       fill_size;
-  logic [63:0]      fill_word;
-  logic [2:0]       fill_place;  // of the word in its line
-  logic [COME-1:0]  come_q;      // lines that have come, and whose sample has not been read
-  texture_answers #(
-      .LINE     (LINE),
-      .PORT_BITS(PORT_BITS),
-      .WORD_BITS(64),
-      .LINES    (REQUESTS)
-  ) u_answers (
-      .clk_i,
-      .rst_ni,
-      .power_on_ni,
-      .room_o      (may_ask),
-      .asks_i      (any_asks),
-      .address_i   (asked_address),
-      .size_i      (t_size_q),
-      .line_i      (asked_line),
-      .request_valid_o,
-      .request_ready_i,
-      .request_address_o,
-      .request_beats_o,
-      .answer_valid_i,
-      .answer_ready_o,
-      .answer_data_i,
-      .word_valid_o(fills_word),
-      .word_o      (fill_word),
-      .line_o      (fill_line),
-      .size_o      (fill_size),
-      .place_o     (fill_place),
-      .ends_line_o (ends_line),
-      .idle_o      (answers_are_idle)
-  );
-
-  // ------------------------------------------------------------------------------------------------ samples that wait, texels
-  logic [2:0]         waits_for;
+  // ------------------------------------------------------------------------------------------------------- tags, then texels
+  logic               fills_word, tags_are_idle;
+  logic [LINE-1:0]    fill_line;
+  logic [1:0]         fill_size;
+  logic [63:0]        fill_word;
+  logic [2:0]         fill_place;  // of the word in its line
+  logic [3:0]         lacks;
+  logic               found_valid, reads;
   logic [2:0]         format;
   logic [TAIL-1:0]    tail;
   logic [2*WAY_X-1:0] at_x;
@@ -273,29 +107,62 @@ module texture_cache_linear #(
   logic [1:0]         d_odd_x_q;  // of the even and the odd column, the bit above the lowest
   logic [2:0]         d_format_q;
   logic [TAIL-1:0]    d_tail_q;
-  fifo #(
-      .WIDTH(3 + 2 * WAY_X + 2 * WAY_Y + 4 + 3 + TAIL),
-      .DEPTH(IN_FLIGHT)
-  ) u_waiting (
+  localparam int WAYS = 2 * WAY_X + 2 * WAY_Y + 4 + 3;
+  /* verilator lint_off UNUSEDSIGNAL */
+  logic [WAYS-1:0]    looked_up_ways;
+  /* verilator lint_on UNUSEDSIGNAL */
+  texture_tags #(
+      .LINES    (LINES),
+      .PORT_BITS(PORT_BITS),
+      .IN_FLIGHT(IN_FLIGHT),
+      .REQUESTS (REQUESTS),
+      .CARRIED  (WAYS + TAIL),
+      .SIDE_BITS(SIDE_BITS)
+  ) u_tags (
       .clk_i,
       .rst_ni,
-      .valid_i(t_goes),
-      .ready_o(waiting_ready),
-      .data_i ({misses, t_way_x_q, t_way_y_q, t_parity_q, t_format_q, t_tail_q}),
-      .valid_o(waiting_valid),
-      .ready_i(reads),
-      .data_o ({waits_for, at_x, at_y, parity, format, tail})
+      .power_on_ni,
+      .pass_valid_i       (sample_valid_i),
+      .pass_ready_o       (sample_ready_o),
+      .used_i             ({{2{used_y[1]}} & used_x, {2{used_y[0]}} & used_x}),
+      .block_x_i          (block_x),
+      .block_y_i          (block_y),
+      .carried_i          ({way_x, way_y, y_i[SIDE_BITS], y_i[0], x_i[SIDE_BITS], x_i[0], format_i, tail_i}),
+      .offset_i,
+      .row_i,
+      .is_odd_i,
+      .base_i,
+      .size_i,
+      .shares_i,
+      .drop_i,
+      .tags_are_empty_o,
+      .looked_up_o,
+      .lacks_o            (lacks),
+      .looked_up_carried_o({looked_up_ways, looked_up_tail_o}),
+      .miss_o,
+      .found_valid_o      (found_valid),
+      .found_ready_i      (!d_valid_q || code_ready_i),
+      .found_carried_o    ({at_x, at_y, parity, format, tail}),
+      .word_valid_o       (fills_word),
+      .word_o             (fill_word),
+      .line_o             (fill_line),
+      .size_o             (fill_size),
+      .place_o            (fill_place),
+      .request_valid_o,
+      .request_ready_i,
+      .request_address_o,
+      .request_beats_o,
+      .answer_valid_i,
+      .answer_ready_o,
+      .answer_data_i,
+      .idle_o             (tags_are_idle)
   );
-  assign reads = waiting_valid && (!d_valid_q || code_ready_i) && come_q >= COME'(waits_for);
+  assign hit_o = looked_up_o && lacks == '0;
+  assign reads = found_valid && (!d_valid_q || code_ready_i);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      come_q    <= '0;
-      d_valid_q <= 1'b0;
-    end else begin
-      come_q    <= come_q + COME'(ends_line) - (reads ? COME'(waits_for) : '0);
-      d_valid_q <= reads || (d_valid_q && !code_ready_i);
-    end
+    if (!rst_ni) d_valid_q <= 1'b0;
+    else d_valid_q <= reads || (d_valid_q && !code_ready_i);
   end
   always_ff @(posedge clk_i)
     if (reads) begin
@@ -306,6 +173,7 @@ module texture_cache_linear #(
     end
 
   logic [127:0] texel;  // of the banks
+  genvar b;
   generate
     for (b = 0; b < 4; b++) begin : gen_texels
       localparam int X = b % 2;
@@ -347,6 +215,6 @@ module texture_cache_linear #(
   assign code_format_o = d_format_q;
   assign code_tail_o   = d_tail_q;
 
-  assign idle_o = !t_valid_q && !waiting_valid && !d_valid_q && !sweeps_q && answers_are_idle;
+  assign idle_o = tags_are_idle && !d_valid_q;
 
 endmodule

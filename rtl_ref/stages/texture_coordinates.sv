@@ -1,11 +1,13 @@
-// Texture coordinates: from a sample's q, u and v to the texel it lies in, one sample a clock, eight clocks.
+// Texture coordinates: from a sample's q, u and v to the texel it lies in, a sample of each lane a clock, eight clocks.
 //
 //   0  normalise    e = floor(log2 q), m the highest k bits of q
 //   1  reciprocal   of m, four clocks                         | by how much P is narrowed
 //   2  axes         P narrowed, beside the reciprocal; product, place, wrap (texture_axis.sv)
-// What a triangle's samples share waits in RAMs, a word for each stamp in the unit, and is read where it is needed.
+// What a triangle's samples share waits in RAMs, a word for each stamp in the unit, and is read where it is needed; the samples
+// that go together are of one stamp, and share nothing else.
 // A fixed pipeline without enables. Specification: divide_by_q of model/stages/perspective.hpp and what texture_axis has.
 module texture_coordinates #(
+    parameter int LANES = 1,
     parameter int Q_BITS = 27,
     parameter int P_BITS = 28,
     parameter int MANTISSA = 18,
@@ -30,11 +32,11 @@ module texture_coordinates #(
     input logic [2*REACH_BITS-1:0]     reach_i,      // x
     input logic [2*REFERENCE_BITS-1:0] reference_i,  // u_ref
 
-    // The sample
-    input logic [INDEX-1:0]  index_i,  // of its stamp
-    input logic [Q_BITS-1:0] q_i,      // not 0
-    input logic [P_BITS-1:0] u_i,
-    input logic [P_BITS-1:0] v_i,
+    // The samples
+    input logic [INDEX-1:0]        index_i,  // of their stamp
+    input logic [LANES*Q_BITS-1:0] q_i,      // not 0
+    input logic [LANES*P_BITS-1:0] u_i,
+    input logic [LANES*P_BITS-1:0] v_i,
 
     // The texture
     input logic [2*SIDE_BITS-1:0] last_i,
@@ -42,17 +44,17 @@ module texture_coordinates #(
     input logic                   is_linear_i,
 
     // Of eight clocks ago, x lowest
-    output logic [2*SIDE_BITS-1:0] texel_o,
-    output logic [2*SIDE_BITS-1:0] next_o,  // LINEAR 1: the texel behind it, and how much of that
-    output logic [15:0]            part_o,
-    output logic [2*REFERENCE_BITS+15:0] coordinate_o,  // LINEAR 2: the place before it is wrapped, 2^-8 texels
+    output logic [LANES*2*SIDE_BITS-1:0] texel_o,
+    output logic [LANES*2*SIDE_BITS-1:0] next_o,  // LINEAR 1: the texel behind it, and how much of that
+    output logic [LANES*16-1:0]          part_o,
+    output logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate_o,  // LINEAR 2: the place before it is wrapped, 2^-8 texels
 
     // Of a clock ago: floor(log2 q), and what of q follows its highest bit
-    output logic [EXPONENT-1:0] exponent_o,
-    output logic [7:0]          below_o,
+    output logic [LANES*EXPONENT-1:0] exponent_o,
+    output logic [LANES*8-1:0]        below_o,
 
     // Of five clocks ago: the reciprocal, below its highest bit, which is set
-    output logic [MANTISSA-2:0] reciprocal_o
+    output logic [LANES*(MANTISSA-1)-1:0] reciprocal_o
 );
 
   // The stamp's index, as far as the sample has come.
@@ -87,80 +89,81 @@ module texture_coordinates #(
     end
     normalised = {zeros, left[30:0]};
   endfunction
-  logic [EXPONENT-1:0] zeros;
-  /* verilator lint_off UNUSEDSIGNAL */  // the reciprocal looks at the highest
-  logic [30:0]         left;
-  /* verilator lint_on UNUSEDSIGNAL */
-  assign {zeros, left} = normalised({q_i, {(32 - Q_BITS) {1'b0}}});
 
-  logic [MANTISSA-2:0]  mantissa_q;  // below its highest bit
-  logic [EXPONENT-1:0]  exponent_q;
-  logic [2*P_BITS-1:0]  p_1_q, p_2_q;
-  logic [11:0]          amount_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // its highest bit is set
-  logic [MANTISSA-1:0]  reciprocal;
-  /* verilator lint_on UNUSEDSIGNAL */
-  always_ff @(posedge clk_i) begin
-    mantissa_q <= left[30-:MANTISSA-1];
-    exponent_q <= EXPONENT'(Q_BITS - 1) - zeros;
-    p_1_q      <= {v_i, u_i};
-    p_2_q      <= p_1_q;
-    below_o    <= left[30:23];
-  end
-  assign exponent_o   = exponent_q;
-  assign reciprocal_o = reciprocal[MANTISSA-2:0];
-
+  genvar k, n;
   generate
-    if (RECIPROCAL == 0) begin : gen_table
-      reciprocal_table #(
-          .BITS(MANTISSA)
-      ) u_reciprocal (
-          .clk_i,
-          .mantissa_i  (mantissa_q),
-          .reciprocal_o(reciprocal)
-      );
-    end else begin : gen_division
-      reciprocal_division #(
-          .BITS(MANTISSA)
-      ) u_reciprocal (
-          .clk_i,
-          .mantissa_i  (mantissa_q),
-          .reciprocal_o(reciprocal)
-      );
-    end
-  endgenerate
-
-  genvar n;
-  generate
-    for (n = 0; n < 2; n++) begin : gen_axis
-      /* verilator lint_off UNUSEDSIGNAL */  // not negative, less than 64
-      logic signed [7:0] amount;
+    for (k = 0; k < LANES; k++) begin : gen_lane
+      logic [EXPONENT-1:0] zeros;
+      /* verilator lint_off UNUSEDSIGNAL */  // the reciprocal looks at the highest
+      logic [30:0]         left;
       /* verilator lint_on UNUSEDSIGNAL */
-      assign amount = 8'($signed(shift[n*SHIFT_BITS+:SHIFT_BITS])) + 8'(exponent_q) + 8'(NARROW);
-      always_ff @(posedge clk_i) amount_q[6*n+:6] <= amount[5:0];
-      texture_axis #(
-          .P_BITS        (P_BITS),
-          .MANTISSA      (MANTISSA),
-          .NARROW        (NARROW),
-          .FRACTION      (FRACTION),
-          .REFERENCE_BITS(REFERENCE_BITS),
-          .SIDE_BITS     (SIDE_BITS),
-          .LINEAR        (LINEAR)
-      ) u_axis (
-          .clk_i,
-          .p_i         (p_2_q[n*P_BITS+:P_BITS]),
-          .amount_i    (amount_q[6*n+:6]),
-          .reciprocal_i(reciprocal[MANTISSA-2:0]),
-          .reach_i     (5'(reach[n*REACH_BITS+:REACH_BITS])),
-          .reference_i (reference[n*REFERENCE_BITS+:REFERENCE_BITS]),
-          .last_i      (last_i[n*SIDE_BITS+:SIDE_BITS]),
-          .wrap_i      (wrap_i[2*n+:2]),
-          .is_linear_i,
-          .texel_o     (texel_o[n*SIDE_BITS+:SIDE_BITS]),
-          .next_o      (next_o[n*SIDE_BITS+:SIDE_BITS]),
-          .part_o      (part_o[8*n+:8]),
-          .coordinate_o(coordinate_o[(REFERENCE_BITS+8)*n+:REFERENCE_BITS+8])
-      );
+      assign {zeros, left} = normalised({q_i[k*Q_BITS+:Q_BITS], {(32 - Q_BITS) {1'b0}}});
+
+      logic [MANTISSA-2:0]  mantissa_q;  // below its highest bit
+      logic [EXPONENT-1:0]  exponent_q;
+      logic [2*P_BITS-1:0]  p_1_q, p_2_q;
+      logic [11:0]          amount_q;
+      /* verilator lint_off UNUSEDSIGNAL */  // its highest bit is set
+      logic [MANTISSA-1:0]  reciprocal;
+      /* verilator lint_on UNUSEDSIGNAL */
+      always_ff @(posedge clk_i) begin
+        mantissa_q <= left[30-:MANTISSA-1];
+        exponent_q <= EXPONENT'(Q_BITS - 1) - zeros;
+        p_1_q      <= {v_i[k*P_BITS+:P_BITS], u_i[k*P_BITS+:P_BITS]};
+        p_2_q      <= p_1_q;
+        below_o[8*k+:8] <= left[30:23];
+      end
+      assign exponent_o[k*EXPONENT+:EXPONENT] = exponent_q;
+      assign reciprocal_o[k*(MANTISSA-1)+:MANTISSA-1] = reciprocal[MANTISSA-2:0];
+
+      if (RECIPROCAL == 0) begin : gen_table
+        reciprocal_table #(
+            .BITS(MANTISSA)
+        ) u_reciprocal (
+            .clk_i,
+            .mantissa_i  (mantissa_q),
+            .reciprocal_o(reciprocal)
+        );
+      end else begin : gen_division
+        reciprocal_division #(
+            .BITS(MANTISSA)
+        ) u_reciprocal (
+            .clk_i,
+            .mantissa_i  (mantissa_q),
+            .reciprocal_o(reciprocal)
+        );
+      end
+
+      for (n = 0; n < 2; n++) begin : gen_axis
+        /* verilator lint_off UNUSEDSIGNAL */  // not negative, less than 64
+        logic signed [7:0] amount;
+        /* verilator lint_on UNUSEDSIGNAL */
+        assign amount = 8'($signed(shift[n*SHIFT_BITS+:SHIFT_BITS])) + 8'(exponent_q) + 8'(NARROW);
+        always_ff @(posedge clk_i) amount_q[6*n+:6] <= amount[5:0];
+        texture_axis #(
+            .P_BITS        (P_BITS),
+            .MANTISSA      (MANTISSA),
+            .NARROW        (NARROW),
+            .FRACTION      (FRACTION),
+            .REFERENCE_BITS(REFERENCE_BITS),
+            .SIDE_BITS     (SIDE_BITS),
+            .LINEAR        (LINEAR)
+        ) u_axis (
+            .clk_i,
+            .p_i         (p_2_q[n*P_BITS+:P_BITS]),
+            .amount_i    (amount_q[6*n+:6]),
+            .reciprocal_i(reciprocal[MANTISSA-2:0]),
+            .reach_i     (5'(reach[n*REACH_BITS+:REACH_BITS])),
+            .reference_i (reference[n*REFERENCE_BITS+:REFERENCE_BITS]),
+            .last_i      (last_i[n*SIDE_BITS+:SIDE_BITS]),
+            .wrap_i      (wrap_i[2*n+:2]),
+            .is_linear_i,
+            .texel_o     (texel_o[(2*k+n)*SIDE_BITS+:SIDE_BITS]),
+            .next_o      (next_o[(2*k+n)*SIDE_BITS+:SIDE_BITS]),
+            .part_o      (part_o[16*k+8*n+:8]),
+            .coordinate_o(coordinate_o[(REFERENCE_BITS+8)*(2*k+n)+:REFERENCE_BITS+8])
+        );
+      end
     end
   endgenerate
 

@@ -1,5 +1,5 @@
-// Texture unit: the texels of one texture for the samples of stamps, a live sample a clock, combined with their colours; and
-// those colours, where they lie over w.
+// Texture unit: the texels of one texture for the samples of stamps, a live sample a clock, or those of 2x2 (LANES), combined
+// with their colours; and those colours, where they lie over w.
 //
 //   stamp --> coordinates -> [split] -> texture_coordinates -> addresses -> texture_cache -> [texel] -.
 //         |                        '--> colors_over_w -------------------------> divided -------------|
@@ -7,11 +7,13 @@
 //
 // What a stamp carries along waits in `stamps`, its coordinates in `coordinates`; stamps without texture have nothing there and
 // pass, in order, one a clock. The stamps inside are counted by who sends them, so that none waits at the door.
+// Of four lanes the samples of a stamp are numbered inside as they go: square by square, row by row in each.
 // A state is a stamp too. At the door it says whether the stamps behind it are textured and how they are combined; it sets
 // the address once no sample is left in front of the cache's data.
 // Specification: model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_unit #(
     parameter int SAMPLES = 4,          // of a stamp; a power of two
+    parameter int LANES = 1,            // samples that go together, 1 or 4; 4 without levels
     parameter int Q_BITS = 27,          // of q in a tile, without sign; at most 32
     parameter int P_BITS = 28,          // of u and v over w in a tile, with their signs
     parameter int MANTISSA = 18,        // k
@@ -88,21 +90,24 @@ module texture_unit #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic sample_o,  // one has been looked up in the cache
-    output logic hit_o,     // and all of its lines were there
-    output logic miss_o,    // a line has been asked for
+    output logic [$clog2(LANES+1)-1:0] sample_o,  // so many have been looked up in the cache
+    output logic [$clog2(LANES+1)-1:0] hit_o,     // and of so many all lines were there
+    output logic miss_o,  // a line has been asked for
     output logic idle_o  // nothing is under way
 );
 
   localparam int SIDE_BITS = 12;
-  localparam int LANE = (SAMPLES == 1) ? 1 : $clog2(SAMPLES);
-  localparam int TAIL = LANE + 1;
+  localparam int GROUPS = SAMPLES / LANES;
+  localparam int GROUP = (GROUPS == 1) ? 1 : $clog2(GROUPS);
+  localparam int TAIL = GROUP + 1;                          // of a group; the last of its stamp
+  localparam int AHEAD_TAIL = TAIL + ((LANES != 1) ? LANES : 0);  // and which samples live, where there are several
   localparam int INDEX = $clog2(QUEUE);
   localparam int COLOR = 8 * CHANNELS;
   localparam int COLOR_P = CHANNELS * COLOR_P_BITS;
   localparam int PLACE = Q_BITS + 2 * P_BITS + ((OVER_W != 0) ? COLOR_P : 0);
   localparam int COORDINATES = SAMPLES * PLACE;
-  localparam int AHEAD = 16;  // samples between split and tags
+  localparam int GROUP_PLACE = LANES * PLACE;
+  localparam int AHEAD = 16;  // groups between split and tags
   localparam int CLOCKS = (FILTER == 2) ? 10 : 8;  // of texture_coordinates, of level_of_detail
   localparam int TOKEN = (FILTER == 2) ? 3 : 1;    // kinds of states
   localparam int PIXELS = COORDINATES + 2 * PIXEL;
@@ -127,15 +132,26 @@ module texture_unit #(
       door_combine_q <= state_i[6:5];
     end
 
-  // Each sample's coordinates beside each other.
-  logic [COORDINATES-1:0] places;
+  // Each sample's coordinates beside each other, and the samples as they go.
+  localparam int SIDE = $clog2(SAMPLES) / 2;  // log2 of the samples along a stamp's side
+  logic [COORDINATES-1:0]   places;
+  logic [SAMPLES-1:0]       door_mask;
+  logic [SAMPLES*COLOR-1:0] door_color, color_q;
+  logic [SAMPLES-1:0]       mask_q;
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_place
-      assign places[s*PLACE+:Q_BITS+2*P_BITS] = {v_i[s*P_BITS+:P_BITS], u_i[s*P_BITS+:P_BITS], q_i[s*Q_BITS+:Q_BITS]};
+      // Squares of 2x2 in rows, in each its own two rows.
+      localparam int AT = (LANES == 1 || SAMPLES == 4) ? s :
+                          ((2 * ((s / 4) / (1 << (SIDE - 1))) + (s / 2) % 2) << SIDE) + 2 * ((s / 4) % (1 << (SIDE - 1))) + s % 2;
+      assign places[s*PLACE+:Q_BITS+2*P_BITS] = {v_i[AT*P_BITS+:P_BITS], u_i[AT*P_BITS+:P_BITS], q_i[AT*Q_BITS+:Q_BITS]};
       if (OVER_W != 0) begin : gen_color
-        assign places[s*PLACE+Q_BITS+2*P_BITS+:COLOR_P] = color_p_i[s*COLOR_P+:COLOR_P];
+        assign places[s*PLACE+Q_BITS+2*P_BITS+:COLOR_P] = color_p_i[AT*COLOR_P+:COLOR_P];
       end
+      assign door_mask[s]                = mask_i[AT];
+      assign door_color[s*COLOR+:COLOR]  = color_i[AT*COLOR+:COLOR];
+      assign mask_o[AT]                  = mask_q[s];
+      assign color_o[AT*COLOR+:COLOR]    = color_q[s*COLOR+:COLOR];
     end
   endgenerate
 
@@ -194,7 +210,7 @@ module texture_unit #(
       .rst_ni,
       .valid_i(passes_door),
       .ready_o(waiting_ready),
-      .data_i ({token, mask_i, entering[WAITING-1:WORD], token != '0 ? state_i : entering[WORD-1:0]}),
+      .data_i ({token, door_mask, entering[WAITING-1:WORD], token != '0 ? state_i : entering[WORD-1:0]}),
       .valid_o(waits),
       .ready_i(takes),
       .data_o ({waiting_token, waiting_mask, waiting})
@@ -207,37 +223,41 @@ module texture_unit #(
       .rst_ni,
       .valid_i(stamp_valid_i),
       .ready_o(stamps_ready),
-      .data_i ({payload_i, mask_i, color_i, door_flags, door_combine_q, has_alpha}),
+      .data_i ({payload_i, door_mask, door_color, door_flags, door_combine_q, has_alpha}),
       .valid_o(stamp_waits),
       .ready_i(stamp_leaves),
       .data_o ({stamp_payload, stamp_mask, stamp_color, stamp_flags, stamp_combine, stamp_has_alpha})
   );
 
   // --------------------------------------------------------------------------------------------------------------- the split
-  function automatic [LANE-1:0] lowest(input [SAMPLES-1:0] mask);
+  function automatic [GROUP-1:0] lowest(input [GROUPS-1:0] mask);
     lowest = '0;
-    for (int i = SAMPLES - 1; i >= 0; i--) if (mask[i]) lowest = LANE'(i);
+    for (int i = GROUPS - 1; i >= 0; i--) if (mask[i]) lowest = GROUP'(i);
   endfunction
-  function automatic [PLACE-1:0] place_of(input [COORDINATES-1:0] all, input [LANE-1:0] lane);
+  function automatic [GROUP_PLACE-1:0] place_of(input [COORDINATES-1:0] all, input [GROUP-1:0] of_group);
     logic [COORDINATES-1:0] left;
     left = all;
-    for (int bits = $clog2(SAMPLES) - 1; bits >= 0; bits--) left = lane[bits] ? left >> (PLACE << bits) : left;
-    place_of = left[PLACE-1:0];
+    for (int bits = $clog2(GROUPS) - 1; bits >= 0; bits--) left = of_group[bits] ? left >> (GROUP_PLACE << bits) : left;
+    place_of = left[GROUP_PLACE-1:0];
   endfunction
 
   logic               splits, can_set, sets_state, moves_in, is_last, leaves_queue, tags_are_empty;
-  logic [SAMPLES-1:0] done_q, left;  // samples of the stamp that are through; that are not
-  logic [LANE-1:0]    lane;
+  logic [GROUPS-1:0]  done_q, left;  // groups of the stamp that are through; that are not
+  logic [GROUP-1:0]   group;
   logic [4:0]         ahead_q;
-  assign left       = waiting_mask & ~done_q;
-  assign lane       = lowest(left);
+  generate
+    for (s = 0; s < GROUPS; s++) begin : gen_left
+      assign left[s] = waiting_mask[s*LANES+:LANES] != '0 && !done_q[s];
+    end
+  endgenerate
+  assign group      = lowest(left);
   assign is_last    = (left & (left - 1'b1)) == '0;
   assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);  // behind a state that takes the texture away it is 0
   assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
   assign sets_state = can_set && waiting_token[0];
   assign takes      = can_set || moves_in || (splits && is_last);
 
-  logic [PLACE-1:0] place_q;  // the sample
+  logic [GROUP_PLACE-1:0] place_q;  // the samples of the group
   logic [INDEX-1:0] place_index_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -246,14 +266,14 @@ module texture_unit #(
       entered_q <= '0;
       split_q   <= '0;
     end else begin
-      if (splits) done_q <= is_last ? '0 : done_q | SAMPLES'(1) << lane;
+      if (splits) done_q <= is_last ? '0 : done_q | GROUPS'(1) << group;
       ahead_q   <= ahead_q + 5'(splits && waiting_is_textured) - 5'(leaves_queue);
       entered_q <= entered_q + INDEX'(enters);
       split_q   <= split_q + INDEX'(splits && is_last);
     end
   end
   always_ff @(posedge clk_i) begin
-    place_q       <= place_of(waiting[COORDINATES-1:0], lane);
+    place_q       <= place_of(waiting[COORDINATES-1:0], group);
     place_index_q <= split_q;
   end
 
@@ -282,15 +302,17 @@ module texture_unit #(
 
   // ------------------------------------------------------------------------------------------------------------ the address
   logic [CLOCKS:0]            valid_q;  // of a clock ago lowest
-  logic [TAIL*(CLOCKS+1)-1:0] tail_q;
-  logic [2*SIDE_BITS-1:0]     texel;
+  logic [AHEAD_TAIL*(CLOCKS+1)-1:0] tail_q;
+  logic [LANES*2*SIDE_BITS-1:0] texel;
   /* verilator lint_off UNUSEDSIGNAL */  // of a linear filter
-  logic [2*SIDE_BITS-1:0]     next;
-  logic [15:0]                part;
-  logic [2*REFERENCE_BITS+15:0] place, coordinate;  // of levels, as far as the level
-  logic [4:0]                 exponent;
-  logic [MANTISSA-2:0]        reciprocal;
-  logic [7:0]                 below, level_part;
+  logic [LANES*2*SIDE_BITS-1:0] next;
+  logic [LANES*16-1:0]        part;
+  logic [LANES*(2*REFERENCE_BITS+16)-1:0] place;  // of levels, as far as the level
+  logic [2*REFERENCE_BITS+15:0] coordinate;
+  logic [LANES*5-1:0]         exponent;
+  logic [LANES*(MANTISSA-1)-1:0] reciprocal;
+  logic [LANES*8-1:0]         below;
+  logic [7:0]                 level_part;
   logic [3:0]                 level;
   logic                       level_is_linear, level_is_between, shares;
   /* verilator lint_on UNUSEDSIGNAL */
@@ -298,9 +320,38 @@ module texture_unit #(
     if (!rst_ni) valid_q <= '0;
     else valid_q <= {valid_q[CLOCKS-1:0], splits && waiting_is_textured};
   end
-  always_ff @(posedge clk_i) tail_q <= {tail_q[TAIL*CLOCKS-1:0], is_last, lane};
+  generate
+    if (LANES != 1) begin : gen_tails
+      logic [LANES-1:0] live;
+      always_comb begin
+        live = '0;
+        for (int i = 0; i < GROUPS; i++) live = live | (waiting_mask[i*LANES+:LANES] & {LANES{group == GROUP'(i)}});
+      end
+      always_ff @(posedge clk_i) tail_q <= {tail_q[AHEAD_TAIL*CLOCKS-1:0], live, is_last, group};
+    end else begin : gen_tail
+      always_ff @(posedge clk_i) tail_q <= {tail_q[AHEAD_TAIL*CLOCKS-1:0], is_last, group};
+    end
+  endgenerate
 
+  logic [LANES*Q_BITS-1:0]  q_lanes;
+  logic [LANES*P_BITS-1:0]  u_lanes, v_lanes;
+  /* verilator lint_off UNUSEDSIGNAL */
+  logic [LANES*COLOR_P-1:0] color_p_lanes;
+  /* verilator lint_on UNUSEDSIGNAL */
+  generate
+    for (s = 0; s < LANES; s++) begin : gen_lane
+      assign q_lanes[s*Q_BITS+:Q_BITS] = place_q[s*PLACE+:Q_BITS];
+      assign u_lanes[s*P_BITS+:P_BITS] = place_q[s*PLACE+Q_BITS+:P_BITS];
+      assign v_lanes[s*P_BITS+:P_BITS] = place_q[s*PLACE+Q_BITS+P_BITS+:P_BITS];
+      if (OVER_W != 0) begin : gen_color
+        assign color_p_lanes[s*COLOR_P+:COLOR_P] = place_q[s*PLACE+Q_BITS+2*P_BITS+:COLOR_P];
+      end else begin : gen_no_color
+        assign color_p_lanes[s*COLOR_P+:COLOR_P] = '0;
+      end
+    end
+  endgenerate
   texture_coordinates #(
+      .LANES         (LANES),
       .Q_BITS        (Q_BITS),
       .P_BITS        (P_BITS),
       .MANTISSA      (MANTISSA),
@@ -321,9 +372,9 @@ module texture_unit #(
       .reach_i,
       .reference_i,
       .index_i      (place_index_q),
-      .q_i          (place_q[Q_BITS-1:0]),
-      .u_i          (place_q[Q_BITS+:P_BITS]),
-      .v_i          (place_q[Q_BITS+P_BITS+:P_BITS]),
+      .q_i          (q_lanes),
+      .u_i          (u_lanes),
+      .v_i          (v_lanes),
       .last_i       (last_q),
       .wrap_i       (wrap_q),
       .is_linear_i  (is_linear_q),
@@ -338,13 +389,12 @@ module texture_unit #(
 
   generate
     if (FILTER == 2) begin : gen_level_of_detail
-      localparam int SIDE = LANE / 2;  // log2 of the samples along a stamp's side
       logic [PIXEL-1:0]             x_q, y_q;
       logic [2*REFERENCE_BITS+15:0] place_1_q, place_2_q;
       assign moves_in = waits && waiting_token[2];
       always_ff @(posedge clk_i) begin
-        x_q       <= waiting[COORDINATES+:PIXEL] | (PIXEL'(lane) & PIXEL'((1 << SIDE) - 1));
-        y_q       <= waiting[COORDINATES+PIXEL+:PIXEL] | (PIXEL'(lane) >> SIDE);
+        x_q       <= waiting[COORDINATES+:PIXEL] | (PIXEL'(group) & PIXEL'((1 << SIDE) - 1));
+        y_q       <= waiting[COORDINATES+PIXEL+:PIXEL] | (PIXEL'(group) >> SIDE);
         place_1_q <= place;
         place_2_q <= place_1_q;
       end
@@ -382,11 +432,59 @@ module texture_unit #(
 
   logic            drops, cache_is_idle;
   logic            texel_valid, texel_ready;
-  logic [31:0]     texel_color, e_texel_q;
-  logic [TAIL-1:0] texel_tail;
+  logic [LANES*32-1:0] texel_color, e_texel_q;
+  logic [TAIL-1:0]     texel_tail;
+  logic [LANES-1:0]    texel_lanes;  // the samples that have come
+  logic                texel_ends;   // and they are the last of their group
   assign drops = sets_state && waiting[1];
   generate
-    if (FILTER == 0) begin : gen_nearest
+    if (LANES != 1) begin : gen_lanes
+      texture_lanes #(
+          .LINEAR   (FILTER),
+          .SIDE_BITS(SIDE_BITS),
+          .AHEAD    (AHEAD),
+          .LINES    (LINES),
+          .PORT_BITS(PORT_BITS),
+          .IN_FLIGHT(IN_FLIGHT),
+          .TAIL     (TAIL)
+      ) u_texture_lanes (
+          .clk_i,
+          .rst_ni,
+          .power_on_ni,
+          .valid_i         (valid_q[CLOCKS]),
+          .live_i          (tail_q[AHEAD_TAIL*CLOCKS+TAIL+:LANES]),
+          .texel_i         (texel),
+          .next_i          (next),
+          .part_i          (part),
+          .tail_i          (tail_q[AHEAD_TAIL*CLOCKS+:TAIL]),
+          .pops_o          (leaves_queue),
+          .format_i        (format_q),
+          .base_i          (base_q),
+          .size_i          (size_q),
+          .row_i           (row_q),
+          .drop_i          (drops),
+          .tags_are_empty_o(tags_are_empty),
+          .texel_valid_o   (texel_valid),
+          .texel_ready_i   (texel_ready),
+          .texel_lanes_o   (texel_lanes),
+          .texel_ends_o    (texel_ends),
+          .texel_o         (texel_color),
+          .texel_tail_o    (texel_tail),
+          .request_valid_o,
+          .request_ready_i,
+          .request_address_o,
+          .request_beats_o,
+          .answer_valid_i,
+          .answer_ready_o,
+          .answer_data_i,
+          .sample_o,
+          .hit_o,
+          .miss_o,
+          .idle_o          (cache_is_idle)
+      );
+    end else if (FILTER == 0) begin : gen_nearest
+      assign texel_lanes = 1'b1;
+      assign texel_ends  = 1'b1;
       texture_nearest #(
           .SIDE_BITS(SIDE_BITS),
           .AHEAD    (AHEAD),
@@ -400,7 +498,7 @@ module texture_unit #(
           .power_on_ni,
           .valid_i         (valid_q[CLOCKS]),
           .texel_i         (texel),
-          .tail_i          (tail_q[TAIL*CLOCKS+:TAIL]),
+          .tail_i          (tail_q[AHEAD_TAIL*CLOCKS+:TAIL]),
           .pops_o          (leaves_queue),
           .format_i        (format_q),
           .base_i          (base_q),
@@ -425,6 +523,8 @@ module texture_unit #(
           .idle_o          (cache_is_idle)
       );
     end else begin : gen_linear
+      assign texel_lanes = 1'b1;
+      assign texel_ends  = 1'b1;
       texture_linear #(
           .LEVELS        (FILTER - 1),
           .REFERENCE_BITS(REFERENCE_BITS),
@@ -447,7 +547,7 @@ module texture_unit #(
           .level_part_i    (level_part),
           .is_linear_i     (level_is_linear),
           .is_between_i    (level_is_between),
-          .tail_i          (tail_q[TAIL*CLOCKS+:TAIL]),
+          .tail_i          (tail_q[AHEAD_TAIL*CLOCKS+:TAIL]),
           .pops_o          (leaves_queue),
           .sets_state_i    (sets_state),
           .log2_size_i     (waiting[18:11]),
@@ -484,13 +584,13 @@ module texture_unit #(
   logic              takes_divided;
   /* verilator lint_on UNUSEDSIGNAL */
   logic              divided_valid, divided_last;
-  logic [LANE-1:0]   divided_lane;
-  logic [COLOR-1:0]  divided;
+  logic [GROUP-1:0]  divided_group;
+  logic [LANES*COLOR-1:0] divided;
   generate
     if (OVER_W != 0) begin : gen_colors_over_w
       localparam int COLOR_CLOCKS = 8;  // of colors_over_w
       logic [COLOR_CLOCKS:0] divides_q;  // of a clock ago lowest
-      logic [COLOR-1:0]      color;
+      logic [LANES*COLOR-1:0] color;
       /* verilator lint_off UNUSEDSIGNAL */  // there is room
       logic                  divided_ready;
       /* verilator lint_on UNUSEDSIGNAL */
@@ -498,85 +598,92 @@ module texture_unit #(
         if (!rst_ni) divides_q <= '0;
         else divides_q <= {divides_q[COLOR_CLOCKS-1:0], splits && waiting_divides};
       end
-      colors_over_w #(
-          .CHANNELS  (CHANNELS),
-          .P_BITS    (COLOR_P_BITS),
-          .MANTISSA  (MANTISSA),
-          .NARROW    (COLOR_NARROW),
-          .SHIFT_BITS(COLOR_SHIFT_BITS),
-          .REACH_BITS(COLOR_REACH_BITS),
-          .QUEUE     (QUEUE)
-      ) u_colors_over_w (
-          .clk_i,
-          .frame_valid_i(enters),
-          .frame_index_i(entered_q),
-          .shift_i      (color_shift_i),
-          .reach_i      (color_reach_i),
-          .least_i      (least_color_i),
-          .greatest_i   (greatest_color_i),
-          .index_i      (place_index_q),
-          .p_i          (place_q[Q_BITS+2*P_BITS+:COLOR_P]),
-          .exponent_i   (exponent),
-          .reciprocal_i (reciprocal),
-          .color_o      (color)
-      );
+      for (s = 0; s < LANES; s++) begin : gen_divided
+        colors_over_w #(
+            .CHANNELS  (CHANNELS),
+            .P_BITS    (COLOR_P_BITS),
+            .MANTISSA  (MANTISSA),
+            .NARROW    (COLOR_NARROW),
+            .SHIFT_BITS(COLOR_SHIFT_BITS),
+            .REACH_BITS(COLOR_REACH_BITS),
+            .QUEUE     (QUEUE)
+        ) u_colors_over_w (
+            .clk_i,
+            .frame_valid_i(enters),
+            .frame_index_i(entered_q),
+            .shift_i      (color_shift_i),
+            .reach_i      (color_reach_i),
+            .least_i      (least_color_i),
+            .greatest_i   (greatest_color_i),
+            .index_i      (place_index_q),
+            .p_i          (color_p_lanes[s*COLOR_P+:COLOR_P]),
+            .exponent_i   (exponent[s*5+:5]),
+            .reciprocal_i (reciprocal[s*(MANTISSA-1)+:MANTISSA-1]),
+            .color_o      (color[s*COLOR+:COLOR])
+        );
+      end
       fifo #(
-          .WIDTH(TAIL + COLOR),
-          .DEPTH(QUEUE * SAMPLES)
+          .WIDTH(TAIL + LANES * COLOR),
+          .DEPTH(QUEUE * GROUPS)
       ) u_divided (
           .clk_i,
           .rst_ni,
           .valid_i(divides_q[COLOR_CLOCKS]),
           .ready_o(divided_ready),
-          .data_i ({tail_q[TAIL*COLOR_CLOCKS+:TAIL], color}),
+          .data_i ({tail_q[AHEAD_TAIL*COLOR_CLOCKS+:TAIL], color}),
           .valid_o(divided_valid),
           .ready_i(takes_divided),
-          .data_o ({divided_last, divided_lane, divided})
+          .data_o ({divided_last, divided_group, divided})
       );
     end else begin : gen_affine
       assign divided_valid = 1'b0;
       assign divided_last  = 1'b0;
-      assign divided_lane  = '0;
+      assign divided_group = '0;
       assign divided       = '0;
     end
   endgenerate
 
   // ------------------------------------------------------------------------------------- combine, and the stamp on its way out
   logic                     e_valid_q, e_last_q, e_moves, passes, is_free, out_valid_q;
-  logic [LANE-1:0]          e_lane_q;
-  logic [COLOR-1:0]         e_color, combined;
+  logic [GROUP-1:0]         e_group_q;
+  logic [LANES-1:0]         e_lanes_q;
+  logic                     e_ends_q;
+  logic [LANES*COLOR-1:0]   e_color, combined;
   logic [PAYLOAD-1:0]       payload_q;
-  logic [SAMPLES-1:0]       mask_q;
-  logic [SAMPLES*COLOR-1:0] color_q;
 
-  function automatic [COLOR-1:0] color_of(input [SAMPLES*COLOR-1:0] all, input [LANE-1:0] of_lane);
+  function automatic [LANES*COLOR-1:0] color_of(input [SAMPLES*COLOR-1:0] all, input [GROUP-1:0] of_group);
     logic [SAMPLES*COLOR-1:0] rest;
     rest = all;
-    for (int bits = $clog2(SAMPLES) - 1; bits >= 0; bits--) rest = of_lane[bits] ? rest >> (COLOR << bits) : rest;
-    color_of = rest[COLOR-1:0];
+    for (int bits = $clog2(GROUPS) - 1; bits >= 0; bits--)
+      rest = of_group[bits] ? rest >> ((LANES * COLOR) << bits) : rest;
+    color_of = rest[LANES*COLOR-1:0];
   endfunction
 
   // A sample's own colour is divided before its texel comes: that takes fewer clocks.
   logic d_moves;  // a sample without a texture, whose colour is divided
-  assign e_color = stamp_divides ? divided : color_of(stamp_color, e_lane_q);
-  texture_combine #(
-      .CHANNELS(CHANNELS),
-      .SOFT    (SOFT)
-  ) u_combine (
-      .texel_i    (e_texel_q),
-      .color_i    (e_color),
-      .combine_i  (stamp_combine),
-      .has_alpha_i(stamp_has_alpha),
-      .color_o    (combined)
-  );
+  assign e_color = stamp_divides ? divided : color_of(stamp_color, e_group_q);
+  generate
+    for (s = 0; s < LANES; s++) begin : gen_combine
+      texture_combine #(
+          .CHANNELS(CHANNELS),
+          .SOFT    (SOFT)
+      ) u_combine (
+          .texel_i    (e_texel_q[s*32+:32]),
+          .color_i    (e_color[s*COLOR+:COLOR]),
+          .combine_i  (stamp_combine),
+          .has_alpha_i(stamp_has_alpha),
+          .color_o    (combined[s*COLOR+:COLOR])
+      );
+    end
+  endgenerate
 
   assign is_free       = !out_valid_q || stamp_ready_i;
   assign passes        = stamp_waits && !stamp_is_textured && !stamp_divides && is_free;
   assign d_moves       = stamp_waits && !stamp_is_textured && stamp_divides && divided_valid && is_free;
   assign e_moves       = e_valid_q && stamp_is_textured && is_free;  // the first that is textured is its own
-  assign stamp_leaves  = passes || (e_moves && e_last_q) || (d_moves && divided_last);
+  assign stamp_leaves  = passes || (e_moves && e_last_q && e_ends_q) || (d_moves && divided_last);
   assign texel_ready   = !e_valid_q || e_moves;
-  assign takes_divided = d_moves || (e_moves && stamp_divides);
+  assign takes_divided = d_moves || (e_moves && stamp_divides && e_ends_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -589,22 +696,24 @@ module texture_unit #(
   end
   always_ff @(posedge clk_i) begin
     if (texel_ready) begin
-      e_texel_q            <= texel_color;
-      {e_last_q, e_lane_q} <= texel_tail;
+      e_texel_q             <= texel_color;
+      {e_last_q, e_group_q} <= texel_tail;
+      e_lanes_q             <= texel_lanes;
+      e_ends_q              <= texel_ends;
     end
     if (stamp_leaves) begin
       payload_q <= stamp_payload;
       mask_q    <= stamp_mask;
     end
     for (int i = 0; i < SAMPLES; i++)
-      if (passes || (e_moves && e_lane_q == LANE'(i)) || (d_moves && divided_lane == LANE'(i)))
-        color_q[i*COLOR+:COLOR] <= stamp_is_textured ? combined : stamp_divides ? divided : stamp_color[i*COLOR+:COLOR];
+      if (passes || (e_moves && e_group_q == GROUP'(i / LANES) && e_lanes_q[i%LANES]) ||
+          (d_moves && divided_group == GROUP'(i / LANES)))
+        color_q[i*COLOR+:COLOR] <= stamp_is_textured ? combined[i%LANES*COLOR+:COLOR] :
+                                   stamp_divides ? divided[i%LANES*COLOR+:COLOR] : stamp_color[i*COLOR+:COLOR];
   end
 
   assign stamp_valid_o = out_valid_q;
   assign payload_o     = payload_q;
-  assign mask_o        = mask_q;
-  assign color_o       = color_q;
   assign idle_o        = !waits && !stamp_waits && !out_valid_q && cache_is_idle;
 
 endmodule

@@ -311,7 +311,8 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_textures.texture_unit = TextureUnitKind::trilinear;
   with_textures.perspective_colors = 1;
   Config with_operations = preset("embedded");
-  with_operations.texture_unit = TextureUnitKind::nearest;
+  with_operations.texture_unit = TextureUnitKind::bilinear;
+  with_operations.texture_lanes = 4;
   with_operations.alpha_units = with_operations.dither_units = 1;
   with_operations.blend_lanes = 4;
   Config with_stencil = preset("embedded");
@@ -326,7 +327,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants && textured.has_mutants && blended.has_mutants &&
               stencilled.has_mutants);
   const auto is_of_operations = [](const Mutant& mutant) {
-    return mutant.what.starts_with("colours") || mutant.what.starts_with("alpha");
+    return mutant.what.starts_with("colours") || mutant.what.starts_with("alpha") || mutant.what.starts_with("lanes");
   };
   const auto is_seen = [&](const Mutant& mutant) {  // `tiny` has the framebuffer of tiles
     return (mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||

@@ -9,10 +9,17 @@
 namespace halfplane {
 namespace {
 
-/// 2x2 stamps of tiles over 640x480, a texture of 1024x512; turned: u along y. Of a unit with levels a pixel
-/// holds 2^(lod/256) texels.
-double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& settings, bool is_turned, int tile = 16,
-            TextureMin min = TextureMin::nearest, Lod lod = 0) {
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+struct Rate {
+  double samples = 0;  ///< a clock
+  double passes = 0;   ///< a stamp
+  double hits = 0;     ///< of the samples
+};
+
+/// 2x2 stamps of tiles over 640x480, a texture of 1024x512, turned by so many degrees. A pixel holds 2^(lod/256) texels.
+Rate rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& settings, double degrees, int tile = 16,
+          TextureMin min = TextureMin::nearest, Lod lod = 0) {
   const PerspectiveFormat perspective;
   TextureUnit unit(settings, perspective);
   TextureTiming timing(settings);
@@ -40,13 +47,14 @@ double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& s
     return port.ask(cycle, address, beats, [](int, Cycle) {});
   };
   const auto read = [](std::uint32_t, int) { return TextureLine{}; };
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0, stamps = 0, passes = 0, hits = 0;
   TextureFrame frame;
   const int narrow = perspective.coordinate.narrow_bits;
   frame.scale.fill({1 - narrow, kReach});
   std::array<TextureSample, 4> sample;
   std::array<Texel, 4> color{};
   Cycle last = 0;
+  const double cosine = std::cos(degrees * kDegree), sine = std::sin(degrees * kDegree);
   for (int ty = 0; ty < 480; ty += tile)
     for (int tx = 0; tx < 640; tx += tile)
       for (int y = ty; y < ty + tile; y += 2)
@@ -55,16 +63,20 @@ double rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& s
             const double u = (s + i % 2 + 0.5) * texels, v = (y + i / 2 + 0.5) * texels;
             auto& at = sample[static_cast<std::size_t>(i)];
             at.q = kQ;
-            at.p = {static_cast<std::int64_t>(std::ldexp(is_turned ? v : u, 25 - kReach)),
-                    static_cast<std::int64_t>(std::ldexp(is_turned ? u : v, 25 - kReach))};
+            at.p = {static_cast<std::int64_t>(std::ldexp(cosine * u + sine * v, 25 - kReach)),
+                    static_cast<std::int64_t>(std::ldexp(cosine * v - sine * u, 25 - kReach))};
           }
           x = std::max(x + 1, timing.room());
           const auto lookups = unit.take(SampleMask::all(4), sample, frame, color, read);
+          for (const TextureLookup& lookup : lookups) passes += lookup.ends ? 1 : 0;
+          hits += use_of(lookups).hits;
           last = timing.take(x, lookups, ask);
           timing.leave(last);
           samples += 4;
+          ++stamps;
         }
-  return static_cast<double>(samples) / static_cast<double>(last);
+  const auto share = [](auto part, auto whole) { return static_cast<double>(part) / static_cast<double>(whole); };
+  return {share(samples, last), share(passes, stamps), share(hits, samples)};
 }
 
 TEST(TextureRate, AScreenAtOneTexelAPixel) {
@@ -77,7 +89,7 @@ TEST(TextureRate, AScreenAtOneTexelAPixel) {
           const auto memory = make_memory({MemoryKind::ddr3, 0, mhz}, config);
           TextureSettings settings;
           settings.has_linear = is_linear;
-          const double samples = rate(format, *memory, settings, is_turned);
+          const double samples = rate(format, *memory, settings, is_turned ? 90 : 0).samples;
           EXPECT_GE(samples, format == TextureFormat::rgba8888 && is_linear ? 0.8 : 0.9)
               << kTextureFormats[static_cast<std::size_t>(format)] << " at " << mhz << " MHz";
           std::cout << (is_linear ? "linear " : "nearest ") << kTextureFormats[static_cast<std::size_t>(format)] << ' '
@@ -94,10 +106,36 @@ TEST(TextureRate, ALevelASampleOrTwo) {
     for (const bool is_turned : {false, true})
       for (const Lod lod : {64, 128, 192, 320}) {
         const auto memory = make_memory({MemoryKind::ddr3, 0, 50}, config);
-        const double samples = rate(TextureFormat::rgb565, *memory, settings, is_turned, 8, min, lod);
+        const double samples = rate(TextureFormat::rgb565, *memory, settings, is_turned ? 90 : 0, 8, min, lod).samples;
         EXPECT_GE(samples, min == TextureMin::linear_mipmap_nearest ? 0.95 : 0.45) << lod;
         std::cout << (min == TextureMin::linear_mipmap_nearest ? "one level" : "two levels") << ", level of detail "
                   << lod / 256.0 << (is_turned ? ", turned: " : ": ") << samples << '\n';
+      }
+}
+
+// Where lines are there a clock takes a stamp, nearest or linear, turned or not, up to a texel a pixel; from a cache that holds
+// the whole texture, or from one of 4 KB where it is magnified. Farther away samples stand in each other's way.
+TEST(TextureRate, FourLanesTakeAStampAClock) {
+  Config config;
+  config.memory_port_bits = 64;
+  for (const bool is_linear : {false, true})
+    for (const Lod lod : {-512, -256, 0, 128, 256, 384, 512})
+      for (const double degrees : {0.0, 30.0, 45.0, 90.0}) {
+        TextureSettings settings{64, 64, 32, 32, is_linear};
+        settings.lanes = 4;
+        const auto memory = make_memory({MemoryKind::ddr3, 0, 50}, config);
+        const Rate small = rate(TextureFormat::rgb565, *memory, settings, degrees, 8, TextureMin::nearest, lod);
+        EXPECT_GE(small.passes, 1);
+        EXPECT_LE(small.passes, 4);
+        if (lod <= 0) {
+          EXPECT_LE(small.passes, 1.0) << "no two samples are in each other's way";
+        }
+        if (lod <= -256) {
+          EXPECT_GE(small.samples, 3.6) << lod << " turned by " << degrees;
+        }
+        std::cout << (is_linear ? "linear, " : "nearest, ") << std::exp2(lod / 256.0) << " texels a pixel, " << degrees
+                  << " degrees: " << small.samples << " samples a clock, " << small.passes << " passes a stamp, "
+                  << 100 * small.hits << " % hits\n";
       }
 }
 

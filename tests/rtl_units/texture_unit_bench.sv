@@ -1,6 +1,7 @@
 // The texture unit as a bench drives it. FAULTS of CMakeLists.txt look at fault_i; the unit as it is does not.
 module texture_unit_bench #(
     parameter int SAMPLES = 4,
+    parameter int LANES = 1,
     parameter int Q_BITS = 27,
     parameter int P_BITS = 28,
     parameter int MANTISSA = 18,
@@ -22,7 +23,7 @@ module texture_unit_bench #(
     input logic       rst_ni,
     input logic       power_on_ni,
     /* verilator lint_off UNUSEDSIGNAL */
-    input logic [5:0] fault_i,
+    input logic [6:0] fault_i,
     /* verilator lint_on UNUSEDSIGNAL */
 
     input logic                          stamp_valid_i,
@@ -63,14 +64,15 @@ module texture_unit_bench #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic sample_o,
-    output logic hit_o,
+    output logic [$clog2(LANES+1)-1:0] sample_o,
+    output logic [$clog2(LANES+1)-1:0] hit_o,
     output logic miss_o,
     output logic idle_o
 );
 
   texture_unit #(
       .SAMPLES  (SAMPLES),
+      .LANES    (LANES),
       .Q_BITS   (Q_BITS),
       .P_BITS   (P_BITS),
       .MANTISSA (MANTISSA),

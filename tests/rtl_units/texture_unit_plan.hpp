@@ -309,7 +309,7 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
       unit.move_in(stamp.word);
       stamp.offered = timing.set_lines(x);
     } else if (!unit.is_textured(stamp.is_triangle, stamp.mask)) {
-      stamp.offered = divides ? timing.divide(x, stamp.mask.count()) : timing.pass(x);
+      stamp.offered = divides ? timing.divide(x, unit.groups(stamp.mask)) : timing.pass(x);
     } else {
       const auto lookups = unit.take(stamp.mask, stamp.sample, stamp.frame, stamp.combined, read);
       const TextureUse use = use_of(lookups);

@@ -12,6 +12,9 @@
 #include "VTextureUnit.h"
 #include "VTextureUnitFaults.h"
 #include "VTextureUnitFull.h"
+#include "VTextureUnitLanes.h"
+#include "VTextureUnitLanesFaults.h"
+#include "VTextureUnitLanesFull.h"
 #include "VTextureUnitLevels.h"
 #include "VTextureUnitLevelsFaults.h"
 #include "VTextureUnitLevelsTiny.h"
@@ -30,6 +33,8 @@ const UnitFormat kLinear{4, 4, {64, 64, 16, 32, true}, kEmbeddedPerspective};
 const UnitFormat kLinearTiny{1, 3, {16, 16, 4, 8, true}, kTinyPerspective};
 const UnitFormat kLevels{4, 4, {64, 64, 16, 32, true, true, 104}, kEmbeddedPerspective, true};
 const UnitFormat kLevelsTiny{1, 3, {16, 16, 4, 8, true, true, 70}, kTinyPerspective};
+const UnitFormat kLanes{4, 4, {64, 64, 32, 32, true, false, 104, 4, 2}, kEmbeddedPerspective, true};
+const UnitFormat kLanesFull{16, 4, {16, 16, 8, 8, false, false, 104, 4, 4}, kFullPerspective, true};
 const UnitFormat kFull{16, 4, {256, 128, 16, 64}, kFullPerspective, true};
 
 std::uint64_t seed_of_run() {
@@ -276,6 +281,11 @@ TEST(TextureUnit, TinyWithLevelsItIsItsSpecificationInEveryCycle) {
 }
 TEST(TextureUnit, FullIsItsSpecificationInEveryCycle) { expect_right<VTextureUnitFull>(kFull, 200'000); }
 
+TEST(TextureUnit, OfFourLanesItIsItsSpecificationInEveryCycle) { expect_right<VTextureUnitLanes>(kLanes, 400'000); }
+TEST(TextureUnit, OfFourLanesFullIsItsSpecificationInEveryCycle) {
+  expect_right<VTextureUnitLanesFull>(kLanesFull, 200'000);
+}
+
 /// Faults `first` to `last`, and none.
 template <class Dut>
 void expect_found(const UnitFormat& format, int first, int last) {
@@ -299,7 +309,10 @@ TEST(TextureUnit, FaultsOfLevelsAreFound) {
   expect_found<VTextureUnitLevelsFaults>(kLevels, TEXTURE_LINEAR_FAULTS + 1, TEXTURE_LEVELS_FAULTS);
 }
 TEST(TextureUnit, FaultsOfColorsOverWAreFound) {
-  expect_found<VTextureUnitFaults>(kEmbedded, TEXTURE_LEVELS_FAULTS + 1, TEXTURE_FAULTS);
+  expect_found<VTextureUnitFaults>(kEmbedded, TEXTURE_LEVELS_FAULTS + 1, TEXTURE_COLORS_FAULTS);
+}
+TEST(TextureUnit, FaultsOfLanesAreFound) {
+  expect_found<VTextureUnitLanesFaults>(kLanes, TEXTURE_COLORS_FAULTS + 1, TEXTURE_FAULTS);
 }
 
 }  // namespace

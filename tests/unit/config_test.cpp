@@ -149,11 +149,14 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   textured.perspective_colors = 1;
   EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
   Config blended;
-  blended.texture_unit = TextureUnitKind::nearest;
+  blended.texture_unit = TextureUnitKind::bilinear;
+  blended.texture_lanes = 4;
   blended.alpha_units = blended.dither_units = 1;
   blended.blend_lanes = 4;
   EXPECT_EQ(file_text("presets/blended/raster_pkg.sv"), raster_pkg(blended));
   Config stencilled = blended;
+  stencilled.texture_unit = TextureUnitKind::nearest;
+  stencilled.texture_lanes = 1;
   stencilled.stencil_bits = 8;
   stencilled.fog_units = 1;
   EXPECT_EQ(file_text("presets/stencilled/raster_pkg.sv"), raster_pkg(stencilled));

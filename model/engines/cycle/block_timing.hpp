@@ -65,7 +65,7 @@ struct TextureWork {
   std::optional<StateRegister> sets;       ///< a token
   bool invalidates = false;                ///< and what is in the cache goes
   std::span<const TextureLookup> lookups;  ///< of the samples that are textured
-  int divided = 0;                         ///< samples whose colours lie over w
+  int divided = 0;                         ///< groups of samples whose colours lie over w
 };
 
 /// What the test made of a fragment.

@@ -486,7 +486,7 @@ class CycleModelOf final : public CycleModel {
     std::array<TextureSample, kMaxSamples> sample;
     if (is_textured || divides) set_samples(setup, live, at, sample);
     if (divides) {
-      item.texture.divided = live.count();
+      item.texture.divided = texture_->groups(live);
       live.for_each([&](std::size_t s) { texture_->divide_colors(sample[s], frame_, widths_.color_planes, color[s]); });
     }
     if (is_textured) look_up_texels(live, at, sample, color, item);
@@ -553,18 +553,13 @@ class CycleModelOf final : public CycleModel {
       return line;
     });
     count(use_of(item.texture.lookups), counters_);
-    if (options_.want_misses) note_misses(live, at, item.texture.lookups);
+    if (options_.want_misses) note_misses(at, item.texture.lookups);
   }
 
-  /// Which pixels the lines are of that were asked for; `lookups` are those of the live samples, one behind the other.
-  void note_misses(SampleMask live, const std::array<PixelOffset, kMaxSamples>& at,
-                   std::span<const TextureLookup> lookups) {
-    auto lookup = lookups.begin();
-    live.for_each([&](std::size_t s) {
-      float& misses = misses_[plain_index(at[s].x, at[s].y)];
-      do misses += lookup->is_miss ? 1.0F : 0.0F;
-      while (!std::exchange(lookup, lookup + 1)->ends || std::prev(lookup)->continues);
-    });
+  /// Which pixels the lines are of that were asked for.
+  void note_misses(const std::array<PixelOffset, kMaxSamples>& at, std::span<const TextureLookup> lookups) {
+    for (const TextureLookup& lookup : lookups)
+      if (lookup.is_miss) misses_[plain_index(at[lookup.sample].x, at[lookup.sample].y)] += 1.0F;
   }
 
   /// What a token sets, here and in the tags; `texture`: what that is to the texture unit.

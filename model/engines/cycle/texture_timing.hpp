@@ -26,6 +26,14 @@
 //   a(i) = max(b(i) + 1, t(i-1), tags swept)
 //
 // and the first of two passes waits in no e: it ends in the filter's last stage, a clock behind the one before.
+//
+// Of four lanes n counts groups, and a group goes through cache and filter in one pass or more, of samples that agree. Their
+// lines are asked for one by one, also without a linear filter, and a register holds a pass in front of the tags:
+//
+//   f(i) = max(s(n) + 10, a(i-1))   it leaves the queue; with its last pass the group
+//   a(i) = max(f(i) + 1, t(i-1), tags swept)
+//
+// e is that of a pass, and c that of a group.
 #pragma once
 
 #include <algorithm>
@@ -77,16 +85,17 @@ class TextureTiming {
  public:
   /// rst_ni is high from `start` on; all that was asked for before it is over in `recovered` (recovered()).
   explicit TextureTiming(const TextureSettings& settings, Cycle start = 0, Cycle recovered = 0)
-      : has_linear_(settings.has_linear),
+      : has_banks_(settings.has_banks()),
         has_levels_(settings.has_levels),
+        has_lanes_(settings.lanes != 1),
         filter_stages_(settings.has_levels   ? 4
                        : settings.has_linear ? 3
                                              : 1),
         inside_(settings.queue, 0, 1),
         ahead_(kAhead, settings.has_levels ? kLevelClocks : kClocks, 1),
         waiting_(settings.in_flight, 1, 1),
-        requests_(settings.has_linear ? kRequests : settings.in_flight, 1, 1),
-        sweep_(static_cast<Cycle>(settings.has_linear ? settings.lines / 4 : settings.lines)),
+        requests_(settings.has_banks() ? kRequests : settings.in_flight, 1, 1),
+        sweep_(static_cast<Cycle>(settings.has_banks() ? settings.lines / 4 : settings.lines)),
         swept_(start + sweep_),
         request_room_(std::max(start, recovered)),
         lines_(static_cast<std::size_t>(settings.lines)),
@@ -123,11 +132,11 @@ class TextureTiming {
     return pass(x);
   }
 
-  /// A stamp with a texture; `lookups`: of its samples, in order. ask(cycle, address, beats): a request, on offer from `cycle`
+  /// A stamp with a texture; `lookups`: of its samples, as they go. ask(cycle, address, beats): a request, on offer from `cycle`
   /// on; returns LineTimes.
   template <class Ask>
   Cycle take(Cycle x, std::span<const TextureLookup> lookups, Ask&& ask) {
-    bool is_next = true;  // the next pass is a sample's first
+    bool is_next = true;  // the next pass is the first of a sample, or of a group
     for (std::size_t first = 0; first < lookups.size();) {
       std::size_t end = first + 1;
       while (!lookups[end - 1].ends) ++end;
@@ -140,9 +149,9 @@ class TextureTiming {
     return gone_ + 1;
   }
 
-  /// A stamp without a texture, `samples` of whose colours are divided by w: they go by the tags.
-  Cycle divide(Cycle x, int samples) {
-    for (int n = 0; n < samples; ++n) {
+  /// A stamp without a texture whose colours are divided by w, in so many groups of samples: they go by the tags.
+  Cycle divide(Cycle x, int groups) {
+    for (int n = 0; n < groups; ++n) {
       split_ = std::max(x + kDoor, split_ + 1);
       divided_ = std::max({split_ + kClocks, divided_ + 1, gone_ + 1, left_});
     }
@@ -169,6 +178,12 @@ class TextureTiming {
   /// When the tags of the next pass are read.
   Cycle tags_read(bool is_last) {
     Cycle at = ahead_.ready(split_);
+    if (has_lanes_) {
+      at = std::max(at, tag_read_);
+      if (is_last) ahead_.leave(at);
+      tag_read_ = std::max({at + 1, looked_up_, swept_});
+      return tag_read_;
+    }
     if (!has_levels_) {
       at = std::max({at, looked_up_, swept_});
       ahead_.leave(at);
@@ -181,16 +196,17 @@ class TextureTiming {
     return tag_read_;
   }
 
-  /// A sample's way through cache and filter, on one level.
+  /// The way through cache and filter of a sample on one level, or of those that agree.
   template <class Ask>
   void pass(std::span<const TextureLookup> lookups, Ask&& ask) {
-    const bool is_last = !lookups.back().continues;
+    const bool is_last = !lookups.back().continues;  // of its sample or group
+    const bool is_combined = is_last || has_lanes_;
     const Cycle tag_read = tags_read(is_last);
     Cycle t = tag_read + 1, next = t, answered = 0;
     for (const TextureLookup& lookup : lookups) {
       if (lookup.is_miss) {
         t = std::max({next, request_room_, requests_.room(), free_place(lines_[lookup.line])});
-        if (!has_linear_) t = std::max(t, waiting_.room());  // asks as it leaves
+        if (!has_banks_) t = std::max(t, waiting_.room());  // asks as it leaves
         const LineTimes times = ask(t + 1, lookup.address, lookup.beats);
         request_room_ = times.asked;
         requests_.leave(times.answered);
@@ -206,10 +222,10 @@ class TextureTiming {
     ++count_;
     Cycle at = h;
     for (std::size_t i = 0; i < filter_stages_; ++i) {
-      at = std::max(at + 1, i + 1 < filter_stages_ ? stages_[i + 1] : is_last ? combined_ : 0);
+      at = std::max(at + 1, i + 1 < filter_stages_ ? stages_[i + 1] : is_combined ? combined_ : 0);
       stages_[i] = at;
     }
-    if (is_last) combined_ = std::max({at + 1, gone_ + 1, left_});
+    if (is_combined) combined_ = std::max({at + 1, gone_ + 1, left_});
   }
 
   /// When no sample waits any more that may have been found in a line's place, the last of them in `group`: all up to the end
@@ -222,7 +238,7 @@ class TextureTiming {
     return read_[(end - 1) % read_.size()] + 1;
   }
 
-  bool has_linear_, has_levels_;
+  bool has_banks_, has_levels_, has_lanes_;
   std::size_t filter_stages_;  ///< between data RAM and e
   Station inside_, ahead_, waiting_, requests_;
   Cycle sweep_, swept_;                             ///< how long it takes to sweep the tags; when they have been

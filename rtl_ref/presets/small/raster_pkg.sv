@@ -28,6 +28,7 @@ package raster_pkg;
   localparam int MEMORY_PORT_BITS = 16;  // data that the memory port moves in a cycle; a power of two
   localparam int SETUP_KIND = 1;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
+  localparam int TEXTURE_LANES = 1;  // that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
   localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
   localparam int RECIPROCAL_KIND = 0;  // 0 table, 1 restoring: what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time
@@ -39,7 +40,7 @@ package raster_pkg;
   localparam int LINES_UNIT = 0;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 0;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'h1d625fdef9391c9b;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h205046228e073a8d;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -57,6 +58,7 @@ package raster_pkg;
   localparam int COLORS_OVER_W = 0;  // planes behind those, which the texture unit divides
   localparam int COLOR_NARROW_BITS = 13;  // k_P of those
   localparam int STATE_WORD_BITS = 40;  // of a token: the codes of all planes but those
+  localparam int TEXTURE_STAMPS = 16;  // between X and W, with a texture unit
   localparam int TEXTURE_PORT_BITS = 16;  // data of a beat of texels
   localparam int SAMPLES = 1;  // samples of a stamp
   localparam int TILES_X = 40;  // tiles along the top of the widest target
