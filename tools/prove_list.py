@@ -145,6 +145,9 @@ PROOFS = [
           presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)),
           twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('memory_q[head_q[INDEX-1:0]]', 'memory_q[\'0]'),
                  ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
+    Proof('sram_fifo_stream', 'f', 'lib/sram_fifo.sv', 'the same, an item there from the cycle behind the one that took it on', k=2,
+          cover_depth=9, quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)), cuts=SRAMS,
+          twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
     Proof('texture_levels_place', 'e', 'stages/texture_levels.sv', 'a level begins where the larger ones end, and its blocks lie '
           'below that', presets=TINY, parameters=(('TAIL', 2),), cover_depth=6,
           twins=(("(21'h155555 << new_odds)", "21'h155555"), ("(21'h1ffffe << blocks)", "(21'h1fffff << blocks)"),
