@@ -21,6 +21,7 @@
   assign walks = runs_q && state_q == WALK && has_walk;
   always_comb if (walks) assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
   always_comb if (runs_q && state_q != IDLE) assert (s_q == g_q);
+  always_comb if (runs_q && state_q == WALK) assert (has_walk);
   always_comb if (runs_q && state_q == PREPARE && has_walk)
     assert (tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
   genvar k;

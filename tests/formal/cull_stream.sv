@@ -31,6 +31,11 @@
     if (in_sort_q && sort_step_q == 2'd3 && (!in_decide_q || sends || drops)) assert (hands_over);
     // The edges are in turn: the part behind is never a step further.
     if (in_sort_q && in_decide_q) assert (decide_step_q >= sort_step_q);
+    // What is known a cycle ahead.
+    if (in_decide_q) assert (is_zero_q == (area_q == '0));
+    if (in_decide_q && decide_step_q != '0)
+      assert (has_2x2_q == (d_is_triangle && columns <= 3'd1 && rows <= 3'd1) && has_column_q == (columns != '0) &&
+              has_row_q == (rows != '0));
     cover (sends && takes && hands_over);
     cover (drops);
   end
