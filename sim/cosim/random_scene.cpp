@@ -194,6 +194,16 @@ void Generator::set_stencils() {
     if (!has_stencil) continue;
     state.stencil = side();
     if (below(3) == 0) state.stencil_back = side();
+    if (below(6) != 0) continue;
+    // All of a word is replaced, or all but a few bits of it.
+    state.depth_test = DepthFunc::always;
+    state.depth_write = true;
+    for (Stencil* one : {&*state.stencil, state.stencil_back ? &*state.stencil_back : nullptr}) {
+      if (one == nullptr) continue;
+      one->passes = below(2) == 0 ? StencilOp::zero : StencilOp::replace;
+      if (below(2) == 0) one->func = DepthFunc::always;
+      one->write_mask = below(3) == 0 ? static_cast<std::uint8_t>(below(256)) : std::uint8_t{255};
+    }
   }
   for (Command& command : scene_.commands)
     if (auto* clear = std::get_if<Clear>(&command)) {
