@@ -195,6 +195,21 @@ void Generator::set_stencils() {
     state.stencil = side();
     if (below(3) == 0) state.stencil_back = side();
   }
+  // All of a word is replaced, or all but a few bits of it, now and then.
+  Random rare(seed_ ^ 0x4e91aceu);
+  const auto one_of = [&rare](std::uint64_t n) { return rare.next() % n == 0; };
+  for (State& state : scene_.states) {
+    if (!state.stencil || !one_of(6)) continue;
+    state.depth_test = DepthFunc::always;
+    state.depth_write = true;
+    for (Stencil* s : {&*state.stencil, state.stencil_back ? &*state.stencil_back : nullptr}) {
+      if (s == nullptr) continue;
+      s->passes = one_of(6) ? StencilOp::zero : StencilOp::replace;
+      s->reference |= 1;
+      if (one_of(2)) s->func = DepthFunc::always;
+      s->write_mask = one_of(3) ? static_cast<std::uint8_t>(rare.next() % 256) : std::uint8_t{255};
+    }
+  }
   for (Command& command : scene_.commands)
     if (auto* clear = std::get_if<Clear>(&command)) {
       if (below(2) == 0) clear->stencil = value();

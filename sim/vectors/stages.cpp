@@ -241,7 +241,7 @@ void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
         while (const auto fragment = run.take<FragmentPacket>(0)) {
           set_colors(*fragment, colors, widths);
           set_stencil(*fragment, stencil, widths);
-          if constexpr (has_colors) cache.set(colors);
+          if constexpr (has_colors) cache.set(colors, stencil);
           if (fragment->kind == PrimitiveKind::fast_clear)
             cache.fast_clear(*fragment, depth_word(fragment->code[0][kDepthPlane], stencil.clear_value(), widths),
                              stored_color(fragment->code[0], config), memory, counters);
