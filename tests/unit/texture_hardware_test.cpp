@@ -41,6 +41,8 @@ const std::vector<Config>& configurations() {
                         {"fog.unit", "1"},
                         {"stencil.bits", "8"}}),
       with("full", {{"texture.unit", "trilinear"}, {"perspective.colors", "1"}}),
+      with("embedded", {{"texture.unit", "bilinear"}, {"texture.lanes", "4"}, {"perspective.colors", "1"}}),
+      with("full", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"texture.cache_kb", "1"}}),
       with("full", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}, {"stamp.size", "1"}}),
       with("tiny", {{"texture.unit", "nearest"},
                     {"perspective.colors", "1"},
@@ -139,20 +141,30 @@ TEST(TexturedHardware, DividesColorsByWAsTheScalarEngine) {
 }
 
 // A stamp that has no texture takes a clock for each sample whose colour is divided, and none where colours are affine.
-TEST(TexturedHardware, AColorOverWTakesAClockASample) {
-  const Config config = with("embedded", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}});
-  const auto cycles = [&](const std::string& states) {
-    const Scene scene = read_capture("halfplane 1\ntarget 128 128\nspace window\nstate depth_test always\n" + states +
-                                         "v -130 -2 0.5 1 255 0 0 255\nv 130 -2 0.5 2 0 255 0 255\nv -2 400 0.5 4 0 0 "
-                                         "255 255\nt 0 1 2\n",
-                                     "screen");
+TEST(TexturedHardware, AColorOverWTakesAClockASampleAndLane) {
+  const auto cycles = [&](const Config& config, const std::string& states) {
+    const Scene scene = read_capture(
+        "halfplane 1\ntarget 128 128\ntexture ground pattern chequer 16 16 format rgb565\nspace window\n"
+        "state depth_test always\n" +
+            states +
+            "v -130 -2 0.5 1 255 0 0 255 0 0\nv 130 -2 0.5 2 0 255 0 255 1 0\nv -2 400 0.5 4 0 0 255 255 0 1\n"
+            "t 0 1 2\n",
+        "screen");
     const auto memory = make_memory({}, config);
     return static_cast<double>(render_cycle(scene, config, *memory).run.raster_cycles);
   };
-  const double pixels = 128 * 128, affine = cycles(""), divided = cycles("state color_interp perspective\n");
-  EXPECT_LT(affine, 0.4 * pixels);
-  EXPECT_GT(divided, 0.6 * pixels);
-  EXPECT_LT(divided, 1.1 * pixels);
+  const std::string divides = "state color_interp perspective\n",
+                    linear = "state texture ground\nstate texture_min linear\nstate texture_mag linear\n";
+  const double pixels = 128 * 128;
+  const Config config = with("embedded", {{"texture.unit", "bilinear"}, {"perspective.colors", "1"}});
+  EXPECT_LT(cycles(config, ""), 0.4 * pixels);
+  for (const std::string& states : {divides, linear, linear + divides}) {
+    EXPECT_GT(cycles(config, states), 0.6 * pixels) << states;
+    EXPECT_LT(cycles(config, states), 1.1 * pixels) << states;
+    Config lanes = config;
+    lanes.texture_lanes = 4;
+    EXPECT_LT(cycles(lanes, states), 0.4 * pixels) << states;
+  }
 }
 
 // Where the upper of two levels is not there, or has no weight, the other is asked once.
@@ -363,6 +375,10 @@ TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
   EXPECT_THROW(validate(with("tiny", {{"texture.unit", "nearest"}})), InputError);
   EXPECT_THROW(validate(with("full", {{"texture.unit", "nearest"}, {"stamp.size", "8"}})), InputError);
   EXPECT_THROW(validate(with("embedded", {{"texture.cache_kb", "3"}})), InputError);
+  EXPECT_THROW(validate(with("embedded", {{"texture.lanes", "2"}})), InputError);
+  EXPECT_THROW(validate(with("embedded", {{"texture.unit", "trilinear"}, {"texture.lanes", "4"}})), InputError);
+  EXPECT_THROW(validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"stamp.size", "1"}})),
+               InputError);
 }
 
 // A triangle in window space may have any w; by one that is not above 0 nothing can be divided.
