@@ -231,9 +231,9 @@ module block_cache (
   assign evicts_x = (BLOCK_X'(evicts_tag_x) << LINE_X) | (BLOCK_X'(item_line) & BLOCK_X'((1 << LINE_X) - 1));
   assign evicts_y = (BLOCK_Y'(evicts_tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
   raster_pkg::fragment_packet_t made_packed;
-  logic [SAMPLES*COLOR-1:0]     made_colors;
   generate
     if (PACKS) begin : gen_packed
+      logic [SAMPLES*COLOR-1:0] made_colors;
       for (s = 0; s < SAMPLES; s++) begin : gen_rop
         rop u_rop (
             .rgba_i (made.code[s*CODES+Z+:raster_pkg::VERTEX_COLOR_BITS]),
@@ -248,7 +248,6 @@ module block_cache (
                 raster_pkg::VERTEX_COLOR_BITS'(made_colors[i*COLOR+:COLOR]);
       end
     end else begin : gen_whole
-      assign made_colors = '0;
       assign made_packed = made;
     end
   endgenerate

@@ -153,6 +153,8 @@
                                (CODE == HIZ || ((CODE + 1)'(was_setup_q.range.low[0+:CODE]) + (CODE + 1)'(1)) << (HIZ + 1) >> (HIZ + 1) == '0);
   assign has_stood   = was_setup_q == setup_i;
   assign is_behind_o = {1'b0, bound_o} < limit_o && has_stood;
+  always_comb if (runs_q)
+    assert (gen_hiz.limit_q == (HIZ + 1)'(was_setup_q.range.low[Z-1-:HIZ]) + (HIZ + 1)'(was_is_equal_behind));
   // The depth test, with a fragment and stored depths that are only bounded.
   logic raised_q;  // by a line, since the last clear
   always_ff @(posedge clk_i) begin
