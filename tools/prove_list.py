@@ -211,7 +211,8 @@ PROOFS = [
                                           'color_known | stamp_bit'))),
     Proof('cache_tags_stencil', 'd, f', 'stages/cache_tags.sv', 'with a stencil: a word of which a draw keeps a part is asked for, one that it '
           'replaces is not; a clear has the value of the front', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs',
-          file='cache_tags_data', package=STENCIL, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323, 324)),
+          file='cache_tags_data', package=STENCIL, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323,
+          ('replaces_q[fragment_q.state.is_back]', 'replaces_q[0]'))),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
           presets=('embedded',), quick=('embedded',), cover_depth=9,
