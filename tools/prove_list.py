@@ -215,7 +215,8 @@ PROOFS = [
                                           'color_known | stamp_bit'))),
     Proof('cache_tags_stencil', 'd, f', 'stages/cache_tags.sv', 'with a stencil: a word of which a draw keeps a part is asked for, one that it '
           'replaces is not; a clear has the value of the front', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs',
-          file='cache_tags_data', package=STENCIL, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323, 324)),
+          file='cache_tags_data', package=STENCIL, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323,
+          ('replaces_q[fragment_q.state.is_back]', 'replaces_q[0]'))),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
           presets=('embedded',), quick=('embedded',), cover_depth=9,
@@ -225,8 +226,8 @@ PROOFS = [
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
           twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'), ('if (moves) valid_q <= read_valid_q;', 'valid_q <= read_valid_q;'),
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
-    Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last; an eviction takes it to memory, '
-          'once; depth_test never waits', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
+    Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last, up to the clock before; an '
+          'eviction takes it to memory, once', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
           wires=COLOR_WRITE, quick=TINY, cover_depth=22,
           twins=(76, ("x1_line_q == item_line && x1_writes_q;", "1'b0;"), ('on_chip && !is_forwarded', 'on_chip'), 77, 78, 79, 80, 261, 263, 264)),
     Proof('block_cache_stencil', 'd, f', 'stages/block_cache.sv', 'the same where a stencil is above the depth, and changes without it',

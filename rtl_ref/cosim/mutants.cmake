@@ -434,8 +434,6 @@ mutant(322 stages/cache_tags.sv "stencil: what replaces a part of it goes unread
   [=[fragment_q.code[UPDATE_SIDES-1-:8] == 8'hff]=] [=[fragment_q.code[UPDATE_SIDES-1-:8] != 8'h00]=])
 mutant(323 stages/cache_tags.sv "stencil: what replaces it goes unread where not all pass"
   [=[passes_all_q[fragment_q.state.is_back]]=] [=[1'b1]=])
-mutant(324 stages/cache_tags.sv "stencil: the back goes unread if the front does"
-  [=[replaces_q[fragment_q.state.is_back]]=] [=[replaces_q[0]]=])
 
 # The lane of states beside triangle_setup; counters of a texture unit; its division.
 mutant(250 lib/setup_states.sv "texture states: one overtakes the triangle in front of it"
