@@ -315,8 +315,8 @@ TEST(Explain, SamplesOfAPixelAgreeToo) {
       state.alpha_to_coverage = random.next() % 4 == 0;
     }
     const Witnesses witnesses(scene, config);
-    const Explanation told = explain(scene, config, some_pixels(random, scene, witnesses, 30));
-    EXPECT_EQ(told.pixels.size(), 30U * static_cast<std::size_t>(config.msaa_samples));
+    const Explanation told = explain(scene, config, some_pixels(random, scene, witnesses, 40));
+    EXPECT_EQ(told.pixels.size(), 40U * static_cast<std::size_t>(config.msaa_samples));
     EXPECT_NE(told.no_hardware, "");
     for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
     for (const PixelHistory& pixel : told.pixels) {
