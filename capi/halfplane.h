@@ -59,7 +59,8 @@ HALFPLANE_API int halfplane_scene_say(halfplane_scene* scene, const char* lines,
 HALFPLANE_API int64_t halfplane_scene_vertices(halfplane_scene* scene, const double* values, int numbers, size_t count);
 /* A draw: "triangles", "triangle_strip", "triangle_fan", "lines", "line_strip", "line_loop" or "points" of indices that count
  * from 0 over the whole scene; 0xffffffff starts a strip, fan or loop anew. Returns 0. */
-HALFPLANE_API int halfplane_scene_draw(halfplane_scene* scene, const char* topology, const uint32_t* indices, size_t count);
+HALFPLANE_API int halfplane_scene_draw(halfplane_scene* scene, const char* topology, const uint32_t* indices,
+                                       size_t count);
 HALFPLANE_API void halfplane_scene_free(halfplane_scene* scene);
 
 /* Draws a scene. Engines: "functional", "scalar" and "cycle" give the same bits; "golden" the exact image, rounded at the end.
@@ -97,8 +98,8 @@ HALFPLANE_API const char* halfplane_stage_field_name(const halfplane_stage* stag
 HALFPLANE_API int halfplane_stage_field_bits(const halfplane_stage* stage, int is_out, int port, int field);
 /* The next packet of a port that goes in. Bits above the packet's are not looked at. Returns 0. A place outside the
  * largest target is an error, and nothing happens. A packet that the stage cannot take is one too, and the stage takes nothing
- * more. What else no hardware sends is not looked for: on a box that ends before it begins coarse_raster may work for ever. In
- * a child of fork() a stage of its parent takes nothing. */
+ * more. What else no hardware sends is not looked for: something comes of it. In a child of fork() a stage of its parent takes
+ * nothing. */
 HALFPLANE_API int halfplane_stage_put(halfplane_stage* stage, int port, const uint32_t* words);
 /* The next packet of a port that comes out. Returns 1; or 0 when there is none before more is put in. */
 HALFPLANE_API int halfplane_stage_get(halfplane_stage* stage, int port, uint32_t* words);

@@ -413,7 +413,7 @@ void check_fits(const Scene& scene, const Config& config) {
     throw InputError(scene.name + ": the target is " + std::to_string(scene.width) + "x" +
                      std::to_string(scene.height) + ", but this configuration takes 1x1 to " +
                      std::to_string(config.target_width) + "x" + std::to_string(config.target_height) +
-                     "; use a smaller --size, another --config, or --set target.width=... and target.height=...");
+                     "; make the target smaller, or raise target.width and target.height");
   const Draw* looked_at = nullptr;
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);
@@ -426,7 +426,7 @@ void check_fits(const Scene& scene, const Config& config) {
     if (drawn_as(state, draw->topology) != PrimitiveType::triangle && state.color_interp == ColorInterp::perspective)
       throw InputError(place_of_draw(context.scene.name, context.draw.line) +
                        ": state color_interp perspective: this engine interpolates the colours of lines and points "
-                       "affinely; use `render --engine golden`");
+                       "affinely; the golden has it over w");
     const double widest = 2 * (config.guard_band - 1 - std::max(scene.width, scene.height));
     if (drawn_as(state, draw->topology) == PrimitiveType::point &&
         !(state.point_size >= 1 && state.point_size <= widest))

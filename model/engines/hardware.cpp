@@ -15,7 +15,7 @@
 #include "../stages/rop.hpp"
 #include "../stages/state_packets.hpp"
 #include "../stages/surface.hpp"
-#include "../stages/texture_packets.hpp"
+#include "../stages/texture_stage.hpp"
 #include "../stages/triangle_setup.hpp"
 
 namespace halfplane {
@@ -240,37 +240,15 @@ void HardwareModel::set_state(const FragmentPacket& token) {
 /// texture_unit, and rop behind it: the colours of `packet` become what is stored, or is about to be blended. Returns the
 /// samples that the alpha test lets pass, and only those are written.
 SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
-  std::array<TextureSample, kMaxSamples> sample;
-  std::array<Texel, kMaxSamples> color;
-  const bool tests_alpha = colors_.alpha.func != DepthFunc::always;
-  const SampleMask live = tests_alpha ? packet.passed | packet.write_depth : packet.write_color;
-  const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp);
-  const TextureFrame frame = texture_frame(fragment);
-  live.for_each([&](std::size_t s) {
-    sample[s] = texture_sample(fragment.code[s], widths_);
-    const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
-    sample[s].x = (fragment.key.tile_x << widths_.tile_shift) + origin.x + pixel.x;
-    sample[s].y = (fragment.key.tile_y << widths_.tile_shift) + origin.y + pixel.y;
-    for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(packet.color[s] >> 8 * c);
-    if (frame.divides_colors) texture_->divide_colors(sample[s], frame, widths_.color_planes, color[s]);
-  });
-  if (texture_->is_textured(fragment.kind == PrimitiveKind::triangle, live))
-    count(use_of(texture_->take(live, sample, frame, color,
-                                [this](std::uint32_t address, int beats) { return read_texels(address, beats); })),
-          counters_);
-  add_fog(*texture_, fragment.kind == PrimitiveKind::triangle, live, sample, fragment.coordinates, color);
-  packet.color = {};
-  live.for_each([&](std::size_t s) {
-    const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};
-    packet.color[s] = packs_at_write(config_) ? static_cast<std::uint32_t>(wrap_unsigned(
-                                                    pack_rgba8888(c[0], c[1], c[2], c[3]), widths_.shaded_color.bits))
-                                              : pack_color(config_.color_format, c);
-  });
-  if (live.any()) sink_.take(on<Arrow::color>, ColorPacket{live, packet.color});
-  if (!tests_alpha) return packet.passed;
-  const SampleMask kept = alpha_passes(colors_.alpha, live, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
-  keep(kept, packet);
-  return kept & packet.passed;
+  const TexturedStamp shaded =
+      texture_stamp(*texture_, fragment, packet, colors_.alpha, config_, widths_,
+                    [this](std::uint32_t address, int beats) { return read_texels(address, beats); });
+  count(shaded.use, counters_);
+  packet.color = shaded.packet.color;
+  if (shaded.packet.mask.any()) sink_.take(on<Arrow::color>, shaded.packet);
+  if (colors_.alpha.func == DepthFunc::always) return packet.passed;
+  keep(shaded.opaque, packet);
+  return shaded.opaque & packet.passed;
 }
 
 /// A line of texels.

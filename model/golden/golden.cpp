@@ -474,4 +474,6 @@ Image render(const Scene& scene, const Config& config, Precision precision) {
   return render(scene, config, options);
 }
 
+std::uint32_t rounded_color(const std::array<double, 4>& rgba, ColorFormat format) { return pack_color(rgba, format); }
+
 }  // namespace halfplane::golden

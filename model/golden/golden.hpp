@@ -83,4 +83,7 @@ struct Options {
 /// One channel of a stored colour code.
 [[nodiscard]] int stored_channel(std::uint32_t color, ColorFormat format, int channel);
 
+/// A colour, 0 to 255, rounded to the nearest that the format stores: what Image::frame has of Samples::color.
+[[nodiscard]] std::uint32_t rounded_color(const std::array<double, 4>& rgba, ColorFormat format);
+
 }  // namespace halfplane::golden

@@ -102,4 +102,11 @@ struct ColorState {
   }
 };
 
+/// A token may set one of them.
+inline void set_colors(const FragmentPacket& fragment, ColorState& colors, const Widths& widths) {
+  if (fragment.kind != PrimitiveKind::state) return;
+  const StateRegister which = state_register(fragment.state);
+  if (!is_of_texture(which)) colors.set(which, state_word(fragment, widths));
+}
+
 }  // namespace halfplane

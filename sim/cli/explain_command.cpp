@@ -63,7 +63,7 @@ Json explain_json(const ExplainOptions& options, const Config& config, const Sce
   result["checks"] = told.checks;
   result["differences"] = told.differences;
   result["pixels"] = Json::array();
-  for (const explain::PixelHistory& pixel : told.pixels)
+  for (const explain::PixelSamples& pixel : explain::pixels_of(told))
     result["pixels"].push_back(explain::pixel_json(pixel, told, scene, config));
   return result;
 }
@@ -74,7 +74,8 @@ void print_explanation(std::ostream& out, const ExplainOptions& options, const C
       << with_commas(told.primitives) << " primitives; those that pass within " << options.near
       << " pixels, in program order\n";
   if (!told.no_hardware.empty()) out << "without hardware: " << told.no_hardware << '\n';
-  for (const explain::PixelHistory& pixel : told.pixels) explain::print_pixel(out, pixel, told, scene, config);
+  for (const explain::PixelSamples& pixel : explain::pixels_of(told))
+    explain::print_pixel(out, pixel, told, scene, config);
   out << with_commas(told.checks) << " figures held against each other, "
       << (told.differences.empty() ? "all agree" : std::to_string(told.differences.size()) + " differ") << '\n';
   for (const std::string& difference : told.differences) out << "  " << difference << '\n';
@@ -134,7 +135,6 @@ int run(const ExplainOptions& options) {
   check_distinct({options.scene, options.json, options.output});
   check_picture(options);
   const Config config = effective_config(options);
-  require_one_sample(config, "explain");
   const std::unique_ptr<Dut> dut = explained_rtl(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);

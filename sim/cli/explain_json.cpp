@@ -4,6 +4,7 @@
 
 #include "model/draw_states.hpp"
 #include "model/packet_words.hpp"
+#include "model/stages/multisample.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/study/explain/verify.hpp"
 
@@ -28,9 +29,10 @@ std::string decimal(int128 value) {
 
 double grid_to_lsb(std::int64_t value) { return std::ldexp(static_cast<double>(value), -exact::kGridBits); }
 
-Json stored_json(const Stored& stored, const Config& config, int depth_bits, bool has_owner) {
+Json stored_json(const Stored& stored, const Config& config, int depth_bits, bool has_owner, bool has_stencil) {
   Json json{{"depth", hex_text(stored.depth, depth_bits)},
             {"color", hex_text(stored.color, config.color_format == ColorFormat::rgb565 ? 16 : 32)}};
+  if (has_stencil) json["stencil"] = stored.stencil;
   if (has_owner) json["owner"] = stored.owner < 0 ? Json(nullptr) : Json(stored.owner);
   return json;
 }
@@ -211,6 +213,7 @@ Json model_json(const Entry& entry, const Explanation& all, const PixelHistory& 
     json["tile"] = {{"x", pixel.at.x >> widths.tile_shift},
                     {"y", pixel.at.y >> widths.tile_shift},
                     {"class", kTileClasses[static_cast<std::size_t>(*entry.tile)]}};
+  if (entry.shaded_at) json["shaded_at"] = *entry.shaded_at == kAtCentre ? Json("centre") : Json(*entry.shaded_at);
   if (!entry.planes.empty()) json["planes"] = planes_json(entry);
   if (entry.surface) json["surface"] = surface_json(*entry.surface);
   if (entry.line) json["line"] = line_json(*entry.line);
@@ -291,11 +294,25 @@ Json entry_json(const Entry& entry, const PixelHistory& pixel, const Explanation
             {"verdict", name_of(entry.outcome.verdict)},
             {"why", entry.outcome.why},
             {"model", model_json(entry, all, pixel, config, widths)}};
+  if (all.samples > 1) json["sample"] = pixel.sample;
   json["golden"] = entry.golden ? golden_json(*entry.golden) : Json(nullptr);
   json["oracle"] = entry.oracle ? oracle_json(entry) : Json(nullptr);
   json["parts"] = parts_json(entry);
   json["rtl"] = pixel.rtl && entry.hardware ? rtl_json(*entry.hardware, all.packets, widths) : Json(nullptr);
   return json;
+}
+
+/// What is stored in the end; of hardware nothing.
+Json final_json(const Resolved& of, const Scene& scene, const Config& config) {
+  const int depth_bits = DepthEncode(config, scene.planes).format().bits;
+  Json golden = stored_json(of.golden.rounded, config, depth_bits, true, false);
+  golden["depth_real"] = of.golden.depth;
+  golden["color_real"] = of.golden.color;
+  return {{"model", stored_json(of.model, config, depth_bits, true, true)},
+          {"engine", stored_json(of.engine, config, depth_bits, true, true)},
+          {"golden", golden},
+          {"hardware", nullptr},
+          {"rtl", nullptr}};
 }
 
 }  // namespace
@@ -327,20 +344,30 @@ std::string_view state_word(std::string_view state, const State& of) {
   return value.word < row.words.size() ? row.words[value.word] : std::string_view("set");
 }
 
-Json pixel_json(const PixelHistory& pixel, const Explanation& all, const Scene& scene, const Config& config) {
+Json pixel_json(PixelSamples pixel, const Explanation& all, const Scene& scene, const Config& config) {
   const Widths widths = derive_widths(config);
-  const int depth_bits = DepthEncode(config, scene.planes).format().bits;
-  Json json{{"x", pixel.at.x}, {"y", pixel.at.y}, {"history", Json::array()}};
-  for (const Entry& entry : pixel.history) json["history"].push_back(entry_json(entry, pixel, all, config, widths));
-  Json golden = stored_json(pixel.golden.rounded, config, depth_bits, true);
-  golden["depth_real"] = pixel.golden.depth;
-  golden["color_real"] = pixel.golden.color;
-  json["final"] = {
-      {"model", stored_json(pixel.model, config, depth_bits, true)},
-      {"engine", stored_json(pixel.engine, config, depth_bits, true)},
-      {"hardware", pixel.hardware ? stored_json(*pixel.hardware, config, depth_bits, false) : Json(nullptr)},
-      {"golden", golden},
-      {"rtl", pixel.rtl ? stored_json(*pixel.rtl, config, depth_bits, false) : Json(nullptr)}};
+  const PixelHistory& first = pixel.front();
+  Json json{{"x", first.at.x}, {"y", first.at.y}, {"history", Json::array()}};
+  for (std::size_t i = 0; i < first.history.size(); ++i)
+    for (const PixelHistory& sample : pixel)
+      json["history"].push_back(entry_json(sample.history[i], sample, all, config, widths));
+  if (!first.resolved) {
+    json["final"] = final_json({first.model, first.engine, first.golden}, scene, config);
+    const int depth_bits = DepthEncode(config, scene.planes).format().bits;
+    const auto hardware = [&](const std::optional<Stored>& stored) {
+      return stored ? stored_json(*stored, config, depth_bits, false, has_stencil(config)) : Json(nullptr);
+    };
+    json["final"]["hardware"] = hardware(first.hardware);
+    json["final"]["rtl"] = hardware(first.rtl);
+    return json;
+  }
+  json["final"] = final_json(*first.resolved, scene, config);
+  json["samples"] = Json::array();
+  for (const PixelHistory& sample : pixel)
+    json["samples"].push_back({{"sample", sample.sample},
+                               {"x_pixels", std::ldexp(sample.place.x, -kPatternFraction)},
+                               {"y_pixels", std::ldexp(sample.place.y, -kPatternFraction)},
+                               {"final", final_json({sample.model, sample.engine, sample.golden}, scene, config)}});
   return json;
 }
 

@@ -8,11 +8,11 @@
 
 namespace halfplane::explain {
 
-/// {x, y, history, final}, the contract's form.
-[[nodiscard]] Json pixel_json(const PixelHistory& pixel, const Explanation& all, const Scene& scene,
-                              const Config& config);
+/// {x, y, history, final}, the contract's form. Of several samples: an entry of the history for each, primitive by primitive,
+/// and what they have stored in `samples`.
+[[nodiscard]] Json pixel_json(PixelSamples pixel, const Explanation& all, const Scene& scene, const Config& config);
 
-void print_pixel(std::ostream& out, const PixelHistory& pixel, const Explanation& all, const Scene& scene,
+void print_pixel(std::ostream& out, PixelSamples pixel, const Explanation& all, const Scene& scene,
                  const Config& config);
 
 /// "0x03f2": as many digits as the bits need, two's complement.

@@ -1,5 +1,7 @@
 #include "sim/cli/explain_page.hpp"
 
+#include <cmath>
+
 #include "model/engines/render.hpp"
 #include "model/stages/depth_encode.hpp"
 
@@ -21,8 +23,13 @@ Json page_json(const Explanation& around, const Window& window, const Rect& box,
             {"empty",
              {{"depth", hex_text(empty.frame.depth[at], depth_bits)},
               {"color", hex_text(empty.frame.color[at], config.color_format == ColorFormat::rgb565 ? 16 : 32)}}}};
+  page["samples"] = Json::array();  // where they lie in each pixel
+  const std::vector<PixelSamples> pixels = pixels_of(around);
+  for (const PixelHistory& sample : pixels.front())
+    page["samples"].push_back(
+        {std::ldexp(sample.place.x, -kPatternFraction), std::ldexp(sample.place.y, -kPatternFraction)});
   page["pixels"] = Json::array();
-  for (const PixelHistory& pixel : around.pixels) {
+  for (const PixelSamples& pixel : pixels) {
     Json json = pixel_json(pixel, around, scene, config);
     for (Json& entry : json["history"]) {
       Json& hardware = entry["model"]["hardware"];

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "model/stages/multisample.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/study/explain/verify.hpp"
 
@@ -15,7 +16,14 @@ std::string label_text(std::string_view text) { return left_aligned("    " + std
 
 std::string fixed_signed(double value, int decimals) { return (value < 0 ? "" : "+") + fixed(value, decimals); }
 
-void print_title(std::ostream& out, const Entry& entry, const Scene& scene) {
+std::string place_text(const PixelHistory& sample) {
+  return fixed(std::ldexp(sample.place.x, -kPatternFraction), 4) + ' ' +
+         fixed(std::ldexp(sample.place.y, -kPatternFraction), 4);
+}
+
+/// Entry `i` of a pixel's samples: what all of them share.
+void print_title(std::ostream& out, PixelSamples pixel, std::size_t i, const Scene& scene) {
+  const Entry& entry = pixel.front().history[i];
   out << "  " << (entry.primitive ? "#" + std::to_string(*entry.primitive) : std::string("--")) << ' '
       << kKindNames[static_cast<std::size_t>(entry.kind)];
   if (entry.piece != 0) out << ", piece " << entry.piece;
@@ -23,6 +31,11 @@ void print_title(std::ostream& out, const Entry& entry, const Scene& scene) {
   out << ", command " << entry.draw;
   if (const auto* draw = std::get_if<Draw>(&scene.commands[entry.draw]); draw != nullptr && draw->line != 0)
     out << " (line " << draw->line << ")";
+  if (pixel.size() > 1) {
+    const auto is_written = [i](const PixelHistory& p) { return p.history[i].outcome.verdict == Verdict::written; };
+    out << ": written in " << std::ranges::count_if(pixel, is_written) << " of " << pixel.size() << " samples\n";
+    return;
+  }
   out << ": " << info(entry.outcome.verdict).name << " at " << info(entry.outcome.stage).name << '\n'
       << label_text("why") << entry.outcome.why << '\n';
 }
@@ -186,39 +199,71 @@ void print_hardware(std::ostream& out, const HardwareFigure& figure, const Pixel
   out << label_text("RTL") << compared << " packets compared\n";
 }
 
+/// What one sample makes of a primitive; the only one of most pixels.
+void print_sample(std::ostream& out, const Entry& entry, const PixelHistory& sample, const Explanation& all,
+                  const Widths& widths) {
+  if (all.samples > 1)
+    out << label_text("sample " + std::to_string(sample.sample)) << "at " << place_text(sample) << ": "
+        << info(entry.outcome.verdict).name << " at " << info(entry.outcome.stage).name << ", " << entry.outcome.why
+        << '\n';
+  print_edges(out, entry, widths);
+  if (entry.oracle)
+    out << label_text("oracle") << (entry.oracle->covers ? "covers" : "does not cover")
+        << (entry.oracle->is_on_border ? ", on the border" : "") << "; golden "
+        << (entry.golden ? golden_verdict(*entry.golden) : "none") << '\n';
+  if (entry.line && sample.sample == 0) print_line(out, *entry.line);
+  print_triangle_steps(out, entry.steps);
+  if (entry.shaded_at)
+    out << label_text("colour from")
+        << (*entry.shaded_at == kAtCentre
+                ? std::string("the pixel's centre")
+                : "sample " + std::to_string(*entry.shaded_at) + ", the first that is covered; the centre is not")
+        << '\n';
+  print_planes(out, entry);
+  if (entry.surface) print_surface(out, *entry.surface);
+  print_operations(out, entry);
+  if (entry.hardware) print_hardware(out, *entry.hardware, sample, all, widths);
+}
+
+void print_final(std::ostream& out, std::string_view label, const Stored& model, const GoldenStored& golden,
+                 int depth_bits, int color_bits) {
+  out << "  " << left_aligned(std::string(label), kLabel - 2) << "model depth " << hex_text(model.depth, depth_bits)
+      << " colour " << hex_text(model.color, color_bits);
+  if (model.stencil != 0) out << " stencil " << hex_text(model.stencil, 8);
+  if (model.owner >= 0) out << " of #" << model.owner;
+  out << "; golden depth " << fixed(golden.depth, 3) << " = " << hex_text(golden.rounded.depth, depth_bits)
+      << " colour " << hex_text(golden.rounded.color, color_bits);
+  if (golden.rounded.owner >= 0) out << " of #" << golden.rounded.owner;
+}
+
 }  // namespace
 
-void print_pixel(std::ostream& out, const PixelHistory& pixel, const Explanation& all, const Scene& scene,
+void print_pixel(std::ostream& out, PixelSamples pixel, const Explanation& all, const Scene& scene,
                  const Config& config) {
   const Widths widths = derive_widths(config);
   const int depth_bits = DepthEncode(config, scene.planes).format().bits;
   const int color_bits = config.color_format == ColorFormat::rgb565 ? 16 : 32;
-  out << "pixel " << pixel.at.x << ' ' << pixel.at.y << ", tile " << (pixel.at.x >> widths.tile_shift) << ' '
-      << (pixel.at.y >> widths.tile_shift) << '\n';
-  for (const Entry& entry : pixel.history) {
-    print_title(out, entry, scene);
-    print_corners(out, entry, widths, widths.depth().code.bits);
-    print_edges(out, entry, widths);
-    if (entry.oracle)
-      out << label_text("oracle") << (entry.oracle->covers ? "covers" : "does not cover")
-          << (entry.oracle->is_on_border ? ", on the border" : "") << "; golden "
-          << (entry.golden ? golden_verdict(*entry.golden) : "none") << '\n';
-    if (entry.line) print_line(out, *entry.line);
-    print_triangle_steps(out, entry.steps);
-    print_planes(out, entry);
-    if (entry.surface) print_surface(out, *entry.surface);
-    print_operations(out, entry);
-    if (entry.hardware) print_hardware(out, *entry.hardware, pixel, all, widths);
+  const PixelHistory& first = pixel.front();
+  out << "pixel " << first.at.x << ' ' << first.at.y << ", tile " << (first.at.x >> widths.tile_shift) << ' '
+      << (first.at.y >> widths.tile_shift) << '\n';
+  for (std::size_t i = 0; i < first.history.size(); ++i) {
+    print_title(out, pixel, i, scene);
+    print_corners(out, first.history[i], widths, widths.depth().code.bits);
+    for (const PixelHistory& sample : pixel) print_sample(out, sample.history[i], sample, all, widths);
   }
-  out << "  final           model depth " << hex_text(pixel.model.depth, depth_bits) << " colour "
-      << hex_text(pixel.model.color, color_bits);
-  if (pixel.model.owner >= 0) out << " of #" << pixel.model.owner;
-  out << "; golden depth " << fixed(pixel.golden.depth, 3) << " = " << hex_text(pixel.golden.rounded.depth, depth_bits)
-      << " colour " << hex_text(pixel.golden.rounded.color, color_bits);
-  if (pixel.golden.rounded.owner >= 0) out << " of #" << pixel.golden.rounded.owner;
-  if (pixel.rtl)
-    out << "; RTL depth " << hex_text(pixel.rtl->depth, depth_bits) << " colour "
-        << hex_text(pixel.rtl->color, color_bits);
+  if (first.resolved) {
+    for (const PixelHistory& sample : pixel) {
+      print_final(out, "sample " + std::to_string(sample.sample), sample.model, sample.golden, depth_bits, color_bits);
+      out << '\n';
+    }
+    print_final(out, "final", first.resolved->model, first.resolved->golden, depth_bits, color_bits);
+    out << ": the mean of their colours, depth and owner of sample 0";
+  } else {
+    print_final(out, "final", first.model, first.golden, depth_bits, color_bits);
+  }
+  if (first.rtl)
+    out << "; RTL depth " << hex_text(first.rtl->depth, depth_bits) << " colour "
+        << hex_text(first.rtl->color, color_bits);
   out << '\n';
 }
 

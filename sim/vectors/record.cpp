@@ -5,6 +5,7 @@
 
 #include "model/engines/hardware.hpp"
 #include "model/packet_words.hpp"
+#include "model/stages/color_packets.hpp"
 #include "model/stages/interpolate.hpp"
 
 namespace halfplane::vectors {
@@ -17,7 +18,11 @@ class StageRecorder final : public EveryPacket<StageRecorder> {
 
   template <Arrow A>
   void take_any(const PacketOf<A>& packet) {
-    keep(info(A).name, packet);
+    if constexpr (A == Arrow::fragment) set_colors(packet, colors_, widths_);
+    // Colours go to depth_test where an alpha test behind the texture looks at them.
+    const bool is_of_others =
+        A == Arrow::color && stage_.stage == Stage::depth_test && colors_.alpha.func == DepthFunc::always;
+    if (!is_of_others) keep(info(A).name, packet);
     if constexpr (A == Arrow::context) context_ = packet;
     if constexpr (A == Arrow::stamp) keep("interpolated", interpolate(packet, context_, widths_));
     if constexpr (A == Arrow::write) {
@@ -42,6 +47,7 @@ class StageRecorder final : public EveryPacket<StageRecorder> {
   const Widths& widths_;
   StagePackets& packets_;
   ContextPacket context_;  ///< of the primitive at work
+  ColorState colors_;      ///< at the fragments
 };
 
 class Replay final : public StageIo {

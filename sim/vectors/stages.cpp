@@ -17,7 +17,7 @@
 #include "model/stages/rop.hpp"
 #include "model/stages/state_packets.hpp"
 #include "model/stages/surface.hpp"
-#include "model/stages/texture_packets.hpp"
+#include "model/stages/texture_stage.hpp"
 #include "model/stages/triangle_setup.hpp"
 #include "sim/nearest_word.hpp"
 
@@ -78,6 +78,8 @@ void run_coarse_raster(StageIo& io, const Config& config, const Widths& widths) 
   Hiz hiz(config, widths);
   std::uint8_t slot = 0;
   while (const auto setup = run.take<SetupPacket>(0)) {
+    if (!is_token(setup->kind) && to_bounds(setup->box).is_empty())
+      throw InputError("a box that ends before it begins goes into coarse_raster, which cull never sends");
     run.send(0, make_context(*setup, widths));
     const EdgeContext edges = make_edge_context(*setup);
     coarse_raster(*setup, slot, hiz, widths, counters, [&](const TilePacket& tile) {
@@ -125,16 +127,29 @@ void run_primitive_join(StageIo& io, const Config& config, const Widths& widths)
   }
 }
 
-/// A token may set what is done with colours.
-void set_colors(const FragmentPacket& fragment, ColorState& colors, const Widths& widths) {
-  if (fragment.kind != PrimitiveKind::state) return;
-  const StateRegister which = state_register(fragment.state);
-  if (!is_of_texture(which)) colors.set(which, state_word(fragment, widths));
-}
-
 /// Likewise the stencil test.
 void set_stencil(const FragmentPacket& fragment, StencilState& stencil, const Widths& widths) {
   if (fragment.kind == PrimitiveKind::state) stencil.set(state_register(fragment.state), state_word(fragment, widths));
+}
+
+/// An alpha test stands behind the texture.
+[[nodiscard]] bool is_alpha_late(const ColorState& colors, const Config& config) {
+  return has_texture_planes(config) && colors.alpha.func != DepthFunc::always;
+}
+
+/// Color packets of this hardware have alpha.
+void require_alpha(const Config& config) {
+  if (packs_at_write(config) || config.color_format != ColorFormat::rgb565) return;
+  throw InputError(
+      "an alpha test behind a texture, but no packet of this configuration tells alpha; judge the whole by cosim, or "
+      "use "
+      "blend.lanes");
+}
+
+/// Those of `shaded` that it lets pass, by the next color packet of a port.
+[[nodiscard]] SampleMask opaque_samples(const Run& run, std::size_t port, SampleMask shaded, const AlphaTest& alpha) {
+  const auto packet = run.need<ColorPacket>(port, "color packet for a write");
+  return alpha_passes(alpha, shaded, [&](std::size_t s) { return packet.color[s] >> 24; });
 }
 
 /// The depths under all stamps, with the stencil above them, as the fragments themselves leave them.
@@ -176,6 +191,7 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
       const auto stored = depths.under(fragment->key, fragment->stamp);
       WritePacket tested = depth_test(*fragment, stored, stencil, widths);
       SampleMask kept = tested.passed;
+      const bool may_fail = is_late(fragment->state, colors.alpha, config);
       if (!has_texture_planes(config)) {
         const SampleMask opaque = alpha_passes(colors.alpha, fragment->mask,
                                                [&](std::size_t s) { return color_channels(fragment->code[s])[3]; });
@@ -183,13 +199,12 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
         kept = kept & opaque;
       }
       run.send(0, tested);
-      const bool may_fail = is_late(fragment->state, colors.alpha, config);
-      if (may_fail)
-        throw InputError(
-            "depths are written behind a texture's alpha test here, which this stage does not see; judge "
-            "the whole by cosim, or use texture.unit=off");
+      // Behind a texture the alpha test decides later what is written: its alpha comes with the colours.
+      if (may_fail) require_alpha(config);
+      const SampleMask shaded = shaded_samples(tested, colors.alpha);
+      if (is_alpha_late(colors, config) && shaded.any()) keep(opaque_samples(run, 1, shaded, colors.alpha), tested);
       tested.write_depth.for_each([&](std::size_t s) { stored[s] = tested.depth[s]; });
-      if (fragment->kind != PrimitiveKind::line) visit.add(*fragment, kept, kept, widths);
+      if (fragment->kind != PrimitiveKind::line) visit.add(*fragment, kept, may_fail ? SampleMask() : kept, widths);
     }
     if (!fragment->ends_visit) continue;
     run.send(1, visit.retire(*fragment, config, widths));
@@ -202,11 +217,6 @@ void run_rop(StageIo& io, const Config& config, const Widths& widths) {
   while (const auto fragment = run.take<FragmentPacket>(0))
     if (is_tested(*fragment))
       run.send(0, rop(*fragment, run.need<WritePacket>(1, "tested packet for a stamp"), config, widths));
-}
-
-/// Samples that a texture unit colours: what is written, or what an alpha test behind it looks at.
-SampleMask shaded_samples(const WritePacket& write, const ColorState& colors) {
-  return colors.alpha.func != DepthFunc::always ? write.passed | write.write_depth : write.write_color;
 }
 
 /// The memory behind a cache, as packets.
@@ -250,13 +260,9 @@ void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
           (void)cache.access(*fragment, memory, counters);
           WritePacket write = run.need<WritePacket>(1, "write packet for a stamp");
           if (has_texture) {
-            const SampleMask shaded = shaded_samples(write, colors);
+            const SampleMask shaded = shaded_samples(write, colors.alpha);
             write.color = {};
-            if (colors.alpha.func != DepthFunc::always && !packs_at_write(config) &&
-                config.color_format == ColorFormat::rgb565)
-              throw InputError(
-                  "an alpha test behind a texture, but no packet of this configuration tells alpha; judge the "
-                  "whole by cosim, or use blend.lanes");
+            if (is_alpha_late(colors, config)) require_alpha(config);
             if (shaded.any()) write.color = run.need<ColorPacket>(3, "color packet for a write").color;
             if (colors.alpha.func != DepthFunc::always)
               keep(alpha_passes(colors.alpha, shaded, [&](std::size_t s) { return write.color[s] >> 24; }), write);
@@ -324,29 +330,8 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
       set_register(unit, state_register(fragment->state), *fragment, widths);
     if (!is_tested(*fragment)) continue;
     const auto write = run.need<WritePacket>(1, "write packet for a stamp");
-    const SampleMask live = shaded_samples(write, colors);
-    const PixelOffset origin = widths.stamps.origin_of(fragment->stamp);
-    const TextureFrame frame = texture_frame(*fragment);
-    std::array<TextureSample, kMaxSamples> sample;
-    std::array<Texel, kMaxSamples> color;
-    live.for_each([&](std::size_t s) {
-      sample[s] = texture_sample(fragment->code[s], widths);
-      const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
-      sample[s].x = (fragment->key.tile_x << widths.tile_shift) + origin.x + pixel.x;
-      sample[s].y = (fragment->key.tile_y << widths.tile_shift) + origin.y + pixel.y;
-      for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(write.color[s] >> 8 * c);
-      if (frame.divides_colors) unit.divide_colors(sample[s], frame, widths.color_planes, color[s]);
-    });
-    if (unit.is_textured(fragment->kind == PrimitiveKind::triangle, live)) unit.take(live, sample, frame, color, read);
-    add_fog(unit, fragment->kind == PrimitiveKind::triangle, live, sample, fragment->coordinates, color);
-    ColorPacket packet{live, {}};
-    live.for_each([&](std::size_t s) {
-      const Channels<std::uint32_t> c{color[s][0], color[s][1], color[s][2], color[s][3]};
-      packet.color[s] = packs_at_write(config) ? static_cast<std::uint32_t>(wrap_unsigned(
-                                                     pack_rgba8888(c[0], c[1], c[2], c[3]), widths.shaded_color.bits))
-                                               : pack_color(config.color_format, c);
-    });
-    if (live.any()) run.send(1, packet);
+    const TexturedStamp shaded = texture_stamp(unit, *fragment, write, colors.alpha, config, widths, read);
+    if (shaded.packet.mask.any()) run.send(1, shaded.packet);
   }
 }
 
@@ -368,7 +353,7 @@ std::span<const JudgedStage> judged_stages() {
       {Stage::interpolate, {port(stamp), port(context)}, {kInterpolated}, run_interpolate},
       {Stage::line_raster, {port(line)}, {port(line_pixel)}, run_line_raster},
       {Stage::primitive_join, {kInterpolated, port(line_pixel)}, {port(fragment)}, run_primitive_join},
-      {Stage::depth_test, {port(fragment)}, {kTested, port(retire)}, run_depth_test},
+      {Stage::depth_test, {port(fragment), port(color)}, {kTested, port(retire)}, run_depth_test},
       {Stage::rop, {port(fragment), kTested}, {port(write)}, run_rop},
       {Stage::texture_unit, {port(fragment), port(write), port(texel)}, {port(texture), port(color)}, run_texture_unit},
       {Stage::framebuffer,

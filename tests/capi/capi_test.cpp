@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -247,6 +249,65 @@ TEST_F(Capi, InAChildAStageOfItsParentIsRefused) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  halfplane_stage_free(stage);
+}
+
+/// Bits that no hardware sends. A stage takes them, or says in a line that it does not; none hangs, none leaves its memory
+/// (this test is meant for the sanitizers).
+TEST_F(Capi, RandomBitsAreTakenOrRefused) {
+  constexpr const char* kStages[] = {"cull",        "triangle_setup", "coarse_raster", "fine_raster", "interpolate",
+                                     "line_raster", "primitive_join", "depth_test",    "rop",         "texture_unit",
+                                     "framebuffer", "memory_port",    "memory"};
+  std::mt19937_64 random(26);
+  for (const char* settings : {"", "texture.unit=trilinear fog.unit=1 alpha.unit=1 stencil.bits=8 blend.lanes=4"}) {
+    halfplane_config* all = halfplane_config_new("embedded");
+    std::istringstream words(settings);
+    for (std::string word; words >> word;)
+      ASSERT_EQ(
+          halfplane_config_set(all, word.substr(0, word.find('=')).c_str(), word.substr(word.find('=') + 1).c_str()),
+          0);
+    for (const char* name : kStages) {
+      SCOPED_TRACE(name);
+      int taken = 0;
+      for (int n = 0; n < 40; ++n) {
+        halfplane_stage* stage = halfplane_stage_new(all, name);
+        if (stage == nullptr) break;  // this hardware has no such unit
+        const int ports = halfplane_stage_ports(stage, 0), out_ports = halfplane_stage_ports(stage, 1);
+        const unsigned density = n % 4;  // every bit by chance; or fewer: places inside of the target are more likely
+        for (int packet = 0; packet < 30; ++packet)
+          for (int port = 0; port < ports; ++port) {
+            std::vector<std::uint32_t> bits(static_cast<std::size_t>(halfplane_stage_port_bits(stage, 0, port) + 31) /
+                                            32);
+            for (std::uint32_t& word : bits) {
+              word = static_cast<std::uint32_t>(random());
+              for (unsigned less = 0; less < density; ++less) word &= static_cast<std::uint32_t>(random());
+            }
+            taken += halfplane_stage_put(stage, port, bits.data()) == 0 ? 1 : 0;
+            EXPECT_EQ(std::string(halfplane_last_error()).find('\n'), std::string::npos);
+          }
+        for (int port = 0; port < out_ports; ++port) {
+          std::vector<std::uint32_t> bits(static_cast<std::size_t>(halfplane_stage_port_bits(stage, 1, port) + 31) /
+                                          32);
+          while (halfplane_stage_get(stage, port, bits.data()) == 1) {
+          }
+        }
+        halfplane_stage_free(stage);
+      }
+      if (std::strcmp(name, "texture_unit") != 0 || *settings != 0) {
+        EXPECT_GT(taken, 0);
+      }
+    }
+    halfplane_config_free(all);
+  }
+}
+
+TEST_F(Capi, ABoxThatEndsBeforeItBeginsIsRefused) {
+  halfplane_stage* stage = halfplane_stage_new(config, "coarse_raster");
+  ASSERT_NE(stage, nullptr) << halfplane_last_error();
+  PacketOf setup(stage, 0, 0);
+  setup.set("left", 9);
+  setup.set("right", 8);
+  expect_error(halfplane_stage_put(stage, 0, setup.words()), "a box that ends before it begins");
   halfplane_stage_free(stage);
 }
 

@@ -255,7 +255,7 @@ TEST_F(CycleCommand, WhatOtherEnginesOrThisHardwareDoNotHaveIsRefused) {
   expect_refused(cycle({"--primitives", "p.txt"}), ".csv");
   expect_refused(cycle({"--trace", "nowhere/t.json"}), "nowhere");
   expect_refused(cycle({"--traversal", "bbox"}), "add --engine scalar");
-  expect_refused({"render", "star", "--engine", "cycle", "--config", "small"}, "--set lines.unit=1");
+  expect_refused({"render", "star", "--engine", "cycle", "--config", "small"}, "set lines.unit=1");
 }
 
 TEST_F(CycleCommand, BenchMeasuresEnginesSideBySide) {

@@ -129,6 +129,52 @@ TEST_F(ExplainCommand, TextNamesStageAndReason) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST_F(ExplainCommand, SeveralSamplesAreToldOneByOne) {
+  // A triangle over the lower right half of pixel 1 1: its standard samples 0 and 1 of 2 lie at (3/4, 3/4) and (1/4, 1/4).
+  write("t.hpt",
+        "halfplane 1\ntarget 4 4\nspace window\nv 2 1 0.5\nv 4 4 0.5\nv 1 2 0.5\nt 0 1 2\n"
+        "state sample_mask 2\nt 0 1 2\n");
+  const Json told = pixel("t.hpt", 1, 1, {"--set", "msaa.samples=2"});
+  EXPECT_EQ(told["differences"].size(), 0U);
+  const Json& at = told["pixels"][0];
+  ASSERT_EQ(at["history"].size(), 4U);
+  const std::array expected{"written", "uncovered", "uncovered", "uncovered"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(at["history"][i]["sample"], i % 2);
+    EXPECT_EQ(at["history"][i]["verdict"], expected[i]) << i;
+  }
+  EXPECT_EQ(at["history"][2]["oracle"]["covers"], true) << "the mask alone leaves it out";
+  EXPECT_EQ(at["samples"][0]["x_pixels"], 0.75);
+  EXPECT_EQ(at["samples"][0]["final"]["model"]["color"], "0xffff");
+  EXPECT_EQ(at["samples"][1]["final"]["model"]["color"], "0x0000");
+  EXPECT_EQ(at["final"]["model"]["color"], "0x8410") << "the mean, halves up";
+  const std::string text = run({"explain", "t.hpt", "1", "1", "--set", "msaa.samples=2"}).out;
+  for (const char* part : {"written in 1 of 2 samples", "sample 0      at 0.7500 0.7500: written at rop",
+                           "but the sample mask leaves it out", "the mean of their colours"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+/// By a judge that knows nothing of the program but its files (tests/cli/explain_judge.py).
+TEST_F(ExplainCommand, AJudgeFromOutsideFindsNoFigureWrong) {
+  if (paste("command -v python3 >python.txt").status != 0) GTEST_SKIP() << "no Python here";
+  const auto judged = [&](const std::string& options, const std::string& seed) {
+    ASSERT_EQ(paste("mkdir s" + seed + " && '" HALFPLANE_PROGRAM "' convert --random 40 --seed " + seed + " " +
+                    options + " -o s" + seed + "/r.hpt")
+                  .status,
+              0);
+    const Outcome outcome =
+        paste("python3 '" HALFPLANE_SOURCE_DIR "/tests/cli/explain_judge.py' '" HALFPLANE_PROGRAM "' s" + seed + " 8 " +
+              seed + " -- " + options);
+    EXPECT_EQ(outcome.status, 0) << options << "\n" << outcome.out << outcome.err;
+  };
+  judged("--config tiny", "1");
+  judged(
+      "--config embedded --set texture.unit=trilinear --set perspective.colors=1 --set fog.unit=1 --set alpha.unit=1 "
+      "--set stencil.bits=8 --set blend.lanes=4 --set dither.unit=1",
+      "2");
+  judged("--config full --set msaa.samples=4", "3");
+}
+
 TEST_F(ExplainCommand, BadPixelsAreRefused) {
   expect_refused({"explain", "triangle", "16", "0", "--size", "16x16"}, "pixel 16 0 lies outside the target of 16x16");
   expect_refused({"explain", "triangle", "-1", "0", "--size", "16x16"}, "pixel -1 0 lies outside");
@@ -195,6 +241,24 @@ TEST_F(ExplainCommand, ThePageOpensInHeadlessChromium) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* part : {"Pixel 20 16", "model colour", "Why is this pixel what it is?", "next"})
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
+  // A hand on the mouse: over the upper left pixel, then a step back.
+  const Bytes page = read("p.html");
+  std::string text(page.begin(), page.end());
+  text.insert(
+      text.rfind("</body>"),
+      "<script>{const c = document.getElementById('grid'), b = c.getBoundingClientRect();"
+      "c.dispatchEvent(new MouseEvent('mousemove', {clientX: b.left + b.width / 10, clientY: b.top + b.height / 10}));"
+      "document.getElementById('previous').click();}</script>");
+  write("hand.html", text);
+  const Outcome moved =
+      paste("\"$(cat browser.txt)\" --headless --no-sandbox --disable-gpu --dump-dom \"file://$PWD/hand.html\"");
+  ASSERT_EQ(moved.status, 0) << moved.err;
+  EXPECT_NE(moved.out.find("<h2 id=\"where\">Pixel 18 14</h2>"), std::string::npos);
+  const std::size_t drawn = moved.out.find("<span id=\"drawn\">");
+  ASSERT_NE(drawn, std::string::npos);
+  const auto steps = [](const std::string& from) { return std::stoi(from); };
+  const std::string shown = moved.out.substr(drawn + 17, 40);
+  EXPECT_EQ(steps(shown) + 1, steps(shown.substr(shown.find("of ") + 3))) << shown;
 }
 
 class RtlExplainCommand : public ExplainCommand {

@@ -124,7 +124,7 @@ TEST_F(JsonSchema, ExplanationsAreDescribed) {
         "p 1\nstate texture t\nv 1 1 0.5 1 255 0 0 255 0 0\nv 15 2 0.5 4 0 255 0 255 1 0\n"
         "v 5 15 0.5 2 0 0 255 255 0 1\nt 2 3 4\n");
   expect_results("explain", {"triangle 8 8 --size 16x16 --steps", "t.hpt 8 8 --box 2x2 --steps",
-                             "t.hpt 8 8 --set texture.unit=nearest"});
+                             "t.hpt 8 8 --set msaa.samples=2", "t.hpt 8 8 --set texture.unit=nearest"});
 }
 
 TEST_F(JsonSchema, VectorsAndTheirJudgementAreDescribed) {

@@ -29,7 +29,7 @@ constexpr std::uint64_t kSeed = 26;
 struct Witnesses {
   Rendering functional, scalar, hardware;
   golden::Image golden;
-  std::map<std::pair<int, int>, std::vector<TappedFragment>> fragments;  ///< by x, y
+  std::map<std::array<int, 3>, std::vector<TappedFragment>> fragments;  ///< by x, y, sample
 
   Witnesses(const Scene& scene, const Config& config) {
     RenderOptions options;
@@ -37,7 +37,11 @@ struct Witnesses {
     functional = render_functional(scene, config, options);
     options.want_count = true;
     options.skip = skip_none();
-    options.fragment_tap = [this](const TappedFragment& f) { fragments[{f.x, f.y}].push_back(f); };
+    options.fragment_tap = [this, &scene, &config](const TappedFragment& f) {
+      const State& state = scene.states[std::get<Draw>(scene.commands[f.draw]).state];
+      const bool is_drawn = config.msaa_samples == 1 || (state.sample_mask.value_or(~0U) >> f.sample & 1U) != 0;
+      if (is_drawn) fragments[{f.x, f.y, f.sample}].push_back(f);
+    };
     scalar = render_scalar(scene, config, options);
     try {
       hardware = render_hardware(scene, config);
@@ -47,8 +51,11 @@ struct Witnesses {
   }
 };
 
-void expect_stored(const Framebuffer& frame, const PixelHistory& pixel, const Stored& stored) {
+/// Of the sample, where pixels have several.
+void expect_stored(const Framebuffer& image, const PixelHistory& pixel, const Stored& stored) {
+  const Framebuffer& frame = image.samples.empty() ? image : image.samples[static_cast<std::size_t>(pixel.sample)];
   const std::size_t at = frame.at(pixel.at.x, pixel.at.y);
+  EXPECT_EQ(frame.stencil[at], stored.stencil);
   EXPECT_EQ(frame.depth[at], stored.depth);
   EXPECT_EQ(frame.color[at], stored.color);
 }
@@ -59,13 +66,16 @@ std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Wit
   const auto p = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x);
   expect_stored(w.functional.frame, pixel, pixel.model);
   expect_stored(w.functional.frame, pixel, pixel.engine);
-  EXPECT_EQ(w.functional.ids[p], pixel.model.owner);
+  const auto k = static_cast<std::size_t>(pixel.sample);
+  const Owners& owners = w.functional.sample_owners.empty() ? w.functional : w.functional.sample_owners[k];
+  EXPECT_EQ(owners.ids[p], pixel.model.owner);
   if (pixel.hardware) expect_stored(w.hardware.frame, pixel, *pixel.hardware);
-  EXPECT_EQ(w.golden.depth[p], pixel.golden.depth);
-  EXPECT_EQ(w.golden.color[p], pixel.golden.color);
-  EXPECT_EQ(w.golden.ids[p], pixel.golden.rounded.owner);
+  const golden::Samples& golden_samples = w.golden.samples.empty() ? w.golden : w.golden.samples[k];
+  EXPECT_EQ(golden_samples.depth[p], pixel.golden.depth);
+  EXPECT_EQ(golden_samples.color[p], pixel.golden.color);
+  EXPECT_EQ(golden_samples.ids[p], pixel.golden.rounded.owner);
 
-  const auto found = w.fragments.find({x, y});
+  const auto found = w.fragments.find({x, y, pixel.sample});
   const std::vector<TappedFragment> none;
   const std::vector<TappedFragment>& fragments = found == w.fragments.end() ? none : found->second;
   std::size_t next = 0, golden = 0;
@@ -88,6 +98,7 @@ std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Wit
     const TappedFragment& fragment = fragments[next++];
     EXPECT_EQ(fragment.primitive, *entry.primitive);
     EXPECT_EQ(fragment.draw, entry.draw);
+    if (entry.kind == Kind::triangle && !w.scalar.frame.samples.empty()) EXPECT_EQ(fragment.shaded_at, entry.shaded_at);
     for (std::size_t i = 0; i < entry.planes.size(); ++i) {
       EXPECT_EQ(fragment.plane[i].unrounded, entry.planes[i].unrounded) << entry.planes[i].name;
       EXPECT_EQ(fragment.plane[i].code, entry.planes[i].code) << entry.planes[i].name;
@@ -102,8 +113,10 @@ std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Wit
     }
   }
   EXPECT_EQ(next, fragments.size()) << "fewer fragments are told than there are";
-  EXPECT_EQ(w.scalar.count[p], fragments.size());
-  EXPECT_EQ(w.golden.count[p], golden);
+  if (w.golden.samples.empty()) {
+    EXPECT_EQ(w.scalar.count[p], fragments.size());
+    EXPECT_EQ(w.golden.count[p], golden);
+  }
   EXPECT_EQ(owner, pixel.model.owner);
   return next;
 }
@@ -111,7 +124,7 @@ std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Wit
 /// Half of them anywhere, half where something was drawn.
 std::vector<Pixel> some_pixels(Random& random, const Scene& scene, const Witnesses& w, std::size_t count) {
   std::vector<Pixel> pixels, drawn;
-  for (const auto& [place, list] : w.fragments) drawn.push_back({place.first, place.second});
+  for (const auto& [place, list] : w.fragments) drawn.push_back({place[0], place[1]});
   for (std::size_t i = 0; i < count; ++i)
     if (i % 2 == 0 || drawn.empty())
       pixels.push_back({static_cast<int>(random.next() % static_cast<unsigned>(scene.width)),
@@ -209,6 +222,7 @@ TEST(Explain, ScenesOfEveryKindAgreeToo) {
                                                                {"teapot:2", "embedded", "depth.format", "uf4.12"},
                                                                {"floor.hpt", "full", "texture.unit", "off"},
                                                                {"hardware.hpt", "embedded", "texture.unit", "bilinear"},
+                                                               {"floor.hpt", "embedded", "texture.unit", "trilinear"},
                                                                {"floor.hpt", "embedded", "depth.bits", "16", true},
                                                                {"walk", "full", "depth.bits", "24", true},
                                                                {"wall.hpt", "embedded", "texture.unit", "off"}}) {
@@ -279,6 +293,59 @@ TEST(Explain, StencilsOfTheHardwareAgreeToo) {
   EXPECT_GT(failed, 50U);
 }
 
+/// Several samples a pixel, with masks, and coverage from alpha: each sample by itself, and what becomes of the pixel.
+TEST(Explain, SamplesOfAPixelAgreeToo) {
+  std::cout << "seed " << kSeed << '\n';
+  Random random(kSeed);
+  struct Case {
+    const char *preset, *samples, *pattern;
+  };
+  std::size_t fragments = 0, off_centre = 0, left_out = 0, by_alpha = 0;
+  for (const auto& [name, samples, pattern] :
+       {Case{"tiny", "2", "standard"}, Case{"embedded", "4", "standard"}, Case{"embedded", "8", "standard"},
+        Case{"full", "4", "standard"}, Case{"embedded", "2", "0.25,0.5;0.75,0.5"}, Case{"small", "4", "standard"}}) {
+    SCOPED_TRACE(std::string(name) + ", " + samples + " samples");
+    Config config = preset(name);
+    set_by_key(config, "msaa.samples", samples);
+    set_by_key(config, "msaa.pattern", pattern);
+    const std::uint64_t seed = random.next();
+    Scene scene = random_scene(config, seed, 120);
+    for (State& state : scene.states) {
+      if (random.next() % 3 == 0) state.sample_mask = static_cast<std::uint8_t>(random.next());
+      state.alpha_to_coverage = random.next() % 4 == 0;
+    }
+    const Witnesses witnesses(scene, config);
+    const Explanation told = explain(scene, config, some_pixels(random, scene, witnesses, 40));
+    EXPECT_EQ(told.pixels.size(), 40U * static_cast<std::size_t>(config.msaa_samples));
+    EXPECT_NE(told.no_hardware, "");
+    for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
+    for (const PixelHistory& pixel : told.pixels) {
+      SCOPED_TRACE("pixel " + std::to_string(pixel.at.x) + " " + std::to_string(pixel.at.y) + " sample " +
+                   std::to_string(pixel.sample));
+      fragments += expect_told(pixel, scene, witnesses);
+      EXPECT_EQ(pixel.resolved.has_value(), pixel.sample == 0);
+      if (pixel.resolved) {
+        const std::size_t at = witnesses.functional.frame.at(pixel.at.x, pixel.at.y);
+        EXPECT_EQ(pixel.resolved->model.color, witnesses.functional.frame.color[at]);
+        EXPECT_EQ(pixel.resolved->model.depth, witnesses.functional.frame.depth[at]);
+        EXPECT_EQ(pixel.resolved->golden.rounded.color, witnesses.golden.frame.color[at]);
+      }
+      for (const Entry& entry : pixel.history) {
+        off_centre += entry.shaded_at && *entry.shaded_at >= 0 ? 1 : 0;
+        left_out += entry.is_left_out ? 1 : 0;
+        by_alpha += entry.specification.verdict == Verdict::alpha ? 1 : 0;
+      }
+    }
+    if (HasFailure()) return;
+  }
+  std::cout << fragments << " fragments, " << off_centre << " with a colour from a sample, " << left_out
+            << " left out by the mask, " << by_alpha << " by alpha\n";
+  EXPECT_GT(fragments, 1000U);
+  EXPECT_GT(off_centre, 20U);
+  EXPECT_GT(left_out, 50U);
+  EXPECT_GT(by_alpha, 20U);
+}
+
 TEST(Explain, TextbookLinesAreTheRegisters) {
   std::cout << "seed " << kSeed << '\n';
   Random random(kSeed);
@@ -337,6 +404,13 @@ TEST(Explain, AChangedFigureIsADifference) {
     verify(config, changed);
     EXPECT_GT(changed.differences.size(), 0U) << &change - changes;
   }
+  Config several = config;
+  several.msaa_samples = 4;
+  Explanation changed = explain(scene, several, {{scene.width / 2, scene.height / 2}});
+  ASSERT_EQ(changed.differences.size(), 0U);
+  changed.pixels[0].resolved->engine.color ^= 1;
+  verify(several, changed);
+  EXPECT_EQ(changed.differences.size(), 1U);
 }
 
 TEST(Explain, PixelsOutsideAreRefused) {

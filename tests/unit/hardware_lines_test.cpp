@@ -179,7 +179,7 @@ TEST(HardwareLines, AConfigurationWithoutTheUnitRefusesLinesInOneLine) {
     FAIL() << "the line was taken";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("line 4: lines, but"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("--set lines.unit=1"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("set lines.unit=1"), std::string::npos);
   }
 }
 

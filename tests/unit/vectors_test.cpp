@@ -24,6 +24,20 @@ Config with_setting(const char* preset_name, const char* key, const char* value)
   return config;
 }
 
+/// Everything that hardware can have: levels, colours over w, fog, alpha test, stencil, blending, dithering.
+Config all_units() {
+  Config config = preset("embedded");
+  for (const auto& [key, value] : {std::pair{"texture.unit", "trilinear"},
+                                   {"perspective.colors", "1"},
+                                   {"fog.unit", "1"},
+                                   {"alpha.unit", "1"},
+                                   {"stencil.bits", "8"},
+                                   {"blend.lanes", "4"},
+                                   {"dither.unit", "1"}})
+    set_by_key(config, key, value);
+  return config;
+}
+
 const std::vector<Config>& configurations() {
   static const std::vector<Config> all{preset("tiny"),
                                        with_setting("small", "lines.unit", "1"),
@@ -31,7 +45,8 @@ const std::vector<Config>& configurations() {
                                        with_setting("embedded", "frame.order", "bins"),
                                        with_setting("embedded", "texture.unit", "bilinear"),
                                        with_setting("embedded", "stencil.bits", "8"),
-                                       with_setting("full", "hiz.lag", "2")};
+                                       with_setting("full", "hiz.lag", "2"),
+                                       all_units()};
   return all;
 }
 
@@ -48,9 +63,9 @@ Scene small_scene(const Config& config) {
   return read_capture(text + "t 2 1 0\nl 2 1\n", "small");
 }
 
-/// That, and without a texture unit random ones, which know none.
+/// That, and random ones.
 SceneSource scenes_of(const Config& config) {
-  SceneSource random = random_scenes(config, kSeed, config.texture_unit == TextureUnitKind::off ? 60 : 0);
+  SceneSource random = random_scenes(config, kSeed, 60);
   return [random, small = std::optional(small_scene(config))]() mutable -> std::optional<Scene> {
     if (small) return std::exchange(small, std::nullopt);
     return random();

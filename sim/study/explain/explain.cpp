@@ -7,6 +7,7 @@
 #include "hardware_record.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
+#include "model/stages/resolve.hpp"
 #include "specification.hpp"
 #include "verify.hpp"
 
@@ -39,12 +40,30 @@ void add_engine(const Scene& scene, const Config& config, Explanation& result) {
   RenderOptions options;
   options.want_ids = true;
   const Rendering rendering = render_functional(scene, config, options);
+  const auto stored = [&](const Framebuffer& frame, const Owners& owners, Pixel at) {
+    Stored of = stored_at(frame, at);
+    of.owner = owners.ids[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(scene.width) +
+                          static_cast<std::size_t>(at.x)];
+    return of;
+  };
   for (PixelHistory& pixel : result.pixels) {
-    const auto [x, y] = pixel.at;
-    pixel.engine = stored_at(rendering.frame, pixel.at);
-    pixel.engine.owner =
-        rendering
-            .ids[static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x)];
+    const auto k = static_cast<std::size_t>(pixel.sample);
+    const Stored whole = stored(rendering.frame, rendering, pixel.at);
+    pixel.engine =
+        result.samples == 1 ? whole : stored(rendering.frame.samples[k], rendering.sample_owners[k], pixel.at);
+    if (pixel.resolved) pixel.resolved->engine = whole;
+  }
+}
+
+/// Of pixels with several samples: what those of the specification come to.
+void resolve(const Config& config, Explanation& result) {
+  if (result.samples == 1) return;
+  for (std::size_t first = 0; first < result.pixels.size(); first += static_cast<std::size_t>(result.samples)) {
+    Resolved& resolved = result.pixels[first].resolved.emplace();
+    resolved.model = result.pixels[first].model;
+    resolved.model.color = mean_color(config.color_format, result.samples, [&](int k) {
+      return result.pixels[first + static_cast<std::size_t>(k)].model.color;
+    });
   }
 }
 
@@ -67,6 +86,8 @@ Explanation explain(const Scene& scene, const Config& config, const std::vector<
   SpecificationRecord record =
       record_specification(scene, with_alpha(config, scene), pixels, options, result.differences, result.checks);
   result.pixels = std::move(record.pixels);
+  result.samples = config.msaa_samples;
+  resolve(config, result);
   result.primitives = record.primitives;
   result.no_hardware = hardware_refusal(scene, config);
   if (options.rtl != nullptr && !result.no_hardware.empty()) throw InputError(result.no_hardware);

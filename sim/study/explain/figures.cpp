@@ -7,6 +7,7 @@
 #include "model/golden/exact_line.hpp"
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/interpolate.hpp"
+#include "model/stages/multisample.hpp"
 #include "model/texture_memory.hpp"
 
 namespace halfplane::explain {
@@ -95,9 +96,14 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
   add_texels(sampler, figure.sample, is_linear, levels.lower, is_between ? 256 - levels.part : 256, figure.texels);
   if (is_between) add_texels(sampler, figure.sample, is_linear, levels.upper, levels.part, figure.texels);
   for (TexelFigure& texel : figure.texels)
-    if (texel.level == 0)
-      texel.address = texel_address(context.scene, context.config, *context.state.texture, texel.x, texel.y);
+    texel.address = texel_address(context.scene, context.config, *context.state.texture, texel.level, texel.x, texel.y);
   return figure;
+}
+
+TriangleSetup setup_at_place(const TriangleSetup& setup, const Triangle& triangle, const SampleOffset& offset,
+                             const Widths& widths) {
+  const auto& v = triangle.v;
+  return setup_at_sample(setup, canonical(v, signed_area(v[0], v[1], v[2])), offset, widths);
 }
 
 std::optional<Surface> made_surface(const DrawContext& context, const Triangle& triangle, const TriangleSetup& setup,
@@ -108,26 +114,38 @@ std::optional<Surface> made_surface(const DrawContext& context, const Triangle& 
 
 }  // namespace
 
-std::optional<std::uint32_t> texel_address(const Scene& scene, const Config& config, std::uint32_t texture, int x,
-                                           int y) {
+std::optional<std::uint32_t> texel_address(const Scene& scene, const Config& config, std::uint32_t texture, int level,
+                                           int x, int y) {
   if (!has_texture_planes(config)) return std::nullopt;
   const Texture& image = scene.textures[texture];
+  LevelPlace place;
+  if (level != 0) {
+    const TextureAxis u{image.width()}, v{image.height()};
+    if (config.texture_unit != TextureUnitKind::trilinear || !u.is_power_of_two() || !v.is_power_of_two())
+      return std::nullopt;
+    place = level_place(
+        {floor_log2(static_cast<unsigned>(image.width())), floor_log2(static_cast<unsigned>(image.height()))}, level);
+  }
+  if (place.is_corner) x = y = 2;
   const TextureMemory memory(scene, config);
-  const auto block_row = static_cast<std::uint32_t>((image.width() + kTextureBlock - 1) / kTextureBlock);
+  const auto block_row =
+      static_cast<std::uint32_t>((std::max(1, image.width() >> level) + kTextureBlock - 1) / kTextureBlock);
   const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y);
-  const std::uint32_t block = row / kTextureBlock * block_row + column / kTextureBlock;
+  const std::uint32_t block = place.block + row / kTextureBlock * block_row + column / kTextureBlock;
   const std::uint32_t texel =
       block * kTextureBlock * kTextureBlock + row % kTextureBlock * kTextureBlock + column % kTextureBlock;
   return memory.base(texture) + (texel << texel_size_log2(stored_format(image.format)));
 }
 
-TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle)
+TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle,
+                             const SampleOffset& offset)
     : context_(context),
       widths_(widths),
-      triangle_(triangle),
-      setup_(setup_triangle(triangle, context.config, widths, context.rect)),
-      whole_(setup_triangle(triangle, context.config, widths)),
-      oracle_(triangle, widths.grid_bits),
+      triangle_(moved_to_sample(triangle, offset)),
+      offset_(offset),
+      setup_(setup_at_place(setup_triangle(triangle, context.config, widths, context.rect), triangle, offset, widths)),
+      whole_(setup_at_place(setup_triangle(triangle, context.config, widths), triangle, offset, widths)),
+      oracle_(triangle_, widths.grid_bits),
       surface_(made_surface(context, triangle_, setup_, widths)) {
   const auto& v = triangle_.v;
   order_ = canonical_order(v, signed_area(v[0], v[1], v[2]));
@@ -175,7 +193,11 @@ Entry TrianglePiece::at(Pixel pixel) const {
   entry.primitive = triangle_.primitive;
   entry.draw = triangle_.draw;
   const auto& v = triangle_.v;
-  entry.corners.assign(v.begin(), v.end());
+  for (SnappedVertex corner : v) {
+    corner.x += offset_.x;
+    corner.y += offset_.y;
+    entry.corners.push_back(corner);
+  }
   entry.area = signed_area(v[0], v[1], v[2]);
   entry.box = {setup_.left, setup_.top, setup_.right, setup_.bottom};
   const EdgeValues edges = edges_at(pixel);
@@ -194,6 +216,8 @@ Entry TrianglePiece::at(Pixel pixel) const {
   if (has_fragment(entry.specification.verdict)) add_attributes(pixel, entry);
   return entry;
 }
+
+bool TrianglePiece::covers(Pixel pixel) const { return has_fragment(outcome_at(pixel, edges_at(pixel)).verdict); }
 
 void TrianglePiece::add_attributes(Pixel pixel, Entry& entry) const {
   const Interpolated value = interpolate_at(setup_, widths_, pixel.x, pixel.y);
@@ -228,6 +252,37 @@ std::vector<TriangleStep> TrianglePiece::steps() const {
   return steps;
 }
 
+SampledPiece::SampledPiece(const DrawContext& context, const Widths& widths, const Triangle& triangle)
+    : centre_(context, widths, triangle) {
+  if (widths.pixel_samples == 1) return;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(widths.pixel_samples); ++k)
+    samples_.push_back(std::make_unique<TrianglePiece>(context, widths, triangle, widths.sample_offset[k]));
+}
+
+const TrianglePiece& SampledPiece::piece(int place) const {
+  return samples_.empty() || place == kAtCentre ? centre_ : *samples_[static_cast<std::size_t>(place)];
+}
+
+/// Precondition: a sample of the pixel is covered.
+int SampledPiece::shaded_at(Pixel pixel) const {
+  if (centre_.covers(pixel)) return kAtCentre;
+  int sample = 0;
+  while (!piece(sample).covers(pixel)) ++sample;
+  return sample;
+}
+
+Entry SampledPiece::at(Pixel pixel, int sample) const {
+  Entry entry = piece(sample).at(pixel);
+  if (samples_.empty() || !has_fragment(entry.specification.verdict)) return entry;
+  entry.shaded_at = shaded_at(pixel);
+  if (*entry.shaded_at == sample) return entry;
+  const PlaneFigure depth = entry.planes[kDepthPlane];
+  entry.planes.clear();
+  piece(*entry.shaded_at).add_attributes(pixel, entry);
+  entry.planes[kDepthPlane] = depth;
+  return entry;
+}
+
 Entry line_entry(const DrawContext& context, const Widths& widths, const LinePrimitive& line, Pixel pixel,
                  bool wants_steps) {
   const DrawnLine& drawn = line.drawn;
@@ -248,7 +303,7 @@ Entry line_entry(const DrawContext& context, const Widths& widths, const LinePri
     return entry;
   }
   tap_line(line, widths, 0, [&](const TappedFragment& fragment) {
-    if (fragment.x != pixel.x || fragment.y != pixel.y) return;
+    if (fragment.x != pixel.x || fragment.y != pixel.y || fragment.sample != 0) return;  // all samples have the same
     entry.specification = Outcome(Verdict::written);
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
       entry.planes.push_back(
@@ -266,7 +321,6 @@ Entry point_entry(const Widths& widths, const PointPrimitive& point, Pixel pixel
   entry.draw = drawn.draw;
   entry.corners = {drawn.at};
   entry.box = point.box;
-  entry.point_size = drawn.size;
   entry.point_size = drawn.size;
   // From the definition, in halves of a subpixel: the centre lies in [X - n/2, X + n/2), and so across.
   const auto spans = [&](int i, std::int32_t at) {

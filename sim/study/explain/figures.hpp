@@ -9,16 +9,20 @@
 
 namespace halfplane::explain {
 
-/// A triangle that the host side has left, at any pixel.
+/// A triangle that the host side has left, at any pixel: at its centre, or at another place of it.
 class TrianglePiece {
  public:
-  /// `context` must outlive it.
-  TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle);
+  /// `context` must outlive it. `offset`: of the place from the centre, 2^-s pixel.
+  TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle,
+                const SampleOffset& offset = {});
   TrianglePiece(const TrianglePiece&) = delete;  // its surface points into it
   TrianglePiece& operator=(const TrianglePiece&) = delete;
 
   /// An entry without operations; its specification says how far the triangle came.
   [[nodiscard]] Entry at(Pixel pixel) const;
+  [[nodiscard]] bool covers(Pixel pixel) const;
+  /// Planes and surface. Precondition: it covers the place.
+  void add_attributes(Pixel pixel, Entry& entry) const;
   /// Every pixel of its box.
   [[nodiscard]] std::vector<TriangleStep> steps() const;
 
@@ -26,11 +30,11 @@ class TrianglePiece {
   [[nodiscard]] EdgeValues edges_at(Pixel pixel) const;
   [[nodiscard]] bool is_covered(Pixel pixel) const;
   [[nodiscard]] Outcome outcome_at(Pixel pixel, const EdgeValues& edges) const;
-  void add_attributes(Pixel pixel, Entry& entry) const;
 
   const DrawContext& context_;
   const Widths& widths_;
-  Triangle triangle_;
+  Triangle triangle_;    ///< moved so that the place lies at the centre
+  SampleOffset offset_;  ///< by which it has been
   TriangleSetup setup_;  ///< inside the rectangle that may be drawn
   TriangleSetup whole_;  ///< over the guard band
   std::array<std::size_t, 3> order_{};
@@ -40,12 +44,29 @@ class TrianglePiece {
   std::optional<SurfaceOracle> surface_oracle_;
 };
 
+/// A triangle at each sample of a pixel; where a pixel has one, that is its centre.
+class SampledPiece {
+ public:
+  SampledPiece(const DrawContext& context, const Widths& widths, const Triangle& triangle);
+
+  /// An entry at a sample, likewise without operations: its depth is the sample's, its colour from where the pixel is shaded.
+  [[nodiscard]] Entry at(Pixel pixel, int sample) const;
+  [[nodiscard]] std::vector<TriangleStep> steps(int sample) const { return piece(sample).steps(); }
+
+ private:
+  [[nodiscard]] const TrianglePiece& piece(int place) const;
+  [[nodiscard]] int shaded_at(Pixel pixel) const;
+
+  TrianglePiece centre_;
+  std::vector<std::unique_ptr<TrianglePiece>> samples_;  ///< none: a pixel has one
+};
+
 [[nodiscard]] Entry line_entry(const DrawContext& context, const Widths& widths, const LinePrimitive& line, Pixel pixel,
                                bool wants_steps);
 [[nodiscard]] Entry point_entry(const Widths& widths, const PointPrimitive& point, Pixel pixel);
 
-/// What the texture unit's memory, or none, has at a texel of level 0.
+/// Where the texture unit's memory has a texel; none without such a unit, or where that has no levels.
 [[nodiscard]] std::optional<std::uint32_t> texel_address(const Scene& scene, const Config& config,
-                                                         std::uint32_t texture, int x, int y);
+                                                         std::uint32_t texture, int level, int x, int y);
 
 }  // namespace halfplane::explain

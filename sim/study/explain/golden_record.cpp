@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "model/golden/depth_format.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane::explain {
@@ -24,10 +25,11 @@ double distance_between(const Entry& entry, const golden::Outline& outline, int 
   return sum;
 }
 
-/// Edge values at the pixel's centre, square pixels, by opposite corner; positive inside.
-std::vector<double> golden_edges(const golden::Outline& o, Pixel pixel) {
+/// Edge values at the pixel's centre or sample, square pixels, by opposite corner; positive inside.
+std::vector<double> golden_edges(const golden::Outline& o, const PixelHistory& pixel) {
   if (o.corners != 3) return {};
-  const double px = pixel.x + 0.5, py = pixel.y + 0.5;
+  const double px = pixel.at.x + std::ldexp(pixel.place.x, -kPatternFraction),
+               py = pixel.at.y + std::ldexp(pixel.place.y, -kPatternFraction);
   const auto edge = [&](std::size_t a, std::size_t b) {
     return (o.x[b] - o.x[a]) * (py - o.y[a]) - (o.y[b] - o.y[a]) * (px - o.x[a]);
   };
@@ -48,7 +50,7 @@ void match_outlines(PixelHistory& pixel, std::span<const golden::Outline> outlin
     }
     if (best == nullptr) continue;
     figure.outline = *best;
-    figure.edges = golden_edges(*best, pixel.at);
+    figure.edges = golden_edges(*best, pixel);
   }
 }
 
@@ -105,10 +107,17 @@ void record_golden(const Scene& scene, const Config& config, const std::function
   options.only = Rect{left, top, right - left, bottom - top};
   options.fragment_tap = [&fragments](const golden::TappedFragment& fragment) { fragments.push_back(fragment); };
   const golden::Image image = golden::render(scene, config, options);
+  const golden::DepthBuffer depth_buffer(config, scene.planes);
+  const double depth_max = std::ldexp(1.0, config.depth_bits) - 1;
+  const auto stored_at = [&](const golden::Samples& of, std::size_t p) {
+    const std::uint32_t code = depth_buffer.code(depth_buffer.stored_depth(of.depth[p] / depth_max));
+    return GoldenStored{
+        of.depth[p], of.color[p], {code, golden::rounded_color(of.color[p], config.color_format), of.ids[p]}};
+  };
   for (PixelHistory& pixel : result.pixels) {
     match_outlines(pixel, image.outlines, grid_bits);
     for (const golden::TappedFragment& fragment : fragments) {
-      if (fragment.x != pixel.at.x || fragment.y != pixel.at.y) continue;
+      if (fragment.x != pixel.at.x || fragment.y != pixel.at.y || fragment.sample != pixel.sample) continue;
       ++result.checks;
       if (Entry* entry = entry_of(pixel, fragment, image.outlines))
         entry->golden->fragment = fragment;
@@ -121,7 +130,10 @@ void record_golden(const Scene& scene, const Config& config, const std::function
     const auto p = static_cast<std::size_t>(pixel.at.y) * static_cast<std::size_t>(image.width) +
                    static_cast<std::size_t>(pixel.at.x);
     const std::size_t at = image.frame.at(pixel.at.x, pixel.at.y);
-    pixel.golden = {image.depth[p], image.color[p], {image.frame.depth[at], image.frame.color[at], image.ids[p]}};
+    const GoldenStored whole{
+        image.depth[p], image.color[p], {image.frame.depth[at], image.frame.color[at], image.ids[p]}};
+    pixel.golden = result.samples == 1 ? whole : stored_at(image.samples[static_cast<std::size_t>(pixel.sample)], p);
+    if (pixel.resolved) pixel.resolved->golden = whole;
   }
 }
 

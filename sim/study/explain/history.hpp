@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "model/golden/exact.hpp"
 #include "model/golden/golden.hpp"
 #include "model/packets.hpp"
+#include "model/sample_pattern.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/surface.hpp"
 #include "sim/study/compare/surface_oracle.hpp"
@@ -156,7 +158,7 @@ struct OracleFigure {
   bool covers = false, is_on_border = false;
 };
 
-/// A primitive, or a piece of one, at the pixel.
+/// A primitive, or a piece of one, at the pixel; of pixels with several samples, at one of them.
 struct Entry {
   Kind kind = Kind::triangle;
   std::optional<std::uint32_t> primitive;  ///< number over the whole scene; none for a clear
@@ -165,6 +167,8 @@ struct Entry {
   Outcome outcome;                         ///< the hardware's where it has the scene
   Outcome specification;
   bool is_cut = false;
+  std::optional<int> shaded_at;  ///< of a covered sample: where its colour is from, kAtCentre or a sample's number
+  bool is_left_out = false;      ///< covered, but not in State::sample_mask
   std::vector<SnappedVertex> corners;  ///< of the piece; empty when nothing was snapped
   std::int64_t area = 0;               ///< twice, signed, square subpixels
   PixelBounds box;                     ///< pixel centres inside the scissor
@@ -193,22 +197,44 @@ struct GoldenStored {
   Stored rounded;
 };
 
+/// What several samples make of their pixel: the mean of their colours; depth, stencil and owner of sample 0.
+struct Resolved {
+  Stored model, engine;
+  GoldenStored golden;
+};
+
+/// Of a pixel, or of one of its samples: those of a pixel follow each other, and name the same primitives.
 struct PixelHistory {
   Pixel at;
+  int sample = 0;      ///< of the pixel
+  SampleOffset place;  ///< of the sample, from the pixel's upper left corner, 2^-8 pixel
   std::vector<Entry> history;
   Stored model;   ///< what the operations leave
   Stored engine;  ///< what the functional engine rendered
   GoldenStored golden;
   std::optional<Stored> hardware, rtl;
+  std::optional<Resolved> resolved;  ///< with sample 0 of several
 };
 
 struct Explanation {
-  std::vector<PixelHistory> pixels;
+  std::vector<PixelHistory> pixels;      ///< in the order asked for, each sample by itself
+  int samples = 1;                       ///< of a pixel
   PacketStore packets;                   ///< those that a history names
   std::uint64_t primitives = 0;          ///< of the scene
   std::string no_hardware;               ///< why the hardware cannot draw the scene; empty: it can
   std::uint64_t checks = 0;              ///< figures that were held against each other
   std::vector<std::string> differences;  ///< those that differ, a line each
 };
+
+/// The histories of one pixel: one a sample.
+using PixelSamples = std::span<const PixelHistory>;
+/// Of every pixel, in order.
+[[nodiscard]] inline std::vector<PixelSamples> pixels_of(const Explanation& told) {
+  std::vector<PixelSamples> pixels;
+  const auto samples = static_cast<std::size_t>(told.samples);
+  for (std::size_t first = 0; first < told.pixels.size(); first += samples)
+    pixels.push_back(PixelSamples(told.pixels).subspan(first, samples));
+  return pixels;
+}
 
 }  // namespace halfplane::explain

@@ -67,6 +67,12 @@ Result test_depth(FragmentAtWork& f, OperationStep& step) {
 }
 
 bool tests_alpha(const FragmentAtWork& f) { return f.context.fragment_ops.alpha.func != DepthFunc::always; }
+bool covers_by_alpha(const FragmentAtWork& f) { return f.context.fragment_ops.alpha_samples != 0; }
+/// What becomes of a fragment that its alpha drops.
+Result dropped_by_alpha(const FragmentAtWork& f) {
+  const Result failed = failed_test(f);
+  return failed ? failed : Result(Verdict::alpha);
+}
 Result test_alpha(FragmentAtWork& f, OperationStep& step) {
   const AlphaTest& test = f.context.fragment_ops.alpha;
   step.figures = {{"func", {}, 0, draw_state("depth_test").words[static_cast<std::size_t>(test.func)]},
@@ -74,9 +80,15 @@ Result test_alpha(FragmentAtWork& f, OperationStep& step) {
                   {"reference", {test.reference}, 8}};
   f.passes_alpha = depth_passes(test.func, f.color[3], std::uint32_t{test.reference});
   step.passes = f.passes_alpha;
-  if (f.passes_alpha) return {};
-  const Result failed = failed_test(f);
-  return failed ? failed : Result(Verdict::alpha);
+  return f.passes_alpha ? Result{} : dropped_by_alpha(f);
+}
+Result cover_by_alpha(FragmentAtWork& f, OperationStep& step) {
+  const auto samples = static_cast<std::uint32_t>(f.context.fragment_ops.alpha_samples);
+  step.figures = {{"fragment", {f.color[3]}, 8},
+                  {"samples_drawn", {samples_of_alpha(f.color[3], samples)}, 4},
+                  {"sample", {f.sample}, 3}};
+  step.passes = is_drawn_by_alpha(f.context.fragment_ops, f.color[3], f.sample);
+  return *step.passes ? Result{} : dropped_by_alpha(f);
 }
 
 Result change_stencil(FragmentAtWork& f, OperationStep& step) {
@@ -89,7 +101,9 @@ Result change_stencil(FragmentAtWork& f, OperationStep& step) {
 }
 
 bool writes_color(const FragmentAtWork& f) { return f.context.fragment_ops.state.color_write; }
-bool is_seen(const FragmentAtWork& f) { return tests_alpha(f) || (writes_color(f) && !failed_test(f)); }
+bool is_seen(const FragmentAtWork& f) {
+  return tests_alpha(f) || covers_by_alpha(f) || (writes_color(f) && !failed_test(f));
+}
 bool is_textured(const FragmentAtWork& f) { return f.surface != nullptr && !f.surface->texture.empty() && is_seen(f); }
 Result texture(FragmentAtWork& f, OperationStep& step) {
   const SurfaceSample& sample = f.surface->sample;
@@ -165,6 +179,7 @@ constexpr Operation kOperations[] = {
     {"texture", Stage::texture_unit, is_textured, texture},
     {"fog", Stage::rop, is_fogged, add_fog},
     {"alpha_test", Stage::depth_test, tests_alpha, test_alpha},
+    {"alpha_to_coverage", Stage::depth_test, covers_by_alpha, cover_by_alpha},
     {"write_stencil", Stage::depth_test, changes_stencil, change_stencil},
     {"blend", Stage::rop, blends, blend},
     {"pack_color", Stage::rop, writes_color, pack},

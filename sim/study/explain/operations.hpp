@@ -22,6 +22,7 @@ struct FragmentAtWork {
   bool passes_stencil = true, passes_depth = true;
   bool passes_alpha = true;
   std::uint32_t primitive = 0;
+  std::uint32_t sample = 0;  ///< of its pixel
 };
 
 /// Runs the table. Returns what became of the fragment.

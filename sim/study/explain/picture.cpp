@@ -138,12 +138,14 @@ Rgb stored_rgb(std::uint32_t color, ColorFormat format) {
           static_cast<std::uint8_t>(c[2] << 3 | c[2] >> 2)};
 }
 
-/// The stored colours, the grid, and a dot at each sample.
+/// The stored colours and the grid.
 void draw_pixels(Canvas& canvas, const Explanation& around, const Rect& box, const Config& config) {
   const int scale = canvas.scale;
   for (const PixelHistory& pixel : around.pixels) {
+    if (pixel.sample != 0) continue;
     const int x = canvas.at_x(pixel.at.x), y = canvas.at_y(pixel.at.y);
-    fill_rect(canvas.picture, {x, y, scale, scale}, stored_rgb(pixel.model.color, config.color_format));
+    const Stored& stored = pixel.resolved ? pixel.resolved->model : pixel.model;
+    fill_rect(canvas.picture, {x, y, scale, scale}, stored_rgb(stored.color, config.color_format));
     frame_rect(canvas.picture, {x, y, scale + 1, scale + 1}, kGrid);
   }
   const Rect frame{canvas.at_x(box.x), canvas.at_y(box.y), box.width * scale + 1, box.height * scale + 1};
@@ -151,13 +153,15 @@ void draw_pixels(Canvas& canvas, const Explanation& around, const Rect& box, con
   frame_rect(canvas.picture, {frame.x + 1, frame.y + 1, frame.width - 2, frame.height - 2}, kPaper);
 }
 
-/// A mark around the sample for each primitive that covers it: number n in one of eight places.
+/// A dot at each sample, and a mark around it for each primitive that covers it: number n in one of eight places.
 void draw_samples(Canvas& canvas, const Explanation& around, const std::vector<Shown>& shown) {
   constexpr std::array<std::array<int, 2>, 8> kPlaces{
       {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
-  const int mark = std::max(3, canvas.scale / 8), step = canvas.scale / 4;
+  const int room = around.samples == 1 ? canvas.scale : canvas.scale / (around.samples < 8 ? 2 : 3);
+  const int mark = std::max(3, room / 8), step = room / 4;
   for (const PixelHistory& pixel : around.pixels) {
-    const int x = canvas.at_x(pixel.at.x + 0.5), y = canvas.at_y(pixel.at.y + 0.5);
+    const int x = canvas.at_x(pixel.at.x + std::ldexp(pixel.place.x, -kPatternFraction)),
+              y = canvas.at_y(pixel.at.y + std::ldexp(pixel.place.y, -kPatternFraction));
     fill_rect(canvas.picture, {x - 2, y - 2, 5, 5}, kPaper);
     fill_rect(canvas.picture, {x - 1, y - 1, 3, 3}, kInk);
     for (std::size_t n = 0; n < shown.size(); ++n)
@@ -171,21 +175,21 @@ void draw_samples(Canvas& canvas, const Explanation& around, const std::vector<S
   }
 }
 
-std::string shown_text(const Entry& entry) {
+std::string shown_text(const Entry& entry, int samples) {
   return "#" + std::to_string(entry.primitive.value_or(0)) + " " +
          std::string(kKindNames[static_cast<std::size_t>(entry.kind)]) +
-         (entry.piece != 0 ? " piece " + std::to_string(entry.piece) : "") + ": " +
-         std::string(info(entry.outcome.verdict).name);
+         (entry.piece != 0 ? " piece " + std::to_string(entry.piece) : "") +
+         (samples == 1 ? ": " + std::string(info(entry.outcome.verdict).name) : std::string());
 }
 
-void draw_legend(Picture& sheet, int x, int y, const std::vector<Shown>& shown, int height) {
+void draw_legend(Picture& sheet, int x, int y, const std::vector<Shown>& shown, int samples, int height) {
   const auto line = [&](const std::string& text, Rgb color) {
     for (const std::string& part : wrap_text(text, kLegendWidth, 1)) {
       draw_text(sheet, x, y, part, color, 1);
       y += text_height(1) + 4;
     }
   };
-  line("white dot: the sample of a pixel", kInk);
+  line(samples == 1 ? "white dot: the sample of a pixel" : "white dots: the samples of a pixel", kInk);
   line("lines: edges behind the snap; dots: before it", kInk);
   line("squares: who covers the sample, in the colours below, whether it is seen or not", kInk);
   y += text_height(1);
@@ -194,7 +198,7 @@ void draw_legend(Picture& sheet, int x, int y, const std::vector<Shown>& shown, 
       line("and " + std::to_string(shown.size() - n) + " more", kMuted);
       return;
     }
-    line(shown_text(*shown[n].entry), shown[n].color);
+    line(shown_text(*shown[n].entry, samples), shown[n].color);
   }
 }
 
@@ -225,7 +229,7 @@ Picture neighbourhood_picture(const Explanation& around, const Window& window, c
   Picture sheet(canvas.picture.width + kLegendWidth + 3 * kGap, height + top + kGap, kPaper);
   draw_text(sheet, kGap, kGap, title, kInk, 2);
   draw_picture(sheet, canvas.picture, kGap, top);
-  draw_legend(sheet, canvas.picture.width + 2 * kGap, top, shown, top + height);
+  draw_legend(sheet, canvas.picture.width + 2 * kGap, top, shown, around.samples, top + height);
   return sheet;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "figures.hpp"
+#include "model/engines/commands.hpp"
 #include "model/engines/render.hpp"
 #include "operations.hpp"
 
@@ -104,12 +105,16 @@ class SpecificationWalk {
         differences_(differences),
         checks_(checks) {
     const Rendering empty = make_rendering(scene, config, {});
-    for (const Pixel pixel : pixels) {
-      PixelHistory& history = record_.pixels.emplace_back();
-      history.at = pixel;
-      const std::size_t at = empty.frame.at(pixel.x, pixel.y);
-      history.model = {empty.frame.depth[at], empty.frame.color[at], -1};
-    }
+    const SamplePattern pattern = resolved_pattern(config.msaa_pattern, config.msaa_samples);
+    for (const Pixel pixel : pixels)
+      for (int k = 0; k < config.msaa_samples; ++k) {
+        PixelHistory& history = record_.pixels.emplace_back();
+        history.at = pixel;
+        history.sample = k;
+        history.place = pattern.place[static_cast<std::size_t>(k)];
+        const std::size_t at = empty.frame.at(pixel.x, pixel.y);
+        history.model = {empty.frame.depth[at], empty.frame.color[at], -1};
+      }
   }
 
   SpecificationRecord run() && {
@@ -201,23 +206,23 @@ class SpecificationWalk {
     const auto for_each_near = [&](const Shape& shape, auto&& entry_at) {
       for (const std::size_t i : near)
         if (shape.is_near(record_.pixels[i].at, options_.near))
-          add(context, entry_at(record_.pixels[i].at), piece, is_cut, i);
+          add(context, entry_at(record_.pixels[i].at, record_.pixels[i].sample), piece, is_cut, i);
       ++piece;
     };
     for (const Triangle& triangle : pieces_) {
-      const TrianglePiece at_pixels(context, widths_, triangle);
-      for_each_near(shape_of({triangle.v[0], triangle.v[1], triangle.v[2]}, 0, s), [&](Pixel pixel) {
-        Entry entry = at_pixels.at(pixel);
-        if (options_.wants_steps) entry.steps = at_pixels.steps();
+      const SampledPiece at_pixels(context, widths_, triangle);
+      for_each_near(shape_of({triangle.v[0], triangle.v[1], triangle.v[2]}, 0, s), [&](Pixel pixel, int sample) {
+        Entry entry = at_pixels.at(pixel, sample);
+        if (options_.wants_steps) entry.steps = at_pixels.steps(sample);
         return entry;
       });
     }
     for (const LinePrimitive& line : outline_.lines)
       for_each_near(shape_of({line.drawn.start, line.drawn.end}, 1, s),
-                    [&](Pixel pixel) { return line_entry(context, widths_, line, pixel, options_.wants_steps); });
+                    [&](Pixel pixel, int) { return line_entry(context, widths_, line, pixel, options_.wants_steps); });
     for (const PointPrimitive& point : outline_.points)
       for_each_near(shape_of({point.drawn.at}, std::ldexp(point.drawn.size, -s), s),
-                    [&](Pixel pixel) { return point_entry(widths_, point, pixel); });
+                    [&](Pixel pixel, int) { return point_entry(widths_, point, pixel); });
   }
 
   /// Of a whole primitive that never was drawn.
@@ -247,6 +252,15 @@ class SpecificationWalk {
     PixelHistory& history = record_.pixels[pixel];
     entry.piece = piece;
     entry.is_cut = is_cut;
+    const auto sample = static_cast<std::uint32_t>(history.sample);
+    if (has_fragment(entry.specification.verdict) && (drawn_samples(context.state) >> sample & 1U) == 0) {
+      entry.specification = {Verdict::uncovered, Stage::fine_raster,
+                             "it covers the sample, but the sample mask leaves it out"};
+      entry.is_left_out = true;
+      entry.shaded_at.reset();
+      entry.planes.clear();
+      entry.surface.reset();
+    }
     if (has_fragment(entry.specification.verdict)) {
       const auto color = color_of(entry);
       std::uint32_t depth_after = history.model.depth, color_after = history.model.color;
@@ -259,11 +273,12 @@ class SpecificationWalk {
       };
       const bool is_back = entry.kind == Kind::triangle && shows_back(entry.area, context.state.front);
       const Fate fate = apply_fragment(context.fragment_ops, config_.color_format,
-                                       {context.depth_encode(plane), history.at.x, history.at.y, is_back}, finished,
-                                       {depth_after, color_after, stencil_after});
+                                       {context.depth_encode(plane), history.at.x, history.at.y, is_back, sample},
+                                       finished, {depth_after, color_after, stencil_after});
       FragmentAtWork fragment{
           context, entry.surface ? &*entry.surface : nullptr, plane, color, 0, 0, history.model, history.at, is_back};
       fragment.primitive = *entry.primitive;
+      fragment.sample = sample;
       entry.specification = run_operations(fragment, entry.operations);
       const Verdict verdict = entry.specification.verdict;
       const Fate told = verdict == Verdict::written || verdict == Verdict::masked ? Fate::passed

@@ -11,7 +11,8 @@ namespace halfplane::explain {
 namespace {
 
 std::string place_of(const PixelHistory& pixel) {
-  return "pixel " + std::to_string(pixel.at.x) + "," + std::to_string(pixel.at.y);
+  return "pixel " + std::to_string(pixel.at.x) + "," + std::to_string(pixel.at.y) +
+         (pixel.resolved || pixel.sample != 0 ? " sample " + std::to_string(pixel.sample) : "");
 }
 std::string place_of(const PixelHistory& pixel, const Entry& entry) {
   const std::string primitive = entry.primitive ? " primitive " + std::to_string(*entry.primitive) : " clear";
@@ -218,7 +219,7 @@ void verify(const Config& config, Explanation& result) {
     for (const Entry& entry : pixel.history) {
       if (!entry.oracle) continue;
       const Verdict verdict = entry.specification.verdict;
-      checks.holds(entry.oracle->covers == (has_fragment(verdict) || verdict == Verdict::scissor),
+      checks.holds(entry.oracle->covers == (has_fragment(verdict) || verdict == Verdict::scissor || entry.is_left_out),
                    place_of(pixel, entry), "the oracle decides otherwise whether the sample is covered");
     }
     checks.same(pixel.model.depth, pixel.engine.depth, place, "stored depths of specification and engine differ");
@@ -227,6 +228,14 @@ void verify(const Config& config, Explanation& result) {
                 "stored stencil values of specification and engine differ");
     checks.same(static_cast<std::uint32_t>(pixel.model.owner), static_cast<std::uint32_t>(pixel.engine.owner), place,
                 "owners of the pixel in specification and engine differ");
+    if (pixel.resolved) {
+      const Stored &model = pixel.resolved->model, &engine = pixel.resolved->engine;
+      checks.same(model.color, engine.color, place, "the mean of the samples' colours and the engine's pixel differ");
+      checks.same(model.depth, engine.depth, place, "the pixel's depths in specification and engine differ");
+      checks.same(model.stencil, engine.stencil, place, "the pixel's stencils in specification and engine differ");
+      checks.same(static_cast<std::uint32_t>(model.owner), static_cast<std::uint32_t>(engine.owner), place,
+                  "the pixel's owners in specification and engine differ");
+    }
     if (pixel.hardware) {
       if (config.frame_store == FrameStore::all)
         checks.same(pixel.model.depth, pixel.hardware->depth, place,
