@@ -98,7 +98,9 @@ std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Wit
     const TappedFragment& fragment = fragments[next++];
     EXPECT_EQ(fragment.primitive, *entry.primitive);
     EXPECT_EQ(fragment.draw, entry.draw);
-    if (entry.kind == Kind::triangle && !w.scalar.frame.samples.empty()) EXPECT_EQ(fragment.shaded_at, entry.shaded_at);
+    if (entry.kind == Kind::triangle && !w.scalar.frame.samples.empty()) {
+      EXPECT_EQ(fragment.shaded_at, entry.shaded_at);
+    }
     for (std::size_t i = 0; i < entry.planes.size(); ++i) {
       EXPECT_EQ(fragment.plane[i].unrounded, entry.planes[i].unrounded) << entry.planes[i].name;
       EXPECT_EQ(fragment.plane[i].code, entry.planes[i].code) << entry.planes[i].name;
