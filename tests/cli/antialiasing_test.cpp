@@ -44,7 +44,6 @@ TEST_F(AntialiasingCommand, WhoHasOneSampleAPixelSaysSo) {
        std::vector<Arguments>{{"render", "teapot", "--engine", "cycle"},
                               {"render", "teapot", "--engine", "rtl"},
                               {"cosim", "--random", "3"},
-                              {"explain", "teapot", "3", "3"},
                               {"widths"},
                               {"depth"},
                               {"stress"},

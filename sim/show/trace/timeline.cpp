@@ -21,7 +21,9 @@ constexpr std::array kTracks{TrackName{Stage::cull, ""},
                              TrackName{Stage::triangle_setup, ", third"},
                              TrackName{Stage::triangle_setup, ", fourth"},
                              TrackName{Stage::triangle_setup, ", fifth"},
+                             TrackName{Stage::triangle_setup, ", sixth"},
                              TrackName{Stage::coarse_raster, ""},
+                             TrackName{Stage::coarse_raster, ", second"},
                              TrackName{Stage::fine_raster, ""},
                              TrackName{Stage::line_raster, ""},
                              TrackName{Stage::depth_test, ""},
@@ -134,7 +136,7 @@ void Timeline::end_visit() {
 
 void Timeline::end_primitive() {
   end_visit();
-  if (has_setup_) slice(coarse, name_, setup_, std::max(last_tile_, setup_ + 1));
+  if (has_setup_) slice_in(coarse_lanes_, setup_, std::max(last_tile_, setup_ + 1));
   if (has_line_) slice(lines, name_, line_ + 1, last_pixel_ + 1);
   has_setup_ = has_line_ = false;
 }

@@ -31,7 +31,9 @@ class Timeline final : public TransferSink {
     setup_3,
     setup_4,
     setup_5,
-    coarse,
+    setup_6,
+    coarse_1,
+    coarse_2,
     fine,
     lines,
     depth,
@@ -60,7 +62,8 @@ class Timeline final : public TransferSink {
   Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
         first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
   std::vector<Lane> cull_lanes_{{cull_1}, {cull_2}},
-      setup_lanes_{{setup_1}, {setup_2}, {setup_3}, {setup_4}, {setup_5}};
+      setup_lanes_{{setup_1}, {setup_2}, {setup_3}, {setup_4}, {setup_5}, {setup_6}},
+      coarse_lanes_{{coarse_1}, {coarse_2}};
   int tracks_ = memory_color + 1;  ///< those above, and the lanes that deeper configurations need
 };
 
