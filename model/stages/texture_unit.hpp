@@ -125,7 +125,10 @@ struct TextureUse {
   return block_a == block_b || (((block_a ^ block_b) & 1) != 0 && (a ^ b) % kTextureBlock != 0);
 }
 [[nodiscard]] constexpr bool agree(const TexelPair& a, const TexelPair& b) {
-  return agree(a.first, b.first) && agree(a.first, b.second) && agree(a.second, b.first) && agree(a.second, b.second);
+  bool all = true;
+  for (const int u : {a.first, a.second})
+    for (const int v : {b.first, b.second}) all &= agree(u, v);
+  return all;
 }
 
 /// Which lines are in the cache.
@@ -379,7 +382,8 @@ class TextureUnit {
       bool is_wanted = false;
       pass.for_each([&](std::size_t s) {
         const Texels texels = texels_of_sample(s);
-        if (is_wanted || !wants(texels, bank)) return;
+        const bool is_passed_over = is_wanted | !wants(texels, bank);
+        if (is_passed_over) return;
         is_wanted = true;
         look_up(level, static_cast<std::uint32_t>(block_in(texels[0], bank & 1)),
                 static_cast<std::uint32_t>(block_in(texels[1], bank >> 1)), read);
