@@ -26,6 +26,9 @@
               $past({item_source_o, evicts_depth_o, evicts_color_o, evicts_fills_o}));
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
   end
+  // block_cache puts a request's data together of these.
+  always_comb if (runs_q && request_valid_o)
+    assert (request_o.data == (request_o.plane[1] ? (SAMPLES * LANE)'(request_word_o) : {SAMPLES{LANE'(clear_color_o)}}));
   // The RAMs: sram_word; the flags: clear_flags_data.
   logic              lines_stay_q, flags_stay_q, fell_q;
   logic [STATE-1:0]  line_before_q;

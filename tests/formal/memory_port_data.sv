@@ -5,6 +5,8 @@
   (* anyconst *) logic [1:0]                   any_byte;
   (* anyseq *) logic                           is_chosen;
   logic                  waits_q, strobed_q, was_chosen_q, at_color_q;
+  logic [ADDRESS-1:PORT] sent;  // the beat on offer
+  assign sent = beat_o.address[ADDRESS-1:PORT];
   logic [ADDRESS-1:0]    at_q, at;
   logic [7:0]            value_q, value;
   logic [ADDRESS-1:0]    first;  // byte of the stamp
@@ -13,7 +15,8 @@
     if (request_valid_i) assume (32'(any_byte) < (request_i.plane[0] ? raster_pkg::COLOR_SAMPLE_BYTES : raster_pkg::DEPTH_SAMPLE_BYTES));
   end
   // A run is of one tile, and the layout stays: what follows in a beat that gathers is of that beat.
-  always_comb if (runs_q && request_valid_i && gathers_q) assume (address[ADDRESS-1:PORT] == address_q);
+  always_comb if (runs_q && request_valid_i && gathers_q)
+    assume (address[ADDRESS-1:PORT] == address_q && (is_flags ? '0 : above) == above_q);
   // The address by its definition (byte_address() of model/stages/memory_port.hpp), with bases in any multiple of a plane.
   assign first = ((is_color ? layout_i.color_base : layout_i.depth_base) >> PLANE << PLANE) +
                  ADDRESS'({(ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]),
@@ -23,7 +26,7 @@
                                    : ADDRESS'(any_sample) * raster_pkg::DEPTH_SAMPLE_BYTES) + ADDRESS'(any_byte);
   assign value = 8'(LANE'(request_i.data >> (any_sample * LANE)) >> (8 * any_byte));
   logic hits;
-  assign hits = sends && is_write_q && address_q == at_q[ADDRESS-1:PORT] && waits_q;
+  assign hits = sends && is_write_q && sent == at_q[ADDRESS-1:PORT] && waits_q;
   always_ff @(posedge clk_i) begin
     if (!power_on_ni) {waits_q, was_chosen_q} <= '0;
     else if (takes && request_i.is_write && !request_i.plane[1] && is_chosen && !was_chosen_q) {waits_q, was_chosen_q} <= '1;
@@ -38,7 +41,7 @@
   logic [ADDRESS-1:PORT] behind;  // beats between the one on offer and that of the byte
   logic [WORD-1:0]       strobe_there;
   logic [8*WORD-1:0]     data_there;
-  assign behind       = at_q[ADDRESS-1:PORT] - address_q;
+  assign behind       = at_q[ADDRESS-1:PORT] - sent;
   assign strobe_there = strobe_q >> ((32'(behind[PORT+7:PORT]) << PORT) + 32'(at_q[PORT-1:0]));
   assign data_there   = data_q >> (8 * ((32'(behind[PORT+7:PORT]) << PORT) + 32'(at_q[PORT-1:0])));
   // Of a beat that gathers nothing is there yet behind what has come.
