@@ -108,6 +108,10 @@ def sources(proof, preset, folder, twin):
         if change and change[0] == name:
             text = once(text, change[1], f'({change[2]})' if isinstance(twin, int) else change[2], name)
         if name == proof.module:
+            for parameter, value in proof.parameters:  # not by -chparam: with it Yosys 0.23 derives no module twice
+                value = value if isinstance(value, int) else package_constant(package, value)
+                text, found = re.subn(rf'(parameter int {parameter} += )\w+', rf'\g<1>{value}', text, count=1)
+                assert found, f'{name} has no parameter {parameter}'
             end = text.rindex('endmodule')
             text = text[:end] + properties(proof) + text[end:]
         for module, start in proof.starts:
@@ -117,9 +121,8 @@ def sources(proof, preset, folder, twin):
         copy = folder / path.name
         copy.write_text(text, encoding='utf-8')
         files.append(copy)
-    parameters = {k: v if isinstance(v, int) else package_constant(package, v) for k, v in proof.parameters}
     (folder / 'all.txt').write_text(properties(proof), encoding='utf-8')
-    return files, ''.join(f' -chparam {k} {v}' for k, v in parameters.items())
+    return files
 
 
 RUNNING = set()  # sessions, so that no solver outlives this program
@@ -149,12 +152,12 @@ def run(command, log, seconds):
 def front_end(proof, preset, folder, twin):
     """Yosys commands that give the flat design of a proof or of its twin."""
     folder.mkdir(parents=True, exist_ok=True)
-    files, parameters = sources(proof, preset, folder, twin)
+    files = sources(proof, preset, folder, twin)
     # What is cut out may give any result: what is shown then holds for the right one, too.
     cut = ''.join(f'cutpoint t:{cells}; ' for cells in proof.cuts)
     top = pathlib.Path(proof.module).stem
     wires = ''.join(f'connect -nomap -nounset -set {name} {inside}; ' for name, inside in proof.wires)
-    return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {top}{parameters}; proc; {cut}'
+    return (f'read_verilog -sv -formal {" ".join(map(str, files))}; hierarchy -check -top {top}; proc; {cut}'
             f'flatten; {wires}opt_clean; memory -nordff -nomap; opt -fast; async2sync; dffunmap; opt_clean; stat; ')
 
 

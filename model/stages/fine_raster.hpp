@@ -1,7 +1,7 @@
 // Fine raster: one tile in, the covered samples of its stamps out.
 //
 // In: a TilePacket and the triangle's EdgeContext. Out: a StampPacket for each stamp with at least one covered sample,
-// row by row. Latency 2 cycles; one stamp position of the tile's box per cycle.
+// row by row. Latency 3 cycles; one stamp position of the tile's box per cycle.
 // A sample is covered when all three edge values are >= 0 there and it lies in the tile's box (which carries the scissor).
 // The last row of stamps ends the visit: its last covered stamp, or, when it has none, an empty one at its first
 // column. So the end is known without looking ahead further than a row. A packet without a visit passes as an empty

@@ -33,7 +33,7 @@ UNITS = ['raster_top', 'skid_buffer', 'cull', 'cull_serial', 'triangle_setup', '
 KEEP = 'setattr -mod -set keep_hierarchy 1 ' + ' '.join(UNITS) + ' *skid_buffer*'
 SYNTH = {'ecp5': 'synth_ecp5 -top {top} -nowidelut', 'ice40': 'synth_ice40 -top {top} -abc9'}
 # Grows when what is kept for a unit, or how it is made, is no longer the same.
-FORMAT = 1
+FORMAT = 2
 
 
 class Failed(Exception):
@@ -47,7 +47,7 @@ def sources(rtl, package):
 
 
 def read_verilog(rtl, package):
-    return 'read_verilog -sv -defer ' + ' '.join(map(str, sources(rtl, package)))
+    return 'read_verilog -sv -defer -icells -DYOSYS_ALU ' + ' '.join(map(str, sources(rtl, package)))
 
 
 def yosys(script, log):

@@ -4,7 +4,7 @@
 mutant(1 stages/cull.sv "tie rule: bottom edges take the samples on them, top edges leave them"
   [=[dx_q > 0]=] [=[dx_q < 0]=])
 mutant(2 stages/cull.sv "sign: the front face is the other one"
-  [=[is_negative != front_cw_q]=] [=[is_negative == front_cw_q]=])
+  [=[area[E] != front_cw_q]=] [=[area[E] == front_cw_q]=])
 mutant(3 stages/cull.sv "off by one: the box loses a first column whose centre is on the leftmost vertex"
   [=[(B'(x_min_q) + HALF - B'(1)) >>> S]=] [=[(B'(x_min_q) + HALF) >>> S]=])
 mutant(4 stages/cull.sv "order: of vertices 1 and 2 the larger one comes first"
@@ -54,12 +54,14 @@ mutant(22 stages/coarse_raster.sv "context: the last slot is never given"
   [=[used_q != (SLOT + 1)'(SLOTS)]=] [=[used_q != (SLOT + 1)'(SLOTS - 1)]=])
 
 # fine_raster
-mutant(23 stages/fine_raster.sv "tie rule: samples on an edge are outside"
-  [=[sample < 0]=] [=[sample <= 0]=])
+mutant(23 lib/edge_columns.sv "tie rule: samples on an edge are outside"
+  [=[value < 0]=] [=[value <= 0]=])
+mutant(400 lib/edge_columns.sv "off by one: the column at which an edge changes counts as behind it"
+  [=[OFFSET'(i) > column]=] [=[OFFSET'(i) >= column]=])
 mutant(24 stages/fine_raster.sv "scissor: the right side of the box is not looked at"
   [=[PIXEL'(i) <= tile_q.box.right]=] [=[(PIXEL'(i) <= '1)]=])
 mutant(25 stages/fine_raster.sv "end of visit: told with every row"
-  [=[stamps_last_row_q && is_last_stamp && stamp_tile_q.is_visit]=] [=[is_last_stamp && stamp_tile_q.is_visit]=])
+  [=[stamps_last_row_q && is_last_stamp_q && stamp_tile_q.is_visit]=] [=[is_last_stamp_q && stamp_tile_q.is_visit]=])
 mutant(26 stages/fine_raster.sv "dropped stall: a row moves on before its stamps are taken over"
   [=[stamps_ready || !row_is_sent]=] [=[1'b1]=])
 
@@ -414,7 +416,7 @@ mutant(210 lib/stencil_test.sv "stencil: bits outside of the write mask become 0
 mutant(211 lib/stencil_test.sv "stencil: incr goes on at 0"
   [=[!(saturates && is_at_end)]=] [=[!(saturates && is_at_end && is_down)]=])
 mutant(212 stages/cull.sv "stencil: every triangle shows its front"
-  [=[d_is_triangle && state_q.tests_stencil && !is_front]=] [=[1'b0]=])
+  [=[d_is_triangle && state_q.tests_stencil && is_negative == front_cw_q]=] [=[1'b0]=])
 mutant(213 stages/hiz.sv "stencil: tiles are left out where what fails is marked"
   [=[setup_i.state.marks_failed]=] [=[1'b0]=])
 mutant(214 stages/depth_test.sv "stencil: where it alone changes the fragment's depth is stored"

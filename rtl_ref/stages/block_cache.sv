@@ -251,18 +251,20 @@ module block_cache (
       assign made_packed = made;
     end
   endgenerate
-  fifo #(
+  logic items_are_done;
+  registered_fifo #(
       .WIDTH(BITS),
       .DEPTH(QUEUE)
   ) u_items (
       .clk_i,
       .rst_ni,
-      .valid_i(made_valid),
-      .ready_o(made_ready),
-      .data_i (made_bits),
-      .valid_o(item_valid),
-      .ready_i(takes_item),
-      .data_o (item_bits)
+      .valid_i   (made_valid),
+      .ready_o   (made_ready),
+      .data_i    (made_bits),
+      .valid_o   (item_valid),
+      .ready_i   (takes_item),
+      .data_o    (item_bits),
+      .is_empty_o(items_are_done)
   );
 
   logic                               order_valid, takes_order, order_reads;
@@ -885,7 +887,7 @@ module block_cache (
     request_o.data = request_data;
   end
 
-  assign drained = !item_valid && behind_q == '0 && !order_valid;
+  assign drained = items_are_done && behind_q == '0 && !order_valid;
   assign idle_o  = tags_are_idle && drained && texture_is_idle && write_is_idle;
   assign fill_o  = {1'b0, read_goes};
   assign evict_o = {1'b0, (sends && takes_request) || is_resolved};

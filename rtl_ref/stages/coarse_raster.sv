@@ -167,9 +167,10 @@ module coarse_raster (
   end
 
   // The values at the row's start come the way that all others come; those of the first row in PREPARE, by no step.
-  logic goes_on, starts, returns, notes_start;
+  logic goes_on, starts, returns, notes_start, moves_right;
   assign starts      = state_q == PREPARE;
   assign returns     = exits && !starts;
+  assign moves_right = !starts && !row_ends && !moves_left;
   assign notes_start = starts || (goes_on && (row_ends || moves_start));
   assign goes_on = steps || (clears && !is_last_tile);  // the last time, to nowhere
 
@@ -212,10 +213,7 @@ module coarse_raster (
   generate
     for (i = 0; i < 3; i++) begin : gen_edge
       logic signed [V-1:0]  value_q, row_q, from, next;  // row: at the row's start
-      logic [V-TS-1:0]      step;
-      /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
-      logic [V-TS:0]        sum;
-      /* verilator lint_on UNUSEDSIGNAL */
+      logic [V-TS-1:0]      step, sum;
       logic signed [D-1:0]  dx, dy;
       logic signed [D:0]    best, worst;
       logic signed [TE-1:0] best_q, worst_q;
@@ -225,9 +223,16 @@ module coarse_raster (
       assign best  = (dx > 0 ? (D + 1)'(dx) : '0) - (dy < 0 ? (D + 1)'(dy) : '0);
       assign worst = (dx < 0 ? (D + 1)'(dx) : '0) - (dy > 0 ? (D + 1)'(dy) : '0);
       assign from  = returns ? row_q : value_q;
-      assign step  = starts ? '0 : row_ends ? (V - TS)'(dx) : (V - TS)'(dy) ^ {(V - TS) {!moves_left}};
-      assign sum   = {from[V-1:TS], 1'b1} + {step, !starts && !row_ends && !moves_left};
-      assign next  = {sum[V-TS:1], from[TS-1:0]};
+      assign step  = starts ? '0 : row_ends ? (V - TS)'(dx) : (V - TS)'(dy);
+      assign next  = {sum, from[TS-1:0]};
+      add_or_subtract #(
+          .WIDTH(V - TS)
+      ) u_next (
+          .subtracts_i(moves_right),  // an edge's step in x is -dy
+          .a_i        (from[V-1:TS]),
+          .b_i        (step),
+          .sum_o      (sum)
+      );
 
       always_ff @(posedge clk_i) begin
         if (state_q == IDLE) begin
@@ -274,21 +279,25 @@ module coarse_raster (
       logic [P-1:0] value;
       /* verilator lint_on UNUSEDSIGNAL */
       logic [P-1:0] step_x, step_y;
-      logic [M-1:0] value_q, row_q, from, step;
-      /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
-      logic [M:0]   sum;
-      /* verilator lint_on UNUSEDSIGNAL */
+      logic [M-1:0] value_q, row_q, from, step, next;
       assign value  = setup_i.value[PLANE+:P];
       assign step_x = setup_i.step_x[PLANE+:P];
       assign step_y = setup_i.step_y[PLANE+:P];
       assign from   = returns ? row_q : value_q;
-      assign step   = starts ? '0 : row_ends ? s_q.step_y[PLANE+:M] : s_q.step_x[PLANE+:M] ^ {M{moves_left}};
-      assign sum    = {from, 1'b1} + {step, !starts && !row_ends && moves_left};
+      assign step   = starts ? '0 : row_ends ? s_q.step_y[PLANE+:M] : s_q.step_x[PLANE+:M];
+      add_or_subtract #(
+          .WIDTH(M)
+      ) u_next (
+          .subtracts_i(!starts && !row_ends && moves_left),
+          .a_i        (from),
+          .b_i        (step),
+          .sum_o      (next)
+      );
       always_ff @(posedge clk_i) begin
         if (state_q == IDLE) begin
           value_q <= value[P-1-:M];
-        end else if (goes_on) value_q <= sum[M:1];
-        if (notes_start) row_q <= sum[M:1];
+        end else if (goes_on) value_q <= next;
+        if (notes_start) row_q <= next;
       end
       assign anchor[LOCAL+:B]           = value_q[M-1-:B];
       assign context_o.step_x[LOCAL+:B] = B'($signed(step_x) >>> NARROW) + B'(step_x[NARROW-1]);

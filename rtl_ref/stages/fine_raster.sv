@@ -3,9 +3,10 @@
 // In: a tile packet and the primitive's edge context. Out: a stamp packet for each stamp with a covered sample, row by row;
 // the last row sends one in any case, because it carries the news that the visit ends.
 //
-// Two parts: `rows` evaluates the edge functions of a whole row of stamps per cycle, stepping down the tile's box and
-// passing over rows without coverage; `stamps` sends the stamps of one row, one per cycle, while the next row is found.
-// Two cycles from the tile to its first stamp, no bubble between rows or tiles. Nothing here multiplies.
+// Three parts: `rows` evaluates the edge functions of a whole row of stamps per cycle, stepping down the tile's box;
+// `coverage` holds the samples that such a row covers, and drops a row without; `stamps` sends the stamps of one row, one per
+// cycle, while the next row is found.
+// Three cycles from the tile to its first stamp, no bubble between rows or tiles. Nothing here multiplies.
 // Specification: model/stages/fine_raster.hpp.
 module fine_raster (
     input logic clk_i,
@@ -43,7 +44,7 @@ module fine_raster (
   logic             row_valid_q;
   logic [PIXEL-1:0] y_q;  // first pixel row of the current row of stamps
 
-  logic             takes_tile, row_leaves, row_is_sent, is_last_row, stamps_ready;
+  logic             takes_tile, row_leaves, is_last_row, coverage_ready;
   logic [ROW-1:0]   covered;
   logic [3*ROW-1:0] outside;  // by edge
   logic [TILE-1:0]  column_in_box;
@@ -54,9 +55,8 @@ module fine_raster (
   assign first_y      = (tile_i.box.top >> STAMP_SHIFT) << STAMP_SHIFT;
   assign is_last_row  = !tile_q.is_visit || (y_q >> STAMP_SHIFT) == (tile_q.box.bottom >> STAMP_SHIFT);
   assign covered      = in_box & ({ROW{tile_q.is_inside}} | ~(outside[0+:ROW] | outside[ROW+:ROW] | outside[2*ROW+:ROW]));
-  assign row_is_sent  = covered != '0 || is_last_row;
-  assign row_leaves   = row_valid_q && (stamps_ready || !row_is_sent);
-  assign tile_ready_o = !row_valid_q || (stamps_ready && is_last_row);  // the last row is sent in any case
+  assign row_leaves   = row_valid_q && coverage_ready;
+  assign tile_ready_o = !row_valid_q || (coverage_ready && is_last_row);
   assign takes_tile   = tile_valid_i && tile_ready_o;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -100,20 +100,29 @@ module fine_raster (
       end
 
       for (j = 0; j < STAMP; j++) begin : gen_row
+        logic signed [W-1:0] row_value;
+        logic [TILE-1:0]     outside_columns;
+        edge_offset #(
+            .WIDTH (W),
+            .OFFSET(PIXEL)
+        ) u_row (
+            .value_i (value_q),
+            .step_x_i('0),
+            .step_y_i(step_y),
+            .x_i     ('0),
+            .y_i     (PIXEL'(j)),
+            .value_o (row_value)
+        );
+        edge_columns #(
+            .WIDTH (W),
+            .OFFSET(PIXEL)
+        ) u_columns (
+            .value_i  (row_value),
+            .step_x_i (step_x),
+            .outside_o(outside_columns)
+        );
         for (i = 0; i < TILE; i++) begin : gen_column
-          logic signed [W-1:0] sample;
-          edge_offset #(
-              .WIDTH (W),
-              .OFFSET(PIXEL)
-          ) u_sample (
-              .value_i (value_q),
-              .step_x_i(step_x),
-              .step_y_i(step_y),
-              .x_i     (PIXEL'(i)),
-              .y_i     (PIXEL'(j)),
-              .value_o (sample)
-          );
-          assign outside[e*ROW+(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = sample < 0;
+          assign outside[e*ROW+(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = outside_columns[i];
         end
       end
     end
@@ -134,8 +143,35 @@ module fine_raster (
     /* verilator lint_on UNSIGNED */
   endgenerate
 
-  // ------------------------------------------------------------------------------------------------------------ stamps
+  // ---------------------------------------------------------------------------------------------------------- coverage
   /* verilator lint_off UNUSEDSIGNAL */  // box and edges end in the part above
+  raster_pkg::tile_packet_t coverage_tile_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic             coverage_valid_q;
+  logic             coverage_last_row_q;
+  logic [PIXEL-1:0] coverage_y_q;
+  logic [ROW-1:0]   covered_q;
+  logic             row_is_sent, stamps_ready;
+
+  assign row_is_sent    = covered_q != '0 || coverage_last_row_q;  // the last row is sent in any case
+  assign coverage_ready = !coverage_valid_q || stamps_ready || !row_is_sent;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) coverage_valid_q <= 1'b0;
+    else if (coverage_ready) coverage_valid_q <= row_valid_q;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (coverage_ready) begin
+      coverage_tile_q     <= tile_q;
+      coverage_last_row_q <= is_last_row;
+      coverage_y_q        <= y_q;
+      covered_q           <= covered;
+    end
+  end
+
+  // ------------------------------------------------------------------------------------------------------------ stamps
+  /* verilator lint_off UNUSEDSIGNAL */
   raster_pkg::tile_packet_t stamp_tile_q;
   /* verilator lint_on UNUSEDSIGNAL */
   logic             stamps_valid_q;
@@ -147,7 +183,7 @@ module fine_raster (
 
   logic [COLUMN-1:0]  column;  // of the first stamp with samples left
   logic [SAMPLES-1:0] mask;
-  logic               is_last_stamp, stamp_leaves;
+  logic               stamp_leaves;
 
   always_comb begin
     column    = '0;
@@ -162,34 +198,39 @@ module fine_raster (
     for (int s = 0; s < PER_ROW; s++) if (COLUMN'(s) == column) pending_d[s*SAMPLES+:SAMPLES] = '0;
   end
 
-  // At most one stamp has samples left.
-  logic [PER_ROW-1:0] has_samples;
-  always_comb begin
-    is_last_stamp = 1'b1;
-    for (int s = 0; s < PER_ROW; s++) has_samples[s] = pending_q[s*SAMPLES+:SAMPLES] != '0;
-    for (int s = 1; s < PER_ROW; s++) if (has_samples[s] && (has_samples & PER_ROW'((1 << s) - 1)) != '0) is_last_stamp = 1'b0;
-  end
+  // At most one stamp has samples left: known a cycle ahead, for much waits for it.
+  function automatic logic is_one_stamp(input logic [ROW-1:0] samples);
+    logic [PER_ROW-1:0] has_samples;
+    is_one_stamp = 1'b1;
+    for (int s = 0; s < PER_ROW; s++) has_samples[s] = samples[s*SAMPLES+:SAMPLES] != '0;
+    for (int s = 1; s < PER_ROW; s++) if (has_samples[s] && (has_samples & PER_ROW'((1 << s) - 1)) != '0) is_one_stamp = 1'b0;
+  endfunction
+  logic is_last_stamp_q;
   assign stamp_valid_o = stamps_valid_q;
   assign stamp_leaves  = stamps_valid_q && stamp_ready_i;
-  assign stamps_ready  = !stamps_valid_q || (stamp_leaves && is_last_stamp);
+  assign stamps_ready  = !stamps_valid_q || (stamp_ready_i && is_last_stamp_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) stamps_valid_q <= 1'b0;
-    else if (stamps_ready) stamps_valid_q <= row_valid_q && row_is_sent;
+    else if (stamps_ready) stamps_valid_q <= coverage_valid_q && row_is_sent;
   end
 
   always_ff @(posedge clk_i) begin
     if (stamps_ready) begin
-      stamp_tile_q      <= tile_q;
-      stamps_last_row_q <= is_last_row;
-      stamps_y_q        <= y_q;
-      pending_q         <= covered;
-    end else if (stamp_leaves) pending_q <= pending_d;
+      stamp_tile_q      <= coverage_tile_q;
+      stamps_last_row_q <= coverage_last_row_q;
+      stamps_y_q        <= coverage_y_q;
+      pending_q         <= covered_q;
+      is_last_stamp_q   <= is_one_stamp(covered_q);
+    end else if (stamp_leaves) begin
+      pending_q       <= pending_d;
+      is_last_stamp_q <= is_one_stamp(pending_d);
+    end
   end
 
   assign stamp_o.kind           = stamp_tile_q.kind;
-  assign stamp_o.ends_visit     = stamps_last_row_q && is_last_stamp && stamp_tile_q.is_visit;
-  assign stamp_o.ends_primitive = stamps_last_row_q && is_last_stamp && stamp_tile_q.ends_primitive;
+  assign stamp_o.ends_visit     = stamps_last_row_q && is_last_stamp_q && stamp_tile_q.is_visit;
+  assign stamp_o.ends_primitive = stamps_last_row_q && is_last_stamp_q && stamp_tile_q.ends_primitive;
   assign stamp_o.key            = stamp_tile_q.key;
   assign stamp_o.slot           = stamp_tile_q.slot;
   assign stamp_o.mask           = mask;

@@ -151,15 +151,17 @@ module triangle_setup (
     end
   end
 
-  // Restoring division of 2^m, from the bit before the point, which is 1 only for A = 2^m. Each divider goes on where the
-  // one before it stopped.
+  // Division of 2^m, from the bit before the point, which is 1 only for A = 2^m. What is left less the area has the next bit in
+  // its sign. Where it is negative nothing is taken back: twice that and the area is what twice the rest less the area would be.
+  // So the chain subtracts or adds, and what stands in the register is twice its last result. Each divider goes on where the one
+  // before it stopped.
   localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS;  // in a packet
-  localparam int REMAINDER = A + 1;                          // < 2 A
+  localparam int REMAINDER = A + 2;                          // -2 A <= it < 2 A
   /* verilator lint_off UNUSEDSIGNAL */  // behind the last divider nobody takes the remainder
   logic [DIVIDERS*REMAINDER-1:0] remainders;
   logic [DIVIDERS*QUOTIENT-1:0]  quotients;
   /* verilator lint_on UNUSEDSIGNAL */
-  genvar d;
+  genvar d, b;
   generate
     for (d = 0; d < DIVIDERS; d++) begin : gen_divider
       localparam int CYCLES = d == DIVIDERS - 1 ? DIVIDE_CYCLES - d * STEPS : STEPS;
@@ -168,22 +170,30 @@ module triangle_setup (
       logic [A-1:0]         area_q;
       logic [REMAINDER-1:0] remainder_q, remainder_d, start;
       logic [BITS-1:0]      bits_q, bits_d;
+      logic [BITS_PER_CYCLE-1:0] newest;
       logic                 loads, iterates;
       assign loads    = moves[d*STEPS];
       assign iterates = moves[d*STEPS+1+:CYCLES] != '0;
-      always_comb begin
-        remainder_d = remainder_q;
-        bits_d      = bits_q;
-        for (int b = 0; b < BITS_PER_CYCLE; b++) begin
-          if (remainder_d >= {1'b0, area_q}) begin
-            remainder_d = (remainder_d - {1'b0, area_q}) << 1;
-            bits_d      = {bits_d[BITS-2:0], 1'b1};
-          end else begin
-            remainder_d = remainder_d << 1;
-            bits_d      = {bits_d[BITS-2:0], 1'b0};
-          end
+      for (b = 0; b < BITS_PER_CYCLE; b++) begin : gen_bit
+        logic [REMAINDER-1:0] from;
+        logic [REMAINDER-2:0] rest;  // less the area; it has a bit less
+        if (b == 0) begin : gen_first_bit
+          assign from = remainder_q;
+        end else begin : gen_next_bit
+          assign from = {gen_bit[b-1].rest, 1'b0};
         end
+        add_or_subtract #(
+            .WIDTH(REMAINDER - 1)
+        ) u_rest (
+            .subtracts_i(!from[REMAINDER-1]),
+            .a_i        (from[REMAINDER-2:0]),
+            .b_i        ({1'b0, area_q}),
+            .sum_o      (rest)
+        );
+        assign newest[BITS_PER_CYCLE-1-b] = !rest[REMAINDER-2];
       end
+      assign bits_d      = BITS'({bits_q, newest});
+      assign remainder_d = {gen_bit[BITS_PER_CYCLE-1].rest, 1'b0};
       always_ff @(posedge clk_i) begin
         if (loads) begin
           area_q      <= packets_q[d*T+AREA_AT+:A];
@@ -193,7 +203,7 @@ module triangle_setup (
       end
       assign remainders[d*REMAINDER+:REMAINDER] = remainder_d;
       if (d == 0) begin : gen_first
-        assign start                          = {1'b0, highest};
+        assign start                          = REMAINDER'({1'b0, highest});
         assign quotients[d*QUOTIENT+:QUOTIENT] = QUOTIENT'(bits_d);
       end else begin : gen_next
         logic [HEAD-1:0] head_q;

@@ -7,7 +7,7 @@
 //   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, two behind the last flag that fell where one falls)
 //   moved(m) >= s(m-1), and not the cycle behind a t in which a flag fell, unless it is in the block of the one before
 //   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
-//   x(m) = max(t + 1, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever stamp the one before was
+//   x(m) = max(t + 2, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever stamp the one before was
 //   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between X and W texture_timing.hpp says when W has it
 //
 // With blending an order may end with a read of colours, and W takes a fragment for as many clocks as blend.lanes wants, one at
@@ -87,7 +87,7 @@ class BlockTiming {
       : widths_(widths),
         lanes_(std::min(config.blend_lanes, widths.samples)),
         write_clocks_(lanes_ == 0 ? 1 : kBlendClocks),
-        items_(config.cache_queue, 1, 1),
+        items_(config.cache_queue, 2, 1),
         orders_(config.cache_queue, 1, 1),
         slots_(static_cast<std::size_t>(config.cache_victims)),
         dirty_(static_cast<std::size_t>(config.cache_lines)),

@@ -111,9 +111,11 @@ class PipelinedTiming : public BackTiming {
     const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
     note(Arrow::tile, taken);
     tile_left_ = left;
-    const Cycle row = std::max(taken + 1, stamps_.room());
+    const Cycle row = std::max(rows_.ready(taken), coverage_.room());
     rows_.leave(row);
-    stamps_.leave(send(row + 1, true, shade));
+    const Cycle sent = std::max(coverage_.ready(row), stamps_.room());
+    coverage_.leave(sent);
+    stamps_.leave(send(stamps_.ready(sent), true, shade));
   }
 
   /// The end of a token, likewise.
@@ -135,14 +137,18 @@ class PipelinedTiming : public BackTiming {
     tile_left_ = visit_left_ = left;
     if (reads_bounds_) work(Stage::coarse_raster, PipelinedCycles::read_again);
     work(Stage::coarse_raster, 1);
-    Cycle row_at = taken + 1;
+    Cycle row_at = rows_.ready(taken);
     for (int row = tile.first_row;; ++row, ++row_at) {
       const bool is_last = row == tile.last_row;
       std::uint32_t columns = tile.columns[static_cast<std::size_t>(row)];
       work(Stage::fine_raster, columns == 0 ? 1 : static_cast<std::uint64_t>(std::popcount(columns)));
-      if (columns == 0 && !is_last) continue;
-      row_at = std::max(row_at, stamps_.room());
-      Cycle at = row_at + 1;
+      row_at = std::max(row_at, coverage_.room());
+      Cycle leaves = coverage_.ready(row_at);
+      const bool is_sent = columns != 0 || is_last;
+      if (is_sent) leaves = std::max(leaves, stamps_.room());
+      coverage_.leave(leaves);
+      if (!is_sent) continue;
+      Cycle at = stamps_.ready(leaves);
       do {
         const int column = columns == 0 ? -1 : std::countr_zero(columns);
         columns &= columns - 1;
@@ -188,7 +194,7 @@ class PipelinedTiming : public BackTiming {
   Station offer_setup_;                                           ///< the last
   Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< beside them, and behind both
   Station coarse_{1, 0, 1}, slots_, visits_;
-  Station rows_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;
+  Station rows_{1, 1, 0}, coverage_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;  ///< the first three: fine_raster
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Cycle offer_ = 0, last_left_ = 0;
   Cycle walk_ = 0;                         ///< when coarse_raster's walk is at the next tile

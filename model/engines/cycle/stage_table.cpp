@@ -21,7 +21,7 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
             {Stage::coarse_raster, text(PipelinedCycles::walk_begins + 1) + " to the first tile",
              "1 a tile, 3 for a visit where HiZ bounds are read",
              number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
-            {Stage::fine_raster, "2", "1 a stamp or row of stamps without one", "2 rows"},
+            {Stage::fine_raster, "3", "1 a stamp or row of stamps without one", "3 rows"},
             {Stage::interpolate, number(PipelinedCycles::interpolate_steps), "1",
              number(PipelinedCycles::interpolate_steps + parameters.stamp_queue)}};
   }
