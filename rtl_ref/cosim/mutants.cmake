@@ -20,7 +20,7 @@ mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
 mutant(8 stages/triangle_setup.sv "rounding: the x gradient is truncated"
   [=[P'(shifted_x[0])]=] [=[P'(0)]=])
 mutant(9 stages/triangle_setup.sv "divider: an area that is a power of two has no quotient"
-  [=[{1'b0, highest}]=] [=[first_area == highest ? '0 : {1'b0, highest}]=])
+  [=[{2'b00, highest}]=] [=[first_area == highest ? '0 : {2'b00, highest}]=])
 mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third vertex"
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
@@ -56,8 +56,8 @@ mutant(22 stages/coarse_raster.sv "context: the last slot is never given"
 # fine_raster
 mutant(23 lib/edge_columns.sv "tie rule: samples on an edge are outside"
   [=[value < 0]=] [=[value <= 0]=])
-mutant(400 lib/edge_columns.sv "off by one: the column at which an edge changes counts as behind it"
-  [=[OFFSET'(i) > column]=] [=[OFFSET'(i) >= column]=])
+mutant(400 lib/edge_columns.sv "coverage: the last step of the search for an edge's column does not count"
+  [=[OFFSET'(i) > column]=] [=[OFFSET'(i) > (column & ~OFFSET'(1))]=])
 mutant(24 stages/fine_raster.sv "scissor: the right side of the box is not looked at"
   [=[PIXEL'(i) <= tile_q.box.right]=] [=[(PIXEL'(i) <= '1)]=])
 mutant(25 stages/fine_raster.sv "end of visit: told with every row"
@@ -186,7 +186,12 @@ mutant(65 stages/coarse_raster.sv "tile walk: what lies to the left of a row's s
 mutant(66 stages/coarse_raster.sv "tile walk: a row ends at an upright edge that has not been met"
   [=[!(dy > 0)]=] [=[1'b1]=])
 mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the start has the planes of the start"
-  [=[s_q.step_x[PLANE+:M] ^ {M{moves_left}}]=] [=[s_q.step_x[PLANE+:M] ^ {M{goes_left_q}}]=])
+  [=[!starts && !row_ends && moves_left]=] [=[!starts && !row_ends && goes_left_q]=])
+
+mutant(401 stages/triangle_setup.sv "divider: what is negative is not made good"
+  [=[!from[REMAINDER-1]]=] [=[1'b1]=])
+mutant(402 lib/registered_fifo.sv "dropped stall: the item on offer gives way before it is taken"
+  [=[waiting_q != '0 && (!valid_o || ready_i)]=] [=[waiting_q != '0]=])
 
 # the lag of HiZ
 mutant(62 stages/hiz.sv "stale HiZ: a visit that may raise a depth is believed not to, until it is seen"

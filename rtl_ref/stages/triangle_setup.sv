@@ -203,7 +203,7 @@ module triangle_setup (
       end
       assign remainders[d*REMAINDER+:REMAINDER] = remainder_d;
       if (d == 0) begin : gen_first
-        assign start                          = REMAINDER'({1'b0, highest});
+        assign start                          = {2'b00, highest};
         assign quotients[d*QUOTIENT+:QUOTIENT] = QUOTIENT'(bits_d);
       end else begin : gen_next
         logic [HEAD-1:0] head_q;
