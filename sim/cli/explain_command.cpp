@@ -175,6 +175,7 @@ void add_explain_command(CLI::App& app, Action& selected) {
       ->type_name("SIZE");
   command->add_option("--near", options->near, "also tell of primitives that pass within N pixels")
       ->check(CLI::Range(1.0, 100000.0))
+      ->check(is_number)
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--rtl", options->rtl, "the RTL's packets too, bit by bit, and the cycles in which they crossed");

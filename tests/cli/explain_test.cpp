@@ -183,6 +183,7 @@ TEST_F(ExplainCommand, BadPixelsAreRefused) {
   expect_refused({"explain", "triangle", "0", "0", "--box", "0x1"}, "--box");
   expect_refused({"explain", "triangle", "0", "0", "--box", "100x100"}, "more than 4096 pixels");
   expect_refused({"explain", "triangle", "0", "0", "--near", "0"}, "--near");
+  expect_refused({"explain", "triangle", "0", "0", "--near", "nan"}, "--near");
   expect_refused({"explain", "triangle", "0", "0", "--mutant", "3"}, "--rtl");
   expect_refused({"explain", "triangle", "zero", "0"}, "zero");
   expect_refused({"explain", "triangle", "0"}, "Y is required");
