@@ -90,8 +90,7 @@ Scene read_lines(const std::string& head, std::string_view lines, const std::str
     if (!message.starts_with(kName)) throw;
     const auto [end, fault] = std::from_chars(message.data() + kName.size(), message.data() + message.size(), line);
     if (fault != std::errc() || line <= 2) throw;
-    throw InputError(std::string(kName) + std::to_string(line - 2) +
-                     std::string(end, message.data() + message.size()));
+    throw InputError(std::string(kName) + std::to_string(line - 2) + std::string(end, message.data() + message.size()));
   }
 }
 

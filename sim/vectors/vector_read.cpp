@@ -53,7 +53,8 @@ void require_plain(std::string_view word, const SourceLine& at) {
   constexpr std::size_t kLongest = 256;  // bytes; no name and no value of a setting comes near
   const bool is_plain = std::ranges::none_of(word, [](unsigned char c) { return c < ' ' || c == 0x7f; });
   if (word.size() > kLongest || !is_plain)
-    at.fail("in the header, " + in_quotes(word) + " is no name and no value; keep the header that `halfplane vectors` wrote");
+    at.fail("in the header, " + in_quotes(word) +
+            " is no name and no value; keep the header that `halfplane vectors` wrote");
 }
 
 /// The file as it is read.

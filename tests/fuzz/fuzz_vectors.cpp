@@ -16,7 +16,7 @@ namespace {
 
 using namespace halfplane;
 
-constexpr int kWidest = 64;             // pixels of a target that is judged: stages hold whole planes
+constexpr int kWidest = 64;  // pixels of a target that is judged: stages hold whole planes
 constexpr std::string_view kFolder = "%hex\n";
 
 void require(bool holds, const char* what, std::string_view message) {
