@@ -24,6 +24,19 @@ struct SourceLine {
   }
 };
 
+/// The next line, if there is one. A file may be one line without an end: a device, or something else than vectors.
+bool next_line(std::istream& in, std::string& text, const SourceLine& at) {
+  constexpr std::size_t kLongest = std::size_t{1} << 20;  // bytes; a packet takes some thousand
+  text.clear();
+  for (int c = in.get(); c != std::istream::traits_type::eof(); c = in.get()) {
+    if (c == '\n') return true;
+    if (text.size() == kLongest)
+      at.fail("a line of more than " + std::to_string(kLongest) + " bytes; these are no vectors");
+    text += static_cast<char>(c);
+  }
+  return !text.empty();
+}
+
 std::vector<std::string_view> split_at_commas(std::string_view text) {
   std::vector<std::string_view> cells;
   for (;;) {
@@ -169,7 +182,7 @@ void read_jsonl_packet(Reader& reader, const Json& line, const SourceLine& at) {
 VectorFile read_jsonl(std::istream& in, const std::string& path) {
   Reader reader;
   std::string text;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
+  for (std::size_t number = 1; next_line(in, text, {path, number}); ++number) {
     const SourceLine at{path, number};
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     const Json line = Json::parse(text, nullptr, false);
@@ -198,7 +211,7 @@ void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, co
 VectorFile read_csv(std::istream& in, const std::string& path) {
   Reader reader;
   std::string text, stage;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
+  for (std::size_t number = 1; next_line(in, text, {path, number}); ++number) {
     const SourceLine at{path, number};
     if (text.ends_with('\r')) text.pop_back();
     if (text.empty()) continue;
@@ -262,7 +275,7 @@ VectorFile read_hex(const std::string& folder, const FileSource& open, bool need
       if (!in && !is_out && !needs_in) continue;
       if (!in) throw InputError(path + ": there is no such file; give one with a packet a line");
       std::string text;
-      for (std::size_t number = 1; std::getline(*in, text); ++number)
+      for (std::size_t number = 1; next_line(*in, text, {path, number}); ++number)
         read_hex_line(reader, text, bits_of(ports[p].like, widths), {p, is_out}, {path, number});
     }
   };
