@@ -141,7 +141,8 @@ TEST_F(VectorsCommand, BadInputIsRefusedWithFileAndLine) {
   ASSERT_EQ(rows[1].substr(0, 7), "config,");
   write("j.csv", rows[0] + "\n" + rows[1] + "\n" + rows[1] + "\n");
   expect_refused({"check", "--stage", "cull", "j.csv"}, "j.csv:3: a second line begins with config");
-  write("k.jsonl", lines_of(text("v.jsonl"))[0] + "\n{\"dir\":\"" + std::string(500, 'x') + "\"}\n");
+  write("k.jsonl", lines_of(text("v.jsonl"))[0] + "\n{\"dir\":\"" + std::string(500, 'x') +
+                       "\",\"packet\":\"triangle\",\"n\":0}\n");
   const std::string said = run({"check", "--stage", "cull", "k.jsonl"}).err;
   EXPECT_LT(said.size(), 200U) << said;
   write("h.csv", "a,b\n");
