@@ -2,7 +2,8 @@
 # Builds the edge unit with Verilator beside Halfplane's own stage, which it calls through DPI-C, and compares them.
 # usage: run_dpi.sh HALFPLANE LIBRARY FOLDER [bug]    LIBRARY: libhalfplane_c.so. The status is 0 when they are equal, 1 when not.
 set -eu
-halfplane=$1 library=$2 folder=$3
+halfplane=$1 folder=$3
+library=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") # it is linked from another folder
 here=$(cd "$(dirname "$0")" && pwd)
 if [ "${4:-}" = bug ]; then set -- -DEDGE_UNIT_BUG; else set --; fi
 mkdir -p "$folder"

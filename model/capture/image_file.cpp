@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <string>
 
 #include "../config.hpp"
 #include "capture_textures.hpp"
@@ -14,6 +14,12 @@
 #include <stb_image.h>
 
 namespace halfplane {
+namespace {
+
+// More than the largest texture has uncompressed, at 16 bits a channel. A file may have no end at all: a device, a pipe.
+constexpr std::size_t kMostBytes = std::size_t{1} << 28;
+
+}  // namespace
 
 TexelImage read_image(std::string_view bytes, const std::string& what) {
   int width = 0, height = 0, channels = 0;
@@ -41,7 +47,15 @@ TexelImage read_image_file(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) throw InputError(path + ": this is a folder; give an image file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": the image cannot be opened");
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::string bytes;
+  for (std::size_t part = std::size_t{1} << 16; file && bytes.size() <= kMostBytes; part *= 2) {
+    const std::size_t had = bytes.size();
+    bytes.resize(had + part);
+    file.read(bytes.data() + had, static_cast<std::streamsize>(part));
+    bytes.resize(had + static_cast<std::size_t>(file.gcount()));
+  }
+  if (bytes.size() > kMostBytes)
+    throw InputError(path + ": more than " + std::to_string(kMostBytes) + " bytes; give an image file");
   return read_image(bytes, path);
 }
 

@@ -296,7 +296,7 @@ void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, st
                       Rendering& rendering) {
   if (has_surface(context.state))
     throw InputError(place_of_draw(context.scene.name, context.draw.line) +
-                     ": --clipping homogeneous has no textures, no colours over w and no fog: use --clipping polygon");
+                     ": clipping homogeneous has no textures, no colours over w and no fog; use clipping polygon");
   const HomogeneousFrame frame{engine.config, engine.widths, context.state, context.viewport, context.rect};
   Counters& counters = rendering.counters;
   for_each_homogeneous(context.scene, context.draw, frame, [&](const HomogeneousSetup& setup) {
@@ -320,16 +320,15 @@ void check_options(const RenderOptions& options, const Config& config) {
   const StudyRules& rules = options.rules;
   if (config.msaa_samples > 1 && rules != StudyRules{})
     throw InputError(
-        "msaa.samples: --traversal, --fill-rule, --gradients, --accumulator, --weights and --clipping are of pixels "
-        "with "
-        "one sample; leave them out, or use msaa.samples=1");
+        "msaa.samples: other rules for traversal, fill rule, gradients, accumulator, weights or clipping are of pixels "
+        "with one sample; leave them as they are, or use msaa.samples=1");
   if (rules.clipping == Clipping::polygon) return;
   if (rules != StudyRules{.clipping = rules.clipping})
     throw InputError(
-        "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients, "
-        "--accumulator and --weights");
+        "clipping homogeneous has its own setup and samples: leave traversal, fill rule, gradients, accumulator and "
+        "weights as they are");
   if (options.keeps_triangles())
-    throw InputError("--clipping homogeneous has no snapped triangles to keep: use --clipping polygon");
+    throw InputError("clipping homogeneous has no snapped triangles to keep; use clipping polygon");
 }
 
 }  // namespace

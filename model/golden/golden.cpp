@@ -459,7 +459,7 @@ Image render(const Scene& scene, const Config& config, const Options& options) {
   validate(config);
   validate(scene);
   if (config.msaa_samples > 1 && options.clipping == Clipping::homogeneous)
-    throw InputError("msaa.samples: --clipping homogeneous has one sample a pixel; use msaa.samples=1");
+    throw InputError("msaa.samples: clipping homogeneous has one sample a pixel; use msaa.samples=1");
   if (scene.width < 1 || scene.height < 1 || scene.width > config.target_width || scene.height > config.target_height)
     throw InputError(scene.name + ": the target of " + std::to_string(scene.width) + "x" +
                      std::to_string(scene.height) + " does not fit " + std::to_string(config.target_width) + "x" +

@@ -6,7 +6,7 @@ content alone, and that is the key under which they are kept: of two configurati
 triangle_setup is synthesised once. The units added up by how often they stand in the design are what one run with
 keep_hierarchy gives; gates.py --whole shows it.
 
-  tools/gates.py PACKAGE.sv [--parts ecp5,ice40] [--cache DIR] [--rtl DIR] [--whole]
+  rtl_ref/area/gates.py PACKAGE.sv [--parts ecp5,ice40] [--cache DIR] [--rtl DIR] [--whole]
 
 Used by `halfplane bench --area`, which reads the JSON on stdout, and by tools/area.py, which imports it.
 Status 3: there is no Yosys; 1: it failed, with its last line.
@@ -246,7 +246,7 @@ def whole_run(part, rtl, package, work):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('package', help='raster_pkg.sv, as `halfplane config --sv` prints it')
-    parser.add_argument('--rtl', default=pathlib.Path(__file__).parent.parent / 'rtl_ref', help='the folder of raster_top.sv')
+    parser.add_argument('--rtl', default=pathlib.Path(__file__).resolve().parent.parent, help='the folder of raster_top.sv')
     parser.add_argument('--cache', default='build/gates', help='the folder in which units are kept')
     parser.add_argument('--parts', default='ecp5', help='some of ' + ','.join(SYNTH))
     parser.add_argument('--whole', action='store_true', help='in one run instead, kept nowhere')
@@ -254,6 +254,9 @@ def main():
     parts = options.parts.split(',')
     if not set(parts) <= set(SYNTH):
         sys.exit(f'gates: --parts takes some of {",".join(SYNTH)}')
+    for path in (pathlib.Path(options.package), pathlib.Path(options.rtl) / 'raster_top.sv'):
+        if not path.is_file():
+            sys.exit(f'gates: there is no {path}')
     try:
         gates = Gates(options.cache, options.rtl)
         result = {'yosys': gates.version}

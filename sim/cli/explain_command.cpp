@@ -146,6 +146,7 @@ int run(const ExplainOptions& options) {
   how.mutant = static_cast<std::uint16_t>(options.mutant);
   how.progress = [&progress](double fraction) { progress(fraction); };
   const Rect told_box{options.x, options.y, box.width, box.height};
+  explain::require_inside(scene, {{options.x, options.y}});  // before the box, which may end beyond every int
   explain::require_inside(scene, box_pixels(options.x, options.y, box.width, box.height));
   const bool draws = !options.output.empty();  // what lies around it as well, in one run
   const explain::Window window = explain::window_around(told_box, draws ? options.margin : 0, scene);
@@ -174,6 +175,7 @@ void add_explain_command(CLI::App& app, Action& selected) {
       ->type_name("SIZE");
   command->add_option("--near", options->near, "also tell of primitives that pass within N pixels")
       ->check(CLI::Range(1.0, 100000.0))
+      ->check(is_number)
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--rtl", options->rtl, "the RTL's packets too, bit by bit, and the cycles in which they crossed");

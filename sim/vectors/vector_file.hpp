@@ -7,6 +7,9 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <iosfwd>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +41,11 @@ struct VectorFile {
 /// A file of any of the formats, told apart by what it is: a folder is hex, a first line that begins with '{' jsonl.
 /// `needs_in`: a folder without the files of what goes in is refused. Throws InputError with file and line.
 [[nodiscard]] VectorFile read_vectors(const std::string& path, bool needs_in = true);
+
+/// Opens a file by its path; none where there is no such file.
+using FileSource = std::function<std::unique_ptr<std::istream>(const std::string& path)>;
+/// The same of files that need not lie on a disk. `is_folder`: `path` is the folder of hex.
+[[nodiscard]] VectorFile read_vectors(const std::string& path, bool is_folder, const FileSource& open,
+                                      bool needs_in = true);
 
 }  // namespace halfplane::vectors

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
@@ -5,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/config_file.hpp"
+#include "sim/scene/text_cursor.hpp"
 #include "vector_file.hpp"
 
 namespace halfplane::vectors {
@@ -21,6 +23,19 @@ struct SourceLine {
     throw InputError(path + ":" + std::to_string(number) + ": " + what);
   }
 };
+
+/// The next line, if there is one. A file may be one line without an end: a device, or something else than vectors.
+bool next_line(std::istream& in, std::string& text, const SourceLine& at) {
+  constexpr std::size_t kLongest = std::size_t{1} << 20;  // bytes; a packet takes some thousand
+  text.clear();
+  for (int c = in.get(); c != std::istream::traits_type::eof(); c = in.get()) {
+    if (c == '\n') return true;
+    if (text.size() == kLongest)
+      at.fail("a line of more than " + std::to_string(kLongest) + " bytes; these are no vectors");
+    text += static_cast<char>(c);
+  }
+  return !text.empty();
+}
 
 std::vector<std::string_view> split_at_commas(std::string_view text) {
   std::vector<std::string_view> cells;
@@ -39,18 +54,31 @@ std::uint64_t parse_hex(std::string_view text, const FieldName& field, const Sou
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
   if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-    at.fail("'" + field.name + "' is '" + std::string(text.substr(0, 40)) +
-            "', which is no hexadecimal number; give one as 0x1f");
+    at.fail("'" + field.name + "' is " + in_quotes(text) + ", which is no hexadecimal number; give one as 0x1f");
   if (field.bits < 64 && value >> field.bits != 0)
-    at.fail("'" + field.name + "' has " + std::to_string(field.bits) + " bits, and " + std::string(text) +
+    at.fail("'" + field.name + "' has " + std::to_string(field.bits) + " bits, and " + in_quotes(text) +
             " needs more; give it in two's complement");
   return value;
+}
+
+/// What of a header goes into messages stays one line, and a short one.
+void require_plain(std::string_view word, const SourceLine& at) {
+  constexpr std::size_t kLongest = 256;  // bytes; no name and no value of a setting comes near
+  const bool is_plain = std::ranges::none_of(word, [](unsigned char c) { return c < ' ' || c == 0x7f; });
+  if (word.size() > kLongest || !is_plain)
+    at.fail("in the header, " + in_quotes(word) +
+            " is no name and no value; keep the header that `halfplane vectors` wrote");
 }
 
 /// The file as it is read.
 class Reader {
  public:
   void begin(std::string_view stage, const std::map<std::string, std::string>& config, const SourceLine& at) {
+    require_plain(stage, at);
+    for (const auto& [key, value] : config) {
+      require_plain(key, at);
+      require_plain(value, at);
+    }
     try {
       file_.stage = &judged_stage(stage);
       const auto preset_name = config.find("preset");
@@ -75,7 +103,7 @@ class Reader {
     bool is_out;
   };
   [[nodiscard]] Place place_of(std::string_view direction, std::string_view packet, const SourceLine& at) const {
-    if (direction != "in" && direction != "out") at.fail("'dir' is '" + std::string(direction) + "'; give in or out");
+    if (direction != "in" && direction != "out") at.fail("'dir' is " + in_quotes(direction) + "; give in or out");
     const bool is_out = direction == "out";
     const std::vector<Port>& ports = is_out ? file_.stage->out : file_.stage->in;
     std::string names;
@@ -83,7 +111,7 @@ class Reader {
       if (ports[p].name == packet) return {p, is_out};
       names += (names.empty() ? "" : ", ") + std::string(ports[p].name);
     }
-    at.fail("'" + std::string(packet) + "' is no packet that goes " + (is_out ? "out of " : "into ") +
+    at.fail(in_quotes(packet) + " is no packet that goes " + (is_out ? "out of " : "into ") +
             std::string(info(file_.stage->stage).name) + "; give one of " + names);
   }
   [[nodiscard]] const std::vector<FieldName>& fields(const Place& place) const {
@@ -146,7 +174,7 @@ void read_jsonl_packet(Reader& reader, const Json& line, const SourceLine& at) {
     for (const auto& [key, value] : line.items())
       if (key != "dir" && key != "packet" && key != "n" &&
           std::ranges::find(fields, key, &FieldName::name) == fields.end())
-        at.fail("no field is called '" + key + "'; the header names them");
+        at.fail("no field is called " + in_quotes(key) + "; the header names them");
   }
   reader.add(place, values, at);
 }
@@ -154,7 +182,7 @@ void read_jsonl_packet(Reader& reader, const Json& line, const SourceLine& at) {
 VectorFile read_jsonl(std::istream& in, const std::string& path) {
   Reader reader;
   std::string text;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
+  for (std::size_t number = 1; next_line(in, text, {path, number}); ++number) {
     const SourceLine at{path, number};
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     const Json line = Json::parse(text, nullptr, false);
@@ -183,7 +211,7 @@ void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, co
 VectorFile read_csv(std::istream& in, const std::string& path) {
   Reader reader;
   std::string text, stage;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
+  for (std::size_t number = 1; next_line(in, text, {path, number}); ++number) {
     const SourceLine at{path, number};
     if (text.ends_with('\r')) text.pop_back();
     if (text.empty()) continue;
@@ -197,7 +225,7 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
       std::map<std::string, std::string> config;
       for (std::size_t i = 1; i < cells.size(); ++i) {
         const std::size_t equals = cells[i].find('=');
-        if (equals == std::string_view::npos) at.fail("'" + std::string(cells[i]) + "' is no key=value");
+        if (equals == std::string_view::npos) at.fail(in_quotes(cells[i]) + " is no key=value");
         config[std::string(cells[i].substr(0, equals))] = cells[i].substr(equals + 1);
       }
       reader.begin(stage, config, at);
@@ -228,14 +256,14 @@ void read_hex_line(Reader& reader, std::string text, int bits, const Reader::Pla
   reader.add_words(place, words, at);
 }
 
-VectorFile read_hex(const std::string& folder, bool needs_in) {
+VectorFile read_hex(const std::string& folder, const FileSource& open, bool needs_in) {
   const std::string header_path = (fs::path(folder) / "header.json").string();
-  std::ifstream header_file(header_path);
+  const auto header_file = open(header_path);
   if (!header_file)
     throw InputError(header_path + ": there is no such file; give a folder that `halfplane vectors` wrote");
   Reader reader;
   const SourceLine first{header_path, 1};
-  const Json header = Json::parse(header_file, nullptr, false);
+  const Json header = Json::parse(*header_file, nullptr, false);
   if (header.is_discarded()) first.fail("this is no JSON");
   read_header(reader, header, first);
   VectorFile& file = reader.file_;
@@ -243,11 +271,11 @@ VectorFile read_hex(const std::string& folder, bool needs_in) {
   const auto read_ports = [&](const std::vector<Port>& ports, bool is_out) {
     for (std::size_t p = 0; p < ports.size(); ++p) {
       const std::string path = (fs::path(folder) / (std::string(ports[p].name) + ".hex")).string();
-      std::ifstream in(path);
+      const auto in = open(path);
       if (!in && !is_out && !needs_in) continue;
       if (!in) throw InputError(path + ": there is no such file; give one with a packet a line");
       std::string text;
-      for (std::size_t number = 1; std::getline(in, text); ++number)
+      for (std::size_t number = 1; next_line(*in, text, {path, number}); ++number)
         read_hex_line(reader, text, bits_of(ports[p].like, widths), {p, is_out}, {path, number});
     }
   };
@@ -258,12 +286,21 @@ VectorFile read_hex(const std::string& folder, bool needs_in) {
 
 }  // namespace
 
+VectorFile read_vectors(const std::string& path, bool is_folder, const FileSource& open, bool needs_in) {
+  if (is_folder) return read_hex(path, open, needs_in);
+  const auto in = open(path);
+  if (!in) throw InputError(path + ": there is no such file; give one that `halfplane vectors` wrote");
+  return in->peek() == '{' ? read_jsonl(*in, path) : read_csv(*in, path);
+}
+
 VectorFile read_vectors(const std::string& path, bool needs_in) {
   std::error_code error;
-  if (fs::is_directory(path, error)) return read_hex(path, needs_in);
-  std::ifstream in(path);
-  if (!in) throw InputError(path + ": there is no such file; give one that `halfplane vectors` wrote");
-  return in.peek() == '{' ? read_jsonl(in, path) : read_csv(in, path);
+  const auto open = [](const std::string& name) -> std::unique_ptr<std::istream> {
+    auto file = std::make_unique<std::ifstream>(name);
+    if (!*file) return nullptr;
+    return file;
+  };
+  return read_vectors(path, fs::is_directory(path, error), open, needs_in);
 }
 
 }  // namespace halfplane::vectors

@@ -86,7 +86,8 @@ TEST_F(Capi, ArraysThatAreNoSceneAreRefusedAndLeaveItAsItWas) {
   expect_error(halfplane_scene_draw(scene, "triangles", indices, 3), "index 2 of the draw is 7");
   expect_error(halfplane_scene_draw(scene, "hexagons", indices, 3), "no topology 'hexagons'");
   expect_error(halfplane_scene_say(scene, "state cull none\nv 1 1 1 1\n", 26), "vertices are given by");
-  expect_error(halfplane_scene_say(scene, "state cul none\n", 15), "lines:3");
+  expect_error(halfplane_scene_say(scene, "state cul none\n", 15), "lines:1: ");
+  expect_error(halfplane_scene_say(scene, "state cull none\nstate cul none\n", 31), "lines:2: ");
   EXPECT_EQ(plane("functional", "color"), before);
 }
 

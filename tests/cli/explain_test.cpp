@@ -179,9 +179,11 @@ TEST_F(ExplainCommand, BadPixelsAreRefused) {
   expect_refused({"explain", "triangle", "16", "0", "--size", "16x16"}, "pixel 16 0 lies outside the target of 16x16");
   expect_refused({"explain", "triangle", "-1", "0", "--size", "16x16"}, "pixel -1 0 lies outside");
   expect_refused({"explain", "triangle", "0", "0", "--box", "17x1", "--size", "16x16"}, "pixel 16 0 lies outside");
+  expect_refused({"explain", "triangle", "2147483647", "0", "--box", "2x1"}, "pixel 2147483647 0 lies outside");
   expect_refused({"explain", "triangle", "0", "0", "--box", "0x1"}, "--box");
   expect_refused({"explain", "triangle", "0", "0", "--box", "100x100"}, "more than 4096 pixels");
   expect_refused({"explain", "triangle", "0", "0", "--near", "0"}, "--near");
+  expect_refused({"explain", "triangle", "0", "0", "--near", "nan"}, "--near");
   expect_refused({"explain", "triangle", "0", "0", "--mutant", "3"}, "--rtl");
   expect_refused({"explain", "triangle", "zero", "0"}, "zero");
   expect_refused({"explain", "triangle", "0"}, "Y is required");

@@ -101,6 +101,15 @@ TEST_F(VectorsCommand, NothingComparedIsNoSuccess) {
   EXPECT_NE(outcome.out.find("nothing was compared"), std::string::npos);
 }
 
+TEST_F(VectorsCommand, AFileWithoutAnEndIsRefused) {
+  if (!std::filesystem::exists("/dev/zero")) GTEST_SKIP() << "no /dev/zero here";
+  expect_refused({"check", "--stage", "cull", "/dev/zero"}, "/dev/zero:1: a line of more than");
+  write("endless.hpt", "halfplane 1\ntarget 8 8\ntexture T file /dev/zero\n");
+  expect_refused({"render", "endless.hpt"}, "endless.hpt:3: /dev/zero: more than");
+  std::filesystem::create_symlink("/dev/zero", folder_ / "endless.npy");
+  expect_refused({"compare", "triangle", "--size", "16x16", "--against", "endless.npy"}, "no array of depth codes");
+}
+
 TEST_F(VectorsCommand, BadInputIsRefusedWithFileAndLine) {
   ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "cull", "-o", "v.jsonl"}).status, 0);
   expect_refused({"check", "--stage", "cul", "v.jsonl"}, "did you mean cull?");
@@ -132,6 +141,10 @@ TEST_F(VectorsCommand, BadInputIsRefusedWithFileAndLine) {
   ASSERT_EQ(rows[1].substr(0, 7), "config,");
   write("j.csv", rows[0] + "\n" + rows[1] + "\n" + rows[1] + "\n");
   expect_refused({"check", "--stage", "cull", "j.csv"}, "j.csv:3: a second line begins with config");
+  write("k.jsonl", lines_of(text("v.jsonl"))[0] + "\n{\"dir\":\"" + std::string(500, 'x') +
+                       "\",\"packet\":\"triangle\",\"n\":0}\n");
+  const std::string said = run({"check", "--stage", "cull", "k.jsonl"}).err;
+  EXPECT_LT(said.size(), 200U) << said;
   write("h.csv", "a,b\n");
   expect_refused({"check", "--stage", "cull", "h.csv"}, "h.csv:1: these are no vectors");
   ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "viewport", "-o", "w.jsonl"}).status, 0);

@@ -1,4 +1,5 @@
-# cmake -DBUILD= -DWORK= -DCONFIG= -P install.cmake
+# cmake -DBUILD= -DWORK= -DCONFIG= -DSOURCE= -DLIBRARY= -P install.cmake
+# LIBRARY: whether it has one that a plain C program can be linked with
 file(REMOVE_RECURSE "${WORK}")
 execute_process(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}" --config "${CONFIG}"
   COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
@@ -27,4 +28,41 @@ execute_process(COMMAND "${WORK}/bin/halfplane" completions bash OUTPUT_VARIABLE
 file(READ "${WORK}/share/bash-completion/completions/halfplane" installed)
 if(NOT said STREQUAL installed)
   message(SEND_ERROR "the completion that is installed is not what the program says")
+endif()
+
+# The FuseSoC core finds its files where it lies.
+file(STRINGS "${WORK}/share/halfplane/halfplane.core" lines REGEX "^      - [a-z_]+/")
+list(LENGTH lines count)
+if(count LESS 20)
+  message(SEND_ERROR "halfplane.core lists ${count} files")
+endif()
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE "^      - " "" file "${line}")
+  if(NOT EXISTS "${WORK}/share/halfplane/${file}")
+    message(SEND_ERROR "halfplane.core lists ${file}, which is not installed beside it")
+  endif()
+endforeach()
+
+# A C program that knows pkg-config alone, wherever the prefix is.
+find_program(CC NAMES cc gcc clang)
+find_program(PKG_CONFIG pkg-config)
+if(NOT LIBRARY)
+  message(STATUS "built without the C interface: pkg-config was not tried")
+elseif(NOT CC OR NOT PKG_CONFIG)
+  message(STATUS "no C compiler or no pkg-config here: it was not tried")
+else()
+  file(GLOB_RECURSE pc "${WORK}/*/halfplane.pc")
+  cmake_path(GET pc PARENT_PATH folder)
+  set(ENV{PKG_CONFIG_PATH} "${folder}")
+  foreach(asked IN ITEMS --cflags --libs --variable=libdir)
+    execute_process(COMMAND "${PKG_CONFIG}" ${asked} halfplane OUTPUT_VARIABLE said OUTPUT_STRIP_TRAILING_WHITESPACE
+      COMMAND_ERROR_IS_FATAL ANY)
+    separate_arguments(said)
+    list(APPEND flags ${said})
+  endforeach()
+  list(POP_BACK flags libdir)
+  execute_process(COMMAND "${CC}" "${SOURCE}/tests/consumer/main.c" -o "${WORK}/c_consumer" ${flags}
+    COMMAND_ERROR_IS_FATAL ANY)
+  set(ENV{LD_LIBRARY_PATH} "${libdir}")
+  execute_process(COMMAND "${WORK}/c_consumer" COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 endif()

@@ -231,7 +231,9 @@ TEST(Surface, WhatAnEngineDoesNotHaveIsSaidInOneLine) {
   clip.scene.textures = scene.textures;
   RenderOptions homogeneous;
   homogeneous.rules.clipping = Clipping::homogeneous;
-  EXPECT_NE(message([&] { (void)render_scalar(clip.scene, config, homogeneous); }).find("--clipping homogeneous"),
+  EXPECT_NE(message([&] {
+              (void)render_scalar(clip.scene, config, homogeneous);
+            }).find("clipping homogeneous has no textures"),
             std::string::npos);
   State as_lines;
   as_lines.color_interp = ColorInterp::perspective;

@@ -45,10 +45,12 @@ rtl_package() {
   printf '%s\n' "$folder"
 }
 
-# build_release [--config C [--set K=V...]]: the program with every preset's RTL, and with that of C.
+# build_release [--config C [--set K=V...]]: the program with every preset's RTL, and with that of C; the C interface, which
+# test benches link with (docs/your-rtl.md).
 build_release() {
   (($# == 0)) || [[ $1 == --config && $# -ge 2 ]] || { say "./dev build: --config C [--set K=V...], not '$*'"; exit 2; }
   build_program "-DHALFPLANE_RTL_CONFIGS=$rtl_presets"
+  step 'build the C interface' build release halfplane_c
   (($# > 0)) || return 0
   insist rtl
   local extra

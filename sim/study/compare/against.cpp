@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 
@@ -240,7 +239,12 @@ ForeignImage read_foreign_image(const std::string& path, int width, int height) 
     image.is_depth = true;
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError(path + ": there is no such file; give the image to be judged");
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    // No more than an image of this size can have, and a byte: a file may have no end at all.
+    constexpr std::size_t kLongestHeader = 10 + 65535;
+    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    std::string bytes(kLongestHeader + 4 * pixels + 1, '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
     const bool is_npy = bytes.size() > 10 && bytes.starts_with(std::string_view("\x93NUMPY\x01\x00", 8));
     const std::size_t length =
         is_npy ? static_cast<unsigned char>(bytes[8]) + 256U * static_cast<unsigned char>(bytes[9]) : 0;
@@ -251,9 +255,10 @@ ForeignImage read_foreign_image(const std::string& path, int width, int height) 
         std::sscanf(header.c_str() + shape, "'shape': (%d, %d)", &image.height, &image.width) != 2)
       throw InputError(path +
                        ": this is no array of depth codes; give .npy, format 1.0, <u4, C order, (height, width)");
-    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (image.width == width && image.height == height) {
-      if (bytes.size() != 10 + length + 4 * pixels) throw InputError(path + ": the file is cut short; write it again");
+      if (bytes.size() != 10 + length + 4 * pixels)
+        throw InputError(path + ": the file " + (bytes.size() < 10 + length + 4 * pixels ? "is cut short" : "goes on") +
+                         " where its codes should end; write it again");
       image.value.resize(pixels);
       std::memcpy(image.value.data(), bytes.data() + 10 + length, 4 * pixels);
     }
