@@ -37,10 +37,6 @@ requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) StateValue
 
 /// The numbers of a struct as references, in the order in which they are written.
 constexpr auto numbers_of(
-    auto& fog) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(fog)>>, Fog> {
-  return std::tie(fog.kind, fog.start, fog.end);
-}
-constexpr auto numbers_of(
     auto& alpha) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(alpha)>>, AlphaTest> {
   return std::tie(alpha.func, alpha.reference);
 }
@@ -63,6 +59,11 @@ StateValue to_value(const Value& from, std::size_t words) {
   auto to = value.numbers.begin();
   std::apply([&to](const auto&... number) { ((*to++ = static_cast<double>(number)), ...); }, numbers_of(from));
   return value;
+}
+
+/// The end of a fog that has none is its density once more, which nobody writes; what a capture says there is dropped.
+StateValue to_value(const Fog& fog, std::size_t words) {
+  return {words, {static_cast<double>(fog.kind), fog.start, fog.kind == FogKind::linear ? fog.end : fog.start}};
 }
 
 template <class Value>
@@ -101,6 +102,11 @@ void from_value(const StateValue& from, Value& to, std::size_t) {
         ((member = static_cast<std::remove_reference_t<decltype(member)>>(*number++)), ...);
       },
       numbers_of(to));
+}
+
+void from_value(const StateValue& from, Fog& to, std::size_t) {
+  to = {static_cast<FogKind>(from.numbers[0]), from.numbers[1], from.numbers[2]};
+  if (to.kind != FogKind::linear) to.end = to.start;
 }
 
 template <class Value>

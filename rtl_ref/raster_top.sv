@@ -77,7 +77,15 @@ module raster_top (
   raster_pkg::edge_context_t    edges_data;
   raster_pkg::stamp_packet_t    stamp_data;
   raster_pkg::fragment_packet_t fragment_data;
+  raster_pkg::memory_request_t      request;  // of the cache of blocks without its data
+  /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
   raster_pkg::memory_request_t      request_data;
+  /* verilator lint_on UNUSEDSIGNAL */
+  localparam int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES;
+  localparam int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES;
+  localparam int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES;
+  localparam int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES;
+  logic [8*DATA_BYTES-1:0]          request_bytes;  // its data as they lie in memory
   raster_pkg::memory_response_t     response_data;
   logic                             request_valid, request_ready, response_valid, response_ready;
   logic                             write_valid, retire_valid;
@@ -360,7 +368,7 @@ module raster_top (
           .write_i         (write_data),
           .request_valid_o (request_offered),
           .request_ready_i (request_ready),
-          .request_o       (request_data),
+          .request_o       (request),
           .response_valid_i(response_valid),
           .response_ready_o(response_accepted),
           .response_i      (response_data),
@@ -370,6 +378,11 @@ module raster_top (
           .moves_tiles_o   (moves_tiles),
           .idle_o          (framebuffer_idle)
       );
+      request_bytes u_request_bytes (
+          .request_i(request),
+          .bytes_o  (request_bytes)
+      );
+      assign request_data    = request;
       assign written         = tested_written;
       assign killed          = tested_killed;
       assign color_valid     = 1'b0;
@@ -402,7 +415,8 @@ module raster_top (
           .word_i          (word),
           .request_valid_o (request_offered),
           .request_ready_i (request_ready),
-          .request_o       (request_data),
+          .request_o       (request),
+          .request_bytes_o (request_bytes),
           .response_valid_i(response_valid),
           .response_ready_o(response_accepted),
           .response_i      (response_data),
@@ -425,6 +439,17 @@ module raster_top (
           .idle_o          (framebuffer_idle)
       );
 
+      logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] request_lanes;
+      request_lanes u_request_lanes (
+          .plane_i(request.plane),
+          .bytes_i(request_bytes),
+          .data_o (request_lanes)
+      );
+      always_comb begin
+        request_data      = request;
+        request_data.data = request_lanes;
+      end
+
       /* verilator lint_off UNUSEDSIGNAL */
       logic unused_tested_ready;
       assign unused_tested_ready = tested_ready;
@@ -439,7 +464,8 @@ module raster_top (
       .layout_i,
       .request_valid_i    (request_valid),
       .request_ready_o    (request_accepted),
-      .request_i          (request_data),
+      .request_i          (request),
+      .bytes_i            (request_bytes),
       .response_valid_o   (response_offered),
       .response_ready_i   (response_ready),
       .response_o         (response_data),

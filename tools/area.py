@@ -58,22 +58,25 @@ LINES = ['tiny, 1x1', 'embedded, 2x2', 'full, 4x4']
 LINE_TOPS = {'line_raster': '`line_raster`', 'line_positions': '`line_raster`, positions alone',
              'primitive_join': '`primitive_join`'}
 # Fragment operations: what a unit adds to a whole design, `embedded` with the settings behind it; and modules by themselves.
-EMBEDDED = 'embedded, 2x2'
+OPERATION_BASE = 'HiZ 12 bits'  # as `embedded` is placed: a 25F has too few block RAMs for bounds of 16
+OPERATION_SETTINGS = ['hiz.bits=12']
+UNITS = ['alpha.unit=1', 'blend.lanes=4', 'dither.unit=1', 'stencil.bits=8']
 OPERATIONS = [
-    ('alpha test', ['alpha.unit=1'], EMBEDDED),
-    ('blending, one lane', ['blend.lanes=1'], EMBEDDED),
-    ('blending, four lanes', ['blend.lanes=4'], EMBEDDED),
-    ('dithering', ['dither.unit=1'], EMBEDDED),
-    ('stencil', ['stencil.bits=8'], EMBEDDED),
-    ('all of these', ['alpha.unit=1', 'blend.lanes=4', 'dither.unit=1', 'stencil.bits=8'], EMBEDDED),
-    ('a texture unit', ['texture.unit=nearest'], EMBEDDED),
+    (OPERATION_BASE, [], OPERATION_BASE),
+    ('stencil', ['stencil.bits=8'], OPERATION_BASE),
+    ('dithering', ['dither.unit=1'], OPERATION_BASE),
+    ('alpha test', ['alpha.unit=1'], OPERATION_BASE),
+    ('one blend lane', ['blend.lanes=1'], OPERATION_BASE),
+    ('four blend lanes', ['blend.lanes=4'], OPERATION_BASE),
+    ('all of these', UNITS, OPERATION_BASE),
+    ('a texture unit', ['texture.unit=nearest'], OPERATION_BASE),
     ('and fog', ['texture.unit=nearest', 'fog.unit=1'], 'a texture unit'),
-    ('and all of these', ['texture.unit=nearest', 'fog.unit=1', 'alpha.unit=1', 'blend.lanes=4', 'dither.unit=1', 'stencil.bits=8'],
-     'a texture unit'),
+    ('and all of these', ['texture.unit=nearest', 'fog.unit=1', *UNITS], 'a texture unit'),
 ]
 OPERATION_TOPS = {'blend_lane': 'a lane of four channels with alpha', 'alpha_test': 'of four samples', 'stencil_test': 'of four samples',
                   'dithered_rop': 'a sample', 'fog_place': 'a sample', 'fog_unit': 'four samples', 'color_write': 'W, four lanes'}
 OPERATION_UNITS = 'and all of these'  # the design that has them
+OPERATION_HEAD = '## Fragment operations'
 LINE_POSITIONS = '''
 module line_positions (
     input logic clk_i, rst_ni, line_valid_i, pixel_ready_i, output logic line_ready_o, pixel_valid_o, is_last_o,
@@ -126,10 +129,15 @@ def line_unit(title):
                                          + SYNTH_ECP5.replace('raster_top', top))[top] for top in LINE_TOPS}
 
 
-def operation_units(title):
+def operation_file(title):
+    return f'operations, {title}'
+
+
+def operation_units():
     """ECP5 cells of each of OPERATION_TOPS by itself."""
-    return {top: sum(yosys(title, f'-{top}', f'{read_verilog(title)}; ' + SYNTH_ECP5.replace('raster_top', top) + '; flatten')
-                     .values(), collections.Counter()) for top in OPERATION_TOPS}
+    title = operation_file(OPERATION_UNITS)
+    return {top: yosys(title, f'-{top}', f'{read_verilog(title)}; ' + SYNTH_ECP5.replace('raster_top', top))[top]
+            for top in OPERATION_TOPS}
 
 
 def blocks(title):
@@ -229,20 +237,41 @@ def line_part(units):
     return lines
 
 
-def operation_part(operations, tops):
-    """`operations`: cells of each whole design, by title, EMBEDDED among them."""
-    total = {title: sum(part.values(), collections.Counter()) for title, part in operations.items()}
+def operation_part(designs, tops):
+    """`designs`: cells of each of OPERATIONS that was asked for, with those that they are held against."""
+    total = {title: sum(part.values(), collections.Counter()) for title, part in designs.items()}
     head = ['places', 'LUT4', 'CCU2C', 'DPR16X4', 'FF', 'MULT18X18D', 'DP16KD']
-    lines = [f'Fragment operations: `{EMBEDDED}` with what each unit wants, planes included (`{SYNTH_ECP5}`, as above), and how '
-             'much more that is than without it.']
+    lines = [OPERATION_HEAD, '', 'What a unit adds: `embedded --set ' + ' '.join(OPERATION_SETTINGS) + '` with its settings, planes '
+             f'included, less the same without (`{SYNTH_ECP5}`, every stage kept apart and counted as above).']
     rows = []
     for title, settings, base in OPERATIONS:
-        more = [a - b for a, b in zip(ecp5_cells(total[title]), ecp5_cells(total[base]))]
-        rows.append([title, '`' + '` `'.join(settings) + '`', ecp5_cells(total[title])[0], *(f'{n:+,}' for n in more)])
+        if title in total:
+            more = [a - b for a, b in zip(ecp5_cells(total[title]), ecp5_cells(total[base]))]
+            rows.append([title, '`' + '` `'.join(settings) + '`' if settings else '', ecp5_cells(total[title])[0],
+                         *(f'{n:+,}' if title != base else '' for n in more)])
     lines += table(['unit', 'settings', 'the whole, places', *head], rows)
-    lines += ['Modules by themselves, in the last of these designs.']
-    lines += table(['module', 'what', *head], [[f'`{top}`', OPERATION_TOPS[top], *ecp5_cells(count)] for top, count in tops.items()])
+    lines += ['Where that is, in places.']
+    names = sorted({name for part in designs.values() for name in part})
+    changed = [(title, base) for title, _, base in OPERATIONS if title in total and title != base]
+    rows = [[f'`{name}`', *(f'{places(designs[t][name]) - places(designs[b][name]):+,}' for t, b in changed)] for name in names]
+    lines += table(['block', *(title for title, _ in changed)], [row for row in rows if set(row[1:]) != {'+0'}])
+    if tops:
+        lines += ['Modules by themselves, in a design with all of them.']
+        lines += table(['module', 'what', *head],
+                       [[f'`{top}`', OPERATION_TOPS[top], *ecp5_cells(count)] for top, count in tops.items()])
     return lines
+
+
+def in_page(page, part):
+    """The page with the lines of `part` in place of its section, or before that of the iCE40."""
+    sections = re.split(r'^(?=## )', page, flags=re.M)
+    at = [i for i, section in enumerate(sections) if section.startswith(OPERATION_HEAD)]
+    if not at:
+        at = [i for i, section in enumerate(sections) if section.startswith('## iCE40')] or [len(sections)]
+        sections.insert(at[0], '')
+    dated = f'By `./dev area --only operations` on {datetime.date.today()} with {version(["yosys", "-V"])}.'
+    sections[at[0]] = '\n'.join([part[0], '', dated, '', *part[2:]]).replace('\n\n\n', '\n\n').rstrip() + '\n\n'
+    return ''.join(sections).rstrip() + '\n'
 
 
 def ecp5_part(parts, flats, fitted):
@@ -305,8 +334,8 @@ def page(parts, flats, fitted_ecp5, fitted, packed, units, operations, tops):
     lines += ecp5_part(parts, flats, fitted_ecp5)
     if units:
         lines += line_part(units)
-    if tops:
-        lines += operation_part({EMBEDDED: parts[EMBEDDED], **operations}, tops[OPERATION_UNITS])
+    if operations:
+        lines += operation_part(operations, tops)
     if fitted:
         lines += ice40_part(fitted, packed)
     return '\n'.join(lines).replace('\n\n\n', '\n\n').rstrip() + '\n'
@@ -314,24 +343,35 @@ def page(parts, flats, fitted_ecp5, fitted, packed, units, operations, tops):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--only', metavar='PRESET', help='configurations of one preset, printed and not written')
+    parser.add_argument('--only', metavar='PRESET', help='configurations of one preset, printed and not written; or `operations`, '
+                        'fragment operations, whose section of the page is written anew')
+    parser.add_argument('--units', metavar='LIST', help='with `--only operations`: some of its units, printed and not written: '
+                        + ', '.join(title for title, _, _ in OPERATIONS))
+    parser.add_argument('--jobs', type=int, default=2, metavar='N', help='tools at a time (2)')
     parser.add_argument('--program', default='build/halfplane', help='the halfplane program')
     options = parser.parse_args()
+    only_operations = options.only == 'operations'
     chosen = [c for c in CONFIGURATIONS if options.only in (None, c[1])]
-    if not chosen:
+    if not chosen and not only_operations:
         sys.exit(f'area: no preset {options.only!r}')
     BUILD.mkdir(parents=True, exist_ok=True)
-    for title, preset, settings in chosen:
+
+    def package(title, preset, settings):
         sets = [word for setting in settings for word in ('--set', setting)]
         run([options.program, 'config', '--config', preset, *sets, '--sv'], BUILD / f'{slug(title)}.sv')
+
+    for title, preset, settings in chosen:
+        package(title, preset, settings)
     titles = [title for title, _, _ in chosen]
-    extra = [title for title, _, _ in OPERATIONS] if EMBEDDED in titles else []
+    asked = [title.strip() for title in (options.units or '').split(',') if title.strip()]
+    extra = []
+    if options.only in (None, 'operations', 'embedded'):
+        extra = [o[0] for o in OPERATIONS if not asked or o[0] in asked or o[0] in {b for t, _, b in OPERATIONS if t in asked}]
     for title, settings, _ in OPERATIONS:
-        if extra:
-            sets = [word for setting in settings for word in ('--set', setting)]
-            run([options.program, 'config', '--config', 'embedded', *sets, '--sv'], BUILD / f'{slug(title)}.sv')
+        if title in extra or (extra and title == OPERATION_UNITS and not asked):
+            package(operation_file(title), 'embedded', OPERATION_SETTINGS + settings)
     (BUILD / 'line_positions.sv').write_text(LINE_POSITIONS, encoding='utf-8')
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         jobs = {
             'fitted': {t: pool.submit(placed, t) for t in PLACED if t in titles},
             'fitted_ecp5': {(t, tag): pool.submit(placed_ecp5, t, tag, carries) for t in PLACED_ECP5 if t in titles
@@ -339,14 +379,22 @@ def main():
             'packed': {t: pool.submit(packed_blocks, t) for t in PLACED[:1] if t in titles},
             'units': {t: pool.submit(line_unit, t) for t in LINES if t in titles},
             'parts': {t: pool.submit(blocks, t) for t in titles},
-            'operations': {t: pool.submit(blocks, t) for t in extra},
-            'tops': {t: pool.submit(operation_units, t) for t in [OPERATION_UNITS] if extra},
+            'operations': {t: pool.submit(blocks, operation_file(t)) for t in extra},
             'flats': {c: pool.submit(flat, FLAT, c) for c in FLAT_ECP5 if FLAT in titles},
         }
-        text = page(**{name: {key: job.result() for key, job in group.items()} for name, group in jobs.items()})
+        tops = pool.submit(operation_units).result() if extra and not asked else {}
+        results = {name: {key: job.result() for key, job in group.items()} for name, group in jobs.items()}
+    target = pathlib.Path('docs/area.md')
+    if only_operations:
+        part = operation_part(results['operations'], tops)
+        print('\n'.join(part))
+        if not asked:
+            target.write_text(in_page(target.read_text(encoding='utf-8'), part), encoding='utf-8')
+        return
+    text = page(**results, tops=tops)
     print(text, end='')
     if options.only is None:
-        pathlib.Path('docs/area.md').write_text(text, encoding='utf-8')
+        target.write_text(text, encoding='utf-8')
 
 
 if __name__ == '__main__':

@@ -410,6 +410,21 @@ mutant(206 stages/cache_tags.sv "alpha: depth unread where always writes all tha
   [=[(tests_alpha && fragment_q.state.depth_write)]=] [=[1'b0]=])
 mutant(207 stages/block_cache.sv "alpha: counter: samples that fail the depth test are counted too"
   [=[popcount(w_passed & ~alpha_passes)]=] [=[popcount(~alpha_passes)]=])
+mutant(324 lib/alpha_test.sv "alpha: less and greater are exchanged"
+  [=[is_less ? less_passes : (is_equal ? equal_passes : greater_passes)]=]
+  [=[is_less ? greater_passes : (is_equal ? equal_passes : less_passes)]=])
+mutant(325 lib/alpha_test.sv "alpha: values that differ in the lowest bit are equal"
+  [=[alpha_i[8*s+:8] == reference_i]=] [=[alpha_i[8*s+1+:7] == reference_i[7:1]]=])
+mutant(326 stages/block_cache.sv "alpha: the reference is a bit further up in its word"
+  [=[w_word[10:3]]=] [=[w_word[11:4]]=])
+mutant(327 stages/block_cache.sv "alpha: what it drops writes its depth"
+  [=[w_changes[s] && alpha_passes[s]]=] [=[w_changes[s]]=])
+mutant(328 stages/block_cache.sv "alpha: a depth that was read for what it drops does not come into the RAM"
+  [=[is_kept || !w_on_chip]=] [=[is_kept]=])
+mutant(329 stages/block_cache.sv "alpha: counter: what it drops counts as written"
+  [=[popcount(w_passed & alpha_passes)]=] [=[popcount(w_passed)]=])
+mutant(330 stages/block_cache.sv "alpha: what it drops writes its colour"
+  [=[w_mask & w_kept]=] [=[w_mask]=])
 
 # stencil
 mutant(208 lib/stencil_test.sv "stencil: the reference is compared without the mask"
@@ -522,3 +537,51 @@ mutant(290 stages/interpolate.sv "texture, colours over w: the range ends where 
   [=[samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
 mutant(291 lib/colored_stamps.sv "texture, colours over w: they are affine"
   [=[fragment_i.coordinates.divides_colors]=] [=[1'b0]=])
+
+# Ordered dithering, as 194 and 195.
+mutant(350 lib/dithered_rop.sv "colours: dithering: the half of a threshold is left out"
+  [=[{1'b0, threshold_i, 4'd8}]=] [=[{1'b0, threshold_i, 4'd0}]=])
+mutant(351 lib/dithered_rop.sv "colours: dithering: what rounding has below its offset is added, too"
+  [=[dithers_i ? 3'd0 : 3'd6]=] [=[3'd6]=])
+mutant(352 lib/dithered_rop.sv "colours: dithering: a green above its offset has the sign of one below"
+  [=[{{5{g_rest[8]}}, g_rest, 1'b0, !dithers_i}]=] [=[{5'd0, g_rest, 1'b0, !dithers_i}]=])
+mutant(353 lib/dithered_rop.sv "colours: dithering: blue has the rest of green"
+  [=[{{4{b_rest[8]}}, b_rest, below}]=] [=[{{4{g_rest[8]}}, g_rest, below}]=])
+mutant(354 lib/dithered_rop.sv "colours: dithering: red has the next lower threshold"
+  [=[{1'b0, rgba_i[7:0]}]=] [=[{1'b0, rgba_i[7:0]} + 9'd16]=])
+mutant(355 stages/color_write.sv "colours: dithering: always"
+  [=[(out[4])]=] [=[1'b1]=])
+mutant(356 stages/color_write.sv "colours: dithering: a stamp has the place of the one behind it"
+  [=[(stamp_2_q)]=] [=[stamp_1_q]=])
+mutant_text(357 stages/color_write.sv "colours: dithering: what is blended is dithered as it came"
+  [=[.rgba_i     (rgba),]=] [=[.rgba_i     (raster_cosim.mutant_q == 16'd357 ? color_2_q[s*SHADED+:SHADED] : rgba),]=])
+mutant_text(358 lib/sample_place.sv "colours: dithering: the columns of a stamp have one threshold"
+  [=[* 2'(SIZE) + 2'(SAMPLE % SIZE);]=]
+  [=[* 2'(SIZE) + (raster_cosim.mutant_q == 16'd358 ? 2'd0 : 2'(SAMPLE % SIZE));]=])
+mutant(359 lib/sample_place.sv "colours: dithering: every stamp begins at the matrix' first row"
+  [=[2'(stamp_i[2*SIDE_BITS-1:SIDE_BITS])]=] [=[2'd0]=])
+
+# Masks of channels, as 188 and 193.
+mutant(370 stages/color_write.sv "colours: masks: samples that are not drawn are written, too"
+  [=[(packed_color & channels & {COLOR{mask_2_q[s]}})]=] [=[packed_color & channels]=])
+mutant(371 stages/color_write.sv "colours: masks: a channel that is left out is added to what is stored"
+  [=[(packed_color & channels & {COLOR{mask_2_q[s]}})]=] [=[packed_color & {COLOR{mask_2_q[s]}}]=])
+mutant(372 stages/color_write.sv "colours: masks: a channel that is left out becomes 0"
+  [=[(stored_2_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_2_q[s]}}))]=]
+  [=[stored_2_q[s*COLOR+:COLOR] & {COLOR{!mask_2_q[s]}}]=])
+mutant(373 stages/color_write.sv "colours: masks: samples that are not drawn lose the channels that are"
+  [=[(stored_2_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_2_q[s]}}))]=] [=[stored_2_q[s*COLOR+:COLOR] & ~channels]=])
+mutant_text(374 stages/color_write.sv "colours: masks: red is left out from a reset to the first token"
+  [=[4'b1111, WRITES'(0)]=] [=[3'b111, raster_cosim.mutant_q != 16'd374, WRITES'(0)]=])
+mutant(375 stages/color_write.sv "colours: masks: a token writes all channels"
+  [=[word_i[BLENDS:0]]=] [=[word_i[BLENDS:0] | (BLENDS + 1)'(15 << WRITES)]=])
+mutant_text(376 stages/color_write.sv "colours: masks: the constant of blending sets them, too"
+  [=[if (register_i == raster_pkg::STATE_REGISTER_COLOR_OPS) ops_q]=]
+  [=[if (register_i == raster_pkg::STATE_REGISTER_COLOR_OPS ||
+              (raster_cosim.mutant_q == 16'd376 && register_i == raster_pkg::STATE_REGISTER_BLEND_CONSTANT)) ops_q]=])
+mutant(377 stages/color_write.sv "colours: masks: what memory has of a stamp comes into the RAM only where it is drawn"
+  [=[starts_i || is_fetched]=] [=[starts_i]=])
+mutant(378 stages/cache_tags.sv "colours: masks: what is stored is not read for the channels that stay"
+  [=[fragment_q.code[READS]]=] [=[1'b0]=])
+mutant(379 stages/cache_tags.sv "colours: masks: what has been read for the channels that stay is not known to be here"
+  [=[(color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)]=] [=['0]=])

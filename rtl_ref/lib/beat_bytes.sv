@@ -3,13 +3,12 @@
 // put() of model/stages/memory_port.hpp.
 module beat_bytes #(
     parameter int SAMPLES = 1,
-    parameter int LANE = 16,         // bits of a sample in the request
     parameter int SAMPLE_BYTES = 2,  // of a sample in memory
     parameter int WORD = 8,          // bytes of word_o: the larger of a stamp and a beat
     parameter int SHIFT = $clog2(SAMPLES * SAMPLE_BYTES)  // derived; not to be set
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // wider lanes; of a stamp that fills beats its place does not matter
-    input  logic [SAMPLES*LANE-1:0]         data_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // wider stamps of another plane; of one that fills beats its place does not matter
+    input  logic [8*WORD-1:0]               bytes_i,   // as they lie in memory, behind them 0
     input  logic [SAMPLES-1:0]              strobe_i,
     input  logic [15:0]                     place_i,   // number of the stamp in its row of beats
     input  logic [raster_pkg::RUN_BITS-1:0] run_i,     // stamps from this one on
@@ -24,18 +23,15 @@ module beat_bytes #(
   localparam int PORT = raster_pkg::PORT_SHIFT;
   localparam int BYTES = 1 << SHIFT;
   localparam int LENGTH = raster_pkg::BURST_LENGTH_BITS;
-  localparam int TAKEN = (LANE < 8 * SAMPLE_BYTES) ? LANE : 8 * SAMPLE_BYTES;
 
-  logic [8*BYTES-1:0] bytes;
-  logic [BYTES-1:0]   strobe;
+  logic [BYTES-1:0] strobe;
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
-      assign bytes[8*SAMPLE_BYTES*s+:8*SAMPLE_BYTES] = (8 * SAMPLE_BYTES)'(data_i[s*LANE+:TAKEN]);
-      assign strobe[SAMPLE_BYTES*s+:SAMPLE_BYTES]    = {SAMPLE_BYTES{strobe_i[s]}};
+      assign strobe[SAMPLE_BYTES*s+:SAMPLE_BYTES] = {SAMPLE_BYTES{strobe_i[s]}};
     end
     if (SHIFT >= PORT) begin : gen_whole
-      assign word_o   = (8 * WORD)'(bytes);
+      assign word_o   = bytes_i;
       assign strobe_o = WORD'(strobe);
       assign more_o   = 8'((1 << (SHIFT - PORT)) - 1);
       assign length_o = LENGTH'(run_i) << (SHIFT - PORT);
@@ -44,7 +40,7 @@ module beat_bytes #(
       localparam int SUB = PORT - SHIFT;
       logic [SUB-1:0] sub;
       assign sub      = place_i[SUB-1:0];
-      assign word_o   = (8 * WORD)'(bytes) << (32'(sub) << (SHIFT + 3));
+      assign word_o   = (8 * WORD)'(bytes_i[8*BYTES-1:0]) << (32'(sub) << (SHIFT + 3));
       assign strobe_o = WORD'(strobe) << (32'(sub) << SHIFT);
       assign more_o   = '0;
       assign length_o = LENGTH'((16'(sub) + 16'(run_i) + 16'((1 << SUB) - 1)) >> SUB);  // rounded up

@@ -10,7 +10,12 @@
 // goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, a stamp a cycle, first the one that is
 // about to be overwritten, and from there to memory.
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
-module block_cache (
+module block_cache #(
+    parameter int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES,  // of a stamp; derived, not to be set
+    parameter int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES,
+    parameter int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES,
+    parameter int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES
+) (
     input logic clk_i,
     /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
     input logic power_on_ni,
@@ -37,7 +42,8 @@ module block_cache (
     // To and from memory_port
     output logic                         request_valid_o,
     input  logic                         request_ready_i,
-    output raster_pkg::memory_request_t  request_o,
+    output raster_pkg::memory_request_t  request_o,        // without its data
+    output logic [8*DATA_BYTES-1:0]      request_bytes_o,  // which are these, as they lie in memory
     input  logic                         response_valid_i,
     output logic                         response_ready_o,
     /* verilator lint_off UNUSEDSIGNAL */  // lanes wider than a depth code
@@ -849,23 +855,34 @@ module block_cache (
       .tile_y_o (sent_tile_y),
       .stamp_o  (sent_index)
   );
-  // Its data, from one of five: each by itself, so that nothing is chosen in a row.
-  localparam int DATA = SAMPLES * LANE;
-  logic              sends_flags, sends_here, sends_clear;
-  logic [LANE-1:0]   clear;  // of the plane that is sent
-  logic [DATA-1:0]   request_data, wide_depth, wide_color;
-  assign sends_flags = flush_valid && flush_request.plane[1];
-  assign sends_here  = sends && is_here;
-  assign sends_clear = (sends && !is_here) || (flush_valid && !flush_request.plane[1]);
-  assign clear       = (sends && !is_color) ? LANE'(clear_depth) : LANE'(clear_color);
+  // Its data, as they lie in memory, from one of five: each by itself, so that nothing is chosen in a row.
+  localparam int DEPTH_WIDTH = 8 * raster_pkg::DEPTH_SAMPLE_BYTES;
+  localparam int COLOR_WIDTH = 8 * raster_pkg::COLOR_SAMPLE_BYTES;
+  localparam int DATA = 8 * DATA_BYTES;
+  logic                     sends_here, sends_flags, clears_depth, clears_color;
+  logic [8*DEPTH_BYTES-1:0] depth_bytes, clear_depths;
+  logic [8*COLOR_BYTES-1:0] color_bytes, clear_colors;
+  assign sends_here   = sends && is_here;
+  assign sends_flags  = flush_valid && flush_request.plane[1];
+  assign clears_depth = sends && !is_here && !is_color;
+  assign clears_color = (sends && !is_here && is_color) || (flush_valid && !flush_request.plane[1]);
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_data
-      assign wide_depth[s*LANE+:LANE] = LANE'(sent_depth[s*CODE+:CODE]);
-      assign wide_color[s*LANE+:LANE] = LANE'(sent_color[s*COLOR+:COLOR]);
+      assign depth_bytes[s*DEPTH_WIDTH+:DEPTH_WIDTH]  = DEPTH_WIDTH'(sent_depth[s*CODE+:CODE]);
+      assign color_bytes[s*COLOR_WIDTH+:COLOR_WIDTH]  = COLOR_WIDTH'(sent_color[s*COLOR+:COLOR]);
+      assign clear_depths[s*DEPTH_WIDTH+:DEPTH_WIDTH] = DEPTH_WIDTH'(clear_depth) & {DEPTH_WIDTH{clears_depth}};
+      assign clear_colors[s*COLOR_WIDTH+:COLOR_WIDTH] = COLOR_WIDTH'(clear_color) & {COLOR_WIDTH{clears_color}};
     end
   endgenerate
-  assign request_data = (wide_color & {DATA{sends_here && is_color}}) | (wide_depth & {DATA{sends_here && !is_color}}) |
-                        (DATA'(flush_word) & {DATA{sends_flags}}) | ({SAMPLES{clear}} & {DATA{sends_clear}});
+  logic [8*DEPTH_BYTES-1:0]         depth_part;
+  logic [8*COLOR_BYTES-1:0]         color_part;
+  logic [raster_pkg::FLAG_WORD-1:0] flag_part;
+  logic [DATA-1:0]                  clear_part;  // of all samples the same: chosen once
+  assign depth_part      = depth_bytes & {8 * DEPTH_BYTES{sends_here && !is_color}};
+  assign color_part      = color_bytes & {8 * COLOR_BYTES{sends_here && is_color}};
+  assign flag_part       = flush_word & {raster_pkg::FLAG_WORD{sends_flags}};
+  assign clear_part      = DATA'(clear_depths) | DATA'(clear_colors);
+  assign request_bytes_o = DATA'(color_part) | DATA'(depth_part) | DATA'(flag_part) | clear_part;
 
   always_comb begin
     request_o          = '0;
@@ -884,7 +901,7 @@ module block_cache (
       request_o.strobe = is_here ? (is_color ? sent_color_strobe : sent_depth_strobe) : '1;
     end
     if (flush_valid) request_o = flush_request;
-    request_o.data = request_data;
+    request_o.data = '0;
   end
 
   assign drained = items_are_done && behind_q == '0 && !order_valid;

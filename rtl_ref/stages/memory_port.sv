@@ -11,7 +11,12 @@
 // Reset: power_on_ni resets the port, rst_ni everything in front of it at any time, for a cycle at least. A burst under way is
 // then ended with beats that write nothing, and the answers that are still to come are dropped; only then requests are taken.
 // Specification: model/stages/memory_port.hpp; the times are those of model/engines/cycle/port_timing.hpp.
-module memory_port (
+module memory_port #(
+    parameter int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES,  // of a stamp; derived, not to be set
+    parameter int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES,
+    parameter int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES,
+    parameter int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES
+) (
     input logic clk_i,
     input logic power_on_ni,
     /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
@@ -25,7 +30,10 @@ module memory_port (
     // From the framebuffer
     input  logic                        request_valid_i,
     output logic                        request_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */  // its data
     input  raster_pkg::memory_request_t request_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input  logic [8*DATA_BYTES-1:0]     bytes_i,  // which are these, as they lie in memory (request_bytes)
 
     // To the framebuffer
     output logic                         response_valid_o,
@@ -50,8 +58,8 @@ module memory_port (
   localparam int PORT = raster_pkg::PORT_SHIFT;
   localparam int BYTES = 1 << PORT;  // of a beat
   localparam int HAS_BLOCKS = raster_pkg::CACHE_KIND;
-  localparam int DEPTH_SHIFT = $clog2(SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES);  // log2 of the bytes of a stamp
-  localparam int COLOR_SHIFT = $clog2(SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES);
+  localparam int DEPTH_SHIFT = $clog2(DEPTH_BYTES);  // log2 of the bytes of a stamp
+  localparam int COLOR_SHIFT = $clog2(COLOR_BYTES);
   localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
   localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
   localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;
@@ -93,18 +101,18 @@ module memory_port (
   assign offset   = is_color ? PLANE'(place) << COLOR_SHIFT : PLANE'(place) << DEPTH_SHIFT;
 
   // The bytes, and the beats that they take.
-  logic [8*WORD-1:0] depth_word, color_word, flag_word, word;
+  logic [8*WORD-1:0] depth_word, color_word, flag_word, word, bytes;
   logic [WORD-1:0]   depth_strobe, color_strobe, flag_strobe, strobe;
   logic [7:0]        depth_more, color_more, flag_more, more;
   logic [LENGTH-1:0] depth_length, color_length, flag_length, length;
   logic              depth_ends, color_ends, flag_ends, ends;
+  assign bytes = (8 * WORD)'(bytes_i);
   beat_bytes #(
       .SAMPLES     (SAMPLES),
-      .LANE        (LANE),
       .SAMPLE_BYTES(raster_pkg::DEPTH_SAMPLE_BYTES),
       .WORD        (WORD)
   ) u_depth_bytes (
-      .data_i  (request_i.data),
+      .bytes_i (bytes),
       .strobe_i(request_i.strobe),
       .place_i (place),
       .run_i   (request_i.run),
@@ -116,11 +124,10 @@ module memory_port (
   );
   beat_bytes #(
       .SAMPLES     (SAMPLES),
-      .LANE        (LANE),
       .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
       .WORD        (WORD)
   ) u_color_bytes (
-      .data_i  (request_i.data),
+      .bytes_i (bytes),
       .strobe_i(request_i.strobe),
       .place_i (place),
       .run_i   (request_i.run),
@@ -137,11 +144,10 @@ module memory_port (
   assign address   = is_flags ? {rows, ROW'(request_i.tile_x) << FLAG_SHIFT} : {planes, offset};
   beat_bytes #(
       .SAMPLES     (1),
-      .LANE        (raster_pkg::FLAG_WORD),
       .SAMPLE_BYTES(FLAG_BYTES),
       .WORD        (WORD)
   ) u_flag_bytes (
-      .data_i  (request_i.data[raster_pkg::FLAG_WORD-1:0]),
+      .bytes_i (bytes),
       .strobe_i(request_i.is_write),
       .place_i (16'(request_i.tile_x)),
       .run_i   (request_i.run),

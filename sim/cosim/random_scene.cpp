@@ -280,7 +280,7 @@ void Generator::set_fogs() {
       fog.start = below(2) == 0 ? 0 : reach * random.uniform(0, 1.25);
       fog.end = below(8) == 0 ? 0 : reach;
     } else {
-      fog.start = below(8) == 0 ? 0 : 1 / reach;
+      fog.start = fog.end = below(8) == 0 ? 0 : 1 / reach;
     }
     state.fog = fog;
     for (std::uint8_t& channel : state.fog_color) channel = static_cast<std::uint8_t>(below(256));

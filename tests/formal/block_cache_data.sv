@@ -72,7 +72,7 @@
         assign ram    = p == 0 ? (BITS + 1)'({gen_depth[m].dirty, gen_depth[m].code}) :
                                  (BITS + 1)'({w_ram_dirty[m], w_ram_code[m*COLOR+:COLOR]});
         assign stored = p == 0 ? (BITS + 1)'(gen_depth[m].word) : (BITS + 1)'({w_ram_dirty_new[m], w_ram_code_new[m*COLOR+:COLOR]});
-        assign lane   = BITS'(request_o.data[m*LANE+:BITS]);
+        assign lane   = BITS'(request_data[m*LANE+:BITS]);
         assign owes   = fills_q || (is_here_q && snapshot_q[BITS]);
         always_ff @(posedge clk_i) begin
           if (writes && write_address == {any_line, any_stamp}) word_q <= stored;

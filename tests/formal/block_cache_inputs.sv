@@ -13,6 +13,12 @@
   logic [$clog2(QUEUE):0]           unanswered_q;
   logic                             takes_read, takes_response;
   assign takes_read     = takes_request && !request_o.is_write;
+  logic [SAMPLES*LANE-1:0] request_data;  // what a request writes, a lane a sample
+  request_lanes u_request_lanes (
+      .plane_i(request_o.plane),
+      .bytes_i(request_bytes_o),
+      .data_o (request_data)
+  );
   assign takes_response = response_valid_i && response_ready_o;
   always_ff @(posedge clk_i) begin
     waits_q        <= rst_ni && fragment_valid_i && !fragment_ready_o;

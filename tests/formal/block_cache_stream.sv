@@ -24,7 +24,7 @@
               request_o.stamp == order_stamp && request_o.plane == raster_pkg::TILE_PLANE_DEPTH);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
-    if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
+    if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o) && request_bytes_o == $past(request_bytes_o));
   end
 
   // No read overtakes the write of an eviction of its block. Any eviction and any later order that reads its block: the

@@ -45,8 +45,8 @@
       memory_depth_q <= any_garbage[0];
       memory_color_q <= any_garbage[1];
     end else if (request_is_it && request_o.is_write && request_o.strobe[any_sample]) begin
-      if (request_o.plane[0]) memory_color_q <= request_o.data[any_sample*LANE];
-      else memory_depth_q <= request_o.data[any_sample*LANE];
+      if (request_o.plane[0]) memory_color_q <= request_data[any_sample*LANE];
+      else memory_depth_q <= request_data[any_sample*LANE];
     end
     if (!rst_ni) begin  // block_cache_start
       truth_depth_q   <= raster_pkg::FRAME_CLEARS == 0 ? any_garbage[0] : clear_depth;
@@ -63,8 +63,8 @@
       cleared_color_q <= fragment_i.code[CODE];
     end else if (rst_ni && tested_is_it_q && write_valid_i && write_i.write_color[any_sample]) truth_color_q <= write_i.color[any_sample*COLOR];
     if (flags_are_it) begin
-      if (request_o.plane[0]) flag_color_q <= request_o.data[any_x % WORD];
-      else flag_depth_q <= request_o.data[any_x % WORD];
+      if (request_o.plane[0]) flag_color_q <= request_data[any_x % WORD];
+      else flag_depth_q <= request_data[any_x % WORD];
     end
   end
   always_comb begin

@@ -31,6 +31,13 @@
       else if (answers && stale_q != '0) stale_q <= stale_q - 1'b1;
     end
   end
+  // With a request come its data as they lie in memory.
+  logic [8*DATA_BYTES-1:0] data_bytes;
+  request_bytes u_data_bytes (
+      .request_i(request_i),
+      .bytes_o  (data_bytes)
+  );
+  always_comb assume (bytes_i == data_bytes);
   always_comb if (runs_q) begin
     if (!rst_ni) assume (!request_valid_i);
     if (request_valid_i) begin

@@ -35,6 +35,12 @@ std::vector<StateValue> values_of(const DrawState& row) {
   for (std::size_t i = 0; i < row.numbers.size(); ++i)
     value.numbers[i] =
         row.numbers[i].random_low + std::min(3U, row.numbers[i].random_count - 1) * row.numbers[i].random_step;
+  if (row.name == "fog") {  // the others have a density and no end
+    value.numbers[0] = static_cast<double>(FogKind::linear);
+    values.push_back(value);
+    value.numbers[0] = static_cast<double>(FogKind::exp2);
+    value.numbers[2] = value.numbers[1];
+  }
   values.push_back(value);
   return values;
 }
@@ -63,6 +69,34 @@ TEST(DrawStates, EveryValueIsReadBackFromACapture) {
       const std::string text = "halfplane 1\nv 0 0 0\n" + line + "\np 0\n";
       EXPECT_EQ(read_capture(text, "test.hpt").states.at(0), state) << line;
     }
+}
+
+/// A line of a state as it is written again.
+std::string written_again(const std::string& row, const std::string& value) {
+  const State state =
+      read_capture("halfplane 1\nv 0 0 0\nstate " + row + " " + value + "\np 0\n", "test.hpt").states.at(0);
+  std::string text;
+  write_state_value(state, draw_state(row), {}, text);
+  return text.substr(1);
+}
+
+// Captures of before say a third number.
+TEST(DrawStates, FogHasANumberLessWhereItHasADensity) {
+  for (const std::string kind : {"exp", "exp2"})
+    for (const std::string rest : {"", " 0.25", " 0", " 7"})
+      EXPECT_EQ(written_again("fog", kind + " 0.25" + rest), kind + " 0.25");
+  EXPECT_EQ(written_again("fog", "linear 4 12"), "linear 4 12");
+  EXPECT_EQ(written_again("fog", "linear 0 0.25"), "linear 0 0.25");
+  State made;
+  made.fog = Fog{FogKind::exp, 0.5, 0};  // by a program, which need not know
+  std::string text;
+  write_state_value(made, draw_state("fog"), {}, text);
+  EXPECT_EQ(text, " exp 0.5");
+  State other = made;
+  other.fog->end = 3;
+  EXPECT_TRUE(draw_state("fog").is_same(made, other));
+  made.fog->kind = other.fog->kind = FogKind::linear;
+  EXPECT_FALSE(draw_state("fog").is_same(made, other));
 }
 
 TEST(DrawStates, WhatRidesWithThePrimitiveIsWhatItsPacketHas) {

@@ -1,0 +1,31 @@
+// Request lanes: what a request to memory writes, a lane a sample, out of the bytes that lie in memory: request_bytes the other way.
+// A word of flags lies in the lanes from the first bit on. Combinational.
+module request_lanes #(
+    parameter int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES,  // of a stamp; derived, not to be set
+    parameter int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES,
+    parameter int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES,
+    parameter int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES
+) (
+    input  raster_pkg::tile_plane_t                                       plane_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // bytes wider than what is stored
+    input  logic [8*DATA_BYTES-1:0]                                       bytes_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] data_o
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
+  localparam int DATA = SAMPLES * LANE;
+  localparam int DEPTH = 8 * raster_pkg::DEPTH_SAMPLE_BYTES;
+  localparam int COLOR = 8 * raster_pkg::COLOR_SAMPLE_BYTES;
+  logic [DATA-1:0] depth, color;
+  genvar s;
+  generate
+    for (s = 0; s < SAMPLES; s++) begin : gen_sample
+      assign depth[s*LANE+:LANE] = LANE'(bytes_i[s*DEPTH+:DEPTH]);
+      assign color[s*LANE+:LANE] = LANE'(bytes_i[s*COLOR+:COLOR]);
+    end
+  endgenerate
+  assign data_o = plane_i[1] ? DATA'(bytes_i[raster_pkg::FLAG_WORD-1:0]) : plane_i[0] ? color : depth;
+
+endmodule
