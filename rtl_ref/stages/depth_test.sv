@@ -244,33 +244,39 @@ module depth_test (
   assign write_o.write_color  = fragment_q.state.color_write ? kept : '0;
   assign write_o.color        = color_q;
 
-  // Counters, one cycle late: the sums stay out of the path from the RAM to its write enable.
+  // Counters, one cycle late: the masks are kept and summed up in the cycle behind, far from the RAM that they come from.
   function automatic [COUNT-1:0] popcount(input [SAMPLES-1:0] mask);
     popcount = '0;
     for (int i = 0; i < SAMPLES; i++) popcount = popcount + COUNT'(mask[i]);
   endfunction
 
   logic is_counted, writes;
+  logic [SAMPLES-1:0] covered_q, passed_q, written_q;
   assign is_counted = valid_q && (fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || fragment_q.kind[2]);  // point, line
   assign writes     = fragment_q.state.depth_write || fragment_q.state.color_write;
+  assign covered_o  = popcount(covered_q);
+  assign passed_o   = popcount(passed_q);
+  assign written_o  = popcount(written_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      covered_o <= '0;
-      passed_o  <= '0;
-      written_o <= '0;
+      covered_q <= '0;
+      passed_q  <= '0;
+      written_q <= '0;
     end else begin
-      covered_o <= is_counted ? popcount(fragment_q.mask) : '0;
-      passed_o  <= is_counted ? popcount(passed) : '0;
-      written_o <= is_counted && writes ? popcount(kept) : '0;
+      covered_q <= is_counted ? fragment_q.mask : '0;
+      passed_q  <= is_counted ? passed : '0;
+      written_q <= is_counted && writes ? kept : '0;
     end
   end
   generate
     if (HAS_ALPHA) begin : gen_killed
+      logic [SAMPLES-1:0] killed_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
-        if (!rst_ni) killed_o <= '0;
-        else killed_o <= is_counted ? popcount(passed & ~kept) : '0;
+        if (!rst_ni) killed_q <= '0;
+        else killed_q <= is_counted ? passed & ~kept : '0;
       end
+      assign killed_o = popcount(killed_q);
     end else begin : gen_none_killed
       assign killed_o = '0;
     end
