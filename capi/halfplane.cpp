@@ -10,6 +10,7 @@
 #include <string>
 
 #include "model/capture/capture.hpp"
+#include "model/capture/capture_lines.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
@@ -83,7 +84,7 @@ void say(halfplane_scene& made, std::string_view lines) {
   Scene& scene = made.scene;
   const std::string head =
       "halfplane 1\ntarget " + std::to_string(scene.width) + " " + std::to_string(scene.height) + "\n";
-  const Scene said = read_capture(head + std::string(lines) + "\nv 0 0 0 1\np 0\n", "lines", 2);
+  const Scene said = read_capture_lines(head + std::string(lines) + "\nv 0 0 0 1\np 0\n", "lines", 2);
   if (said.vertices.size() != 1) throw InputError("lines: vertices are given by halfplane_scene_vertices");
   if (said.width != scene.width || said.height != scene.height)
     throw InputError("lines: the size of the target is given by halfplane_scene_new");

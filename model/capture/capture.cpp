@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "../config.hpp"
+#include "capture_lines.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
 #include "capture_textures.hpp"
@@ -335,7 +336,9 @@ FileText read_all(const std::string& path) {
 
 }  // namespace
 
-Scene read_capture(std::string_view text, std::string_view file_name, std::size_t head) {
+Scene read_capture(std::string_view text, std::string_view file_name) { return read_capture_lines(text, file_name, 0); }
+
+Scene read_capture_lines(std::string_view text, std::string_view file_name, std::size_t head) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // some editors begin UTF-8 files with it
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   return CaptureReader(text, file_name, head).read();

@@ -10,9 +10,8 @@
 namespace halfplane {
 
 /// The scene that `text` describes. `file_name` becomes Scene::name and begins every message. Linear in the size of
-/// the text, in time and in memory. Throws InputError: "file:line: what is wrong; what to write instead". `head`: so many
-/// lines at the beginning of `text` are the caller's own, and messages do not count them.
-[[nodiscard]] Scene read_capture(std::string_view text, std::string_view file_name, std::size_t head = 0);
+/// the text, in time and in memory. Throws InputError: "file:line: what is wrong; what to write instead".
+[[nodiscard]] Scene read_capture(std::string_view text, std::string_view file_name);
 
 /// The same for a file or a pipe. Throws InputError, also when the file cannot be read.
 [[nodiscard]] Scene read_capture_file(const std::string& path);
