@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <exception>
 #include <map>
@@ -11,6 +10,7 @@
 #include <string>
 
 #include "model/capture/capture.hpp"
+#include "model/capture/capture_lines.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
@@ -79,27 +79,12 @@ Topology topology_of(std::string_view name) {
   return static_cast<Topology>(found - kNames.begin());
 }
 
-/// read_capture() of lines behind a head of two: a message names the caller's line, not that of the whole.
-Scene read_lines(const std::string& head, std::string_view lines, const std::string& tail) {
-  constexpr std::string_view kName = "lines:";
-  try {
-    return read_capture(head + std::string(lines) + tail, kName.substr(0, kName.size() - 1));
-  } catch (const InputError& error) {
-    const std::string_view message = error.what();
-    std::uint64_t line = 0;
-    if (!message.starts_with(kName)) throw;
-    const auto [end, fault] = std::from_chars(message.data() + kName.size(), message.data() + message.size(), line);
-    if (fault != std::errc() || line <= 2) throw;
-    throw InputError(std::string(kName) + std::to_string(line - 2) + std::string(end, message.data() + message.size()));
-  }
-}
-
 /// Lines of a capture, read by the one reader of captures: as the head of one with a single draw, whose state is taken.
 void say(halfplane_scene& made, std::string_view lines) {
   Scene& scene = made.scene;
   const std::string head =
       "halfplane 1\ntarget " + std::to_string(scene.width) + " " + std::to_string(scene.height) + "\n";
-  const Scene said = read_lines(head, lines, "\nv 0 0 0 1\np 0\n");
+  const Scene said = read_capture_lines(head + std::string(lines) + "\nv 0 0 0 1\np 0\n", "lines", 2);
   if (said.vertices.size() != 1) throw InputError("lines: vertices are given by halfplane_scene_vertices");
   if (said.width != scene.width || said.height != scene.height)
     throw InputError("lines: the size of the target is given by halfplane_scene_new");

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "../config.hpp"
+#include "capture_lines.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"
 #include "capture_textures.hpp"
@@ -22,7 +23,8 @@ namespace {
 /// Builds the scene, one line at a time.
 class CaptureReader {
  public:
-  CaptureReader(std::string_view text, std::string_view file_name) : text_(text, file_name), textures_(file_name) {
+  CaptureReader(std::string_view text, std::string_view file_name, std::size_t head)
+      : text_(text, file_name, head), textures_(file_name) {
     scene_.name = file_name;
   }
 
@@ -334,10 +336,12 @@ FileText read_all(const std::string& path) {
 
 }  // namespace
 
-Scene read_capture(std::string_view text, std::string_view file_name) {
+Scene read_capture(std::string_view text, std::string_view file_name) { return read_capture_lines(text, file_name, 0); }
+
+Scene read_capture_lines(std::string_view text, std::string_view file_name, std::size_t head) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // some editors begin UTF-8 files with it
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-  return CaptureReader(text, file_name).read();
+  return CaptureReader(text, file_name, head).read();
 }
 
 Scene read_capture_file(const std::string& path) {

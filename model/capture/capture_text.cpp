@@ -233,7 +233,8 @@ void CaptureText::refuse_nul() const {
   const std::size_t nul = text_.find('\0');
   if (nul == std::string_view::npos) return;
   const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
-  fail_at(static_cast<std::size_t>(line), "a NUL byte; a capture is plain text (ASCII or UTF-8): write it anew");
+  fail_at(static_cast<std::size_t>(line) - head_,
+          "a NUL byte; a capture is plain text (ASCII or UTF-8): write it anew");
 }
 
 void CaptureText::fail_at(std::size_t line, const std::string& message) const {

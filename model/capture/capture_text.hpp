@@ -25,7 +25,9 @@ void append_number(std::string& out, double value);
 /// A cursor over the words of a text. Words are separated by blanks and tabs; `#` ends a line early, CR LF is one end.
 class CaptureText {
  public:
-  CaptureText(std::string_view text, std::string_view file_name) : text_(text), file_name_(file_name) {}
+  /// `head`: lines at its beginning that are not the caller's, and not counted.
+  CaptureText(std::string_view text, std::string_view file_name, std::size_t head = 0)
+      : text_(text), file_name_(file_name), head_(head), line_(0 - head) {}
 
   /// Moves on to the next line that has a word in it. False at the end of the text.
   [[nodiscard]] bool next_line();
@@ -71,8 +73,9 @@ class CaptureText {
   std::string_view expect_word(std::string_view what);
 
   std::string_view text_, file_name_;
+  std::size_t head_;                // lines that are not counted
   std::size_t next_ = 0;            // where the next line begins in text_
-  std::size_t line_ = 0;            // 0: before the first
+  std::size_t line_;                // 0: before the first that counts; modulo 2^64 before that
   const char* at_ = nullptr;        // where the next word is looked for
   const char* line_end_ = nullptr;  // before its LF or CR LF
 };

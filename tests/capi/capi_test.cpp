@@ -88,6 +88,10 @@ TEST_F(Capi, ArraysThatAreNoSceneAreRefusedAndLeaveItAsItWas) {
   expect_error(halfplane_scene_say(scene, "state cull none\nv 1 1 1 1\n", 26), "vertices are given by");
   expect_error(halfplane_scene_say(scene, "state cul none\n", 15), "lines:1: ");
   expect_error(halfplane_scene_say(scene, "state cull none\nstate cul none\n", 31), "lines:2: ");
+  const std::string incomplete = "texture T inline l8 2 1\nstate cull none\n", target = "target 16 16\ntarget 16 16\n";
+  expect_error(halfplane_scene_say(scene, incomplete.data(), incomplete.size()), "from line 1 ");
+  expect_error(halfplane_scene_say(scene, target.data(), target.size()),
+               "lines:2: a second target, the first is on line 1");
   EXPECT_EQ(plane("functional", "color"), before);
 }
 
