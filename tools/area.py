@@ -75,6 +75,7 @@ OPERATIONS = [
 ]
 OPERATION_TOPS = {'blend_lane': 'a lane of four channels with alpha', 'alpha_test': 'of four samples', 'stencil_test': 'of four samples',
                   'dithered_rop': 'a sample', 'fog_place': 'a sample', 'fog_unit': 'four samples', 'color_write': 'W, four lanes'}
+OPERATION_PARAMETERS = {'fog_unit': 'WORD 76'}  # where a module alone has others: the places of four samples
 OPERATION_UNITS = 'and all of these'  # the design that has them
 OPERATION_HEAD = '## Fragment operations'
 LINE_POSITIONS = '''
@@ -136,8 +137,12 @@ def operation_file(title):
 def operation_units():
     """ECP5 cells of each of OPERATION_TOPS by itself."""
     title = operation_file(OPERATION_UNITS)
-    return {top: yosys(title, f'-{top}', f'{read_verilog(title)}; ' + SYNTH_ECP5.replace('raster_top', top))[top]
-            for top in OPERATION_TOPS}
+    found = {}
+    for top in OPERATION_TOPS:
+        # Its cells are made again as those of a module of this name, whatever name its parameters have given it.
+        made = f'hierarchy -top {top} -chparam {OPERATION_PARAMETERS[top]}; rename -top {top}; ' if top in OPERATION_PARAMETERS else ''
+        found[top] = yosys(title, f'-{top}', f'{read_verilog(title)}; {made}' + SYNTH_ECP5.replace('raster_top', top))[top]
+    return found
 
 
 def blocks(title):
@@ -345,7 +350,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--only', metavar='PRESET', help='configurations of one preset, printed and not written; or `operations`, '
                         'fragment operations, whose section of the page is written anew')
-    parser.add_argument('--units', metavar='LIST', help='with `--only operations`: some of its units, printed and not written: '
+    parser.add_argument('--units', metavar='LIST', help='with `--only operations`: the section has these units only, of '
                         + ', '.join(title for title, _, _ in OPERATIONS))
     parser.add_argument('--jobs', type=int, default=2, metavar='N', help='tools at a time (2)')
     parser.add_argument('--program', default='build/halfplane', help='the halfplane program')
@@ -368,7 +373,7 @@ def main():
     if options.only in (None, 'operations', 'embedded'):
         extra = [o[0] for o in OPERATIONS if not asked or o[0] in asked or o[0] in {b for t, _, b in OPERATIONS if t in asked}]
     for title, settings, _ in OPERATIONS:
-        if title in extra or (extra and title == OPERATION_UNITS and not asked):
+        if title in extra or (extra and title == OPERATION_UNITS):
             package(operation_file(title), 'embedded', OPERATION_SETTINGS + settings)
     (BUILD / 'line_positions.sv').write_text(LINE_POSITIONS, encoding='utf-8')
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
@@ -382,14 +387,13 @@ def main():
             'operations': {t: pool.submit(blocks, operation_file(t)) for t in extra},
             'flats': {c: pool.submit(flat, FLAT, c) for c in FLAT_ECP5 if FLAT in titles},
         }
-        tops = pool.submit(operation_units).result() if extra and not asked else {}
+        tops = pool.submit(operation_units).result() if extra else {}
         results = {name: {key: job.result() for key, job in group.items()} for name, group in jobs.items()}
     target = pathlib.Path('docs/area.md')
     if only_operations:
         part = operation_part(results['operations'], tops)
         print('\n'.join(part))
-        if not asked:
-            target.write_text(in_page(target.read_text(encoding='utf-8'), part), encoding='utf-8')
+        target.write_text(in_page(target.read_text(encoding='utf-8'), part), encoding='utf-8')
         return
     text = page(**results, tops=tops)
     print(text, end='')

@@ -571,8 +571,6 @@ mutant(372 stages/color_write.sv "colours: masks: a channel that is left out bec
   [=[stored_2_q[s*COLOR+:COLOR] & {COLOR{!mask_2_q[s]}}]=])
 mutant(373 stages/color_write.sv "colours: masks: samples that are not drawn lose the channels that are"
   [=[(stored_2_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_2_q[s]}}))]=] [=[stored_2_q[s*COLOR+:COLOR] & ~channels]=])
-mutant_text(374 stages/color_write.sv "colours: masks: red is left out from a reset to the first token"
-  [=[4'b1111, WRITES'(0)]=] [=[3'b111, raster_cosim.mutant_q != 16'd374, WRITES'(0)]=])
 mutant(375 stages/color_write.sv "colours: masks: a token writes all channels"
   [=[word_i[BLENDS:0]]=] [=[word_i[BLENDS:0] | (BLENDS + 1)'(15 << WRITES)]=])
 mutant_text(376 stages/color_write.sv "colours: masks: the constant of blending sets them, too"
