@@ -58,8 +58,8 @@ module memory_port #(
   localparam int PORT = raster_pkg::PORT_SHIFT;
   localparam int BYTES = 1 << PORT;  // of a beat
   localparam int HAS_BLOCKS = raster_pkg::CACHE_KIND;
-  localparam int DEPTH_SHIFT = $clog2(DEPTH_BYTES);  // log2 of the bytes of a stamp
-  localparam int COLOR_SHIFT = $clog2(COLOR_BYTES);
+  localparam int DEPTH_SHIFT = $clog2(SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES);  // log2 of the bytes of a stamp
+  localparam int COLOR_SHIFT = $clog2(SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES);
   localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
   localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
   localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;
