@@ -21,7 +21,7 @@ script=$3
 [ ! -e "$(dirname "$0")/broken" ] || { echo 'ERROR: this one is broken'; exit 1; }
 netlist=$(printf '%s\n' "$script" | sed -n 's/.*write_rtlil \([^;]*\).*/\1/p')
 if [ -n "$netlist" ]; then
-  package=$(printf '%s\n' "$script" | sed 's/read_verilog -sv -defer \([^ ]*\) .*/\1/')
+  package=$(printf '%s\n' "$script" | sed 's/^read_verilog \(-[^ ]* \)*\([^ ]*\) .*/\2/')
   depth=$(sed -n 's/.* DEPTH_BITS = \([0-9]*\);.*/\1/p' "$package" | head -n 1)
   cat >"$netlist" <<END
 module \\cull
