@@ -46,7 +46,7 @@ StageRow framebuffer_of(const Config& config, const Widths& widths) {
   if (config.cache_kind == CacheKind::blocks) {
     const auto block = static_cast<std::uint64_t>(widths.blocks.stamps());
     return {Stage::framebuffer,
-            "3 to the test where nothing is read, for a stamp of depth from memory 4 and the memory port's latency",
+            "4 to the test, for a stamp of depth from memory the memory port's latency more",
             "1; behind a flag that falls 1 more for another block; of the memory port 1 a stamp: a block that leaves "
             "at most " +
                 text(2 * block) + ", beside what follows",
