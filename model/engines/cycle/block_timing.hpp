@@ -354,8 +354,8 @@ class BlockTiming {
   void note_writes(const TagResult& tags, const BlockItem& item) {
     const bool starts_depth = tags.source != DepthSource::chip;
     last_line_ = tags.line;
-    last_writes_ = item.mask.any() && !item.is_late &&
-                   (item.depth_write || (starts_depth && tags.source != DepthSource::none));
+    last_writes_ =
+        item.mask.any() && !item.is_late && (item.depth_write || (starts_depth && tags.source != DepthSource::none));
     if (!item.mask.any()) return;
     const std::uint64_t bit = std::uint64_t{1} << item.stamp;
     const auto note = [&](std::uint64_t& dirty, bool starts, bool writes) {

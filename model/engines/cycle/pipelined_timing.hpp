@@ -197,9 +197,9 @@ class PipelinedTiming : public BackTiming {
   Station rows_{1, 1, 0}, coverage_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;  ///< the first three: fine_raster
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Cycle offer_ = 0, last_left_ = 0;
-  Cycle walk_ = 0;                         ///< when coarse_raster's walk is at the next tile
+  Cycle walk_ = 0;                        ///< when coarse_raster's walk is at the next tile
   Cycle tile_left_ = 0, visit_left_ = 0;  ///< when the last tile packet left it, the last visit
-  bool reads_bounds_ = false;              ///< the primitive does
+  bool reads_bounds_ = false;             ///< the primitive does
 };
 
 }  // namespace halfplane

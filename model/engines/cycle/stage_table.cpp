@@ -45,8 +45,7 @@ StageRow framebuffer_of(const Config& config, const Widths& widths) {
   const auto stamps = static_cast<std::uint64_t>(widths.stamps.stamps());
   if (config.cache_kind == CacheKind::blocks) {
     const auto block = static_cast<std::uint64_t>(widths.blocks.stamps());
-    return {Stage::framebuffer,
-            "4 to the test, for a stamp of depth from memory the memory port's latency more",
+    return {Stage::framebuffer, "4 to the test, for a stamp of depth from memory the memory port's latency more",
             "1; behind a flag that falls 1 more for another block; of the memory port 1 a stamp: a block that leaves "
             "at most " +
                 text(2 * block) + ", beside what follows",
