@@ -187,8 +187,7 @@ module cull (
   logic                                     front_cw_q, d_is_empty_q;
   raster_pkg::pixel_box_t               d_box_q;
   logic [3*(2*C+CODES)-1:0]                 vertex_q;
-  logic                                     d_is_triangle, d_is_state, is_decided, is_counted, is_zero, is_back, is_sampleless, is_dropped;
-  logic                                     is_front;
+  logic                                     d_is_triangle, d_is_state, is_decided, is_counted, is_zero, is_back, is_dropped;
 
   assign d_is_state   = raster_pkg::COORDINATES != 0 && kind_q == raster_pkg::PRIMITIVE_KIND_STATE;
   assign is_decided   = decide_step_q == 2'd3 || d_is_state;
@@ -267,10 +266,12 @@ module cull (
   /* verilator lint_on UNUSEDSIGNAL */
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
-  logic       is_zero_q, is_back_q;         // area_q is; it has the sign of a side that is dropped
-  logic       is_small, is_small_q;         // all sides are short
-  logic [3:0] has_inside, has_outside, has_inside_q, has_outside_q;  // of the four samples: inside, outside of some edge
+  // What the verdict needs, known a cycle ahead of it.
+  logic       is_zero_q, is_back_q;  // area_q is; it has the sign of a side that is dropped
+  logic       is_small, is_small_q;  // all sides are short
+  logic [3:0] has_inside, has_outside, has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
   logic       is_sampleless_q;
+  logic       is_front;
   assign is_front    = area[E] != front_cw_q;  // positive area: clockwise as seen
   assign is_small    = is_small_q && edge_is_short_q;
   assign has_inside  = has_inside_q | ~signs;
@@ -300,21 +301,21 @@ module cull (
         d_box_q                        <= '0;
         vertex_q[2*(2*C+CODES)-1:0]    <= '0;
       end
-      area_q        <= '0;
-      is_zero_q     <= 1'b1;
-      is_back_q     <= 1'b0;
-      is_small_q    <= 1'b1;
-      has_inside_q  <= '0;
-      has_outside_q <= '0;
+      area_q          <= '0;
+      is_zero_q       <= 1'b1;
+      is_back_q       <= 1'b0;
+      is_small_q      <= 1'b1;
+      has_inside_q    <= '0;
+      has_outside_q   <= '0;
       is_sampleless_q <= 1'b0;
     end else if (decide_moves && d_is_triangle) begin
-      area_q        <= area[E:1];
-      is_zero_q     <= area[E:1] == '0;
-      edge_q        <= {edge_value[S+:V], edge_q[V+:2*V]};
-      is_back_q     <= is_front ? mode_q[1] : mode_q[0];  // bit 1: front faces
-      is_small_q    <= is_small;
-      has_inside_q  <= has_inside;
-      has_outside_q <= has_outside;
+      area_q          <= area[E:1];
+      is_zero_q       <= area[E:1] == '0;
+      edge_q          <= {edge_value[S+:V], edge_q[V+:2*V]};
+      is_back_q       <= is_front ? mode_q[1] : mode_q[0];  // bit 1: front faces
+      is_small_q      <= is_small;
+      has_inside_q    <= has_inside;
+      has_outside_q   <= has_outside;
       is_sampleless_q <= has_2x2_q && is_small && is_missed == '1;
     end
   end
@@ -326,7 +327,7 @@ module cull (
   assign is_negative   = area_q < 0;
   assign is_zero       = d_is_triangle && is_zero_q;
   assign is_back       = is_back_q && !is_zero;
-  assign is_dropped    = is_zero || is_back_q || d_is_empty_q || is_sampleless;
+  assign is_dropped    = is_zero || is_back_q || d_is_empty_q || is_sampleless_q;
 
   // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
   // left to fine_raster.
@@ -340,8 +341,7 @@ module cull (
     has_row_q    <= rows != 3'd0;
   end
   logic [3:0] is_missed;
-  assign is_missed     = (has_inside & has_outside) | ~{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1};
-  assign is_sampleless = is_sampleless_q;
+  assign is_missed = (has_inside & has_outside) | ~{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1};
 
   assign is_dropped_o   = leaves && is_dropped;
   // Counters, one cycle late: what makes a triangle leave comes late enough without them behind it.
@@ -357,7 +357,7 @@ module cull (
       is_zero_area_o <= leaves && is_zero;
       is_backface_o  <= leaves && is_back;
       is_empty_o     <= leaves && is_counted && !is_zero && !is_back && d_is_empty_q;
-      is_no_sample_o <= leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless;
+      is_no_sample_o <= leaves && !is_zero && !is_back && !d_is_empty_q && is_sampleless_q;
     end
   end
 
