@@ -25,7 +25,8 @@ SYNTH_ECP5 = 'synth_ecp5 -top raster_top -nowidelut'
 FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_top', 'synth_ecp5 -top raster_top -abc9',
              'synth_ecp5 -top raster_top -abc9 -nowidelut']
 FLAT = 'embedded, 2x2'
-SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper -abc9'
+# Without -abc9, which Yosys 0.23 cannot do here: its ABC refuses the flat design of `small` (the order of its carry boxes).
+SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper'
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
 KEEP = gates.KEEP
 PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
@@ -267,14 +268,14 @@ def operation_part(designs, tops):
     return lines
 
 
-def in_page(page, part):
+def in_page(page, part, command):
     """The page with the lines of `part` in place of its section, or before that of the iCE40."""
     sections = re.split(r'^(?=## )', page, flags=re.M)
     at = [i for i, section in enumerate(sections) if section.startswith(OPERATION_HEAD)]
     if not at:
         at = [i for i, section in enumerate(sections) if section.startswith('## iCE40')] or [len(sections)]
         sections.insert(at[0], '')
-    dated = f'By `./dev area --only operations` on {datetime.date.today()} with {version(["yosys", "-V"])}.'
+    dated = f'By `{command}` on {datetime.date.today()} with {version(["yosys", "-V"])}.'
     sections[at[0]] = '\n'.join([part[0], '', dated, '', *part[2:]]).replace('\n\n\n', '\n\n').rstrip() + '\n\n'
     return ''.join(sections).rstrip() + '\n'
 
@@ -392,8 +393,9 @@ def main():
     target = pathlib.Path('docs/area.md')
     if only_operations:
         part = operation_part(results['operations'], tops)
+        command = './dev area --only operations' + (f' --units "{options.units}"' if asked else '')
         print('\n'.join(part))
-        target.write_text(in_page(target.read_text(encoding='utf-8'), part), encoding='utf-8')
+        target.write_text(in_page(target.read_text(encoding='utf-8'), part, command), encoding='utf-8')
         return
     text = page(**results, tops=tops)
     print(text, end='')
