@@ -155,9 +155,8 @@ PROOFS = [
           cover_depth=9, quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)), cuts=SRAMS,
           twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
     Proof('registered_fifo_stream', 'f', 'lib/registered_fifo.sv', 'the same, the item on offer in a register', k=2, cover_depth=9,
-          quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)),
-          twins=(("used_q != (INDEX + 1)'(DEPTH)", "used_q != '1"), ('memory_q[head_q]', "memory_q['0]"),
-                 ("(!valid_o || ready_i);", "ready_i;"))),
+          quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)), cuts=('*fifo*',),
+          twins=(402, ("used_q != USED'(DEPTH)", "used_q != '1"), ('if (is_free) data_o', 'if (ready_i) data_o'))),
     Proof('texture_levels_place', 'e', 'stages/texture_levels.sv', 'a level begins where the larger ones end, and its blocks lie '
           'below that', presets=TINY, parameters=(('TAIL', 2),), cover_depth=6,
           twins=(("(21'h155555 << new_odds)", "21'h155555"), ("(21'h1ffffe << blocks)", "(21'h1fffff << blocks)"),

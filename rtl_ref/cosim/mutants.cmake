@@ -191,7 +191,7 @@ mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the 
 mutant(401 stages/triangle_setup.sv "divider: what is negative is not made good"
   [=[!from[REMAINDER-1]]=] [=[1'b1]=])
 mutant(402 lib/registered_fifo.sv "dropped stall: the item on offer gives way before it is taken"
-  [=[waiting_q != '0 && (!valid_o || ready_i)]=] [=[waiting_q != '0]=])
+  [=[!valid_o || ready_i]=] [=[1'b1]=])
 
 # the lag of HiZ
 mutant(62 stages/hiz.sv "stale HiZ: a visit that may raise a depth is believed not to, until it is seen"

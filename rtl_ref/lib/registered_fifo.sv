@@ -1,4 +1,4 @@
-// FIFO whose item on offer stands in a register: who looks far at it begins there, and not at an address of a RAM.
+// FIFO (fifo.sv) whose item on offer stands in a register: who looks far at it begins there, and not at an address of a RAM.
 //
 // Latency two cycles; the item in the register is one of the DEPTH. Ready says nothing of the consumer: a place is free in
 // the cycle behind the one in which an item leaves.
@@ -22,38 +22,45 @@ module registered_fifo #(
     output logic is_empty_o  // nothing is here, nor on its way to the register
 );
 
-  localparam int INDEX = $clog2(DEPTH);
+  localparam int USED = $clog2(DEPTH + 1);
 
-  logic [WIDTH-1:0] memory_q[0:DEPTH-1];
-  logic [INDEX-1:0] head_q, tail_q;  // of the next to go into the register, of the next to enter
-  logic [INDEX:0]   used_q, waiting_q;  // items here; and those that are not in the register
-  logic             enters, moves, leaves;
+  logic             waits, enters, leaves, is_free;  // an item behind the register; the register is, or will be
+  logic [WIDTH-1:0] next;
+  logic [USED-1:0]  used_q;  // items here
 
-  assign ready_o    = used_q != (INDEX + 1)'(DEPTH);
+  assign ready_o    = used_q != USED'(DEPTH);
   assign is_empty_o = used_q == '0;
   assign enters     = valid_i && ready_o;
   assign leaves     = valid_o && ready_i;
-  assign moves      = waiting_q != '0 && (!valid_o || ready_i);
+  assign is_free    = !valid_o || ready_i;
+
+  /* verilator lint_off UNUSEDSIGNAL */  // there is a place
+  logic waiting_ready;
+  /* verilator lint_on UNUSEDSIGNAL */
+  fifo #(
+      .WIDTH(WIDTH),
+      .DEPTH(DEPTH)
+  ) u_waiting (
+      .clk_i,
+      .rst_ni,
+      .valid_i(enters),
+      .ready_o(waiting_ready),
+      .data_i,
+      .valid_o(waits),
+      .ready_i(is_free),
+      .data_o (next)
+  );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      head_q    <= '0;
-      tail_q    <= '0;
-      used_q    <= '0;
-      waiting_q <= '0;
-      valid_o   <= 1'b0;
+      used_q  <= '0;
+      valid_o <= 1'b0;
     end else begin
-      head_q    <= head_q + INDEX'(moves);
-      tail_q    <= tail_q + INDEX'(enters);
-      used_q    <= used_q + (INDEX + 1)'(enters) - (INDEX + 1)'(leaves);
-      waiting_q <= waiting_q + (INDEX + 1)'(enters) - (INDEX + 1)'(moves);
-      valid_o   <= moves || (valid_o && !ready_i);
+      used_q <= used_q + USED'(enters) - USED'(leaves);
+      if (is_free) valid_o <= waits;
     end
   end
 
-  always_ff @(posedge clk_i) begin
-    if (enters) memory_q[tail_q] <= data_i;
-    if (!valid_o || ready_i) data_o <= memory_q[head_q];
-  end
+  always_ff @(posedge clk_i) if (is_free) data_o <= next;
 
 endmodule

@@ -200,28 +200,21 @@ module interpolate (
   endgenerate
 
   /* verilator lint_off UNUSEDSIGNAL */  // there is a place
-  logic made_ready;
+  logic made_ready, is_empty;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic queued, is_free;
-  raster_pkg::fragment_packet_t queued_fragment;
-  fifo #(
+  registered_fifo #(
       .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS),
       .DEPTH(ROOM)
   ) u_fragments (
       .clk_i,
       .rst_ni,
-      .valid_i(samples_valid_q),
-      .ready_o(made_ready),
-      .data_i (made),
-      .valid_o(queued),
-      .ready_i(is_free),
-      .data_o (queued_fragment)
+      .valid_i   (samples_valid_q),
+      .ready_o   (made_ready),
+      .data_i    (made),
+      .valid_o   (fragment_valid_o),
+      .ready_i   (fragment_ready_i),
+      .data_o    (fragment_o),
+      .is_empty_o(is_empty)
   );
-  assign is_free = !fragment_valid_o || fragment_ready_i;
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) fragment_valid_o <= 1'b0;
-    else if (is_free) fragment_valid_o <= queued;
-  end
-  always_ff @(posedge clk_i) if (is_free) fragment_o <= queued_fragment;
 
 endmodule
