@@ -215,6 +215,9 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "PORT_SHIFT", memory.port, "log2 of the bytes of a beat");
   print_constant(out, "DEPTH_SAMPLE_BYTES", 1 << memory.sample[0], "of a stored depth");
   print_constant(out, "COLOR_SAMPLE_BYTES", 1 << memory.sample[1], "of a stored colour");
+  const int stamp_bytes = widths.samples << std::max(memory.sample[0], memory.sample[1]);
+  print_constant(out, "REQUEST_BYTES", std::max(stamp_bytes, widths.blocks.flag_word / 8),
+                 "data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags");
   print_constant(out, "PLANE_SHIFT", memory.plane, "log2 of the bytes of a plane of a tile");
   print_constant(out, "FLAG_ROW_SHIFT", memory.flag_row, "log2 of the bytes from one row of flags to the next");
   out << stall_constants() << "\n  // Derived widths, each with its bound.\n";

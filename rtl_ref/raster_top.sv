@@ -81,11 +81,7 @@ module raster_top (
   /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
   raster_pkg::memory_request_t      request_data;
   /* verilator lint_on UNUSEDSIGNAL */
-  localparam int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES;
-  localparam int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES;
-  localparam int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES;
-  localparam int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES;
-  logic [8*DATA_BYTES-1:0]          request_bytes;  // its data as they lie in memory
+  logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes;  // its data as they lie in memory
   raster_pkg::memory_response_t     response_data;
   logic                             request_valid, request_ready, response_valid, response_ready;
   logic                             write_valid, retire_valid;

@@ -1,14 +1,9 @@
 // Request lanes: what a request to memory writes, a lane a sample, out of the bytes that lie in memory: request_bytes the other way.
 // A word of flags lies in the lanes from the first bit on. Combinational.
-module request_lanes #(
-    parameter int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES,  // of a stamp; derived, not to be set
-    parameter int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES,
-    parameter int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES,
-    parameter int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES
-) (
+module request_lanes (
     input  raster_pkg::tile_plane_t                                       plane_i,
     /* verilator lint_off UNUSEDSIGNAL */  // bytes wider than what is stored
-    input  logic [8*DATA_BYTES-1:0]                                       bytes_i,
+    input  logic [8*raster_pkg::REQUEST_BYTES-1:0]                        bytes_i,
     /* verilator lint_on UNUSEDSIGNAL */
     output logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] data_o
 );

@@ -10,12 +10,7 @@
 // goes from the RAMs into a slot of `victims`, its depths in X and its colours in W, a stamp a cycle, first the one that is
 // about to be overwritten, and from there to memory.
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
-module block_cache #(
-    parameter int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES,  // of a stamp; derived, not to be set
-    parameter int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES,
-    parameter int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES,
-    parameter int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES
-) (
+module block_cache (
     input logic clk_i,
     /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
     input logic power_on_ni,
@@ -43,7 +38,7 @@ module block_cache #(
     output logic                         request_valid_o,
     input  logic                         request_ready_i,
     output raster_pkg::memory_request_t  request_o,        // without its data
-    output logic [8*DATA_BYTES-1:0]      request_bytes_o,  // which are these, as they lie in memory
+    output logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes_o,  // which are these, as they lie in memory
     input  logic                         response_valid_i,
     output logic                         response_ready_o,
     /* verilator lint_off UNUSEDSIGNAL */  // lanes wider than a depth code
@@ -858,10 +853,12 @@ module block_cache #(
   // Its data, as they lie in memory, from one of five: each by itself, so that nothing is chosen in a row.
   localparam int DEPTH_WIDTH = 8 * raster_pkg::DEPTH_SAMPLE_BYTES;
   localparam int COLOR_WIDTH = 8 * raster_pkg::COLOR_SAMPLE_BYTES;
-  localparam int DATA = 8 * DATA_BYTES;
-  logic                     sends_here, sends_flags, clears_depth, clears_color;
-  logic [8*DEPTH_BYTES-1:0] depth_bytes, clear_depths;
-  logic [8*COLOR_BYTES-1:0] color_bytes, clear_colors;
+  localparam int DEPTHS = SAMPLES * DEPTH_WIDTH;
+  localparam int COLORS = SAMPLES * COLOR_WIDTH;
+  localparam int DATA = 8 * raster_pkg::REQUEST_BYTES;
+  logic              sends_here, sends_flags, clears_depth, clears_color;
+  logic [DEPTHS-1:0] depth_bytes, clear_depths;
+  logic [COLORS-1:0] color_bytes, clear_colors;
   assign sends_here   = sends && is_here;
   assign sends_flags  = flush_valid && flush_request.plane[1];
   assign clears_depth = sends && !is_here && !is_color;
@@ -874,12 +871,12 @@ module block_cache #(
       assign clear_colors[s*COLOR_WIDTH+:COLOR_WIDTH] = COLOR_WIDTH'(clear_color) & {COLOR_WIDTH{clears_color}};
     end
   endgenerate
-  logic [8*DEPTH_BYTES-1:0]         depth_part;
-  logic [8*COLOR_BYTES-1:0]         color_part;
+  logic [DEPTHS-1:0]                depth_part;
+  logic [COLORS-1:0]                color_part;
   logic [raster_pkg::FLAG_WORD-1:0] flag_part;
   logic [DATA-1:0]                  clear_part;  // of all samples the same: chosen once
-  assign depth_part      = depth_bytes & {8 * DEPTH_BYTES{sends_here && !is_color}};
-  assign color_part      = color_bytes & {8 * COLOR_BYTES{sends_here && is_color}};
+  assign depth_part      = depth_bytes & {DEPTHS{sends_here && !is_color}};
+  assign color_part      = color_bytes & {COLORS{sends_here && is_color}};
   assign flag_part       = flush_word & {raster_pkg::FLAG_WORD{sends_flags}};
   assign clear_part      = DATA'(clear_depths) | DATA'(clear_colors);
   assign request_bytes_o = DATA'(color_part) | DATA'(depth_part) | DATA'(flag_part) | clear_part;

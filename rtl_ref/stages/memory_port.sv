@@ -11,12 +11,7 @@
 // Reset: power_on_ni resets the port, rst_ni everything in front of it at any time, for a cycle at least. A burst under way is
 // then ended with beats that write nothing, and the answers that are still to come are dropped; only then requests are taken.
 // Specification: model/stages/memory_port.hpp; the times are those of model/engines/cycle/port_timing.hpp.
-module memory_port #(
-    parameter int DEPTH_BYTES = raster_pkg::SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES,  // of a stamp; derived, not to be set
-    parameter int COLOR_BYTES = raster_pkg::SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES,
-    parameter int STAMP_BYTES = (DEPTH_BYTES > COLOR_BYTES) ? DEPTH_BYTES : COLOR_BYTES,
-    parameter int DATA_BYTES = (raster_pkg::FLAG_WORD / 8 > STAMP_BYTES) ? raster_pkg::FLAG_WORD / 8 : STAMP_BYTES
-) (
+module memory_port (
     input logic clk_i,
     input logic power_on_ni,
     /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
@@ -33,7 +28,7 @@ module memory_port #(
     /* verilator lint_off UNUSEDSIGNAL */  // its data
     input  raster_pkg::memory_request_t request_i,
     /* verilator lint_on UNUSEDSIGNAL */
-    input  logic [8*DATA_BYTES-1:0]     bytes_i,  // which are these, as they lie in memory (request_bytes)
+    input  logic [8*raster_pkg::REQUEST_BYTES-1:0] bytes_i,  // which are these, as they lie in memory (request_bytes)
 
     // To the framebuffer
     output logic                         response_valid_o,

@@ -32,7 +32,7 @@
     end
   end
   // With a request come its data as they lie in memory.
-  logic [8*DATA_BYTES-1:0] data_bytes;
+  logic [8*raster_pkg::REQUEST_BYTES-1:0] data_bytes;
   request_bytes u_data_bytes (
       .request_i(request_i),
       .bytes_o  (data_bytes)

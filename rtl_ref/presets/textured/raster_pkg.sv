@@ -72,6 +72,7 @@ package raster_pkg;
   localparam int PORT_SHIFT = 3;  // log2 of the bytes of a beat
   localparam int DEPTH_SAMPLE_BYTES = 2;  // of a stored depth
   localparam int COLOR_SAMPLE_BYTES = 2;  // of a stored colour
+  localparam int REQUEST_BYTES = 8;  // data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags
   localparam int PLANE_SHIFT = 7;  // log2 of the bytes of a plane of a tile
   localparam int FLAG_ROW_SHIFT = 6;  // log2 of the bytes from one row of flags to the next
 
