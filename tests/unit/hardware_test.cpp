@@ -296,7 +296,8 @@ TEST(Hardware, NoCodeOfACoveredSampleLeavesTheRangeOfTheVertices) {
         ++covered;
         for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
           const int guard_bits = widths.of_plane(p).guard_bits();
-          const std::int64_t rounded = (plane_at(setup, p, widths, x, y).unrounded + (std::int64_t{1} << (guard_bits - 1))) >> guard_bits;
+          const std::int64_t rounded =
+              (plane_at(setup, p, widths, x, y).unrounded + (std::int64_t{1} << (guard_bits - 1))) >> guard_bits;
           ASSERT_LE(std::int64_t{setup.range.low[p]}, rounded);
           ASSERT_GE(std::int64_t{setup.range.high[p]}, rounded);
         }
