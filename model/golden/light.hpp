@@ -20,6 +20,28 @@ inline Real3 normalized(const Real3& v) {
 }
 }  // namespace light_detail
 
+/// Where a light is seen from a place, and how much of it arrives.
+struct LightAt {
+  Real3 direction{};  ///< length 1
+  double strength = 1;
+};
+
+/// Both in the same space.
+inline LightAt light_at(const Light& light, const Real3& place) {
+  using namespace light_detail;
+  LightAt at{{light.position[0], light.position[1], light.position[2]}};
+  if (light.position[3] == 0) return {normalized(at.direction)};
+  for (std::size_t i = 0; i < 3; ++i) at.direction[i] -= place[i];
+  const double d = std::hypot(at.direction[0], at.direction[1], at.direction[2]);
+  at.strength = 1 / (light.attenuation[0] + light.attenuation[1] * d + light.attenuation[2] * d * d);
+  if (light.range > 0) at.strength *= std::max(0.0, 1 - std::pow(d / light.range, 4));
+  at.direction = normalized(at.direction);
+  if (light.spot_scale == 0) return at;
+  const double cosine = -dot(light.spot_direction, at.direction);
+  at.strength *= std::pow(std::clamp(cosine * light.spot_scale + light.spot_offset, 0.0, 1.0), 2);
+  return at;
+}
+
 /// The colour of a vertex at `eye` (eye space) whose normal, of length 1, is turned to the side that is seen: 0...255.
 inline Real3 light_color(const Lighting& lighting, const Real3& eye, const Real3& normal, const Material& material) {
   using namespace light_detail;
@@ -27,21 +49,7 @@ inline Real3 light_color(const Lighting& lighting, const Real3& eye, const Real3
   for (std::size_t c = 0; c < 3; ++c) sum[c] = material.emission[c] + lighting.ambient[c] * material.ambient[c];
   const Real3 viewer = lighting.has_local_viewer ? normalized({-eye[0], -eye[1], -eye[2]}) : Real3{0, 0, 1};
   for (const Light& light : lighting.lights) {
-    Real3 to_light{light.position[0], light.position[1], light.position[2]};
-    double strength = 1;
-    if (light.position[3] != 0) {
-      for (std::size_t i = 0; i < 3; ++i) to_light[i] -= eye[i];
-      const double d = std::hypot(to_light[0], to_light[1], to_light[2]);
-      strength = 1 / (light.attenuation[0] + light.attenuation[1] * d + light.attenuation[2] * d * d);
-      if (light.range > 0) strength *= std::max(0.0, 1 - std::pow(d / light.range, 4));
-      to_light = normalized(to_light);
-      if (light.spot_scale != 0) {
-        const double cosine = -dot(light.spot_direction, to_light);
-        strength *= std::pow(std::clamp(cosine * light.spot_scale + light.spot_offset, 0.0, 1.0), 2);
-      }
-    } else {
-      to_light = normalized(to_light);
-    }
+    const auto [to_light, strength] = light_at(light, eye);
     const double facing = dot(normal, to_light);
     double diffuse = 0, specular = 0;
     if (facing > 0) {

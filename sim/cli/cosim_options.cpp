@@ -70,6 +70,9 @@ const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
   if (options.random != 0 && !options.camera.empty())
     throw InputError(
         "--camera: the scenes of --random have no camera; leave --camera out, or give a SCENE in place of --random");
+  if (options.random != 0 && !options.lights.empty())
+    throw InputError(
+        "--light: the scenes of --random have no lights; leave --light out, or give a SCENE in place of --random");
   if (options.trace_path == "-") throw InputError("--trace: a waveform cannot go to stdout; give a file, .fst");
   check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);

@@ -83,6 +83,12 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--camera", options.camera,
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT' or "
                  "'name=NAME' for one of a glTF file's own; 'orbit' or 'orbit=DEGREES' turns it about the target");
+  app.add_option("--light", options.lights,
+                 "a light, each time it is given: 'from=X,Y,Z' where it comes from, 'at=X,Y,Z;range=R' where it is, "
+                 "'eye', each with ';color=R,G,B'; 'ambient=R,G,B'; 'off' (without it: the file's own, else one at the "
+                 "eye; docs/light.md)")
+      ->check(refuse_empty)
+      ->allow_extra_args(false);
   app.add_option("--time", options.time,
                  "seconds into the animation of a glTF file (without it: as the file is at rest)")
       ->check(refuse_empty);
@@ -179,6 +185,7 @@ std::optional<TimeSpan> parse_time(const std::string& text) {
 MovingScene open_scene(const CommonOptions& options, const Config& config) {
   const Size size = parse_size(options.size);
   SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed, options.animation};
+  request.lights = options.lights;
   if (options.size.empty() && !is_capture(options.scene)) {
     request.width = std::min(640, config.target_width);
     request.height = std::min(480, config.target_height);
@@ -300,6 +307,7 @@ std::string scene_arguments(const CommonOptions& options, const Config& config) 
   std::string text = config_arguments(config);
   if (!options.size.empty()) text += " --size " + quoted(options.size);
   if (!options.camera.empty()) text += " --camera " + quoted(options.camera);
+  for (const std::string& light : options.lights) text += " --light " + quoted(light);
   if (!options.time.empty()) text += " --time " + quoted(options.time);
   if (!options.animation.empty()) text += " --animation " + quoted(options.animation);
   if (options.convention != "gl") text += " --convention " + quoted(options.convention);

@@ -37,6 +37,7 @@ struct CommonOptions {
   std::vector<std::string> settings;  ///< key=value
   std::string size;                   ///< WxH
   std::string camera;
+  std::vector<std::string> lights;
   std::string time, animation;
   std::uint64_t seed = 1;
   int threads = 1;

@@ -7,72 +7,36 @@
 
 #include "model/config.hpp"
 #include "sim/scene/mesh.hpp"
+#include "sim/scene/option_parts.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
 namespace {
 
-constexpr const char* kExample = "write for example --camera 'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100'";
+constexpr OptionParts kCameraParts{
+    "--camera", "write for example --camera 'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100'"};
 
-[[noreturn]] void fail(const std::string& what, const std::string& mend) {
-  throw InputError("--camera: " + what + "; " + mend);
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
-// Cuts the first part off `text`, up to `separator` or the end.
-std::string_view cut(std::string_view& text, char separator) {
-  const std::size_t end = text.find(separator);
-  const std::string_view part = text.substr(0, end);
-  text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
-  return trimmed(part);
-}
-
-double read_number(std::string_view key, std::string_view word) {
-  const std::optional<double> value = parse_number(trimmed(word));
-  if (!value) fail(std::string(key) + "=" + printable(word) + " is not a finite number", kExample);
-  if (std::abs(*value) > kLargestCoordinate) fail(std::string(key) + " is beyond +-1e30", "choose a smaller number");
-  return *value;
-}
-
-Vec3 read_vector(std::string_view key, std::string_view text) {
-  if (std::count(text.begin(), text.end(), ',') != 2) {
-    fail(std::string(key) + "=" + printable(text) + " is not three numbers", "write " + std::string(key) + "=X,Y,Z");
-  }
-  Vec3 result{};
-  for (double& component : result) component = read_number(key, cut(text, ','));
-  return result;
-}
-
-double read_positive(std::string_view key, std::string_view text) {
-  const double value = read_number(key, text);
-  if (!(value > 0)) fail(std::string(key) + "=" + printable(text) + " is not above 0", "choose a positive number");
-  return value;
-}
+[[noreturn]] void fail(const std::string& what, std::string_view mend) { kCameraParts.fail(what, mend); }
 
 void read_part(CameraRequest& request, std::string_view key, std::string_view value) {
   if (key == "eye") {
-    request.eye = read_vector(key, value);
+    request.eye = kCameraParts.vector(key, value);
   } else if (key == "target") {
-    request.target = read_vector(key, value);
+    request.target = kCameraParts.vector(key, value);
   } else if (key == "up") {
-    request.up = read_vector(key, value);
+    request.up = kCameraParts.vector(key, value);
     if (length(*request.up) == 0) fail("up=0,0,0 has no direction", "write up=0,1,0");
   } else if (key == "fov") {
-    request.fov = read_positive(key, value);
+    request.fov = kCameraParts.positive(key, value);
     if (*request.fov >= 180) fail("fov=" + printable(value) + " is not below 180 degrees", "choose 20 to 120");
   } else if (key == "ortho") {
-    request.ortho = read_positive(key, value);
+    request.ortho = kCameraParts.positive(key, value);
   } else if (key == "near") {
-    request.near = read_positive(key, value);
+    request.near = kCameraParts.positive(key, value);
   } else if (key == "far") {
-    request.far = read_positive(key, value);
+    request.far = kCameraParts.positive(key, value);
   } else if (key == "orbit") {
-    request.orbit = read_number(key, value);
+    request.orbit = kCameraParts.number(key, value);
   } else if (key == "name") {
     if (value.empty()) fail("name= without a name", "write name=NAME");
     request.name = std::string(value);
@@ -163,17 +127,17 @@ CameraRequest parse_camera(std::string_view text) {
   CameraRequest request;
   std::set<std::string, std::less<>> seen;
   while (!text.empty()) {
-    const std::string_view part = cut(text, ';');
+    const std::string_view part = OptionParts::cut(text, ';');
     if (part.empty()) continue;
     std::size_t equals = part.find('=');
     if (part == "orbit") equals = part.size();  // without a number: once round
-    if (equals == std::string_view::npos) fail("no = in " + in_quotes(part), kExample);
-    const std::string_view key = trimmed(part.substr(0, equals));
+    if (equals == std::string_view::npos) fail("no = in " + in_quotes(part), kCameraParts.example);
+    const std::string_view key = OptionParts::trimmed(part.substr(0, equals));
     if (!seen.emplace(key).second) fail(in_quotes(key) + " is given twice", "leave one of them out");
     if (equals == part.size())
       request.orbit = 360;
     else
-      read_part(request, key, trimmed(part.substr(equals + 1)));
+      read_part(request, key, OptionParts::trimmed(part.substr(equals + 1)));
   }
   if (request.fov && request.ortho) fail("fov and ortho together", "leave one of them out");
   return request;
@@ -197,7 +161,7 @@ CameraRequest merged(const CameraRequest& request, const CameraRequest& defaults
 
 Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect) {
   if (request.name) {
-    fail("name=" + printable(*request.name) + ": this scene has no cameras of its own", kExample);
+    fail("name=" + printable(*request.name) + ": this scene has no cameras of its own", kCameraParts.example);
   }
   const Sphere bounds = bounding_sphere(mesh);
   Camera camera;

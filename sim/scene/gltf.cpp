@@ -59,6 +59,9 @@ class GltfMeshBuilder {
   /// `world` gets all but its file.
   void run(GltfWorld& world) {
     world.nodes = walk_nodes(file_, warnings_);
+    has_lights_ = !world.nodes.lights.empty();
+    mesh_.is_linear = true;
+    mesh_.materials.clear();
     for (const GltfInstance& instance : world.nodes.instances) {
       if (instance.is_skinned) warn("skins are not read: meshes are shown as they were before any joint moved");
       object_ = object_number(instance.name);
@@ -69,7 +72,7 @@ class GltfMeshBuilder {
         run.vertices = mesh_.vertices.size() - run.first_vertex;
         run.triangles = mesh_.triangles.size() - run.first_triangle;
         run.has_normals = material_.is_lit && attributes_.normal != nullptr;
-        run.is_flat = material_.is_lit && attributes_.normal == nullptr;
+        run.is_flat = is_flat();
         if (run.vertices > 0) world.runs.push_back(run);
       }
     }
@@ -109,7 +112,11 @@ class GltfMeshBuilder {
     }
     material_ = materials_.of(place);
     attributes_ = read_attributes(place, attributes);
-    material_.is_lit = material_.is_lit && attributes_.color == nullptr;
+    MeshMaterial surface = surface_of(material_);
+    surface.has_header_light = material_.is_lit && attributes_.color == nullptr;
+    const auto known = std::ranges::find(mesh_.materials, surface);
+    surface_ = static_cast<std::uint32_t>(known - mesh_.materials.begin());
+    if (known == mesh_.materials.end()) mesh_.materials.push_back(surface);
     mode < 4 ? add_outline(place, mode) : add_triangles(place, mode);
   }
 
@@ -215,10 +222,9 @@ class GltfMeshBuilder {
   }
 
   void add_triangle(const std::array<std::uint64_t, 3>& from) {
-    const bool is_flat = material_.is_lit && attributes_.normal == nullptr;  // the format asks for it
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t i = 0; i < 3; ++i) {
-      if (is_flat) {
+      if (is_flat()) {
         triangle[i] = static_cast<std::uint32_t>(mesh_.vertices.size());
         mesh_.vertices.push_back(make_vertex(from[i]));
       } else {
@@ -228,8 +234,15 @@ class GltfMeshBuilder {
     mesh_.triangles.push_back(triangle);
   }
 
+  /// Lit without normals: the format asks for those of the faces. Without lights a primitive that has colours is not lit.
+  bool is_flat() const {
+    const bool has_light = attributes_.color == nullptr || has_lights_;
+    return material_.is_lit && has_light && attributes_.normal == nullptr;
+  }
+
   MeshVertex make_vertex(std::uint64_t i) const {
     MeshVertex made;
+    made.material = surface_;
     const Rgba p = read_element(*attributes_.position, i);
     std::copy_n(p.begin(), 3, made.position.begin());
     if (attributes_.normal != nullptr && material_.is_lit) {
@@ -265,7 +278,9 @@ class GltfMeshBuilder {
   std::unordered_map<std::string, std::uint32_t> object_numbers_;
   std::uint32_t object_ = 0;
   GltfMaterials materials_;
-  GltfMaterial material_;  // of the primitive at hand, as are the next two
+  bool has_lights_ = false;
+  GltfMaterial material_;  // of the primitive at hand, as are the next three
+  std::uint32_t surface_ = 0;
   Attributes attributes_;
   std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
 };
@@ -307,17 +322,12 @@ void check_places(const GltfWorld& world, const GltfRun& run, const Mesh& mesh) 
 
 }  // namespace
 
-double display_code(double linear) {
-  if (!(linear > 0)) return 0;
-  if (linear >= 1) return 255;  // the curve's own end is one unit in the last place off
-  return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
-}
-
 GltfWorld parse_gltf_world(std::string bytes, const std::string& file, const BufferSource& source,
                            std::vector<std::string>& warnings, std::size_t most_triangles) {
   GltfWorld world;
   world.file = std::make_unique<GltfFile>(std::move(bytes), file, source);
   GltfMeshBuilder(*world.file, warnings, most_triangles).run(world);
+  if (!world.nodes.lights.empty()) world.exposure = exposure_of(posed(world).mesh);
   return world;
 }
 
@@ -332,6 +342,9 @@ GltfWorld read_gltf_world(const std::string& path, std::vector<std::string>& war
 GltfModel posed(const GltfWorld& world, const GltfAnimation* animation, double time) {
   const std::vector<Mat4> matrices = world_matrices(*world.file, world.nodes, animation, time);
   GltfModel model{world.mesh, placed_cameras(*world.file, world.nodes, matrices)};
+  model.mesh.lights = placed_lights(world.nodes, matrices);
+  for (Light& light : model.mesh.lights)
+    for (std::size_t c = 0; c < 3; ++c) light.specular[c] = light.diffuse[c] *= world.exposure;
   for (const GltfRun& run : world.runs) {
     place_run(run, placing_of(matrices[run.node]), model.mesh);
     check_places(world, run, model.mesh);

@@ -6,6 +6,7 @@
 
 #include "sim/scene/gltf_nodes.hpp"
 #include "sim/scene/mesh.hpp"
+#include "sim/scene/mesh_light.hpp"
 
 namespace halfplane {
 
@@ -28,6 +29,7 @@ struct GltfWorld {
   Mesh mesh;                  ///< places and normals in the spaces of their nodes
   std::vector<GltfRun> runs;  ///< all of its vertices and triangles
   GltfNodes nodes;
+  double exposure = 1;  ///< by which the lights are multiplied: that of the scene at rest
 };
 
 /// A small file can ask for any number of triangles (one mesh at many nodes): at most so many are made.
@@ -49,8 +51,5 @@ inline constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 25;
 /// parse_gltf_world(), at rest.
 [[nodiscard]] GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
                                    std::vector<std::string>& warnings, std::size_t most_triangles = kMostGltfTriangles);
-
-/// A linear colour component of 0...1 (clamped) as an sRGB display code, 0...255, not rounded (IEC 61966-2-1).
-[[nodiscard]] double display_code(double linear);
 
 }  // namespace halfplane

@@ -67,6 +67,23 @@ void read_transform(const JsonPlace& place, GltfMaterial& material) {
 
 }  // namespace
 
+MeshMaterial surface_of(const GltfMaterial& material) {
+  // Of the lobe: Beckmann's roughness r^2 as an exponent, and the height that keeps the energy of Blinn-Phong. What a
+  // dielectric reflects straight ahead is 4 in 100; a metal reflects its colour. It scatters nothing, but what it would
+  // mirror of its surroundings is not there: half of its colour is left to stand for that.
+  const double alpha = std::max(material.roughness * material.roughness, 1e-3);
+  MeshMaterial surface;
+  surface.shininess = std::clamp(2 / (alpha * alpha) - 2, 0.0, kMostShininess);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double straight = 0.04 * (1 - material.metallic) + material.base[c] * material.metallic;
+    surface.specular[c] = std::min(straight * (surface.shininess + 8) / 8, 1.0);
+  }
+  surface.diffuse = 1 - material.metallic / 2;
+  surface.emission = material.emission;
+  surface.is_two_sided = material.is_two_sided;
+  return surface;
+}
+
 GltfMaterial GltfMaterials::of(const JsonPlace& primitive) const {
   GltfMaterial result;
   const std::optional<JsonPlace> index = primitive.find("material");
@@ -79,6 +96,8 @@ GltfMaterial GltfMaterials::of(const JsonPlace& primitive) const {
     warn_("alphaMode " + in_quotes(alpha) + " is none of glTF 2.0: drawn opaque");
   result.alpha = alpha == "MASK" ? AlphaMode::mask : alpha == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
   result.alpha_cutoff = place.number_or("alphaCutoff", result.alpha_cutoff);
+  result.emission = numbers_or<3>(place, "emissiveFactor", result.emission);
+  for (double& channel : result.emission) channel = std::clamp(channel, 0.0, 1.0);
   for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
     if (place.find(key)) warn_("of the textures only those of base colours are shown");
   }
@@ -90,6 +109,10 @@ void GltfMaterials::read_base_color(const JsonPlace& shading, GltfMaterial& mate
   if (shading.find("metallicRoughnessTexture")) warn_("of the textures only those of base colours are shown");
   material.base = numbers_or<4>(shading, "baseColorFactor", material.base);
   for (double& channel : material.base) channel = std::clamp(channel, 0.0, 1.0);
+  // Where a texture says what is of metal, most is not.
+  const double metallic = shading.find("metallicRoughnessTexture") ? 0 : material.metallic;
+  material.metallic = std::clamp(shading.number_or("metallicFactor", metallic), 0.0, 1.0);
+  material.roughness = std::clamp(shading.number_or("roughnessFactor", material.roughness), 0.0, 1.0);
   const std::optional<JsonPlace> texture = shading.find("baseColorTexture");
   if (!texture) return;
   material.texture = texture->at("index");

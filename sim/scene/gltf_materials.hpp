@@ -11,6 +11,8 @@ namespace halfplane {
 
 struct GltfMaterial {
   std::array<double, 4> base{1, 1, 1, 1};  ///< linear
+  double metallic = 1, roughness = 1;
+  std::array<double, 3> emission{};  ///< linear
   bool is_two_sided = false;
   bool is_lit = true;
   AlphaMode alpha = AlphaMode::opaque;
@@ -20,6 +22,9 @@ struct GltfMaterial {
   /// u and v on the texture from those of a vertex: factors of u, v and 1.
   std::array<std::array<double, 3>, 2> uv_transform{{{1, 0, 0}, {0, 1, 0}}};
 };
+
+/// What lights meet, metal and roughness approximated by Blinn-Phong (docs/gltf.md).
+[[nodiscard]] MeshMaterial surface_of(const GltfMaterial& material);
 
 /// Reads what primitives name. Images are decoded when first used, each once.
 class GltfMaterials {

@@ -97,6 +97,36 @@ void read_lens(const JsonPlace& camera, CameraRequest& request) {
   if (!(*request.near < *request.far)) lens.fail("znear is not nearer than zfar", "choose znear < zfar");
 }
 
+/// Of the light that a node says the number of; its colours are divided by pi, which a white surface scatters into.
+Light read_light(const JsonPlace& place) {
+  const std::string type = place.at("type").text();
+  if (type != "directional" && type != "point" && type != "spot")
+    place.fail("type " + in_quotes(type), "it is directional, point or spot");
+  Light light;
+  light.position = {0, 0, 0, 1};
+  const double intensity = place.number_or("intensity", 1);
+  if (!(intensity >= 0 && intensity <= kLargestCoordinate)) place.fail("an intensity below 0", "choose 0 or more");
+  std::array<double, 3> color{1, 1, 1};
+  if (const auto given = place.find("color")) color = numbers_of<3>(*given);
+  for (std::size_t i = 0; i < 3; ++i)
+    light.diffuse[i] = light.specular[i] = std::max(color[i], 0.0) * intensity / std::numbers::pi;
+  if (type == "directional") {
+    light.position = {0, 0, 1, 0};
+    return light;
+  }
+  light.attenuation = {0, 0, 1};
+  light.range = std::max(place.number_or("range", 0), 0.0);
+  if (type == "point") return light;
+  const std::optional<JsonPlace> spot = place.find("spot");
+  const double inner = spot ? spot->number_or("innerConeAngle", 0) : 0;
+  const double outer = spot ? spot->number_or("outerConeAngle", std::numbers::pi / 4) : std::numbers::pi / 4;
+  if (!(0 <= inner && inner < outer && outer <= std::numbers::pi / 2))
+    place.fail("cone angles that are not 0 <= inner < outer <= pi/2", "correct innerConeAngle and outerConeAngle");
+  light.spot_scale = 1 / std::max(0.001, std::cos(inner) - std::cos(outer));
+  light.spot_offset = -std::cos(outer) * light.spot_scale;
+  return light;
+}
+
 class Walker {
  public:
   Walker(const GltfFile& file, std::vector<std::string>& warnings) : file_(file), warnings_(warnings) {}
@@ -162,7 +192,17 @@ class Walker {
       result_.instances.push_back({mesh, number, name, node.find("skin").has_value()});
     }
     if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, number);
+    if (const auto extensions = node.find("extensions"))
+      if (const auto punctual = extensions->find("KHR_lights_punctual")) add_light(punctual->at("light"), number);
     if (const std::optional<JsonPlace> children = node.find("children")) push(*children, number);
+  }
+
+  void add_light(const JsonPlace& index, std::size_t number) {
+    const auto all = file_.root().find("extensions");
+    const auto punctual = all ? all->find("KHR_lights_punctual") : std::nullopt;
+    const auto lights = punctual ? punctual->find("lights") : std::nullopt;
+    if (!lights) index.fail("a light of a file without KHR_lights_punctual.lights", "export the file again");
+    result_.lights.push_back({number, read_light((*lights)[index.index(lights->size(), "lights")])});
   }
 
   void add_camera(const JsonPlace& node, const JsonPlace& index, std::size_t number) {
@@ -234,6 +274,19 @@ std::vector<GltfCamera> placed_cameras(const GltfFile& file, const GltfNodes& no
     // Far enough away that a target at an eye far from the origin is not lost in binary64.
     made.request.target = subtract(eye, scaled(back, std::max(1.0, length(eye))));
     made.request.up = up;
+  }
+  return result;
+}
+
+std::vector<Light> placed_lights(const GltfNodes& nodes, const std::vector<Mat4>& world) {
+  std::vector<Light> result;
+  for (const GltfLightNode& at : nodes.lights) {
+    const Mat4& matrix = world[at.node];
+    const Vec3 back = normalized(column(matrix, 2)), place = column(matrix, 3);
+    Light& light = result.emplace_back(at.light);
+    light.spot_direction = scaled(back, -1);
+    light.position = light.position[3] == 0 ? std::array{back[0], back[1], back[2], 0.0}
+                                            : std::array{place[0], place[1], place[2], 1.0};
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // The scene graph of a glTF file: where each mesh and each camera stands in the world.
 #pragma once
 
+#include "model/light.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/gltf_animation.hpp"
 #include "sim/scene/gltf_file.hpp"
@@ -31,11 +32,19 @@ struct GltfCameraNode {
   CameraRequest lens;
 };
 
+/// A light of KHR_lights_punctual at a node: in the node's space at the origin, shining along -z. Its colours are those
+/// that a white surface shows that faces it, from a distance of 1 if it is somewhere.
+struct GltfLightNode {
+  std::size_t node = 0;  ///< in GltfNodes::nodes
+  Light light;
+};
+
 /// In the order of the nodes: a node before its children.
 struct GltfNodes {
   std::vector<GltfNode> nodes;
   std::vector<GltfInstance> instances;
   std::vector<GltfCameraNode> cameras;
+  std::vector<GltfLightNode> lights;
 };
 
 /// A camera of the scene, complete: eye, target, up, near, far, and fov or ortho.
@@ -57,6 +66,9 @@ struct GltfCamera {
 /// target's is used.
 [[nodiscard]] std::vector<GltfCamera> placed_cameras(const GltfFile& file, const GltfNodes& nodes,
                                                      const std::vector<Mat4>& world);
+
+/// The lights where their nodes stand, which may be turned, not scaled.
+[[nodiscard]] std::vector<Light> placed_lights(const GltfNodes& nodes, const std::vector<Mat4>& world);
 
 /// What a user's request means in this scene: with `name=`, that camera with the user's other parts put in; empty, the
 /// first camera; else, or without any camera, the default framing. Throws InputError for an unknown name.

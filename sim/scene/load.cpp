@@ -57,6 +57,9 @@ Scene load_capture(const SceneRequest& request) {
   if (!request.camera.empty()) {
     throw InputError("--camera: " + request.name + " is a capture, already projected; leave the camera out");
   }
+  if (!request.lights.empty())
+    throw InputError("--light: " + request.name +
+                     " is a capture, whose vertices have their colours; leave the light out");
   Scene scene = request.name == "-" ? read_capture(stdin_text(), "stdin") : read_capture_file(request.name);
   mark_outside_objects(scene);
   if (request.width == 0) return scene;
@@ -88,8 +91,8 @@ MovingScene still(const SceneRequest& request, bool has_orbit, std::function<Sce
   return {at, [] { return std::optional<double>(); }, has_orbit};
 }
 
-MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, int width, int height,
-                      std::vector<std::string>& warnings) {
+MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, const LightRequest& light, int width,
+                      int height, std::vector<std::string>& warnings) {
   const auto world = std::make_shared<const GltfWorld>(read_gltf_world(request.name, warnings));
   // Read when it is asked for: a scene at rest needs none.
   const auto animation = [world, name = request.animation, known = std::make_shared<std::optional<GltfAnimation>>()] {
@@ -99,7 +102,8 @@ MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, 
   if (!request.animation.empty()) (void)animation();
   const auto at = [=, name = request.name](const Moment& moment) {
     const GltfModel model = moment.time ? posed(*world, animation(), *moment.time) : posed(*world);
-    Scene scene = mesh_scene(model.mesh, at_turn(choose_camera(model.cameras, camera), moment.turn), width, height);
+    Scene scene = mesh_scene(model.mesh, at_turn(choose_camera(model.cameras, camera), moment.turn), width, height,
+                             Cull::none, light);
     scene.name = name;
     return scene;
   };
@@ -124,18 +128,19 @@ MovingScene open_scene(const SceneRequest& request, std::vector<std::string>& wa
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
   if (!is_gltf && extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
   const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
+  const LightRequest light = parse_lights(request.lights);
   const bool has_orbit = camera.orbit.has_value();
-  if (is_gltf) return open_gltf(request, camera, width, height, warnings);
+  if (is_gltf) return open_gltf(request, camera, light, width, height, warnings);
   if (extension == ".obj") {
     const auto mesh = std::make_shared<const Mesh>(read_obj_file(request.name, warnings));
     return still(request, has_orbit, [=, name = request.name](const Moment& moment) {
-      Scene scene = mesh_scene(*mesh, at_turn(camera, moment.turn), width, height);
+      Scene scene = mesh_scene(*mesh, at_turn(camera, moment.turn), width, height, Cull::none, light);
       scene.name = name;
       return scene;
     });
   }
   return still(request, has_orbit, [=, name = request.name, seed = request.seed](const Moment& moment) {
-    return make_builtin(name, width, height, at_turn(camera, moment.turn), seed);
+    return make_builtin(name, width, height, at_turn(camera, moment.turn), seed, light);
   });
 }
 

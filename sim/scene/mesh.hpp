@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "model/light.hpp"
 #include "model/scene.hpp"
 #include "sim/scene/vec3.hpp"
 
@@ -20,7 +21,19 @@ struct MeshVertex {
   Vec3 normal{};                                   ///< length 1, or zero where no face gives a direction
   std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
   double u = 0, v = 0;
+  std::uint32_t material = 0;  ///< index into Mesh::materials
   bool operator==(const MeshVertex&) const = default;
+};
+
+/// What lights meet beside a vertex's colour, which is the diffuse one. 0...1; of a linear mesh linear.
+struct MeshMaterial {
+  double diffuse = 1;                            ///< how much of the colour: a metal has none
+  std::optional<std::array<double, 3>> ambient;  ///< none: the colour
+  std::array<double, 3> specular{}, emission{};
+  double shininess = 0;  ///< exponent of N.H
+  bool is_two_sided = true;
+  bool has_header_light = true;  ///< false: without lights of its own it is shown as it is
+  bool operator==(const MeshMaterial&) const = default;
 };
 
 /// A texture and how it is looked up.
@@ -48,7 +61,7 @@ struct MeshPart {
   double alpha_cutoff = 0.5;  ///< of `mask`: opacity below it is not drawn
 };
 
-/// Invariants (kept by every maker): indices < vertices.size() (or kRestart in Mesh::indices), all numbers finite, parts
+/// Invariants (kept by every maker): indices < vertices.size(), material numbers < materials.size() (or kRestart in Mesh::indices), all numbers finite, parts
 /// cover all triangles in order, textures as validate() wants them.
 struct Mesh {
   std::vector<MeshVertex> vertices;
@@ -57,7 +70,10 @@ struct Mesh {
   std::vector<MeshPart> parts;
   std::vector<std::string> objects;
   std::vector<Texture> textures;
+  std::vector<MeshMaterial> materials{1};
+  std::vector<Light> lights;  ///< the file's own, in world space
   bool lit = true;  ///< colours are materials, to be shaded by the header light; false: they are shown as they are
+  bool is_linear = false;  ///< light is added up in linear components, of which colours are the sRGB codes
 };
 
 }  // namespace halfplane

@@ -12,16 +12,6 @@
 namespace halfplane {
 namespace {
 
-constexpr double kAmbient = 0.18;  // what a face seen edge-on keeps of its colour
-constexpr double kWrap = 0.25;     // light that reaches round the edge, so that the dark side keeps its shape
-
-// 0...1 for a unit normal (or none) in eye space and the direction to the light.
-double brightness(const Vec3& normal, const Vec3& to_light) {
-  if (normal == Vec3{}) return 1;
-  const double facing = std::min(std::abs(dot(normal, to_light)), 1.0);  // two-sided
-  return kAmbient + (1 - kAmbient) * (facing + kWrap) / (1 + kWrap);
-}
-
 void look_up(State& state, const MeshSampler& sampler) {
   state.texture = sampler.texture;
   state.texture_min = sampler.min;
@@ -75,7 +65,8 @@ Scene cleared_scene(int width, int height) {
   return scene;
 }
 
-Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height, Cull cull) {
+Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height, Cull cull,
+                 const LightRequest& light) {
   const double aspect = static_cast<double>(width) / height;
   const Camera camera = frame(request, mesh, aspect);
   const Mat4 view = view_matrix(camera), projection = projection_matrix(camera, aspect);
@@ -87,16 +78,12 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   for (const MeshVertex& in : mesh.vertices) {
     const Vec4 eye = transform(view, {in.position[0], in.position[1], in.position[2], 1});
     const Vec4 clip = transform(projection, eye);
-    Vertex out{clip[0], clip[1], clip[2], clip[3], in.rgba, in.u, in.v};
+    const Vertex out{clip[0], clip[1], clip[2], clip[3], in.rgba, in.u, in.v};
     if (!finite(out)) throw InputError("--camera: a vertex leaves binary64; bring eye and fov nearer to the mesh");
-    if (mesh.lit) {
-      const Vec4 n = transform(view, {in.normal[0], in.normal[1], in.normal[2], 0});
-      const Vec3 to_light = camera.ortho > 0 ? Vec3{0, 0, 1} : normalized({-eye[0], -eye[1], -eye[2]});
-      const double light = brightness({n[0], n[1], n[2]}, to_light);
-      for (std::size_t i = 0; i < 3; ++i) out.rgba[i] *= light;
-    }
     scene.vertices.push_back(out);
   }
+  const auto colors = lit_colors(mesh, light, view, camera.ortho > 0);
+  for (std::size_t i = 0; i < colors.size(); ++i) scene.vertices[i].rgba = colors[i];
   const std::size_t corners = mesh.triangles.size() * 3;  // the indices of lines and points follow those of triangles
   scene.indices.reserve(corners + mesh.indices.size());
   for (const auto& triangle : mesh.triangles) {

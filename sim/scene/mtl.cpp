@@ -13,15 +13,32 @@ double channel(TextCursor& cursor, std::string_view what) {
   return std::clamp(cursor.number(what, kLargestCoordinate), 0.0, 1.0) * 255;
 }
 
-void read_diffuse(TextCursor& cursor, std::array<double, 4>& rgba) {
+// Behind Ka, Kd, Ks or Ke: 0...255.
+std::optional<std::array<double, 3>> read_color(TextCursor& cursor, std::string_view key) {
   TextCursor ahead = cursor;
   const std::string_view word = ahead.next_word();
-  if (word == "spectral" || word == "xyz") return;  // measured spectra: legal, rare, and no colour of ours
-  rgba[0] = channel(cursor, "red of Kd");
-  rgba[1] = rgba[2] = rgba[0];
-  if (!cursor.more()) return;
-  rgba[1] = channel(cursor, "green of Kd");
-  rgba[2] = channel(cursor, "blue of Kd");
+  if (word == "spectral" || word == "xyz") return {};  // measured spectra: legal, rare, and no colour of ours
+  const std::string of = " of " + std::string(key);
+  std::array<double, 3> color{};
+  color.fill(channel(cursor, "red" + of));
+  if (!cursor.more()) return color;
+  color[1] = channel(cursor, "green" + of);
+  color[2] = channel(cursor, "blue" + of);
+  return color;
+}
+
+/// Ka, Kd, Ks, Ke: true if it was one.
+bool read_colors(TextCursor& cursor, std::string_view key, MtlMaterial& material) {
+  if (key != "Ka" && key != "Kd" && key != "Ks" && key != "Ke") return false;
+  const auto color = read_color(cursor, key);
+  if (!color) return true;
+  if (key == "Kd") std::ranges::copy(*color, material.rgba.begin());
+  std::array<double, 3> part = *color;
+  for (double& c : part) c /= 255;
+  if (key == "Ka") material.surface.ambient = part;
+  if (key == "Ks") material.surface.specular = part;
+  if (key == "Ke") material.surface.emission = part;
+  return true;
 }
 
 bool is_next_number(TextCursor cursor) { return parse_number(cursor.next_word()).has_value(); }
@@ -63,6 +80,7 @@ void parse_mtl(std::string_view text, const std::string& file, MaterialTable& ma
   TextCursor cursor(text, printable(file));
   const std::string_view folder = std::string_view(file).substr(0, file.find_last_of("/\\") + 1);
   constexpr std::array<double, 4> kDefault{204, 204, 204, 255};  // a newmtl without Kd
+  constexpr std::array<std::string_view, 8> kKeys{"Ka", "Kd", "Ks", "Ke", "Ns", "d", "Tr", "map_Kd"};
   MtlMaterial* current = nullptr;
   bool has_color = false;
   while (cursor.next_line()) {
@@ -70,13 +88,14 @@ void parse_mtl(std::string_view text, const std::string& file, MaterialTable& ma
     if (key == "newmtl") {
       const std::string name(cursor.rest_of_line());
       if (name.empty()) cursor.fail("newmtl without a name", "write newmtl NAME");
-      current = &(materials[name] = {kDefault, {}});
+      current = &(materials[name] = {kDefault, {}, {}});
       has_color = false;
-    } else if (key == "Kd" || key == "d" || key == "Tr" || key == "map_Kd") {
+    } else if (std::ranges::find(kKeys, key) != kKeys.end()) {
       if (current == nullptr) cursor.fail(in_quotes(key) + " before any newmtl", "start the material with newmtl NAME");
-      if (key == "Kd") {
-        read_diffuse(cursor, current->rgba);
-        has_color = true;
+      has_color = has_color || key == "Kd";
+      if (read_colors(cursor, key, *current)) continue;
+      if (key == "Ns") {
+        current->surface.shininess = std::clamp(cursor.number("exponent Ns", kLargestCoordinate), 0.0, kMostShininess);
         continue;
       }
       if (key == "map_Kd") {

@@ -1,4 +1,4 @@
-// Material files (.mtl): the diffuse colour of each name, its texture, and its opacity.
+// Material files (.mtl): the colours of each name, its texture, and its opacity.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "model/scene.hpp"
+#include "sim/scene/mesh.hpp"
 
 namespace halfplane {
 
@@ -21,13 +22,14 @@ struct MtlTexture {
 
 struct MtlMaterial {
   std::array<double, 4> rgba{};  ///< 0...255
+  MeshMaterial surface{};        ///< what lights meet beside that
   std::optional<MtlTexture> texture;
 };
 
 using MaterialTable = std::unordered_map<std::string, MtlMaterial>;  ///< by name
 
 /// Adds the materials of one file to `materials`: Kd (one number is a grey; clamped to 0...1), map_Kd with -s, -o and
-/// -clamp, d, Tr = 1 - d. All else in a material is passed over. `file`: as the OBJ names it; images are beside it.
+/// -clamp, d, Tr = 1 - d; Ka, Ks, Ke likewise as Kd, and Ns, which only lights meet. All else in a material is passed over. `file`: as the OBJ names it; images are beside it.
 /// Throws InputError "file:line: what; the mend".
 void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials);
 

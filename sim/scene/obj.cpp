@@ -55,12 +55,14 @@ class MeshBuilder {
     for (const auto& color : in_.colors) {
       for (const double value : color) color_scale_ = value > 1 ? 1 : color_scale_;  // the file counts to 255
     }
-    const MtlMaterial plain{{204, 204, 204, 255}, {}};  // no material: a light grey
+    const MtlMaterial plain{{204, 204, 204, 255}, {}, {}};  // no material: a light grey
     for (const std::string& name : in_.material_names) {
       const auto found = in_.materials.find(name);
       materials_.push_back(found == in_.materials.end() ? plain : found->second);
       material_known_.push_back(found != in_.materials.end() || name.empty());
     }
+    mesh_.materials.clear();
+    for (const MtlMaterial& material : materials_) mesh_.materials.push_back(material.surface);
   }
 
   // Checks the corners, gives them normals, splits the polygon.
@@ -167,6 +169,7 @@ class MeshBuilder {
       made.v = map ? v * map->scale[1] + map->offset[1] : v;
     }
     made.rgba = color(position, face.material);
+    made.material = face.material;
     mesh_.vertices.push_back(made);
     normal_of_.push_back(normal);
     return place->second;
