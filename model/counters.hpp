@@ -102,6 +102,7 @@ struct DrawnPoint {
   std::uint32_t primitive = 0, draw = 0;  ///< likewise
   SnappedVertex at;
   std::int32_t size = 0;  ///< side of the square, subpixels
+  PointShape shape = PointShape::square;
 };
 
 }  // namespace halfplane

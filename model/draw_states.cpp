@@ -188,6 +188,7 @@ constexpr std::array<Words, 2> provoking_words{"first", "last"};
 constexpr std::array<Words, 3> polygon_mode_words{"fill", "line", "point"};
 constexpr std::array<Words, 3> line_rule_words{"midpoint", "bresenham", "diamond"};
 constexpr std::array<Words, 3> line_last_words{"off", "on", "rule"};
+constexpr std::array<Words, 2> point_shape_words{"square", "round"};
 constexpr std::array<Words, 2> point_clip_words{"pixel", "center"};
 
 constexpr std::array<Words, 1> texture_words{"off"};
@@ -313,6 +314,7 @@ constexpr std::array<StateNumber, 2> polygon_offset_numbers{{
     {"polygon_offset's slope factor", -widest_offset, widest_offset, false, false, -4, 0.5, 17},
     {"polygon_offset's constant", -widest_offset, widest_offset, false, false, -4, 1, 9},
 }};
+constexpr std::array<StateNumber, 1> line_width_numbers{{{"line_width", 1, far_away, false, false, 1, 0.25, 24}}};
 constexpr std::array<StateNumber, 1> point_size_numbers{{{"point_size", 1, far_away, false, false, 1, 0.0625, 200}}};
 
 constexpr std::array table{
@@ -391,12 +393,23 @@ constexpr std::array table{
     row<&State::line_last>({.name = "line_last",
                             .words = line_last_words,
                             .purpose = "whether a line's last pixel is drawn; `rule`: as its rule has it"}),
+    row<&State::line_width>({.name = "line_width",
+                             .numbers = line_width_numbers,
+                             .form = "width",
+                             .unit = "pixels",
+                             .purpose = "pixels that a line covers across its minor axis, rounded to a whole number; "
+                                        "the draw refuses lines that could reach the target from outside the guard "
+                                        "band"}),
     row<&State::point_size>({.name = "point_size",
                              .numbers = point_size_numbers,
                              .form = "size",
                              .unit = "pixels",
                              .purpose = "side of the square, fractions allowed; the draw refuses points that could "
                                         "reach the target from outside the guard band"}),
+    row<&State::point_shape>({.name = "point_shape",
+                              .words = point_shape_words,
+                              .purpose = "which of its square's pixels a point covers: all, or those whose centres "
+                                         "lie in the disc that the square holds"}),
     row<&State::point_clip>(
         {.name = "point_clip", .words = point_clip_words, .purpose = "what the view's sides clip of a point"}),
     row<&State::texture>({.name = "texture",

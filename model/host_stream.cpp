@@ -269,17 +269,18 @@ void HostStream::send_next_primitive() {
   ++primitive_;
 }
 
-/// Lines go beside a packet that holds their place, points as boxes: both with a pixel at least.
+/// Lines go beside a packet that holds their place, strand by strand, points as boxes: each with a pixel at least.
 void HostStream::send_outline(const AssembledPrimitive& assembled) {
   outline_.lines.clear();
   outline_.points.clear();
   geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
   for (const LinePrimitive& line : outline_.lines) send_line(line);
-  for (const PointPrimitive& point : outline_.points) {
-    PrimitivePacket packet = draw_packet(PrimitiveKind::point, point.box);
-    packet.vertex.code.fill(point.drawn.at.code);
-    send(drawn_primitive(packet, primitive_));
-  }
+  for (const PointPrimitive& point : outline_.points)
+    for_each_run(point, widths_.grid_bits, [&](const PixelBounds& box) {
+      PrimitivePacket packet = draw_packet(PrimitiveKind::point, box);
+      packet.vertex.code.fill(point.drawn.at.code);
+      send(drawn_primitive(packet, primitive_));
+    });
 }
 
 void HostStream::send_line(const LinePrimitive& line) {

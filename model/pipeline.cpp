@@ -227,12 +227,17 @@ class OutlineBuilder {
     }
     finish(line.start, v[0].w);
     finish(line.end, v[1].w);
-    auto setup =
-        setup_line(line.start, line.end, context_.state.line_rule, line.drops_last, bounds_of(context_.rect), widths_);
-    if (!setup) return;
-    setup->primitive_id = number_;
-    is_cut |= crosses;
-    out_.lines.push_back({line, *setup});
+    const LineRule rule = context_.state.line_rule;
+    const int count = strands_of(context_.state.line_width);
+    for (int i = 0; i < count; ++i) {
+      DrawnLine strand = line;
+      if (count > 1) move_to_strand(strand.start, strand.end, i, count, rule, widths_.grid_bits);
+      auto setup = setup_line(strand.start, strand.end, rule, strand.drops_last, bounds_of(context_.rect), widths_);
+      if (!setup) continue;
+      setup->primitive_id = number_;
+      is_cut |= crosses;
+      out_.lines.push_back({strand, *setup});
+    }
   }
 
   void add_point(std::uint32_t index) {
@@ -242,11 +247,14 @@ class OutlineBuilder {
                            outcode(context_.view_volume, context_.scene.vertices[index]) == 0;
     if (entry.outside_guard_band != 0 || !is_inside) return;
     const double pixel = static_cast<double>(std::int64_t{1} << widths_.grid_bits);
-    DrawnPoint point{number_, context_.command, entry.snapped,
-                     static_cast<std::int32_t>(snap(context_.state.point_size, pixel))};
+    DrawnPoint point{number_, context_.command, entry.snapped, static_cast<std::int32_t>(snap(state.point_size, pixel)),
+                     state.point_shape};
     finish(point.at, context_.scene.vertices[index].w);
     const PixelBounds box = point_bounds(point.at, point.size, bounds_of(context_.rect), widths_.grid_bits);
-    if (!box.is_empty()) out_.points.push_back({point, box});
+    bool is_drawn = false;
+    const PointPrimitive primitive{point, box};
+    for_each_run(primitive, widths_.grid_bits, [&is_drawn](const PixelBounds&) { is_drawn = true; });
+    if (is_drawn) out_.points.push_back(primitive);
   }
 
  private:
@@ -275,6 +283,27 @@ class OutlineBuilder {
   std::uint32_t number_;
   Outline& out_;
 };
+
+/// What lies outside the guard band is not drawn: a point there, or a line, must not be so wide that it would reach the
+/// target. A line of one pixel never does.
+void refuse_too_wide(const DrawContext& context) {
+  const Scene& scene = context.scene;
+  const PrimitiveType type = drawn_as(context.state, context.draw.topology);
+  const double width = type == PrimitiveType::point  ? context.state.point_size
+                       : type == PrimitiveType::line ? strands_of(context.state.line_width)
+                                                     : 0;
+  const double widest = 2 * (context.config.guard_band - 1 - std::max(scene.width, scene.height));
+  if (type == PrimitiveType::triangle || (type == PrimitiveType::line && width == 1) || (width >= 1 && width <= widest))
+    return;
+  const std::string what = type == PrimitiveType::point ? "point" : "line";
+  throw InputError(place_of_draw(scene.name, context.draw.line) + ": state " +
+                   (type == PrimitiveType::point ? "point_size" : "line_width") + ": " +
+                   (widest >= 1
+                        ? what + "s of this target and guard.band are 1 to " +
+                              std::to_string(static_cast<int>(widest)) + " pixels wide; use a smaller " + what + ", "
+                        : "no " + what + " fits beside this target in this guard.band; use ") +
+                   "a smaller target or raise guard.band");
+}
 
 }  // namespace
 
@@ -427,15 +456,7 @@ void check_fits(const Scene& scene, const Config& config) {
       throw InputError(place_of_draw(context.scene.name, context.draw.line) +
                        ": state color_interp perspective: this engine interpolates the colours of lines and points "
                        "affinely; the golden has it over w");
-    const double widest = 2 * (config.guard_band - 1 - std::max(scene.width, scene.height));
-    if (drawn_as(state, draw->topology) == PrimitiveType::point &&
-        !(state.point_size >= 1 && state.point_size <= widest))
-      throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": state point_size: " +
-                       (widest >= 1
-                            ? "points of this target and guard.band are 1 to " +
-                                  std::to_string(static_cast<int>(widest)) + " pixels wide; use a smaller point, "
-                            : "no point fits beside this target in this guard.band; use ") +
-                       "a smaller target or raise guard.band");
+    refuse_too_wide(context);
     const Viewport& v = context.viewport;
     // A sample that the clipper cuts away, or whose right or lower edge it puts on it, would be lost.
     const double limit = guard_band_limit(config), last = limit + 0.5;

@@ -85,6 +85,13 @@ struct PointPrimitive {
   PixelBounds box;
 };
 
+/// Calls visit(box) for the boxes that its pixels make up.
+template <class Visit>
+void for_each_run(const PointPrimitive& point, int grid_bits, Visit&& visit) {
+  const DrawnPoint& drawn = point.drawn;
+  for_each_run(drawn.at, drawn.size, drawn.shape, point.box, grid_bits, visit);
+}
+
 /// What is left of one primitive that is not filled.
 struct Outline {
   std::vector<LinePrimitive> lines;

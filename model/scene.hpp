@@ -24,6 +24,8 @@ enum class ColorInterp { affine, perspective };
 enum class PolygonMode { fill, line, point };
 /// Which vertex of a primitive gives the colour when `shade` is flat.
 enum class Provoking { first, last };
+/// What a point is: the square of its size, or of that square's pixels those whose centres lie in the disc.
+enum class PointShape { square, round };
 /// Who is clipped when a point's centre is outside: its pixels only, or the point as a whole.
 enum class PointClip { pixel, center };
 enum class ClipZ { minus_one_one, zero_one };
@@ -144,7 +146,9 @@ struct State {
   std::array<double, 2> polygon_offset{0.0, 0.0};  ///< slope factor, constant in depth LSB; see "Polygon offset"
   LineRule line_rule = LineRule::diamond;
   std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: as the rule has it
+  double line_width = 1;          ///< pixels across the minor axis, at least 1; rounded
   double point_size = 1;          ///< side of the square, pixels, at least 1
+  PointShape point_shape = PointShape::square;
   PointClip point_clip = PointClip::pixel;
   ClipZ clip_z = ClipZ::minus_one_one;
   PixelCenter pixel_center = PixelCenter::half;  ///< of window-space vertices and the viewport

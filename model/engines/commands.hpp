@@ -142,9 +142,11 @@ inline void tap_point(const PointPrimitive& point, const Widths& widths, std::ui
   TappedFragment fragment{PrimitiveKind::point, drawn.primitive, drawn.draw, item, nullptr, nullptr, &drawn};
   for (std::size_t p = 0; p < kMaxPlanes; ++p)
     fragment.plane[p] = {static_cast<std::int64_t>(drawn.at.code[p]), drawn.at.code[p]};
-  for (fragment.y = point.box.top; fragment.y <= point.box.bottom; ++fragment.y)
-    for (fragment.x = point.box.left; fragment.x <= point.box.right; ++fragment.x)
-      tap_samples(fragment, widths.pixel_samples, tap);
+  for_each_run(point, widths.grid_bits, [&](const PixelBounds& box) {
+    for (fragment.y = box.top; fragment.y <= box.bottom; ++fragment.y)
+      for (fragment.x = box.left; fragment.x <= box.right; ++fragment.x)
+        tap_samples(fragment, widths.pixel_samples, tap);
+  });
 }
 
 inline void draw_line(const DrawContext& context, const Widths& widths, const RenderOptions& options,
@@ -164,13 +166,15 @@ inline void draw_point(const DrawContext& context, const Widths& widths, const R
   if (options.fragment_tap)
     tap_point(point, widths, static_cast<std::uint32_t>(rendering.points.size()), options.fragment_tap);
   const SnappedVertex& at = point.drawn.at;
-  for (int y = point.box.top; y <= point.box.bottom; ++y)
-    for (int x = point.box.left; x <= point.box.right; ++x) {
-      if (options.pixel_tap) options.pixel_tap(point.drawn.primitive, x, y);
-      shade_pixel(
-          context, options, x, y, kAllSamples, [&at](int) { return at.code[kDepthPlane]; },
-          [&at] { return color_channels(at.code); }, point.drawn.primitive, kVisibleOutline, rendering);
-    }
+  for_each_run(point, widths.grid_bits, [&](const PixelBounds& box) {
+    for (int y = box.top; y <= box.bottom; ++y)
+      for (int x = box.left; x <= box.right; ++x) {
+        if (options.pixel_tap) options.pixel_tap(point.drawn.primitive, x, y);
+        shade_pixel(
+            context, options, x, y, kAllSamples, [&at](int) { return at.code[kDepthPlane]; },
+            [&at] { return color_channels(at.code); }, point.drawn.primitive, kVisibleOutline, rendering);
+      }
+  });
 }
 
 /// Host side and raster of a draw whose primitives end as lines or points.

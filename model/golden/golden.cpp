@@ -280,10 +280,14 @@ class Renderer {
       end.z += d.offset;
       add_fog(end.rgba, end.inverse_w, d.state);  // lines and points are fogged at their ends
     }
-    const Line<Real> line{v[0], v[1], d.state.line_rule, drops_last_pixel(d.state)};
-    for_each_candidate(line, d.region, 1, [&](int x, int y) {
-      if (covers(line, x, y)) shade(x, y, interpolate(line, x, y, rules_of(d)), d);
-    });
+    const Line<Real> whole{v[0], v[1], d.state.line_rule, drops_last_pixel(d.state)};
+    const int count = strands_of(d.state.line_width);
+    for (int i = 0; i < count; ++i) {
+      const Line<Real> line = strand(whole, i, count);
+      for_each_candidate(line, d.region, 1, [&](int x, int y) {
+        if (covers(line, x, y)) shade(x, y, interpolate(line, x, y, rules_of(d)), d);
+      });
+    }
   }
 
   void draw_point(const ClipVertex<Real>& v, DrawAtWork& d) {
@@ -295,7 +299,8 @@ class Renderer {
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
     const Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
     for (int y = range.begin_y; y < range.end_y; ++y)
-      for (int x = range.begin_x; x < range.end_x; ++x) shade(x, y, fragment, d);
+      for (int x = range.begin_x; x < range.end_x; ++x)
+        if (point_covers(at, d.state, x, y)) shade(x, y, fragment, d);
   }
 
   void add_outline(std::span<const ScreenVertex<Real>> v, const DrawAtWork& d) {

@@ -96,6 +96,26 @@ struct Track {
   }
 };
 
+/// Of a line of `width` pixels, how many lines of one it is: rounded, at least 1.
+[[nodiscard]] inline int strands_of(double width) { return std::max(1, static_cast<int>(std::floor(width + 0.5))); }
+
+/// The line moved along one axis to where strand i of `count` lies: by i - (count - 1)/2 pixels, by whole ones where
+/// the rule rounds its ends.
+template <class Real>
+[[nodiscard]] Line<Real> strand_along(Line<Real> line, Real ScreenVertex<Real>::*axis, int i, int count) {
+  const double across = line.rule == LineRule::diamond ? i - (count - 1) / 2.0 : i - (count - 1) / 2;
+  line.start.*axis += static_cast<Real>(across);
+  line.end.*axis += static_cast<Real>(across);
+  return line;
+}
+
+/// Strand i of `count`: along the minor axis.
+template <class Real>
+[[nodiscard]] Line<Real> strand(const Line<Real>& line, int i, int count) {
+  const bool is_x_major = Track<Real>(line).is_x_major();
+  return strand_along(line, is_x_major ? &ScreenVertex<Real>::y : &ScreenVertex<Real>::x, i, count);
+}
+
 /// Calls visit(x, y) for the pixels of `range` that lie within `margin` pixels of the line along both axes: one column
 /// of 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a pixel that is covered holds, or
 /// touches, the point in which the line crosses its column or ends in it.
@@ -138,6 +158,14 @@ template <class Real>
   const double x = at.x, y = at.y, half = size / 2;
   if (!std::isfinite(x) || !std::isfinite(y)) return {};
   return pixel_range(x - half, y - half, x + half, y + half, scene);
+}
+
+/// Of a pixel of that square: does the point cover it? A round one where its disc holds the centre.
+template <class Real>
+[[nodiscard]] bool point_covers(const ScreenVertex<Real>& at, const State& state, int x, int y) {
+  const Real dx = static_cast<Real>(x) + Real(0.5) - at.x, dy = static_cast<Real>(y) + Real(0.5) - at.y;
+  const Real radius = static_cast<Real>(state.point_size / 2);
+  return state.point_shape == PointShape::square || dx * dx + dy * dy <= radius * radius;
 }
 
 }  // namespace halfplane::golden

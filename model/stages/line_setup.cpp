@@ -1,6 +1,7 @@
 #include "line_setup.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "triangle_setup.hpp"
 
@@ -146,6 +147,17 @@ void setup_attribute(std::int64_t from, std::int64_t to, const Slope& slope, int
 }
 
 }  // namespace
+
+int strands_of(double width) { return std::max(1, static_cast<int>(std::floor(width + 0.5))); }
+
+void move_to_strand(SnappedVertex& start, SnappedVertex& end, int i, int count, LineRule rule, int grid_bits) {
+  const std::int32_t half = std::int32_t{1} << (grid_bits - 1);
+  const std::int32_t across =
+      rule == LineRule::diamond ? (2 * i - (count - 1)) * half : (i - (count - 1) / 2) * 2 * half;
+  const auto minor = to_octant(start, end, rule, grid_bits).is_x_major ? &SnappedVertex::y : &SnappedVertex::x;
+  start.*minor += across;
+  end.*minor += across;
+}
 
 std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVertex& end, LineRule rule,
                                     bool drops_last, const PixelBounds& limit, const Widths& widths) {

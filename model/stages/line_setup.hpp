@@ -15,6 +15,11 @@
 //
 // A clipped line starts at its first pixel inside, found by quotient and remainder: its pixels, depths and colours are
 // those of the whole line. Reciprocal and divisions are the setup's own: line_raster only adds.
+//
+// A line wider than a pixel is as many strands of one, side by side across the major axis (OpenGL ES 1.1, 3.4.2): the
+// line moved along the minor axis, after the snap, by i - (N - 1)/2 pixels, 0 <= i < N. Where the rule rounds the ends
+// to pixels a strand lies in whole rows, and of an even N the larger half on the side that grows. No pixel is in two
+// strands, and what is drawn along the line is the same in all of them.
 #pragma once
 
 #include <optional>
@@ -32,5 +37,11 @@ namespace halfplane {
 /// pixel there. `drops_last`: leaves out the pixel of `end`; diamond exit leaves it out whatever this says.
 [[nodiscard]] std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVertex& end, LineRule rule,
                                                   bool drops_last, const PixelBounds& limit, const Widths& widths);
+
+/// How many strands a line of that width has: rounded, at least 1. `width`: pixels, below 2^30.
+[[nodiscard]] int strands_of(double width);
+
+/// Moves the ends of a line to strand `i` of `count`. They must not leave 31 bits.
+void move_to_strand(SnappedVertex& start, SnappedVertex& end, int i, int count, LineRule rule, int grid_bits);
 
 }  // namespace halfplane

@@ -206,7 +206,10 @@ Json model_json(const Entry& entry, const Explanation& all, const PixelHistory& 
   if (entry.kind == Kind::triangle)
     json["area"] = {{"value", entry.area},
                     {"real", std::ldexp(static_cast<double>(entry.area), -2 * widths.grid_bits)}};
-  if (entry.kind == Kind::point) json["size"] = entry.point_size;
+  if (entry.kind == Kind::point) {
+    json["size"] = entry.point_size;
+    json["shape"] = entry.point_shape == PointShape::round ? "round" : "square";
+  }
   if (!entry.box.is_empty()) json["box"] = {entry.box.left, entry.box.top, entry.box.right, entry.box.bottom};
   if (!entry.edges.empty()) json["edges"] = edges_json(entry, widths);
   if (entry.tile)

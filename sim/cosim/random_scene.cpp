@@ -54,6 +54,7 @@ class Generator {
       made += run;
     }
     set_newer();
+    if (has_lines_ || has_points_) set_shapes();
     set_units();
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
@@ -87,6 +88,7 @@ class Generator {
   void set_units();
   void set_stencils();
   void set_textures();
+  void set_shapes();
   void set_fogs();
   void set_colors_over_w();
   void clear();
@@ -150,6 +152,23 @@ void Generator::set_newer() {
   std::erase_if(rows, [](const DrawState* row) { return row->home != StateHome::primitive; });
   Random random(~seed_);
   for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
+}
+
+/// Wide lines and round points in a third of the draws of either. By random numbers of their own, as above.
+void Generator::set_shapes() {
+  Random random(seed_ ^ 0x51a9e5u);
+  const int widest = 2 * (config_.guard_band - 1 - std::max(scene_.width, scene_.height));
+  for (const Command& command : scene_.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw == nullptr) continue;
+    State& state = scene_.states[draw->state];
+    const PrimitiveType type = drawn_as(state, draw->topology);
+    if (type == PrimitiveType::triangle || random.next() % 3 != 0) continue;
+    if (type == PrimitiveType::line)
+      state.line_width = std::min(widest, static_cast<int>(2 + random.next() % 6));
+    else
+      state.point_shape = PointShape::round;
+  }
 }
 
 /// States of the units that this hardware has behind the depth test, in runs of draws with and without. By random numbers of

@@ -43,6 +43,8 @@ Scene random_scene(std::uint32_t seed, int grid) {
     state.line_rule = static_cast<LineRule>(random.index(3));
     if (random.index(2) == 0) state.line_last = random.index(2) == 0;
     state.point_size = grid == 0 ? random.between(1, 7) : 1 + random.index(5 * grid) / static_cast<double>(grid);
+    if (d % 2 == 1) state.line_width = 1 + random.index(12) / 2.0;
+    if (d % 3 == 1) state.point_shape = PointShape::round;
     state.depth_write = random.index(4) != 0;
     state.color_write = random.index(4) != 0;
     if (random.index(3) == 0) state.scissor = Rect{random.index(20), random.index(20), 1 + random.index(25), 17};
@@ -175,6 +177,8 @@ Scene random_clip_scene(std::uint32_t seed) {
     state.line_rule = static_cast<LineRule>(random.index(3));
     state.point_size = 1 + random.index(5);
     state.point_clip = static_cast<PointClip>(random.index(2));
+    if (d % 2 == 1) state.line_width = 1 + random.index(4);
+    if (d % 3 == 1) state.point_shape = PointShape::round;
     scene.states.push_back(state);
     const std::size_t first = scene.indices.size();
     for (int i = 0; i < 6; ++i) {

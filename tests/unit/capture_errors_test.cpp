@@ -90,6 +90,8 @@ TEST(CaptureErrors, StatesOfLinesAndPointsAreCheckedAsTheOthers) {
   expect_line_refused("state line_rule xiaolin", "write one of midpoint, bresenham, diamond");
   expect_line_refused("state line_last maybe", "write one of off, on, rule");
   expect_line_refused("state point_size 0.5", "point_size is 0.5; write a number from 1 to 1048576");
+  expect_line_refused("state line_width 0", "line_width is 0; write a number from 1 to 1048576");
+  expect_line_refused("state point_shape disc", "write one of square, round");
   expect_line_refused("state polygon_offset 1", "the line ends where polygon_offset's constant should follow");
   expect_line_refused("state provoking middle", "write one of first, last");
   expect_line_refused("state point_clip none", "write one of pixel, center");

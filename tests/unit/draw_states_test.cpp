@@ -287,7 +287,9 @@ TEST(DrawStates, RandomScenesOfCosimHaveEveryValueThatRidesWithThePrimitive) {
   for (const DrawState& row : draw_states())
     if (row.home == StateHome::primitive) rows.push_back(&row);
   EXPECT_EQ(seen.missing(rows), "");
-  EXPECT_EQ(seen.missing(states_named({"shade", "scissor", "line_rule", "line_last", "point_size"})), "");
+  EXPECT_EQ(seen.missing(states_named(
+                {"shade", "scissor", "line_rule", "line_last", "line_width", "point_size", "point_shape"})),
+            "");
 }
 
 }  // namespace

@@ -142,6 +142,25 @@ SnappedVertex on_grid(const Vertex& v) {
 
 double value(const exact::Rational& r) { return static_cast<double>(r.numerator) / static_cast<double>(r.denominator); }
 
+/// The lines of one pixel that a wide one is, by the words of the specification; sixteenths of a pixel.
+std::vector<exact::Line> strands(const exact::Line& thin, double width) {
+  const bool is_rounded = thin.rule != LineRule::diamond;
+  const auto coordinate = [&](int v) { return is_rounded ? v >> 4 << 4 : v; };
+  const int run = std::abs(coordinate(thin.end.x) - coordinate(thin.start.x));
+  const int rise = std::abs(coordinate(thin.end.y) - coordinate(thin.start.y));
+  std::vector<exact::Line> lines;
+  const int count = static_cast<int>(std::lround(width));
+  for (int i = 0; i < count; ++i) {
+    const int halves = 2 * i - (count - 1);  // of a pixel
+    const int across = is_rounded ? (halves - (count % 2 == 0 ? -1 : 0)) / 2 * 16 : halves * 8;
+    exact::Line line = thin;
+    (run >= rise ? line.start.y : line.start.x) += across;
+    (run >= rise ? line.end.y : line.end.x) += across;
+    lines.push_back(line);
+  }
+  return lines;
+}
+
 /// How often each pixel is covered, and the attributes of the last primitive there.
 struct Expected {
   std::vector<std::uint32_t> count = std::vector<std::uint32_t>(std::size_t{kWidth} * kHeight);
@@ -172,17 +191,22 @@ Expected expect(const Scene& scene) {
         const auto is_in = [&](int i, double at) {
           return at - state.point_size / 2 <= i + 0.5 && i + 0.5 < at + state.point_size / 2;
         };
+        const auto in_disc = [&](int x, int y) {
+          return std::hypot(x + 0.5 - v.x, y + 0.5 - v.y) <= state.point_size / 2;
+        };
         for_each_pixel([&](int x, int y) {
-          if (is_in(x, v.x) && is_in(y, v.y)) add(x, y, v.z * 65535, v.rgba[0]);
+          const bool is_round = state.point_shape == PointShape::round;
+          if (is_in(x, v.x) && is_in(y, v.y) && (!is_round || in_disc(x, y))) add(x, y, v.z * 65535, v.rgba[0]);
         });
       });
     } else {
       for_each_line(scene, *draw, [&](std::uint32_t a, std::uint32_t b) {
-        const exact::Line line{on_grid(scene.vertices[a]), on_grid(scene.vertices[b]), state.line_rule,
+        const exact::Line thin{on_grid(scene.vertices[a]), on_grid(scene.vertices[b]), state.line_rule,
                                golden::drops_last_pixel(state), 4};
-        for_each_pixel([&](int x, int y) {
-          if (exact::covers(line, x, y)) add(x, y, value(depth_at(line, x, y)), value(color_at(line, x, y, 0)));
-        });
+        for (const exact::Line& line : strands(thin, state.line_width))
+          for_each_pixel([&](int x, int y) {
+            if (exact::covers(line, x, y)) add(x, y, value(depth_at(line, x, y)), value(color_at(line, x, y, 0)));
+          });
       });
     }
   }
@@ -198,6 +222,8 @@ TEST(GoldenLine, ScenesOfLinesAndPointsOnTheGridEqualTheOracleInCoverageDepthAnd
     state.line_rule = static_cast<LineRule>(random.index(3));
     if (random.index(2) == 0) state.line_last = random.index(2) == 0;
     state.point_size = 1 + random.index(6 * 16) / 16.0;
+    if (seed % 2 == 0) state.line_width = 1 + random.index(10) / 2.0;
+    if (seed % 3 == 0) state.point_shape = PointShape::round;
     if (random.index(2) == 0) state.scissor = Rect{random.index(20), random.index(20), 1 + random.index(25), 17};
     const Scene scene = random_scene(random, state);
     const Expected expected = expect(scene);

@@ -449,5 +449,38 @@ TEST(Point, IsCutByTheScissorPixelByPixel) {
   EXPECT_TRUE(point_bounds(snapped_vertex(8, 8), 16, {1, 0, 9, 9}, 4).is_empty());
 }
 
+TEST(Point, ARoundOneCoversThePixelsOfItsSquareWhoseCentresLieInItsDisc) {
+  const PixelBounds everything{-100, -100, 100, 100};
+  for (const int s : {1, 2, 4})
+    for (int size = 1 << s; size <= 6 << s; ++size)
+      for (int x = -1 << s; x <= 1 << s; ++x)
+        for (int y = -1 << s; y <= 1 << s; ++y) {
+          const SnappedVertex at = snapped_vertex(x, y);
+          const PixelBounds box = point_bounds(at, size, everything, s);
+          std::map<std::pair<int, int>, int> covered;
+          for_each_run(at, size, PointShape::round, box, s, [&](const PixelBounds& run) {
+            ASSERT_EQ(run.top, run.bottom);
+            for (int i = run.left; i <= run.right; ++i) ++covered[{i, run.top}];
+          });
+          for (int j = box.top; j <= box.bottom; ++j)
+            for (int i = box.left; i <= box.right; ++i) {  // in halves of a subpixel
+              const int dx = ((2 * i + 1) << s) - 2 * x, dy = ((2 * j + 1) << s) - 2 * y;
+              const auto found = covered.find({i, j});
+              ASSERT_EQ(found == covered.end() ? 0 : found->second, dx * dx + dy * dy <= size * size ? 1 : 0)
+                  << x << ' ' << y << ' ' << size << ": " << i << ' ' << j;
+              if (found != covered.end()) covered.erase(found);
+            }
+          ASSERT_TRUE(covered.empty()) << "outside its square";
+        }
+}
+
+TEST(Point, IntegerRootsAreExactAtSquares) {
+  for (const std::int64_t root : {0LL, 1LL, 2LL, 3LL, 94906266LL, 134217728LL, 2147483646LL}) {
+    EXPECT_EQ(integer_root(root * root), root);
+    EXPECT_EQ(integer_root(root * root + 2 * root), root);
+    if (root > 0) EXPECT_EQ(integer_root(root * root - 1), root - 1);
+  }
+}
+
 }  // namespace
 }  // namespace halfplane

@@ -83,11 +83,26 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
   const std::string fan =
       "v 50 8 0.25 1 255 0 0 255\nv 10 50 0.5 2 0 255 0 255\nv 50 60 0.75 1 0 0 255 255\nv 90 40 0.5 3 255 255 0 255\n";
   const std::string flat = "v 5 5 0.4 1 200 90 0 255\nv 91 30 0.4 1 10 90 200 255\nv 20 60 0.6 1 255 255 255 255\n";
-  for (const char* state :
-       {"cull back", "cull front", "cull both", "front cw\nstate cull back", "depth_test greater", "depth_test always",
-        "depth_test lequal", "depth_test equal", "depth_test notequal", "depth_test gequal", "depth_write off",
-        "color_write off", "shade flat", "shade flat\nstate provoking last", "scissor 20 10 40 30", "polygon_mode line",
-        "polygon_mode point\nstate point_size 4", "polygon_offset 0 9000"}) {
+  for (const char* state : {"cull back",
+                            "cull front",
+                            "cull both",
+                            "front cw\nstate cull back",
+                            "depth_test greater",
+                            "depth_test always",
+                            "depth_test lequal",
+                            "depth_test equal",
+                            "depth_test notequal",
+                            "depth_test gequal",
+                            "depth_write off",
+                            "color_write off",
+                            "shade flat",
+                            "shade flat\nstate provoking last",
+                            "scissor 20 10 40 30",
+                            "polygon_mode line",
+                            "polygon_mode point\nstate point_size 4",
+                            "polygon_mode line\nstate line_width 3",
+                            "polygon_mode line\nstate line_width 4",
+                            "polygon_offset 0 9000"}) {
     std::string text = head;
     text.append("space window\n").append(fan).append(flat).append("t 4 5 6\nstate ").append(state);
     text += "\ntf 0 1 2 3\nts 3 2 1 0\nt 4 6 5\nl 0 3\np 2\n";

@@ -203,10 +203,77 @@ TEST(Outlines, PointsAreClippedByPixelOrByCentre) {
   EXPECT_TRUE(covered(one_draw(state, Topology::points, {clip_at(0, 0, 0, -1)})).empty()) << "behind the eye";
 }
 
-TEST(Outlines, APointWiderThanTheGuardBandAllowsIsRefused) {
+TEST(Outlines, WhatIsWiderThanTheGuardBandAllowsIsRefused) {
   State state = SceneBuilder::window_state();
-  state.point_size = 4096;
+  state.point_size = state.line_width = 4096;
   EXPECT_THROW((void)covered(one_draw(state, Topology::points, {at(1, 1)})), InputError);
+  EXPECT_THROW((void)covered(one_draw(state, Topology::lines, {at(1, 1), at(9, 9)})), InputError);
+  state.polygon_mode = PolygonMode::line;
+  EXPECT_THROW((void)covered(one_draw(state, Topology::triangles, {at(1, 1), at(9, 9), at(1, 9)})), InputError);
+  state.polygon_mode = PolygonMode::fill;
+  EXPECT_NO_THROW((void)covered(one_draw(state, Topology::triangles, {at(1, 1), at(9, 9), at(1, 9)})));
+  state.line_width = 2 * (preset("embedded").guard_band - 1 - 32);
+  EXPECT_EQ(covered(one_draw(state, Topology::lines, {at(1, 16), at(31, 16)})).size(), 30U * 32U);
+}
+
+TEST(Outlines, AWideLineIsItsThinLineSideBySide) {
+  constexpr std::uint32_t kSeed = 31;
+  Random random(kSeed);
+  for (int n = 0; n < 300; ++n) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", line " + std::to_string(n));
+    State state = SceneBuilder::window_state();
+    state.line_rule = static_cast<LineRule>(random.index(3));
+    const auto anywhere = [&random] { return at(random.between(12, 52), random.between(12, 52)); };
+    const std::vector<Vertex> ends{anywhere(), anywhere()};
+    const auto thin = covered(one_draw(state, Topology::lines, ends, 64));
+    // One of the two axes, whichever is the minor one: each column has one pixel, and then three.
+    state.line_width = 3.25;
+    const auto wide = covered(one_draw(state, Topology::lines, ends, 64));
+    std::set<std::pair<int, int>> moved_x, moved_y;
+    for (const auto& [x, y] : thin)
+      for (const int across : {-1, 0, 1}) {
+        moved_x.emplace(x + across, y);
+        moved_y.emplace(x, y + across);
+      }
+    EXPECT_EQ(wide.size(), 3 * thin.size()) << "a pixel is in two strands";
+    EXPECT_TRUE(wide == moved_x || wide == moved_y);
+  }
+}
+
+TEST(Outlines, ALineOfTwoPixelsLiesToBothSidesOfItsMiddle) {
+  State state = SceneBuilder::window_state();
+  state.line_width = 2;
+  for (const auto rule : {LineRule::midpoint, LineRule::diamond}) {
+    state.line_rule = rule;
+    std::set<int> rows;
+    for (const auto& [x, y] : covered(one_draw(state, Topology::lines, {at(2, 10), at(20, 10)}))) rows.insert(y);
+    // On the border of rows 9 and 10: the two beside it; of whole pixels the end's own and the one below.
+    EXPECT_EQ(rows, (rule == LineRule::diamond ? std::set<int>{9, 10} : std::set<int>{10, 11}));
+  }
+}
+
+TEST(Outlines, ALineOutsideTheTargetShowsTheStrandsThatAreInside) {
+  State state = SceneBuilder::window_state();
+  state.line_width = 9;
+  for (const Topology topology : {Topology::lines, Topology::line_strip})
+    EXPECT_EQ(covered(one_draw(state, topology, {at(-5, -2.5), at(40, -2.5)})).size(), 32U * 2U);
+  state.space = Space::clip;  // beyond the view, not beyond the guard band
+  EXPECT_EQ(covered(one_draw(state, Topology::lines, {clip_at(-2, 1.1, 0, 1), clip_at(2, 1.1, 0, 1)})).size(),
+            32U * 3U);
+}
+
+TEST(Outlines, ARoundPointIsADisc) {
+  State state = SceneBuilder::window_state();
+  state.point_shape = PointShape::round;
+  state.point_size = 9.25;
+  std::set<std::pair<int, int>> disc;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      if (std::hypot(x + 0.5 - 28.75, y + 0.5 - 3.5) <= 9.25 / 2) disc.emplace(x, y);
+  EXPECT_EQ(covered(one_draw(state, Topology::points, {at(28.75, 3.5)})), disc);
+  state.point_size = 1;
+  EXPECT_EQ(covered(one_draw(state, Topology::points, {at(4.5, 4.5)})).size(), 1U);
+  EXPECT_TRUE(covered(one_draw(state, Topology::points, {at(4, 4)})).empty()) << "a disc that holds no centre";
 }
 
 TEST(Outlines, CoordinatesWhoseDistancesOverflowAreRefusedByModelAndGolden) {

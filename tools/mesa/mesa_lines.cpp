@@ -70,6 +70,7 @@ void apply(const State& state, const Scene& scene) {
   for (const GLenum mode : {GL_POLYGON_OFFSET_FILL, GL_POLYGON_OFFSET_LINE, GL_POLYGON_OFFSET_POINT})
     has_offset ? glEnable(mode) : glDisable(mode);
   glPolygonOffset(static_cast<float>(state.polygon_offset[0]), static_cast<float>(state.polygon_offset[1]));
+  glLineWidth(static_cast<float>(state.line_width));
   glPointSize(static_cast<float>(state.point_size));
   glShadeModel(state.shade == Shade::flat ? GL_FLAT : GL_SMOOTH);
 }

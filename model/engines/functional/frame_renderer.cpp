@@ -329,9 +329,10 @@ void FrameRenderer::draw(std::uint32_t command) {
     rendering_.counters.culled += count;
     return;
   }
-  // The ends of lines are fogged on the host side of the stages.
-  const bool has_own_colors = type != PrimitiveType::line || !scene_->states[draw.state].fog;
-  if (is_prepared && has_own_colors) return draw_prepared(command);
+  // The lanes take lines of one pixel that have their own colours: the host side fogs their ends.
+  const State& state = scene_->states[draw.state];
+  const bool is_plain = type != PrimitiveType::line || (!state.fog && strands_of(state.line_width) == 1);
+  if (is_prepared && is_plain) return draw_prepared(command);
   open_ = nullptr;
   draw_outlines(contexts_.emplace_back(*scene_, config_, draw, command));
 }

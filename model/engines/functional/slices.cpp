@@ -80,7 +80,7 @@ PixelBounds line_box(const LineSetup& line) {
 }
 
 /// Appends what the host side has made of a line or point.
-void add_outline(Slice& slice, const Outline& outline, std::size_t room) {
+void add_outline(Slice& slice, const Outline& outline, int grid_bits, std::size_t room) {
   for (const LinePrimitive& line : outline.lines) {
     const auto [low, high] = std::minmax({line.drawn.start.depth(), line.drawn.end.depth()});
     const auto at = static_cast<std::uint32_t>(slice.lines.size());
@@ -91,7 +91,9 @@ void add_outline(Slice& slice, const Outline& outline, std::size_t room) {
     const auto at = static_cast<std::uint32_t>(slice.vertices.size());
     slice.vertices.push_back(row_of(point.drawn.at));
     const std::uint32_t z = point.drawn.at.depth();
-    add_record(slice, record_of({at, at, at}, z, z, point.box, RecordKind::rectangle), room);
+    for_each_run(point, grid_bits, [&](const PixelBounds& box) {
+      add_record(slice, record_of({at, at, at}, z, z, box, RecordKind::rectangle), room);
+    });
   }
 }
 
@@ -105,7 +107,7 @@ void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part
   const std::uint32_t start = frame.prepared.index[0][at], end = frame.prepared.index[1][at];
   geometry(context, frame.widths, cache, {PrimitiveType::line, {start, end, end}},
            part.primitive + static_cast<std::uint32_t>(line), slice.counters, outline);
-  add_outline(slice, outline, slice.triangles);
+  add_outline(slice, outline, frame.widths.grid_bits, slice.triangles);
 }
 
 }  // namespace
@@ -146,7 +148,7 @@ void FrameRenderer::build_outlines(Slice& slice) const {
     outline.lines.clear();
     outline.points.clear();
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
-    add_outline(slice, outline, 0);
+    add_outline(slice, outline, widths_.grid_bits, 0);
   }
 }
 

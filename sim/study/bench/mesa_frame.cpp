@@ -53,6 +53,8 @@ void check_draw_state(const State& state, Topology topology) {
   const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
   if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
   const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
+  if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)
+    refuse("point_shape round");
   if (!is_line) return;
   if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");
   if (state.line_rule == LineRule::bresenham) refuse("line_rule bresenham");
@@ -249,6 +251,7 @@ void MesaFrame::apply(const Call& call) const {
   for (const gl::Enum mode : {gl::kOffsetFill, gl::kOffsetLine, gl::kOffsetPoint})
     has_offset ? gl_.enable(mode) : gl_.disable(mode);
   gl_.polygon_offset(static_cast<float>(state.polygon_offset[0]), static_cast<float>(state.polygon_offset[1]));
+  gl_.line_width(static_cast<float>(state.line_width));
   gl_.point_size(static_cast<float>(state.point_size));
   gl_.provoking_vertex(state.provoking == Provoking::first ? gl::kFirstVertex : gl::kLastVertex);
   gl_.use_program(call.program);

@@ -64,6 +64,7 @@ void find_state_functions(const Finder& find, Functions& f) {
   find(f.scissor, "glScissor");
   find(f.polygon_mode, "glPolygonMode");
   find(f.polygon_offset, "glPolygonOffset");
+  find(f.line_width, "glLineWidth");
   find(f.point_size, "glPointSize");
   find(f.provoking_vertex, "glProvokingVertex");
   find(f.clip_control, "glClipControl");

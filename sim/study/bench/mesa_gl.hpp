@@ -60,6 +60,7 @@ struct Functions {
   void (*scissor)(int, int, int, int);
   void (*polygon_mode)(Enum, Enum);
   void (*polygon_offset)(float, float);
+  void (*line_width)(float);
   void (*point_size)(float);
   void (*provoking_vertex)(Enum);
   void (*clip_control)(Enum, Enum);

@@ -78,10 +78,18 @@ bool rounded_is_uncertain(const GoldenLine& line, int x, int y, double reach) {
   return false;
 }
 
-/// Coverage changes where one of the square's borders passes the centre.
-bool point_is_uncertain(double dx, double dy, double half, double reach) {
-  const double outside = std::max(std::abs(dx), std::abs(dy)) - half;
-  return std::abs(outside) <= reach;
+/// Coverage changes where a border of the point passes the centre.
+bool point_is_uncertain(double dx, double dy, const State& state, double reach) {
+  const double distance =
+      state.point_shape == PointShape::round ? std::hypot(dx, dy) : std::max(std::abs(dx), std::abs(dy));
+  return std::abs(distance - state.point_size / 2) <= reach;
+}
+
+/// Whether a line within reach of this one may have the other major axis. The strands of the two lie to other sides.
+bool may_turn(const GoldenLine& line, double reach) {
+  const double run = std::abs(line.end.x - line.start.x), rise = std::abs(line.end.y - line.start.y);
+  // Each coordinate moves by as much, and by a pixel more where it is rounded.
+  return std::abs(run - rise) <= 4 * (line.rule == LineRule::diamond ? reach : reach + 1);
 }
 
 /// The pixels of `region` that a line covers by definition. `tested` counts those that were looked at.
@@ -113,13 +121,19 @@ std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelRan
   const auto around = [&](std::int64_t border, int low, int high) {  // the pixel that holds it, inside the region
     return static_cast<int>(std::clamp<std::int64_t>(border >> (grid_bits + 1), low, high));
   };
+  // Twice the distance from the centre, squared: below 2^63 as long as sizes are below 2^30.
+  const auto disc_holds = [&](std::int64_t i, std::int64_t j) {
+    const std::int64_t dx = i * pixel + pixel / 2 - x, dy = j * pixel + pixel / 2 - y;
+    return point.shape == PointShape::square || dx * dx + dy * dy <= size * size;
+  };
   std::vector<Pixel> pixels;
   for (int j = around(y - size - pixel, region.begin_y, region.end_y);
        j < around(y + size + 2 * pixel, region.begin_y, region.end_y); ++j)
     for (int i = around(x - size - pixel, region.begin_x, region.end_x);
          i < around(x + size + 2 * pixel, region.begin_x, region.end_x); ++i) {
       ++tested;
-      if (holds(i * pixel + pixel / 2, x) && holds(j * pixel + pixel / 2, y)) pixels.push_back({point.primitive, j, i});
+      if (holds(i * pixel + pixel / 2, x) && holds(j * pixel + pixel / 2, y) && disc_holds(i, j))
+        pixels.push_back({point.primitive, j, i});
     }
   return pixels;
 }
@@ -159,7 +173,7 @@ void mark_uncertain(const golden::Outline& outline, const State& state, int subp
     };
     for (int y = pixel(outline.y[0] - far, image.height); y < pixel(outline.y[0] + far + 1, image.height); ++y)
       for (int x = pixel(outline.x[0] - far, image.width); x < pixel(outline.x[0] + far + 1, image.width); ++x)
-        if (wanted[index(x, y)] && point_is_uncertain(x + 0.5 - outline.x[0], y + 0.5 - outline.y[0], half, reach))
+        if (wanted[index(x, y)] && point_is_uncertain(x + 0.5 - outline.x[0], y + 0.5 - outline.y[0], state, reach))
           near[index(x, y)] = true;
     return;
   }
@@ -171,12 +185,22 @@ void mark_uncertain(const golden::Outline& outline, const State& state, int subp
   line.end.x = outline.x[1];
   line.end.y = outline.y[1];
   // 3: an end moves by a pixel at most, and may move the line out of its column's three candidates by as much.
-  golden::for_each_candidate(line, target, 3, [&](int x, int y) {
-    if (!wanted[index(x, y)] || near[index(x, y)]) return;
-    if (line.rule == LineRule::diamond ? diamond_is_uncertain(line, x, y, reach)
-                                       : rounded_is_uncertain(line, x, y, reach))
-      near[index(x, y)] = true;
-  });
+  const auto mark = [&](const GoldenLine& strand, auto&& is_uncertain) {
+    golden::for_each_candidate(strand, target, 3, [&](int x, int y) {
+      if (wanted[index(x, y)] && !near[index(x, y)] && is_uncertain(x, y)) near[index(x, y)] = true;
+    });
+  };
+  const int count = golden::strands_of(state.line_width);
+  for (int i = 0; i < count; ++i) {
+    const GoldenLine strand = golden::strand(line, i, count);
+    mark(strand, [&](int x, int y) {
+      return strand.rule == LineRule::diamond ? diamond_is_uncertain(strand, x, y, reach)
+                                              : rounded_is_uncertain(strand, x, y, reach);
+    });
+    if (count > 1 && may_turn(line, reach))
+      for (const auto axis : {&golden::ScreenVertex<double>::x, &golden::ScreenVertex<double>::y})
+        mark(golden::strand_along(line, axis, i, count), [](int, int) { return true; });
+  }
 }
 
 }  // namespace halfplane

@@ -322,15 +322,25 @@ Entry point_entry(const Widths& widths, const PointPrimitive& point, Pixel pixel
   entry.corners = {drawn.at};
   entry.box = point.box;
   entry.point_size = drawn.size;
-  // From the definition, in halves of a subpixel: the centre lies in [X - n/2, X + n/2), and so across.
-  const auto spans = [&](int i, std::int32_t at) {
-    const std::int64_t centre = (2 * std::int64_t{i} + 1) << widths.grid_bits, middle = 2 * std::int64_t{at};
-    return centre >= middle - drawn.size && centre < middle + drawn.size;
+  entry.point_shape = drawn.shape;
+  // From the definition, in halves of a subpixel: the centre lies in [X - n/2, X + n/2), and so across; or in the disc.
+  const auto distance = [&](int i, std::int32_t at) {
+    return (2 * std::int64_t{i} + 1) * (std::int64_t{1} << widths.grid_bits) - 2 * std::int64_t{at};
   };
-  entry.oracle = OracleFigure{spans(pixel.x, drawn.at.x) && spans(pixel.y, drawn.at.y), false};
-  if (!holds(point.box, pixel)) {
-    entry.specification = entry.oracle->covers
-                              ? Outcome(Verdict::scissor)
+  const std::int64_t dx = distance(pixel.x, drawn.at.x), dy = distance(pixel.y, drawn.at.y), n = drawn.size;
+  const bool is_round = drawn.shape == PointShape::round;
+  const bool in_square = dx >= -n && dx < n && dy >= -n && dy < n;
+  entry.oracle = OracleFigure{in_square && (!is_round || dx * dx + dy * dy <= n * n), false};
+  bool is_drawn = false;
+  for_each_run(point, widths.grid_bits, [&](const PixelBounds& run) {
+    if (!holds(run, pixel)) return;
+    is_drawn = true;
+    entry.box = run;  // what the hardware is sent for it
+  });
+  if (!is_drawn) {
+    entry.specification = entry.oracle->covers ? Outcome(Verdict::scissor)
+                          : is_round
+                              ? Outcome(Verdict::uncovered, Stage::point_raster, "the pixel lies outside its disc")
                               : Outcome(Verdict::uncovered, Stage::point_raster, "the pixel lies outside its square");
     return entry;
   }

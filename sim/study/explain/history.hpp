@@ -179,6 +179,7 @@ struct Entry {
   std::optional<LineFigure> line;
   std::vector<TriangleStep> steps;  ///< only if asked for
   std::int32_t point_size = 0;      ///< subpixels
+  PointShape point_shape = PointShape::square;
   std::vector<OperationStep> operations;
   std::optional<HardwareFigure> hardware;
   std::optional<GoldenFigure> golden;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "model/fragment_ops.hpp"
@@ -115,8 +116,13 @@ void draw_primitive(Canvas& canvas, const Shown& shown, int grid_bits) {
   if (entry.kind == Kind::point && !snapped.empty()) {
     const Spot at = snapped[0];
     const double half = std::ldexp(entry.point_size, -grid_bits - 1);
-    snapped = {
-        {at.x - half, at.y - half}, {at.x + half, at.y - half}, {at.x + half, at.y + half}, {at.x - half, at.y + half}};
+    snapped.clear();
+    const int corners = entry.point_shape == PointShape::round ? 48 : 4;
+    const double reach = corners == 4 ? half * std::numbers::sqrt2 : half;  // from the centre to a corner
+    for (int i = 0; i < corners; ++i) {
+      const double angle = (2 * i + 1) * std::numbers::pi / corners;
+      snapped.push_back({at.x + reach * std::cos(angle), at.y + reach * std::sin(angle)});
+    }
   }
   if (entry.golden && entry.golden->outline)
     for (std::size_t i = 0; i < entry.golden->outline->corners; ++i)

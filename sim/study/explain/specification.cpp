@@ -55,7 +55,9 @@ Shape shape_of(const DrawContext& context, const AssembledPrimitive& primitive) 
   std::array<Vertex, 3> v;
   for (std::size_t i = 0; i < 3; ++i) v[i] = context.scene.vertices[primitive.index[i]];
   Shape shape;
-  shape.margin = drawn_as(state, context.draw.topology) == PrimitiveType::point ? state.point_size * 0.7072 : 1;
+  shape.margin = drawn_as(state, context.draw.topology) == PrimitiveType::point
+                     ? state.point_size * 0.7072
+                     : (strands_of(state.line_width) + 1) / 2.0;
   const auto add = [&](const Vertex& vertex) {
     const WindowPosition p = state.space == Space::clip ? to_window(vertex, state, context.viewport)
                                                         : window_position(vertex, state, context.scene.height);

@@ -5,6 +5,7 @@
 
 #include "model/packet_words.hpp"
 #include "model/stages/depth_test.hpp"
+#include "model/stages/line_raster.hpp"
 #include "sim/cosim/arrows.hpp"
 
 namespace halfplane::explain {
@@ -41,18 +42,28 @@ class Checks {
   Explanation& result_;
 };
 
-/// Whether a line of the host's stream is this one, or what lies of it in one bin.
-bool is_line_of(const LineSetup& whole, const LineSetup& sent, bool is_part) {
+/// Whether a line has that pixel.
+bool has_pixel(const LineSetup& line, int x, int y, const Widths& widths) {
+  for (LineState state = first_state(line);; advance(state, line, widths)) {
+    if (state.x == x && state.y == y) return true;
+    if (state.remaining == 0) return false;
+  }
+}
+
+/// Whether a line of the host's stream is this one, or what lies of it in one bin: the strands of a wide line differ in
+/// their places alone.
+bool is_line_of(const LineSetup& whole, const LineSetup& sent, bool is_part, const Widths& widths) {
   const bool is_along = whole.step_stay == sent.step_stay && whole.step_move == sent.step_move &&
                         whole.is_x_major == sent.is_x_major && whole.is_x_negative == sent.is_x_negative &&
                         whole.is_y_negative == sent.is_y_negative && whole.start == sent.start &&
                         whole.step == sent.step;
-  return is_along && (is_part || (whole.x == sent.x && whole.y == sent.y && whole.error == sent.error &&
-                                  whole.remaining == sent.remaining && whole.value == sent.value));
+  if (is_part) return is_along && has_pixel(whole, sent.x, sent.y, widths);
+  return is_along && (whole.x == sent.x && whole.y == sent.y && whole.error == sent.error &&
+                      whole.remaining == sent.remaining && whole.value == sent.value);
 }
 
 /// Whether a primitive of the host's stream is this entry, or a part of it in one bin.
-bool is_of(const Entry& entry, const HostPrimitive& host) {
+bool is_of(const Entry& entry, const HostPrimitive& host, const Widths& widths) {
   const PrimitiveKind kind = host.packet.kind;
   if (entry.kind == Kind::clear) return !is_counted(kind) && host.command == entry.draw;
   if (!is_counted(kind) || host.primitive != *entry.primitive || host.command != entry.draw) return false;
@@ -65,7 +76,8 @@ bool is_of(const Entry& entry, const HostPrimitive& host) {
     case Kind::triangle:
       return kind == PrimitiveKind::triangle && same(entry.corners[0], 0) && same(entry.corners[1], 1) &&
              same(entry.corners[2], 2);
-    case Kind::line: return kind == PrimitiveKind::line && is_line_of(entry.line->setup, *host.line, host.is_part);
+    case Kind::line:
+      return kind == PrimitiveKind::line && is_line_of(entry.line->setup, *host.line, host.is_part, widths);
     case Kind::point: {
       const PixelBox& box = host.packet.box;
       const bool is_within = box.left >= entry.box.left && box.right <= entry.box.right && box.top >= entry.box.top &&
@@ -183,13 +195,14 @@ void join_visit(const HardwareVisit& visit, const PixelHistory& pixel, Entry& en
 
 void join_hardware(const HardwareRecord& hardware, const Config& config, Explanation& result) {
   Checks checks(result);
+  const Widths widths = derive_widths(config);
   for (std::size_t p = 0; p < result.pixels.size(); ++p) {
     PixelHistory& pixel = result.pixels[p];
     std::vector<bool> is_taken(hardware.visits[p].size());
     for (Entry& entry : pixel.history) {
       for (std::size_t v = 0; v < hardware.visits[p].size(); ++v) {
         const HardwareVisit& visit = hardware.visits[p][v];
-        if (is_taken[v] || !is_of(entry, visit.host)) continue;
+        if (is_taken[v] || !is_of(entry, visit.host, widths)) continue;
         // Corners that lie on each other are equal points of one primitive: one each. Parts in bins come again.
         if (entry.kind == Kind::point && entry.hardware && !visit.host.is_part) break;
         is_taken[v] = true;

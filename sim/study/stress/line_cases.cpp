@@ -183,6 +183,8 @@ void wires(Unit& unit) {
   state.line_rule = kRules[static_cast<std::size_t>(random.index(3))];
   state.polygon_mode = random.coin() ? PolygonMode::line : PolygonMode::point;
   state.point_size = random.coin() ? 1 : random.between(1, 5);
+  state.line_width = random.coin() ? 1 : 1 + random.index(4);
+  state.point_shape = random.coin() ? PointShape::square : PointShape::round;
   if (random.coin()) state.scissor = Rect{random.index(8), random.index(8), 1 + random.index(30), 21};
   SceneBuilder builder(width, height, state);
   for (int n = 0; n < 5; ++n) {
