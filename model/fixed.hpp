@@ -22,6 +22,16 @@ __extension__ using uint128 = unsigned __int128;
 /// ceil(log2(value)), value > 0: the bits needed to count `value` different things.
 [[nodiscard]] constexpr int ceil_log2(uint128 value) { return value <= 1 ? 0 : floor_log2(value - 1) + 1; }
 
+/// floor(sqrt(v)), bit by bit.
+[[nodiscard]] constexpr std::uint64_t integer_sqrt(uint128 v) {
+  std::uint64_t root = 0;
+  for (int bit = 63; bit >= 0; --bit) {
+    const std::uint64_t next = root | std::uint64_t{1} << bit;
+    if (uint128{next} * next <= v) root = next;
+  }
+  return root;
+}
+
 /// floor(value / 2^bits + 1/2); a negative `bits` shifts left. The one rounding of the pipeline.
 template <class Integer>
 [[nodiscard]] constexpr Integer round_shift(Integer value, int bits) {

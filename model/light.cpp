@@ -73,15 +73,6 @@ std::uint64_t product(std::uint64_t a, std::uint64_t b, int bits) {
 
 }  // namespace
 
-std::uint64_t integer_sqrt(uint128 v) {
-  std::uint64_t root = 0;
-  for (int bit = 63; bit >= 0; --bit) {
-    const std::uint64_t next = root | std::uint64_t{1} << bit;
-    if (uint128{next} * next <= v) root = next;
-  }
-  return root;
-}
-
 FixedDirection fixed_direction(const std::array<std::int64_t, 3>& v) {
   std::uint64_t largest = 0;
   for (const std::int64_t c : v) largest |= static_cast<std::uint64_t>(c < 0 ? -c : c);

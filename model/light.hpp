@@ -50,8 +50,6 @@ using FixedColor = std::array<std::uint32_t, 3>;
 /// Behind the point; those of materials and of sums of light are u.24.
 inline constexpr int kDirectionBits = 30, kPlaceBits = 16, kMaterialBits = 24, kFallOffBits = 32;
 
-/// floor(sqrt(v)).
-[[nodiscard]] std::uint64_t integer_sqrt(uint128 v);
 /// Of any vector; zero for zero.
 [[nodiscard]] FixedDirection fixed_direction(const std::array<std::int64_t, 3>& v);
 [[nodiscard]] FixedDirection fixed_direction(const std::array<double, 3>& v);

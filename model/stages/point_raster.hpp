@@ -9,8 +9,7 @@
 // none, where it is small and lies between them.
 #pragma once
 
-#include <cmath>
-
+#include "../fixed.hpp"
 #include "../scene.hpp"
 #include "cull.hpp"
 
@@ -24,22 +23,14 @@ namespace halfplane {
   return static_cast<int>((border - centre + pixel - 1) >> (grid_bits + 1));
 }
 
-/// The pixels of its square inside `limit`; empty when there are none. `size`: the side, in subpixels of 2^-grid_bits pixel, at least
-/// one pixel, so that no point falls between the centres; X, Y, size: any in a legal guard band.
+/// The pixels of its square inside `limit`; empty when there are none. `size`: the side, in subpixels of 2^-grid_bits
+/// pixel, at least one pixel, so that no point falls between the centres; X, Y, size: any in a legal guard band.
 [[nodiscard]] constexpr PixelBounds point_bounds(const SnappedVertex& point, std::int32_t size,
                                                  const PixelBounds& limit, int grid_bits) {
   const auto first = [grid_bits](std::int64_t border) { return first_centre(border, grid_bits); };
   const std::int64_t x = 2 * std::int64_t{point.x}, y = 2 * std::int64_t{point.y};
   return {std::max(limit.left, first(x - size)), std::max(limit.top, first(y - size)),
           std::min(limit.right, first(x + size) - 1), std::min(limit.bottom, first(y + size) - 1)};
-}
-
-/// The integer part of the square root of v, 0 <= v < 2^62.
-[[nodiscard]] inline std::int64_t integer_root(std::int64_t v) {
-  auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(v)));
-  while (root * root > v) --root;
-  while ((root + 1) * (root + 1) <= v) ++root;
-  return root;
 }
 
 /// Calls visit(box) for the boxes that a point's pixels make up, from top to bottom. `box`: its square's pixels, as
@@ -51,9 +42,12 @@ void for_each_run(const SnappedVertex& point, std::int32_t size, PointShape shap
   if (shape == PointShape::square) return visit(box);
   // In halves of a subpixel, as above: the radius is `size`.
   const auto centre = [grid_bits](std::int64_t i) { return (2 * i + 1) * (std::int64_t{1} << grid_bits); };
+  const auto root_of = [](std::int64_t square) {
+    return static_cast<std::int64_t>(integer_sqrt(static_cast<std::uint64_t>(square)));
+  };
   const std::int64_t x = 2 * std::int64_t{point.x}, y = 2 * std::int64_t{point.y}, radius = size;
   for (int row = box.top; row <= box.bottom; ++row) {
-    const std::int64_t dy = centre(row) - y, reach = integer_root(radius * radius - dy * dy);
+    const std::int64_t dy = centre(row) - y, reach = root_of(radius * radius - dy * dy);
     PixelBounds run{box.left, row, box.right, row};
     run.left = std::max<int>(run.left, first_centre(x - reach, grid_bits));
     run.right = std::min<int>(run.right, first_centre(x + reach + 1, grid_bits) - 1);

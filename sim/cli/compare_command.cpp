@@ -1,5 +1,6 @@
 #include "sim/study/compare/against.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/compare/transform_errors.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -270,6 +271,13 @@ int run(const CompareCommand& options) {
   check_distinct({options.against_path, options.sheet_path, options.model_path, options.golden_path, options.json});
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
+  std::optional<TransformErrors> transform;
+  if (options.transform != "binary64") {
+    CommonOptions exact = options;
+    exact.transform = "binary64";
+    double exact_s = 0;
+    transform = transform_errors(scene, load_scene(exact, config, exact_s), config);
+  }
   std::optional<ForeignImage> foreign;
   if (!options.against_path.empty()) foreign = read_foreign_image(options.against_path, scene.width, scene.height);
   Comparison c;
@@ -288,7 +296,13 @@ int run(const CompareCommand& options) {
       throw InputError("--panels: " + name + " is about textures, and no pixel shows one; leave it out");
   const std::vector<std::string> broken = broken_bounds(c, config);
   const std::vector<std::string> given_up = given_up_bounds(rules);
-  const auto lines = summary_lines(c, bound_lines(broken, given_up));
+  auto lines = summary_lines(c, bound_lines(broken, given_up));
+  if (transform) {
+    lines.emplace_back();
+    lines.push_back("vertices in " + options.transform + "\tmax\trms");
+    lines.push_back(row("position, pixels", transform->pixels));
+    lines.push_back(row("depth, LSB", transform->depth_lsb));
+  }
   std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) + ", " +
                       label(config) + ", seed " + std::to_string(options.seed);
   Json study;
@@ -320,6 +334,10 @@ int run(const CompareCommand& options) {
     against = compare_against(scene, config, c, rules, *foreign);
     result["against"] = against_json(options.against_path, *foreign, *against);
   }
+  result["transform"] = transform ? Json{{"numbers", options.transform},
+                                         {"pixels", moments_json(transform->pixels)},
+                                         {"depth_lsb", moments_json(transform->depth_lsb)}}
+                                  : Json(nullptr);
   result["broken_bounds"] = broken;
   result["bounds"] = {{"broken", broken}, {"given_up", given_up}};
   result["wall_s"] = seconds_since(start);

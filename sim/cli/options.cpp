@@ -89,6 +89,10 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
                  "eye; docs/light.md)")
       ->check(refuse_empty)
       ->allow_extra_args(false);
+  app.add_option("--transform", options.transform,
+                 "numbers that a mesh is taken to clip space in: binary64, binary32 or s15.16; compare says what the "
+                 "smaller ones cost (docs/light.md)")
+      ->capture_default_str();
   app.add_option("--time", options.time,
                  "seconds into the animation of a glTF file (without it: as the file is at rest)")
       ->check(refuse_empty);
@@ -186,6 +190,7 @@ MovingScene open_scene(const CommonOptions& options, const Config& config) {
   const Size size = parse_size(options.size);
   SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed, options.animation};
   request.lights = options.lights;
+  request.transform = options.transform;
   if (options.size.empty() && !is_capture(options.scene)) {
     request.width = std::min(640, config.target_width);
     request.height = std::min(480, config.target_height);
@@ -308,6 +313,7 @@ std::string scene_arguments(const CommonOptions& options, const Config& config) 
   if (!options.size.empty()) text += " --size " + quoted(options.size);
   if (!options.camera.empty()) text += " --camera " + quoted(options.camera);
   for (const std::string& light : options.lights) text += " --light " + quoted(light);
+  if (options.transform != "binary64") text += " --transform " + quoted(options.transform);
   if (!options.time.empty()) text += " --time " + quoted(options.time);
   if (!options.animation.empty()) text += " --animation " + quoted(options.animation);
   if (options.convention != "gl") text += " --convention " + quoted(options.convention);

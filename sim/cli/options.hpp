@@ -38,6 +38,7 @@ struct CommonOptions {
   std::string size;                   ///< WxH
   std::string camera;
   std::vector<std::string> lights;
+  std::string transform = "binary64";
   std::string time, animation;
   std::uint64_t seed = 1;
   int threads = 1;

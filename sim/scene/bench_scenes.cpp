@@ -341,10 +341,10 @@ CameraRequest hidden_camera() {
 }  // namespace
 
 Scene make_work_scene(std::string_view name, int size, int width, int height, const CameraRequest& camera,
-                      std::uint64_t seed, const LightRequest& light) {
+                      std::uint64_t seed, const MeshOptions& options) {
   const double aspect = static_cast<double>(width) / height;
   const auto view = [&](const Mesh& mesh, const CameraRequest& own, Cull cull) {
-    return mesh_scene(mesh, merged(camera, own), width, height, cull, light);
+    return mesh_scene(mesh, merged(camera, own), width, height, cull, options);
   };
   if (name == "layers" || name == "layers_front") return layers_scene(width, height, size, name == "layers_front");
   if (name == "layers_nearest" || name == "layers_nearest_front")

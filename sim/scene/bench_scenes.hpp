@@ -6,7 +6,7 @@
 
 #include "model/scene.hpp"
 #include "sim/scene/camera.hpp"
-#include "sim/scene/mesh_light.hpp"
+#include "sim/scene/mesh_scene.hpp"
 
 namespace halfplane {
 
@@ -14,6 +14,6 @@ namespace halfplane {
 /// of a primitive have the same colour; all of it is drawn with depth test less. `camera` as in make_builtin; scenes
 /// without a camera leave it out. Throws InputError for a camera that is none.
 [[nodiscard]] Scene make_work_scene(std::string_view name, int size, int width, int height, const CameraRequest& camera,
-                                    std::uint64_t seed, const LightRequest& light = {});
+                                    std::uint64_t seed, const MeshOptions& options = {});
 
 }  // namespace halfplane

@@ -236,22 +236,24 @@ const Builtin* find_builtin(std::string_view name) {
 }
 
 Scene make_builtin(std::string_view name, int width, int height, const CameraRequest& camera, std::uint64_t seed,
-                   const LightRequest& light) {
+                   const MeshOptions& options) {
   const Builtin* builtin = find_builtin(name);
   if (builtin == nullptr) throw InputError("no built-in scene " + in_quotes(name) + "; see halfplane scenes");
   const int size = size_of(*builtin, name);
   if (!builtin->has_camera && camera != CameraRequest()) {
     throw InputError("--camera: the scene " + in_quotes(name) + " is made in clip space; leave the camera out");
   }
-  if (!builtin->has_camera && light.is_given())
+  if (!builtin->has_camera && options.light.is_given())
     throw InputError("--light: the scene " + in_quotes(name) +
                      " is made with the colours that it has; leave the light out");
+  if (!builtin->has_camera && options.transform != TransformNumbers::binary64)
+    throw InputError("--transform: the scene " + in_quotes(name) + " is made in clip space; leave the transform out");
   const auto view = [&](const Mesh& mesh, const CameraRequest& own, Cull cull) {
-    return mesh_scene(mesh, merged(camera, own), width, height, cull, light);
+    return mesh_scene(mesh, merged(camera, own), width, height, cull, options);
   };
   const std::string_view base = builtin->name;
   const bool is_work = builtin - kBuiltins.data() >= static_cast<std::ptrdiff_t>(kPictures);
-  Scene scene = is_work               ? make_work_scene(base, size, width, height, camera, seed, light)
+  Scene scene = is_work               ? make_work_scene(base, size, width, height, camera, seed, options)
                 : base == "teapot"    ? view(teapot_mesh(size), {}, Cull::none)
                 : base == "city"      ? view(city_mesh(size, seed), {}, Cull::back)
                 : base == "knot"      ? view(knot_mesh(size), {}, Cull::back)

@@ -7,7 +7,7 @@
 
 #include "model/scene.hpp"
 #include "sim/scene/camera.hpp"
-#include "sim/scene/mesh_light.hpp"
+#include "sim/scene/mesh_scene.hpp"
 
 namespace halfplane {
 
@@ -33,8 +33,8 @@ struct Builtin {
 
 /// Makes "name" or "name:N". The camera's left-out parts are filled by the scene's own. The seed changes `city`,
 /// `slivers`, `blocks`, `scratches`, `dust`, `objects` and `hidden`; the others are always the
-/// same. Throws InputError for an unknown name, a bad N, or a camera or light where there is none.
+/// same. Throws InputError for an unknown name, a bad N, or a camera, light or transform where there is none.
 [[nodiscard]] Scene make_builtin(std::string_view name, int width, int height, const CameraRequest& camera,
-                                 std::uint64_t seed, const LightRequest& light = {});
+                                 std::uint64_t seed, const MeshOptions& options = {});
 
 }  // namespace halfplane

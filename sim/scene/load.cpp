@@ -60,6 +60,8 @@ Scene load_capture(const SceneRequest& request) {
   if (!request.lights.empty())
     throw InputError("--light: " + request.name +
                      " is a capture, whose vertices have their colours; leave the light out");
+  if (parse_transform(request.transform) != TransformNumbers::binary64)
+    throw InputError("--transform: " + request.name + " is a capture, already projected; leave the transform out");
   Scene scene = request.name == "-" ? read_capture(stdin_text(), "stdin") : read_capture_file(request.name);
   mark_outside_objects(scene);
   if (request.width == 0) return scene;
@@ -91,7 +93,7 @@ MovingScene still(const SceneRequest& request, bool has_orbit, std::function<Sce
   return {at, [] { return std::optional<double>(); }, has_orbit};
 }
 
-MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, const LightRequest& light, int width,
+MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, const MeshOptions& options, int width,
                       int height, std::vector<std::string>& warnings) {
   const auto world = std::make_shared<const GltfWorld>(read_gltf_world(request.name, warnings));
   // Read when it is asked for: a scene at rest needs none.
@@ -103,7 +105,7 @@ MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, 
   const auto at = [=, name = request.name](const Moment& moment) {
     const GltfModel model = moment.time ? posed(*world, animation(), *moment.time) : posed(*world);
     Scene scene = mesh_scene(model.mesh, at_turn(choose_camera(model.cameras, camera), moment.turn), width, height,
-                             Cull::none, light);
+                             Cull::none, options);
     scene.name = name;
     return scene;
   };
@@ -128,19 +130,19 @@ MovingScene open_scene(const SceneRequest& request, std::vector<std::string>& wa
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
   if (!is_gltf && extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
   const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
-  const LightRequest light = parse_lights(request.lights);
+  const MeshOptions options{parse_lights(request.lights), parse_transform(request.transform)};
   const bool has_orbit = camera.orbit.has_value();
-  if (is_gltf) return open_gltf(request, camera, light, width, height, warnings);
+  if (is_gltf) return open_gltf(request, camera, options, width, height, warnings);
   if (extension == ".obj") {
     const auto mesh = std::make_shared<const Mesh>(read_obj_file(request.name, warnings));
     return still(request, has_orbit, [=, name = request.name](const Moment& moment) {
-      Scene scene = mesh_scene(*mesh, at_turn(camera, moment.turn), width, height, Cull::none, light);
+      Scene scene = mesh_scene(*mesh, at_turn(camera, moment.turn), width, height, Cull::none, options);
       scene.name = name;
       return scene;
     });
   }
   return still(request, has_orbit, [=, name = request.name, seed = request.seed](const Moment& moment) {
-    return make_builtin(name, width, height, at_turn(camera, moment.turn), seed, light);
+    return make_builtin(name, width, height, at_turn(camera, moment.turn), seed, options);
   });
 }
 

@@ -18,13 +18,14 @@ struct Moment {
 };
 
 struct SceneRequest {
-  std::string name;                   ///< a built-in ("teapot", "city:64") or a file: .obj, .gltf, .glb, .hpt
-  int width = 0, height = 0;          ///< pixels; both 0: 640x480, or what a capture says
-  std::string camera{};               ///< as `--camera` takes it; empty for the default framing
-  std::uint64_t seed = 1;             ///< for the built-in scenes with something random in them
-  std::string animation{};            ///< name or number of one of the file's; empty: the first
-  Moment moment{};                    ///< for load_scene()
-  std::vector<std::string> lights{};  ///< as `--light` takes them; empty: the file's own, or the light at the eye
+  std::string name;                    ///< a built-in ("teapot", "city:64") or a file: .obj, .gltf, .glb, .hpt
+  int width = 0, height = 0;           ///< pixels; both 0: 640x480, or what a capture says
+  std::string camera{};                ///< as `--camera` takes it; empty for the default framing
+  std::uint64_t seed = 1;              ///< for the built-in scenes with something random in them
+  std::string animation{};             ///< name or number of one of the file's; empty: the first
+  Moment moment{};                     ///< for load_scene()
+  std::vector<std::string> lights{};   ///< as `--light` takes them; empty: the file's own, or the light at the eye
+  std::string transform = "binary64";  ///< as `--transform` takes it
 };
 
 /// A scene that has been read and can be seen at several moments.

@@ -66,7 +66,7 @@ Scene cleared_scene(int width, int height) {
 }
 
 Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height, Cull cull,
-                 const LightRequest& light) {
+                 const MeshOptions& options) {
   const double aspect = static_cast<double>(width) / height;
   const Camera camera = frame(request, mesh, aspect);
   const Mat4 view = view_matrix(camera), projection = projection_matrix(camera, aspect);
@@ -75,14 +75,14 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   scene.states[0].cull = cull;
   if (camera.ortho == 0) scene.planes = {camera.near, camera.far};
   scene.vertices.reserve(mesh.vertices.size());
+  const VertexTransform to_clip_space(view, projection, options.transform);
   for (const MeshVertex& in : mesh.vertices) {
-    const Vec4 eye = transform(view, {in.position[0], in.position[1], in.position[2], 1});
-    const Vec4 clip = transform(projection, eye);
+    const Vec4 clip = to_clip_space.clip(in.position);
     const Vertex out{clip[0], clip[1], clip[2], clip[3], in.rgba, in.u, in.v};
     if (!finite(out)) throw InputError("--camera: a vertex leaves binary64; bring eye and fov nearer to the mesh");
     scene.vertices.push_back(out);
   }
-  const auto colors = lit_colors(mesh, light, view, camera.ortho > 0);
+  const auto colors = lit_colors(mesh, options.light, view, camera.ortho > 0);
   for (std::size_t i = 0; i < colors.size(); ++i) scene.vertices[i].rgba = colors[i];
   const std::size_t corners = mesh.triangles.size() * 3;  // the indices of lines and points follow those of triangles
   scene.indices.reserve(corners + mesh.indices.size());

@@ -32,6 +32,19 @@ TEST_F(CompareCommand, ResultHasEveryKeyOfTheContract) {
     expect_numbers(json["parts"][part], {"max", "rms"});
 }
 
+TEST_F(CompareCommand, SmallerNumbersOfTheHostAreShownBesideTheRest) {
+  EXPECT_TRUE(result({"compare", "teapot:2", "--size", "64x48"})["transform"].is_null());
+  double before = 0;
+  for (const char* numbers : {"binary32", "s15.16"}) {
+    const Json json = result({"compare", "teapot:2", "--size", "64x48", "--transform", numbers});
+    EXPECT_EQ(json["transform"]["numbers"], numbers);
+    EXPECT_GT(json["transform"]["pixels"]["max"], before);
+    before = json["transform"]["pixels"]["max"].get<double>();
+    EXPECT_NE(json["transform"]["depth_lsb"]["max"], 0);
+    EXPECT_TRUE(json["broken_bounds"].empty()) << "golden and model are given the same vertices";
+  }
+}
+
 TEST_F(CompareCommand, FiguresAreInOrderAndBounded) {
   for (const char* config : {"tiny", "embedded", "full"}) {
     const Json json = result({"compare", "teapot", "--config", config, "--size", "16x16"});

@@ -107,6 +107,17 @@ TEST_F(BadInput, CameraIsCheckedPartByPart) {
   expect_refused({"render", "triangle", "--camera", "fov=40"}, "--camera");  // made in clip space
 }
 
+TEST_F(BadInput, LightsAndTransformsThatAreNoneAreRefused) {
+  for (const char* light : {"sun", "from=0,0,0", "at=1,2", "eye;range=2"})
+    expect_refused({"render", "teapot", "--light", light}, "--light: ");
+  expect_refused({"render", "teapot", "--light", "off", "--light", "eye"}, "leave one of them out");
+  expect_refused({"render", "star", "--light", "eye"}, "leave the light out");
+  expect_refused({"render", "teapot", "--transform", "fixed"}, "write binary64, binary32 or s15.16");
+  expect_refused({"render", "star", "--transform", "binary32"}, "leave the transform out");
+  expect_refused({"render", "teapot", "--transform", "s15.16", "--camera", "eye=0,0,40000"}, "beyond +-32768");
+  expect_refused({"cosim", "--random", "5", "--light", "eye"}, "leave --light out");
+}
+
 TEST_F(BadInput, SettingsAreCheckedForNameRangeAndTogether) {
   for (const char* command : {"render", "compare"}) {
     for (const char* setting : {"depth.bits", "=", "=3", "nosuch=1", "depth.bits=", "depth.bits=7", "depth.bits=33",

@@ -474,13 +474,5 @@ TEST(Point, ARoundOneCoversThePixelsOfItsSquareWhoseCentresLieInItsDisc) {
         }
 }
 
-TEST(Point, IntegerRootsAreExactAtSquares) {
-  for (const std::int64_t root : {0LL, 1LL, 2LL, 3LL, 94906266LL, 134217728LL, 2147483646LL}) {
-    EXPECT_EQ(integer_root(root * root), root);
-    EXPECT_EQ(integer_root(root * root + 2 * root), root);
-    if (root > 0) EXPECT_EQ(integer_root(root * root - 1), root - 1);
-  }
-}
-
 }  // namespace
 }  // namespace halfplane

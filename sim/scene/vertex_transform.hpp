@@ -1,0 +1,33 @@
+// From world to clip space in the numbers that a host may have: binary64, binary32, or fixed point of 32 bits. What the
+// smaller ones cost is sim/study/compare/transform_errors.hpp.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "model/config.hpp"
+#include "sim/scene/camera.hpp"
+
+namespace halfplane {
+
+enum class TransformNumbers : std::uint8_t { binary64, binary32, s15_16 };
+
+/// Reads --transform: `binary64`, `binary32` or `s15.16`. Throws InputError for anything else.
+[[nodiscard]] TransformNumbers parse_transform(std::string_view text);
+
+/// View and projection, one after the other, as fixed-function hardware had them. Matrices and vertices are rounded once,
+/// and so is every result: of binary32 each product and sum, of s15.16 (a sign, 15 bits, 16 behind the point) the sum of
+/// four exact products.
+class VertexTransform {
+ public:
+  VertexTransform(const Mat4& view, const Mat4& projection, TransformNumbers numbers);
+
+  /// Clip coordinates of a point of the world. Throws InputError for a number that s15.16 cannot hold.
+  [[nodiscard]] Vec4 clip(const Vec3& world) const;
+
+ private:
+  Mat4 view_, projection_;
+  TransformNumbers numbers_;
+};
+
+}  // namespace halfplane

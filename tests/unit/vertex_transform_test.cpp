@@ -1,0 +1,72 @@
+// Vertices in the numbers of smaller hosts: by hand, and what they cost.
+#include "sim/scene/vertex_transform.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/config.hpp"
+#include "sim/scene/builtin.hpp"
+#include "sim/study/compare/transform_errors.hpp"
+
+namespace halfplane {
+namespace {
+
+constexpr Mat4 kIdentity{Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 0}, Vec4{0, 0, 1, 0}, Vec4{0, 0, 0, 1}};
+
+TEST(VertexTransform, FixedPointRoundsOnceAStep) {
+  const double unit = std::ldexp(1, -16);
+  Mat4 third = kIdentity;
+  third[0] = {1.0 / 3, 0, 0, 0};
+  const VertexTransform transform(third, kIdentity, TransformNumbers::s15_16);
+  // 1/3 is 21845 units, rounded; times 3 units it is 0.99995 of one.
+  EXPECT_EQ(transform.clip({3 * unit, 0, 0})[0], unit);
+  EXPECT_EQ(transform.clip({1, 0, 0})[0], 21845 * unit);
+  EXPECT_EQ(transform.clip({0, 0.4 * unit, 0.6 * unit}), (Vec4{0, 0, unit, 1}));
+  EXPECT_EQ(transform.clip({-1.5 * unit, 0, 0})[0], 0) << "halves go up";
+}
+
+TEST(VertexTransform, Binary32IsTheMachinesFloat) {
+  Mat4 view = kIdentity;
+  view[1] = {0.1, 0.7, -0.3, 5.2};
+  const VertexTransform transform(view, kIdentity, TransformNumbers::binary32);
+  const Vec3 p{1.1, -2.2, 3.3};
+  float expected = 0.1F * 1.1F;
+  expected += 0.7F * -2.2F;
+  expected += -0.3F * 3.3F;
+  expected += 5.2F;
+  EXPECT_NEAR(transform.clip(p)[1], expected, 1e-6);
+  EXPECT_EQ(transform.clip(p)[1], static_cast<float>(transform.clip(p)[1]));
+  EXPECT_NE(transform.clip(p)[0], 1.1);
+}
+
+TEST(VertexTransform, WhatFixedPointCannotHoldIsRefused) {
+  const VertexTransform transform(kIdentity, kIdentity, TransformNumbers::s15_16);
+  EXPECT_NO_THROW((void)transform.clip({32767, -32768, 0}));
+  for (const double far : {32768.0, -32769.0, 1e30}) EXPECT_THROW((void)transform.clip({far, 0, 0}), InputError) << far;
+  EXPECT_THROW((void)parse_transform("fixed"), InputError);
+}
+
+Scene teapot(TransformNumbers numbers) {
+  MeshOptions options;
+  options.transform = numbers;
+  return make_builtin("teapot", 640, 480, {}, 1, options);
+}
+
+TEST(TransformErrors, TheSmallerTheNumbersTheLargerTheErrors) {
+  const Config config = preset("full");
+  const Scene exact = teapot(TransformNumbers::binary64);
+  const TransformErrors none = transform_errors(exact, exact, config);
+  EXPECT_GT(none.pixels.count, 1000U);
+  EXPECT_EQ(none.pixels.max, 0);
+  const TransformErrors single = transform_errors(teapot(TransformNumbers::binary32), exact, config);
+  const TransformErrors fixed = transform_errors(teapot(TransformNumbers::s15_16), exact, config);
+  EXPECT_GT(single.pixels.max, 0);
+  EXPECT_LT(single.pixels.max, 0.001);
+  EXPECT_GT(fixed.pixels.max, 4 * single.pixels.max);
+  EXPECT_LT(fixed.pixels.max, 0.1);
+  EXPECT_GT(fixed.depth_lsb.max, single.depth_lsb.max);
+}
+
+}  // namespace
+}  // namespace halfplane
