@@ -229,8 +229,8 @@ PROOFS = [
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
           presets=('embedded',), quick=('embedded',), cover_depth=9,
-          twins=(190, 191, 192, 262, 300, 301, ('writes_all && is_first', 'writes_all'),
-                 ('{dirty_2_q[s], made[s*COLOR+:COLOR]}', "{1'b0, made[s*COLOR+:COLOR]}"))),
+          twins=(190, 191, 192, 262, 300, ('writes_all && is_first', 'writes_all'), ('is_newer[1] && !is_newer[0]', 'is_newer[1]'),
+                 ('dirty_3_q[s], dirty_2_q[s]}', "dirty_3_q[s], 1'b0}"))),
     Proof('cache_tags_stream', 'f', 'stages/cache_tags.sv', 'each fragment leaves once, in its turn; no deadlock', k=2,
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
           twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'), ('if (moves) valid_q <= read_valid_q;', 'valid_q <= read_valid_q;'),

@@ -352,18 +352,18 @@ mutant(170 lib/texture_blend.sv "texture: between levels sums are cut off"
   [=[sum_i[24*n+8+:16] + 16'(sum_i[24*n+7])]=] [=[sum_i[24*n+8+:16]]=])
 
 # colour operations
-mutant(180 lib/blend_lane.sv "colours: one minus a factor is one more"
-  [=[factor_of ^ {8{code[0]}}]=] [=[(code[0] ? -factor_of : factor_of)]=])
+mutant(180 lib/blend_lane.sv "colours: one minus a factor is one too little or too much"
+  [=[{8{chooses_i[6*f+5]}}]=] [=[{{7{chooses_i[6*f+5]}}, 1'b0}]=])
 mutant(181 lib/blend_lane.sv "colours: reverse subtract adds"
   [=[equation == REVERSE_SUBTRACT]=] [=[1'b0]=])
 mutant(182 lib/blend_lane.sv "colours: a sum above 1 does not hold"
-  [=[quotient[15:8] | {8{quotient[16]}}]=] [=[quotient[15:8]]=])
+  [=[!differs && quotient[17]]=] [=[1'b0]=])
 mutant(183 lib/blend_lane.sv "colours: a difference below 0 does not hold"
-  [=[(sum[17] ? '0 : sum[16:0])]=] [=[sum[16:0]]=])
+  [=[differs && sum[16] != reverses]=] [=[1'b0]=])
 mutant(184 lib/blend_lane.sv "colours: a blend is cut off"
-  [=[17'd128]=] [=[17'd0]=])
+  [=[(reverses ? 3'b111 : 3'b001)]=] [=[(reverses ? 3'b110 : 3'b000)]=])
 mutant(185 lib/blend_lane.sv "colours: a blend is divided by 256"
-  [=[{8'd0, rounded[16:8]}]=] [=[17'd0]=])
+  [=[{{7{upper[2] && differs}}, upper, sum[14:8], sum[7]}]=] [=[{{7{upper[2] && differs}}, upper, 7'd0, 1'b0}]=])
 mutant(186 lib/blend_lane.sv "colours: src_alpha_saturate does not look at what is stored"
   [=[(source_alpha < room ? source_alpha : room)]=] [=[source_alpha]=])
 mutant(187 lib/blend_lane.sv "colours: max is min"
@@ -373,13 +373,14 @@ mutant(188 stages/color_write.sv "colours: the masks of red and blue are exchang
 mutant(189 stages/color_write.sv "colours: what has been written of a stamp is lost when the rest of it comes"
   [=[is_here_1_q || held[s]]=] [=[is_here_1_q]=])
 mutant(190 stages/color_write.sv "colours: hazard: a stamp does not have what the one in front makes of it"
-  [=[is_newer[0]]=] [=[1'b0]=])
+  [=[{line_2_q, stamp_2_q} == {line_1_q, stamp_1_q}]=] [=[1'b0]=])
 mutant(191 stages/color_write.sv "colours: hazard: a block is evicted while a stamp of it is on its way to the RAM"
   [=[is_same_line != '0]=] [=[1'b0]=])
 mutant(192 stages/color_write.sv "colours: samples that memory does not have pass for read ones"
   [=[mask_1_q | held]=] [=[mask_1_q]=])
-mutant(193 stages/color_write.sv "colours: a stamp has the masks of the one behind it"
-  [=[ops_2_q[DITHERS:WRITES]]=] [=[ops_q[DITHERS:WRITES]]=])
+mutant_text(193 stages/color_write.sv "colours: a stamp has the masks of the one behind it"
+  [=[assign out           = out_2_q;]=]
+  [=[assign out           = raster_cosim.mutant_q == 16'd193 ? ops_q[DITHERS:WRITES] : out_2_q;]=])
 mutant(194 stages/color_write.sv "colours: dithering: the matrix is turned"
   [=[~{x[0] ^ y[0], y[0], x[1] ^ y[1], y[1]}]=] [=[~{x[0] ^ y[0], x[0], x[1] ^ y[1], x[1]}]=])
 mutant(195 lib/sample_place.sv "colours: dithering: every stamp begins at the matrix' first column"
@@ -474,12 +475,12 @@ mutant(256 lib/texture_answers.sv "texture: a line begins with the last beat of 
   [=[ends_line_o ? '0 : beat_q + BEATS'(takes)]=] [=[beat_q + BEATS'(takes)]=])
 
 # Colours that are on their way, given to the stamp behind.
-mutant(300 stages/color_write.sv "colours: hazard: a stamp does not have what the last but one has made of it"
-  [=[is_newer[1]]=] [=[1'b0]=])
-mutant(301 stages/color_write.sv "colours: hazard: a stamp does not have what was written while it was read"
-  [=[is_newer[2]]=] [=[1'b0]=])
+mutant(300 stages/color_write.sv "colours: hazard: a stamp does not have what was written while it was read"
+  [=[{line_3_q, stamp_3_q} == {line_1_q, stamp_1_q}]=] [=[1'b0]=])
+mutant(301 stages/color_write.sv "colours: what a clear has left is mixed with an answer of before"
+  [=[{SAMPLES*COLOR{is_answered_1_q}}]=] [=['1]=])
 mutant(302 stages/color_write.sv "colours: what is left of the block before counts as written"
-  [=[found[COLOR] && !starts_1_q]=] [=[found[COLOR]]=])
+  [=[!starts_1_q]=] [=[1'b1]=])
 
 # fog
 mutant(310 lib/fog_place.sv "fog: what lies nearer than the table begins it again"
@@ -583,3 +584,6 @@ mutant(378 stages/cache_tags.sv "colours: masks: what is stored is not read for 
   [=[fragment_q.code[READS]]=] [=[1'b0]=])
 mutant(379 stages/cache_tags.sv "colours: masks: what has been read for the channels that stay is not known to be here"
   [=[(color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)]=] [=['0]=])
+mutant_text(403 stages/color_write.sv "colours: masks: they hold for what is blended only"
+  [=[out_2_q      <= ops_q[DITHERS:WRITES];]=]
+  [=[out_2_q      <= ops_q[DITHERS:WRITES] | {1'b0, {4{raster_cosim.mutant_q == 16'd403 && !ops_q[BLENDS]}}};]=])

@@ -1,18 +1,21 @@
 // Blend lane: one sample's colour and the stored one become the blended one, every channel in its own multipliers.
 // Combinational, so that the next clock may blend what comes of it again.
 //
-//   factors are chosen -> s fs + d fd, or a difference that is at least 0 -> / 255, at most 255
+//   factors -> s fs + d fd, or a difference that is at least 0 -> / 255, at most 255
 //
-// min and max are sums too: of 255 times the smaller or larger one and 0 times the other.
+// min and max are sums too: of 255 times the smaller or larger one and 0 times the other. What of the factors is the same for
+// all lanes comes from blend_setup.sv.
 // Specification: blended of model/color_ops.hpp.
 module blend_lane #(
     parameter int CHANNELS = 4  // that are stored: 3 or 4
 ) (
-    input logic [31:0] source_i,    // 8 bits a channel, R lowest
+    input logic [31:0] source_i,  // 8 bits a channel, R lowest
     input logic [31:0] stored_i,
-    input logic [15:0] factors_i,   // 4 bits each: source, destination, and of alpha
+    /* verilator lint_off UNUSEDSIGNAL */  // of alpha, where it is not stored
+    input logic [23:0] chooses_i,   // as blend_setup gives them
     input logic [5:0]  equation_i,  // 3 bits each: of colour, of alpha
-    input logic [31:0] constant_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input logic [16*CHANNELS-1:0] fixed_i,
 
     output logic [8*CHANNELS-1:0] color_o
 );
@@ -22,69 +25,73 @@ module blend_lane #(
   localparam logic [2:0] MIN = 3'd3;
   localparam logic [2:0] MAX = 3'd4;
 
-  // Of a factor the lowest bit says "one minus", which for codes of 8 bits is the complement, of 0 as well.
-  function automatic [7:0] factor_of(input [3:0] code, input [7:0] source, input [7:0] stored, input [7:0] constant,
-                                     input [7:0] source_alpha, input [7:0] stored_alpha, input [7:0] constant_alpha,
-                                     input is_alpha);
-    logic [7:0] room;  // above the stored alpha
-    room = ~stored_alpha;
-    case (code[3:1])
-      3'd0: factor_of = '0;
-      3'd1: factor_of = source;
-      3'd2: factor_of = stored;
-      3'd3: factor_of = source_alpha;
-      3'd4: factor_of = stored_alpha;
-      3'd5: factor_of = constant;
-      3'd6: factor_of = constant_alpha;
-      default: factor_of = is_alpha ? '1 : (source_alpha < room ? source_alpha : room);  // src_alpha_saturate
-    endcase
-    factor_of = factor_of ^ {8{code[0]}};
-  endfunction
-
-  genvar c;
+  // What of the factors is the same for all channels: an alpha, and whether they are complements.
+  logic [7:0] source_alpha, stored_alpha, room;  // above the stored alpha
+  /* verilator lint_off UNUSEDSIGNAL */  // of alpha, where it is not stored
+  logic [31:0] alpha;  // for each factor
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign source_alpha = source_i[31:24];
+  assign stored_alpha = stored_i[31:24];
+  assign room         = ~stored_alpha;
+  genvar c, f;
   generate
+    for (f = 0; f < 4; f++) begin : gen_alpha
+      assign alpha[8*f+:8] = {8{chooses_i[6*f+5]}} ^
+                             ((source_alpha & {8{chooses_i[6*f+2]}}) | (stored_alpha & {8{chooses_i[6*f+3]}}) |
+                              ((source_alpha < room ? source_alpha : room) & {8{chooses_i[6*f+4]}}));
+    end
+
     for (c = 0; c < CHANNELS; c++) begin : gen_channel
+      localparam int SET = c == 3 ? 2 : 0;  // number of the first of its factors
       logic [2:0]  equation;
-      logic [7:0]  source, stored, source_factor, stored_factor;
+      logic [7:0]  source, stored;
+      logic [15:0] factors;  // of the source; above that of the stored colour
       logic        takes_source, is_extreme;  // min or max: of the two
       logic        subtracts, reverses;
       logic [15:0] source_product, stored_product;
-      logic [17:0] sum;  // with its sign
-      /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
-      logic [16:0] rounded, quotient;
-      /* verilator lint_on UNUSEDSIGNAL */
-
       assign equation     = c == 3 ? equation_i[5:3] : equation_i[2:0];
       assign source       = source_i[8*c+:8];
       assign stored       = stored_i[8*c+:8];
       assign is_extreme   = equation == MIN || equation == MAX;
       assign takes_source = (source < stored) == (equation == MIN);
-      always_comb begin
-        source_factor = factor_of(c == 3 ? factors_i[11:8] : factors_i[3:0], source, stored, constant_i[8*c+:8],
-                                  source_i[31:24], stored_i[31:24], constant_i[31:24], c == 3);
-        stored_factor = factor_of(c == 3 ? factors_i[15:12] : factors_i[7:4], source, stored, constant_i[8*c+:8],
-                                  source_i[31:24], stored_i[31:24], constant_i[31:24], c == 3);
-        if (is_extreme) begin
-          source_factor = {8{takes_source}};
-          stored_factor = {8{!takes_source}};
-        end
+      for (f = 0; f < 2; f++) begin : gen_factor
+        assign factors[8*f+:8] = ((source & {8{chooses_i[6*(SET+f)]}}) | (stored & {8{chooses_i[6*(SET+f)+1]}})) ^
+                                 alpha[8*(SET+f)+:8] ^ fixed_i[16*c+8*f+:8] ^ {8{is_extreme && takes_source == (f == 0)}};
       end
-      assign subtracts      = equation == SUBTRACT;
-      assign reverses       = equation == REVERSE_SUBTRACT;
-      assign source_product = source * source_factor;
-      assign stored_product = stored * stored_factor;
-      assign sum = ({2'd0, source_product} ^ {18{reverses}}) + ({2'd0, stored_product} ^ {18{subtracts}}) +
-                   18'(reverses || subtracts);
+      assign source_product = source * factors[7:0];
+      assign stored_product = stored * factors[15:8];
 
-      assign rounded  = (sum[17] ? '0 : sum[16:0]) + 17'd128;
-      assign quotient = rounded + {8'd0, rounded[16:8]};
-      assign color_o[8*c+:8] = quotient[15:8] | {8{quotient[16]}};
-    end
-    if (CHANNELS == 3) begin : gen_opaque
-      /* verilator lint_off UNUSEDSIGNAL */
-      logic unused;
-      assign unused = &{equation_i[5:3], factors_i[15:8]};
+      // One carry chain gives a + b, a - b and, turned around, b - a: that is ~(a - b - 1), and is turned behind the division.
+      logic        differs;  // not a sum
+      logic [16:0] sum;      // less than 2^17; of a difference the highest bit is the sign
+      /* verilator lint_off UNUSEDSIGNAL */  // its lowest bit makes the carry
+      logic [17:0] sum_and_carry;
       /* verilator lint_on UNUSEDSIGNAL */
+      assign subtracts = equation == SUBTRACT;
+      assign reverses  = equation == REVERSE_SUBTRACT;
+      assign differs   = subtracts || reverses;
+      add_or_subtract #(
+          .WIDTH(18)
+      ) u_sum (
+          .subtracts_i(differs),
+          .a_i        ({1'b0, source_product, subtracts}),
+          .b_i        ({1'b0, stored_product, 1'b1}),
+          .sum_o      (sum_and_carry)
+      );
+      assign sum = sum_and_carry[17:1];
+
+      // floor(v / 255 + 1/2) = (t + (t >> 8)) >> 8, t = v + 128: v + (v >> 8), 128 and a carry where the fraction of v / 256 is a
+      // half. Of ~v the quotient is the complement if 128 is taken off instead.
+      logic signed [2:0]  upper;  // v >> 15, and 128 more or less, which changes nothing below that
+      /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
+      logic [17:0] quotient;  // below that the bit that makes the carry
+      /* verilator lint_on UNUSEDSIGNAL */
+      logic        is_negative, is_above;
+      assign upper       = {differs && sum[16], sum[16:15]} + (reverses ? 3'b111 : 3'b001);
+      assign quotient    = {sum, 1'b1} + {{7{upper[2] && differs}}, upper, sum[14:8], sum[7]};
+      assign is_negative = differs && sum[16] != reverses;
+      assign is_above    = !differs && quotient[17];
+      assign color_o[8*c+:8] = is_negative ? '0 : (quotient[16:9] ^ {8{reverses}}) | {8{is_above}};
     end
   endgenerate
 

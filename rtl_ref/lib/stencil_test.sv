@@ -25,6 +25,10 @@ module stencil_test (
       .greater_o(greater_passes)
   );
 
+  // Whether a sample passes where a bit is the highest that differs: the reference is less if it has a 0 there.
+  logic [7:0] passes_if;
+  assign passes_if = (reference_i & {8{greater_passes}}) | (~reference_i & {8{less_passes}});
+
   genvar s;
   generate
     for (s = 0; s < raster_pkg::SAMPLES; s++) begin : gen_sample
@@ -32,14 +36,14 @@ module stencil_test (
       // bit toggles if the operation says so, or where it counts and all bits below are ones (zeros, counting down).
       logic [7:0] stored, differs, toggles, carries;
       logic [2:0] op;
-      logic       is_less, counts, is_down, saturates, is_at_end;
+      logic [1:0] sets;  // what does not count
+      logic       counts, is_down, saturates, is_at_end;
       assign stored  = stored_i[8*s+:8];
       assign differs = (stored ^ reference_i) & read_i;
       always_comb begin
-        is_less = 1'b0;  // the reference
-        for (int i = 0; i < 8; i++) if (differs[i]) is_less = stored[i];
+        passes_o[s] = equal_passes;
+        for (int i = 0; i < 8; i++) if (differs[i]) passes_o[s] = passes_if[i];
       end
-      assign passes_o[s] = differs == '0 ? equal_passes : (is_less ? less_passes : greater_passes);
 
       always_comb begin
         op = !passes_o[s] ? ops_i[2:0] : (is_nearer_i[s] ? ops_i[8:6] : ops_i[5:3]);
@@ -50,11 +54,11 @@ module stencil_test (
       assign is_down    = op[1];
       assign saturates  = op[0];
       assign is_at_end  = stored == {8{!is_down}};
+      assign sets       = counts ? '0 : op[1:0];
+      assign toggles    = sets[1] ? (sets[0] ? '1 : stored ^ reference_i) : (sets[0] ? stored : '0);
       always_comb begin
         for (int i = 0; i < 8; i++)
           carries[i] = counts && !(saturates && is_at_end) && ((stored ^ {8{!is_down}}) & ((8'd1 << i) - 8'd1)) == '0;
-        toggles = op[1] ? (op[0] ? '1 : stored ^ reference_i) : (op[0] ? stored : '0);
-        if (counts) toggles = '0;
       end
       assign stencil_o[8*s+:8] = stored ^ (write_i & (toggles | carries));
     end

@@ -304,7 +304,7 @@ module block_cache (
   logic                      read_goes, reads_color, takes_color;  // a read goes out; it is one of colours
   /* verilator lint_on UNUSEDSIGNAL */
   logic                      order_reads_color, color_valid;
-  logic [SAMPLES*COLOR-1:0]  stored_color;
+  logic [SAMPLES*COLOR-1:0]  stored_color;  // the answer that W took last
   logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] color_source;  // of the item at the head
   sram_fifo #(
       .WIDTH(SAMPLES * CODE),
@@ -341,7 +341,7 @@ module block_cache (
           .ready_i(response_valid_i && response_ready_o),
           .data_o (is_color)
       );
-      fifo #(
+      sram_fifo #(
           .WIDTH(SAMPLES * COLOR),
           .DEPTH(1 << $clog2(QUEUE + PLACES))
       ) u_color_answers (

@@ -8,10 +8,10 @@
 //
 // Without blending nobody reads colours but to write them back, and a stamp takes a clock. With it a stamp also reads what is
 // stored under it, from the RAM and, where that does not have all of it, from the clear value or an answer of memory; it takes
-// a clock for each group of BLEND_LANES samples that are blended, one at least, and what it writes is in the RAM three clocks
-// later, in order. What is on its way to these samples is newer than the RAM and forwarded, so that the same stamp may come
-// every clock; a stamp that reads waits until nothing of an eviction is left to be read, and an eviction for what is on its way
-// to its line. Samples are packed here, rounded or dithered.
+// a clock for each group of BLEND_LANES samples that are blended, one at least, and writes two clocks after it has read, in
+// order. What is on its way to these samples is newer than the RAM and forwarded, so that the same stamp may come every clock;
+// a stamp that reads waits until nothing of an eviction is left to be read, and an eviction for what is on its way to its line
+// and a clock more. Samples are packed here, rounded or dithered.
 // Specification: model/stages/block_cache.hpp, rop.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module color_write #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
@@ -43,7 +43,7 @@ module color_write #(
     input logic [31:0]                        word_i,
     input logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] source_i,  // of the stored colours
     input logic                               answer_valid_i,
-    input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,
+    input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,  // that was taken last, from the next clock on
     /* verilator lint_on UNUSEDSIGNAL */
     output logic                              answer_ready_o,
 
@@ -288,42 +288,45 @@ module color_write #(
         else if (goes) done_q <= ends ? '0 : done_q | group;
       end
 
-      // 1 to 3: what is on its way to the RAM. 1 has read it, 2 blends and packs, 3 writes; 4 is what has been written last,
-      // while 1 read.
-      logic [3:0]           on_way_q;
-      logic [LINE-1:0]      line_1_q, line_2_q, line_3_q, line_4_q;
-      logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q, stamp_4_q;
+      // 1 and 2: what is on its way to the RAM. 1 has read it, 2 blends, packs and writes; 3 is what has been written last, while
+      // 1 read. An eviction waits for 3 as well.
+      logic [2:0]           on_way_q;
+      logic [LINE-1:0]      line_1_q, line_2_q, line_3_q;
+      logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q;
       logic [SAMPLES-1:0]   mask_1_q, mask_2_q;     // whose colour is written
-      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q, writes_4_q;  // that come into the RAM
+      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q;  // that come into the RAM
       logic [SAMPLES-1:0]   blended_1_q, blended_2_q;  // by the lanes
-      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q, dirty_4_q, held;  // held: newer than what memory has, as 1 finds it
+      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q, held;  // held: newer than what memory has, as 1 finds it
       logic [SAMPLES*SHADED-1:0] color_1_q, color_2_q;
-      logic [SAMPLES*COLOR-1:0]  base_1_q, stored, stored_2_q, made, code_3_q, code_4_q;
+      logic [SAMPLES*COLOR-1:0]  base, stored, stored_2_q, made, code_3_q;
       logic [GROUPS-1:0]    group_1_q, group_2_q;
-      logic [BLENDS-1:0]    ops_2_q;
-      logic [31:0]          constant_2_q;
-      logic                 starts_1_q, is_here_1_q;
+      logic [23:0]          chooses, chooses_2_q;    // of blend_setup
+      logic [16*CHANNELS-1:0] fixed, fixed_2_q;
+      logic [5:0]           equation, equation_2_q;
+      logic [DITHERS:WRITES] out_2_q;
+      logic                 starts_1_q, is_here_1_q, is_answered_1_q;
+      logic [COLOR-1:0]     clear_color_1_q;
       /* verilator lint_off UNUSEDSIGNAL */  // rgb565 has no alpha, rgba8888 no dithering
       logic [4:0]           out;  // of the operations what comes last: channels written, dithers
       /* verilator lint_on UNUSEDSIGNAL */
-      logic [2:0]           is_same_line, is_same_stamp;  // of the head; of 1
+      logic [2:0]           is_same_line;   // of the head
+      logic [1:0]           is_same_stamp;  // 2 and 3, of 1
 
-      assign is_same_line = on_way_q[2:0] & {line_3_q == line_i && writes_3_q != '0, line_2_q == line_i && writes_2_q != '0,
+      assign is_same_line = on_way_q & {line_3_q == line_i && writes_3_q != '0, line_2_q == line_i && writes_2_q != '0,
                                              line_1_q == line_i && writes_1_q != '0};
-      assign is_same_stamp = on_way_q[3:1] & {{line_4_q, stamp_4_q} == {line_1_q, stamp_1_q},
-                                              {line_3_q, stamp_3_q} == {line_1_q, stamp_1_q},
+      assign is_same_stamp = on_way_q[2:1] & {{line_3_q, stamp_3_q} == {line_1_q, stamp_1_q},
                                               {line_2_q, stamp_2_q} == {line_1_q, stamp_1_q}};
       assign is_busy  = is_same_line != '0;
       // Where something of the stamp is in the RAM it is read.
-      assign waits = (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i) ||
+      assign waits = (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && is_first && !answer_valid_i) ||
                      (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i && left != '0);
       assign looks = goes && source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i;
-      assign answer_ready_o = stamp_ready_o && source_i == raster_pkg::DEPTH_SOURCE_MEMORY;
-      assign idle_o = on_way_q[2:0] == '0;
+      assign answer_ready_o = goes && is_first && source_i == raster_pkg::DEPTH_SOURCE_MEMORY;  // and is here until the next one
+      assign idle_o = on_way_q == '0;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) on_way_q <= '0;
-        else on_way_q <= {on_way_q[2:0], goes};
+        else on_way_q <= {on_way_q[1:0], goes};
       end
       always_ff @(posedge clk_i) begin
         line_1_q    <= line_i;
@@ -331,45 +334,63 @@ module color_write #(
         mask_1_q    <= written;
         writes_1_q  <= written | {SAMPLES{writes_all && is_first}};  // else a group would undo what another has made
         color_1_q   <= color_i;
-        base_1_q    <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_i : {SAMPLES{clear_color_i}};
         group_1_q   <= group;
         starts_1_q  <= starts_i;
         is_here_1_q <= is_here;
+        is_answered_1_q <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY;
+        clear_color_1_q <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? '0 : clear_color_i;
         blended_1_q <= written & {SAMPLES{ops_q[BLENDS]}};
         line_2_q    <= line_1_q;
         stamp_2_q   <= stamp_1_q;
         mask_2_q    <= mask_1_q;
         writes_2_q  <= writes_1_q;
         blended_2_q <= blended_1_q;
-        color_2_q   <= color_1_q;
+        for (int i = 0; i < GROUPS; i++)  // of a stamp that is blended the group: the others have their turn
+          if (ops_q[BLENDS] && !group_1_q[i]) color_2_q[i*GROUP*SHADED+:GROUP*SHADED] <= '0;
+          else color_2_q[i*GROUP*SHADED+:GROUP*SHADED] <= color_1_q[i*GROUP*SHADED+:GROUP*SHADED];
         dirty_2_q   <= mask_1_q | held;
         stored_2_q  <= stored;
         group_2_q   <= group_1_q;
-        ops_2_q     <= ops_q[BLENDS-1:0];
-        constant_2_q <= constant_q;
+        chooses_2_q  <= chooses;
+        fixed_2_q    <= fixed;
+        equation_2_q <= equation;
+        out_2_q      <= ops_q[DITHERS:WRITES];
         line_3_q    <= line_2_q;
         stamp_3_q   <= stamp_2_q;
         writes_3_q  <= writes_2_q;
         dirty_3_q   <= dirty_2_q;
         code_3_q    <= made;
-        line_4_q    <= line_3_q;
-        stamp_4_q   <= stamp_3_q;
-        writes_4_q  <= writes_3_q;
-        dirty_4_q   <= dirty_3_q;
-        code_4_q    <= code_3_q;
       end
 
-      // 1: what is stored: the newest of what is on its way, else what the RAM has.
+      // 1: what is stored: the newest of what is on its way, else what the RAM has; where that does not have it, the base. One of
+      // five, each by itself, so that nothing is chosen in a row.
+      assign base = (answer_i & {SAMPLES*COLOR{is_answered_1_q}}) | {SAMPLES{clear_color_1_q}};
       for (s = 0; s < SAMPLES; s++) begin : gen_stored
-        logic [2:0]       is_newer;  // what 2, 3 and 4 have
-        logic [COLOR:0]   found;     // in the RAM or on the way, and whether memory does not have it
-        assign is_newer = is_same_stamp & {writes_4_q[s], writes_3_q[s], writes_2_q[s]};
-        assign found = is_newer[0] ? {dirty_2_q[s], made[s*COLOR+:COLOR]} :
-                       is_newer[1] ? {dirty_3_q[s], code_3_q[s*COLOR+:COLOR]} :
-                       is_newer[2] ? {dirty_4_q[s], code_4_q[s*COLOR+:COLOR]} : {dirty[s], code[s*COLOR+:COLOR]};
-        assign held[s] = found[COLOR] && !starts_1_q;
-        assign stored[s*COLOR+:COLOR] = is_here_1_q || held[s] ? found[COLOR-1:0] : base_1_q[s*COLOR+:COLOR];
+        logic [1:0] is_newer;  // what 2 and 3 have
+        logic       is_found;  // what is in the RAM or on the way is the stored colour
+        logic [2:0] has_it;    // of these 2, 3 or the RAM
+        assign is_newer = is_same_stamp & {writes_3_q[s], writes_2_q[s]};
+        assign has_it   = {is_newer == '0, is_newer[1] && !is_newer[0], is_newer[0]};
+        assign held[s]  = (has_it & {dirty[s], dirty_3_q[s], dirty_2_q[s]}) != '0 && !starts_1_q;
+        assign is_found = is_here_1_q || held[s];
+        assign stored[s*COLOR+:COLOR] = (made[s*COLOR+:COLOR] & {COLOR{has_it[0] && is_found}}) |
+                                        (code_3_q[s*COLOR+:COLOR] & {COLOR{has_it[1] && is_found}}) |
+                                        (code[s*COLOR+:COLOR] & {COLOR{has_it[2] && is_found}}) |
+                                        (base[s*COLOR+:COLOR] & {COLOR{!is_found}});
       end
+
+      // What the registers say, for the lanes.
+      blend_setup #(
+          .CHANNELS(CHANNELS)
+      ) u_setup (
+          .blends_i  (ops_q[BLENDS]),
+          .factors_i (ops_q[15:0]),
+          .equation_i(ops_q[EQUATION+:6]),
+          .constant_i(constant_q),
+          .chooses_o (chooses),
+          .fixed_o   (fixed),
+          .equation_o(equation)
+      );
 
       // 2: of the group its samples, as 8 bits a channel, blended.
       logic [GROUP*8*CHANNELS-1:0] result;
@@ -383,7 +404,7 @@ module color_write #(
           source      = '0;
           for (int i = 0; i < GROUPS; i++) begin
             stored_code = stored_code | (stored_2_q[(i*GROUP+l)*COLOR+:COLOR] & {COLOR{group_2_q[i]}});
-            source      = source | (color_2_q[(i*GROUP+l)*SHADED+:SHADED] & {SHADED{group_2_q[i]}});
+            source      = source | color_2_q[(i*GROUP+l)*SHADED+:SHADED];
           end
         end
         if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
@@ -397,25 +418,26 @@ module color_write #(
         ) u_lane (
             .source_i  (source),
             .stored_i  (wide),
-            .factors_i (ops_2_q[15:0]),
-            .equation_i(ops_2_q[EQUATION+:6]),
-            .constant_i(constant_2_q),
+            .chooses_i (chooses_2_q),
+            .equation_i(equation_2_q),
+            .fixed_i   (fixed_2_q),
             .color_o   (result[l*8*CHANNELS+:8*CHANNELS])
         );
       end
 
       // Packed, and of each channel the new or the stored one.
-      assign out           = ops_2_q[DITHERS:WRITES];
-      assign write_address = {line_3_q, stamp_3_q};
-      assign writes        = writes_3_q & {SAMPLES{on_way_q[2]}};
-      assign dirty_new     = dirty_3_q;
-      assign code_new      = code_3_q;
+      assign out           = out_2_q;
+      assign write_address = {line_2_q, stamp_2_q};
+      assign writes        = writes_2_q & {SAMPLES{on_way_q[1]}};
+      assign dirty_new     = dirty_2_q;
+      assign code_new      = made;
       for (s = 0; s < SAMPLES; s++) begin : gen_rop
         logic [SHADED-1:0] rgba;
         logic [COLOR-1:0]  packed_color, channels;
         always_comb begin
           rgba = color_2_q[s*SHADED+:SHADED];
-          if (blended_2_q[s]) rgba[8*CHANNELS-1:0] = result[(s%GROUP)*8*CHANNELS+:8*CHANNELS];
+          // With a lane for each sample colours that are not blended come through it as well.
+          if (GROUPS == 1 || blended_2_q[s]) rgba[8*CHANNELS-1:0] = result[(s%GROUP)*8*CHANNELS+:8*CHANNELS];
         end
         if (raster_pkg::DITHER_UNIT == 0) begin : gen_rounded
           rop u_rop (

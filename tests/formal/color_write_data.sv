@@ -1,7 +1,8 @@
 
-  // With blending. A stamp on offer stays until it is taken, and so does an answer. The first stamp of a block that comes
+  // With blending. A stamp on offer stays until it is taken, and so does an answer; what it is
+  // shows when it is taken, and stays to the next. The first stamp of a block that comes
   // finds nothing of itself in the RAM, one whose colours are here does (cache_tags_color); tokens write nothing.
-  logic waits_q, answer_waits_q;
+  logic waits_q, answer_waits_q, answer_taken_q;
   logic [LINE+STAMP+3+STAMPS+3*SAMPLES+38-1:0] offer, offer_before_q;
   logic [SAMPLES*COLOR-1:0] answer_before_q;
   assign offer = {line_i, stamp_i, starts_i, evicts_i, fills_i, stamps_i, mask_i, color_i, sets_state_i, register_i, word_i, source_i};
@@ -9,11 +10,13 @@
     waits_q         <= rst_ni && stamp_valid_i && !stamp_ready_o;
     offer_before_q  <= offer;
     answer_waits_q  <= rst_ni && answer_valid_i && !answer_ready_o;
+    answer_taken_q  <= rst_ni && answer_valid_i && answer_ready_o;
     answer_before_q <= answer_i;
   end
   always_comb if (runs_q) begin
     if (waits_q) assume (stamp_valid_i && offer == offer_before_q);
-    if (answer_waits_q) assume (answer_valid_i && answer_i == answer_before_q);
+    if (answer_waits_q) assume (answer_valid_i);
+    if (!answer_taken_q) assume (answer_i == answer_before_q);
     if (source_i == raster_pkg::DEPTH_SOURCE_CHIP) assume (!starts_i);
     if (evicts_i && (mask_i != '0 || source_i != raster_pkg::DEPTH_SOURCE_NONE)) assume (starts_i);
     // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
@@ -28,24 +31,21 @@
   (* anyconst *) logic [$clog2(SAMPLES+1)-1:0] any_sample;
   logic [COLOR:0] word_q, read_word_q, snapshot_q, ram, found_2_q, made_2, newest;
   logic           writes_it, looks_at_it, reads_it_q, collided_q, looked_q, is_first_q, victim_is_it_q, begun_q;
-  logic [3:0]     is_it;         // items of 1 to 4 that are of this stamp
-  logic [3:0]     on_way_to_it;  // of these, those that will write it, or have in the last clock
+  logic [2:0]     is_it;         // items of 1 to 3 that are of this stamp
+  logic [2:0]     on_way_to_it;  // of these, those that will write it, or have in the last clock
   logic [STAMPS-1:0] any_bit;
   localparam int BLENDS = 27;
   assign any_bit      = STAMPS'(1) << any_stamp;
   assign ram          = {dirty[any_sample], code[any_sample*COLOR+:COLOR]};
   assign writes_it    = writes[any_sample] && write_address == {any_line, any_stamp};
   assign looks_at_it  = looks && {line_i, stamp_i} == {any_line, any_stamp};
-  assign is_it        = gen_blends.on_way_q & {{gen_blends.line_4_q, gen_blends.stamp_4_q} == {any_line, any_stamp},
-                                               {gen_blends.line_3_q, gen_blends.stamp_3_q} == {any_line, any_stamp},
+  assign is_it        = gen_blends.on_way_q & {{gen_blends.line_3_q, gen_blends.stamp_3_q} == {any_line, any_stamp},
                                                {gen_blends.line_2_q, gen_blends.stamp_2_q} == {any_line, any_stamp},
                                                {gen_blends.line_1_q, gen_blends.stamp_1_q} == {any_line, any_stamp}};
-  assign on_way_to_it = is_it & {gen_blends.writes_4_q[any_sample], gen_blends.writes_3_q[any_sample],
-                                 gen_blends.writes_2_q[any_sample], gen_blends.writes_1_q[any_sample]};
+  assign on_way_to_it = is_it & {gen_blends.writes_3_q[any_sample], gen_blends.writes_2_q[any_sample], gen_blends.writes_1_q[any_sample]};
   assign made_2 = {gen_blends.dirty_2_q[any_sample], gen_blends.made[any_sample*COLOR+:COLOR]};
   // As stage 1 must find it: what those in front of it leave.
-  assign newest = on_way_to_it[1] ? made_2 :
-                  on_way_to_it[2] ? {gen_blends.dirty_3_q[any_sample], gen_blends.code_3_q[any_sample*COLOR+:COLOR]} : word_q;
+  assign newest = on_way_to_it[1] ? made_2 : word_q;
   logic is_left;  // of an eviction its stamp is still to be read
   assign is_left = (first_line_q == any_line && (first_q & any_bit) != '0) || (second_line_q == any_line && (second_q & any_bit) != '0);
   logic             own_is_left;  // likewise of the stamp on offer
@@ -76,7 +76,7 @@
         assert (is_it[0] && reads_it_q && !gen_blends.starts_1_q);
         assert (gen_blends.held[any_sample] == newest[COLOR]);
         assert (gen_blends.stored[any_sample*COLOR+:COLOR] ==
-                (gen_blends.is_here_1_q || newest[COLOR] ? newest[COLOR-1:0] : gen_blends.base_1_q[any_sample*COLOR+:COLOR]));
+                (gen_blends.is_here_1_q || newest[COLOR] ? newest[COLOR-1:0] : gen_blends.base[any_sample*COLOR+:COLOR]));
       end
       // Nor does a group of a stamp undo what another has made of it.
       if (on_way_to_it[0] && !gen_blends.mask_1_q[any_sample] && !is_first_q)
@@ -84,22 +84,22 @@
       // What is not blended or replaced is written as it was found, with what memory does not have of it.
       if (on_way_to_it[1] && !gen_blends.mask_2_q[any_sample]) assert (made_2 == found_2_q);
       if (on_way_to_it[1] && gen_blends.mask_2_q[any_sample]) assert (made_2[COLOR]);
-      if (writes_it) assert (on_way_to_it[2]);
+      if (writes_it) assert (on_way_to_it[1]);
       // An eviction takes along what is there when it begins.
       if (starts) assert (second_q == '0);  // in the place of one that is through
-      if (starts && line_i == any_line) assert (on_way_to_it[2:0] == '0);
+      if (starts && line_i == any_line) assert (on_way_to_it == '0);
       if (is_left && begun_q) assert (word_q == snapshot_q);
-      if (is_left) assert (on_way_to_it[2:0] == '0);
+      if (is_left) assert (on_way_to_it == '0);
       if (victim_is_it_q && begun_q) begin
         assert (reads_it_q && !collided_q && read_word_q == snapshot_q && victim_valid_o);
         assert (victim_strobe_o[any_sample] == (fills_q || snapshot_q[COLOR]));
         if (snapshot_q[COLOR]) assert (victim_color_o[any_sample*COLOR+:COLOR] == snapshot_q[COLOR-1:0]);
       end
       // For induction.
-      if (on_way_to_it[3])
-        assert (word_q == {gen_blends.dirty_4_q[any_sample], gen_blends.code_4_q[any_sample*COLOR+:COLOR]});
+      if (on_way_to_it[2])
+        assert (word_q == {gen_blends.dirty_3_q[any_sample], gen_blends.code_3_q[any_sample*COLOR+:COLOR]});
       if (looked_q && gen_blends.on_way_q[0]) begin
-        assert (collided_q == on_way_to_it[3]);
+        assert (collided_q == on_way_to_it[2]);
         if (!collided_q) assert (read_word_q == word_q);
       end
       if (is_it[0] && gen_blends.on_way_q[0] && !gen_blends.starts_1_q && gen_blends.is_here_1_q) assert (looked_q);
@@ -114,9 +114,8 @@
       if (first_q == '0) assert (second_q == '0 && !second_begun_q);
       if (!second_begun_q) assert (second_q == '0);
       if (first_line_q == second_line_q) assert ((first_q & second_q) == '0);
-      if (started_q && line_i == any_line && stamp_i != any_stamp) assert (on_way_to_it[2:0] == '0);
+      if (started_q && line_i == any_line && stamp_i != any_stamp) assert (on_way_to_it == '0);
       if (gen_blends.done_q != '0) begin
-        if (source_i == raster_pkg::DEPTH_SOURCE_MEMORY) assert (answer_valid_i && answer_waits_q);
         assert (waits_q && gen_blends.wanted != '0 && gen_blends.ops_q[BLENDS]);
         assert (!own_is_left);
         if (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i) assert (first_q == '0);
@@ -125,9 +124,9 @@
       if (reads) assert (next != '0 && (next & ~(of_second ? second : first_q)) == '0);
       if (goes && own != '0 && own_is_left) assert (reads && next == own);
       // Nothing waits but for an eviction or an answer: the same stamp goes every clock. So there is no deadlock either.
-      if (stamp_valid_i && !goes && first_q == '0 && (!evicts_i || gen_blends.on_way_q[2:0] == '0))
+      if (stamp_valid_i && !goes && first_q == '0 && (!evicts_i || gen_blends.on_way_q == '0))
         assert (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i);
-      cover (on_way_to_it[3:0] == 4'b1111 && looked_q && gen_blends.stored[any_sample*COLOR+:COLOR] != word_q[COLOR-1:0]);
+      cover (on_way_to_it == 3'b111 && looked_q && gen_blends.stored[any_sample*COLOR+:COLOR] != word_q[COLOR-1:0]);
       cover (victim_is_it_q && begun_q && snapshot_q[COLOR]);
       cover (gen_blends.done_q != '0 && looks_at_it);
       cover (second_begun_q && hits_second);
