@@ -166,7 +166,7 @@ def packed_blocks(title):
         inside = [part for part in name.split('.')[:-1] if part.startswith('u_')]
         # u_core is raster_top; a kept stage is the first instance in it, unless that is one of its own RAMs.
         block = 'pin_wrapper' if not inside else 'raster_top'
-        if len(inside) > 1 and inside[1] != 'u_context':
+        if len(inside) > 1 and inside[1] not in ('u_context', 'u_step_x', 'u_step_y', 'u_rest'):
             block = inside[1][2:]
         bits = {key: int(value, 2) for key, value in cell['parameters'].items() if key.endswith('_ENABLE')}
         if cell['type'] == 'ICESTORM_LC':
