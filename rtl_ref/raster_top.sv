@@ -72,7 +72,9 @@ module raster_top (
   /* verilator lint_on UNUSEDSIGNAL */
   raster_pkg::triangle_packet_t triangle_data;
   raster_pkg::setup_packet_t    setup_data;
+  /* verilator lint_off UNUSEDSIGNAL */  // serial stages have its steps in another way
   raster_pkg::context_packet_t  context_data;
+  /* verilator lint_on UNUSEDSIGNAL */
   raster_pkg::tile_packet_t     tile_data;
   raster_pkg::edge_context_t    edges_data;
   raster_pkg::stamp_packet_t    stamp_data;
@@ -119,6 +121,9 @@ module raster_top (
   logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
   logic                              context_read;
   raster_pkg::context_packet_t   stamp_context;
+  /* verilator lint_off UNUSEDSIGNAL */  // with pipelined stages
+  logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step;
+  /* verilator lint_on UNUSEDSIGNAL */
 
   logic shaded_valid, shaded_ready;  // the same behind a buffer
   raster_pkg::fragment_packet_t shaded_data;
@@ -163,6 +168,7 @@ module raster_top (
         .setup_i         (setup_data),                                                  \
         .context_slot_o  (context_slot),                                                \
         .context_o       (context_data),                                                \
+        .context_step_o  (context_step),                                                \
         .slot_free_i     (slot_free),                                                   \
         .tile_valid_o    (tile_offered),                                                \
         .tile_ready_i    (tile_ready),                                                  \
@@ -272,20 +278,87 @@ module raster_top (
     end
   endgenerate
 
-  sram #(
-      .WIDTH(raster_pkg::CONTEXT_PACKET_BITS),
-      .DEPTH(raster_pkg::CONTEXT_SLOTS),
-      .READS_OLD(0),  // a slot is not written before it is free
-      .BLOCK(raster_pkg::SETUP_KIND != 0)
-  ) u_context (
-      .clk_i,
-      .read_i         (context_read),
-      .read_address_i (read_slot),
-      .data_o         (stamp_context),
-      .write_i        (setup_valid && setup_accepted),
-      .write_address_i(context_slot),
-      .data_i         (context_data)
-  );
+  // The constants of a primitive: a word, or a word for each step, written one after the other. A slot is not written before
+  // it is free, nor read before the first stamp is there.
+  logic writes_context;
+  assign writes_context = setup_valid && setup_accepted;
+  generate
+    if (raster_pkg::SETUP_KIND == 0) begin : gen_context
+      sram #(
+          .WIDTH(raster_pkg::CONTEXT_PACKET_BITS),
+          .DEPTH(raster_pkg::CONTEXT_SLOTS),
+          .READS_OLD(0)
+      ) u_context (
+          .clk_i,
+          .read_i         (context_read),
+          .read_address_i (read_slot),
+          .data_o         (stamp_context),
+          .write_i        (writes_context),
+          .write_address_i(context_slot),
+          .data_i         (context_data)
+      );
+    end else begin : gen_contexts
+      localparam int STEP = raster_pkg::ALL_LOCAL_BITS;
+      localparam int REST = raster_pkg::CONTEXT_PACKET_BITS - 2 * STEP;
+      logic            writes_step_x_q, writes_step_y_q;
+      logic [STEP-1:0] step_x, step_y;
+      logic [REST-1:0] rest;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          writes_step_x_q <= 1'b0;
+          writes_step_y_q <= 1'b0;
+        end else begin
+          writes_step_x_q <= writes_context;
+          writes_step_y_q <= writes_step_x_q;
+        end
+      end
+      sram #(
+          .WIDTH    (STEP),
+          .DEPTH    (raster_pkg::CONTEXT_SLOTS),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_step_x (
+          .clk_i,
+          .read_i         (context_read),
+          .read_address_i (read_slot),
+          .data_o         (step_x),
+          .write_i        (writes_step_x_q),
+          .write_address_i(context_slot),
+          .data_i         (context_step)
+      );
+      sram #(
+          .WIDTH    (STEP),
+          .DEPTH    (raster_pkg::CONTEXT_SLOTS),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_step_y (
+          .clk_i,
+          .read_i         (context_read),
+          .read_address_i (read_slot),
+          .data_o         (step_y),
+          .write_i        (writes_step_y_q),
+          .write_address_i(context_slot),
+          .data_i         (context_step)
+      );
+      sram #(
+          .WIDTH    (REST),
+          .DEPTH    (raster_pkg::CONTEXT_SLOTS),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_rest (
+          .clk_i,
+          .read_i         (context_read),
+          .read_address_i (read_slot),
+          .data_o         (rest),
+          .write_i        (writes_context),
+          .write_address_i(context_slot),
+          .data_i         ({context_data.range, context_data.state})
+      );
+      assign stamp_context.step_x = step_x;
+      assign stamp_context.step_y = step_y;
+      assign {stamp_context.range, stamp_context.state} = rest;
+    end
+  endgenerate
 
   // The test, and what is behind it: whole tiles, looked up when they are tested; or blocks, looked up before.
   logic                             tested_valid, tested_ready;

@@ -25,11 +25,13 @@ SYNTH_ECP5 = 'synth_ecp5 -top raster_top -nowidelut'
 FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_top', 'synth_ecp5 -top raster_top -abc9',
              'synth_ecp5 -top raster_top -abc9 -nowidelut']
 FLAT = 'embedded, 2x2'
-# Without -abc9, which Yosys 0.23 cannot do here: its ABC refuses the flat design of `small` (the order of its carry boxes).
-SYNTH_ICE40 = 'synth_ice40 -top pin_wrapper'
+# Its own script for -abc9: structural choices (&dch), as Yosys has them, lead round through carry boxes, which &if of Yosys 0.23's
+# ABC refuses in the flat design of `small` ("not in a topological order"); and &mfs aborts there.
+SYNTH_ICE40 = ('scratchpad -set abc9.script "+&scorr; &sweep; &dc2; &if {C} {W} {D} {R} -v"; '
+               'synth_ice40 -top pin_wrapper -abc9')
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.
 KEEP = gates.KEEP
-PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 60 --seed 2'
+PLACE = 'nextpnr-ice40 --hx8k --package ct256 --freq 65 --seed 2'
 # Title, preset, settings.
 CONFIGURATIONS = [
     ('tiny, 1x1', 'tiny', []),
@@ -164,7 +166,7 @@ def packed_blocks(title):
         inside = [part for part in name.split('.')[:-1] if part.startswith('u_')]
         # u_core is raster_top; a kept stage is the first instance in it, unless that is one of its own RAMs.
         block = 'pin_wrapper' if not inside else 'raster_top'
-        if len(inside) > 1 and inside[1] != 'u_context':
+        if len(inside) > 1 and inside[1] not in ('u_context', 'u_step_x', 'u_step_y', 'u_rest'):
             block = inside[1][2:]
         bits = {key: int(value, 2) for key, value in cell['parameters'].items() if key.endswith('_ENABLE')}
         if cell['type'] == 'ICESTORM_LC':

@@ -26,6 +26,7 @@ module coarse_raster (
     // To the context RAM, with the setup packet
     output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
     output raster_pkg::context_packet_t      context_o,
+    output logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step_o,  // the serial stage has steps one after the other
     input  logic                             slot_free_i,  // interpolate has read a slot for the last time
 
     // To fine_raster; edges_o is the context of the tile's primitive
@@ -304,6 +305,7 @@ module coarse_raster (
       assign context_o.step_y[LOCAL+:B] = B'($signed(step_y) >>> NARROW) + B'(step_y[NARROW-1]);
     end
   endgenerate
+  assign context_step_o  = '0;
   assign context_o.state = setup_i.state;
   assign context_o.range = setup_i.range;
   generate

@@ -14,9 +14,11 @@ module coarse_raster_serial (
     output logic                      setup_ready_o,
     input  raster_pkg::setup_packet_t setup_i,
 
-    // To the context RAM, with the setup packet
-    output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
-    output raster_pkg::context_packet_t      context_o,
+    // To the context RAM, with the setup packet; the RAM takes the steps from context_step_o, where step_x is a cycle later
+    // and step_y two, so that of context_o nothing is made but what only passes through
+    output logic [raster_pkg::SLOT_BITS-1:0]      context_slot_o,
+    output raster_pkg::context_packet_t           context_o,
+    output logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step_o,
     input  logic                             slot_free_i,  // interpolate has read a slot for the last time
 
     // To fine_raster; edges_o is the context of the tile's primitive
@@ -189,7 +191,9 @@ module coarse_raster_serial (
   // ------------------------------------------------------------------------------------------------------------ edges
   // Edge 0 lowest. value: at the tile's first pixel; row: at the start of its row, in use after the first turn; right,
   // down: one pixel that way. right comes as dy, its sign is turned on the first turn.
-  logic [3*V-1:0]      value_q, row_q;
+  logic [3*V-1:0]      values, row_q;
+  logic [2*V-1:0]      value_q;
+  logic signed [V-1:0] not_value_q;  // the one at the back, complemented
   logic [3*D-1:0]      right_q, down_q;
   logic                moves_ring;
   logic signed [V-1:0] from, next;
@@ -197,6 +201,7 @@ module coarse_raster_serial (
   /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
   logic [V-TS:0]       sum;
   /* verilator lint_on UNUSEDSIGNAL */
+  assign values     = {~not_value_q, value_q};
   assign moves_ring = state_q == TURN && turn_q != 2'd3;
   assign from       = goes_down_q || turns_back_q ? row_q[0+:V] : value_q[0+:V];
   assign step       = is_new_q ? '0 : goes_down_q ? down_q[0+:D] : right_q[0+:D] ^ {D{goes_left_q}};
@@ -206,11 +211,11 @@ module coarse_raster_serial (
 
   always_ff @(posedge clk_i) begin
     if (takes) begin
-      value_q <= setup_i.edge_value;
+      {not_value_q, value_q} <= {~setup_i.edge_value[2*V+:V], setup_i.edge_value[0+:2*V]};
       right_q <= setup_i.dy;
       down_q  <= setup_i.dx;
     end else if (moves_ring) begin
-      value_q <= {next, value_q[V+:2*V]};
+      {not_value_q, value_q} <= {~next, values[V+:2*V]};
       right_q <= {right, right_q[D+:2*D]};
       down_q  <= {down_q[0+:D], down_q[D+:2*D]};
     end
@@ -219,26 +224,26 @@ module coarse_raster_serial (
 
   // The edge at the back, at the tile's best and at its worst corner: T - 1 pixels away.
   logic signed [D-1:0]  test_right, test_down;
-  logic signed [V-1:0]  test_value;
+  logic                 gets_no_better;  // outside of this edge, on this way
   logic signed [D:0]    best, worst;
-  logic signed [TE-1:0] to_best, to_worst;
+  logic signed [V:0]    less_best, less_worst;  // value - best, from the complement
   logic signed [V:0]    largest, smallest;
   assign test_right = right_q[2*D+:D];
   assign test_down  = down_q[2*D+:D];
-  assign test_value = value_q[2*V+:V];
   assign best       = (test_right[D-1] ? '0 : (D + 1)'(test_right)) + (test_down[D-1] ? '0 : (D + 1)'(test_down));
   assign worst      = (test_right[D-1] ? (D + 1)'(test_right) : '0) + (test_down[D-1] ? (D + 1)'(test_down) : '0);
-  assign to_best    = (TE'(best) <<< TS) - TE'(best);
-  assign to_worst   = (TE'(worst) <<< TS) - TE'(worst);
-  assign largest    = (V + 1)'(test_value) + (V + 1)'(to_best);
-  assign smallest   = (V + 1)'(test_value) + (V + 1)'(to_worst);
+  assign gets_no_better = goes_left_q ? !test_right[D-1] : test_right[D-1] || test_right == '0;
+  assign less_best  = ~((V + 1)'(not_value_q) + (V + 1)'(best));
+  assign less_worst = ~((V + 1)'(not_value_q) + (V + 1)'(worst));
+  assign largest    = less_best + ((V + 1)'(best) <<< TS);
+  assign smallest   = less_worst + ((V + 1)'(worst) <<< TS);
 
   always_ff @(posedge clk_i) begin
     if (state_q == TURN) begin
       outside_q   <= turn_q != 2'd0 && (outside_q || largest < 0);
       inside_q    <= turn_q == 2'd0 || (inside_q && smallest >= 0);
-      ends_way_q  <= turn_q != 2'd0 && (ends_way_q || (largest < 0 && (goes_left_q ? test_right >= 0 : test_right <= 0)));
-      ends_left_q <= turn_q != 2'd0 && (ends_left_q || (largest < 0 && test_right >= 0));
+      ends_way_q  <= turn_q != 2'd0 && (ends_way_q || (largest < 0 && gets_no_better));
+      ends_left_q <= turn_q != 2'd0 && (ends_left_q || (largest < 0 && !test_right[D-1]));
     end
   end
 
@@ -248,11 +253,11 @@ module coarse_raster_serial (
     for (i = 0; i < 3; i++) begin : gen_edge
       if (V > TE) begin : gen_saturate
         logic sign, fits;
-        assign sign = value_q[i*V+V-1];
-        assign fits = value_q[i*V+TE-1+:V-TE+1] == {(V - TE + 1) {sign}};
-        assign edge_value[i*TE+:TE] = fits ? value_q[i*V+:TE] : {sign, {(TE - 1) {~sign}}};
+        assign sign = values[i*V+V-1];
+        assign fits = values[i*V+TE-1+:V-TE+1] == {(V - TE + 1) {sign}};
+        assign edge_value[i*TE+:TE] = fits ? values[i*V+:TE] : {sign, {(TE - 1) {~sign}}};
       end else begin : gen_extend
-        assign edge_value[i*TE+:TE] = TE'($signed(value_q[i*V+:V]));
+        assign edge_value[i*TE+:TE] = TE'($signed(values[i*V+:V]));
       end
     end
   endgenerate
@@ -263,13 +268,16 @@ module coarse_raster_serial (
   // in front, the one down behind it; they change places twice, round the step for one down, before it for one that turns
   // back. On the second time the step to the right is complemented where the way turns.
   logic loads_start, adds_step, notes_start, swaps, turns_step;
-  assign loads_start = state_q == TURN && turn_q == 2'd0 && (is_new_q || goes_down_q || turns_back_q);
+  assign loads_start = state_q == TURN && (is_new_q ? turn_q == 2'd2 : turn_q == 2'd0 && (goes_down_q || turns_back_q));
   assign adds_step   = state_q == TURN && turn_q == 2'd2 && !is_new_q;
   assign notes_start = turns_end && (goes_down_q || moves_start_q);
-  assign swaps       = state_q == TURN && ((turns_back_q && turn_q <= 2'd1) || (goes_down_q && (turn_q == 2'd1 || turn_q == 2'd2)));
+  assign swaps       = state_q == TURN && (((is_new_q || turns_back_q) && turn_q <= 2'd1) ||
+                                           (goes_down_q && (turn_q == 2'd1 || turn_q == 2'd2)));
   assign turns_step  = turns_back_q ? turn_q == 2'd1 : turn_q == 2'd2 && was_left_q;
 
-  // In the context are steps per pixel, narrowed to the local guard bits.
+  // In the context are steps per pixel, narrowed to the local guard bits and rounded: by the adder of the plane, while there
+  // is no value yet. Cycle 0 of a new primitive adds half a unit to the step to the right, and cycle 1 to the one down,
+  // which change places meanwhile; the value comes in cycle 2.
   generate
     for (i = 0; i < PLANES; i++) begin : gen_plane
       localparam int P = PLANE_BITS_OF[32*i+:32];
@@ -277,34 +285,37 @@ module coarse_raster_serial (
       localparam int B = LOCAL_BITS_OF[32*i+:32];
       localparam int LOCAL = LOCAL_AT[32*i+:32];
       localparam int M = P - TS - S;  // a tile's step leaves the bits below as they are
+      localparam int T = NARROW + B;  // bits of a step per pixel; of a step per tile the highest are without effect
       /* verilator lint_off UNUSEDSIGNAL */
-      logic [P-1:0] value;
+      logic [P-1:0] value, step_x, step_y;
       /* verilator lint_on UNUSEDSIGNAL */
-      logic [P-1:0] step_x, step_y;
-      logic [M-1:0] plane_q, start_q, step_q, other_step_q;
+      logic [M-1:0] plane_q, start_q;
+      logic [T-1:0] step_q, other_step_q;
       /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
-      logic [M:0]   moved;
+      logic [T:0]   moved;
       /* verilator lint_on UNUSEDSIGNAL */
       assign value      = setup_i.value[PLANE+:P];
       assign step_x     = setup_i.step_x[PLANE+:P];
       assign step_y     = setup_i.step_y[PLANE+:P];
-      assign moved      = {plane_q, 1'b1} + {step_q, goes_left_q};
+      assign moved      = {T'(plane_q), 1'b1} + {step_q, goes_left_q};
 
       always_ff @(posedge clk_i) begin
         if (takes) begin
-          step_q       <= step_x[M-1:0];
-          other_step_q <= step_y[M-1:0];
+          step_q       <= step_x[T-1:0];
+          other_step_q <= step_y[T-1:0];
         end else if (swaps) begin
-          step_q       <= other_step_q ^ {M{turns_step}};
+          step_q       <= other_step_q ^ {T{turns_step}};
           other_step_q <= step_q;
         end
         if (takes) start_q <= value[P-1:TS+S];
         else if (notes_start) start_q <= plane_q;
-        if (loads_start) plane_q <= start_q;
+        if (takes) plane_q <= M'(1) << (NARROW - 1);
+        else if (loads_start) plane_q <= start_q;
         else if (adds_step) plane_q <= moved[M:1];
       end
 
       assign tile_o.anchor[LOCAL+:B]    = plane_q[M-1-:B];
+      assign context_step_o[LOCAL+:B]   = moved[T-:B];
       assign context_o.step_x[LOCAL+:B] = B'($signed(step_x) >>> NARROW) + B'(step_x[NARROW-1]);
       assign context_o.step_y[LOCAL+:B] = B'($signed(step_y) >>> NARROW) + B'(step_y[NARROW-1]);
     end

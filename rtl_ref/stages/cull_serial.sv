@@ -85,31 +85,39 @@ module cull_serial (
   end
 
   // --------------------------------------------------------------------------------------------------------- vertices
-  logic [C-1:0]     x0_q, x1_q, x2_q, y0_q, y1_q, y2_q;
-  logic [CODES-1:0] code0_q, code1_q, code2_q;
+  // Vertex 0 is what everything is taken from: its registers hold complements, so that no gate stands before a carry.
+  logic [C-1:0]     not_x0_q, not_y0_q, x0, y0, x1_q, x2_q, y1_q, y2_q;
+  logic [CODES-1:0] not_code0_q, code0, code1_q, code2_q;
   logic             turns, swaps, is_odd_q;  // is_odd_q: the order runs round the other way than the host's
+  assign x0    = ~not_x0_q;
+  assign y0    = ~not_y0_q;
+  assign code0 = ~not_code0_q;
 
   // Flipping the sign bits makes signed numbers comparable as unsigned ones. Equal keys: no area, dropped in any order.
   logic [KEY-1:0] key0, key1;
   logic           is_1_first_q;  // in the cycle before
-  assign key0 = {~y0_q[C-1], y0_q[0+:C-1], ~x0_q[C-1], x0_q[0+:C-1], code0_q[0+:Z]};
+  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], code0[0+:Z]};
   assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1], code1_q[0+:Z]};
 
   assign turns = (state_q == SORT && count_q[1]) || (state_q == BOX && count_q < COUNT'(3)) || state_q == FLIP ||
                  (state_q == EDGES && product_ends);
-  assign swaps = (state_q == SORT && !count_q[1] && count_q[0] && is_1_first_q) || (state_q == JUDGE && is_negative_q && !is_dropped);
+  assign swaps = (state_q == SORT && !count_q[1] && count_q[0] && is_1_first_q) ||
+                 (state_q == JUDGE && is_negative_q && !is_dropped);
 
   always_ff @(posedge clk_i) begin
     is_1_first_q <= key1 < key0;
     if (takes) begin
-      {x2_q, x1_q, x0_q}          <= primitive_i.vertex.x;
-      {y2_q, y1_q, y0_q}          <= primitive_i.vertex.y;
-      {code2_q, code1_q, code0_q} <= primitive_i.vertex.code;
-      is_odd_q                    <= 1'b0;
+      {x2_q, x1_q}       <= primitive_i.vertex.x[C+:2*C];
+      {y2_q, y1_q}       <= primitive_i.vertex.y[C+:2*C];
+      {code2_q, code1_q} <= primitive_i.vertex.code[CODES+:2*CODES];
+      not_x0_q           <= ~primitive_i.vertex.x[0+:C];
+      not_y0_q           <= ~primitive_i.vertex.y[0+:C];
+      not_code0_q        <= ~primitive_i.vertex.code[0+:CODES];
+      is_odd_q           <= 1'b0;
     end else if (turns || swaps) begin
-      {x0_q, y0_q, code0_q} <= {x1_q, y1_q, code1_q};
-      {x1_q, y1_q, code1_q} <= swaps ? {x0_q, y0_q, code0_q} : {x2_q, y2_q, code2_q};
-      if (!swaps) {x2_q, y2_q, code2_q} <= {x0_q, y0_q, code0_q};
+      {not_x0_q, not_y0_q, not_code0_q} <= ~{x1_q, y1_q, code1_q};
+      {x1_q, y1_q, code1_q} <= swaps ? {x0, y0, code0} : {x2_q, y2_q, code2_q};
+      if (!swaps) {x2_q, y2_q, code2_q} <= {x0, y0, code0};
       is_odd_q <= is_odd_q ^ swaps;
     end
   end
@@ -124,12 +132,18 @@ module cull_serial (
   logic signed [B-1:0] above_x, below_x, above_y, below_y;
   /* verilator lint_on UNUSEDSIGNAL */
   logic signed [N-1:0] first_x, last_x, first_y, last_y, scissor_left, scissor_top, scissor_right, scissor_bottom;
-  logic signed [N-1:0] left, right, top, bottom, left_q, right_q, top_q, bottom_q;
+  logic signed [N-1:0] left, right, top, bottom, held_left, held_right, held_top, held_bottom;
+  logic        [N-1:0] not_left_q, not_right_q, not_top_q, not_bottom_q;  // complements again
   logic                is_first, is_empty, is_empty_q;
-  assign above_x        = B'($signed(x0_q)) + HALF - B'(1);
-  assign below_x        = B'($signed(x0_q)) - HALF;
-  assign above_y        = B'($signed(y0_q)) + HALF - B'(1);
-  assign below_y        = B'($signed(y0_q)) - HALF;
+  assign held_left         = ~not_left_q;
+  assign held_right        = ~not_right_q;
+  assign held_top          = ~not_top_q;
+  assign held_bottom       = ~not_bottom_q;
+  // x0 + HALF - 1 and x0 - HALF, from the complement.
+  assign above_x        = ~(B'($signed(not_x0_q)) - (HALF - B'(1)));
+  assign below_x        = ~(B'($signed(not_x0_q)) + HALF);
+  assign above_y        = ~(B'($signed(not_y0_q)) - (HALF - B'(1)));
+  assign below_y        = ~(B'($signed(not_y0_q)) + HALF);
   assign first_x        = above_x[B-1:S];
   assign last_x         = below_x[B-1:S];
   assign first_y        = above_y[B-1:S];
@@ -138,26 +152,26 @@ module cull_serial (
   assign scissor_top    = N'(primitive_i.box.top);
   assign scissor_right  = N'(primitive_i.box.right);
   assign scissor_bottom = N'(primitive_i.box.bottom);
-  assign left           = is_triangle && left_q > scissor_left ? left_q : scissor_left;
-  assign top            = is_triangle && top_q > scissor_top ? top_q : scissor_top;
-  assign right          = is_triangle && right_q < scissor_right ? right_q : scissor_right;
-  assign bottom         = is_triangle && bottom_q < scissor_bottom ? bottom_q : scissor_bottom;
+  assign left           = is_triangle && held_left > scissor_left ? held_left : scissor_left;
+  assign top            = is_triangle && held_top > scissor_top ? held_top : scissor_top;
+  assign right          = is_triangle && !(held_right >= scissor_right) ? held_right : scissor_right;
+  assign bottom         = is_triangle && !(held_bottom >= scissor_bottom) ? held_bottom : scissor_bottom;
   assign is_first       = count_q == '0;
-  assign is_empty       = left_q > right_q || top_q > bottom_q;
+  assign is_empty       = held_left > held_right || held_top > held_bottom;
 
   always_ff @(posedge clk_i) begin
     is_empty_q <= is_empty;
     if (state_q == BOX && count_q < COUNT'(3)) begin
-      if (is_first || first_x < left_q) left_q <= first_x;
-      if (is_first || last_x > right_q) right_q <= last_x;
-      if (is_first) top_q <= first_y;  // vertex 0 is the highest
-      if (is_first || last_y > bottom_q) bottom_q <= last_y;
+      if (is_first || first_x < held_left) not_left_q <= ~first_x;
+      if (is_first || !(held_right >= last_x)) not_right_q <= ~last_x;
+      if (is_first) not_top_q <= ~first_y;  // vertex 0 is the highest
+      if (is_first || !(held_bottom >= last_y)) not_bottom_q <= ~last_y;
     end
     if (state_q == BOX && count_q == COUNT'(3)) begin
-      left_q   <= left;
-      right_q  <= right;
-      top_q    <= top;
-      bottom_q <= bottom;
+      not_left_q   <= ~left;
+      not_right_q  <= ~right;
+      not_top_q    <= ~top;
+      not_bottom_q <= ~bottom;
     end
   end
 
@@ -173,10 +187,10 @@ module cull_serial (
   /* verilator lint_on UNUSEDSIGNAL */
   logic                starts, subtracts, bit_out;
   assign starts = multiplies && count_q == '0;
-  assign dx     = D'($signed(x1_q)) - D'($signed(x0_q));
-  assign dy     = D'($signed(y1_q)) - D'($signed(y0_q));
-  assign x      = state_q == AREA ? D'($signed(x2_q)) : D'({left_q[PX-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
-  assign y      = state_q == AREA ? D'($signed(y2_q)) : D'({top_q[PY-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
+  assign dx     = D'($signed(x1_q)) - D'($signed(x0));
+  assign dy     = D'($signed(y1_q)) - D'($signed(y0));
+  assign x      = state_q == AREA ? D'($signed(x2_q)) : D'({held_left[PX-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
+  assign y      = state_q == AREA ? D'($signed(y2_q)) : D'({held_top[PY-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
 
   assign wide_dx   = (D + 1)'(dx);
   assign wide_dy   = (D + 1)'(dy);
@@ -190,8 +204,8 @@ module cull_serial (
 
   always_ff @(posedge clk_i) begin
     if (starts) begin
-      to_x_q <= x - D'($signed(x0_q));
-      to_y_q <= y - D'($signed(y0_q));
+      to_x_q <= x - D'($signed(x0));
+      to_y_q <= y - D'($signed(y0));
       both_q <= wide_dx - wide_dy;
       acc_q  <= '0;
     end else begin
@@ -243,14 +257,14 @@ module cull_serial (
   assign triangle_valid_o        = state_q == OFFER && primitive_valid_i && !is_empty_q;
   assign triangle_o.kind         = primitive_i.kind;
   assign triangle_o.primitive_id = primitive_i.primitive_id;
-  assign triangle_o.box.left     = PX'(left_q);
-  assign triangle_o.box.top      = PY'(top_q);
-  assign triangle_o.box.right    = PX'(right_q);
-  assign triangle_o.box.bottom   = PY'(bottom_q);
+  assign triangle_o.box.left     = PX'(held_left);
+  assign triangle_o.box.top      = PY'(held_top);
+  assign triangle_o.box.right    = PX'(held_right);
+  assign triangle_o.box.bottom   = PY'(held_bottom);
   assign triangle_o.state        = primitive_i.state;
-  assign triangle_o.vertex.x     = {x2_q, x1_q, x0_q};
-  assign triangle_o.vertex.y     = {y2_q, y1_q, y0_q};
-  assign triangle_o.vertex.code  = {code2_q, code1_q, code0_q};
+  assign triangle_o.vertex.x     = {x2_q, x1_q, x0};
+  assign triangle_o.vertex.y     = {y2_q, y1_q, y0};
+  assign triangle_o.vertex.code  = {code2_q, code1_q, code0};
   assign triangle_o.area         = area_q;
   assign triangle_o.edge_value   = value_q;
 

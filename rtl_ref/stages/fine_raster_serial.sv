@@ -3,7 +3,8 @@
 //
 // From the tile's first pixel it steps right to the box's first column of stamps, then down to the first row; then it
 // visits every stamp of the box, row by row. In the last row each covered stamp is held back until the next one is found,
-// because the last of them ends the visit.
+// because the last of them ends the visit. Whether the whole tile is inside is not looked at: then the edges say so at
+// each stamp, in the same cycle.
 // tile_i and edges_i are not stored: tile_ready_o comes with the last stamp. So a tile costs a cycle, one for each stamp
 // of its box, and the way to the first one. Specification: model/stages/fine_raster.hpp.
 module fine_raster_serial (
@@ -13,7 +14,9 @@ module fine_raster_serial (
     // From coarse_raster
     input  logic                      tile_valid_i,
     output logic                      tile_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */  // is_inside
     input  raster_pkg::tile_packet_t  tile_i,
+    /* verilator lint_on UNUSEDSIGNAL */
     input  raster_pkg::edge_context_t edges_i,
 
     // To interpolate
@@ -109,7 +112,7 @@ module fine_raster_serial (
               .y_i     (PIXEL'(j)),
               .value_o (sample)
           );
-          assign outside[e*SAMPLES+j*STAMP+i] = sample < 0;
+          assign outside[e*SAMPLES+j*STAMP+i] = sample[W-1];
         end
       end
     end
@@ -131,7 +134,7 @@ module fine_raster_serial (
           /* verilator lint_on UNSIGNED */
         end
         assign mask[AT] = scans && is_sample_in_box &&
-                          (tile_i.is_inside || !(outside[AT] || outside[SAMPLES+AT] || outside[2*SAMPLES+AT]));
+                          !(outside[AT] || outside[SAMPLES+AT] || outside[2*SAMPLES+AT]);
       end
     end
   endgenerate

@@ -98,7 +98,7 @@ module framebuffer (
   /* verilator lint_off UNUSEDSIGNAL */  // wider than a tile's y where the cache is larger than the target
   logic [LINE-1:0]   line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [TILE_X-1:0] tile_x;
+  logic [TILE_X-1:0] tile_x, victim_x;
   logic [TILE_Y-1:0] tile_y;
   logic flag_depth, flag_color;  // the plane of the tile in memory is garbage: its value is the last fast clear's
 
@@ -212,10 +212,10 @@ module framebuffer (
   assign is_free   = !offers_q || request_ready_i;
   assign steps     = runs && left != '0 && is_free;
   assign loads     = runs ? row_q != (ROW_BITS + 1)'(ROWS) && (left == '0 || (steps && left == one)) :
-                     state_q != state_d && (state_d == FILL || state_d == RESOLVE);
+                     begins_fill || (state_q == SEND && resolves && !walks);
   assign takes_all = state_q != EVICT || (plane_q ? flag_color : flag_depth);
   assign dirty_row = plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES];
-  assign begins_fill = loads && state_d == FILL && !is_fill;
+  assign begins_fill = state_q == CHECK && !line_depth_dirty && !line_color_dirty && !is_token;
   assign row       = begins_fill ? (ROW_BITS + 1)'(ROWS) : (runs ? row_q : '0) + (ROW_BITS + 1)'(loads);
   assign ends_plane      = left == '0 && row_q == (ROW_BITS + 1)'(ROWS) && is_free;
   assign request_valid_o = offers_q || sends;
@@ -289,13 +289,15 @@ module framebuffer (
     end
   end
 
-  // The tile that is moved, marked or looked at: of a line that is dirty, the one that leaves.
+  // The tile that is moved, marked or looked at: of a line that is dirty, the one that leaves. CHECK is on its way to one that
+  // comes in; what it reads for a token is not looked at.
   assign line_above_x = line_q >> LINE_X;
+  assign victim_x     = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
   always_comb begin
-    tile_x = is_token ? walk_x_q : access_i.key.tile_x;
-    tile_y = is_token ? walk_y_q : access_i.key.tile_y;
+    tile_x = is_fill || state_q == CHECK ? access_i.key.tile_x : walk_x_q;
+    tile_y = is_fill || state_q == CHECK ? access_i.key.tile_y : walk_y_q;
     if (state_q == EVICT || (state_q == CHECK && (line_depth_dirty || line_color_dirty))) begin
-      tile_x = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
+      tile_x = victim_x;
       tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
     end
   end
@@ -308,7 +310,8 @@ module framebuffer (
   logic [TILE_X-1:0]  word_x, last_word;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [TILE_Y+WORD_X-1:0] flag_address;
-  assign bit_x      = BIT'(tile_x);
+  // Looked at for a tile that leaves, is resolved or comes in; not while CHECK chooses between them.
+  assign bit_x      = state_q == EVICT ? BIT'(victim_x) : is_fill ? BIT'(access_i.key.tile_x) : BIT'(walk_x_q);
   assign word_x     = tile_x >> BIT;
   assign last_word  = access_i.key.tile_x >> BIT;
   assign flag_address = {tile_y, word_x[WORD_X-1:0]};

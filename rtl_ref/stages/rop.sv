@@ -16,10 +16,12 @@ module rop (
       /* verilator lint_on UNUSEDSIGNAL */
       logic [8:0] r_rest, g_rest, b_rest;  // 126 - c
 
-      // c * 249 + 1014 = c * 257 + (126 - c) * 8 + 6, and c * 257 is c beside itself. Likewise with 4 for green.
-      assign r_rest = 9'd126 - {1'b0, rgba_i[7:0]};
-      assign g_rest = 9'd126 - {1'b0, rgba_i[15:8]};
-      assign b_rest = 9'd126 - {1'b0, rgba_i[23:16]};
+      // c * 249 + 1014 = c * 257 + (126 - c) * 8 + 6, and c * 257 is c beside itself. Likewise with 4 for green. In the
+      // smallest parts a carry chain cannot turn c round: there 126 - c is the complement of c - 127.
+      localparam bit SMALLEST = raster_pkg::SETUP_KIND != 0;
+      assign r_rest = SMALLEST ? ~({1'b0, rgba_i[7:0]} - 9'd127) : 9'd126 - {1'b0, rgba_i[7:0]};
+      assign g_rest = SMALLEST ? ~({1'b0, rgba_i[15:8]} - 9'd127) : 9'd126 - {1'b0, rgba_i[15:8]};
+      assign b_rest = SMALLEST ? ~({1'b0, rgba_i[23:16]} - 9'd127) : 9'd126 - {1'b0, rgba_i[23:16]};
       assign r = {rgba_i[7:0], rgba_i[7:0]} + {{4{r_rest[8]}}, r_rest, 3'd6};
       assign g = {rgba_i[15:8], rgba_i[15:8]} + {{5{g_rest[8]}}, g_rest, 2'd1};
       assign b = {rgba_i[23:16], rgba_i[23:16]} + {{4{b_rest[8]}}, b_rest, 3'd6};
