@@ -29,8 +29,8 @@ struct MtlMaterial {
 using MaterialTable = std::unordered_map<std::string, MtlMaterial>;  ///< by name
 
 /// Adds the materials of one file to `materials`: Kd (one number is a grey; clamped to 0...1), map_Kd with -s, -o and
-/// -clamp, d, Tr = 1 - d; Ka, Ks, Ke likewise as Kd, and Ns, which only lights meet. All else in a material is passed over. `file`: as the OBJ names it; images are beside it.
-/// Throws InputError "file:line: what; the mend".
+/// -clamp, d, Tr = 1 - d; Ka, Ks, Ke likewise as Kd, and Ns, which only lights meet. All else in a material is passed
+/// over. `file`: as the OBJ names it; images are beside it. Throws InputError "file:line: what; the mend".
 void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials);
 
 }  // namespace halfplane
