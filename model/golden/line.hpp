@@ -103,7 +103,8 @@ struct Track {
 /// the rule rounds its ends.
 template <class Real>
 [[nodiscard]] Line<Real> strand_along(Line<Real> line, Real ScreenVertex<Real>::*axis, int i, int count) {
-  const double across = line.rule == LineRule::diamond ? i - (count - 1) / 2.0 : i - (count - 1) / 2;
+  const int whole = i - (count - 1) / 2;
+  const double across = line.rule == LineRule::diamond ? i - (count - 1) / 2.0 : whole;
   line.start.*axis += static_cast<Real>(across);
   line.end.*axis += static_cast<Real>(across);
   return line;

@@ -73,6 +73,10 @@ const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
   if (options.random != 0 && !options.lights.empty())
     throw InputError(
         "--light: the scenes of --random have no lights; leave --light out, or give a SCENE in place of --random");
+  if (options.random != 0 && options.transform != "binary64")
+    throw InputError(
+        "--transform: the scenes of --random are in window space; leave --transform out, or give a SCENE in place of "
+        "--random");
   if (options.trace_path == "-") throw InputError("--trace: a waveform cannot go to stdout; give a file, .fst");
   check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);

@@ -26,7 +26,7 @@ struct Attributes {
 // A transform of places and of directions that stand on faces.
 struct Placing {
   Mat4 world{};
-  std::array<Vec3, 3> normal_rows{};  // cofactors: the inverse transpose times the determinant
+  std::array<Vec3, 3> normal_rows{};  // cofactors: the inverse transpose times the determinant's magnitude
   bool is_mirrored = false;           // turns counter-clockwise into clockwise
 };
 
@@ -37,6 +37,8 @@ Placing placing_of(const Mat4& m) {
                                  Vec3{m[2][0], m[2][1], m[2][2]}};
   for (std::size_t i = 0; i < 3; ++i) result.normal_rows[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
   result.is_mirrored = dot(rows[0], result.normal_rows[0]) < 0;
+  if (result.is_mirrored)
+    for (Vec3& row : result.normal_rows) row = scaled(row, -1);
   return result;
 }
 

@@ -68,16 +68,16 @@ void read_transform(const JsonPlace& place, GltfMaterial& material) {
 }  // namespace
 
 MeshMaterial surface_of(const GltfMaterial& material) {
-  // Of the lobe: Beckmann's roughness r^2 as an exponent, and the height that keeps the energy of Blinn-Phong. What a
-  // dielectric reflects straight ahead is 4 in 100; a metal reflects its colour. It scatters nothing, but what it would
-  // mirror of its surroundings is not there: half of its colour is left to stand for that.
+  // Of the lobe: Beckmann's roughness r^2 as an exponent n, and the height that keeps the energy of Blinn-Phong, faded out
+  // where n is small: there a highlight that is not times N.L would be a flat disc. What a dielectric reflects straight
+  // ahead is 4 in 100; a metal reflects its colour. It scatters nothing, but what it would mirror of its surroundings is not
+  // there: half of its colour is left to stand for that.
   const double alpha = std::max(material.roughness * material.roughness, 1e-3);
+  const double n = std::clamp(2 / (alpha * alpha) - 2, 0.0, kMostShininess), height = (n + 8) / 8 * n / (n + 2);
   MeshMaterial surface;
-  surface.shininess = std::clamp(2 / (alpha * alpha) - 2, 0.0, kMostShininess);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double straight = 0.04 * (1 - material.metallic) + material.base[c] * material.metallic;
-    surface.specular[c] = std::min(straight * (surface.shininess + 8) / 8, 1.0);
-  }
+  surface.shininess = n;
+  surface.specular.fill(0.04 * (1 - material.metallic) * height);
+  surface.mirrored = material.metallic * height;
   surface.diffuse = 1 - material.metallic / 2;
   surface.emission = material.emission;
   surface.is_two_sided = material.is_two_sided;

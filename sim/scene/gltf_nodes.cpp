@@ -105,7 +105,8 @@ Light read_light(const JsonPlace& place) {
   Light light;
   light.position = {0, 0, 0, 1};
   const double intensity = place.number_or("intensity", 1);
-  if (!(intensity >= 0 && intensity <= kLargestCoordinate)) place.fail("an intensity below 0", "choose 0 or more");
+  if (!(intensity >= 0)) place.fail("an intensity below 0", "choose 0 or more");
+  if (intensity > kLargestCoordinate) place.fail("an intensity beyond 1e30", "choose a smaller number");
   std::array<double, 3> color{1, 1, 1};
   if (const auto given = place.find("color")) color = numbers_of<3>(*given);
   for (std::size_t i = 0; i < 3; ++i)
@@ -118,10 +119,10 @@ Light read_light(const JsonPlace& place) {
   light.range = std::max(place.number_or("range", 0), 0.0);
   if (type == "point") return light;
   const std::optional<JsonPlace> spot = place.find("spot");
-  const double inner = spot ? spot->number_or("innerConeAngle", 0) : 0;
-  const double outer = spot ? spot->number_or("outerConeAngle", std::numbers::pi / 4) : std::numbers::pi / 4;
-  if (!(0 <= inner && inner < outer && outer <= std::numbers::pi / 2))
-    place.fail("cone angles that are not 0 <= inner < outer <= pi/2", "correct innerConeAngle and outerConeAngle");
+  const double outer = std::min(spot ? spot->number_or("outerConeAngle", std::numbers::pi / 4) : std::numbers::pi / 4,
+                                std::numbers::pi / 2);
+  const double inner = std::min(spot ? spot->number_or("innerConeAngle", 0) : 0, outer);
+  if (inner < 0 || outer < 0) place.fail("an angle below 0", "correct innerConeAngle and outerConeAngle");
   light.spot_scale = 1 / std::max(0.001, std::cos(inner) - std::cos(outer));
   light.spot_offset = -std::cos(outer) * light.spot_scale;
   return light;

@@ -65,38 +65,69 @@ Material material_at(const MeshVertex& vertex, const Mesh& mesh) {
     const double color = mesh.is_linear ? linear_component(vertex.rgba[c]) : std::clamp(vertex.rgba[c] / 255, 0.0, 1.0);
     material.diffuse[c] = of.diffuse * color;
     material.ambient[c] = of.ambient ? (*of.ambient)[c] : color;
+    material.specular[c] = std::min(of.specular[c] + of.mirrored * color, 1.0);
   }
-  material.specular = of.specular;
   material.emission = of.emission;
   material.shininess = of.shininess;
   return material;
 }
 
-/// No coordinate of a place or light in eye space is larger.
-double extent_of(const Mesh& mesh, const Lighting& lighting, const Mat4& view) {
-  double extent = 1e-30;
-  const auto add = [&extent](const Vec4& p) {
-    for (std::size_t i = 0; i < 3; ++i) extent = std::max(extent, std::abs(p[i]));
-  };
-  for (const MeshVertex& v : mesh.vertices) add(transform(view, {v.position[0], v.position[1], v.position[2], 1}));
-  for (const Light& light : lighting.lights)
-    if (light.position[3] != 0) add(light.position);
-  return extent;
+void scale_colors(Light& light, double factor) {
+  for (auto* color : {&light.ambient, &light.diffuse, &light.specular})
+    for (double& c : *color) c *= factor;
+}
+
+/// As the integers want a light that is somewhere: what arrives at the vertices is 1 at most, whatever unit of length the
+/// scene has; one that is 2^14 times as far away as the mesh is large shines from infinitely far.
+void fit_to_places(Light& light, const std::vector<Vec3>& places, const Vec3& middle, double reach) {
+  Light unbounded = light;  // no range, no cone: what is divided by
+  unbounded.range = unbounded.spot_scale = 0;
+  const Vec3 at{light.position[0], light.position[1], light.position[2]};
+  if (length(subtract(at, middle)) > 0x1p14 * reach) {
+    const golden::LightAt from = golden::light_at(light, middle);
+    light.position = {from.direction[0], from.direction[1], from.direction[2], 0};
+    return scale_colors(light, from.strength);
+  }
+  double strongest = 0;
+  for (const Vec3& place : places) {
+    const double strength = golden::light_at(unbounded, place).strength;
+    if (std::isfinite(strength)) strongest = std::max(strongest, strength);
+  }
+  if (strongest == 0) return;
+  for (double& a : light.attenuation) a *= strongest;
+  scale_colors(light, strongest);
 }
 
 void light_vertices(const Mesh& mesh, const LightRequest& request, const Mat4& view, bool is_ortho,
                     std::vector<std::array<double, 4>>& colors) {
-  const Lighting lighting = lighting_of(mesh, request, view, is_ortho);
-  const FixedLighting fixed(lighting, extent_of(mesh, lighting, view));
+  std::vector<Vec3> places;  // in eye space
+  for (const MeshVertex& vertex : mesh.vertices) {
+    const Vec4 p = transform(view, {vertex.position[0], vertex.position[1], vertex.position[2], 1});
+    places.push_back({p[0], p[1], p[2]});
+  }
+  Vec3 low = places.front(), high = low;
+  double extent = 1e-30;  // no coordinate of a place or light is larger
+  const auto add_extent = [&extent](double x) { extent = std::max(extent, std::abs(x)); };
+  for (const Vec3& place : places)
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], place[i]);
+      high[i] = std::max(high[i], place[i]);
+      add_extent(place[i]);
+    }
+  Lighting lighting = lighting_of(mesh, request, view, is_ortho);
+  for (Light& light : lighting.lights) {
+    if (light.position[3] == 0) continue;
+    fit_to_places(light, places, scaled(add(low, high), 0.5), std::max(length(subtract(high, low)), 1e-30));
+    for (std::size_t i = 0; i < 3 && light.position[3] != 0; ++i) add_extent(light.position[i]);
+  }
+  const FixedLighting fixed(lighting, extent);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const MeshVertex& vertex = mesh.vertices[i];
     if (vertex.normal == Vec3{}) continue;
-    const Vec4 p = transform(view, {vertex.position[0], vertex.position[1], vertex.position[2], 1});
-    const Vec3 eye{p[0], p[1], p[2]};
     Vec3 normal = turned(view, vertex.normal);
-    const Vec3 to_eye = is_ortho ? Vec3{0, 0, 1} : scaled(eye, -1);
+    const Vec3 to_eye = is_ortho ? Vec3{0, 0, 1} : scaled(places[i], -1);
     if (mesh.materials[vertex.material].is_two_sided && dot(normal, to_eye) < 0) normal = scaled(normal, -1);
-    const auto lit = fixed.color(fixed.place(eye), fixed_direction(normal), material_at(vertex, mesh));
+    const auto lit = fixed.color(fixed.place(places[i]), fixed_direction(normal), material_at(vertex, mesh));
     for (std::size_t c = 0; c < 3; ++c) {
       const double code = lit[c] / 256.0;
       colors[i][c] = mesh.is_linear ? display_code(code / 255) : code;
@@ -165,8 +196,9 @@ void read_light(std::string_view text, LightRequest& request) {
     const std::string_view part = OptionParts::cut(text, ';');
     if (part.empty()) continue;
     const std::size_t at = part.find('=');
-    if (list == nullptr || at == std::string_view::npos)
+    if (list == nullptr)
       kLightParts.fail(in_quotes(part) + " behind " + printable(key), "leave it out, or say --light again");
+    if (at == std::string_view::npos) kLightParts.fail("no = in " + in_quotes(part), "write for example color=1,1,1");
     read_part(OptionParts::trimmed(part.substr(0, at)), OptionParts::trimmed(part.substr(at + 1)), light);
   }
   if (list != nullptr) list->push_back(light);
@@ -187,6 +219,7 @@ std::vector<std::array<double, 4>> lit_colors(const Mesh& mesh, const LightReque
   colors.reserve(mesh.vertices.size());
   for (const MeshVertex& vertex : mesh.vertices) colors.push_back(vertex.rgba);
   if (request.is_off) return colors;
+  if (mesh.vertices.empty()) return colors;
   if (request.is_given() || !mesh.lights.empty())
     light_vertices(mesh, request, view, is_ortho, colors);
   else if (mesh.lit)

@@ -80,7 +80,7 @@ void parse_mtl(std::string_view text, const std::string& file, MaterialTable& ma
   TextCursor cursor(text, printable(file));
   const std::string_view folder = std::string_view(file).substr(0, file.find_last_of("/\\") + 1);
   constexpr std::array<double, 4> kDefault{204, 204, 204, 255};  // a newmtl without Kd
-  constexpr std::array<std::string_view, 8> kKeys{"Ka", "Kd", "Ks", "Ke", "Ns", "d", "Tr", "map_Kd"};
+  constexpr std::array<std::string_view, 9> kKeys{"Ka", "Kd", "Ks", "Ke", "Ns", "illum", "d", "Tr", "map_Kd"};
   MtlMaterial* current = nullptr;
   bool has_color = false;
   while (cursor.next_line()) {
@@ -88,7 +88,7 @@ void parse_mtl(std::string_view text, const std::string& file, MaterialTable& ma
     if (key == "newmtl") {
       const std::string name(cursor.rest_of_line());
       if (name.empty()) cursor.fail("newmtl without a name", "write newmtl NAME");
-      current = &(materials[name] = {kDefault, {}, {}});
+      current = &(materials[name] = {.rgba = kDefault});
       has_color = false;
     } else if (std::ranges::find(kKeys, key) != kKeys.end()) {
       if (current == nullptr) cursor.fail(in_quotes(key) + " before any newmtl", "start the material with newmtl NAME");
@@ -96,6 +96,10 @@ void parse_mtl(std::string_view text, const std::string& file, MaterialTable& ma
       if (read_colors(cursor, key, *current)) continue;
       if (key == "Ns") {
         current->surface.shininess = std::clamp(cursor.number("exponent Ns", kLargestCoordinate), 0.0, kMostShininess);
+        continue;
+      }
+      if (key == "illum") {
+        current->has_highlight = cursor.number("illum", kLargestCoordinate) >= 2;
         continue;
       }
       if (key == "map_Kd") {

@@ -23,13 +23,14 @@ struct MtlTexture {
 struct MtlMaterial {
   std::array<double, 4> rgba{};  ///< 0...255
   MeshMaterial surface{};        ///< what lights meet beside that
+  bool has_highlight = true;     ///< illum is 2 or more, or not said
   std::optional<MtlTexture> texture;
 };
 
 using MaterialTable = std::unordered_map<std::string, MtlMaterial>;  ///< by name
 
 /// Adds the materials of one file to `materials`: Kd (one number is a grey; clamped to 0...1), map_Kd with -s, -o and
-/// -clamp, d, Tr = 1 - d; Ka, Ks, Ke likewise as Kd, and Ns, which only lights meet. All else in a material is passed
+/// -clamp, d, Tr = 1 - d; Ka, Ks, Ke likewise as Kd, Ns and illum, which only lights meet. All else in a material is passed
 /// over. `file`: as the OBJ names it; images are beside it. Throws InputError "file:line: what; the mend".
 void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials);
 

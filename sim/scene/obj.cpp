@@ -55,14 +55,18 @@ class MeshBuilder {
     for (const auto& color : in_.colors) {
       for (const double value : color) color_scale_ = value > 1 ? 1 : color_scale_;  // the file counts to 255
     }
-    const MtlMaterial plain{{204, 204, 204, 255}, {}, {}};  // no material: a light grey
+    const MtlMaterial plain{.rgba = {204, 204, 204, 255}};  // no material: a light grey
     for (const std::string& name : in_.material_names) {
       const auto found = in_.materials.find(name);
       materials_.push_back(found == in_.materials.end() ? plain : found->second);
       material_known_.push_back(found != in_.materials.end() || name.empty());
     }
     mesh_.materials.clear();
-    for (const MtlMaterial& material : materials_) mesh_.materials.push_back(material.surface);
+    for (const MtlMaterial& material : materials_) {
+      MeshMaterial& surface = mesh_.materials.emplace_back(material.surface);
+      // Without an exponent the highlight would be all of the lit half.
+      if (!material.has_highlight || surface.shininess == 0) surface.specular = {};
+    }
   }
 
   // Checks the corners, gives them normals, splits the polygon.

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <map>
 
+#include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
@@ -293,6 +294,25 @@ TEST(Explain, StencilsOfTheHardwareAgreeToo) {
   }
   EXPECT_GT(changed, 100U);
   EXPECT_GT(failed, 50U);
+}
+
+TEST(Explain, AWideLineNearADiagonalMayLieAlongTheOtherAxisInTheGolden) {
+  const Scene scene = read_capture(
+      "halfplane 1\ntarget 64 64\nclear color 0 0 0 255 depth 1\nspace window\nstate line_width 31\nv 20 20 .5\nv 40 "
+      "40.01 "
+      ".5\nl 0 1\n",
+      "diagonal.hpt");
+  for (const Pixel pixel : {Pixel{50, 36}, Pixel{30, 30}, Pixel{36, 50}, Pixel{24, 10}}) {
+    const Explanation told = explain(scene, preset("embedded"), {pixel});
+    for (const std::string& difference : told.differences) ADD_FAILURE() << difference;
+    std::size_t drawn = 0;
+    for (const Entry& entry : told.pixels[0].history)
+      if (entry.kind == Kind::line && has_fragment(entry.specification.verdict)) {
+        ++drawn;
+        if (pixel.x == 30) EXPECT_TRUE(entry.golden && entry.golden->fragment) << "beside the strand that draws";
+      }
+    EXPECT_LE(drawn, 1U);
+  }
 }
 
 /// Several samples a pixel, with masks, and coverage from alpha: each sample by itself, and what becomes of the pixel.

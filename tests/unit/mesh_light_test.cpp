@@ -232,8 +232,8 @@ TEST(GltfLight, APointLightFallsWithTheSquareOfTheDistance) {
   const GltfModel model = read(lit_gltf({{{"type", "point"}, {"intensity", 9}}}, {Json{{"translation", {0, 0, 40}}}}));
   const auto colors = lit_colors(model.mesh, lights({}), view_matrix({.eye = {0, 0, 50}}), true);
   const double near = linear_component(colors[0][0]), far = linear_component(colors[3][0]);
-  // 0.03 and the highlight of a rough dielectric, 0.04, beside it.
-  EXPECT_NEAR((far - 0.03) / (0.98 * (1600.0 / 1936)), 1.04, 0.05);
+  // 0.03 of everywhere beside it; the two at (0, 0) are 40 and 44 away, and the nearer ones of all are white.
+  EXPECT_NEAR((far - 0.03) * 1936 / 1600, 1, 0.002);
   EXPECT_GT(near, far);
 }
 
@@ -257,16 +257,73 @@ TEST(GltfLight, MetalAndRoughnessBecomeBlinnPhong) {
   material.roughness = 1;
   const MeshMaterial rough = surface_of(material);
   EXPECT_EQ(rough.shininess, 0);
-  EXPECT_NEAR(rough.specular[0], 0.04, 1e-12);
+  EXPECT_EQ(rough.specular[0], 0) << "no flat disc of light";
   EXPECT_EQ(rough.diffuse, 1);
   material.metallic = 1;
   material.roughness = 0.5;
   const MeshMaterial metal = surface_of(material);
   EXPECT_NEAR(metal.shininess, 30, 1e-9);
   EXPECT_EQ(metal.diffuse, 0.5);
-  EXPECT_EQ(metal.specular, (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(metal.specular[0], 0);
+  EXPECT_NEAR(metal.mirrored, 38.0 / 8 * 30 / 32, 1e-9);
   material.roughness = 0;
   EXPECT_EQ(surface_of(material).shininess, kMostShininess);
+}
+
+TEST(GltfLight, AMirroredNodeIsLitFromTheSameSide) {
+  for (const Json& node : {Json::object(), Json{{"scale", {-1, 1, 1}}}, Json{{"scale", {-1, -1, 1}}}}) {
+    GltfBuilder builder = lit_gltf({{{"type", "directional"}}}, {Json::object()});
+    builder.json["nodes"][0].update(node);
+    builder.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+        builder.accessor(GltfBuilder::f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+    const GltfModel model = read(builder);
+    EXPECT_EQ(model.mesh.vertices[0].normal, (Vec3{0, 0, 1})) << node;
+    EXPECT_NEAR(lit_colors(model.mesh, {}, view_matrix({.eye = {0, 0, 5}}), true)[0][0], 255, 0.1) << node;
+  }
+}
+
+TEST(GltfLight, AMetalMirrorsTheColoursOfItsVertices) {
+  GltfBuilder builder = lit_gltf({{{"type", "directional"}}}, {Json::object()});
+  builder.json["materials"] = {{{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}}}};
+  std::vector<double> red;
+  for (int i = 0; i < 6; ++i) red.insert(red.end(), {1, 0, 0});
+  builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = builder.accessor(GltfBuilder::f32, 3, red);
+  const Rgba color = lit_colors(read(builder).mesh, {}, view_matrix({.eye = {0, 0, 5}}), true)[0];
+  EXPECT_NEAR(color[0], 255, 0.1);
+  EXPECT_EQ(color[1], 0);
+}
+
+TEST(GltfLight, TheUnitsOfASceneDoNotShow) {
+  // The same scene, light included, in other units; and a light as bright here from ever farther away.
+  std::vector<double> small, large;
+  for (const double unit : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+    GltfBuilder builder =
+        lit_gltf({{{"type", "point"}, {"intensity", 5}}}, {Json{{"translation", {unit, unit, 2 * unit}}}});
+    builder.json["nodes"][0]["scale"] = {unit, unit, unit};
+    const GltfModel model = read(builder);
+    const auto colors = lit_colors(model.mesh, {}, view_matrix({.eye = {0, 0, 50 * unit}}), true);
+    (unit < 1 ? small : large).push_back(colors[5][0]);
+  }
+  for (const double code : small) EXPECT_NEAR(code, large[0], 0.05);
+  for (const double code : large) EXPECT_NEAR(code, large[0], 0.05);
+  double before = 0;
+  for (const double distance : {1e3, 1e5, 1e7, 1e9}) {
+    const GltfModel model =
+        read(lit_gltf({{{"type", "point"}, {"intensity", 5}}}, {Json{{"translation", {0, 0, distance}}}}));
+    const double code = lit_colors(model.mesh, {}, view_matrix({.eye = {0, 0, 5}}), true)[3][0];
+    EXPECT_GT(code, before - 0.01);
+    before = code;
+  }
+  EXPECT_NEAR(before, 255, 0.1);
+}
+
+TEST(GltfLight, HardAndWideSpotsAreTaken) {
+  for (const auto& [inner, outer] : {std::pair{0.5, 0.5}, {0.8, 0.7853981633974483}, {0.0, 1.5707963705062866}}) {
+    const GltfModel model =
+        read(lit_gltf({{{"type", "spot"}, {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}}},
+                      {Json{{"translation", {0, 0, 2}}}}));
+    EXPECT_GT(model.mesh.lights[0].spot_scale, 0);
+  }
 }
 
 TEST(GltfLight, BrokenLightsAreRefusedWithTheirPlace) {
@@ -282,7 +339,8 @@ TEST(GltfLight, BrokenLightsAreRefusedWithTheirPlace) {
   refused(Json::object(), "type");
   refused({{"type", "point"}, {"intensity", -1}}, "choose 0 or more");
   refused({{"type", "point"}, {"color", {1, 2}}}, "write 3");
-  refused({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}, "cone angles");
+  refused({{"type", "point"}, {"intensity", 1e38}}, "beyond 1e30");
+  refused({{"type", "spot"}, {"spot", {{"innerConeAngle", -0.5}}}}, "an angle below 0");
   GltfBuilder builder = lit_gltf({{{"type", "point"}}}, {Json::object()});
   builder.json["nodes"].back()["extensions"]["KHR_lights_punctual"]["light"] = 4;
   EXPECT_THROW((void)read(builder), InputError);

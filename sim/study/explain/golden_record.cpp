@@ -59,14 +59,18 @@ bool is_same(const golden::Outline& a, const golden::Outline& b) { return a.x ==
 /// The entry that a fragment belongs to: the one beside its outline, or another one of its primitive that has none.
 Entry* entry_of(PixelHistory& pixel, const golden::TappedFragment& fragment,
                 std::span<const golden::Outline> outlines) {
+  // The strands of a wide line have one outline: the one that draws the pixel comes first.
   const golden::Outline* own = fragment.outline < outlines.size() ? &outlines[fragment.outline] : nullptr;
-  Entry* other = nullptr;
+  const auto rank = [own](const Entry& entry) {
+    const bool is_own = own != nullptr && entry.golden->outline && is_same(*entry.golden->outline, *own);
+    return 2 * (is_own ? 1 : 0) + (has_fragment(entry.specification.verdict) ? 1 : 0);
+  };
+  Entry* best = nullptr;
   for (Entry& entry : pixel.history) {
     if (!entry.primitive || *entry.primitive != fragment.primitive || entry.golden->fragment) continue;
-    if (own != nullptr && entry.golden->outline && is_same(*entry.golden->outline, *own)) return &entry;
-    other = other == nullptr ? &entry : other;
+    if (best == nullptr || rank(entry) > rank(*best)) best = &entry;
   }
-  return other;
+  return best;
 }
 
 std::int64_t to_grid(double lsb) {

@@ -205,10 +205,14 @@ class SpecificationWalk {
     const bool is_cut = counters.clipped != 0;
     const int s = widths_.grid_bits;
     std::uint32_t piece = 0;
+    std::vector<std::size_t> untold = near;  // pixels that no piece has been near to
+    const auto tell = [&](std::size_t i, auto&& entry_at) {
+      add(context, entry_at(record_.pixels[i].at, record_.pixels[i].sample), piece, is_cut, i);
+      std::erase(untold, i);
+    };
     const auto for_each_near = [&](const Shape& shape, auto&& entry_at) {
       for (const std::size_t i : near)
-        if (shape.is_near(record_.pixels[i].at, options_.near))
-          add(context, entry_at(record_.pixels[i].at, record_.pixels[i].sample), piece, is_cut, i);
+        if (shape.is_near(record_.pixels[i].at, options_.near)) tell(i, entry_at);
       ++piece;
     };
     for (const Triangle& triangle : pieces_) {
@@ -219,9 +223,16 @@ class SpecificationWalk {
         return entry;
       });
     }
+    const auto entry_of_line = [&](const LinePrimitive& line) {
+      return [&](Pixel pixel, int) { return line_entry(context, widths_, line, pixel, options_.wants_steps); };
+    };
     for (const LinePrimitive& line : outline_.lines)
-      for_each_near(shape_of({line.drawn.start, line.drawn.end}, 1, s),
-                    [&](Pixel pixel, int) { return line_entry(context, widths_, line, pixel, options_.wants_steps); });
+      for_each_near(shape_of({line.drawn.start, line.drawn.end}, 1, s), entry_of_line(line));
+    // The golden's strands may lie to the other sides of a wide line near a diagonal: told of by the first one.
+    if (strands_of(context.state.line_width) > 1 && !outline_.lines.empty()) {
+      piece = 0;
+      for (const std::size_t i : std::vector(untold)) tell(i, entry_of_line(outline_.lines.front()));
+    }
     for (const PointPrimitive& point : outline_.points)
       for_each_near(shape_of({point.drawn.at}, std::ldexp(point.drawn.size, -s), s),
                     [&](Pixel pixel, int) { return point_entry(widths_, point, pixel); });
