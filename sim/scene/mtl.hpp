@@ -24,7 +24,7 @@ struct MtlMaterial {
   std::array<double, 4> rgba{};  ///< 0...255
   MeshMaterial surface{};        ///< what lights meet beside that
   bool has_highlight = true;     ///< illum is 2 or more, or not said
-  std::optional<MtlTexture> texture;
+  std::optional<MtlTexture> texture{};
 };
 
 using MaterialTable = std::unordered_map<std::string, MtlMaterial>;  ///< by name
