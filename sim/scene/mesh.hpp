@@ -27,9 +27,9 @@ struct MeshVertex {
 
 /// What lights meet beside a vertex's colour, which is the diffuse one. 0...1; of a linear mesh linear.
 struct MeshMaterial {
-  double diffuse = 1;                            ///< how much of the colour
-  double mirrored = 0;                           ///< how much of the colour is added to `specular`: of a metal
-  std::optional<std::array<double, 3>> ambient;  ///< none: the colour
+  double diffuse = 1;                              ///< how much of the colour
+  double mirrored = 0;                             ///< how much of the colour is added to `specular`: of a metal
+  std::optional<std::array<double, 3>> ambient{};  ///< none: the colour
   std::array<double, 3> specular{}, emission{};
   double shininess = 0;  ///< exponent of N.H
   bool is_two_sided = true;
