@@ -11,7 +11,7 @@ module fog_unit #(
     parameter int SAMPLES  = 4,
     parameter int CHANNELS = 4,  // of a colour
     parameter int PAYLOAD  = 1,  // bits that a stamp carries along
-    parameter int WORD     = 43  // of a token; and of places at least
+    parameter int WORD     = 76  // of a token, 43; and of places, 19 a sample, at least
 ) (
     input logic clk_i,
     input logic rst_ni,
