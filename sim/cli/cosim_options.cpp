@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <ostream>
 #include <sstream>
+#include <tuple>
 
 #include "model/capture/capture.hpp"
 #include "sim/cli/progress.hpp"
@@ -63,20 +64,15 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
 
 const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
   if (options.skip != "all") throw InputError("--skip: hardware skips by its own rules; leave it out");
-  if (options.random != 0 && !options.size.empty())
-    throw InputError(
-        "--size: the scenes of --random have sizes of their own; leave --size out, or give a SCENE in place of "
-        "--random");
-  if (options.random != 0 && !options.camera.empty())
-    throw InputError(
-        "--camera: the scenes of --random have no camera; leave --camera out, or give a SCENE in place of --random");
-  if (options.random != 0 && !options.lights.empty())
-    throw InputError(
-        "--light: the scenes of --random have no lights; leave --light out, or give a SCENE in place of --random");
-  if (options.random != 0 && options.transform != "binary64")
-    throw InputError(
-        "--transform: the scenes of --random are in window space; leave --transform out, or give a SCENE in place of "
-        "--random");
+  const std::tuple<std::string, bool, const char*> of_scenes[]{
+      {"--size", !options.size.empty(), "have sizes of their own"},
+      {"--camera", !options.camera.empty(), "have no camera"},
+      {"--light", !options.lights.empty(), "have no lights"},
+      {"--transform", options.transform != "binary64", "are in window space"}};
+  for (const auto& [name, is_given, what] : of_scenes)
+    if (options.random != 0 && is_given)
+      throw InputError(name + ": the scenes of --random " + what + "; leave " + name +
+                       " out, or give a SCENE in place of --random");
   if (options.trace_path == "-") throw InputError("--trace: a waveform cannot go to stdout; give a file, .fst");
   check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);

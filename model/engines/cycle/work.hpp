@@ -18,10 +18,10 @@ inline constexpr int kVisitIsSeen = 3;
 struct PipelinedCycles {
   static constexpr int cull_sort = 4, cull_decide = 4;  ///< the two parts of cull: from a primitive in to its hand-over
   static constexpr int cull_state = 1;                  ///< likewise of a state that has a lane
-  static constexpr Cycle walk_begins =
-      2;  ///< coarse_raster: from a setup to the walk at its first tile, a cycle from its offer
-  static constexpr Cycle read_again =
-      2;  ///< where bounds are read, behind each visit: the next tile's, and its verdict
+  /// coarse_raster: from a setup to the walk at its first tile, a cycle from its offer.
+  static constexpr Cycle walk_begins = 2;
+  /// Where bounds are read, behind each visit: the next tile's, and its verdict.
+  static constexpr Cycle read_again = 2;
   static constexpr Cycle clear_ends = 1;       ///< behind the clear of bounds
   static constexpr int interpolate_steps = 6;  ///< each holds one stamp, the last but one is the FIFO
 };
