@@ -27,6 +27,9 @@ struct Skip {
   bool alpha_tiles = true;         ///< tiles and triangles whose alpha all fails, or passes, skip the alpha test
   bool opaque_blends = true;       ///< triangles whose source is opaque replace, as if nothing were blended
   bool masked_draws = true;        ///< draws that write no channel skip colours altogether
+  // Of a frame behind another one:
+  bool bins =
+      true;  ///< bins in which the same is drawn as in the frame before stay as they are; nothing else of them counts
   bool operator==(const Skip&) const = default;
 };
 
@@ -56,6 +59,7 @@ struct Counters {
     std::uint64_t alpha_tiles = 0;    ///< visits of tiles of which the alpha test drops every fragment
     std::uint64_t opaque_blends = 0;  ///< fragments
     std::uint64_t masked_draws = 0;   ///< primitives
+    std::uint64_t bins = 0;           ///< bins with something in them
   } skipped;
 };
 
@@ -82,6 +86,7 @@ inline constexpr SkipName kSkipNames[] = {
     {"alpha_tiles", &Skip::alpha_tiles, &Counters::Skipped::alpha_tiles},
     {"opaque_blends", &Skip::opaque_blends, &Counters::Skipped::opaque_blends},
     {"masked_draws", &Skip::masked_draws, &Counters::Skipped::masked_draws},
+    {"bins", &Skip::bins, &Counters::Skipped::bins},
 };
 
 /// Nothing may be left out.

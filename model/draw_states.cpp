@@ -1,6 +1,7 @@
 #include "draw_states.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -523,6 +524,17 @@ StateValue DrawState::simplest_value() const {
 std::span<const DrawState> draw_states() { return table; }
 
 const DrawState& draw_state(std::string_view name) { return *std::ranges::find(table, name, &DrawState::name); }
+
+Signature signature_of(const State& state) {
+  SignatureHash hash;
+  for (const DrawState& row : table) {
+    const StateValue value = row.value(state);
+    hash.add(value.word);
+    for (const double number : std::span(value.numbers).first(row.numbers.size()))
+      hash.add(std::bit_cast<std::uint64_t>(number));
+  }
+  return hash.signature();
+}
 
 std::size_t StateHash::operator()(const State& state) const {
   std::uint64_t hash = 0;

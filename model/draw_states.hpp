@@ -75,6 +75,9 @@ struct DrawState {
 /// The row of that name. Precondition: there is one.
 [[nodiscard]] const DrawState& draw_state(std::string_view name);
 
+/// Of all values of a state.
+[[nodiscard]] Signature signature_of(const State& state);
+
 /// Equal states have equal hashes.
 struct StateHash {
   [[nodiscard]] std::size_t operator()(const State& state) const;

@@ -5,11 +5,16 @@
 // in one bin, so everything that happens to it keeps its order, and the picture is that of program order.
 //
 // All of a frame must be here before the first primitive goes: memory is primitives, and 4 bytes for each of their bins.
+//
+// A bin in which the same is drawn as in the frame before holds the same picture, and is left alone (BinContents): its
+// signature is over everything that its pixels depend on, in order. Signatures of 128 bits (signature.hpp) are equal by
+// chance once in 2^128 comparisons.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "config.hpp"
 #include "host_primitive.hpp"
 #include "stages/line_setup.hpp"
 
@@ -23,10 +28,25 @@ struct WholeLine {
   PixelBounds limit;  ///< the scissor, inside the target
 };
 
+/// What memory holds of a target that was drawn in bins.
+struct BinContents {
+  int width = 0, height = 0;   ///< of the target, pixels
+  std::vector<Signature> bin;  ///< row by row; empty: nobody knows
+  void forget() { bin.clear(); }
+};
+
+/// Whether frames that follow each other are compared bin by bin: no bin has depths to be kept.
+[[nodiscard]] inline bool compares_bins(const Config& config) {
+  return config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color;
+}
+
 class FrameBins {
  public:
-  /// Of a target of width x height pixels.
-  FrameBins(const Widths& widths, int width, int height);
+  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before.
+  FrameBins(const Widths& widths, int width, int height, bool compares = false);
+
+  /// Whether bins are made of whole tiles, as a clear of one of them needs it.
+  [[nodiscard]] static bool has_whole_tiles(const Widths& widths);
 
   /// Nothing has been added since the last primitive went.
   [[nodiscard]] bool is_empty() const { return items_.empty(); }
@@ -37,14 +57,23 @@ class FrameBins {
   /// A line with a pixel inside its limit; `primitive` without its setup.
   void add(const HostPrimitive& primitive, const WholeLine& line);
 
-  /// The frame is complete. `drops_depth`: nobody looks at the depths that it leaves behind.
-  void close(bool drops_depth);
+  /// The frame is complete. `drops_depth`: nobody looks at the depths that it leaves behind. With `held`: bins that hold what
+  /// is drawn in them over `clears` are left out, where that is worth it; then it is what memory holds behind this frame.
+  void close(bool drops_depth, BinContents* held = nullptr, const Signature& clears = {});
+
+  /// Behind close(): the boxes of the bins that must be cleared, each by itself; none: all of the target at once.
+  [[nodiscard]] const std::optional<std::vector<PixelBounds>>& cleared() const { return cleared_; }
+  /// Something will come of next().
+  [[nodiscard]] bool has_next() const;
 
   /// Behind close(): the next primitive; none behind the last, and then a new frame may be added.
   [[nodiscard]] std::optional<HostPrimitive> next();
 
   [[nodiscard]] std::uint64_t bins() const { return bins_; }    ///< with something in them, of all frames closed so far
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }  ///< triangles, lines and points in them
+  [[nodiscard]] std::uint64_t left_out() const {
+    return left_out_;
+  }  ///< bins with something in them that were left alone
 
  private:
   static constexpr std::uint32_t kNoLine = ~0U;
@@ -53,14 +82,19 @@ class FrameBins {
     std::uint32_t primitive = 0, command = 0;
     std::uint32_t line = kNoLine;  ///< index into lines_
     UnitWords units{};
+    Signature signature{};  ///< where bins are compared
   };
 
   [[nodiscard]] PixelBounds box_of(std::size_t bin) const;
   template <class Touches>
   bool add_to_bins(const PixelBounds& box, Touches&& touches);
   [[nodiscard]] HostPrimitive part(const Item& item, const PixelBounds& bin) const;
+  [[nodiscard]] Signature signature_of(const HostPrimitive& primitive, const WholeLine* line);
+  void leave_out_equal(BinContents& held, const Signature& clears);
 
   Widths widths_;
+  int target_width_, target_height_;
+  bool compares_;
   int width_, height_;  ///< of a bin, pixels
   std::size_t columns_;
   std::vector<Item> items_;
@@ -68,7 +102,10 @@ class FrameBins {
   std::vector<std::vector<std::uint32_t>> bin_;  ///< row by row: indices into items_
   bool is_closed_ = false;
   std::size_t bin_next_ = 0, item_next_ = 0;  ///< what goes next
-  std::uint64_t bins_ = 0, pairs_ = 0;
+  std::uint64_t bins_ = 0, pairs_ = 0, left_out_ = 0;
+  std::optional<std::vector<PixelBounds>> cleared_;
+  std::shared_ptr<const FogTable> fog_;  ///< the last one seen, and its signature
+  Signature fog_signature_;
 };
 
 }  // namespace halfplane

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "packets.hpp"
+#include "signature.hpp"
 #include "stages/color_packets.hpp"
 #include "stages/fog_unit.hpp"
 #include "stages/stencil_packets.hpp"
@@ -21,6 +22,7 @@ struct UnitWords {
   std::shared_ptr<const FogTable> fog{};        ///< then: what is in the way; none: nothing
   ColorWords colors{};                          ///< of what is drawn
   StencilWords stencil{};                       ///< likewise; of a fast clear: its value
+  Signature texels{};                           ///< of the texture of a triangle, where bins are compared
 };
 
 /// The packet, and where it came from.

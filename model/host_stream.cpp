@@ -36,6 +36,18 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
   return clear != nullptr && clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height} ? clear : nullptr;
 }
 
+/// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
+/// once.
+bool begins_once(const Scene& scene) {
+  bool is_first = true;
+  for (const Command& command : scene.commands) {
+    const Clear* clear = whole_clear(scene, command);
+    if (!is_first && clear != nullptr && (clear->depth || clear->stencil)) return false;
+    is_first = is_first && clear != nullptr;
+  }
+  return true;
+}
+
 /// What of a textured draw, or one with colours over w, the hardware lacks; empty: nothing.
 std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
   if (state.color_interp == ColorInterp::perspective && !has_colors_over_w(config))
@@ -78,16 +90,20 @@ std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
   return "";
 }
 
-HostStream::HostStream(const Scene& scene, const Config& config)
+HostStream::HostStream(const Scene& scene, const Config& config, BinContents* held)
     : scene_(scene), config_(config), vertices_(scene.vertices.size()) {
   validate(config);
   check_hardware_scene(scene, config);
   widths_ = derive_widths(config);
   if (has_texture_planes(config)) textures_.emplace(scene, config);
   if (config.frame_order == FrameOrder::bins) {
-    bins_.emplace(widths_, scene.width, scene.height);
+    const bool compares =
+        held != nullptr && compares_bins(config) && FrameBins::has_whole_tiles(widths_) && begins_once(scene);
+    if (compares) held_ = held;
+    bins_.emplace(widths_, scene.width, scene.height, compares);
     counters_.bins = 0;
   }
+  if (held != nullptr && held_ == nullptr) held->forget();
   const Clear* clear = scene.commands.empty() ? nullptr : whole_clear(scene, scene.commands.front());
   if (clear != nullptr && clear->depth && clear->color) return;
   PrimitivePacket first = fast_clear();
@@ -95,8 +111,8 @@ HostStream::HostStream(const Scene& scene, const Config& config)
   clear_color(first, {0, 0, 0, 255}, config);
   HostPrimitive out = host_primitive(first, 0);
   if (has_stencil(config)) out.units.stencil.test[0] = pack_test(replacing_stencil(0));
+  out.command = HostPrimitive::kNoCommand;
   send(out);
-  pending_.back().command = HostPrimitive::kNoCommand;
 }
 
 std::optional<HostPrimitive> HostStream::next() {
@@ -218,11 +234,9 @@ std::optional<HostPrimitive> HostStream::next_primitive() {
 void HostStream::advance() {
   if (assembled_next_ < assembled_.size()) {
     send_next_primitive();
-  } else if (bins_ && !bins_->is_empty() &&
-             (command_ == scene_.commands.size() || begins_bins(scene_.commands[command_]))) {
-    bins_->close(config_.frame_store == FrameStore::color);
-    counters_.bins = bins_->bins();
-    counters_.pairs = bins_->pairs();
+  } else if (bins_ && (!bins_->is_empty() || !clears_.empty()) &&
+             (command_ == scene_.commands.size() || (!held_ && begins_bins(scene_.commands[command_])))) {
+    close_bins();
   } else if (command_ < scene_.commands.size()) {
     const Command& command = scene_.commands[command_++];
     if (const auto* clear = std::get_if<Clear>(&command)) send_clear(*clear);
@@ -234,6 +248,56 @@ void HostStream::advance() {
     pending_.back().command = HostPrimitive::kNoCommand;
     is_finished_ = true;
   }
+}
+
+void HostStream::close_bins() {
+  SignatureHash clears;
+  for (const HostPrimitive& clear : clears_) {
+    for (const std::uint32_t code : clear.packet.vertex.code[0]) clears.add(code);
+    clears.add(clear.packet.state.depth_write);
+    clears.add(clear.packet.state.color_write);
+    clears.add(clear.units.stencil.test[0].value_or(0));
+  }
+  bins_->close(config_.frame_store == FrameStore::color, held_, clears.signature());
+  counters_.bins = bins_->bins();
+  counters_.pairs = bins_->pairs();
+  counters_.skipped.bins = bins_->left_out();
+  send_clears();
+}
+
+/// The clears that waited for the bins: as they came, or, where some bins stay as they are, the last colour in each of the
+/// others, and then depth, if anything comes behind it.
+void HostStream::send_clears() {
+  if (!bins_->cleared()) {
+    pending_.insert(pending_.end(), clears_.begin(), clears_.end());
+  } else {
+    for (auto clear = clears_.rbegin(); clear != clears_.rend(); ++clear) {
+      if (!clear->packet.state.color_write) continue;
+      HostPrimitive part = *clear;
+      part.packet.state.depth_test = DepthFunc::equal;  // clears_bin()
+      part.packet.state.depth_write = false;
+      part.units.stencil = {};
+      for (const PixelBounds& box : *bins_->cleared()) {
+        part.packet.box = to_box(box);
+        pending_.push_back(part);
+      }
+      break;
+    }
+    for (HostPrimitive& clear : clears_) {
+      if (!clear.packet.state.depth_write || !bins_->has_next()) continue;
+      clear.packet.state.color_write = false;
+      pending_.push_back(clear);
+    }
+  }
+  clears_.clear();
+}
+
+/// Of a texture, all that can be read of it.
+Signature HostStream::texels_of(std::size_t texture) {
+  texels_.resize(scene_.textures.size());
+  std::optional<Signature>& known = texels_[texture];
+  if (!known) known = signature_of(scene_.textures[texture]);
+  return *known;
 }
 
 void HostStream::start_draw(const Draw& draw) {
@@ -329,7 +393,7 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
 }
 
 /// Q and P of the vertices, how to read them back, and what the texture unit must be set to.
-void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) const {
+void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   const State& state = context_->state;
   require_positive_w(*context_, triangle);
   const Texture& texture = scene_.textures[*state.texture];
@@ -349,6 +413,7 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) c
     packet.coordinates.origin[axis] = coordinates.reference[axis];
   }
   out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
+  if (held_ != nullptr) out.units.texels = texels_of(*state.texture);
   if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
 }
 
@@ -482,6 +547,10 @@ void HostStream::send(const HostPrimitive& primitive) {
   const PrimitiveKind kind = primitive.packet.kind;
   if (bins_ && kind != PrimitiveKind::fast_clear && kind != PrimitiveKind::flush) {
     if (!bins_->add(primitive)) ++counters_.skipped.no_sample;
+    return;
+  }
+  if (held_ != nullptr && kind == PrimitiveKind::fast_clear) {
+    clears_.push_back(primitive);
     return;
   }
   pending_.push_back(primitive);

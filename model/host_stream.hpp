@@ -5,6 +5,9 @@
 // hardware's to look at, except for a clipped polygon, which is culled as a whole. In bins the host culls, sorts what is
 // left (frame_bins.hpp), and sends it bin by bin: at the flush, and where the depth of the whole target is cleared, which
 // begins new bins. Of all other clears those behind the first primitive of its bins go into them.
+//
+// A frame that follows another one on the same hardware, with BinContents between them, leaves bins alone that hold what is
+// drawn in them. What then remains of the clears that it begins with are colours, bin by bin, and depth as a whole.
 #pragma once
 
 #include <array>
@@ -25,8 +28,9 @@ namespace halfplane {
 /// The primitives of a scene, pulled one at a time. `scene` must outlive the stream.
 class HostStream {
  public:
-  /// Throws InputError for a scene that the hardware cannot take.
-  HostStream(const Scene& scene, const Config& config);
+  /// Throws InputError for a scene that the hardware cannot take. `held`: what the memory behind the hardware holds of a target; it
+  /// must outlive the stream, and is what memory holds once all has been drawn. Null: everything is drawn.
+  HostStream(const Scene& scene, const Config& config, BinContents* held = nullptr);
 
   HostStream(const HostStream&) = delete;  // the draw at work points into config_
   HostStream& operator=(const HostStream&) = delete;
@@ -47,7 +51,7 @@ class HostStream {
   void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
-  void set_coordinates(const Triangle& triangle, HostPrimitive& out) const;
+  void set_coordinates(const Triangle& triangle, HostPrimitive& out);
   void set_distance(const Triangle& triangle, HostPrimitive& out) const;
   void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;
   void set_colors(const HostPrimitive& primitive);
@@ -63,6 +67,9 @@ class HostStream {
   [[nodiscard]] PrimitivePacket fast_clear() const;
   void fill_word(Clear& clear) const;
   [[nodiscard]] bool begins_bins(const Command& command) const;
+  void close_bins();
+  void send_clears();
+  [[nodiscard]] Signature texels_of(std::size_t texture);
   void note_words(const PrimitiveState& state);
   [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
   [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
@@ -82,7 +89,10 @@ class HostStream {
   std::vector<Triangle> pieces_;               ///< scratch
   Outline outline_;                            ///< scratch
   std::optional<FrameBins> bins_;              ///< of frame.order bins: what waits for the frame to be complete
-  std::vector<HostPrimitive> pending_;         ///< made but not yet pulled
+  BinContents* held_ = nullptr;                ///< where bins are compared; then the clears that they begin with wait
+  std::vector<HostPrimitive> clears_;
+  std::vector<std::optional<Signature>> texels_;  ///< of each texture, likewise
+  std::vector<HostPrimitive> pending_;            ///< made but not yet pulled
   std::size_t pending_first_ = 0;
   std::optional<TextureMemory> textures_;        ///< with a texture unit
   std::optional<std::uint64_t> texture_state_;   ///< what the unit was set to since the scene began

@@ -233,4 +233,18 @@ TexelImage pattern_image(TexturePattern pattern, int width, int height) {
   return image;
 }
 
+Signature signature_of(const Texture& texture) {
+  SignatureHash hash;
+  hash.add(static_cast<std::uint64_t>(texture.format));
+  for (const Texel& entry : texture.palette)
+    hash.add(std::uint64_t{entry[0]} | std::uint64_t{entry[1]} << 8 | std::uint64_t{entry[2]} << 16 |
+             std::uint64_t{entry[3]} << 24);
+  for (const TextureLevel& level : texture.level) {
+    hash.add(static_cast<std::uint64_t>(level.width) << 32 | static_cast<std::uint64_t>(level.height));
+    for (std::size_t i = 0; i < level.code.size(); i += 2)
+      hash.add(std::uint64_t{level.code[i]} << 32 | (i + 1 < level.code.size() ? level.code[i + 1] : 0U));
+  }
+  return hash.signature();
+}
+
 }  // namespace halfplane

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "signature.hpp"
+
 namespace halfplane {
 
 enum class TextureFormat : std::uint8_t { l8, la88, rgb565, rgba5551, rgba4444, rgba8888, p4, p8 };
@@ -73,6 +75,9 @@ struct Texture {
   }
   bool operator==(const Texture&) const = default;
 };
+
+/// Of all that can be read of it.
+[[nodiscard]] Signature signature_of(const Texture& texture);
 
 /// Stores an image. Throws InputError when its colours are more than the format's palette holds, or its sides are not 1 to
 /// kLargestTexture.

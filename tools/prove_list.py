@@ -57,6 +57,8 @@ BLOCKS = (('CACHE_KIND', 1), ('CACHE_LINES', 2), ('LINE_X_BITS', 1), ('LINE_Y_BI
 # The same with two by two of them in a tile, and flags that outlive a flush.
 BLOCKS_IN_TILES = (*BLOCKS, ('BLOCKS_PER_ROW', 2), ('STAMPS_PER_ROW', 4), ('STAMP_INDEX_BITS', 4), ('FRAME_CLEARS', 1),
                    ('FRAGMENT_PACKET_BITS', 20, 'tiny'), ('FRAGMENT_PACKET_BITS', 29, 'embedded'))
+# The same with two bins beside each other, each a column of two blocks.
+BINS_IN_WORDS = (*BLOCKS, ('LINE_X_BITS', 0), ('LINE_Y_BITS', 1), ('FRAME_CLEARS', 1))
 # Blocks with blending, a sample a clock; a word of operations fits a depth code.
 BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
             ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
@@ -215,6 +217,9 @@ PROOFS = [
     Proof('cache_tags_data', 'd, f', 'stages/cache_tags.sv', 'of any block: where its depth is, what leaves, what is ordered and '
           'flagged is as specified', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, cover_depth=32,
           twins=(70, 72, 73, 75, 91, 92, 93, 94, 95, 220, 221, 222, 223)),
+    Proof('cache_tags_bins', 'd, f', 'stages/cache_tags.sv', 'the same where bins share words of flags: a clear of one leaves the others as '
+          'they are', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data', package=BINS_IN_WORDS, cover_depth=32,
+          presets=('embedded',), quick=('embedded',), twins=(404, 405, 406)),
     Proof('cache_tags_data_in_tiles', 'd, f', 'stages/cache_tags.sv', 'the same with blocks in tiles, and frame.clears=flags',
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
           quick=('embedded',), twins=(70, 74, 75)),
@@ -223,8 +228,8 @@ PROOFS = [
           presets=TINY, quick=TINY, twins=(196, 197, ("color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)",
                                           'color_known | stamp_bit'))),
     Proof('cache_tags_stencil', 'd, f', 'stages/cache_tags.sv', 'with a stencil: a word of which a draw keeps a part is asked for, one that it '
-          'replaces is not; a clear has the value of the front', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs',
-          file='cache_tags_data', package=STENCIL, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323,
+          'replaces is not; a clear has the value of the front', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data',
+          package=STENCIL, cover_depth=32, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323,
           ('replaces_q[fragment_q.state.is_back]', 'replaces_q[0]'))),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,

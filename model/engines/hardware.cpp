@@ -302,6 +302,17 @@ CounterPacket as_counted(CounterPacket counters, const Widths& widths) {
   return counters;
 }
 
+CounterPacket difference(CounterPacket now, const CounterPacket& before) {
+  using P = CounterPacket;
+  for (auto counter : {&P::primitives_in,   &P::zero_area,      &P::backface,       &P::empty,
+                       &P::no_sample,       &P::tiles_visited,  &P::tiles_outside,  &P::trivially_accepted,
+                       &P::tiles_hiz,       &P::samples_tested, &P::covered,        &P::depth_passed,
+                       &P::written,         &P::tile_fills,     &P::tile_evictions, &P::tile_clears,
+                       &P::texture_samples, &P::texture_hits,   &P::texture_fills,  &P::alpha_killed})
+    now.*counter -= before.*counter;
+  return now;
+}
+
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters) {
   // One input triangle may have sent several pieces: those without a pixel are counted by triangle, not by piece.
   const std::uint64_t culled_before_box = counters.culled + hardware.zero_area + hardware.backface;
@@ -324,26 +335,30 @@ void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters
   counters.texture = {hardware.texture_samples, hardware.texture_hits, hardware.texture_fills};
 }
 
-Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options) {
+Rendering HardwareFrames::draw(const Scene& scene, const RenderOptions& options) {
   const auto started = std::chrono::steady_clock::now();
-  PacketSink nobody;
-  HostStream host(scene, config);
-  HardwareModel hardware(config, nobody);
-  hardware.hold_textures(scene);
+  if (!options.skip.bins) held_.forget();
+  HostStream host(scene, config_, &held_);
+  model_.hold_textures(scene);
   DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
-    const std::uint64_t dropped_before = drawn.dropped(hardware.counters());
-    hardware.run(primitive->packet, primitive->line);
-    drawn.add(*primitive, drawn.dropped(hardware.counters()) == dropped_before);
+    const std::uint64_t dropped_before = drawn.dropped(model_.counters());
+    model_.run(primitive->packet, primitive->line);
+    drawn.add(*primitive, drawn.dropped(model_.counters()) == dropped_before);
     if (options.progress && ++sent % 4096 == 0) options.progress(host.progress());
   }
   Rendering rendering;
-  rendering.frame = to_framebuffer(hardware.memory(), scene.width, scene.height, config);
+  rendering.frame = to_framebuffer(model_.memory(), scene.width, scene.height, config_);
   rendering.counters = host.counters();
-  count_hardware(hardware.counters(), drawn.count(), rendering.counters);
+  count_hardware(difference(model_.counters(), counted_), drawn.count(), rendering.counters);
+  counted_ = model_.counters();
   rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return rendering;
+}
+
+Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options) {
+  return HardwareFrames(config).draw(scene, options);
 }
 
 }  // namespace halfplane

@@ -110,6 +110,9 @@ class HardwareModel final : private MemoryPort {
 /// The counters of the RTL after so many items: `overflow` tells whether one of them has passed its width.
 [[nodiscard]] CounterPacket as_counted(CounterPacket counters, const Widths& widths);
 
+/// What was counted between two moments.
+[[nodiscard]] CounterPacket difference(CounterPacket now, const CounterPacket& before);
+
 /// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
 /// least one piece passed cull.
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters);
@@ -131,6 +134,24 @@ class DrawnCount {
  private:
   std::uint64_t count_ = 0;
   std::int64_t last_ = -1;  ///< input triangle that was counted last
+};
+
+/// Frame after frame by one hardware model and the memory behind it. With frame.order bins and frame.store color, bins that hold
+/// what a frame draws in them are left alone.
+class HardwareFrames {
+ public:
+  explicit HardwareFrames(const Config& config) : config_(config), model_(config, nobody_) {}
+  /// The next frame, flush included: frame and counters, not count, ids, visible and triangles. Of options it takes progress, and
+  /// of skip the switch of bins. Throws InputError as check_hardware_scene(); then, and when progress throws, nothing more
+  /// can be drawn.
+  [[nodiscard]] Rendering draw(const Scene& scene, const RenderOptions& options = {});
+
+ private:
+  PacketSink nobody_;
+  Config config_;
+  HardwareModel model_;
+  BinContents held_;
+  CounterPacket counted_;  ///< up to the frame before
 };
 
 /// Renders `scene` by the hardware model, flush included. Fills frame and counters, not count, ids, visible and

@@ -57,12 +57,13 @@ struct RenderOptions {
   bool general_fragments = false;     ///< likewise: fragments one by one, as tests ask of it
   StudyRules rules;                   ///< anything but the default: render_scalar alone has it
   const Framebuffer* onto = nullptr;  ///< the frame that is drawn on, as this engine made it; null: an empty one
-  bool want_count = false;            ///< fill Rendering::count
-  bool want_ids = false;              ///< fill Rendering::ids
-  bool want_triangles = false;        ///< keep Rendering::triangles (and fill `visible` beside `ids`)
-  CoverageTap coverage_tap;           ///< implies want_triangles
-  PixelTap pixel_tap;                 ///< may be empty
-  FragmentTap fragment_tap;           ///< of render_scalar alone; implies want_triangles
+  bool follows = false;         ///< of FunctionalEngine: the frame before may be compared with this one, see Skip::bins
+  bool want_count = false;      ///< fill Rendering::count
+  bool want_ids = false;        ///< fill Rendering::ids
+  bool want_triangles = false;  ///< keep Rendering::triangles (and fill `visible` beside `ids`)
+  CoverageTap coverage_tap;     ///< implies want_triangles
+  PixelTap pixel_tap;           ///< may be empty
+  FragmentTap fragment_tap;     ///< of render_scalar alone; implies want_triangles
   std::function<void(double fraction)> progress;  ///< 0...1, called a few times a second at most; may be empty
 
   [[nodiscard]] bool keeps_triangles() const { return want_triangles || coverage_tap || fragment_tap; }

@@ -134,9 +134,13 @@ void BlockCache::evict_all(MemoryPort& memory, CounterPacket& counters) {
 void BlockCache::fast_clear(const FragmentPacket& token, std::uint32_t depth, std::uint32_t color, MemoryPort& memory,
                             CounterPacket& counters) {
   const std::array<bool, 2> clears{token.state.depth_write, token.state.color_write};
-  if (!(clears[0] && clears[1])) evict_all(memory, counters);
+  const bool clears_bin = token.state.clears_bin();
+  if (!(clears[0] && clears[1]) && !clears_bin) evict_all(memory, counters);
   write_victims(directory_.write_all(), memory, counters);
-  directory_.mark(token.key.tile_x, token.key.tile_y, clears);
+  if (clears_bin)
+    (void)directory_.mark_bin(token.key.tile_x, token.key.tile_y);
+  else
+    directory_.mark(token.key.tile_x, token.key.tile_y, clears);
   directory_.drop_depth(token.state.drops_depth());
   if (clears[0]) clear_value_[0] = depth;
   if (clears[1]) clear_value_[1] = color;

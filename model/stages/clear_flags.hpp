@@ -75,6 +75,11 @@ class ClearFlags {
     for (const TilePlane plane : kTilePlanes)
       if (clears[number(plane)]) set(plane, last_x, last_y, 1);
   }
+  /// A fast clear of the colours of the blocks `first` to `last`.
+  void mark_colors(const BlockAddress& first, const BlockAddress& last) {
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) is_set_[number(TilePlane::color)][index(x, y)] = 1;
+  }
   /// The clear values of a plane have been written to memory.
   void resolve(TilePlane plane, int last_x, int last_y) { set(plane, last_x, last_y, 0); }
 

@@ -289,6 +289,17 @@ mutant(95 stages/cache_tags.sv "flush: the depth of the last blocks is stored wh
 mutant_text(96 stages/clear_flags.sv "flags: a fragment looks at the word of a flag that falls, not at its own"
   [=[is_busy_o = reads_q]=] [=[is_busy_o = reads_q && raster_cosim.mutant_q != 16'd96]=])
 
+# A clear of one bin, behind a frame that holds others.
+mutant(404 stages/cache_tags.sv "bins: a clear of one forgets the flags that share its words"
+  [=[(clears_bin ? word_color : '0)]=] [=['0]=])
+mutant(405 stages/cache_tags.sv "bins: a clear of one begins with the first column"
+  [=[clears_bin ? last_x & ~BIN_X : '0]=] [=['0]=])
+mutant(406 stages/cache_tags.sv "bins: a clear of one is that of its last row of blocks"
+  [=[last_y & ~BIN_Y]=] [=[last_y]=])
+mutant(407 stages/cache_tags.sv "bins: a clear of one looks for lines to write"
+  [=[((fragment_i.state.depth_write && fragment_i.state.color_write) || clears_bin)]=]
+  [=[(fragment_i.state.depth_write && fragment_i.state.color_write)]=])
+
 # a texture unit and what feeds it
 mutant(141 stages/triangle_setup.sv "texture: planes over w start at vertex 0"
   [=[{is_2_less, is_1_less && !is_2_less}]=] [=[2'b00]=])

@@ -5,7 +5,8 @@
 // blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes three cycles to become an
 // item, one a cycle: its line is read, compared, and what follows leaves. Where the flag of a cleared block falls, a fragment of
 // another block than the one before waits a cycle (clear_flags). Tokens stay until all they ask for is done: a walk over the
-// lines that evicts what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests.
+// lines that evicts what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests. A fast clear of one
+// bin shares its words with others: each is read, then written.
 // Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
@@ -91,6 +92,8 @@ module cache_tags #(
   localparam bit TESTS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::SETUP_KIND == 0;
   localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
   localparam logic [LINE-1:0] LINE_Y_MASK = LINE'((1 << LINE_Y) - 1);
+  localparam logic [BLOCK_X-1:0] BIN_X = BLOCK_X'((1 << LINE_X) - 1);  // of a block's x: its place in the bin
+  localparam logic [BLOCK_Y-1:0] BIN_Y = BLOCK_Y'((1 << LINE_Y) - 1);
 
   localparam logic [3:0] SERVE = 4'd0;    // fragments
   localparam logic [3:0] LOOK = 4'd1;     // a token's walk reads a line
@@ -105,7 +108,7 @@ module cache_tags #(
   logic [3:0] state_q, state_d;
 
   // A fragment on offer.
-  logic               is_clear, is_token, clears_all, takes_fragment;
+  logic               is_clear, is_token, clears_all, clears_bin, takes_fragment;
   logic [BLOCK_X-1:0] fragment_x;
   logic [BLOCK_Y-1:0] fragment_y;
   logic [LINE-1:0]    fragment_line;
@@ -121,7 +124,8 @@ module cache_tags #(
 
   assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
-  assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
+  assign clears_bin    = is_clear && fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_EQUAL;
+  assign clears_all    = is_clear && ((fragment_i.state.depth_write && fragment_i.state.color_write) || clears_bin);
   assign fragment_line = line_of(fragment_x, fragment_y);
   /* verilator lint_off PINCONNECTEMPTY */  // its number there is looked at a cycle later
   block_stamp u_fragment_stamp (
@@ -269,7 +273,7 @@ module cache_tags #(
   end
 
   // The flags.
-  logic [WORD-1:0] word_depth, word_color, marks;
+  logic [WORD-1:0] word_depth, word_color, marks, token_word;
   logic [1:0]      token_writes, fills;  // colour, depth
   logic            falls;
   clear_flags u_flags (
@@ -290,7 +294,7 @@ module cache_tags #(
       .token_writes_i(token_writes),
       .word_x_i      (word_x_q),
       .word_y_i      (word_y_q),
-      .word_i        (state_q == MARK ? marks : '0),
+      .word_i        (token_word),
       .word_depth_o  (word_depth),
       .word_color_o  (word_color)
   );
@@ -415,7 +419,7 @@ module cache_tags #(
   assign known_new     = known | (uses ? stamp_bit : '0);
   assign colored_new   = colored | (fragment_q.state.color_write ? stamp_bit : '0);
   assign has_depth_new = (hits_q && line_has_depth) || writes_word;
-  assign line_writes   = (leaves && (is_access || walks_q)) || state_q == MARK;
+  assign line_writes   = (leaves && (is_access || walks_q)) || (state_q == MARK && !lines_done_q);
   always_comb begin
     line_rest = {
       1'b1, has_depth_new || colored_new != '0, (cleared & {colored_new != '0, has_depth_new && known_new != '0}) != '0,
@@ -503,9 +507,9 @@ module cache_tags #(
   assign is_cleared_o        = leaves && source == raster_pkg::DEPTH_SOURCE_CLEAR;
 
   // Tokens.
-  logic [WORD_X-1:0]       last_word;
-  logic [BLOCK_Y-1:0]      last_y;
-  logic [BLOCK_X-1:0]      last_x;
+  logic [WORD_X-1:0]       first_word, last_word;
+  logic [BLOCK_Y-1:0]      first_y, last_y;
+  logic [BLOCK_X-1:0]      first_x, last_x;
   logic                    words_done_q, ends_words, is_last_line, ends_mark, next_word;
   logic                    plane_q;  // 1: colour
   logic [WORD-1:0]         word, bits_q;  // a word of flags on its way to memory; of colours that are resolved
@@ -522,11 +526,16 @@ module cache_tags #(
   assign begins       = state_q == SERVE && fragment_valid_i && is_token && !read_valid_q && !valid_q;
   assign last_x       = (BLOCK_X'(fragment_i.key.tile_x) << TILE_BITS) | BLOCK_X'((1 << TILE_BITS) - 1);
   assign last_y       = (BLOCK_Y'(fragment_i.key.tile_y) << TILE_BITS) | BLOCK_Y'((1 << TILE_BITS) - 1);
+  assign first_x      = clears_bin ? last_x & ~BIN_X : '0;
+  assign first_y      = clears_bin ? last_y & ~BIN_Y : '0;
+  assign first_word   = WORD_X'(first_x >> BIT);
   assign last_word    = WORD_X'(last_x >> BIT);
   assign is_last_line = walk_q == LINE'(LINES - 1);
   assign ends_words   = word_x_q == last_word && word_y_q == last_y;
   assign ends_mark    = (lines_done_q || is_last_line) && (words_done_q || ends_words);
-  assign marks        = word_x_q == last_word ? ~({WORD{1'b1}} << 1 << bit_of(last_x)) : '1;
+  assign marks        = (word_x_q == last_word ? ~({WORD{1'b1}} << 1 << bit_of(last_x)) : '1) &
+                        (word_x_q == first_word ? {WORD{1'b1}} << bit_of(first_x) : '1);
+  assign token_word   = state_q == MARK ? marks | (clears_bin ? word_color : '0) : '0;
   assign word         = plane_q ? word_color : word_depth;
   assign resolves     = raster_pkg::FRAME_CLEARS == 0 && plane_q;
   assign ends_block   = request_valid_o && request_ready_i && stamp_q == STAMP'(STAMPS - 1);
@@ -538,9 +547,11 @@ module cache_tags #(
       SERVE: if (begins) state_d = clears_all ? ORDER : LOOK;
       LOOK: if (leaves && line_q == LINE'(LINES - 1)) state_d = ORDER;
       ORDER: if (orders_all) state_d = DRAIN;
-      DRAIN: if (drained_i) state_d = is_clear ? MARK : READ;
-      MARK: if (ends_mark) state_d = DONE;
-      READ: state_d = SEND;
+      DRAIN: if (drained_i) state_d = is_clear && !clears_bin ? MARK : READ;
+      MARK:
+      if (ends_mark) state_d = DONE;
+      else if (clears_bin) state_d = READ;
+      READ: state_d = is_clear ? MARK : SEND;
       SEND:
       if (resolves) state_d = RESOLVE;
       else if (next_word) state_d = ends_words && plane_q ? DONE : READ;
@@ -557,10 +568,10 @@ module cache_tags #(
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE || state_q == DRAIN) begin
       walk_q       <= '0;
-      lines_done_q <= 1'b0;
+      lines_done_q <= state_q == DRAIN && clears_bin;  // there is nothing in them
       words_done_q <= 1'b0;
-      word_x_q     <= '0;
-      word_y_q     <= '0;
+      word_x_q     <= first_word;
+      word_y_q     <= first_y;
       plane_q      <= !is_clear && drops_depth_q;  // a flush that drops depth writes no flags of it
     end else begin
       if (looks || state_q == MARK) begin
@@ -568,7 +579,7 @@ module cache_tags #(
         if (is_last_line) lines_done_q <= 1'b1;
       end
       if (state_q == MARK || next_word) begin
-        word_x_q <= word_x_q == last_word ? '0 : word_x_q + 1'b1;
+        word_x_q <= word_x_q == last_word ? first_word : word_x_q + 1'b1;
         if (word_x_q == last_word) word_y_q <= ends_words ? '0 : word_y_q + 1'b1;
         if (ends_words) words_done_q <= 1'b1;
         if (ends_words) plane_q <= 1'b1;

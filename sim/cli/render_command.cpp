@@ -98,7 +98,7 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (options.engine == "rtl" && !options.draws_path.empty())
     throw InputError(
         "--draws: the engine rtl is hardware, which keeps no counts; leave out --draws, or use another --engine");
-  if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all")
+  if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all" && options.frames == 0)
     throw InputError("--skip: the engine " + options.engine +
                      " skips by the hardware's rules; leave out --skip, or use another --engine");
   if (options.engine != "cycle" && !options.cycle.given().empty())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "model/engines/functional.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -19,6 +20,9 @@ Json frame_row(int frame, const Moment& moment, const Rendering& rendering, cons
                const RenderCommand& options, const Config& config) {
   Json row{{"frame", frame}, {"time", moment.time ? Json(*moment.time) : Json(nullptr)}, {"turn", moment.turn}};
   row.update(counters_json(rendering.counters));
+  const bool is_hardware = options.engine == "cycle" || options.engine == "rtl";
+  row["bins"] = is_hardware ? Json(rendering.counters.bins) : Json(nullptr);
+  row["pairs"] = is_hardware ? Json(rendering.counters.pairs) : Json(nullptr);
   row["time_s"] = {{"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
   row["cycles"] = options.engine == "rtl" ? Json(facts.rtl.cycles)
                   : facts.cycle           ? Json(facts.cycle->frame.run.cycles)
@@ -88,6 +92,74 @@ RenderCommand options_of(const RenderCommand& options, int frame) {
   return own;
 }
 
+/// Draws frame after frame. What leaves bins alone is one engine, or one piece of hardware, over all of them; what else draws
+/// begins each frame from nothing.
+class FrameDrawer {
+ public:
+  FrameDrawer(const RenderCommand& options, const Config& config) : options_(options) {
+    if (!is_picture_alone(options) || study_rules(options.study) != StudyRules{} || !options.supersample.empty())
+      return;
+    if (options.engine == "functional") functional_.emplace(config);
+    if (!compares_bins(config)) return;
+    if (options.engine == "cycle") {
+      hardware_ = hardware_of(options.cycle, config);
+      CycleOptions cycle;
+      cycle.stalls = {options.seed, stall_threshold(options.cycle.stalls)};
+      cycle.parameters = hardware_->parameters;
+      cycle.textures = hardware_->memory;
+      memory_ = make_memory(hardware_->memory, hardware_->config);
+      cycle_.emplace(hardware_->config, *memory_, cycle);
+    } else if (options.engine == "rtl") {
+      dut_ = make_dut(find_dut(config));
+      rtl_.emplace(*dut_, config);
+    }
+  }
+
+  [[nodiscard]] bool compares_frames() const { return functional_ || cycle_ || rtl_; }
+
+  Rendering draw(const RenderCommand& own, const Scene& scene, const Config& config, CycleFacts& facts,
+                 const std::function<void(double)>& progress) {
+    if (!compares_frames()) return run_engine(own, scene, config, &facts, progress);
+    RenderOptions render;
+    render.skip = parse_skip(options_.skip);
+    render.progress = progress;
+    render.threads = options_.threads;
+    render.follows = true;
+    if (functional_) return functional_->render(scene, render);
+    if (rtl_) {
+      RtlRendering rtl = rtl_->draw(scene, render);
+      facts.rtl = rtl.run;
+      return std::move(rtl.rendering);
+    }
+    facts.cycle = CycleResult{*hardware_, options_.cycle.stalls, cycle_->draw(scene, render), {}, {}, {}, false, {}};
+    return facts.cycle->frame.rendering;
+  }
+
+ private:
+  /// Nothing is asked for that shows everything that was drawn.
+  [[nodiscard]] static bool is_picture_alone(const RenderCommand& options) {
+    const CycleCommandOptions& cycle = options.cycle;
+    return options.count_path.empty() && options.ids_path.empty() && options.draws_path.empty() &&
+           cycle.primitives_path.empty() && cycle.trace_path.empty() && cycle.heat_path.empty() &&
+           cycle.misses_path.empty();
+  }
+
+  const RenderCommand& options_;
+  std::optional<FunctionalEngine> functional_;
+  std::optional<Hardware> hardware_;
+  std::unique_ptr<MemoryTiming> memory_;
+  std::optional<CycleFrames> cycle_;
+  std::unique_ptr<Dut> dut_;
+  std::optional<RtlFrames> rtl_;
+};
+
+/// "bins        4,120 left alone: they held what was to be drawn in them"
+void print_bins(std::ostream& out, const Json& rows) {
+  std::uint64_t left = 0;
+  for (const Json& row : rows) left += row["skipped"]["bins"].get<std::uint64_t>();
+  out << "bins        " << with_commas(left) << " left alone: they held what was to be drawn in them\n";
+}
+
 }  // namespace
 
 void add_frames_options(CLI::App& app, RenderCommand& options) {
@@ -133,6 +205,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
   const std::vector<Moment> all = moments(options, source);
   Json rows = Json::array();
   int width = 0, height = 0;
+  FrameDrawer drawer(options, config);
   try {
     Progress progress(options, "rendering", "frames");
     for (int i = 0; i < options.frames; ++i) {
@@ -144,7 +217,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
       const RenderCommand own = options_of(options, i);
       const Scene scene = prepared(source.at(moment), options, config);
       CycleFacts facts;
-      const Rendering rendering = run_engine(own, scene, config, &facts, part);
+      const Rendering rendering = drawer.draw(own, scene, config, facts, part);
       width = scene.width;
       height = scene.height;
       write_files(own, rendering, config, "frame " + std::to_string(i) + ", engine " + options.engine);
@@ -172,6 +245,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
   out << '\n';
   if (!rows[0]["cycles"].is_null()) print_range(out, rows, "cycles", "cycles");
   if (!rows[0]["bytes"].is_null()) print_range(out, rows, "bytes", "bytes");
+  if (drawer.compares_frames()) print_bins(out, rows);
   if (!options.color_path.empty())
     out << "pictures    " << numbered(options.color_path, 0, options.frames) << " to "
         << numbered(options.color_path, static_cast<int>(rows.size()) - 1, options.frames) << '\n';

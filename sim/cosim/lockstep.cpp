@@ -128,6 +128,7 @@ void Lockstep::start_models(TileMemory memory) {
   expected_.clear();
   expected_cycles_ = {};
   is_first_ = true;
+  bins_.forget();
   model_.emplace(config_, expected_, std::move(memory));
   if (!options_.compares || !options_.compares_cycles || options_.drains_clears) return;
   CycleOptions cycles;
@@ -186,13 +187,14 @@ void Lockstep::run_and_reset(const Scene& scene, std::uint64_t cycles) {
   start_models(memory_.tiles());
 }
 
-LockstepResult Lockstep::run(const Scene& scene, const Config& host_config) {
+LockstepResult Lockstep::run(const Scene& scene, const Config& host_config, bool draws_all) {
   Random random(options_.seed + cycle_);
   for (int n = 0; n < options_.resets; ++n) {
     run_and_reset(scene, 1 + random.next() % kMostCyclesBeforeReset);
     if (result_.mismatch) return result_;
   }
-  HostStream host(scene, host_config);
+  if (draws_all) bins_.forget();
+  HostStream host(scene, host_config, &bins_);
   begin(scene);
   const std::uint64_t start = cycle_;
   // Clearing and flushing visit the flags of every tile, a few cycles each, and move no packet meanwhile.

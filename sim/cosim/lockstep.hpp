@@ -112,8 +112,9 @@ class Lockstep {
   /// One scene, to its flush, without a reset before it. Not after a run that has failed or was stopped. Throws
   /// InputError for a scene that the hardware cannot take.
   [[nodiscard]] LockstepResult run(const Scene& scene) { return run(scene, config_); }
-  /// `host` may differ from the configuration in what is the host's: frame.order and frame.store.
-  [[nodiscard]] LockstepResult run(const Scene& scene, const Config& host);
+  /// `host` may differ from the configuration in what is the host's: frame.order and frame.store. With both so that bins can
+  /// be compared, those that hold what `scene` draws in them are left alone, unless `draws_all`.
+  [[nodiscard]] LockstepResult run(const Scene& scene, const Config& host, bool draws_all = false);
 
   [[nodiscard]] const TileMemory& memory() const { return memory_.tiles(); }  ///< the RTL's
   [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, of all that was done
@@ -159,6 +160,7 @@ class Lockstep {
   std::unique_ptr<MemoryTiming> model_memory_;  // and the model in front of it: only when cycles are compared
   std::unique_ptr<CycleModel> cycle_model_;
   Counters host_counters_;
+  BinContents bins_;                     // what the memories hold, for the host
   std::vector<std::uint32_t> snapshot_;  // counters of the RTL, held since the last primitive was taken
   std::uint64_t snapshot_at_ = 0;        // when they are looked at
   std::size_t counter_bytes_;            // of their packet

@@ -467,4 +467,21 @@ Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count) 
   return Generator(config, seed).make(count);
 }
 
+Scene next_frame(const Scene& scene, std::uint64_t seed) {
+  Random random(seed);
+  Scene next = scene;
+  const std::uint64_t change = random.next() % 4;
+  if (change == 0 && !next.vertices.empty()) {
+    const auto any = [&] { return random.next() % next.vertices.size(); };
+    std::swap(next.vertices[any()].rgba, next.vertices[any()].rgba);
+  } else if (change != 1) {
+    std::vector<std::size_t> draws;
+    for (std::size_t i = 0; i < next.commands.size(); ++i)
+      if (std::holds_alternative<Draw>(next.commands[i])) draws.push_back(i);
+    if (!draws.empty())
+      next.commands.erase(next.commands.begin() + static_cast<std::ptrdiff_t>(draws[random.next() % draws.size()]));
+  }
+  return next;
+}
+
 }  // namespace halfplane

@@ -33,6 +33,33 @@ RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, cons
   return result;
 }
 
+RtlFrames::RtlFrames(Dut& dut, const Config& config)
+    : config_(config),
+      lockstep_(dut, config,
+                [this] {
+                  LockstepOptions options;
+                  options.compares = false;
+                  options.progress = [this](double fraction) {
+                    if (progress_) progress_(fraction);
+                    return true;
+                  };
+                  return options;
+                }()),
+      specification_(config) {}
+
+RtlRendering RtlFrames::draw(const Scene& scene, const RenderOptions& options) {
+  check_hardware_scene(scene, config_);
+  progress_ = options.progress;
+  RtlRendering result;
+  result.run = lockstep_.run(scene, config_, !options.skip.bins);
+  if (result.run.mismatch) throw std::runtime_error("the RTL hangs: " + result.run.mismatch->hint);
+  RenderOptions quiet;
+  quiet.skip = options.skip;
+  result.rendering.counters = specification_.draw(scene, quiet).counters;
+  result.rendering.frame = to_framebuffer(lockstep_.memory(), scene.width, scene.height, config_);
+  return result;
+}
+
 FaultyFrame render_faulty(Dut& dut, const Scene& scene, const Config& config, std::uint16_t mutant,
                           std::uint64_t most_cycles) {
   LockstepOptions options;

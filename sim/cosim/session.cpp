@@ -48,14 +48,19 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
   Random random(options.seed);
   const bool draws = orders == HostOrders::drawn && config.cache_kind == CacheKind::blocks &&
                      config.frame_order == FrameOrder::program && config.frame_store == FrameStore::all;
-  while (auto scene = next()) {
-    if (draws) draw_order(random, session.config);
-    const LockstepResult result = lockstep.run(*scene, session.config);
+  const auto run = [&](Scene scene) {
+    const LockstepResult result = lockstep.run(scene, session.config);
     session.result.add(result);
     session.counters = lockstep.host_counters();
     ++session.scenes;
-    if (result.mismatch) session.failed = std::move(*scene);
-    if (result.mismatch || result.is_stopped) break;
+    if (result.mismatch) session.failed = std::move(scene);
+    return !result.mismatch && !result.is_stopped;
+  };
+  while (auto scene = next()) {
+    if (draws) draw_order(random, session.config);
+    std::optional<Scene> second;  // a frame behind it, some of whose bins hold what they held
+    if (draws && compares_bins(session.config)) second = next_frame(*scene, random.next());
+    if (!run(std::move(*scene)) || (second && !run(std::move(*second)))) break;
   }
   session.has_trace = lockstep.has_traced();
   session.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -14,7 +14,10 @@
   logic              drops_q;     // the last fast clear says that depth which leaves is lost
   logic              drops, stores_depth, is_dirty, evicts_it, pending, is_looked_at;
   logic [1:0]        fills_it;
+  logic              clears_it;   // a fast clear of the whole target, or of the bin in which it lies
   logic [WRITES-1:0] age;
+  assign clears_it    = is_clear && (!clears_bin || (any_x >> LINE_X == last_x >> LINE_X && any_y >> LINE_Y == last_y >> LINE_Y &&
+                                                     any_x <= last_x && any_y <= last_y));
   assign any_line     = line_of(any_x, any_y);
   assign is_it        = is_access && block_x == any_x && block_y == any_y;
   assign empties_it   = valid_q && line_q == any_line && (walks_q || (is_access && !is_it));
@@ -27,7 +30,7 @@
   assign age          = age_q - writes;
   assign is_looked_at = fragment_q.state.depth_test != raster_pkg::DEPTH_FUNC_ALWAYS || fragment_q.mask != '1 || keeps_some;
   always_comb begin
-    if (fragment_valid_i && is_token) assume (any_x <= last_x && any_y <= last_y);
+    if (fragment_valid_i && is_token && !clears_bin) assume (any_x <= last_x && any_y <= last_y);
     assume (32'(any_stamp) < STAMPS && 32'(any_x) < (raster_pkg::TILES_X << TILE_BITS) &&
             32'(any_y) < (raster_pkg::TILES_Y << TILE_BITS));
   end
@@ -79,8 +82,6 @@
         if (has_test_q[0]) assert (gen_stencil.clear_q == front_q);
         if (has_test_q[0] && state_q == DONE && is_clear && fragment_i.state.depth_write)
           assert (clear_depth_o == {front_q, fragment_i.code[0+:Z]});
-        cover (leaves && is_it && item_source_o == raster_pkg::DEPTH_SOURCE_NONE && changes_word);
-        cover (leaves && is_it && item_source_o == raster_pkg::DEPTH_SOURCE_CLEAR && !fragment_q.state.depth_write && changes_word);
       end
     end else begin : gen_depth_claim
       assign keeps_some   = 1'b0;
@@ -104,7 +105,7 @@
     if (takes_token) drops_q <= is_clear && fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER;
     if (takes_token && is_clear) begin
       here_q <= 1'b0;
-      flag_q <= flag_q | {fragment_i.state.color_write, fragment_i.state.depth_write};
+      flag_q <= flag_q | ({fragment_i.state.color_write, fragment_i.state.depth_write} & {2{clears_it}});
     end
     if (takes_token && !is_clear && raster_pkg::FRAME_CLEARS == 0) flag_q[1] <= 1'b0;
     if (!rst_ni) {here_q, pending_q, drops_q} <= '0;
@@ -137,7 +138,7 @@
       if (here_q)
         assert ({known_q, colored_q, has_depth_q, flag_q} == {word_known, word_colored, word_has_depth, word_cleared});
     end
-    if (is_marking && !clears_all) assert (!here_q);
+    if (is_marking && (!clears_all || clears_bin)) assert (!here_q);
     if (here_q && !is_marking) assert (!pending_q);
   end
 
@@ -154,7 +155,7 @@
   assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q[STATE-1-:REST];
   assign word_x     = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
   assign word_y     = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
-  assign is_marking = state_q == MARK || (state_q == DONE && is_clear);
+  assign is_marking = state_q == MARK || ((state_q == READ || state_q == DONE) && is_clear);
   always_ff @(posedge clk_i) begin
     if (line_writes && line_write_address == any_line) word_q <= line_new;
     if (takes_fragment || looks) begin
@@ -180,8 +181,8 @@
   always_ff @(posedge clk_i) begin
     if (leaves && falls && line_is_it) flag_ram_q <= flag_ram_q & ~fills;
     if (WORD_X'(any_x >> BIT) == word_x_q && any_y == word_y_q) begin
-      if (token_writes[0]) flag_ram_q[0] <= state_q == MARK && marks[bit_of(any_x)];
-      if (token_writes[1]) flag_ram_q[1] <= state_q == MARK && marks[bit_of(any_x)];
+      if (token_writes[0]) flag_ram_q[0] <= token_word[bit_of(any_x)];
+      if (token_writes[1]) flag_ram_q[1] <= token_word[bit_of(any_x)];
     end
     fell_q         <= rst_ni && leaves && falls;
     fell_before_q  <= rst_ni && fell_q;
@@ -197,6 +198,8 @@
     if (is_asked_q && read_is_it) assume (read_cleared == (flag_ram_q & ~(fills & {2{falls && line_is_it}})));
     if (state_q == SEND && WORD_X'(any_x >> BIT) == word_x_q && any_y == word_y_q)
       assume ({word_color[bit_of(any_x)], word_depth[bit_of(any_x)]} == flag_ram_q);
+    if (state_q == MARK && clears_bin && WORD_X'(any_x >> BIT) == word_x_q && any_y == word_y_q)
+      assume (word_color[bit_of(any_x)] == flag_ram_q[1]);
     if (state_q == SEND && sends_q) assume (word_depth == depth_before_q && word_color == color_before_q);
     assert (!(fell_q && ((takes_fragment && needs_flags) || (leaves && falls))));
     if (waits_q) assert (falls);
@@ -207,7 +210,7 @@
   // For induction: what has been read is what is there; what is under way.
   logic [1:0] marked, flag_now;  // what the RAMs of flags hold while a token or an eviction is at work
   logic words_passed, lines_passed;
-  assign marked   = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{words_passed}};
+  assign marked   = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{words_passed && clears_it}};
   assign words_passed = (is_clear ? words_done_q : state_q == DONE) || word_y_q > any_y ||
                         (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));
   assign lines_passed = state_q == LOOK ? !((valid_q && line_q <= any_line) || (!valid_q && read_valid_q && read_line_q <= any_line) ||
@@ -245,9 +248,13 @@
     if (state_q > ORDER) assert (waiting_q == '0 && !fell_q);
     if (state_q > DRAIN) assert (!fell_before_q);
     if (state_q == MARK) assert (is_clear);
-    if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear);
+    if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear || (clears_bin && state_q == READ));
     if (state_q == RESOLVE) assert (resolves);
-    if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
+    if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q))
+      assert (word_x_q >= first_word && word_x_q <= last_word && word_y_q >= first_y && word_y_q <= last_y);
+    if (clears_bin && state_q > DRAIN) assert (state_q == DONE || (lines_done_q && !words_done_q));
+    // Behind a token nothing is here until a fragment comes.
+    if (is_empty_q) assert (is_known_q && !word_valid && !is_access && !(read_valid_q && !read_walks_q && read_q.mask != '0));
     if (!is_known_q && is_marking) assert ((flag_ram_q & marked) == marked);
     if (!is_known_q)
       assert (!here_q && !pending_q && !valid_q && !read_valid_q && !fell_q && !fell_before_q && (state_q == SERVE || is_marking || state_q == ORDER || state_q == DRAIN) && waiting_q == '0);
@@ -312,7 +319,7 @@
     if (takes_token && !is_clear)
       assert (flags_sent_q[0] == !drops &&
               (raster_pkg::FRAME_CLEARS == 0 ? is_sent_q == flag_q[1] : flags_sent_q[1]));
-    if (state_q == READ || state_q == SEND || state_q == RESOLVE || (state_q == DONE && !is_clear)) begin
+    if (!is_clear && (state_q == READ || state_q == SEND || state_q == RESOLVE || state_q == DONE)) begin
       assert (flags_sent_q[0] == (!drops && (plane_q || words_are_behind)));
       assert (plane_q == (words_done_q || drops));
       if (raster_pkg::FRAME_CLEARS != 0) assert (flags_sent_q[1] == (plane_q && words_are_behind));

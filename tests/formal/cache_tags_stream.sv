@@ -106,7 +106,9 @@
                            lines_done_q ? line_q == LINE'(LINES - 1) : walk_q != '0 && line_q == walk_q - 1'b1);
     end
     if (state_q == MARK) assert (is_clear);
-    if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear && (state_q == RESOLVE || !words_done_q || plane_q));
+    if (state_q == READ && is_clear) assert (clears_bin);
+    else if (state_q == READ || state_q == SEND || state_q == RESOLVE) assert (!is_clear && (state_q == RESOLVE || !words_done_q || plane_q));
+    if (clears_bin && state_q > DRAIN) assert (state_q == DONE || (lines_done_q && !words_done_q));
     if (state_q == RESOLVE) assert (resolves && (bits_q[0] || stamp_q == '0));
     if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q)) assert (word_x_q <= last_word && word_y_q <= last_y);
     if (state_q == SERVE && fragment_valid_i && is_token && !read_valid_q && !valid_q) assert (state_d != SERVE);

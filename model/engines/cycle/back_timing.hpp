@@ -53,6 +53,18 @@ struct TimingTotals {
   }
 };
 
+/// What was counted behind `before`, and of the frame at work the rest.
+[[nodiscard]] inline TimingTotals since(TimingTotals now, const TimingTotals& before) {
+  using T = TimingTotals;
+  for (auto count : {&T::hazard_cycles, &T::move_cycles, &T::memory_cycles, &T::bound_cycles, &T::visit_cycles,
+                     &T::slot_cycles, &T::texel_beats})
+    now.*count -= before.*count;
+  for (std::size_t i = 0; i < kStages; ++i) now.works[i] -= before.works[i];
+  for (std::size_t cause = 0; cause < now.beats.size(); ++cause)
+    for (const std::size_t plane : {0U, 1U}) now.beats[cause][plane] -= before.beats[cause][plane];
+  return now;
+}
+
 class BackTiming {
  public:
   /// `memory` and `sink`, which may be null, must outlive this.
@@ -179,8 +191,8 @@ class BackTiming {
     return moved;
   }
 
-  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes that `state` writes, of tiles (0, 0) to
-  /// (last_x, last_y).
+  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes that `state` writes, of tiles (0, 0), or the first of
+  /// its bin, to (last_x, last_y).
   Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const PrimitiveState& state, int last_x,
                    int last_y) {
     const std::array<bool, 2> clears{state.depth_write, state.color_write};
@@ -188,14 +200,17 @@ class BackTiming {
     const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams(), std::max(offered, blocks_->is_empty()));
     Cycle cycle = begins + 1;
     if (!is_clear) directory.drop_depth(state.drops_depth());
-    if (!(is_clear && clears[0] && clears[1])) {
+    const bool clears_bin = is_clear && state.clears_bin();
+    if (!(is_clear && clears[0] && clears[1]) && !clears_bin) {
       directory.evict_all([&](const TagResult& tags) { cycle = blocks_->walk(cycle, tags, ask); });
       cycle = blocks_->is_empty();
     }
     const Cycle drained = blocks_->drain(cycle, directory.write_all(), ask) + 1;
     cycle = drained;
     const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);  // of a row
-    if (is_clear) {
+    if (clears_bin) {                                                                  // a word is read, then written
+      cycle += 2 * static_cast<Cycle>(directory.mark_bin(last_x, last_y));
+    } else if (is_clear) {
       directory.mark(last_x, last_y, clears);
       cycle += std::max<Cycle>(directory.lines(),
                                static_cast<Cycle>(words) * static_cast<Cycle>((last_y + 1) * widths_.blocks.per_tile));

@@ -67,10 +67,15 @@ class CycleModelOf final : public CycleModel {
   void hold_textures(const Scene& scene) override { texels_ = TextureMemory(scene, config_); }
 
   void begin(int width, int height, Cycle cycle) override {
+    Framebuffer held = std::move(rendering_.frame);
     rendering_ = {};
-    rendering_.frame = Framebuffer(width, height, T);
-    fill_padding(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // as in an empty target
-    fill_padding(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
+    if (held.width == width && held.height == height && !held.color.empty()) {
+      rendering_.frame = std::move(held);
+    } else {
+      rendering_.frame = Framebuffer(width, height, T);
+      fill_padding(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // as in an empty target
+      fill_padding(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
+    }
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
@@ -159,10 +164,11 @@ class CycleModelOf final : public CycleModel {
       if (config_.hiz_bits != 0)
         timing_.clear_bounds(static_cast<std::uint64_t>((last_x >> widths_.hiz_group_bits) + 1) *
                              static_cast<std::uint64_t>(last_y + 1));
-      fill_target(rendering_.frame.depth, code[kDepthPlane]);
-      if (has_stencil(config_)) fill_target(rendering_.frame.stencil, stencil_.clear_value());
+      fill(rendering_.frame.depth, to_bounds(clear.box), code[kDepthPlane]);
+      if (has_stencil(config_)) fill(rendering_.frame.stencil, to_bounds(clear.box), stencil_.clear_value());
     }
-    if (planes[1]) fill_target(rendering_.frame.color, pack_color(config_.color_format, color_channels(code)));
+    if (planes[1])
+      fill(rendering_.frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
       if (blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
@@ -181,10 +187,10 @@ class CycleModelOf final : public CycleModel {
 
   /// Leaves the padding alone.
   template <class Image>
-  void fill_target(Image& image, typename Image::value_type code) const {
-    const Framebuffer& frame = rendering_.frame;
-    for (int y = 0; y < frame.height; ++y)
-      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), frame.width, code);
+  void fill(Image& image, const PixelBounds& box, typename Image::value_type code) const {
+    for (int y = box.top; y <= box.bottom; ++y)
+      std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(rendering_.frame.at(box.left, y)),
+                  box.right - box.left + 1, code);
   }
 
   void flush(const SetupPacket& packet) {
@@ -659,37 +665,53 @@ std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming&
                                                    : make<SerialTiming>(config, memory, options);
 }
 
-CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory, const RenderOptions& render,
-                            const CycleOptions& options) {
+CycleFrames::CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options)
+    : config_(config), model_(make_cycle_model(config, memory, options)) {}
+
+CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render) {
   const auto started = std::chrono::steady_clock::now();
-  CycleOptions wanted = options;
-  wanted.want_count = render.want_count;
-  wanted.want_ids = render.want_ids;
-  HostStream host(scene, config);
-  const auto model = make_cycle_model(config, memory, wanted);
-  model->hold_textures(scene);
-  model->begin(scene.width, scene.height, 0);
+  if (!render.skip.bins) held_.forget();
+  HostStream host(scene, config_, &held_);
+  model_->hold_textures(scene);
+  model_->begin(scene.width, scene.height, start_);
   DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
-    const std::uint64_t dropped_before = drawn.dropped(model->counters());
-    model->run(*primitive);
-    drawn.add(*primitive, drawn.dropped(model->counters()) == dropped_before);
+    const std::uint64_t dropped_before = drawn.dropped(model_->counters());
+    model_->run(*primitive);
+    drawn.add(*primitive, drawn.dropped(model_->counters()) == dropped_before);
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }
-  CycleRendering result{std::move(model->rendering()), {}, std::move(model->cost()), std::move(model->misses())};
+  CycleRendering result{model_->rendering(), {}, model_->cost(), model_->misses()};
   result.rendering.counters = host.counters();
-  count_hardware(model->counters(), drawn.count(), result.rendering.counters);
+  count_hardware(difference(model_->counters(), counted_), drawn.count(), result.rendering.counters);
   result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   CycleRun& run = result.run;
-  run.totals = model->totals();
-  run.cycles = run.totals.last + 1;
+  run.totals = since(model_->totals(), totals_);
+  run.cycles = model_->totals().last + 1 - start_;
   run.raster_cycles = run.totals.raster_cycles();
   run.tile_cycles = run.totals.tile_cycles;
   run.totals.works[index(Stage::framebuffer)] =
       run.totals.move_cycles - std::min(run.totals.move_cycles, run.totals.memory_cycles);
-  for (const Arrow arrow : kElastic) run.use[index(arrow)] = model->stream(arrow).use(run.cycles);
+  for (const Arrow arrow : kElastic) {
+    const StreamUse now = model_->stream(arrow).use(0), before = std::exchange(use_[index(arrow)], now);
+    StreamUse& use = run.use[index(arrow)];
+    use.busy = now.busy - before.busy;
+    use.stalled = now.stalled - before.stalled;
+    use.starved = run.cycles - use.busy - use.stalled;
+  }
+  counted_ = model_->counters();
+  totals_ = model_->totals();
+  start_ = totals_.last + 1;
   return result;
+}
+
+CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory, const RenderOptions& render,
+                            const CycleOptions& options) {
+  CycleOptions wanted = options;
+  wanted.want_count = render.want_count;
+  wanted.want_ids = render.want_ids;
+  return CycleFrames(config, memory, wanted).draw(scene, render);
 }
 
 }  // namespace halfplane

@@ -30,7 +30,8 @@ struct CycleOptions {
 class CycleModel {
  public:
   virtual ~CycleModel() = default;
-  /// A target of another size, cleared by the first primitive; the host offers its next primitive from `cycle` on.
+  /// The next frame, of any size: what the host does not clear stays, where the size does. The host offers its next primitive from
+  /// `cycle` on.
   virtual void begin(int width, int height, Cycle cycle) = 0;
   /// From now on the memory of textures holds those of `scene`.
   virtual void hold_textures(const Scene& scene) = 0;
@@ -39,7 +40,7 @@ class CycleModel {
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset
   [[nodiscard]] virtual const TimingTotals& totals() const = 0;
   [[nodiscard]] virtual const Stream& stream(Arrow boundary) const = 0;
-  /// Frame, count and ids since begin().
+  /// The frame; count and ids since begin().
   [[nodiscard]] virtual Rendering& rendering() = 0;
   /// Cycles of each pixel since begin(), width * height of them; empty unless wanted.
   [[nodiscard]] virtual std::vector<float>& cost() = 0;
@@ -68,6 +69,27 @@ struct CycleRendering {
   std::vector<float> cost;
   /// Lines of texels that the samples of each pixel asked memory for: what their sum is, Counters::texture.fills. Likewise.
   std::vector<float> misses;
+};
+
+/// Frame after frame through one chip and the memory behind it. With frame.order bins and frame.store color, bins that hold what a
+/// frame draws in them are left alone.
+class CycleFrames {
+ public:
+  /// `memory` and what `options` points to must outlive this. Throws InputError as make_cycle_model().
+  CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options = {});
+
+  /// The next frame, to the end of its flush. Throws InputError as check_hardware_scene(); then, and when progress throws, nothing
+  /// more can be drawn. Of `render` it takes progress, and of skip the switch of bins.
+  [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render = {});
+
+ private:
+  Config config_;
+  std::unique_ptr<CycleModel> model_;
+  BinContents held_;
+  CounterPacket counted_;  ///< up to the frame before, like those below
+  TimingTotals totals_;
+  std::array<StreamUse, kArrows> use_{};
+  Cycle start_ = 0;
 };
 
 /// Renders `scene` from reset to the end of its flush. Throws InputError as check_hardware_scene(). Of `render` it takes

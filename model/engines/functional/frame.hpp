@@ -121,6 +121,8 @@ struct Slice {
   std::vector<LineSetup> lines;
   std::vector<std::uint32_t> bin_first;    ///< into bin_records, one more than there are bins
   std::vector<std::uint32_t> bin_records;  ///< into records
+  Signature state_signature;               ///< where bins are compared; and of each record
+  std::vector<Signature> signatures;
   Counters counters;
 
   static constexpr std::uint32_t kVolume = 0x3f;  ///< outside that plane of DrawContext::frustum

@@ -93,6 +93,7 @@ const Rendering& FrameRenderer::render(const PreparedScene& prepared, const Rend
     run_commands(options);
   } catch (...) {  // the frame is whole in any case: it may be drawn on
     slice_count_ = 0;
+    held_bins_.clear();
     finish();
     throw;
   }
@@ -106,17 +107,35 @@ void FrameRenderer::run_commands(const RenderOptions& options) {
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     if (const auto* command = std::get_if<Clear>(&scene.commands[i])) clear(*command);
     if (std::holds_alternative<Draw>(scene.commands[i])) draw(static_cast<std::uint32_t>(i));
-    if (pending_primitives_ >= kBatchPrimitives) flush();
+    if (pending_primitives_ >= kBatchPrimitives && !compares_) flush();
     if (options.progress && std::chrono::duration<double>(Clock::now() - last_report).count() > 0.1) {
       last_report = Clock::now();
       options.progress(static_cast<double>(entries_done_) /
                        static_cast<double>(std::max<std::size_t>(1, scene.indices.size())));
     }
   }
-  flush();
+  flush(true);
 }
 
-Rendering FrameRenderer::take() { return std::exchange(rendering_, {}); }
+Rendering FrameRenderer::take() {
+  held_bins_.clear();
+  return std::exchange(rendering_, {});
+}
+
+/// Whether all that happens in a bin is a clear that waits, and then what is drawn at once.
+bool FrameRenderer::compares(const RenderOptions& options) const {
+  if (!options.follows || !skip_.bins || !skip_.clear || options.onto != nullptr || !is_stencil_zero_) return false;
+  if (std::ranges::any_of(scene_->states, [](const State& s) { return s.stencil.has_value(); })) return false;
+  bool has_drawn = false;
+  for (const Command& command : scene_->commands) {
+    const auto* clear = std::get_if<Clear>(&command);
+    has_drawn |= clear == nullptr;
+    if (clear == nullptr) continue;
+    if (has_drawn || clear->stencil || clear_rect(*scene_, *clear) != Rect{0, 0, scene_->width, scene_->height})
+      return false;
+  }
+  return true;
+}
 
 void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& options) {
   const Scene& scene = prepared.scene();
@@ -158,6 +177,11 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   open_ = nullptr;
   primitive_ = 0;
   entries_done_ = 0;
+  compares_ = compares(options);
+  if (is_new || !compares_) held_bins_.clear();
+  texels_.clear();
+  if (compares_)
+    for (const Texture& texture : scene.textures) texels_.push_back(signature_of(texture));
   if (options.onto == nullptr) {
     clear_whole(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0,
                       is_stencil_zero_ ? std::nullopt : std::optional(std::uint8_t{0})});
@@ -405,7 +429,7 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
   const Draw& draw = std::get<Draw>(scene_->commands[command]);
   const PreparedScene::DrawChunks& chunks = prepared_->draws[command];
   const bool is_lines = primitive_type(draw.topology) == PrimitiveType::line;
-  if (skip_.objects_hiz && chunks.has_box) {
+  if (skip_.objects_hiz && chunks.has_box && !compares_) {
     // What is in front must be drawn to be known: before the first draw that is worth it, and now and then.
     constexpr std::size_t kMany = 512, kStale = 1 << 15;
     if (chunks.primitives >= kMany && pending_primitives_ > 0 && (!has_flushed_ || pending_primitives_ >= kStale))
@@ -426,7 +450,7 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
   const std::size_t slice_limit = std::clamp(chunks.primitives / kSlicesOfDraw, kSlicePrimitives, 4 * kSlicePrimitives);
   for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
     const PreparedScene::Chunk& chunk = prepared_->chunks[i];
-    if (pending_primitives_ >= kBatchPrimitives) flush();
+    if (pending_primitives_ >= kBatchPrimitives && !compares_) flush();
     if (open_ == nullptr || open_state_ != draw.state || open_->is_lines != is_lines ||
         open_->triangles + chunk.count > slice_limit) {
       open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
@@ -458,10 +482,26 @@ void FrameRenderer::draw_outlines(const DrawContext& context) {
   });
 }
 
-/// Draws what is pending.
-void FrameRenderer::flush() {
+/// Of all that is drawn in a bin, in order, over the clears. Slices of one state are one.
+Signature FrameRenderer::signature_of_bin(std::size_t bin, const std::vector<const Slice*>& slices) const {
+  SignatureHash hash;
+  hash.add(clear_depth_);
+  hash.add(clear_color_);
+  const Slice* before = nullptr;
+  for (const Slice* slice : slices) {
+    const std::uint32_t first = slice->bin_first[bin], end = slice->bin_first[bin + 1];
+    if (first == end) continue;
+    if (before == nullptr || slice->state_signature != before->state_signature) hash.add(slice->state_signature);
+    before = slice;
+    for (std::uint32_t i = first; i < end; ++i) hash.add(slice->signatures[slice->bin_records[i]]);
+  }
+  return hash.signature();
+}
+
+/// Draws what is pending. Where bins are compared that is all of the frame.
+void FrameRenderer::flush(bool is_last) {
   open_ = nullptr;
-  if (slice_count_ == 0) return;
+  if (slice_count_ == 0 && !(compares_ && is_last)) return;
   const auto started = Clock::now();
   for_each_index(arena_.get(), slice_count_, [this](std::size_t i) { build(slices_[i]); });
   const auto built = Clock::now();
@@ -470,9 +510,20 @@ void FrameRenderer::flush() {
   const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_, !is_opaque_};
   std::vector<const Slice*> slices;
   for (std::size_t i = 0; i < slice_count_; ++i) slices.push_back(&slices_[i]);
+  const bool is_known = held_bins_.size() == bins;
+  if (compares_) held_bins_.resize(bins);
   for_each_index(arena_.get(), bins, [&](std::size_t bin) {
     const bool is_idle = std::ranges::all_of(
         slices, [bin](const Slice* slice) { return slice->bin_first[bin] == slice->bin_first[bin + 1]; });
+    if (compares_) {
+      const Signature now = signature_of_bin(bin, slices);
+      if (std::exchange(held_bins_[bin], now) == now && is_known) {
+        constexpr std::size_t kTiles = kBinTiles * kBinTiles;
+        std::fill_n(tiles_.pending.begin() + static_cast<std::ptrdiff_t>(bin * kTiles), kTiles, std::uint8_t{0});
+        bin_counters_[bin].skipped.bins = is_idle ? 0 : 1;
+        return;
+      }
+    }
     if (is_idle) return;
     BinJob job{frame,  slices,       static_cast<int>(bin), rendering_.frame,
                tiles_, clear_depth_, clear_color_,          bin_counters_[bin]};

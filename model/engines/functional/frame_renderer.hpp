@@ -36,13 +36,16 @@ class FrameRenderer {
   void draw_prepared(std::uint32_t command);
   [[nodiscard]] bool is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const;
   void draw_outlines(const DrawContext& context);
-  void flush();
+  void flush(bool is_last = false);
   void settle(const Rect& rect);
   void finish();
 
   Slice& add_slice(const DrawContext& context);
   void build(Slice& slice) const;
   void build_outlines(Slice& slice) const;
+  void sign(Slice& slice) const;
+  [[nodiscard]] bool compares(const RenderOptions& options) const;
+  [[nodiscard]] Signature signature_of_bin(std::size_t bin, const std::vector<const Slice*>& slices) const;
   void fill_bins(Slice& slice) const;
 
   /// A depth as the ranges of tiles keep it.
@@ -78,6 +81,9 @@ class FrameRenderer {
   std::uint32_t primitive_ = 0;
   std::size_t entries_done_ = 0;
   std::vector<Counters> bin_counters_;
+  bool compares_ = false;             ///< bins with those of the frame before
+  std::vector<Signature> held_bins_;  ///< what the frame holds in each bin; empty: nobody knows
+  std::vector<Signature> texels_;     ///< of each texture, where bins are compared
 };
 
 }  // namespace halfplane::functional

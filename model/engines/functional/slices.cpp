@@ -1,7 +1,10 @@
 // How a slice is built: its vertices, its records, its bin lists.
 #include <algorithm>
+#include <bit>
 #include <utility>
 
+#include "../../draw_states.hpp"
+#include "../../packet_words.hpp"
 #include "frame_renderer.hpp"
 
 namespace halfplane::functional {
@@ -137,6 +140,43 @@ void FrameRenderer::build(Slice& slice) const {
     }
   }
   fill_bins(slice);
+  if (compares_) sign(slice);
+}
+
+/// Everything that the pixels of each record depend on, but for the clears below it.
+void FrameRenderer::sign(Slice& slice) const {
+  const State& state = slice.context->state;
+  SignatureHash of_state;
+  of_state.add(signature_of(state));
+  if (state.texture) of_state.add(texels_[*state.texture]);
+  slice.state_signature = of_state.signature();
+  slice.signatures.resize(slice.record_count);
+  const auto pair = [](auto low, auto high) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(high)) << 32 | static_cast<std::uint32_t>(low);
+  };
+  for (std::size_t i = 0; i < slice.record_count; ++i) {
+    const Record& record = slice.records[i];
+    SignatureHash hash;
+    hash.add(pair(record.left_top, record.right_bottom));
+    hash.add(pair(record.z_low, record.z_high));
+    hash.add(static_cast<std::uint32_t>(record.traits));
+    if (record.kind() == RecordKind::cut_line) {
+      LineSetup line = slice.lines[record.v[0]];
+      line.primitive_id = 0;
+      for_each_value(std::as_const(line), widths_,
+                     [&hash](const auto& value, const Width&) { hash.add(to_bits(value)); });
+    } else {
+      for (const std::uint32_t v : record.v) {
+        const VertexRow& row = slice.vertices[v];
+        hash.add(pair(row.x, row.y));
+        hash.add(pair(row.z, row.rgba));
+        if (!slice.state.has_surface) continue;
+        const SurfaceVertex& surface = slice.surface[v];
+        for (const double value : {surface.w, surface.u, surface.v}) hash.add(std::bit_cast<std::uint64_t>(value));
+      }
+    }
+    slice.signatures[i] = hash.signature();
+  }
 }
 
 void FrameRenderer::build_outlines(Slice& slice) const {

@@ -15,11 +15,12 @@
 namespace halfplane {
 namespace {
 
-constexpr std::string_view kObjects = "objects";
+constexpr std::string_view kObjects = "objects", kBins = "bins";
 // No built-ins: they show nothing that others do not.
 constexpr std::string_view kFineGrid = "grid below a subpixel", kGlassBehind = "glass behind a wall",
-                           kFaint = "layers that fade out", kOpaqueGlass = "opaque glass", kMasked = "masked glass";
-constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked};
+                           kFaint = "layers that fade out", kOpaqueGlass = "opaque glass", kMasked = "masked glass",
+                           kOneMoves = "city, one house moves", kAllMove = "city, everything moves";
+constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked, kOneMoves, kAllMove};
 
 /// Why the pairs are what they are. frustum: nearly all of `objects` lies outside, and the teapot inside. backface: a
 /// closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid and
@@ -30,8 +31,9 @@ constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked
 /// clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them. operations_early_z: blended
 /// layers behind opaque ones, and layers that all are seen. alpha_tiles: layers of which an alpha test drops one half by the
 /// alpha of their vertices, and by that of a texture. opaque_blends: layers that blend, of alpha 1 and of less.
-/// masked_draws: blended layers whose channels are masked, and layers that write all.
-constexpr std::array<SkipPair, 17> kPairs{{{kObjects, "objects", "teapot"},
+/// masked_draws: blended layers whose channels are masked, and layers that write all. bins: of two pictures in turns one object
+/// is elsewhere, or all are; any other scene is at rest.
+constexpr std::array<SkipPair, 18> kPairs{{{kObjects, "objects", "teapot"},
                                            {"frustum", "objects", "teapot"},
                                            {"backface", "ball", "layers"},
                                            {"zero_area", kFineGrid, "layers"},
@@ -47,20 +49,24 @@ constexpr std::array<SkipPair, 17> kPairs{{{kObjects, "objects", "teapot"},
                                            {"operations_early_z", kGlassBehind, "layers_glass"},
                                            {"alpha_tiles", kFaint, "layers_leaves"},
                                            {"opaque_blends", kOpaqueGlass, "layers_glass"},
-                                           {"masked_draws", kMasked, "layers"}}};
+                                           {"masked_draws", kMasked, "layers"},
+                                           {"bins", kOneMoves, kAllMove}}};
 
-/// Frames of an engine of its own, with or without one kind of skipping. `counters`: of the last frame; may be null.
-Frame skip_frame(std::shared_ptr<const Scene> scene, const SkipPlan& plan, std::string_view skip, bool is_on,
-                 Counters* counters) {
+/// Frames of an engine of its own, with or without one kind of skipping: of the scenes in turns. `counters`: of the last frame; may
+/// be null.
+Frame skip_frame(const std::vector<std::shared_ptr<const Scene>>& scenes, const SkipPlan& plan, std::string_view skip,
+                 bool is_on, Counters* counters) {
   RenderOptions options;
   options.threads = plan.threads;
+  options.follows = skip == kBins;
   for (const SkipName& entry : kSkipNames)
     if (entry.name == skip) options.skip.*entry.member = is_on;
-  auto prepared = std::make_shared<PreparedScene>(*scene);
-  return [engine = std::make_shared<FunctionalEngine>(plan.config), scene = std::move(scene), prepared, options,
-          counters] {
+  std::vector<std::shared_ptr<const PreparedScene>> prepared;
+  for (const auto& scene : scenes) prepared.push_back(std::make_shared<const PreparedScene>(*scene));
+  return [engine = std::make_shared<FunctionalEngine>(plan.config), scenes, prepared, options, counters,
+          turn = std::size_t{0}]() mutable {
     const auto start = std::chrono::steady_clock::now();
-    const Rendering& rendering = engine->render(*prepared, options);
+    const Rendering& rendering = engine->render(*prepared[turn++ % prepared.size()], options);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (counters != nullptr) *counters = rendering.counters;
     return FrameCost{seconds, 0};
@@ -94,11 +100,26 @@ Scene with_alpha(Scene scene, const std::array<double, 3>& alpha) {
   return scene;
 }
 
+/// A hundredth of the target to the right: everything, or one of its objects.
+Scene moved(Scene scene, bool moves_all) {
+  std::vector<bool> moves(scene.vertices.size(), moves_all);
+  const auto draws =
+      std::ranges::count_if(scene.commands, [](const Command& c) { return std::holds_alternative<Draw>(c); });
+  std::ptrdiff_t number = 0;
+  for (const Command& command : scene.commands)
+    if (const auto* draw = std::get_if<Draw>(&command); draw != nullptr && number++ == draws / 2)
+      for (std::uint32_t i = draw->first; i < draw->first + draw->count; ++i) moves[scene.indices[i]] = true;
+  for (std::size_t i = 0; i < moves.size(); ++i)
+    if (moves[i]) scene.vertices[i].x += 0.02 * scene.vertices[i].w;
+  return scene;
+}
+
 /// A scene that no file has, made of built-in ones.
 Scene make_skip_scene(const SkipPlan& plan, std::string_view name) {
   if (name == kFineGrid) return make_fine_grid(plan);
   const auto load = [&plan](const char* built_in) { return *plan.load(built_in, false).scene; };
   const Scene glass = load("layers_glass");
+  if (name == kOneMoves || name == kAllMove) return *plan.load("city:100", false).scene;
   if (name == kGlassBehind) return glass_behind(load("layers_front"), glass.states[0]);
   if (name == kFaint) {
     Scene scene = with_alpha(load("layers"), {0, 128, 255});
@@ -134,9 +155,13 @@ void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan, const s
   // Objects that were culled have no triangles left for the frustum test to drop.
   const SkipScene with = shelf.get(row.scene, row.skip != "frustum");
   const SkipScene without = is_objects ? shelf.get(row.scene, false) : with;
+  std::vector<std::shared_ptr<const Scene>> scenes{with.scene};
+  if (row.scene == kOneMoves || row.scene == kAllMove)
+    scenes.push_back(std::make_shared<const Scene>(moved(*with.scene, row.scene == kAllMove)));
   Counters counters;
-  const std::array<Frame, 2> frames{skip_frame(with.scene, plan, row.skip, true, &counters),
-                                    skip_frame(without.scene, plan, row.skip, false, nullptr)};
+  const std::array<Frame, 2> frames{
+      skip_frame(scenes, plan, row.skip, true, &counters),
+      skip_frame(is_objects ? std::vector{without.scene} : scenes, plan, row.skip, false, nullptr)};
   auto times = measure_in_turns(frames, plan.repeat, progress);
   for (const FrameTimes& one : times)
     if (one.refusal) std::rethrow_exception(one.refusal);

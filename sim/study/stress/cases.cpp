@@ -44,6 +44,8 @@ constexpr std::array kCases{
     Case{"polygon_offset", "23", "r = 1 LSB moves every code by one; a decal wins; floor(f m + c + 1/2)",
          polygon_offset},
     Case{"stalls", "24", "cycle engine with random stalls and memories: the same image", stalls, 16},
+    Case{"frames", "",
+         "frames behind each other, whose bins are left alone where they can be: the images of each alone", frames},
     Case{"textured_w_ratio", "t1", "w ratios to 10^6: coordinates, levels, texels, colours within their bounds",
          textured_w_ratio},
     Case{"textured_slivers", "t2", "slivers and triangles that hold the whole screen", textured_slivers},

@@ -88,6 +88,7 @@ void traversals(Unit& unit);
 void fill_rules(Unit& unit);
 void full_guard_band(Unit& unit);
 void stalls(Unit& unit);
+void frames(Unit& unit);
 // search.cpp
 void adversarial_depth(Unit& unit);
 void adversarial_interpolation(Unit& unit);

@@ -1,6 +1,7 @@
 // One image from every engine and traversal; the stages stepped over the whole guard band; other fill rules.
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
+#include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
 #include "model/stages/interpolate.hpp"
@@ -159,6 +160,39 @@ void stalls(Unit& unit) {
   options.textures = memory;
   const CycleRendering cycle = render_cycle(scene, unit.config, *timing, {}, options);
   expect_same_image(unit, scene, functional, cycle.rendering);
+}
+
+void frames(Unit& unit) {
+  // What is left alone is what signatures say is equal: in the functional engine and, where such hardware is, in its model.
+  Random& random = unit.random;
+  FunctionalEngine engine(unit.config);
+  Config bins = unit.config;
+  bins.frame_order = FrameOrder::bins;
+  bins.frame_store = FrameStore::color;
+  std::optional<HardwareFrames> hardware;
+  const auto is_drawn_by_hardware = [&bins](const Scene& scene) {
+    try {
+      validate(bins);
+      check_hardware_scene(scene, bins);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  };
+  Scene scene = random_scene(unit.config, random.next(), 8);
+  if (is_drawn_by_hardware(scene)) hardware.emplace(bins);
+  RenderOptions follows;
+  follows.follows = true;
+  for (int n = 0; n < 4; ++n) {
+    const Rendering alone = unit.engine(scene, unit.config, render_options());
+    unit.count_triangles(alone.triangles.size());
+    expect_same_image(unit, scene, alone, engine.render(scene, follows));
+    if (hardware) {
+      const Rendering frame = hardware->draw(scene);
+      unit.measure("bins left alone", "pixels", frame.frame.color == alone.frame.color ? 0 : 1, 0, scene);
+    }
+    scene = next_frame(scene, random.next());
+  }
 }
 
 }  // namespace halfplane::stress
