@@ -108,7 +108,7 @@ Scene moved(Scene scene, bool moves_all) {
   std::ptrdiff_t number = 0;
   for (const Command& command : scene.commands)
     if (const auto* draw = std::get_if<Draw>(&command); draw != nullptr && number++ == draws / 2)
-      for (std::uint32_t i = draw->first; i < draw->first + draw->count; ++i) moves[scene.indices[i]] = true;
+      for (std::size_t i = draw->first; i < draw->first + draw->count; ++i) moves[scene.indices[i]] = true;
   for (std::size_t i = 0; i < moves.size(); ++i)
     if (moves[i]) scene.vertices[i].x += 0.02 * scene.vertices[i].w;
   return scene;
