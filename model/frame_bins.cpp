@@ -44,7 +44,7 @@ PixelBounds bounds_of(const WholeLine& line, int grid_bits) {
 
 }  // namespace
 
-FrameBins::FrameBins(const Widths& widths, int width, int height, bool compares)
+FrameBins::FrameBins(const Widths& widths, int width, int height, std::optional<FrameClears> compares)
     : widths_(widths), target_width_(width), target_height_(height), compares_(compares) {
   const int block = (1 << widths.tile_shift) / widths.blocks.per_tile;  // pixels along its side
   width_ = block << widths.line_x_bits;
@@ -158,8 +158,25 @@ Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLin
   return hash.signature();
 }
 
-/// A clear of a bin by itself takes some 50 cycles, the least that is drawn in one 200 or more: with four bins to clear for
-/// each that is left alone nothing can be lost.
+/// What a bin takes to be drawn, at least: its primitives and half of the stamps of their boxes; and where clears are resolved
+/// about its stamps.
+std::uint64_t FrameBins::least_cycles(std::size_t bin) const {
+  constexpr std::uint64_t kSetup = 4;  // cycles from primitive to primitive
+  const auto stamps = [this](const PixelBounds& box) {
+    return box.samples() / static_cast<std::uint64_t>(widths_.samples);
+  };
+  const PixelBounds bounds = box_of(bin);
+  std::uint64_t cycles = 0;
+  for (const std::uint32_t item : bin_[bin]) {
+    const PrimitivePacket& packet = items_[item].packet;
+    PixelBounds box = intersection(to_bounds(packet.box), bounds);
+    if (packet.kind == PrimitiveKind::triangle) box = pixel_bounds(to_snapped(packet.vertex), box, widths_.grid_bits);
+    cycles += kSetup + stamps(box) / 2;
+  }
+  return compares_ == FrameClears::resolve ? std::max(cycles, stamps(bounds) / 2) : cycles;
+}
+
+/// Against what is saved stand a clear of each bin that is drawn, and a walk over the lines in front of them.
 void FrameBins::leave_out_equal(BinContents& held, const Signature& clears) {
   std::vector<Signature> now;
   now.reserve(bin_.size());
@@ -170,14 +187,20 @@ void FrameBins::leave_out_equal(BinContents& held, const Signature& clears) {
     now.push_back(hash.signature());
   }
   const bool is_known = held.width == target_width_ && held.height == target_height_ && held.bin.size() == now.size();
-  std::size_t equal = 0, others = 0;
+  constexpr std::uint64_t kToken = 16;  // cycles behind which a token finds nothing under way
+  const int words = ((1 << widths_.line_x_bits) - 1) / widths_.blocks.flag_word + 1;
+  const std::uint64_t clear = kToken + 2 * static_cast<std::uint64_t>(words << widths_.line_y_bits);
+  std::uint64_t saved = 0, cost = kToken + (std::uint64_t{1} << (widths_.line_x_bits + widths_.line_y_bits));
+  std::size_t equal = 0;
   for (std::size_t n = 0; is_known && n < now.size(); ++n) {
-    if (now[n] != held.bin[n])
-      ++others;
-    else if (!bin_[n].empty())
+    if (now[n] != held.bin[n]) {
+      cost += clear;
+    } else if (!bin_[n].empty()) {
       ++equal;
+      saved += least_cycles(n);
+    }
   }
-  if (equal > 0 && 4 * equal >= others) {
+  if (equal > 0 && saved > cost) {
     left_out_ += equal;
     const PixelBounds target{0, 0, target_width_ - 1, target_height_ - 1};
     cleared_.emplace();

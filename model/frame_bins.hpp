@@ -42,8 +42,8 @@ struct BinContents {
 
 class FrameBins {
  public:
-  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before.
-  FrameBins(const Widths& widths, int width, int height, bool compares = false);
+  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before, on hardware with these clears.
+  FrameBins(const Widths& widths, int width, int height, std::optional<FrameClears> compares = {});
 
   /// Whether bins are made of whole tiles, as a clear of one of them needs it.
   [[nodiscard]] static bool has_whole_tiles(const Widths& widths);
@@ -71,9 +71,8 @@ class FrameBins {
 
   [[nodiscard]] std::uint64_t bins() const { return bins_; }    ///< with something in them, of all frames closed so far
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }  ///< triangles, lines and points in them
-  [[nodiscard]] std::uint64_t left_out() const {
-    return left_out_;
-  }  ///< bins with something in them that were left alone
+  /// Bins with something in them that were left alone.
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
 
  private:
   static constexpr std::uint32_t kNoLine = ~0U;
@@ -91,10 +90,11 @@ class FrameBins {
   [[nodiscard]] HostPrimitive part(const Item& item, const PixelBounds& bin) const;
   [[nodiscard]] Signature signature_of(const HostPrimitive& primitive, const WholeLine* line);
   void leave_out_equal(BinContents& held, const Signature& clears);
+  [[nodiscard]] std::uint64_t least_cycles(std::size_t bin) const;
 
   Widths widths_;
   int target_width_, target_height_;
-  bool compares_;
+  std::optional<FrameClears> compares_;
   int width_, height_;  ///< of a bin, pixels
   std::size_t columns_;
   std::vector<Item> items_;

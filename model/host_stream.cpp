@@ -85,6 +85,8 @@ std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
   if (is_first && packet.kind == PrimitiveKind::state) return "";
   if (is_first && (packet.kind != PrimitiveKind::fast_clear || !packet.state.depth_write || !packet.state.color_write))
     return "the stream does not begin with a fast clear of depth and colour: the flags of tiles are undefined";
+  if (packet.kind == PrimitiveKind::fast_clear && packet.state.clears_bin() && packet.state.depth_write)
+    return "a fast clear of one bin clears depth, too: that is of the whole target";
   if (packet.kind == PrimitiveKind::line && !primitive.line)
     return "the place of a line comes without its setup: primitive_join would wait for its pixels for good";
   return "";
@@ -100,7 +102,7 @@ HostStream::HostStream(const Scene& scene, const Config& config, BinContents* he
     const bool compares =
         held != nullptr && compares_bins(config) && FrameBins::has_whole_tiles(widths_) && begins_once(scene);
     if (compares) held_ = held;
-    bins_.emplace(widths_, scene.width, scene.height, compares);
+    bins_.emplace(widths_, scene.width, scene.height, compares ? std::optional(config.frame_clears) : std::nullopt);
     counters_.bins = 0;
   }
   if (held != nullptr && held_ == nullptr) held->forget();

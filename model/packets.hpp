@@ -263,9 +263,10 @@ struct TileBox {
 /// The states that ride with a primitive.
 struct PrimitiveState {
   PACKET(PrimitiveState, "primitive_state");
-  FIELD(DepthFunc, depth_test, &Widths::depth_func)  ///< for a fast clear or a flush: below; for a state: which
-  FIELD(bool, depth_write, &Widths::flag)            ///< for a fast clear: clears depth
-  FIELD(bool, color_write, &Widths::flag)            ///< likewise
+  FIELD(DepthFunc, depth_test,
+        &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth(), clears_bin(); for a state: which
+  FIELD(bool, depth_write, &Widths::flag)                             ///< for a fast clear: clears depth
+  FIELD(bool, color_write, &Widths::flag)                             ///< likewise
   FIELD(bool, tests_stencil, &Widths::flag, &Widths::stencil_flags)   ///< the stored stencil is looked at, or changes
   FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it changes, on a side and of some sample
   FIELD(bool, marks_failed, &Widths::flag, &Widths::stencil_flags)    ///< also where a sample fails one of the tests
@@ -276,7 +277,6 @@ struct PrimitiveState {
   [[nodiscard]] constexpr bool writes_word() const { return depth_write || writes_stencil; }
   /// Of a fast clear: depth of blocks that leave the chip before the next fast clear or flush is lost. Of a flush: that of
   /// those on the chip, and its flags are not written. Only in a framebuffer of blocks.
-  /// Of a fast clear or a flush: depth that leaves the chip is lost.
   [[nodiscard]] constexpr bool drops_depth() const { return depth_test == DepthFunc::never; }
   /// Of a fast clear of colours alone, behind a flush: of the bin with its last tile.
   [[nodiscard]] constexpr bool clears_bin() const { return depth_test == DepthFunc::equal; }

@@ -1,8 +1,8 @@
 // Signatures: 128 bits that stand for a sequence of words.
 //
-// Two lanes, each of which folds the 128-bit product of its state and a constant of its own for every word. Sequences that
-// differ have equal signatures with a probability of about 2^-128, for words that nobody chose so as to make them equal: n
-// comparisons are all right but for one in 2^128 / n.
+// Two lanes of 64 bits, each of which takes a word by steps that can be undone: two states that differ stay apart whatever
+// words come behind, so lengths do not matter. At the end each is folded. Sequences that differ have equal signatures with a
+// probability of about 2^-128, for words that nobody chose so as to make them equal.
 #pragma once
 
 #include <bit>
@@ -20,9 +20,8 @@ struct Signature {
 class SignatureHash {
  public:
   void add(std::uint64_t word) {
-    low_ = folded_product(low_ ^ word, 0x9e3779b97f4a7c15U);
-    high_ = folded_product(high_ + std::rotl(word, 32), 0xd6e8feb86659fd93U) +
-            1;  // + 1: lanes without a common fixed point
+    low_ = std::rotl((low_ ^ word) * 0x9e3779b97f4a7c15U, 29);
+    high_ = std::rotl((high_ + word) * 0xd6e8feb86659fd93U, 37);
     ++words_;
   }
   void add(const Signature& signature) {
@@ -30,7 +29,8 @@ class SignatureHash {
     add(signature.high);
   }
   [[nodiscard]] Signature signature() const {
-    return {folded_product(low_ ^ words_, 0xe7037ed1a0b428dbU), folded_product(high_ ^ ~words_, 0x8ebc6af09c88c6e3U)};
+    const std::uint64_t low = low_ ^ words_, high = high_ ^ std::rotl(low_, 32);
+    return {folded_product(low, 0xe7037ed1a0b428dbU) ^ low, folded_product(high, 0x8ebc6af09c88c6e3U) ^ high};
   }
 
  private:

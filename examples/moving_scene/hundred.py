@@ -2,7 +2,7 @@
 """Writes hundred.gltf, or the file that is named: a hundred balls before a camera at rest, one of which moves for two seconds.
 
   python3 hundred.py
-  halfplane render hundred.gltf --frames 8 --engine cycle --set frame.order=bins --set frame.store=color --csv bins.csv
+  halfplane render hundred.gltf --frames 8 --engine cycle --set frame.order=bins --set frame.store=color --set frame.clears=flags --csv bins.csv
 
   python3 hundred.py --rings 20 --around 28 --textured fine.gltf     # 106,400 triangles
   halfplane bench fine.gltf --size 1280x720 --threads 2 --engines functional,llvmpipe
@@ -108,7 +108,8 @@ def main():
     }
     if options.textured:
         document['images'] = [{'uri': 'data:image/png;base64,' + base64.b64encode(chequered_png()).decode()}]
-        document['textures'] = [{'source': 0}]
+        document['samplers'] = [{'magFilter': 9729, 'minFilter': 9729}]  # linear
+        document['textures'] = [{'source': 0, 'sampler': 0}]
         for material in document['materials']:
             material['pbrMetallicRoughness']['baseColorTexture'] = {'index': 0}
     with open(options.file, 'w', encoding='ascii') as out:

@@ -297,8 +297,7 @@ mutant(405 stages/cache_tags.sv "bins: a clear of one begins with the first colu
 mutant(406 stages/cache_tags.sv "bins: a clear of one is that of its last row of blocks"
   [=[last_y & ~BIN_Y]=] [=[last_y]=])
 mutant(407 stages/cache_tags.sv "bins: a clear of one looks for lines to write"
-  [=[((fragment_i.state.depth_write && fragment_i.state.color_write) || clears_bin)]=]
-  [=[(fragment_i.state.depth_write && fragment_i.state.color_write)]=])
+  [=[clears_all || clears_bin]=] [=[clears_all]=])
 
 # a texture unit and what feeds it
 mutant(141 stages/triangle_setup.sv "texture: planes over w start at vertex 0"

@@ -108,7 +108,7 @@ module cache_tags #(
   logic [3:0] state_q, state_d;
 
   // A fragment on offer.
-  logic               is_clear, is_token, clears_all, clears_bin, takes_fragment;
+  logic               is_clear, is_token, clears_all, clears_bin, skips_walk, takes_fragment;
   logic [BLOCK_X-1:0] fragment_x;
   logic [BLOCK_Y-1:0] fragment_y;
   logic [LINE-1:0]    fragment_line;
@@ -125,7 +125,8 @@ module cache_tags #(
   assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
   assign clears_bin    = is_clear && fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_EQUAL;
-  assign clears_all    = is_clear && ((fragment_i.state.depth_write && fragment_i.state.color_write) || clears_bin);
+  assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
+  assign skips_walk    = clears_all || clears_bin;  // over the lines: they are dropped, or there is nothing in them
   assign fragment_line = line_of(fragment_x, fragment_y);
   /* verilator lint_off PINCONNECTEMPTY */  // its number there is looked at a cycle later
   block_stamp u_fragment_stamp (
@@ -544,7 +545,7 @@ module cache_tags #(
   always_comb begin
     state_d = state_q;
     case (state_q)
-      SERVE: if (begins) state_d = clears_all ? ORDER : LOOK;
+      SERVE: if (begins) state_d = skips_walk ? ORDER : LOOK;
       LOOK: if (leaves && line_q == LINE'(LINES - 1)) state_d = ORDER;
       ORDER: if (orders_all) state_d = DRAIN;
       DRAIN: if (drained_i) state_d = is_clear && !clears_bin ? MARK : READ;

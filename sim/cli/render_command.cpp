@@ -98,9 +98,13 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (options.engine == "rtl" && !options.draws_path.empty())
     throw InputError(
         "--draws: the engine rtl is hardware, which keeps no counts; leave out --draws, or use another --engine");
-  if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all" && options.frames == 0)
-    throw InputError("--skip: the engine " + options.engine +
-                     " skips by the hardware's rules; leave out --skip, or use another --engine");
+  const bool chooses_bins =
+      options.frames > 0 && compares_bins(config) && (options.skip == "none" || options.skip == "bins");
+  if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all" && !chooses_bins)
+    throw InputError(
+        "--skip: the engine " + options.engine +
+        " skips by the hardware's rules, but for bins of frames behind each other: give none or bins with "
+        "--frames, frame.order=bins and frame.store=color; else leave out --skip, or use another --engine");
   if (options.engine != "cycle" && !options.cycle.given().empty())
     throw InputError(options.cycle.given() + ": the engine " + options.engine +
                      " does not have it; add --engine cycle, or leave it out");

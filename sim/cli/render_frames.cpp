@@ -157,6 +157,7 @@ class FrameDrawer {
 void print_bins(std::ostream& out, const Json& rows) {
   std::uint64_t left = 0;
   for (const Json& row : rows) left += row["skipped"]["bins"].get<std::uint64_t>();
+  if (left == 0) return;
   out << "bins        " << with_commas(left) << " left alone: they held what was to be drawn in them\n";
 }
 

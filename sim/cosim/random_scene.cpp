@@ -470,11 +470,18 @@ Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count) 
 Scene next_frame(const Scene& scene, std::uint64_t seed) {
   Random random(seed);
   Scene next = scene;
-  const std::uint64_t change = random.next() % 4;
-  if (change == 0 && !next.vertices.empty()) {
-    const auto any = [&] { return random.next() % next.vertices.size(); };
-    std::swap(next.vertices[any()].rgba, next.vertices[any()].rgba);
-  } else if (change != 1) {
+  const std::uint64_t change = random.next() % 6;
+  const auto any = [&]() -> Vertex& { return next.vertices[random.next() % next.vertices.size()]; };
+  if (change < 3 && !next.vertices.empty()) {
+    Vertex &a = any(), &b = any();
+    if (change == 0) std::swap(a.rgba, b.rgba);
+    if (change == 1) std::swap(a.z, b.z);
+    if (change == 2) std::swap(a.u, b.u);
+  } else if (change == 3) {
+    for (Command& command : next.commands)
+      if (auto* clear = std::get_if<Clear>(&command); clear != nullptr && clear->color)
+        std::swap((*clear->color)[0], (*clear->color)[1]);
+  } else if (change == 4) {
     std::vector<std::size_t> draws;
     for (std::size_t i = 0; i < next.commands.size(); ++i)
       if (std::holds_alternative<Draw>(next.commands[i])) draws.push_back(i);

@@ -17,7 +17,8 @@ namespace halfplane {
 /// and whole clears, tiles covered completely.
 [[nodiscard]] Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count);
 
-/// `scene` as it may look a frame later: a draw less, two vertices with each other's colours, or the same.
+/// `scene` as it may look a frame later: a draw less, two vertices with each other's colour, depth or place on a texture, other
+/// clears, or the same.
 [[nodiscard]] Scene next_frame(const Scene& scene, std::uint64_t seed);
 
 }  // namespace halfplane

@@ -138,7 +138,7 @@
       if (here_q)
         assert ({known_q, colored_q, has_depth_q, flag_q} == {word_known, word_colored, word_has_depth, word_cleared});
     end
-    if (is_marking && (!clears_all || clears_bin)) assert (!here_q);
+    if (is_marking && !clears_all) assert (!here_q);
     if (here_q && !is_marking) assert (!pending_q);
   end
 

@@ -103,8 +103,8 @@ TEST(BinContents, RandomFramesAreWhatEachIsAlone) {
 Scene two_triangles(double x, std::array<double, 4> clear = {10, 20, 30, 255}) {
   SceneBuilder builder(640, 128);
   builder.scene.commands.push_back(Clear{0, clear, 1.0});
-  builder.triangle(at(10, 10), at(50, 10), at(10, 50));
-  builder.triangle(at(330 + x, 70), at(370 + x, 70), at(330 + x, 110));
+  builder.triangle(at(2, 2), at(62, 2), at(2, 62));
+  builder.triangle(at(322 + x, 66), at(376 + x, 66), at(322 + x, 126));
   return builder.scene;
 }
 
@@ -175,6 +175,50 @@ TEST(BinContents, WithoutTheSwitchEverythingIsDrawn) {
   (void)frames.draw(two_triangles(0), all);
   EXPECT_EQ(frames.draw(two_triangles(0), all).counters.skipped.bins, 0u);
   EXPECT_EQ(frames.draw(two_triangles(0)).counters.skipped.bins, 2u);
+}
+
+// Of a bin that stays the functional engine knows no range of depths: what is drawn on the frame must not be taken for nearer.
+TEST(BinContents, WhatIsDrawnOnAFrameIsTestedAgainstBinsThatStayed) {
+  const auto triangle = [](double z) {
+    SceneBuilder builder(128, 64);
+    builder.triangle(at(2, 2, z), at(62, 2, z), at(2, 62, z));
+    return builder.scene;
+  };
+  FunctionalEngine engine(preset("embedded"));
+  (void)engine.render(triangle(0.2), following());
+  const Rendering& near = engine.render(triangle(0.2), following());
+  EXPECT_EQ(near.counters.skipped.bins, 1u);
+  const Framebuffer before = near.frame;
+  RenderOptions on;
+  on.onto = &near.frame;
+  EXPECT_EQ(engine.render(triangle(0.8), on).frame.color, before.color);
+}
+
+// A frame of tiny triangles, where clears of single bins would cost more than is saved.
+TEST(BinContents, NoFrameTakesLongerForIt) {
+  const auto tiny = [](int moved) {
+    SceneBuilder builder(640, 480);
+    for (int n = 0; n < 80; ++n) {
+      const double x = n % 10 * 64 + 8 + (n % 5 < moved ? 3 : 0), y = n / 10 * 64 % 480 + 8;
+      builder.triangle(at(x, y), at(x + 4, y), at(x, y + 4));
+    }
+    return builder.scene;
+  };
+  for (const char* lines : {"16", "256", "1024"})
+    for (const char* clears : {"flags", "resolve"})
+      for (int moved = 0; moved <= 5; ++moved) {
+        const Config config = in_bins(with("embedded", {{"cache.lines", lines}, {"frame.clears", clears}}));
+        const auto cycles = [&](bool skips) {
+          const auto memory = make_memory({}, config);
+          CycleFrames frames(config, *memory);
+          RenderOptions options;
+          options.skip.bins = skips;
+          (void)frames.draw(tiny(0), options);
+          return frames.draw(tiny(moved), options).run.cycles;
+        };
+        SCOPED_TRACE(std::string(lines) + " lines, " + clears + ", " + std::to_string(moved));
+        EXPECT_LE(cycles(true), cycles(false) * 102 / 100);
+      }
 }
 
 // Where hardly anything is the same, as with a moving camera, the frame is sent as if there had been none before: to the cycle.

@@ -208,7 +208,8 @@ class BackTiming {
     const Cycle drained = blocks_->drain(cycle, directory.write_all(), ask) + 1;
     cycle = drained;
     const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);  // of a row
-    if (clears_bin) {                                                                  // a word is read, then written
+    // Of one bin a word is read, then written.
+    if (clears_bin) {
       cycle += 2 * static_cast<Cycle>(directory.mark_bin(last_x, last_y));
     } else if (is_clear) {
       directory.mark(last_x, last_y, clears);

@@ -126,6 +126,9 @@ Rendering FrameRenderer::take() {
 bool FrameRenderer::compares(const RenderOptions& options) const {
   if (!options.follows || !skip_.bins || !skip_.clear || options.onto != nullptr || !is_stencil_zero_) return false;
   if (std::ranges::any_of(scene_->states, [](const State& s) { return s.stencil.has_value(); })) return false;
+  std::size_t primitives = 0;  // all of them wait together
+  for (const PreparedScene::DrawChunks& draw : prepared_->draws) primitives += draw.primitives;
+  if (primitives > 4 * kBatchPrimitives) return false;
   bool has_drawn = false;
   for (const Command& command : scene_->commands) {
     const auto* clear = std::get_if<Clear>(&command);
@@ -194,10 +197,14 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
 
 /// Nothing is known of what the frame holds: any depth.
 void FrameRenderer::forget_tiles() {
-  const std::uint16_t largest = range_of((std::uint32_t{1} << config_.depth_bits) - 1);
   std::ranges::fill(tiles_.pending, std::uint8_t{0});
   std::ranges::fill(tiles_.held, std::uint8_t{0});
-  for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
+  forget_depths(0, is_in_target_.size());
+}
+
+void FrameRenderer::forget_depths(std::size_t first, std::size_t count) {
+  const std::uint16_t largest = range_of((std::uint32_t{1} << config_.depth_bits) - 1);
+  for (std::size_t i = first; i < first + count; ++i) {
     tiles_.z_low[i] = is_in_target_[i] != 0 ? std::uint16_t{0} : kNoDepth.low;
     tiles_.z_high[i] = is_in_target_[i] != 0 ? largest : kNoDepth.high;
   }
@@ -520,6 +527,7 @@ void FrameRenderer::flush(bool is_last) {
       if (std::exchange(held_bins_[bin], now) == now && is_known) {
         constexpr std::size_t kTiles = kBinTiles * kBinTiles;
         std::fill_n(tiles_.pending.begin() + static_cast<std::ptrdiff_t>(bin * kTiles), kTiles, std::uint8_t{0});
+        if (!is_idle) forget_depths(bin * kTiles, kTiles);
         bin_counters_[bin].skipped.bins = is_idle ? 0 : 1;
         return;
       }

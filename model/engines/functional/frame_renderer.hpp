@@ -30,6 +30,7 @@ class FrameRenderer {
   void run_commands(const RenderOptions& options);
   void find_tiles();
   void forget_tiles();
+  void forget_depths(std::size_t first, std::size_t count);
   void clear(const Clear& command);
   void clear_whole(const Clear& command);
   void draw(std::uint32_t command);
