@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "interpolate.hpp"
 #include "viewport.hpp"
@@ -115,6 +116,22 @@ template <class Real>
 [[nodiscard]] Line<Real> strand(const Line<Real>& line, int i, int count) {
   const bool is_x_major = Track<Real>(line).is_x_major();
   return strand_along(line, is_x_major ? &ScreenVertex<Real>::y : &ScreenVertex<Real>::x, i, count);
+}
+
+/// A line as a rectangle: two corners of the start and two of the end, in order around it, each half of `width` pixels
+/// across the line from its end. Nothing for a line without length.
+template <class Real>
+[[nodiscard]] std::optional<std::array<ScreenVertex<Real>, 4>> rectangle_about(const ScreenVertex<Real>& start,
+                                                                               const ScreenVertex<Real>& end,
+                                                                               double width) {
+  const Real dx = end.x - start.x, dy = end.y - start.y, length = std::hypot(dx, dy);
+  if (!(length > 0)) return std::nullopt;
+  const auto corner = [&, half = static_cast<Real>(width / 2)](ScreenVertex<Real> v, Real side) {
+    v.x -= side * half * dy / length;
+    v.y += side * half * dx / length;
+    return v;
+  };
+  return std::array{corner(start, 1), corner(start, -1), corner(end, -1), corner(end, 1)};
 }
 
 /// Calls visit(x, y) for the pixels of `range` that lie within `margin` pixels of the line along both axes: one column

@@ -197,6 +197,7 @@ class SpecificationWalk {
       geometry(context, cache_, primitive.index, number, Skip{}, counters, pieces_);
     else
       geometry(context, widths_, cache_, primitive, number, counters, outline_);
+    pieces_.insert(pieces_.end(), outline_.triangles.begin(), outline_.triangles.end());
     if (pieces_.empty() && outline_.lines.empty() && outline_.points.empty()) {
       const Outcome outcome = dropped_by_host(before, counters);
       for (const std::size_t i : near) add_dropped(context, primitive, number, outcome, i);
@@ -284,7 +285,8 @@ class SpecificationWalk {
         const Texel& c = entry.surface->sample.color;
         return std::array<std::uint32_t, 4>{c[0], c[1], c[2], c[3]};
       };
-      const bool is_back = entry.kind == Kind::triangle && shows_back(entry.area, context.state.front);
+      const bool is_back =
+          entry.kind == Kind::triangle && !context.state_of_rectangles && shows_back(entry.area, context.state.front);
       const Fate fate = apply_fragment(context.fragment_ops, config_.color_format,
                                        {context.depth_encode(plane), history.at.x, history.at.y, is_back, sample},
                                        finished, {depth_after, color_after, stencil_after});
