@@ -403,6 +403,11 @@ constexpr std::array table{
                              .purpose = "pixels that a line covers across its minor axis, rounded to a whole number, "
                                         "or the width of its rectangle; the draw refuses lines that could reach the "
                                         "target from outside the guard band"}),
+    row<&State::smooth>(
+        {.name = "smooth",
+         .words = switch_words,
+         .purpose = "what a line's rectangle, or a point, covers of a pixel multiplies alpha; blend it to see it; with "
+                    "several samples a pixel nobody looks at it"}),
     row<&State::point_size>({.name = "point_size",
                              .numbers = point_size_numbers,
                              .form = "size",

@@ -544,7 +544,7 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
       throw InputError(place_of_draw(scene.name, draw->line) + ": state " + fault +
                        "; or use the functional, scalar or golden engine");
     if (config.line_units == 0 && drawn_as(state, draw->topology) == PrimitiveType::line &&
-        state.line_rule != LineRule::rectangle)
+        state.line_rule != LineRule::rectangle && !state.smooth)
       throw InputError(place_of_draw(scene.name, draw->line) +
                        ": lines, but this hardware has no unit that draws them; set lines.unit=1, or state line_rule "
                        "rectangle");

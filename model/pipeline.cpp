@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "stages/smooth_raster.hpp"
 #include "stages/surface.hpp"
 
 namespace halfplane {
@@ -214,6 +215,7 @@ class OutlineBuilder {
 
   void add_line(std::uint32_t a, std::uint32_t b) {
     const LineRule rule = context_.state.line_rule;
+    const bool is_rectangle = rule == LineRule::rectangle || is_smooth_;
     const VertexCache::Entry &from = cache_.get(context_, a), &to = cache_.get(context_, b);
     bool crosses = (from.outside_guard_band | to.outside_guard_band) != 0;
     DrawnLine line{number_, context_.command, from.snapped, to.snapped, drops_last()};
@@ -225,7 +227,7 @@ class OutlineBuilder {
       line.start = snap_clipped((*clipped)[0], context_, a);
       line.end = snap_clipped((*clipped)[1], context_, b);
       v = *clipped;
-    } else if (rule == LineRule::rectangle && context_.state.space == Space::window) {
+    } else if (is_rectangle && context_.state.space == Space::window) {
       for (Vertex& end : v) to_top_left(end);
       const auto clipped = clip_to_square(context_.band, v[0], v[1]);
       if (!clipped) return;
@@ -239,7 +241,7 @@ class OutlineBuilder {
     }
     finish(line.start, v[0].w);
     finish(line.end, v[1].w);
-    if (rule == LineRule::rectangle) return add_rectangle(line, crosses);
+    if (is_rectangle) return add_rectangle(line, crosses);
     const int count = strands_of(context_.state.line_width);
     for (int i = 0; i < count; ++i) {
       DrawnLine strand = line;
@@ -252,16 +254,40 @@ class OutlineBuilder {
     }
   }
 
-  /// Two triangles that share the diagonal from its first to its third corner.
+  /// Two triangles that share the diagonal from its first to its third corner, or the pixels of a smooth line.
   void add_rectangle(const DrawnLine& line, bool crosses) {
     const auto corners = line_rectangle(line.start, line.end, context_.state.line_width, widths_.grid_bits);
     if (!corners) return;
+    if (is_smooth_) return add_smooth(line, *corners, crosses);
     const auto& [a, b, c, d] = *corners;
     for (const auto& v : {std::array{a, b, c}, std::array{c, d, a}}) {
       if (box_is_empty(v, context_)) continue;
       is_cut |= crosses;
       out_.triangles.push_back({number_, context_.command, v, {}});
     }
+  }
+
+  /// A point of one pixel for each pixel of which the rectangle covers a part.
+  void add_smooth(const DrawnLine& line, const std::array<SnappedVertex, 4>& corners, bool crosses) {
+    for (const SmoothPixel& pixel : smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits)) {
+      add_pixel(pixel, codes_beside(line.start, line.end, pixel.x, pixel.y, widths_));
+      is_cut |= crosses;
+    }
+  }
+
+  /// A pixel of what is smooth: a point of its own.
+  void add_pixel(const SmoothPixel& pixel, PerPlane<std::uint32_t> code) {
+    if (color_planes(attributes_of(context_.config)) == 4) {
+      std::uint32_t& alpha = code[kColorPlane + 3];
+      alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
+    }
+    const std::int32_t whole = std::int32_t{1} << widths_.grid_bits;
+    SnappedVertex at;
+    at.x = pixel.x * whole + whole / 2;
+    at.y = pixel.y * whole + whole / 2;
+    at.code = code;
+    out_.points.push_back(
+        {{number_, context_.command, at, whole, PointShape::square}, {pixel.x, pixel.y, pixel.x, pixel.y}});
   }
 
   void add_point(std::uint32_t index) {
@@ -274,6 +300,12 @@ class OutlineBuilder {
     DrawnPoint point{number_, context_.command, entry.snapped, static_cast<std::int32_t>(snap(state.point_size, pixel)),
                      state.point_shape};
     finish(point.at, context_.scene.vertices[index].w);
+    if (is_smooth_) {
+      const PixelBounds limit = bounds_of(context_.rect);
+      for (const SmoothPixel& covered : smooth_raster(point.at, point.size, point.shape, limit, widths_.grid_bits))
+        add_pixel(covered, point.at.code);
+      return;
+    }
     const PixelBounds box = point_bounds(point.at, point.size, bounds_of(context_.rect), widths_.grid_bits);
     bool is_drawn = false;
     const PointPrimitive primitive{point, box};
@@ -314,8 +346,15 @@ class OutlineBuilder {
   const Widths& widths_;
   VertexCache& cache_;
   std::uint32_t number_;
+  const bool is_smooth_ = is_smooth(context_.state, context_.config);
   Outline& out_;
 };
+
+/// Whether lines must lie in the guard band with all that is beside them.
+bool draws_whole_rectangles(const DrawContext& context) {
+  return drawn_as(context.state, context.draw.topology) == PrimitiveType::line &&
+         (context.state.line_rule == LineRule::rectangle || is_smooth(context.state, context.config));
+}
 
 /// How far a corner may lie from its end along an axis: half the width, and a subpixel for both snaps.
 double room_for_rectangle(const State& state, const Config& config) {
@@ -328,7 +367,7 @@ double room_for_rectangle(const State& state, const Config& config) {
 void refuse_too_wide(const DrawContext& context) {
   const Scene& scene = context.scene;
   const PrimitiveType type = drawn_as(context.state, context.draw.topology);
-  const bool is_rectangle = draws_rectangles(context.state, context.draw.topology);
+  const bool is_rectangle = draws_whole_rectangles(context);
   const double width = type == PrimitiveType::point ? context.state.point_size
                        : is_rectangle               ? context.state.line_width
                                                     : strands_of(context.state.line_width);
@@ -367,7 +406,7 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       command(command_),
       viewport(effective_viewport(state, scene_.width, scene_.height)),
       rect(raster_rect(state, scene_.width, scene_.height)),
-      band(guard_band_limit(config_) - (state_of_rectangles ? room_for_rectangle(state, config_) : 0)),
+      band(guard_band_limit(config_) - (draws_whole_rectangles(*this) ? room_for_rectangle(state, config_) : 0)),
       guard_band(guard_band_planes(state.clip_z, viewport, band)),
       view_volume(view_volume_planes(state.clip_z)),
       frustum(view_volume_planes(state.clip_z, viewport, 1)),

@@ -147,6 +147,7 @@ struct State {
   LineRule line_rule = LineRule::diamond;
   std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: as the rule has it
   double line_width = 1;          ///< pixels, at least 1: across the minor axis, rounded; of a rectangle its width
+  bool smooth = false;            ///< of lines, with one sample a pixel: what they cover of a pixel multiplies alpha
   double point_size = 1;          ///< side of the square, pixels, at least 1
   PointShape point_shape = PointShape::square;
   PointClip point_clip = PointClip::pixel;

@@ -279,11 +279,12 @@ class Renderer {
   }
 
   void draw_line(ClipVertex<Real> a, ClipVertex<Real> b, DrawAtWork& d) {
-    const bool is_rectangle = d.state.line_rule == LineRule::rectangle;
+    const bool is_smooth = d.state.smooth && samples_ == 1;  // several samples are smooth by themselves
+    const bool is_rectangle = d.state.line_rule == LineRule::rectangle || is_smooth;
     const auto& planes = is_rectangle ? d.rectangle_planes : d.planes;
     if (d.state.space == Space::clip && !clip_segment<Real>(a, b, planes, d.was_cut)) return;
     std::array<ScreenVertex<Real>, 2> v{screen(a, d), screen(b, d)};
-    if (is_rectangle) return draw_rectangle(v[0], v[1], d);
+    if (is_rectangle) return draw_rectangle(v[0], v[1], is_smooth, d);
     add_outline(v, d);
     d.was_drawn = true;
     for (auto& end : v) {
@@ -300,8 +301,8 @@ class Renderer {
     }
   }
 
-  /// A line as two triangles, whatever side they show.
-  void draw_rectangle(ScreenVertex<Real> start, ScreenVertex<Real> end, DrawAtWork& d) {
+  /// A line as two triangles, whatever side they show, or smooth.
+  void draw_rectangle(ScreenVertex<Real> start, ScreenVertex<Real> end, bool is_smooth, DrawAtWork& d) {
     for (auto* v : {&start, &end}) add_fog(v->rgba, v->inverse_w, d.state);
     const auto corners = rectangle_about(start, end, d.state.line_width);
     if (!corners) return;
@@ -310,8 +311,21 @@ class Renderer {
     for (std::array<ScreenVertex<Real>, 3> v : {std::array{a, b, c}, std::array{c, e, a}}) {
       add_outline(v, d);
       for (auto& vertex : v) vertex.z += d.offset;
-      if (signed_area(v) != 0) rasterize(setup_triangle(v), d);
+      if (!is_smooth && signed_area(v) != 0) rasterize(setup_triangle(v), d);
     }
+    if (!is_smooth) return;
+    const auto [left, right] = std::minmax({a.x, b.x, c.x, e.x});
+    const auto [top, bottom] = std::minmax({a.y, b.y, c.y, e.y});
+    const PixelRange range = intersect(d.region, pixel_range(left - 1, top - 1, right + 1, bottom + 1, scene_));
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) {
+        const double area = area_in_pixel(*corners, x, y);
+        if (area <= 0) continue;
+        Fragment<Real> fragment = beside(start, end, x, y);
+        fragment.z += d.offset;
+        fragment.rgba[3] *= static_cast<Real>(area);
+        shade(x, y, fragment, d);
+      }
   }
 
   void draw_point(const ClipVertex<Real>& v, DrawAtWork& d) {
@@ -320,11 +334,25 @@ class Renderer {
     add_outline(std::span(&at, 1), d);
     add_fog(at.rgba, at.inverse_w, d.state);
     d.was_drawn = true;
+    if (d.state.smooth && samples_ == 1) return draw_smooth(at, d);
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
     const Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
     for (int y = range.begin_y; y < range.end_y; ++y)
       for (int x = range.begin_x; x < range.end_x; ++x)
         if (point_covers(at, d.state, x, y)) shade(x, y, fragment, d);
+  }
+
+  /// A point whose alpha is multiplied by what it covers of each pixel.
+  void draw_smooth(const ScreenVertex<Real>& at, const DrawAtWork& d) {
+    const PixelRange range = intersect(d.region, point_range(at, d.state.point_size + 2, scene_));
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) {
+        const double area = area_in_pixel(at, d.state, x, y);
+        if (area <= 0) continue;
+        Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
+        fragment.rgba[3] *= static_cast<Real>(area);
+        shade(x, y, fragment, d);
+      }
   }
 
   void add_outline(std::span<const ScreenVertex<Real>> v, const DrawAtWork& d) {

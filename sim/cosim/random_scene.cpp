@@ -155,7 +155,8 @@ void Generator::set_newer() {
 }
 
 /// Wide lines and round points in a third of the draws of either; rectangles in a third of the draws of lines, and as edges
-/// of triangles, which hardware without a unit for lines has too. By random numbers of their own, as above.
+/// of triangles, which hardware without a unit for lines has too; few of rectangles and points are smooth, since that is a
+/// primitive a pixel. By random numbers of their own, as above.
 void Generator::set_shapes() {
   Random random(seed_ ^ 0x51a9e5u), of_rectangles(seed_ ^ 0x2ec7a91eu);
   const int beside = config_.guard_band - std::max(scene_.width, scene_.height);
@@ -169,11 +170,13 @@ void Generator::set_shapes() {
     if (type != PrimitiveType::point && widest_rectangle >= 1 && of_rectangles.next() % one_of == 0) {
       if (type == PrimitiveType::triangle) state.polygon_mode = PolygonMode::line;
       state.line_rule = LineRule::rectangle;
+      state.smooth = of_rectangles.next() % 8 == 0;
       const auto quarters = static_cast<std::uint64_t>(4 * (widest_rectangle - 1) + 1);
       state.line_width = 1 + static_cast<double>(of_rectangles.next() % std::min<std::uint64_t>(quarters, 25)) / 4;
       continue;
     }
     if (type == PrimitiveType::triangle) continue;
+    if (type == PrimitiveType::point) state.smooth = of_rectangles.next() % 8 == 0;
     if (random.next() % 3 != 0) continue;
     if (type == PrimitiveType::line)
       state.line_width = std::min(widest, static_cast<int>(2 + random.next() % 6));

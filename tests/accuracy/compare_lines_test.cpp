@@ -121,8 +121,8 @@ Scene random_state_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
   for (int d = 0; d < 20; ++d) {
-    scene.states.push_back(
-        random_state(SceneBuilder::window_state(), without_operations(states_but({"space"})), chooser(random)));
+    scene.states.push_back(random_state(SceneBuilder::window_state(),
+                                        without_operations(states_but({"space", "smooth"})), chooser(random)));
     // The corners of a rectangle do not lie on the grid.
     if (scene.states.back().line_rule == LineRule::rectangle) scene.states.back().line_rule = LineRule::diamond;
     const double z = random.index(6) / 5.0;  // equal depths meet often

@@ -173,6 +173,8 @@ void MesaFrame::check_draw_state(const State& state, Topology topology) const {
   const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
   if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)
     refuse("point_shape round");
+  if (drawn_as(state, topology) != PrimitiveType::triangle && state.smooth && samples_ == 1)
+    refuse("smooth as an exact area");
   if (!is_line) return;
   if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");
   if (state.line_rule == LineRule::bresenham) refuse("line_rule bresenham");

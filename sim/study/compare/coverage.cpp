@@ -232,8 +232,8 @@ PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> 
     const State& state = scene.states[draw.state];
     if (o.corners < 3)
       mark_uncertain(o, state, subpixel_bits, golden, differs, marker.near);
-    else if (draws_rectangles(state, draw.topology))
-      marker.mark(o, reach_of_rectangle(o, state.line_width, step) + to_sample);
+    else if (drawn_as(state, draw.topology) == PrimitiveType::line)  // half of one; smooth, it covers parts of pixels
+      marker.mark(o, reach_of_rectangle(o, state.line_width, step) + (state.smooth ? std::sqrt(0.5) : to_sample));
     else
       marker.mark(o, step + to_sample);
   }

@@ -100,6 +100,7 @@ void rectangles(Unit& unit) {
                      states_named({"cull", "front", "polygon_mode", "shade", "scissor", "sample_mask"}), choose);
     state.line_rule = LineRule::rectangle;
     state.line_width = 1 + random.index(4 * (widest - 1) + 1) / 4.0;
+    state.smooth = random.index(4) == 0;  // with one sample a pixel
     scene.states.push_back(state);
     const auto topology = static_cast<Topology>(random.index(6));
     scene.commands.push_back(Draw{k, 0, topology, scene.indices.size(), 6, 0});
