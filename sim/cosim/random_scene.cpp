@@ -54,7 +54,7 @@ class Generator {
       made += run;
     }
     set_newer();
-    set_shapes();
+    if (has_lines_ || has_points_ || config_.line_units == 0) set_shapes();
     set_units();
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
@@ -154,8 +154,8 @@ void Generator::set_newer() {
   for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
 }
 
-/// Wide lines and round points in a third of the draws of either; rectangles in a third of the draws of lines, and as edges
-/// of triangles, which hardware without a unit for lines has too; few of rectangles and points are smooth, since that is a
+/// Wide lines and round points in a third of the draws of either; rectangles in a third of the draws of lines, and where
+/// the hardware has no unit for lines as edges of triangles; few of rectangles and points are smooth, since that is a
 /// primitive a pixel. By random numbers of their own, as above.
 void Generator::set_shapes() {
   Random random(seed_ ^ 0x51a9e5u), of_rectangles(seed_ ^ 0x2ec7a91eu);
@@ -167,7 +167,9 @@ void Generator::set_shapes() {
     State& state = scene_.states[draw->state];
     const PrimitiveType type = drawn_as(state, draw->topology);
     const unsigned one_of = type == PrimitiveType::line ? 3 : 24;
-    if (type != PrimitiveType::point && widest_rectangle >= 1 && of_rectangles.next() % one_of == 0) {
+    const bool may_be_rectangle =
+        type == PrimitiveType::line || (type == PrimitiveType::triangle && config_.line_units == 0);
+    if (may_be_rectangle && widest_rectangle >= 1 && of_rectangles.next() % one_of == 0) {
       if (type == PrimitiveType::triangle) state.polygon_mode = PolygonMode::line;
       state.line_rule = LineRule::rectangle;
       state.smooth = of_rectangles.next() % 8 == 0;
