@@ -187,7 +187,7 @@ constexpr std::array<Words, 1> scissor_words{"off"};
 constexpr std::array<Words, 1> viewport_words{"full"};
 constexpr std::array<Words, 2> provoking_words{"first", "last"};
 constexpr std::array<Words, 3> polygon_mode_words{"fill", "line", "point"};
-constexpr std::array<Words, 3> line_rule_words{"midpoint", "bresenham", "diamond"};
+constexpr std::array<Words, 4> line_rule_words{"midpoint", "bresenham", "diamond", "rectangle"};
 constexpr std::array<Words, 3> line_last_words{"off", "on", "rule"};
 constexpr std::array<Words, 2> point_shape_words{"square", "round"};
 constexpr std::array<Words, 2> point_clip_words{"pixel", "center"};
@@ -390,7 +390,10 @@ constexpr std::array table{
                                  .form = "factor constant",
                                  .purpose = "added to a triangle's depth, factor times its steeper slope per pixel "
                                             "plus the constant, in depth codes"}),
-    row<&State::line_rule>({.name = "line_rule", .words = line_rule_words, .purpose = "which pixels a line covers"}),
+    row<&State::line_rule>({.name = "line_rule",
+                            .words = line_rule_words,
+                            .purpose = "which pixels a line covers; `rectangle`: the samples of a rectangle about it, "
+                                       "by two triangles"}),
     row<&State::line_last>({.name = "line_last",
                             .words = line_last_words,
                             .purpose = "whether a line's last pixel is drawn; `rule`: as its rule has it"}),
@@ -398,9 +401,14 @@ constexpr std::array table{
                              .numbers = line_width_numbers,
                              .form = "width",
                              .unit = "pixels",
-                             .purpose = "pixels that a line covers across its minor axis, rounded to a whole number; "
-                                        "the draw refuses lines that could reach the target from outside the guard "
-                                        "band"}),
+                             .purpose = "pixels that a line covers across its minor axis, rounded to a whole number, "
+                                        "or the width of its rectangle; the draw refuses lines that could reach the "
+                                        "target from outside the guard band"}),
+    row<&State::smooth>(
+        {.name = "smooth",
+         .words = switch_words,
+         .purpose = "what a line's rectangle, or a point, covers of a pixel multiplies alpha; blend it to see it; with "
+                    "several samples a pixel nobody looks at it"}),
     row<&State::point_size>({.name = "point_size",
                              .numbers = point_size_numbers,
                              .form = "size",

@@ -335,12 +335,14 @@ void HostStream::send_next_primitive() {
   ++primitive_;
 }
 
-/// Lines go beside a packet that holds their place, strand by strand, points as boxes: each with a pixel at least.
+/// Lines go beside a packet that holds their place, strand by strand, rectangles as triangles, points as boxes: lines
+/// and points with a pixel at least.
 void HostStream::send_outline(const AssembledPrimitive& assembled) {
-  outline_.lines.clear();
-  outline_.points.clear();
+  outline_.clear();
   geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
+  if (!bins_ && !outline_.triangles.empty()) --counters_.drawn;  // in program order the hardware counts triangles
   for (const LinePrimitive& line : outline_.lines) send_line(line);
+  for (const Triangle& triangle : outline_.triangles) send_triangle(triangle, true);
   for (const PointPrimitive& point : outline_.points)
     for_each_run(point, widths_.grid_bits, [&](const PixelBounds& box) {
       PrimitivePacket packet = draw_packet(PrimitiveKind::point, box);
@@ -387,7 +389,7 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   set_vertices(packet.vertex, triangle.v);
   HostPrimitive out = drawn_primitive(packet, triangle.primitive);
   out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
-  if (out.units.looks_at_fog) out.units.fog = context_->fog;
+  if (out.units.looks_at_fog && state.fog) out.units.fog = context_->fog;
   if (textures_ && state.texture) set_coordinates(triangle, out);
   if (state.color_interp == ColorInterp::perspective) set_colors_over_w(triangle, out.packet);
   if (out.units.fog) set_distance(triangle, out);
@@ -612,9 +614,11 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
     if (const std::string fault = fragment_fault(state, config); !fault.empty())
       throw InputError(place_of_draw(scene.name, draw->line) + ": state " + fault +
                        "; or use the functional, scalar or golden engine");
-    if (config.line_units == 0 && drawn_as(state, draw->topology) == PrimitiveType::line)
+    if (config.line_units == 0 && drawn_as(state, draw->topology) == PrimitiveType::line &&
+        state.line_rule != LineRule::rectangle && !state.smooth)
       throw InputError(place_of_draw(scene.name, draw->line) +
-                       ": lines, but this hardware has no unit that draws them; set lines.unit=1");
+                       ": lines, but this hardware has no unit that draws them; set lines.unit=1, or state line_rule "
+                       "rectangle");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "stages/smooth_raster.hpp"
 #include "stages/surface.hpp"
 
 namespace halfplane {
@@ -213,8 +214,10 @@ class OutlineBuilder {
   bool is_cut = false;                           ///< a line so far was
 
   void add_line(std::uint32_t a, std::uint32_t b) {
+    const LineRule rule = context_.state.line_rule;
+    const bool is_rectangle = rule == LineRule::rectangle || is_smooth_;
     const VertexCache::Entry &from = cache_.get(context_, a), &to = cache_.get(context_, b);
-    const bool crosses = (from.outside_guard_band | to.outside_guard_band) != 0;
+    bool crosses = (from.outside_guard_band | to.outside_guard_band) != 0;
     DrawnLine line{number_, context_.command, from.snapped, to.snapped, drops_last()};
     std::array<Vertex, 2> v{context_.scene.vertices[a], context_.scene.vertices[b]};
     if (crosses) {
@@ -224,10 +227,21 @@ class OutlineBuilder {
       line.start = snap_clipped((*clipped)[0], context_, a);
       line.end = snap_clipped((*clipped)[1], context_, b);
       v = *clipped;
+    } else if (is_rectangle && context_.state.space == Space::window) {
+      for (Vertex& end : v) to_top_left(end);
+      const auto clipped = clip_to_square(context_.band, v[0], v[1]);
+      if (!clipped) return;
+      crosses = (*clipped)[0].x != v[0].x || (*clipped)[0].y != v[0].y || (*clipped)[1].x != v[1].x ||
+                (*clipped)[1].y != v[1].y;
+      if (crosses) {
+        line.start = snap_window((*clipped)[0], a);
+        line.end = snap_window((*clipped)[1], b);
+        v = *clipped;
+      }
     }
     finish(line.start, v[0].w);
     finish(line.end, v[1].w);
-    const LineRule rule = context_.state.line_rule;
+    if (is_rectangle) return add_rectangle(line, crosses);
     const int count = strands_of(context_.state.line_width);
     for (int i = 0; i < count; ++i) {
       DrawnLine strand = line;
@@ -240,6 +254,42 @@ class OutlineBuilder {
     }
   }
 
+  /// Two triangles that share the diagonal from its first to its third corner, or the pixels of a smooth line.
+  void add_rectangle(const DrawnLine& line, bool crosses) {
+    const auto corners = line_rectangle(line.start, line.end, context_.state.line_width, widths_.grid_bits);
+    if (!corners) return;
+    if (is_smooth_) return add_smooth(line, *corners, crosses);
+    const auto& [a, b, c, d] = *corners;
+    for (const auto& v : {std::array{a, b, c}, std::array{c, d, a}}) {
+      if (box_is_empty(v, context_)) continue;
+      is_cut |= crosses;
+      out_.triangles.push_back({number_, context_.command, v, {}});
+    }
+  }
+
+  /// A point of one pixel for each pixel of which the rectangle covers a part.
+  void add_smooth(const DrawnLine& line, const std::array<SnappedVertex, 4>& corners, bool crosses) {
+    for (const SmoothPixel& pixel : smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits)) {
+      add_pixel(pixel, codes_beside(line.start, line.end, pixel.x, pixel.y, widths_));
+      is_cut |= crosses;
+    }
+  }
+
+  /// A pixel of what is smooth: a point of its own.
+  void add_pixel(const SmoothPixel& pixel, PerPlane<std::uint32_t> code) {
+    if (color_planes(attributes_of(context_.config)) == 4) {
+      std::uint32_t& alpha = code[kColorPlane + 3];
+      alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
+    }
+    const std::int32_t whole = std::int32_t{1} << widths_.grid_bits;
+    SnappedVertex at;
+    at.x = pixel.x * whole + whole / 2;
+    at.y = pixel.y * whole + whole / 2;
+    at.code = code;
+    out_.points.push_back(
+        {{number_, context_.command, at, whole, PointShape::square}, {pixel.x, pixel.y, pixel.x, pixel.y}});
+  }
+
   void add_point(std::uint32_t index) {
     const VertexCache::Entry& entry = cache_.get(context_, index);
     const State& state = context_.state;
@@ -250,6 +300,12 @@ class OutlineBuilder {
     DrawnPoint point{number_, context_.command, entry.snapped, static_cast<std::int32_t>(snap(state.point_size, pixel)),
                      state.point_shape};
     finish(point.at, context_.scene.vertices[index].w);
+    if (is_smooth_) {
+      const PixelBounds limit = bounds_of(context_.rect);
+      for (const SmoothPixel& covered : smooth_raster(point.at, point.size, point.shape, limit, widths_.grid_bits))
+        add_pixel(covered, point.at.code);
+      return;
+    }
     const PixelBounds box = point_bounds(point.at, point.size, bounds_of(context_.rect), widths_.grid_bits);
     bool is_drawn = false;
     const PointPrimitive primitive{point, box};
@@ -258,6 +314,15 @@ class OutlineBuilder {
   }
 
  private:
+  /// A vertex of window space in the pixels that the rasterizer counts.
+  void to_top_left(Vertex& v) const {
+    const WindowPosition p = window_position(v, context_.state, context_.scene.height);
+    v.x = p.x;
+    v.y = p.y;
+  }
+  [[nodiscard]] SnappedVertex snap_window(const Vertex& v, std::uint32_t number) const {
+    return snap_vertex({v.x, v.y, v.z}, v.rgba, context_.config, {context_.scene.name, context_.draw.line, number});
+  }
   [[nodiscard]] bool drops_last() const {
     const State& state = context_.state;
     return state.line_rule == LineRule::diamond ||
@@ -281,20 +346,35 @@ class OutlineBuilder {
   const Widths& widths_;
   VertexCache& cache_;
   std::uint32_t number_;
+  const bool is_smooth_ = is_smooth(context_.state, context_.config);
   Outline& out_;
 };
 
+/// Whether lines must lie in the guard band with all that is beside them.
+bool draws_whole_rectangles(const DrawContext& context) {
+  return drawn_as(context.state, context.draw.topology) == PrimitiveType::line &&
+         (context.state.line_rule == LineRule::rectangle || is_smooth(context.state, context.config));
+}
+
+/// How far a corner may lie from its end along an axis: half the width, and a subpixel for both snaps.
+double room_for_rectangle(const State& state, const Config& config) {
+  return state.line_width / 2 + std::ldexp(1.0, -config.subpixel_bits);
+}
+
 /// What lies outside the guard band is not drawn: a point there, or a line, must not be so wide that it would reach the
-/// target. A line of one pixel never does.
+/// target. A line of one pixel never does. A rectangle must lie in the guard band as a whole: its line is cut by half
+/// its width, a subpixel and the snap inside of it, where the cut end itself must not show.
 void refuse_too_wide(const DrawContext& context) {
   const Scene& scene = context.scene;
   const PrimitiveType type = drawn_as(context.state, context.draw.topology);
-  const double width = type == PrimitiveType::point  ? context.state.point_size
-                       : type == PrimitiveType::line ? strands_of(context.state.line_width)
-                                                     : 0;
-  const double widest = 2 * (context.config.guard_band - 1 - std::max(scene.width, scene.height));
-  if (type == PrimitiveType::triangle || (type == PrimitiveType::line && width == 1) || (width >= 1 && width <= widest))
-    return;
+  const bool is_rectangle = draws_whole_rectangles(context);
+  const double width = type == PrimitiveType::point ? context.state.point_size
+                       : is_rectangle               ? context.state.line_width
+                                                    : strands_of(context.state.line_width);
+  const int beside = context.config.guard_band - std::max(scene.width, scene.height);
+  const double widest = is_rectangle ? beside - 3 : 2 * (beside - 1);
+  const bool is_thin = type == PrimitiveType::line && !is_rectangle && width == 1;
+  if (type == PrimitiveType::triangle || is_thin || (width >= 1 && width <= widest)) return;
   const std::string what = type == PrimitiveType::point ? "point" : "line";
   throw InputError(place_of_draw(scene.name, context.draw.line) + ": state " +
                    (type == PrimitiveType::point ? "point_size" : "line_width") + ": " +
@@ -307,20 +387,32 @@ void refuse_too_wide(const DrawContext& context) {
 
 }  // namespace
 
+State rectangle_state(State state) {
+  state.texture.reset();
+  state.fog.reset();
+  state.stencil_back.reset();
+  state.shade = Shade::smooth;  // flat colours are at both ends, and fog made two of one
+  return state;
+}
+
 DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_)
     : scene(scene_),
       config(config_),
-      state(scene_.states[draw_.state]),
+      state_of_rectangles(draws_rectangles(scene_.states[draw_.state], draw_.topology)
+                              ? std::make_shared<const State>(rectangle_state(scene_.states[draw_.state]))
+                              : nullptr),
+      state(state_of_rectangles ? *state_of_rectangles : scene_.states[draw_.state]),
       draw(draw_),
       command(command_),
       viewport(effective_viewport(state, scene_.width, scene_.height)),
       rect(raster_rect(state, scene_.width, scene_.height)),
-      guard_band(guard_band_planes(state.clip_z, viewport, config_)),
+      band(guard_band_limit(config_) - (draws_whole_rectangles(*this) ? room_for_rectangle(state, config_) : 0)),
+      guard_band(guard_band_planes(state.clip_z, viewport, band)),
       view_volume(view_volume_planes(state.clip_z)),
       frustum(view_volume_planes(state.clip_z, viewport, 1)),
       depth_encode(config_, scene_.planes),
       fragment_ops(halfplane::fragment_ops(state, config_.color_format)),
-      fog(fog_table(state)) {
+      fog(fog_table(scene_.states[draw_.state])) {
   if (state.alpha_to_coverage && config_.msaa_samples > 1) fragment_ops.alpha_samples = config_.msaa_samples;
 }
 
@@ -380,7 +472,7 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
 void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
               std::uint32_t number, Counters& counters, Outline& out) {
   OutlineBuilder builder(context, widths, cache, number, out);
-  const std::size_t lines_before = out.lines.size(), points_before = out.points.size();
+  const std::size_t before = out.size();
   const auto& index = primitive.index;
   const PrimitiveType type = drawn_as(context.state, context.draw.topology);
   const std::size_t corners = primitive.type == PrimitiveType::triangle ? 3 : 1;
@@ -392,14 +484,14 @@ void geometry(const DrawContext& context, const Widths& widths, VertexCache& cac
   } else {
     ++counters.primitives_in;
   }
-  if (context.state.shade == Shade::flat) {
+  if (context.scene.states[context.draw.state].shade == Shade::flat) {
     const bool is_second = primitive.type == PrimitiveType::line && context.state.provoking == Provoking::last;
     builder.color = flat_color(context, index[is_second ? 1 : 0]);
   }
   if (context.rect.width > 0 && context.rect.height > 0)
     for (std::size_t i = 0; i < corners; ++i)
       type == PrimitiveType::line ? builder.add_line(index[i], index[(i + 1) % 3]) : builder.add_point(index[i]);
-  if (out.lines.size() > lines_before || out.points.size() > points_before) {
+  if (out.size() > before) {
     ++counters.drawn;
     counters.clipped += builder.is_cut ? 1 : 0;
   } else {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "counters.hpp"
@@ -24,11 +25,13 @@ namespace halfplane {
 struct DrawContext {
   const Scene& scene;
   const Config& config;
-  const State& state;
+  const std::shared_ptr<const State> state_of_rectangles;  ///< of a draw of rectangles
+  const State& state;                                      ///< of the draw, or that one
   const Draw& draw;
   std::uint32_t command = 0;  ///< index of the draw in Scene::commands
   Viewport viewport;
-  Rect rect;  ///< pixels that the draw may touch
+  Rect rect;    ///< pixels that the draw may touch
+  double band;  ///< where the sides of the guard band cut, pixels on either side of 0; of rectangles with room for them
   ClipPlanes guard_band, view_volume;
   ClipPlanes
       frustum;  ///< the view volume and a pixel around it: what is outside of this snaps to no pixel of the viewport
@@ -95,7 +98,15 @@ void for_each_run(const PointPrimitive& point, int grid_bits, Visit&& visit) {
 /// What is left of one primitive that is not filled.
 struct Outline {
   std::vector<LinePrimitive> lines;
+  std::vector<Triangle> triangles;  ///< of lines that are rectangles: each with a sample's place in its box
   std::vector<PointPrimitive> points;
+
+  void clear() {
+    lines.clear();
+    triangles.clear();
+    points.clear();
+  }
+  [[nodiscard]] std::size_t size() const { return lines.size() + triangles.size() + points.size(); }
 };
 
 /// What the primitives of a draw end as.
@@ -104,6 +115,14 @@ struct Outline {
   if (type != PrimitiveType::triangle || state.polygon_mode == PolygonMode::fill) return type;
   return state.polygon_mode == PolygonMode::line ? PrimitiveType::line : PrimitiveType::point;
 }
+
+/// Whether a draw's lines are rectangles, which are drawn as triangles.
+[[nodiscard]] constexpr bool draws_rectangles(const State& state, Topology topology) {
+  return state.line_rule == LineRule::rectangle && drawn_as(state, topology) == PrimitiveType::line;
+}
+
+/// What those triangles are drawn with. A line has no texture, meets fog at its ends, and shows its front.
+[[nodiscard]] State rectangle_state(State state);
 
 /// The host side of one primitive that is not filled: clip, viewport, cull (of triangles), line_setup or point_raster.
 /// Appends to `out`, counts into `counters`. Cull of triangles looks at the clipped triangle; its edges are then clipped

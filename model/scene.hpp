@@ -33,8 +33,8 @@ enum class ClipZ { minus_one_one, zero_one };
 enum class PixelCenter { half, integer };
 /// The corner that window coordinates count from: top left with y down, or bottom left with y up.
 enum class Origin { top_left, bottom_left };
-/// Which pixels a line covers; see "Lines" in docs/spec.md.
-enum class LineRule { midpoint, bresenham, diamond };
+/// Which pixels a line covers; see "Lines" in docs/spec.md. `rectangle`: the samples of a rectangle about it.
+enum class LineRule { midpoint, bresenham, diamond, rectangle };
 
 /// How a texture's coordinates run over a primitive.
 enum class TextureInterp { perspective, affine };
@@ -146,7 +146,8 @@ struct State {
   std::array<double, 2> polygon_offset{0.0, 0.0};  ///< slope factor, constant in depth LSB; see "Polygon offset"
   LineRule line_rule = LineRule::diamond;
   std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: as the rule has it
-  double line_width = 1;          ///< pixels across the minor axis, at least 1; rounded
+  double line_width = 1;          ///< pixels, at least 1: across the minor axis, rounded; of a rectangle its width
+  bool smooth = false;            ///< of lines, with one sample a pixel: what they cover of a pixel multiplies alpha
   double point_size = 1;          ///< side of the square, pixels, at least 1
   PointShape point_shape = PointShape::square;
   PointClip point_clip = PointClip::pixel;

@@ -177,17 +177,22 @@ inline void draw_point(const DrawContext& context, const Widths& widths, const R
   });
 }
 
-/// Host side and raster of a draw whose primitives end as lines or points.
-inline void draw_outlines(const DrawContext& context, const Widths& widths, VertexCache& cache,
-                          std::uint32_t& primitive, const RenderOptions& options, Rendering& rendering) {
+/// Host side and raster of a draw whose primitives end as lines or points. Calls raster(triangle) for the triangles of
+/// lines that are rectangles.
+template <class Raster>
+void draw_outlines(const DrawContext& context, const Widths& widths, VertexCache& cache, std::uint32_t& primitive,
+                   const RenderOptions& options, Rendering& rendering, Raster&& raster) {
   Outline outline;
   for_each_primitive(context.scene, context.draw, context.state.provoking, [&](const AssembledPrimitive& assembled) {
-    outline.lines.clear();
-    outline.points.clear();
+    outline.clear();
     geometry(context, widths, cache, assembled, primitive++, rendering.counters, outline);
     for (const LinePrimitive& line : outline.lines) {
       draw_line(context, widths, options, line, rendering);
       if (options.keeps_triangles()) rendering.lines.push_back(line.drawn);
+    }
+    for (const Triangle& triangle : outline.triangles) {
+      raster(triangle);
+      if (options.keeps_triangles()) rendering.triangles.push_back(triangle);
     }
     for (const PointPrimitive& point : outline.points) {
       draw_point(context, widths, options, point, rendering);
@@ -254,7 +259,9 @@ Rendering run_commands(const Scene& scene, const Config& config, const RenderOpt
       const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
       const bool is_outline = drawn_as(context.state, draw->topology) != PrimitiveType::triangle;
       started = Clock::now();
-      if (is_outline) draw_outlines(context, widths, cache, primitive, options, rendering);
+      if (is_outline)
+        draw_outlines(context, widths, cache, primitive, options, rendering,
+                      [&](const Triangle& triangle) { raster(context, triangle, index++, rendering); });
       if (is_outline || other_path(context, primitive, rendering)) {
         entries_done += draw->count;
         rendering.raster_s += seconds_since(started);

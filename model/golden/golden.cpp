@@ -150,31 +150,38 @@ class Renderer {
     return intersect(range, {only.x, only.y, only.x + only.width, only.y + only.height});
   }
 
+  [[nodiscard]] double subpixel() const { return std::ldexp(1.0, -config_.subpixel_bits); }
+
   /// One draw, and the primitive of it that is at work.
   struct DrawAtWork {
     const State& state;
     const Viewport vp;
     const std::array<Plane<Real>, 6> planes;
+    const std::array<Plane<Real>, 6> rectangle_planes;  ///< of a smaller guard band: what is beside a line fits in too
     const PixelRange region;
     const std::uint32_t command;
     std::uint32_t primitive = 0;
     Real offset = 0;  ///< polygon offset, window depth
     bool was_cut = false, was_drawn = false;
-    bool is_back = false;  ///< of a filled triangle that shows its back
+    bool is_back = false;       ///< of a filled triangle that shows its back
+    bool is_rectangle = false;  ///< the triangle at work is half of a line
   };
 
   void draw(const Draw& draw, std::uint32_t command) {
     const State& state = scene_.states[draw.state];
     if (state.space == Space::clip) refuse_huge(draw);
     const Viewport vp = viewport_of(scene_, state);
-    DrawAtWork d{state, vp,
-                 clip_planes<Real>(state.clip_z, vp, config_.guard_band - std::ldexp(1.0, -config_.subpixel_bits)),
-                 wanted(draw_region(scene_, state)), command};
+    DrawAtWork d{state,
+                 vp,
+                 clip_planes<Real>(state.clip_z, vp, config_.guard_band - subpixel()),
+                 clip_planes<Real>(state.clip_z, vp, config_.guard_band - 2 * subpixel() - state.line_width / 2),
+                 wanted(draw_region(scene_, state)),
+                 command};
     std::size_t done = 0;
     for_each_primitive(scene_, draw, state.provoking, [&](const Primitive& p) {
       d.primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);
       d.offset = 0;
-      d.was_cut = d.was_drawn = d.is_back = false;
+      d.was_cut = d.was_drawn = d.is_back = d.is_rectangle = false;
       std::array<ClipVertex<Real>, 3> v;
       for (std::size_t i = 0; i < 3; ++i)
         v[i] = vertex(p.index[i], state.shade == Shade::flat ? p.provoking : p.index[i]);
@@ -272,8 +279,12 @@ class Renderer {
   }
 
   void draw_line(ClipVertex<Real> a, ClipVertex<Real> b, DrawAtWork& d) {
-    if (d.state.space == Space::clip && !clip_segment<Real>(a, b, d.planes, d.was_cut)) return;
+    const bool is_smooth = d.state.smooth && samples_ == 1;  // several samples are smooth by themselves
+    const bool is_rectangle = d.state.line_rule == LineRule::rectangle || is_smooth;
+    const auto& planes = is_rectangle ? d.rectangle_planes : d.planes;
+    if (d.state.space == Space::clip && !clip_segment<Real>(a, b, planes, d.was_cut)) return;
     std::array<ScreenVertex<Real>, 2> v{screen(a, d), screen(b, d)};
+    if (is_rectangle) return draw_rectangle(v[0], v[1], is_smooth, d);
     add_outline(v, d);
     d.was_drawn = true;
     for (auto& end : v) {
@@ -290,17 +301,58 @@ class Renderer {
     }
   }
 
+  /// A line as two triangles, whatever side they show, or smooth.
+  void draw_rectangle(ScreenVertex<Real> start, ScreenVertex<Real> end, bool is_smooth, DrawAtWork& d) {
+    for (auto* v : {&start, &end}) add_fog(v->rgba, v->inverse_w, d.state);
+    const auto corners = rectangle_about(start, end, d.state.line_width);
+    if (!corners) return;
+    d.is_rectangle = d.was_drawn = true;
+    const auto& [a, b, c, e] = *corners;
+    for (std::array<ScreenVertex<Real>, 3> v : {std::array{a, b, c}, std::array{c, e, a}}) {
+      add_outline(v, d);
+      for (auto& vertex : v) vertex.z += d.offset;
+      if (!is_smooth && signed_area(v) != 0) rasterize(setup_triangle(v), d);
+    }
+    if (!is_smooth) return;
+    const auto [left, right] = std::minmax({a.x, b.x, c.x, e.x});
+    const auto [top, bottom] = std::minmax({a.y, b.y, c.y, e.y});
+    const PixelRange range = intersect(d.region, pixel_range(left - 1, top - 1, right + 1, bottom + 1, scene_));
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) {
+        const double area = area_in_pixel(*corners, x, y);
+        if (area <= 0) continue;
+        Fragment<Real> fragment = beside(start, end, x, y);
+        fragment.z += d.offset;
+        fragment.rgba[3] *= static_cast<Real>(area);
+        shade(x, y, fragment, d);
+      }
+  }
+
   void draw_point(const ClipVertex<Real>& v, DrawAtWork& d) {
     if (d.state.space == Space::clip && is_outside(v, d.state.clip_z, d.state.point_clip == PointClip::center)) return;
     ScreenVertex<Real> at = screen(v, d);
     add_outline(std::span(&at, 1), d);
     add_fog(at.rgba, at.inverse_w, d.state);
     d.was_drawn = true;
+    if (d.state.smooth && samples_ == 1) return draw_smooth(at, d);
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size, scene_));
     const Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
     for (int y = range.begin_y; y < range.end_y; ++y)
       for (int x = range.begin_x; x < range.end_x; ++x)
         if (point_covers(at, d.state, x, y)) shade(x, y, fragment, d);
+  }
+
+  /// A point whose alpha is multiplied by what it covers of each pixel.
+  void draw_smooth(const ScreenVertex<Real>& at, const DrawAtWork& d) {
+    const PixelRange range = intersect(d.region, point_range(at, d.state.point_size + 2, scene_));
+    for (int y = range.begin_y; y < range.end_y; ++y)
+      for (int x = range.begin_x; x < range.end_x; ++x) {
+        const double area = area_in_pixel(at, d.state, x, y);
+        if (area <= 0) continue;
+        Fragment<Real> fragment{at.z + d.offset, at.rgba, {}};
+        fragment.rgba[3] *= static_cast<Real>(area);
+        shade(x, y, fragment, d);
+      }
   }
 
   void add_outline(std::span<const ScreenVertex<Real>> v, const DrawAtWork& d) {
@@ -392,6 +444,7 @@ class Renderer {
   }
 
   Fragment<Real> with_surface(Fragment<Real> fragment, const DrawAtWork& d) const {
+    if (d.is_rectangle) return fragment;
     if (d.state.texture) {
       const Texture& texture = scene_.textures[*d.state.texture];
       const Color color = combined(widen(fragment.rgba), filtered(texture, d.state, fragment.texture),

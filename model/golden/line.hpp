@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "interpolate.hpp"
 #include "viewport.hpp"
@@ -117,6 +120,65 @@ template <class Real>
   return strand_along(line, is_x_major ? &ScreenVertex<Real>::y : &ScreenVertex<Real>::x, i, count);
 }
 
+/// A line as a rectangle: two corners of the start and two of the end, in order around it, each half of `width` pixels
+/// across the line from its end. Nothing for a line without length.
+template <class Real>
+[[nodiscard]] std::optional<std::array<ScreenVertex<Real>, 4>> rectangle_about(const ScreenVertex<Real>& start,
+                                                                               const ScreenVertex<Real>& end,
+                                                                               double width) {
+  const Real dx = end.x - start.x, dy = end.y - start.y, length = std::hypot(dx, dy);
+  if (!(length > 0)) return std::nullopt;
+  const auto corner = [&, half = static_cast<Real>(width / 2)](ScreenVertex<Real> v, Real side) {
+    v.x -= side * half * dy / length;
+    v.y += side * half * dx / length;
+    return v;
+  };
+  return std::array{corner(start, 1), corner(start, -1), corner(end, -1), corner(end, 1)};
+}
+
+/// The area of a rectangle in pixel (x, y), 0 to 1: what is left of it between the pixel's four sides. Corners go round it.
+template <class Real>
+[[nodiscard]] double area_in_pixel(const std::array<ScreenVertex<Real>, 4>& corners, int x, int y) {
+  struct Point {
+    double x, y;
+  };
+  std::vector<Point> polygon;
+  for (const auto& v : corners) polygon.push_back({static_cast<double>(v.x) - x, static_cast<double>(v.y) - y});
+  const auto keep = [&polygon](auto&& inside) {  // by the distance from a side
+    std::vector<Point> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double from = inside(a), to = inside(b);
+      if (from >= 0) kept.push_back(a);
+      if ((from >= 0) != (to >= 0))
+        kept.push_back({a.x + (b.x - a.x) * from / (from - to), a.y + (b.y - a.y) * from / (from - to)});
+    }
+    polygon = std::move(kept);
+  };
+  keep([](const Point& p) { return p.x; });
+  keep([](const Point& p) { return 1 - p.x; });
+  keep([](const Point& p) { return p.y; });
+  keep([](const Point& p) { return 1 - p.y; });
+  double doubled = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    doubled += a.x * b.y - b.x * a.y;
+  }
+  return std::min(1.0, std::abs(doubled) / 2);
+}
+
+/// The attributes of a line beside a pixel: those of the point of the segment that is nearest to the pixel's centre.
+template <class Real>
+[[nodiscard]] Fragment<Real> beside(const ScreenVertex<Real>& a, const ScreenVertex<Real>& b, int x, int y) {
+  const Real dx = b.x - a.x, dy = b.y - a.y, px = static_cast<Real>(x) + Real(0.5),
+             py = static_cast<Real>(y) + Real(0.5);
+  const Real t = std::clamp(((px - a.x) * dx + (py - a.y) * dy) / (dx * dx + dy * dy), Real(0), Real(1));
+  Fragment<Real> f;
+  f.z = a.z + t * (b.z - a.z);
+  for (std::size_t c = 0; c < 4; ++c) f.rgba[c] = a.rgba[c] + t * (b.rgba[c] - a.rgba[c]);
+  return f;
+}
+
 /// Calls visit(x, y) for the pixels of `range` that lie within `margin` pixels of the line along both axes: one column
 /// of 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a pixel that is covered holds, or
 /// touches, the point in which the line crosses its column or ends in it.
@@ -159,6 +221,37 @@ template <class Real>
   const double x = at.x, y = at.y, half = size / 2;
   if (!std::isfinite(x) || !std::isfinite(y)) return {};
   return pixel_range(x - half, y - half, x + half, y + half, scene);
+}
+
+/// The area that a disc of that radius about the origin has in [x0, x1] x [y0, y1]: the part of it above y0 and below y1,
+/// integrated between the places where its border crosses theirs.
+[[nodiscard]] inline double disc_in_box(double radius, double x0, double x1, double y0, double y1) {
+  x0 = std::clamp(x0, -radius, radius);
+  x1 = std::clamp(x1, -radius, radius);
+  const auto half = [radius](double v) { return std::sqrt(std::max(0.0, radius * radius - v * v)); };
+  const auto integral = [&](double x) {
+    return (x * half(x) + radius * radius * std::asin(std::clamp(x / radius, -1.0, 1.0))) / 2;
+  };
+  std::vector<double> borders{x0, x1};
+  for (const double y : {y0, y1})
+    for (const double x : {-half(y), half(y)}) borders.push_back(std::clamp(x, x0, x1));
+  std::sort(borders.begin(), borders.end());
+  double area = 0;
+  for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
+    const double a = borders[i], b = borders[i + 1], s = half((a + b) / 2), of_disc = integral(b) - integral(a);
+    if (std::min(y1, s) <= std::max(y0, -s)) continue;
+    area += (y1 < s ? y1 * (b - a) : of_disc) - (y0 > -s ? y0 * (b - a) : -of_disc);
+  }
+  return std::clamp(area, 0.0, 1.0);
+}
+
+/// The area of a point in pixel (x, y), 0 to 1.
+template <class Real>
+[[nodiscard]] double area_in_pixel(const ScreenVertex<Real>& at, const State& state, int x, int y) {
+  const double left = x - static_cast<double>(at.x), top = y - static_cast<double>(at.y), r = state.point_size / 2;
+  if (state.point_shape == PointShape::round) return disc_in_box(r, left, left + 1, top, top + 1);
+  const auto shared = [r](double from) { return std::max(0.0, std::min(from + 1, r) - std::max(from, -r)); };
+  return shared(left) * shared(top);
 }
 
 /// Of a pixel of that square: does the point cover it? A round one where its disc holds the centre.

@@ -20,6 +20,14 @@ Vertex cut(const Vertex& in, const Vertex& out, double d_in, double d_out) {
   return v;
 }
 
+/// Cuts a line at a plane that its ends have these distances from. Returns whether anything is left.
+bool cut_line(std::array<Vertex, 2>& line, double d_a, double d_b) {
+  if (d_a < 0 && d_b < 0) return false;
+  if (d_a < 0) line[0] = cut(line[1], line[0], d_b, d_a);
+  if (d_b < 0) line[1] = cut(line[0], line[1], d_a, d_b);
+  return true;
+}
+
 /// One step of Sutherland and Hodgman's reentrant polygon clipping (CACM 17(1), 1974).
 ClipPolygon clip_against(const ClipPlane& plane, const ClipPolygon& polygon) {
   ClipPolygon result;
@@ -55,9 +63,8 @@ ClipPlanes view_volume_planes(ClipZ clip_z, const Viewport& viewport, double mar
 
 double guard_band_limit(const Config& config) { return config.guard_band - std::ldexp(1.0, -config.subpixel_bits); }
 
-ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config) {
+ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, double limit) {
   // Window x = vx + (x/w + 1) vw/2 and y = vy + (1 - y/w) vh/2, both kept in [-limit, limit].
-  const double limit = guard_band_limit(config);
   const double half_width = viewport.width / 2, half_height = viewport.height / 2;
   const double center_x = viewport.x + half_width, center_y = viewport.y + half_height;
   ClipPlanes planes = view_volume_planes(clip_z);
@@ -86,13 +93,17 @@ ClipPolygon clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b, con
 
 std::optional<std::array<Vertex, 2>> clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b) {
   std::array<Vertex, 2> line{a, b};
-  for (const ClipPlane& plane : planes) {
-    const double d_a = distance(plane, line[0]), d_b = distance(plane, line[1]);
-    if (d_a < 0 && d_b < 0) return std::nullopt;
-    if (d_a < 0) line[0] = cut(line[1], line[0], d_b, d_a);
-    if (d_b < 0) line[1] = cut(line[0], line[1], d_a, d_b);
-  }
+  for (const ClipPlane& plane : planes)
+    if (!cut_line(line, distance(plane, line[0]), distance(plane, line[1]))) return std::nullopt;
   if (!(line[0].w > 0 && line[1].w > 0)) return std::nullopt;
+  return line;
+}
+
+std::optional<std::array<Vertex, 2>> clip_to_square(double limit, const Vertex& a, const Vertex& b) {
+  std::array<Vertex, 2> line{a, b};
+  for (double Vertex::*const axis : {&Vertex::x, &Vertex::y})
+    for (const double side : {-1.0, 1.0})
+      if (!cut_line(line, limit - side * line[0].*axis, limit - side * line[1].*axis)) return std::nullopt;
   return line;
 }
 

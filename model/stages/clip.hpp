@@ -37,8 +37,8 @@ struct ClipPolygon {
 /// Where the guard band's sides cut, pixels on either side of 0: the largest snapped coordinate.
 [[nodiscard]] double guard_band_limit(const Config& config);
 
-/// The planes that cut: near, far, and the guard band as seen through `viewport`.
-[[nodiscard]] ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, const Config& config);
+/// The planes that cut: near, far, and the guard band as seen through `viewport`, its sides `limit` pixels from 0.
+[[nodiscard]] ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, double limit);
 
 /// The planes of the view volume.
 [[nodiscard]] ClipPlanes view_volume_planes(ClipZ clip_z);
@@ -61,5 +61,8 @@ struct ClipPolygon {
 
 /// The part of the line inside all planes, from `a` towards `b`; nothing when that leaves no w > 0.
 [[nodiscard]] std::optional<std::array<Vertex, 2>> clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b);
+
+/// The part of a line of window space with both coordinates in [-limit, limit]; nothing when it lies outside.
+[[nodiscard]] std::optional<std::array<Vertex, 2>> clip_to_square(double limit, const Vertex& a, const Vertex& b);
 
 }  // namespace halfplane

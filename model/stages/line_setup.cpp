@@ -159,6 +159,22 @@ void move_to_strand(SnappedVertex& start, SnappedVertex& end, int i, int count, 
   end.*minor += across;
 }
 
+std::optional<std::array<SnappedVertex, 4>> line_rectangle(const SnappedVertex& start, const SnappedVertex& end,
+                                                           double width, int grid_bits) {
+  const double dx = static_cast<double>(end.x) - start.x, dy = static_cast<double>(end.y) - start.y;
+  if (dx == 0 && dy == 0) return std::nullopt;
+  // Half the width in grid steps, by a quarter turn of the direction; rounded alike for both signs.
+  const double scale = std::ldexp(width / 2, grid_bits) / std::sqrt(dx * dx + dy * dy);
+  const auto x = static_cast<std::int32_t>(std::llround(-dy * scale)),
+             y = static_cast<std::int32_t>(std::llround(dx * scale));
+  const auto corner = [x, y](SnappedVertex v, int side) {
+    v.x += side * x;
+    v.y += side * y;
+    return v;
+  };
+  return std::array{corner(start, 1), corner(start, -1), corner(end, -1), corner(end, 1)};
+}
+
 std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVertex& end, LineRule rule,
                                     bool drops_last, const PixelBounds& limit, const Widths& widths) {
   const int s = widths.grid_bits;

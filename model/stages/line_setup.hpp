@@ -20,8 +20,13 @@
 // line moved along the minor axis, after the snap, by i - (N - 1)/2 pixels, 0 <= i < N. Where the rule rounds the ends
 // to pixels a strand lies in whole rows, and of an even N the larger half on the side that grows. No pixel is in two
 // strands, and what is drawn along the line is the same in all of them.
+//
+// Under the rule `rectangle` none of this holds: the line is a rectangle of its width about the segment, ends cut square
+// (OpenGL 4.6, 14.5.4, the multisampled line), drawn as two triangles. Its corners are the snapped ends plus and minus one
+// vector across them, snapped to their grid: an exact parallelogram, whose planes do not change across the line.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "../packets.hpp"
@@ -43,5 +48,12 @@ namespace halfplane {
 
 /// Moves the ends of a line to strand `i` of `count`. They must not leave 31 bits.
 void move_to_strand(SnappedVertex& start, SnappedVertex& end, int i, int count, LineRule rule, int grid_bits);
+
+/// The corners of a line as a rectangle, in order around it: two of the start, two of the end, with the codes of theirs.
+/// Nothing when the ends lie on each other. `width`: pixels, at least 1, which keeps the area from being 0. The line turned
+/// round has the same corners, and the same diagonal from the first to the third.
+[[nodiscard]] std::optional<std::array<SnappedVertex, 4>> line_rectangle(const SnappedVertex& start,
+                                                                         const SnappedVertex& end, double width,
+                                                                         int grid_bits);
 
 }  // namespace halfplane

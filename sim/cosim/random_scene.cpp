@@ -54,7 +54,7 @@ class Generator {
       made += run;
     }
     set_newer();
-    if (has_lines_ || has_points_) set_shapes();
+    if (has_lines_ || has_points_ || config_.line_units == 0) set_shapes();
     set_units();
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
@@ -154,16 +154,32 @@ void Generator::set_newer() {
   for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
 }
 
-/// Wide lines and round points in a third of the draws of either. By random numbers of their own, as above.
+/// Wide lines and round points in a third of the draws of either; rectangles in a third of the draws of lines, and where
+/// the hardware has no unit for lines as edges of triangles; few of rectangles and points are smooth, since that is a
+/// primitive a pixel. By random numbers of their own, as above.
 void Generator::set_shapes() {
-  Random random(seed_ ^ 0x51a9e5u);
-  const int widest = 2 * (config_.guard_band - 1 - std::max(scene_.width, scene_.height));
+  Random random(seed_ ^ 0x51a9e5u), of_rectangles(seed_ ^ 0x2ec7a91eu);
+  const int beside = config_.guard_band - std::max(scene_.width, scene_.height);
+  const int widest = 2 * (beside - 1), widest_rectangle = beside - 3;
   for (const Command& command : scene_.commands) {
     const auto* draw = std::get_if<Draw>(&command);
     if (draw == nullptr) continue;
     State& state = scene_.states[draw->state];
     const PrimitiveType type = drawn_as(state, draw->topology);
-    if (type == PrimitiveType::triangle || random.next() % 3 != 0) continue;
+    const unsigned one_of = type == PrimitiveType::line ? 3 : 24;
+    const bool may_be_rectangle =
+        type == PrimitiveType::line || (type == PrimitiveType::triangle && config_.line_units == 0);
+    if (may_be_rectangle && widest_rectangle >= 1 && of_rectangles.next() % one_of == 0) {
+      if (type == PrimitiveType::triangle) state.polygon_mode = PolygonMode::line;
+      state.line_rule = LineRule::rectangle;
+      state.smooth = of_rectangles.next() % 8 == 0;
+      const auto quarters = static_cast<std::uint64_t>(4 * (widest_rectangle - 1) + 1);
+      state.line_width = 1 + static_cast<double>(of_rectangles.next() % std::min<std::uint64_t>(quarters, 25)) / 4;
+      continue;
+    }
+    if (type == PrimitiveType::triangle) continue;
+    if (type == PrimitiveType::point) state.smooth = of_rectangles.next() % 8 == 0;
+    if (random.next() % 3 != 0) continue;
     if (type == PrimitiveType::line)
       state.line_width = std::min(widest, static_cast<int>(2 + random.next() % 6));
     else
@@ -330,7 +346,7 @@ void Generator::set_colors_over_w() {
 
 void Generator::line_and_point_state(State& s) {
   if (s.depth_test >= DepthFunc::greater) s.depth_write = s.depth_write && lines_raise_;
-  set_any(s, "line_rule");
+  s.line_rule = static_cast<LineRule>(below(3));  // rectangles come later: the stream of numbers stays
   if (chance(0.5)) s.line_last = chance(0.5);
   s.point_size = static_cast<double>(unit_ + (chance(0.4) ? 0 : below(sized(12 * unit_)))) / static_cast<double>(unit_);
 }

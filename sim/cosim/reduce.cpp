@@ -374,7 +374,9 @@ Scene window_scene(const Scene& scene, const Config& config) {
       if (p.state.color_write) clear.color = color(p.vertex.code[0]);
       item.clear = clear;
     } else {
-      const State& drawn = scene.states[std::get<Draw>(scene.commands[sent->command]).state];
+      const Draw& draw = std::get<Draw>(scene.commands[sent->command]);
+      State drawn = scene.states[draw.state];
+      if (draws_rectangles(drawn, draw.topology)) drawn = rectangle_state(drawn);
       for (const DrawState& row : draw_states())
         if (row.home != StateHome::host) row.set(item.state, row.value(drawn));
       item.state.cull = p.cull;  // none where it was clipped

@@ -121,8 +121,10 @@ Scene random_state_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
   for (int d = 0; d < 20; ++d) {
-    scene.states.push_back(
-        random_state(SceneBuilder::window_state(), without_operations(states_but({"space"})), chooser(random)));
+    scene.states.push_back(random_state(SceneBuilder::window_state(),
+                                        without_operations(states_but({"space", "smooth"})), chooser(random)));
+    // The corners of a rectangle do not lie on the grid.
+    if (scene.states.back().line_rule == LineRule::rectangle) scene.states.back().line_rule = LineRule::diamond;
     const double z = random.index(6) / 5.0;  // equal depths meet often
     const std::size_t first = scene.indices.size();
     for (int i = 3 + random.index(6); i > 0; --i) {
@@ -174,7 +176,7 @@ Scene random_clip_scene(std::uint32_t seed) {
     if (random.index(3) == 0) state.depth_range = {random.unit(), random.unit()};
     if (random.index(4) == 0) state.cull = Cull::back;
     state.polygon_mode = static_cast<PolygonMode>(1 + random.index(2));
-    state.line_rule = static_cast<LineRule>(random.index(3));
+    state.line_rule = static_cast<LineRule>(random.index(4));
     state.point_size = 1 + random.index(5);
     state.point_clip = static_cast<PointClip>(random.index(2));
     if (d % 2 == 1) state.line_width = 1 + random.index(4);

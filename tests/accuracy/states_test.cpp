@@ -23,7 +23,10 @@ Scene random_window_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
   for (int d = 0; d < 24; ++d) {
-    scene.states.push_back(random_state(SceneBuilder::window_state(), states_but({"space"}), chooser(random)));
+    scene.states.push_back(
+        random_state(SceneBuilder::window_state(), states_but({"space", "smooth"}), chooser(random)));
+    // The corners of a rectangle do not lie on the grid.
+    if (scene.states.back().line_rule == LineRule::rectangle) scene.states.back().line_rule = LineRule::diamond;
     const auto state = static_cast<std::uint32_t>(scene.states.size() - 1);
     if (random.index(8) == 0) {
       Clear clear{state, {}, {}};

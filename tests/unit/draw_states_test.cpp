@@ -288,7 +288,7 @@ TEST(DrawStates, RandomScenesOfCosimHaveEveryValueThatRidesWithThePrimitive) {
     if (row.home == StateHome::primitive) rows.push_back(&row);
   EXPECT_EQ(seen.missing(rows), "");
   EXPECT_EQ(seen.missing(states_named(
-                {"shade", "scissor", "line_rule", "line_last", "line_width", "point_size", "point_shape"})),
+                {"shade", "scissor", "line_rule", "line_last", "line_width", "smooth", "point_size", "point_shape"})),
             "");
 }
 

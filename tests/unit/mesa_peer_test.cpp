@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -25,9 +26,10 @@ constexpr int kWidth = 96, kHeight = 64;
 
 class MesaPeerTest : public testing::Test {
  protected:
-  void start(int depth_bits) {
-    peer_ = std::make_unique<MesaPeer>(kWidth, kHeight, depth_bits, 1);
+  void start(int depth_bits, int samples = 1) {
+    peer_ = std::make_unique<MesaPeer>(kWidth, kHeight, depth_bits, 1, samples);
     depth_bits_ = depth_bits;
+    samples_ = samples;
   }
 
   void SetUp() override {
@@ -46,6 +48,12 @@ class MesaPeerTest : public testing::Test {
     const std::vector<std::uint32_t> there = peer_->color();
     Config config = preset("full");
     config.depth_bits = depth_bits_;  // the unit of polygon_offset
+    config.msaa_samples = samples_;
+    if (samples_ > 1) {
+      config.stamp_size = 2;  // no matter to a picture
+      // Its rows go up, and so do the places in a pixel.
+      config.msaa_pattern = parse_sample_pattern("0.375,0.875;0.875,0.625;0.125,0.375;0.625,0.125");
+    }
     const Picture here = color_picture(render_functional(scene, config).frame, config.color_format);
     EXPECT_EQ(there.size() * 3, here.rgb.size());
     int count = 0;
@@ -66,7 +74,7 @@ class MesaPeerTest : public testing::Test {
   }
 
   std::unique_ptr<MesaPeer> peer_;
-  int depth_bits_ = 0;
+  int depth_bits_ = 0, samples_ = 1;
   std::array<unsigned long long, 4> pixels_{};
 };
 
@@ -115,6 +123,26 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
     text.append("state ").append(state).append("\n").append(clip).append("t 0 1 2\n");
     EXPECT_LE(differing(read_capture(text, "clip.hpt")), 12) << state;
   }
+}
+
+// llvmpipe has the standard places of four samples, and draws lines with several samples as rectangles. One colour: with
+// several samples its colours are those of a place beside the pixel's centre.
+TEST_F(MesaPeerTest, RectanglesOfLinesHaveTheSameSamples) {
+  start(24, 4);
+  for (const char* width : {"1", "1.5", "2", "3", "7.25"}) {
+    std::string text =
+        "halfplane 1\ntarget 96 64\nclear color 20 20 30 255 depth 1\nspace window\nstate depth_test always\n";
+    for (int i = 0; i < 16; ++i) {
+      const double angle = 0.1 + i * 0.39;
+      text += "v 48.3 32.2 0.5 1 250 200 60 255\nv " + std::to_string(48.3 + 29 * std::cos(angle)) + " " +
+              std::to_string(32.2 + 29 * std::sin(angle)) + " 0.5 1 250 200 60 255\n";
+    }
+    text.append("state line_rule rectangle\nstate line_width ").append(width).append("\n");
+    for (int i = 0; i < 16; ++i) text += "l " + std::to_string(2 * i) + " " + std::to_string(2 * i + 1) + "\n";
+    text += "ls 1 5 9 13 17\n";
+    EXPECT_LE(differing(read_capture(text, "rectangles.hpt")), 12) << width;
+  }
+  report("rectangles");
 }
 
 // Every factor and equation, masks, alpha and stencil, over three triangles that lie over each other.

@@ -362,7 +362,8 @@ void FrameRenderer::draw(std::uint32_t command) {
   }
   // The lanes take lines of one pixel that have their own colours: the host side fogs their ends.
   const State& state = scene_->states[draw.state];
-  const bool is_plain = type != PrimitiveType::line || (!state.fog && strands_of(state.line_width) == 1);
+  const bool is_thin = state.line_rule != LineRule::rectangle && !state.smooth && strands_of(state.line_width) == 1;
+  const bool is_plain = type != PrimitiveType::line || (!state.fog && is_thin);
   if (is_prepared && is_plain) return draw_prepared(command);
   open_ = nullptr;
   draw_outlines(contexts_.emplace_back(*scene_, config_, draw, command));

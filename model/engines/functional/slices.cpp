@@ -31,6 +31,19 @@ void add_record(Slice& slice, const Record& record, std::size_t room) {
   slice.records[slice.record_count++] = record;
 }
 
+/// Appends a triangle of the host side, if there is a pixel centre in its box.
+void add_triangle(Slice& slice, const Triangle& triangle, const Rect& rect, int grid_bits, std::size_t room) {
+  const PixelBounds box =
+      pixel_bounds(triangle.v, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}, grid_bits);
+  if (box.is_empty()) return;
+  const auto first = static_cast<std::uint32_t>(slice.vertices.size());
+  for (const SnappedVertex& v : triangle.v) slice.vertices.push_back(row_of(v));
+  if (slice.state.has_surface)
+    slice.surface.insert(slice.surface.end(), triangle.surface.begin(), triangle.surface.end());
+  const auto [low, high] = std::minmax({triangle.v[0].depth(), triangle.v[1].depth(), triangle.v[2].depth()});
+  add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), room);
+}
+
 /// A triangle that needs the clipper, or whose vertex is refused: the host side's function, message included.
 void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t triangle) {
   const Scene& scene = frame.prepared.scene();
@@ -42,17 +55,8 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
   const std::size_t at = part.first + triangle;
   geometry(context, cache, {index[0][at], index[1][at], index[2][at]},
            part.primitive + static_cast<std::uint32_t>(triangle), frame.skip, slice.counters, pieces);
-  const Rect& rect = context.rect;
-  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
-  for (const Triangle& piece : pieces) {
-    const PixelBounds box = pixel_bounds(piece.v, limit, frame.widths.grid_bits);
-    if (box.is_empty()) continue;
-    const auto first = static_cast<std::uint32_t>(slice.vertices.size());
-    for (const SnappedVertex& v : piece.v) slice.vertices.push_back(row_of(v));
-    if (slice.state.has_surface) slice.surface.insert(slice.surface.end(), piece.surface.begin(), piece.surface.end());
-    const auto [low, high] = std::minmax({piece.v[0].depth(), piece.v[1].depth(), piece.v[2].depth()});
-    add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), slice.triangles);
-  }
+  for (const Triangle& piece : pieces)
+    add_triangle(slice, piece, context.rect, frame.widths.grid_bits, slice.triangles);
 }
 
 /// What of a slice's vertices lives over w.
@@ -83,7 +87,8 @@ PixelBounds line_box(const LineSetup& line) {
 }
 
 /// Appends what the host side has made of a line or point.
-void add_outline(Slice& slice, const Outline& outline, int grid_bits, std::size_t room) {
+void add_outline(Slice& slice, const Outline& outline, const Rect& rect, int grid_bits, std::size_t room) {
+  for (const Triangle& triangle : outline.triangles) add_triangle(slice, triangle, rect, grid_bits, room);
   for (const LinePrimitive& line : outline.lines) {
     const auto [low, high] = std::minmax({line.drawn.start.depth(), line.drawn.end.depth()});
     const auto at = static_cast<std::uint32_t>(slice.lines.size());
@@ -110,7 +115,7 @@ void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part
   const std::uint32_t start = frame.prepared.index[0][at], end = frame.prepared.index[1][at];
   geometry(context, frame.widths, cache, {PrimitiveType::line, {start, end, end}},
            part.primitive + static_cast<std::uint32_t>(line), slice.counters, outline);
-  add_outline(slice, outline, frame.widths.grid_bits, slice.triangles);
+  add_outline(slice, outline, context.rect, frame.widths.grid_bits, slice.triangles);
 }
 
 }  // namespace
@@ -185,10 +190,9 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   Outline outline;
   std::uint32_t number = slice.parts.front().primitive;
   for (const AssembledPrimitive& assembled : slice.outlines) {
-    outline.lines.clear();
-    outline.points.clear();
+    outline.clear();
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
-    add_outline(slice, outline, widths_.grid_bits, 0);
+    add_outline(slice, outline, context.rect, widths_.grid_bits, 0);
   }
 }
 

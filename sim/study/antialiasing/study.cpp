@@ -20,16 +20,29 @@ struct Kind {
   std::string name;
   int msaa = 1;
   std::optional<SupersampleGrid> grid;
-  [[nodiscard]] int samples() const { return grid ? grid->side * grid->side : msaa; }
+  bool is_smooth = false;
+  [[nodiscard]] int samples() const { return is_smooth ? 0 : grid ? grid->side * grid->side : msaa; }
 };
 
-std::vector<Kind> kinds() {
+std::vector<Kind> kinds(const Scene& scene) {
   std::vector<Kind> list;
   for (const int samples : {1, 2, 4, 8})
     list.push_back({samples == 1 ? "1 sample" : "msaa " + std::to_string(samples), samples, {}});
   for (const char* grid : {"2x2", "2x2:rotated", "4x4", "4x4:rotated"})
     list.push_back({"supersample " + std::string(grid), 1, parse_supersample(grid)});
+  const bool has_lines =
+      std::ranges::any_of(scene.states, [](const State& state) { return state.line_rule == LineRule::rectangle; });
+  if (has_lines) list.push_back({"smooth", 1, {}, true});
   return list;
+}
+
+/// The scene with its lines smooth, laid over what is there by alpha.
+Scene smooth(Scene scene) {
+  for (State& state : scene.states) {
+    state.smooth = true;
+    state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha};
+  }
+  return scene;
 }
 
 /// How much of a pixel is white, 0 to 1, in the stored format.
@@ -59,7 +72,7 @@ void judge(const Framebuffer& frame, ColorFormat format, const std::vector<doubl
 class Frames {
  public:
   Frames(const Scene& scene, const Config& config, const Kind& kind)
-      : scene_(scene), kind_(kind), config_(config), engine_(config) {}
+      : scene_(kind.is_smooth ? smooth(scene) : scene), kind_(kind), config_(config), engine_(config) {}
 
   Rendering draw() {
     if (!kind_.grid) return engine_.render(scene_);
@@ -67,7 +80,7 @@ class Frames {
   }
 
  private:
-  const Scene& scene_;
+  Scene scene_;
   const Kind& kind_;
   Config config_;
   FunctionalEngine engine_;
@@ -93,6 +106,32 @@ Scene blades(int width, int height, std::uint64_t seed) {
   return std::move(builder.scene);
 }
 
+Scene spokes(int width, int height, std::uint64_t seed) {
+  Random random(seed);
+  SceneBuilder builder(width, height);
+  builder.scene.states.clear();
+  builder.scene.commands.clear();
+  State state = SceneBuilder::window_state();
+  state.line_rule = LineRule::rectangle;
+  const double cx = width / 2.0, cy = height / 2.0, longest = std::min(width, height) * 0.48;
+  constexpr int kSpokes = 64, kWidths = 4;
+  for (std::uint32_t k = 0; k < kWidths; ++k) {
+    state.line_width = 1 + k;
+    builder.scene.states.push_back(state);
+    if (k == 0) builder.scene.commands.push_back(Clear{0, std::array<double, 4>{0, 0, 0, 255}, 1.0});
+    builder.scene.commands.push_back(
+        Draw{k, 0, Topology::lines, builder.scene.indices.size(), 2 * kSpokes / kWidths, 0});
+    for (int i = static_cast<int>(k); i < kSpokes; i += kWidths) {
+      const double angle = (i + 0.3 * random.uniform(0, 1)) * 2 * std::acos(-1.0) / kSpokes;
+      for (const double radius : {longest * 0.4, longest}) {
+        builder.scene.indices.push_back(static_cast<std::uint32_t>(builder.scene.vertices.size()));
+        builder.scene.vertices.push_back(at(cx + radius * std::cos(angle), cy + radius * std::sin(angle)));
+      }
+    }
+  }
+  return std::move(builder.scene);
+}
+
 AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
                         const std::function<void(double)>& progress) {
   using Clock = std::chrono::steady_clock;
@@ -102,7 +141,7 @@ AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
   const auto area = covered_areas(render_functional(scene, config, options).triangles, scene.width, scene.height,
                                   derive_widths(config).grid_bits);
   study.edge_pixels = static_cast<std::size_t>(std::ranges::count_if(area, [](double a) { return a > 0 && a < 1; }));
-  const std::vector<Kind> list = kinds();
+  const std::vector<Kind> list = kinds(scene);
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Kind& kind = list[i];
     Config own = config;

@@ -13,8 +13,8 @@ namespace halfplane::antialiasing {
 
 /// One kind on one scene.
 struct AreaRow {
-  std::string kind;       ///< "1 sample", "msaa 4", "supersample 2x2:rotated"
-  int samples = 1;        ///< places of a pixel that are looked at
+  std::string kind;       ///< "1 sample", "msaa 4", "supersample 2x2:rotated"; of lines "smooth" too
+  int samples = 1;        ///< places of a pixel that are looked at; 0: none, smooth lines have the area
   double frame_s = 0;     ///< the median, functional engine, one thread
   double max = 0;         ///< the largest |shown - exact|, parts of a pixel
   double rms = 0;         ///< over the pixels that are covered in part
@@ -30,7 +30,11 @@ struct AreaStudy {
 /// White blades on black round the middle of the target, none over another, from half a circle's sixteenth to a hair wide.
 [[nodiscard]] Scene blades(int width, int height, std::uint64_t seed);
 
-/// Every kind: 1, 2, 4 and 8 samples, supersampling 2x2 and 4x4 in rows and turned; as long as `config` takes them. `repeat`
+/// White lines on black as rectangles, 1 to 4 pixels wide, round the middle of the target, none over another.
+[[nodiscard]] Scene spokes(int width, int height, std::uint64_t seed);
+
+/// Every kind: 1, 2, 4 and 8 samples, supersampling 2x2 and 4x4 in rows and turned, and smooth where there are lines; as long
+/// as `config` takes them. The scene has no triangle beside those of rectangles, or no line. `repeat`
 /// frames are measured of each.
 [[nodiscard]] AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
                                       const std::function<void(double)>& progress);

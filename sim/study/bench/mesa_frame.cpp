@@ -47,20 +47,6 @@ Shaders shaders_of(const State& state, bool has_texture, bool has_alpha) {
   throw InputError("llvmpipe: has no " + what + "; leave llvmpipe out for this scene");
 }
 
-void check_draw_state(const State& state, Topology topology) {
-  if (state.origin != Origin::top_left) refuse("origin bottom_left");
-  if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
-  const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
-  if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
-  const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
-  if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)
-    refuse("point_shape round");
-  if (!is_line) return;
-  if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");
-  if (state.line_rule == LineRule::bresenham) refuse("line_rule bresenham");
-  if (state.line_last.value_or(false)) refuse("line_last on");
-}
-
 // Draws of one list after another are one list.
 bool continues(const Draw& last, const Draw& next) {
   const std::size_t step = last.topology == Topology::triangles ? 3 : last.topology == Topology::lines ? 2 : 0;
@@ -106,15 +92,17 @@ gl::Enum mode_of(Topology topology) {
 
 }  // namespace
 
-MesaFrame::MesaFrame(int width, int height, int depth_bits)
-    : gl_(gl::start_osmesa()), width_(width), height_(height), depth_bits_(depth_bits) {
-  make_target();
+MesaFrame::MesaFrame(int width, int height, int depth_bits, int samples)
+    : gl_(gl::start_osmesa()), width_(width), height_(height), depth_bits_(depth_bits), samples_(samples) {
+  resolved_ = make_target(1);
+  drawn_ = samples > 1 ? make_target(samples) : resolved_;
   gl_.disable(gl::kDither);
   gl_.enable(gl::kDepthTest);
   gl_.primitive_restart_index(kRestart);
 }
 
-void MesaFrame::make_target() {
+/// A new framebuffer, which is bound from here on.
+gl::Name MesaFrame::make_target(int samples) const {
   gl::Name framebuffer = 0;
   std::array<gl::Name, 2> buffers{};
   gl_.gen_framebuffers(1, &framebuffer);
@@ -126,11 +114,15 @@ void MesaFrame::make_target() {
                                             has_stencil ? gl::kDepthStencilAttachment : gl::kDepthAttachment};
   for (std::size_t i = 0; i < 2; ++i) {
     gl_.bind_renderbuffer(gl::kRenderbuffer, buffers[i]);
-    gl_.renderbuffer_storage(gl::kRenderbuffer, formats[i], width_, height_);
+    if (samples > 1)
+      gl_.renderbuffer_storage_multisample(gl::kRenderbuffer, samples, formats[i], width_, height_);
+    else
+      gl_.renderbuffer_storage(gl::kRenderbuffer, formats[i], width_, height_);
     gl_.framebuffer_renderbuffer(gl::kFramebuffer, attachments[i], gl::kRenderbuffer, buffers[i]);
   }
   if (gl_.check_framebuffer_status(gl::kFramebuffer) != gl::kComplete)
     throw std::runtime_error("llvmpipe: has no target of this size; give a smaller --size");
+  return framebuffer;
 }
 
 gl::Name MesaFrame::program_of(const State& state) {
@@ -171,6 +163,24 @@ void MesaFrame::make_vertices(const Scene& scene, Space space) {
                   coordinates.data(), gl::kStaticDraw);
   gl_.vertex_attrib_pointer(2, 2, gl::kFloat, 0, sizeof(PeerCoordinates), 0);
   gl_.enable_vertex_attrib_array(2);
+}
+
+void MesaFrame::check_draw_state(const State& state, Topology topology) const {
+  if (state.origin != Origin::top_left) refuse("origin bottom_left");
+  if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
+  const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
+  if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
+  const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
+  if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)
+    refuse("point_shape round");
+  if (drawn_as(state, topology) != PrimitiveType::triangle && state.smooth && samples_ == 1)
+    refuse("smooth as an exact area");
+  if (!is_line) return;
+  if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");
+  if (state.line_rule == LineRule::bresenham) refuse("line_rule bresenham");
+  if (state.line_rule == LineRule::rectangle && samples_ == 1) refuse("line_rule rectangle with one sample a pixel");
+  if (state.line_rule != LineRule::rectangle && samples_ > 1) refuse("thin lines with several samples a pixel");
+  if (state.line_last.value_or(false)) refuse("line_last on");
 }
 
 void MesaFrame::add_draw(const Scene& scene, const Draw& draw) {
@@ -276,6 +286,7 @@ void MesaFrame::clear(const Call& call) const {
 }
 
 void MesaFrame::render() {
+  gl_.bind_framebuffer(gl::kFramebuffer, drawn_);
   for (const Call& call : calls_) {
     if (call.is_clear) {
       clear(call);
@@ -285,6 +296,13 @@ void MesaFrame::render() {
     call.has_restart ? gl_.enable(gl::kPrimitiveRestart) : gl_.disable(gl::kPrimitiveRestart);
     gl_.draw_elements(mode_of(call.draw.topology), static_cast<int>(call.draw.count), gl::kUnsignedInt,
                       call.draw.first * sizeof(std::uint32_t));
+  }
+  if (drawn_ != resolved_) {
+    gl_.bind_framebuffer(gl::kReadFramebuffer, drawn_);
+    gl_.bind_framebuffer(gl::kDrawFramebuffer, resolved_);
+    gl_.disable(gl::kScissorTest);
+    gl_.blit_framebuffer(0, 0, width_, height_, 0, 0, width_, height_, gl::kColorBuffer, gl::kNearest);
+    gl_.bind_framebuffer(gl::kFramebuffer, resolved_);
   }
   gl_.finish();
   if (const gl::Enum error = gl_.get_error(); error != 0)

@@ -14,8 +14,9 @@ namespace halfplane {
 /// One per process: OSMesa's context and its threads cannot be taken down again.
 class MesaFrame {
  public:
-  /// Throws std::runtime_error when libOSMesa is missing or too old, or cannot make a target of that size.
-  MesaFrame(int width, int height, int depth_bits);
+  /// `samples` of a pixel. Throws std::runtime_error when libOSMesa is missing or too old, or cannot make a target of that
+  /// size.
+  MesaFrame(int width, int height, int depth_bits, int samples);
 
   /// Vertices in binary32, colours in RGBA8, draws merged. Throws InputError for a state that OpenGL does not have.
   void upload(const Scene& scene);
@@ -23,7 +24,7 @@ class MesaFrame {
   /// Every command of the scene, and waits for the last pixel. Throws std::runtime_error for an error of OpenGL.
   void render();
 
-  /// RGBA8, R in the low byte, rows from the top.
+  /// RGBA8, R in the low byte, rows from the top; of several samples their mean.
   [[nodiscard]] std::vector<std::uint32_t> color() const;
 
   /// GL_RENDERER: the rasterizer, its vector width and its compiler.
@@ -38,7 +39,8 @@ class MesaFrame {
     gl::Name program = 0, texture = 0;
   };
 
-  void make_target();
+  [[nodiscard]] gl::Name make_target(int samples) const;
+  void check_draw_state(const State& state, Topology topology) const;
   [[nodiscard]] gl::Name program_of(const State& state);
   void make_vertices(const Scene& scene, Space space);
   void add_draw(const Scene& scene, const Draw& draw);
@@ -47,7 +49,8 @@ class MesaFrame {
   void clear(const Call& call) const;
 
   gl::Functions gl_;
-  int width_, height_, depth_bits_;
+  int width_, height_, depth_bits_, samples_;
+  gl::Name drawn_ = 0, resolved_ = 0;         // targets; the same one where a pixel has one sample
   std::map<std::string, gl::Name> programs_;  // by the source of their shaders
   std::vector<gl::Name> textures_;            // of the scene
   std::vector<bool> have_alpha_;              // likewise

@@ -103,10 +103,12 @@ void find_work_functions(const Finder& find, Functions& f) {
   find(f.gen_renderbuffers, "glGenRenderbuffers");
   find(f.bind_renderbuffer, "glBindRenderbuffer");
   find(f.renderbuffer_storage, "glRenderbufferStorage");
+  find(f.renderbuffer_storage_multisample, "glRenderbufferStorageMultisample");
   find(f.gen_framebuffers, "glGenFramebuffers");
   find(f.bind_framebuffer, "glBindFramebuffer");
   find(f.framebuffer_renderbuffer, "glFramebufferRenderbuffer");
   find(f.check_framebuffer_status, "glCheckFramebufferStatus");
+  find(f.blit_framebuffer, "glBlitFramebuffer");
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ inline constexpr Enum kRenderer = 0x1f01;
 inline constexpr Enum kArrayBuffer = 0x8892, kElementBuffer = 0x8893, kStaticDraw = 0x88e4;
 inline constexpr Enum kFragmentShader = 0x8b30, kVertexShader = 0x8b31, kCompiled = 0x8b81, kLinked = 0x8b82;
 inline constexpr Enum kFramebuffer = 0x8d40, kRenderbuffer = 0x8d41, kComplete = 0x8cd5;
+inline constexpr Enum kReadFramebuffer = 0x8ca8, kDrawFramebuffer = 0x8ca9;
 inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00, kDepthStencilAttachment = 0x821a;
 
 // OSMesaCreateContextAttribs; each is followed by its value, the list ends with 0.
@@ -96,10 +97,12 @@ struct Functions {
   void (*gen_renderbuffers)(int, Name*);
   void (*bind_renderbuffer)(Enum, Name);
   void (*renderbuffer_storage)(Enum, Enum, int, int);
+  void (*renderbuffer_storage_multisample)(Enum, int, Enum, int, int);
   void (*gen_framebuffers)(int, Name*);
   void (*bind_framebuffer)(Enum, Name);
   void (*framebuffer_renderbuffer)(Enum, Enum, Enum, Name);
   Enum (*check_framebuffer_status)(Enum);
+  void (*blit_framebuffer)(int, int, int, int, int, int, int, int, Enum, Enum);
 };
 
 /// Loads libOSMesa, makes a context current for the rest of the process and finds the functions. Throws

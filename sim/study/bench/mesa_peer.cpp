@@ -71,8 +71,8 @@ void serve(int socket, MesaFrame& frame) {
 
 }  // namespace
 
-MesaPeer::MesaPeer(int width, int height, int depth_bits, int threads)
-    : width_(width), height_(height), depth_bits_(depth_bits), threads_(threads) {
+MesaPeer::MesaPeer(int width, int height, int depth_bits, int threads, int samples)
+    : width_(width), height_(height), depth_bits_(depth_bits), threads_(threads), samples_(samples) {
   start(nullptr);
 }
 
@@ -91,7 +91,7 @@ void MesaPeer::start(const Scene* scene) {
     try {
       setenv("LP_NUM_THREADS", std::to_string(worker_threads(threads_)).c_str(), 1);
       setenv("GALLIUM_DRIVER", "llvmpipe", 1);
-      MesaFrame frame(width_, height_, depth_bits_);
+      MesaFrame frame(width_, height_, depth_bits_, samples_);
       if (scene != nullptr) frame.upload(*scene);
       const std::string name = frame.name();
       send_answer(sockets[1], AnswerKind::ok, name.data(), name.size());

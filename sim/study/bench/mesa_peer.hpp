@@ -17,9 +17,9 @@ namespace halfplane {
 /// the caller's to refuse.
 class MesaPeer {
  public:
-  /// `threads` is how many cores may work at a time. Throws std::runtime_error that names the package libosmesa6 when
+  /// `threads` is how many cores may work at a time; `samples` of a pixel, 1 or 4. Throws std::runtime_error that names the package libosmesa6 when
   /// libOSMesa cannot be loaded.
-  MesaPeer(int width, int height, int depth_bits, int threads);
+  MesaPeer(int width, int height, int depth_bits, int threads, int samples = 1);
   ~MesaPeer();
   MesaPeer(const MesaPeer&) = delete;
   MesaPeer& operator=(const MesaPeer&) = delete;
@@ -46,7 +46,7 @@ class MesaPeer {
   [[nodiscard]] std::vector<char> ask(char request);
   [[nodiscard]] std::vector<char> answer();
 
-  int width_, height_, depth_bits_, threads_;
+  int width_, height_, depth_bits_, threads_, samples_;
   int socket_ = -1, process_ = -1;
   bool has_scene_ = false;
   std::string name_;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "line_coverage.hpp"
 #include "model/golden/exact.hpp"
 #include "model/golden/viewport.hpp"
+#include "model/pipeline.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane {
@@ -88,12 +90,21 @@ class OracleCheck {
   OracleResult result_;
 };
 
-/// Marks in `near` the pixels of `wanted` whose centre is within `reach` pixels of the segment a - b.
+/// Marks in `near` the pixels of `wanted` whose centre is within reach, pixels, of the border of an outline.
 class EdgeMarker {
  public:
-  EdgeMarker(int width, int height, double reach, const std::vector<bool>& wanted)
-      : near(wanted.size()), width_(width), height_(height), reach_(reach), wanted_(wanted) {}
+  EdgeMarker(int width, int height, const std::vector<bool>& wanted)
+      : near(wanted.size()), width_(width), height_(height), wanted_(wanted) {}
 
+  void mark(const golden::Outline& triangle, double reach) {
+    reach_ = reach;
+    const auto &x = triangle.x, &y = triangle.y;
+    for (std::size_t i = 0; i < 3; ++i) mark(x[i], y[i], x[(i + 1) % 3], y[(i + 1) % 3]);
+  }
+
+  std::vector<bool> near;
+
+ private:
   void mark(double ax, double ay, double bx, double by) {
     if (by < ay) {
       std::swap(ax, bx);
@@ -116,9 +127,6 @@ class EdgeMarker {
     }
   }
 
-  std::vector<bool> near;
-
- private:
   /// From the point p to the segment 0 - d.
   static double distance(double px, double py, double dx, double dy) {
     const double length2 = dx * dx + dy * dy;
@@ -127,9 +135,16 @@ class EdgeMarker {
   }
 
   int width_, height_;
-  double reach_;
+  double reach_ = 0;
   const std::vector<bool>& wanted_;
 };
+
+/// How far the snap may move a corner of a rectangle, one of whose halves is the outline: the end by the half diagonal of
+/// a step, what lies across it by as much, and with the ends it turns.
+double reach_of_rectangle(const golden::Outline& half, double width, double step) {
+  const double length = std::hypot(half.x[2] - half.x[1], half.y[2] - half.y[1]);
+  return std::min(std::numbers::sqrt2 * step * (1 + width / length), width + 2 * step);
+}
 
 }  // namespace
 
@@ -210,13 +225,17 @@ PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> 
   if (result.missing + result.extra == 0) return result;
   // A sample lies up to half a pixel's diagonal from its centre, to which distances are.
   const double to_sample = golden.samples.empty() ? 0 : std::sqrt(0.5);
-  EdgeMarker marker(golden.width, golden.height, std::ldexp(1.0, -subpixel_bits) + to_sample, differs);
+  const double step = std::ldexp(1.0, -subpixel_bits);
+  EdgeMarker marker(golden.width, golden.height, differs);
   for (const golden::Outline& o : golden.outlines) {
+    const Draw& draw = std::get<Draw>(scene.commands[o.draw]);
+    const State& state = scene.states[draw.state];
     if (o.corners < 3)
-      mark_uncertain(o, scene.states[std::get<Draw>(scene.commands[o.draw]).state], subpixel_bits, golden, differs,
-                     marker.near);
+      mark_uncertain(o, state, subpixel_bits, golden, differs, marker.near);
+    else if (drawn_as(state, draw.topology) == PrimitiveType::line)  // half of one; smooth, it covers parts of pixels
+      marker.mark(o, reach_of_rectangle(o, state.line_width, step) + (state.smooth ? std::sqrt(0.5) : to_sample));
     else
-      for (std::size_t i = 0; i < 3; ++i) marker.mark(o.x[i], o.y[i], o.x[(i + 1) % 3], o.y[(i + 1) % 3]);
+      marker.mark(o, step + to_sample);
   }
   for (std::size_t p = 0; p < model.size(); ++p)
     if (marker.near[p]) result.near_edge += difference(golden.count[p], model[p]);

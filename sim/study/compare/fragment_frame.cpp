@@ -26,8 +26,8 @@ std::array<std::uint8_t, 4> color_of(const TappedFragment& fragment) {
 
 std::uint32_t alpha_of(const TappedFragment& fragment) { return color_of(fragment)[3]; }
 
-bool shows_back(const TappedFragment& fragment, const State& state) {
-  if (!state.stencil || fragment.triangle == nullptr) return false;
+bool shows_back(const TappedFragment& fragment, const State& state, Topology topology) {
+  if (!state.stencil || fragment.triangle == nullptr || draws_rectangles(state, topology)) return false;
   const auto& v = fragment.triangle->v;
   return halfplane::shows_back(signed_area(v[0], v[1], v[2]), state.front);
 }
@@ -49,7 +49,8 @@ void FragmentFrame::add(const TappedFragment& fragment) {
   const bool is_in_target =
       fragment.x >= 0 && fragment.x < scene_.width && fragment.y >= 0 && fragment.y < scene_.height;
   if (!is_in_target) return;  // the judge of coverage has counted it
-  const State& state = scene_.states[std::get<Draw>(scene_.commands[fragment.draw]).state];
+  const Draw& draw = std::get<Draw>(scene_.commands[fragment.draw]);
+  const State& state = scene_.states[draw.state];
   const std::size_t p = pixel_of(scene_, fragment.x, fragment.y);
   const auto owner = static_cast<std::int32_t>(fragment.primitive);
   const bool has_samples = config_.msaa_samples > 1;
@@ -58,7 +59,7 @@ void FragmentFrame::add(const TappedFragment& fragment) {
   const bool is_drawn_by_alpha = !has_samples || !state.alpha_to_coverage ||
                                  sample_ < static_cast<int>(std::floor(alpha / 255 * config_.msaa_samples + 0.5));
   const golden::Tested<double> tested{static_cast<double>(depth_encode_(fragment.plane[kDepthPlane].code)), alpha,
-                                      shows_back(fragment, state), is_drawn_by_alpha};
+                                      shows_back(fragment, state, draw.topology), is_drawn_by_alpha};
   const golden::Fate fate = pixels_.apply(p, state, tested, {}, owner);
   // Of several lines or points of one primitive that store the same there, the last stands for all.
   const bool is_another = !fate.written && fragment.kind != PrimitiveKind::triangle && pixels_.owners()[p] == owner &&

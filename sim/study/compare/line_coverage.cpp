@@ -161,7 +161,8 @@ void check_line_coverage(const Scene& scene, const Config& config, const Renderi
 
 void mark_uncertain(const golden::Outline& outline, const State& state, int subpixel_bits, const golden::Image& image,
                     const std::vector<bool>& wanted, std::vector<bool>& near) {
-  const double reach = std::ldexp(1.0, -subpixel_bits);
+  // What is smooth covers parts of pixels, up to half a diagonal from their centres.
+  const double reach = std::ldexp(1.0, -subpixel_bits) + (state.smooth && image.samples.empty() ? std::sqrt(0.5) : 0);
   const golden::PixelRange target{0, 0, image.width, image.height};
   const auto index = [&image](int x, int y) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);

@@ -6,6 +6,7 @@
 #include "figures.hpp"
 #include "model/engines/commands.hpp"
 #include "model/engines/render.hpp"
+#include "model/stages/smooth_raster.hpp"
 #include "operations.hpp"
 
 namespace halfplane::explain {
@@ -14,6 +15,11 @@ namespace {
 struct Point {
   double x = 0, y = 0;  ///< pixels
 };
+
+bool draws_smooth(const DrawContext& context) {
+  return drawn_as(context.state, context.draw.topology) != PrimitiveType::triangle &&
+         is_smooth(context.state, context.config);
+}
 
 /// Distance from the segment.
 double distance_to(const Point& a, const Point& b, const Point& p) {
@@ -58,6 +64,7 @@ Shape shape_of(const DrawContext& context, const AssembledPrimitive& primitive) 
   shape.margin = drawn_as(state, context.draw.topology) == PrimitiveType::point
                      ? state.point_size * 0.7072
                      : (strands_of(state.line_width) + 1) / 2.0;
+  if (draws_smooth(context)) shape.margin += 1;  // of a pixel a corner may be covered
   const auto add = [&](const Vertex& vertex) {
     const WindowPosition p = state.space == Space::clip ? to_window(vertex, state, context.viewport)
                                                         : window_position(vertex, state, context.scene.height);
@@ -197,6 +204,7 @@ class SpecificationWalk {
       geometry(context, cache_, primitive.index, number, Skip{}, counters, pieces_);
     else
       geometry(context, widths_, cache_, primitive, number, counters, outline_);
+    pieces_.insert(pieces_.end(), outline_.triangles.begin(), outline_.triangles.end());
     if (pieces_.empty() && outline_.lines.empty() && outline_.points.empty()) {
       const Outcome outcome = dropped_by_host(before, counters);
       for (const std::size_t i : near) add_dropped(context, primitive, number, outcome, i);
@@ -232,6 +240,18 @@ class SpecificationWalk {
     if (strands_of(context.state.line_width) > 1 && !outline_.lines.empty()) {
       piece = 0;
       for (const std::size_t i : std::vector(untold)) tell(i, entry_of_line(outline_.lines.front()));
+    }
+    if (draws_smooth(context)) {  // each point is a pixel: only its own
+      for (const PointPrimitive& point : outline_.points) {
+        for (const std::size_t i : near)
+          if (record_.pixels[i].at == Pixel{point.box.left, point.box.top})
+            tell(i, [&](Pixel pixel, int) { return point_entry(widths_, point, pixel); });
+        ++piece;
+      }
+      for (const std::size_t i : untold)
+        add_dropped(context, primitive, number,
+                    {Verdict::uncovered, Stage::point_raster, "it covers next to nothing of the pixel"}, i);
+      return;
     }
     for (const PointPrimitive& point : outline_.points)
       for_each_near(shape_of({point.drawn.at}, std::ldexp(point.drawn.size, -s), s),
@@ -284,7 +304,8 @@ class SpecificationWalk {
         const Texel& c = entry.surface->sample.color;
         return std::array<std::uint32_t, 4>{c[0], c[1], c[2], c[3]};
       };
-      const bool is_back = entry.kind == Kind::triangle && shows_back(entry.area, context.state.front);
+      const bool is_back =
+          entry.kind == Kind::triangle && !context.state_of_rectangles && shows_back(entry.area, context.state.front);
       const Fate fate = apply_fragment(context.fragment_ops, config_.color_format,
                                        {context.depth_encode(plane), history.at.x, history.at.y, is_back, sample},
                                        finished, {depth_after, color_after, stencil_after});

@@ -68,6 +68,8 @@ constexpr std::array kCases{
     Case{"fog", "f7", "fog of all kinds, w ratios to 10^4: colours within the bound of table and q", fog},
     Case{"samples", "m1", "2, 4, 8 samples a pixel in any pattern: coverage, depth and colour of each; both engines",
          samples},
+    Case{"rectangles", "m2", "lines as rectangles, 1 to 8 samples a pixel: as triangles are, and smooth; both engines",
+         rectangles},
     Case{"random_families", "", "random and nasty triangles of eight families", random_families},
     Case{"large_target", "", "the same far from the first tile of the widest target", large_target},
     Case{"translation", "", "by tiles: the same image, moved; by pixels: the same coverage", translation},

@@ -83,6 +83,7 @@ void stencil_counts(Unit& unit);
 void fog(Unit& unit);
 // sample_cases.cpp
 void samples(Unit& unit);
+void rectangles(Unit& unit);
 // engine_cases.cpp
 void traversals(Unit& unit);
 void fill_rules(Unit& unit);

@@ -27,7 +27,7 @@ std::vector<ExactCorner> exact_clip(const Config& config, const Scene& scene, co
   std::vector<HomogeneousPoint> polygon;
   for (const Vertex& p : v) polygon.push_back({mpq_class(p.x), mpq_class(p.y), mpq_class(p.z), mpq_class(p.w)});
   const Viewport viewport{0, 0, static_cast<double>(scene.width), static_cast<double>(scene.height)};
-  for (const ClipPlane& plane : guard_band_planes(ClipZ::minus_one_one, viewport, config)) {
+  for (const ClipPlane& plane : guard_band_planes(ClipZ::minus_one_one, viewport, guard_band_limit(config))) {
     std::vector<HomogeneousPoint> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const HomogeneousPoint &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];

@@ -1,4 +1,6 @@
 // Several samples a pixel: each against the exact oracle at its own place, and the functional engine against the stages.
+#include <algorithm>
+
 #include "model/engines/scalar.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
@@ -37,6 +39,26 @@ bool has_lanes_enough(const Config& config) {
   }
 }
 
+/// Every fragment of the specification at each of its samples, and the unit's engine against it.
+void check_samples(Unit& here, const Scene& scene) {
+  const Config& config = here.config;
+  FragmentJudge judge(scene, with_alpha(config, scene));
+  RenderOptions options = render_options();
+  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
+  const Rendering specification = render_scalar(scene, config, options);
+  const FragmentVerdict verdict = judge.finish(specification);
+  here.count_triangles(specification.triangles.size());
+  here.count_samples(verdict.coverage.samples);
+  here.measure("coverage", "samples", static_cast<double>(verdict.coverage.mismatches), 0, scene);
+  for (const PlaneVerdict& plane : verdict.planes) {
+    if (plane.plane.is_depth)
+      here.measure("depth of samples", "LSB", plane.worst, depth_error_bound(config), scene);
+    else
+      here.measure("color of samples", "LSB of 8 bits", plane.worst, 1, scene);
+  }
+  expect_same_image(here, scene, specification, here.engine(scene, config, render_options()));
+}
+
 }  // namespace
 
 void samples(Unit& unit) {
@@ -58,22 +80,38 @@ void samples(Unit& unit) {
     const auto v = families.triangle(k % decltype(families)::kFamilies);
     builder.triangle(v[0], v[1], v[2]);
   }
-  const Scene& scene = builder.scene;
-  FragmentJudge judge(scene, with_alpha(config, scene));
-  RenderOptions options = render_options();
-  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
-  const Rendering specification = render_scalar(scene, config, options);
-  const FragmentVerdict verdict = judge.finish(specification);
-  here.count_triangles(specification.triangles.size());
-  here.count_samples(verdict.coverage.samples);
-  here.measure("coverage", "samples", static_cast<double>(verdict.coverage.mismatches), 0, scene);
-  for (const PlaneVerdict& plane : verdict.planes) {
-    if (plane.plane.is_depth)
-      here.measure("depth of samples", "LSB", plane.worst, depth_error_bound(config), scene);
-    else
-      here.measure("color of samples", "LSB of 8 bits", plane.worst, 1, scene);
+  check_samples(here, builder.scene);
+}
+
+void rectangles(Unit& unit) {
+  Random& random = unit.random;
+  const Config config = random.coin() ? unit.config : with_samples(unit);
+  if (!has_lanes_enough(config)) return;
+  Unit here(unit, config);
+  const int width = unit.width(8 + random.index(24)), height = unit.height(8 + random.index(24));
+  const int widest = std::min(9, config.guard_band - 3 - std::max(width, height));
+  if (widest < 1) return;
+  SceneBuilder builder(width, height);
+  Scene& scene = builder.scene;
+  const Chooser choose = chooser(random);
+  for (std::uint32_t k = 1; k <= 6; ++k) {
+    State state =
+        random_state(SceneBuilder::window_state(),
+                     states_named({"cull", "front", "polygon_mode", "shade", "scissor", "sample_mask"}), choose);
+    state.line_rule = LineRule::rectangle;
+    state.line_width = 1 + random.index(4 * (widest - 1) + 1) / 4.0;
+    state.smooth = random.index(4) == 0;  // with one sample a pixel
+    scene.states.push_back(state);
+    const auto topology = static_cast<Topology>(random.index(6));
+    scene.commands.push_back(Draw{k, 0, topology, scene.indices.size(), 6, 0});
+    for (int i = 0; i < 6; ++i) {
+      const bool is_far = random.index(8) == 0;
+      const Point point = is_far ? random_guard_point(unit) : random_point(unit, width, height, 6);
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.push_back(random_vertex_at(unit, point));
+    }
   }
-  expect_same_image(here, scene, specification, unit.engine(scene, config, render_options()));
+  check_samples(here, scene);
 }
 
 }  // namespace halfplane::stress

@@ -1,0 +1,150 @@
+#include "smooth_raster.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace halfplane {
+namespace {
+
+/// Pixels.
+struct Point {
+  double x = 0, y = 0;
+};
+
+/// A line: inside where a x + b y + c >= 0, which is the distance from it.
+struct Side {
+  double a = 0, b = 0, c = 0;
+  [[nodiscard]] double distance(const Point& p) const { return a * p.x + b * p.y + c; }
+};
+
+/// A square that four lines cut has at most eight corners.
+struct Polygon {
+  std::array<Point, 8> corner;
+  std::size_t size = 0;
+  void add(const Point& p) {
+    if (size < corner.size()) corner[size++] = p;
+  }
+};
+
+constexpr Polygon kSquare{{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}}, 4};
+
+Polygon cut(const Polygon& polygon, const Side& side) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size; ++i) {
+    const Point &from = polygon.corner[i], &to = polygon.corner[(i + 1) % polygon.size];
+    const double d_from = side.distance(from), d_to = side.distance(to);
+    if (d_from >= 0) kept.add(from);
+    if ((d_from < 0) == (d_to < 0)) continue;
+    const double t = d_from / (d_from - d_to);
+    kept.add({from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)});
+  }
+  return kept;
+}
+
+double area_of(const Polygon& polygon) {
+  double doubled = 0;
+  for (std::size_t i = 0; i < polygon.size; ++i) {
+    const Point &a = polygon.corner[i], &b = polygon.corner[(i + 1) % polygon.size];
+    doubled += a.x * b.y - b.x * a.y;
+  }
+  return std::abs(doubled) / 2;
+}
+
+using Sides = std::array<Side, 4>;
+
+Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
+  const double sign = signed_area(corners[0], corners[1], corners[2]) < 0 ? -1 : 1;
+  Sides sides;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const SnappedVertex &from = corners[i], &to = corners[(i + 1) % 4];
+    const double dx = static_cast<double>(to.x) - from.x, dy = static_cast<double>(to.y) - from.y;
+    const double length = std::sqrt(dx * dx + dy * dy);
+    const double c = std::ldexp(dy * from.x - dx * from.y, -grid_bits);
+    sides[i] = {-sign * dy / length, sign * dx / length, sign * c / length};
+  }
+  return sides;
+}
+
+double area_at(const Sides& sides, int x, int y) {
+  const Point centre{x + 0.5, y + 0.5};
+  Polygon left = kSquare;
+  for (const Side& side : sides) {
+    const double distance = side.distance(centre), reach = (std::abs(side.a) + std::abs(side.b)) / 2;
+    if (distance <= -reach) return 0;
+    if (distance < reach) left = cut(left, {side.a, side.b, distance});
+  }
+  return area_of(left);
+}
+
+/// The pixels of a box of which area(x, y) does not round to 0.
+template <class Area>
+std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Area&& area) {
+  std::vector<SmoothPixel> pixels;
+  for (int y = box.top; y <= box.bottom; ++y)
+    for (int x = box.left; x <= box.right; ++x) {
+      const auto coverage = static_cast<std::uint32_t>(area(x, y) * kWholePixel + 0.5);
+      if (coverage != 0) pixels.push_back({x, y, coverage});
+    }
+  return pixels;
+}
+
+/// The length that [from, to] and a pixel, [0, 1], have in common.
+double shared(double from, double to) { return std::max(0.0, std::min(1.0, to) - std::max(0.0, from)); }
+
+}  // namespace
+
+double area_in_pixel(const std::array<SnappedVertex, 4>& corners, int x, int y, int grid_bits) {
+  return area_at(sides_of(corners, grid_bits), x, y);
+}
+
+std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corners, const PixelBounds& limit,
+                                       int grid_bits) {
+  const Sides sides = sides_of(corners, grid_bits);
+  const auto [left, right] = std::minmax({corners[0].x, corners[1].x, corners[2].x, corners[3].x});
+  const auto [top, bottom] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
+  const PixelBounds box{std::max(limit.left, left >> grid_bits), std::max(limit.top, top >> grid_bits),
+                        std::min(limit.right, right >> grid_bits), std::min(limit.bottom, bottom >> grid_bits)};
+  return pixels_of(box, [&sides](int x, int y) { return area_at(sides, x, y); });
+}
+
+double area_in_pixel(const SnappedVertex& point, std::int32_t size, PointShape shape, int x, int y, int grid_bits) {
+  const double cx = std::ldexp(point.x, -grid_bits) - x, cy = std::ldexp(point.y, -grid_bits) - y;
+  const double radius = std::ldexp(size, -grid_bits - 1);
+  if (shape == PointShape::square) return shared(cx - radius, cx + radius) * shared(cy - radius, cy + radius);
+  constexpr int kRows = 64;
+  double sum = 0;
+  for (int i = 0; i < kRows; ++i) {
+    const double dy = (i + 0.5) / kRows - cy;
+    if (std::abs(dy) >= radius) continue;
+    const double half = std::sqrt(radius * radius - dy * dy);
+    sum += shared(cx - half, cx + half);
+  }
+  return sum / kRows;
+}
+
+std::vector<SmoothPixel> smooth_raster(const SnappedVertex& point, std::int32_t size, PointShape shape,
+                                       const PixelBounds& limit, int grid_bits) {
+  const auto pixel = [grid_bits](std::int32_t at) { return at >> grid_bits; };
+  const std::int32_t half = (size + 1) / 2;
+  const PixelBounds box{std::max(limit.left, pixel(point.x - half)), std::max(limit.top, pixel(point.y - half)),
+                        std::min(limit.right, pixel(point.x + half)), std::min(limit.bottom, pixel(point.y + half))};
+  return pixels_of(box, [&](int x, int y) { return area_in_pixel(point, size, shape, x, y, grid_bits); });
+}
+
+PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVertex& end, int x, int y,
+                                     const Widths& widths) {
+  const int s = widths.grid_bits;
+  const auto centre = [s](int i) { return (2 * std::int64_t{i} + 1) * (std::int64_t{1} << (s - 1)); };
+  const std::int64_t dx = std::int64_t{end.x} - start.x, dy = std::int64_t{end.y} - start.y;
+  const std::int64_t whole = dx * dx + dy * dy;
+  const std::int64_t part = std::clamp<std::int64_t>((centre(x) - start.x) * dx + (centre(y) - start.y) * dy, 0, whole);
+  PerPlane<std::uint32_t> code{};
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
+    // Both are weights of codes that are not negative: the division rounds down.
+    const int128 sum = int128{start.code[p]} * (whole - part) + int128{end.code[p]} * part;
+    code[p] = static_cast<std::uint32_t>((2 * sum + whole) / (2 * int128{whole}));
+  }
+  return code;
+}
+
+}  // namespace halfplane
