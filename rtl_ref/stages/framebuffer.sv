@@ -11,7 +11,7 @@ module framebuffer (
     input logic rst_ni,
 
     /* verilator lint_off UNUSEDSIGNAL */  // of the packets only some fields matter here
-    // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0
+    // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0 of the cycle before
     input  logic                                                       access_valid_i,
     output logic                                                       access_ready_o,
     input  raster_pkg::fragment_packet_t                               access_i,
@@ -98,8 +98,9 @@ module framebuffer (
   /* verilator lint_off UNUSEDSIGNAL */  // wider than a tile's y where the cache is larger than the target
   logic [LINE-1:0]   line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [TILE_X-1:0] tile_x, victim_x;
-  logic [TILE_Y-1:0] tile_y;
+  logic [TILE_X-1:0] tile_x, tile_x_q, victim_x;
+  logic [TILE_Y-1:0] tile_y, tile_y_q;
+  logic              reads_flags;
   logic flag_depth, flag_color;  // the plane of the tile in memory is garbage: its value is the last fast clear's
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
@@ -289,16 +290,23 @@ module framebuffer (
     end
   end
 
-  // The tile that is moved, marked or looked at: of a line that is dirty, the one that leaves. CHECK is on its way to one that
-  // comes in; what it reads for a token is not looked at.
+  // The tile that is marked or whose flags are read: of a line that is dirty, the one that leaves. CHECK is on its way to one
+  // that comes in; what it reads for a token is not looked at. It stays in a register while it is moved.
   assign line_above_x = line_q >> LINE_X;
   assign victim_x     = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
   always_comb begin
-    tile_x = is_fill || state_q == CHECK ? access_i.key.tile_x : walk_x_q;
-    tile_y = is_fill || state_q == CHECK ? access_i.key.tile_y : walk_y_q;
-    if (state_q == EVICT || (state_q == CHECK && (line_depth_dirty || line_color_dirty))) begin
+    tile_x = state_q == CHECK ? access_i.key.tile_x : walk_x_q;
+    tile_y = state_q == CHECK ? access_i.key.tile_y : walk_y_q;
+    if (state_q == CHECK && (line_depth_dirty || line_color_dirty)) begin
       tile_x = victim_x;
       tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
+    end
+  end
+  assign reads_flags = state_q == CHECK || state_q == READ;
+  always_ff @(posedge clk_i) begin
+    if (reads_flags) begin
+      tile_x_q <= tile_x;
+      tile_y_q <= tile_y;
     end
   end
 
@@ -309,12 +317,13 @@ module framebuffer (
   /* verilator lint_off UNUSEDSIGNAL */  // no bits are left where a word is a row
   logic [TILE_X-1:0]  word_x, last_word;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [TILE_Y+WORD_X-1:0] flag_address;
-  // Looked at for a tile that leaves, is resolved or comes in; not while CHECK chooses between them.
-  assign bit_x      = state_q == EVICT ? BIT'(victim_x) : is_fill ? BIT'(access_i.key.tile_x) : BIT'(walk_x_q);
-  assign word_x     = tile_x >> BIT;
+  logic [TILE_Y+WORD_X-1:0] flag_read_address, flag_write_address;
+  // Looked at, and written but for MARK, when they have been read: the bit of the tile whose word that is.
+  assign bit_x      = BIT'(tile_x_q);
+  assign word_x     = tile_x_q >> BIT;
   assign last_word  = access_i.key.tile_x >> BIT;
-  assign flag_address = {tile_y, word_x[WORD_X-1:0]};
+  assign flag_read_address  = (TILE_Y + WORD_X)'({tile_y, WORD_X'(tile_x >> BIT)});
+  assign flag_write_address = state_q == MARK ? flag_read_address : {tile_y_q, word_x[WORD_X-1:0]};
   assign flag_depth = word_depth[bit_x];
   assign flag_color = word_color[bit_x];
   assign flag_bit   = state_q == MARK ? '1 : WORD'(1) << bit_x;
@@ -326,11 +335,11 @@ module framebuffer (
       .DEPTH(FLAGS)
   ) u_flag_depth (
       .clk_i,
-      .read_i         (state_q == CHECK || state_q == READ),
-      .read_address_i (flag_address),
+      .read_i         (reads_flags),
+      .read_address_i (flag_read_address),
       .data_o         (word_depth),
       .write_i        (flag_bit & {WORD{flag_write[0]}}),
-      .write_address_i(flag_address),
+      .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
   );
   masked_sram #(
@@ -338,11 +347,11 @@ module framebuffer (
       .DEPTH(FLAGS)
   ) u_flag_color (
       .clk_i,
-      .read_i         (state_q == CHECK || state_q == READ),
-      .read_address_i (flag_address),
+      .read_i         (reads_flags),
+      .read_address_i (flag_read_address),
       .data_o         (word_color),
       .write_i        (flag_bit & {WORD{flag_write[1]}}),
-      .write_address_i(flag_address),
+      .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
   );
 
@@ -439,8 +448,8 @@ module framebuffer (
     request_o.is_write = !is_fill;
     request_o.plane    = plane_q ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
     request_o.strobe   = is_fill ? '0 : strobe_q;
-    request_o.tile_x   = tile_x;
-    request_o.tile_y   = tile_y;
+    request_o.tile_x   = tile_x_q;
+    request_o.tile_y   = tile_y_q;
     request_o.stamp    = stamp_q;
     request_o.run      = run_q;
     request_o.data     = data;

@@ -159,6 +159,10 @@ module memory_port (
   assign ends   = !request_i.is_write || request_i.run == RUN'(1) ||
                   (is_flags ? flag_ends : (is_color ? color_ends : depth_ends));
 
+  // A burst lies in a plane of a tile, or in a row of flags: no beat moves the address beyond these bits.
+  localparam int WIDEST = (PLANE > ROW) ? PLANE : ROW;
+  localparam int INSIDE = (WIDEST > PORT) ? WIDEST : PORT + 1;
+
   // The word on its way out. While it gathers, it is not complete and not on offer.
   logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
   logic [ADDRESS-1:PORT] address_q;  // without the rows above: a product is long enough by itself
@@ -213,7 +217,7 @@ module memory_port (
       strobe_q   <= strobe_q >> BYTES;
       more_q     <= more_q - 8'(more_q != '0);
       is_first_q <= 1'b0;
-      address_q  <= address_q + 1'b1;
+      address_q[INSIDE-1:PORT] <= address_q[INSIDE-1:PORT] + 1'b1;
       length_q   <= length_q - 1'b1;
     end
   end
