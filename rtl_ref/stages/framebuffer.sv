@@ -80,8 +80,8 @@ module framebuffer (
   logic [TILE_X-1:0] walk_x_q;  // tile of a fast clear's or flush's walk
   logic [TILE_Y-1:0] walk_y_q;
   logic              walked_q;  // the walk is through
-  logic [CODE-1:0]   clear_depth_q;
-  logic [COLOR-1:0]  clear_color_q;
+  logic [CODE-1:0]   clear_depth;  // of the last fast clear
+  logic [COLOR-1:0]  clear_color;
 
   // Tags; those and the dirty bits of a line that is not valid mean nothing.
   logic [LINES-1:0]  valid_q;
@@ -173,9 +173,36 @@ module framebuffer (
     else if (state_q == CHECK && state_d == CHECK) line_q <= line_q + 1'b1;
     if (state_q == SERVE || state_q == CHECK) plane_q <= state_q == CHECK && !line_depth_dirty && line_color_dirty;
     else if (walks && ends_walk) plane_q <= 1'b1;
-    if (state_q == MARK && access_i.state.depth_write) clear_depth_q <= access_i.code[0+:CODE];
-    if (state_q == MARK && access_i.state.color_write) clear_color_q <= access_color_i;
   end
+
+  // The values of the last fast clear, each a word of a RAM, read in every cycle: what MARK writes is there long before a tile
+  // is filled with it.
+  sram #(
+      .WIDTH    (CODE),
+      .READS_OLD(0),
+      .BLOCK    (1)
+  ) u_clear_depth (
+      .clk_i,
+      .read_i         (1'b1),
+      .read_address_i (1'b0),
+      .data_o         (clear_depth),
+      .write_i        (state_q == MARK && access_i.state.depth_write),
+      .write_address_i(1'b0),
+      .data_i         (access_i.code[0+:CODE])
+  );
+  sram #(
+      .WIDTH    (COLOR),
+      .READS_OLD(0),
+      .BLOCK    (1)
+  ) u_clear_color (
+      .clk_i,
+      .read_i         (1'b1),
+      .read_address_i (1'b0),
+      .data_o         (clear_color),
+      .write_i        (state_q == MARK && access_i.state.color_write),
+      .write_address_i(1'b0),
+      .data_i         (access_color_i)
+  );
 
   // Stamps of a tile, in order: those of a row that are still to come are samples of stamps_q, the next row is read ahead.
   // A stamp is read out of the RAMs and is on offer in the cycle after that. A plane that memory has as garbage is written
@@ -338,6 +365,7 @@ module framebuffer (
       .read_i         (reads_flags),
       .read_address_i (flag_read_address),
       .data_o         (word_depth),
+      .may_write_i    (1'b1),
       .write_i        (flag_bit & {WORD{flag_write[0]}}),
       .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
@@ -350,6 +378,7 @@ module framebuffer (
       .read_i         (reads_flags),
       .read_address_i (flag_read_address),
       .data_o         (word_color),
+      .may_write_i    (1'b1),
       .write_i        (flag_bit & {WORD{flag_write[1]}}),
       .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
@@ -391,8 +420,8 @@ module framebuffer (
       assign writes_dirty = {2 * ROWS{is_fill}} | {column & {ROWS{writes_color}}, column & {ROWS{writes_depth}}};
       always_comb begin
         depth_new = write_i.depth[s*CODE+:CODE];
-        if (is_fill) depth_new = flag_depth ? clear_depth_q : response_i.data[s*LANE+:CODE];
-        color_new = is_fill ? clear_color_q : write_i.color[s*COLOR+:COLOR];
+        if (is_fill) depth_new = flag_depth ? clear_depth : response_i.data[s*LANE+:CODE];
+        color_new = is_fill ? clear_color : write_i.color[s*COLOR+:COLOR];
       end
 
       sram #(
@@ -421,25 +450,30 @@ module framebuffer (
           .write_address_i({new_line, new_stamp}),
           .data_i         (color_new)
       );
-      masked_sram #(
-          .WIDTH(2 * ROWS),
-          .DEPTH(1 << ROW_ADDRESS)
-      ) u_dirty (
-          .clk_i,
-          .read_i         (1'b1),
-          .read_address_i (dirty_read_address),
-          .data_o         (dirty),
-          .write_i        (writes_dirty),
-          .write_address_i(dirty_write_address),
-          .data_i         ({2 * ROWS{!is_fill}})
-      );
+      // Which bits are written comes late, from the depth test; that any may be does not.
+      for (c = 0; c < 2; c++) begin : gen_plane
+        masked_sram #(
+            .WIDTH(ROWS),
+            .DEPTH(1 << ROW_ADDRESS),
+            .EARLY(1)
+        ) u_dirty (
+            .clk_i,
+            .read_i         (1'b1),
+            .read_address_i (dirty_read_address),
+            .data_o         (dirty[c*ROWS+:ROWS]),
+            .may_write_i    (is_fill || write_valid_i),
+            .write_i        (writes_dirty[c*ROWS+:ROWS]),
+            .write_address_i(dirty_write_address),
+            .data_i         ({ROWS{!is_fill}})
+        );
+      end
       for (c = 0; c < 2 * ROWS; c++) begin : gen_dirty
         assign dirty_rows[c*SAMPLES+s] = dirty[c];
       end
 
       assign stored_depth_o[s*CODE+:CODE] = depth;
       assign is_here = state_q == EVICT && strobe_q[s];
-      assign data[s*LANE+:LANE] = is_resolve ? LANE'(clear_color_q) : (plane_q ? LANE'(color) : LANE'(depth)) & {LANE{is_here}};
+      assign data[s*LANE+:LANE] = is_resolve ? LANE'(clear_color) : (plane_q ? LANE'(color) : LANE'(depth)) & {LANE{is_here}};
     end
   endgenerate
 

@@ -42,6 +42,18 @@
     words_stay_q        <= !reads;
   end
   always_comb if (runs_q && flags_stay_q) assume (word_depth == word_depth_before_q && word_color == word_color_before_q);
+  logic [CODE-1:0]  clear_depth_q;
+  logic [COLOR-1:0] clear_color_q;
+  logic             marked_q;
+  always_ff @(posedge clk_i) begin
+    marked_q <= state_q == MARK;
+    if (state_q == MARK && access_i.state.depth_write) clear_depth_q <= access_i.code[0+:CODE];
+    if (state_q == MARK && access_i.state.color_write) clear_color_q <= access_color_i;
+  end
+  always_comb if (runs_q) begin
+    if (!marked_q) assume (clear_depth == clear_depth_q && clear_color == clear_color_q);
+    if (is_fill || is_resolve) assert (!marked_q);
+  end
   genvar r;
   generate
     for (r = 0; r < SAMPLES; r++) begin : gen_word
