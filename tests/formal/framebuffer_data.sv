@@ -160,7 +160,7 @@
           if (is_resolve && walk_is_it && p == 1 && passed) assert (memory_q == cleared);
           if (filled) assert (!is_new_q);
           if (filled && (p == 0 || flag_g[p])) assert (word_q == truth_q);
-          if (p == 0 && is_fill && is_it && !flag_depth) begin
+          if (p == 0 && is_fill && is_it && !flag_depth_q) begin
             assert (asked_q == (asked > ASK'(any_stamp)));
             if (asked_q) assert (answer_q == memory_q);
           end

@@ -97,7 +97,7 @@
     if (is_fill) assert (tile_x_q == access_i.key.tile_x && tile_y_q == access_i.key.tile_y);
     if (state_q == SEND || is_resolve) assert (tile_x_q == walk_x_q && tile_y_q == walk_y_q);
     if (state_q == MARK || is_fill) assert (!plane_q);
-    if (is_resolve) assert (resolves && flag_color);
+    if (is_resolve) assert (resolves && flag_color_q);
     if (is_fill) assert (!token && !line_depth_dirty && !line_color_dirty);
     // A run of stamps: none twice, none left out, each with its samples.
     assert (row_q <= (ROW_BITS + 1)'(ROWS) || !runs);
@@ -119,6 +119,6 @@
       if (!is_fill) assert (stamps_q == '0);
     end
     // A fill: what was asked for, what came back, what is to come.
-    if (is_fill && !flag_depth) assert (asked <= ASK'(STAMPS) && answered <= asked && ASK'(unanswered_q) == asked - answered);
+    if (is_fill && !flag_depth_q) assert (asked <= ASK'(STAMPS) && answered <= asked && ASK'(unanswered_q) == asked - answered);
     else assert (unanswered_q == '0);
   end
