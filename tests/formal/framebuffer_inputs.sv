@@ -38,7 +38,7 @@
   always_ff @(posedge clk_i) begin
     word_depth_before_q <= word_depth;
     word_color_before_q <= word_color;
-    flags_stay_q        <= !(state_q == CHECK || state_q == READ);
+    flags_stay_q        <= !reads_flags;
     words_stay_q        <= !reads;
   end
   always_comb if (runs_q && flags_stay_q) assume (word_depth == word_depth_before_q && word_color == word_color_before_q);
@@ -93,11 +93,13 @@
     if (state_q == CHECK || state_q == EVICT || is_fill) assert (token || line_q == access_line);
     if (state_q == CHECK || state_q == EVICT) assert (!(token && clears_all));
     if (state_q == EVICT) assert (plane_q ? line_color_dirty : line_depth_dirty);
+    if (has_waited_q) assert (state_q == CHECK && (line_depth_dirty || line_color_dirty || !token));
+    if (state_q == EVICT || is_fill) assert (flag_depth_q == read_depth && flag_color_q == read_color);
     if (state_q == EVICT) assert (tile_x_q == victim_x && tile_y_q == ((tag_y << LINE_Y) | TILE_Y'(line_above_x)));
     if (is_fill) assert (tile_x_q == access_i.key.tile_x && tile_y_q == access_i.key.tile_y);
     if (state_q == SEND || is_resolve) assert (tile_x_q == walk_x_q && tile_y_q == walk_y_q);
     if (state_q == MARK || is_fill) assert (!plane_q);
-    if (is_resolve) assert (resolves && flag_color_q);
+    if (is_resolve) assert (resolves && read_color);
     if (is_fill) assert (!token && !line_depth_dirty && !line_color_dirty);
     // A run of stamps: none twice, none left out, each with its samples.
     assert (row_q <= (ROW_BITS + 1)'(ROWS) || !runs);
