@@ -11,15 +11,17 @@ module pin_wrapper (
     output logic data_o     // the register's signature
 );
 
-  // Where each input begins: below them the five that say something is ready or there, above them those that not every core
-  // looks at. With these the end of the register is gone.
+  // Where each input begins. The layout has no bits of its own but looks at the primitive's: registers of the core stand between
+  // what becomes of the one and of the other, so no gate sees both, and nothing is saved inside. Below the
+  // primitive are the five that say something is ready or there, at the end those that not every core looks at: without them it
+  // is gone.
   localparam int PRIMITIVE = 5;
   localparam int ANSWER = PRIMITIVE + raster_pkg::PRIMITIVE_PACKET_BITS - raster_pkg::PRIMITIVE_ID_BITS;
-  localparam int LAYOUT = ANSWER + raster_pkg::MEMORY_ANSWER_BITS;
   localparam int PLANE = raster_pkg::ADDRESS_BITS - raster_pkg::PLANE_SHIFT;  // of an address, bits that are not always 0
   localparam int FLAG_ROW = raster_pkg::ADDRESS_BITS - raster_pkg::FLAG_ROW_SHIFT;
   localparam int STRIDE = raster_pkg::ROW_STRIDE_BITS - raster_pkg::PLANE_SHIFT - 1;
-  localparam int USED = LAYOUT + 2 * PLANE + 2 * FLAG_ROW + STRIDE;
+  localparam int LAYOUT = 2 * PLANE + 2 * FLAG_ROW + STRIDE;
+  localparam int USED = ANSWER + raster_pkg::MEMORY_ANSWER_BITS;
   localparam int TEXEL = USED;
   localparam int ID = TEXEL + raster_pkg::TEXEL_BEAT_BITS;
   localparam int LINE = ID + raster_pkg::PRIMITIVE_ID_BITS;
@@ -56,7 +58,7 @@ module pin_wrapper (
     {layout.depth_base[raster_pkg::ADDRESS_BITS-1-:PLANE], layout.color_base[raster_pkg::ADDRESS_BITS-1-:PLANE],
      layout.depth_flags_base[raster_pkg::ADDRESS_BITS-1-:FLAG_ROW],
      layout.color_flags_base[raster_pkg::ADDRESS_BITS-1-:FLAG_ROW],
-     layout.row_stride[raster_pkg::ROW_STRIDE_BITS-1-:STRIDE]} = in_q[LAYOUT+:USED-LAYOUT];
+     layout.row_stride[raster_pkg::ROW_STRIDE_BITS-1-:STRIDE]} = in_q[PRIMITIVE+:LAYOUT];
   end
 
   logic [OUT-1:0] out;
