@@ -180,7 +180,7 @@ module framebuffer (
 
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE) line_q <= is_token ? '0 : access_line;
-    else if (state_q == CHECK && state_d == CHECK && !waits) line_q <= line_q + 1'b1;
+    else if (state_q == CHECK && is_token && !line_depth_dirty && !line_color_dirty && !is_last_line) line_q <= line_q + 1'b1;
     if (state_q == SERVE || state_q == CHECK) plane_q <= state_q == CHECK && !line_depth_dirty && line_color_dirty;
     else if (walks && ends_walk) plane_q <= 1'b1;
   end

@@ -4,8 +4,8 @@
 // everything of the primitive before has left. Then one stamp a cycle; latency 2 cycles:
 //   x, y  from the anchor to the stamp's first sample; from there to each sample, of which the code is a part
 // Step y ends in a block RAM, from which a fragment is also offered: three wait there at most, the newest in step y, the
-// others behind it as in a skid buffer. So what comes later waits for the framebuffer by registers alone, and of a fragment
-// only its key, which is looked up first, stands in registers.
+// others behind it as in a skid buffer. So what comes later waits for the framebuffer by registers alone. What is looked at
+// first, whether there is an access and of what, stands in registers all the way.
 // Specification: model/stages/interpolate.hpp.
 module interpolate_serial (
     input logic clk_i,
@@ -46,7 +46,9 @@ module interpolate_serial (
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end in the step x
   raster_pkg::stamp_packet_t x_stamp_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  raster_pkg::tile_key_t y_key_q;
+  localparam int FIRST = raster_pkg::KIND_BITS + raster_pkg::PRIMITIVE_ID_BITS + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS +
+                         raster_pkg::STAMP_INDEX_BITS + raster_pkg::SAMPLE_MASK_BITS;  // kind, key, stamp, mask
+  logic [FIRST-1:0] y_first_q;
   logic has_context_q, x_valid_q, y_valid_q;
   logic x_ready, y_ready, buffer_ready, is_empty;
 
@@ -76,7 +78,7 @@ module interpolate_serial (
 
   always_ff @(posedge clk_i) begin
     if (x_ready) x_stamp_q <= stamp_i;
-    if (y_ready) y_key_q <= x_stamp_q.key;
+    if (y_ready) y_first_q <= {x_stamp_q.kind, x_stamp_q.key, x_stamp_q.stamp, x_stamp_q.mask};
   end
 
   // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
@@ -150,18 +152,17 @@ module interpolate_serial (
   endgenerate
 
   // ----------------------------------------------------------------------------------------------------- the way out
-  localparam int KEY = raster_pkg::PRIMITIVE_ID_BITS + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS;
   skid_buffer #(
-      .WIDTH(KEY)
-  ) u_keys (
+      .WIDTH(FIRST)
+  ) u_first (
       .clk_i,
       .rst_ni,
       .valid_i(y_valid_q),
       .ready_o(buffer_ready),
-      .data_i (y_key_q),
+      .data_i (y_first_q),
       .valid_o(fragment_valid_o),
       .ready_i(fragment_ready_i),
-      .data_o (fragment_o.key)
+      .data_o ({fragment_o.kind, fragment_o.key, fragment_o.stamp, fragment_o.mask})
   );
 
   // The word on offer in the next cycle was written before this one: a fragment is in step y first.
@@ -177,7 +178,7 @@ module interpolate_serial (
     end
   end
   sram #(
-      .WIDTH    (raster_pkg::FRAGMENT_PACKET_BITS - KEY),
+      .WIDTH    (raster_pkg::FRAGMENT_PACKET_BITS - FIRST),
       .DEPTH    (4),
       .READS_OLD(0),
       .BLOCK    (1)
@@ -185,12 +186,10 @@ module interpolate_serial (
       .clk_i,
       .read_i         (1'b1),
       .read_address_i (read),
-      .data_o         ({fragment_o.kind, fragment_o.ends_visit, fragment_o.ends_primitive, fragment_o.stamp, fragment_o.mask,
-                        fragment_o.state, fragment_o.code}),
+      .data_o         ({fragment_o.ends_visit, fragment_o.ends_primitive, fragment_o.state, fragment_o.code}),
       .write_i        (x_valid_q && y_ready),
       .write_address_i(write_q),
-      .data_i         ({x_stamp_q.kind, x_stamp_q.ends_visit, x_stamp_q.ends_primitive, x_stamp_q.stamp, x_stamp_q.mask,
-                        context_i.state, code})
+      .data_i         ({x_stamp_q.ends_visit, x_stamp_q.ends_primitive, context_i.state, code})
   );
 
 endmodule
