@@ -93,6 +93,7 @@
     if (state_q == CHECK || state_q == EVICT || is_fill) assert (token || line_q == access_line);
     if (state_q == CHECK || state_q == EVICT) assert (!(token && clears_all));
     if (state_q == EVICT) assert (plane_q ? line_color_dirty : line_depth_dirty);
+    if (has_waited_q) assert (tile_x_q == tile_x && tile_y_q == tile_y);
     if (has_waited_q) assert (state_q == CHECK && (line_depth_dirty || line_color_dirty || !token));
     if (state_q == EVICT || is_fill) assert (flag_depth_q == read_depth && flag_color_q == read_color);
     if (state_q == EVICT) assert (tile_x_q == victim_x && tile_y_q == ((tag_y << LINE_Y) | TILE_Y'(line_above_x)));
