@@ -90,7 +90,7 @@
       end
       always_comb if (runs_q && known_q[p]) begin
         if (word_read_q && flags_stay_q == 1'b0) assume (word_bit == flag_then_q[p]);
-        if (word_read_q && (is_fill || state_q == EVICT || state_q == SEND || is_resolve)) assert (word_bit == flag_g[p]);
+        if (word_read_q && (has_waited_q || is_fill || state_q == EVICT || state_q == SEND || is_resolve)) assert (word_bit == flag_g[p]);
       end
       always_comb if (runs_q) begin
         if (is_marked && (has_passed || walked_q)) assert (flag_g[p]);
