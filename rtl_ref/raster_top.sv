@@ -77,6 +77,7 @@ module raster_top (
   /* verilator lint_on UNUSEDSIGNAL */
   raster_pkg::tile_packet_t     tile_data;
   raster_pkg::edge_context_t    edges_data;
+  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges;
   raster_pkg::stamp_packet_t    stamp_data;
   raster_pkg::fragment_packet_t fragment_data;
   raster_pkg::memory_request_t      request;  // of the cache of blocks without its data
@@ -125,14 +126,12 @@ module raster_top (
   logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step;
   /* verilator lint_on UNUSEDSIGNAL */
 
-  logic shaded_valid, shaded_ready;  // the same behind a buffer
+  logic shaded_valid, shaded_ready;  // what interpolate sends
   raster_pkg::fragment_packet_t shaded_data;
   logic                             lines_are_done;  // none is in the unit
 
   // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
   // until they are through with it and do one thing at a time. The ports are the same.
-  logic                             made_valid, made_ready;  // what interpolate sends
-  raster_pkg::fragment_packet_t made_data;
 `define RASTER_FRONT(CULL, TRIANGLE_SETUP, COARSE_RASTER, FINE_RASTER, INTERPOLATE) \
     CULL u_cull (                                                                       \
         .clk_i,                                                                         \
@@ -174,6 +173,7 @@ module raster_top (
         .tile_ready_i    (tile_ready),                                                  \
         .tile_o          (tile_data),                                                   \
         .edges_o         (edges_data),                                                  \
+        .visit_edges_o   (visit_edges),                                                 \
         .retire_valid_i  (retire_valid),                                                \
         .retire_i        (retire_data),                                                 \
         .is_visited_o    (is_visited),                                                  \
@@ -190,6 +190,7 @@ module raster_top (
         .tile_ready_o (tile_accepted),                                                  \
         .tile_i       (tile_data),                                                      \
         .edges_i      (edges_data),                                                     \
+        .visit_edges_i(visit_edges),                                                    \
         .stamp_valid_o(stamp_offered),                                                  \
         .stamp_ready_i(stamp_ready),                                                    \
         .stamp_o      (stamp_data)                                                      \
@@ -204,34 +205,16 @@ module raster_top (
         .context_slot_o  (read_slot),                                                   \
         .context_i       (stamp_context),                                               \
         .slot_free_o     (slot_free),                                                   \
-        .fragment_valid_o(made_valid),                                                  \
-        .fragment_ready_i(made_ready),                                                  \
-        .fragment_o      (made_data)                                                    \
+        .fragment_valid_o(shaded_valid),                                                \
+        .fragment_ready_i(shaded_ready),                                                \
+        .fragment_o      (shaded_data)                                                  \
     );
 
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_pipelined
       `RASTER_FRONT(cull, triangle_setup, coarse_raster, fine_raster, interpolate)
-
-      assign shaded_valid = made_valid;
-      assign made_ready   = shaded_ready;
-      assign shaded_data  = made_data;
     end else begin : gen_serial
       `RASTER_FRONT(cull_serial, triangle_setup_serial, coarse_raster_serial, fine_raster_serial, interpolate_serial)
-
-      // Behind here a step waits for the framebuffer combinationally; the buffer keeps that out of the stages before.
-      skid_buffer #(
-          .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS)
-      ) u_fragments (
-          .clk_i,
-          .rst_ni,
-          .valid_i(made_valid),
-          .ready_o(made_ready),
-          .data_i (made_data),
-          .valid_o(shaded_valid),
-          .ready_i(shaded_ready),
-          .data_o (shaded_data)
-      );
     end
   endgenerate
 

@@ -1,33 +1,64 @@
 // Pin wrapper: raster_top behind six pins, for place and route only. A shift register feeds every input, and every output
-// bit is folded into one pin, so that nothing of the core can be left out. All of it is registered, so that every path
-// begins and ends in a register. A wire between two registers costs no time that the core would not cost anywhere else.
+// bit is folded into the same register on its way, so that nothing of the core can be left out: what the register says in
+// the end is its signature. All of it is registered, so that every path begins and ends in a register. A wire between two
+// registers costs no time that the core would not cost anywhere else.
 module pin_wrapper (
     input  logic clk_i,
     input  logic rst_ni,
     input  logic data_i,    // the next bit of the inputs
     input  logic shift_i,   // move them by one; otherwise they stay
     input  logic valid_i,   // a primitive and a line are offered
-    output logic data_o     // parity of all outputs, some cycles ago
+    output logic data_o     // the register's signature
 );
 
-  localparam int LINE = raster_pkg::LINE_SETUP_BITS;  // at the end of the register: gone with the unit of lines
-  localparam int PRIMITIVE = 5;  // where each input begins; below them the five that say something is ready or there
-  localparam int ANSWER = PRIMITIVE + raster_pkg::PRIMITIVE_PACKET_BITS;
-  localparam int TEXEL = ANSWER + raster_pkg::MEMORY_ANSWER_BITS;
-  localparam int LAYOUT = TEXEL + raster_pkg::TEXEL_BEAT_BITS;
-  localparam int LAYOUTS = 4 * raster_pkg::ADDRESS_BITS + raster_pkg::ROW_STRIDE_BITS;
-  localparam int IN = LAYOUT + LAYOUTS + LINE;
+  // Where each input begins. The layout has no bits of its own but looks at the primitive's: registers of the core stand between
+  // what becomes of the one and of the other, so no gate sees both, and nothing is saved inside. Below the
+  // primitive are the five that say something is ready or there, at the end those that not every core looks at: without them it
+  // is gone.
+  localparam int PRIMITIVE = 5;
+  localparam int ANSWER = PRIMITIVE + raster_pkg::PRIMITIVE_PACKET_BITS - raster_pkg::PRIMITIVE_ID_BITS;
+  localparam int PLANE = raster_pkg::ADDRESS_BITS - raster_pkg::PLANE_SHIFT;  // of an address, bits that are not always 0
+  localparam int FLAG_ROW = raster_pkg::ADDRESS_BITS - raster_pkg::FLAG_ROW_SHIFT;
+  localparam int STRIDE = raster_pkg::ROW_STRIDE_BITS - raster_pkg::PLANE_SHIFT - 1;
+  localparam int LAYOUT = 2 * PLANE + 2 * FLAG_ROW + STRIDE;
+  localparam int USED = ANSWER + raster_pkg::MEMORY_ANSWER_BITS;
+  localparam int TEXEL = USED;
+  localparam int ID = TEXEL + raster_pkg::TEXEL_BEAT_BITS;
+  localparam int LINE = ID + raster_pkg::PRIMITIVE_ID_BITS;
+  localparam int IN = LINE + raster_pkg::LINE_SETUP_BITS;
   localparam int BEAT = 7;
   localparam int TEXTURE = BEAT + raster_pkg::MEMORY_BEAT_BITS;
   localparam int OUT = TEXTURE + raster_pkg::TEXTURE_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS;
 
-  logic [IN-1:0] in_q;
-  logic          valid_q, shift_q, data_q;
+  // Three outputs and the bit that moves are a gate of four inputs in front of a flip-flop that is there already.
+  localparam int FOLDED = (OUT > 3 * USED) ? (OUT + USED - 1) / USED : 3;
+  logic [IN-1:0]          in_q, folded;
+  logic [FOLDED*USED-1:0] out_padded;
+  logic                   valid_q, shift_q, data_q;
+  assign out_padded = (FOLDED * USED)'(out);
+  always_comb begin
+    folded = '0;
+    for (int i = 0; i < USED; i++) folded[i] = ^out_padded[FOLDED*i+:FOLDED];
+  end
   always_ff @(posedge clk_i) begin
     data_q  <= data_i;
     shift_q <= shift_i;
     valid_q <= valid_i;
-    if (shift_q) in_q <= {in_q[IN-2:0], data_q};
+    data_o  <= in_q[USED-1];
+    if (shift_q) in_q <= {in_q[IN-2:0], data_q} ^ folded;
+  end
+
+  raster_pkg::primitive_packet_t primitive;
+  raster_pkg::memory_layout_t    layout;
+  always_comb begin
+    {primitive.kind, primitive.box, primitive.state, primitive.cull, primitive.front_cw, primitive.vertex} =
+        in_q[PRIMITIVE+:ANSWER-PRIMITIVE];
+    primitive.primitive_id = in_q[ID+:raster_pkg::PRIMITIVE_ID_BITS];
+    layout = '0;
+    {layout.depth_base[raster_pkg::ADDRESS_BITS-1-:PLANE], layout.color_base[raster_pkg::ADDRESS_BITS-1-:PLANE],
+     layout.depth_flags_base[raster_pkg::ADDRESS_BITS-1-:FLAG_ROW],
+     layout.color_flags_base[raster_pkg::ADDRESS_BITS-1-:FLAG_ROW],
+     layout.row_stride[raster_pkg::ROW_STRIDE_BITS-1-:STRIDE]} = in_q[PRIMITIVE+:LAYOUT];
   end
 
   logic [OUT-1:0] out;
@@ -38,11 +69,11 @@ module pin_wrapper (
       .stall_i          ('0),
       .primitive_valid_i(valid_q),
       .primitive_ready_o(out[0]),
-      .primitive_i      (in_q[PRIMITIVE+:raster_pkg::PRIMITIVE_PACKET_BITS]),
+      .primitive_i      (primitive),
       .line_valid_i     (valid_q),
       .line_ready_o     (out[1]),
-      .line_i           (in_q[IN-1-:LINE]),
-      .layout_i         (in_q[LAYOUT+:LAYOUTS]),
+      .line_i           (in_q[LINE+:raster_pkg::LINE_SETUP_BITS]),
+      .layout_i         (layout),
       .beat_valid_o     (out[2]),
       .beat_ready_i     (in_q[0]),
       .beat_o           (out[BEAT+:raster_pkg::MEMORY_BEAT_BITS]),
@@ -59,23 +90,5 @@ module pin_wrapper (
       .counters_o       (out[OUT-1-:raster_pkg::COUNTER_PACKET_BITS]),
       .idle_o           (out[6])
   );
-
-  // Parity in registered layers of four-input gates.
-  localparam int FOURS = (OUT + 3) / 4;
-  localparam int SIXTEENS = (FOURS + 3) / 4;
-  localparam int SIXTY_FOURS = (SIXTEENS + 3) / 4;
-  logic [4*FOURS-1:0]       out_padded;
-  logic [4*SIXTEENS-1:0]    fours_q;
-  logic [4*SIXTY_FOURS-1:0] sixteens_q;
-  logic [SIXTY_FOURS-1:0]   sixty_fours_q;
-  assign out_padded = (4 * FOURS)'(out);
-  always_ff @(posedge clk_i) begin
-    fours_q    <= '0;
-    sixteens_q <= '0;
-    for (int i = 0; i < FOURS; i++) fours_q[i] <= ^out_padded[4*i+:4];
-    for (int i = 0; i < SIXTEENS; i++) sixteens_q[i] <= ^fours_q[4*i+:4];
-    for (int i = 0; i < SIXTY_FOURS; i++) sixty_fours_q[i] <= ^sixteens_q[4*i+:4];
-    data_o <= ^sixty_fours_q;
-  end
 
 endmodule

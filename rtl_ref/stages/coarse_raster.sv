@@ -34,6 +34,7 @@ module coarse_raster (
     input  logic                      tile_ready_i,
     output raster_pkg::tile_packet_t  tile_o,
     output raster_pkg::edge_context_t edges_o,
+    output logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_o,  // the serial stage has what is less to make
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,
@@ -393,6 +394,7 @@ module coarse_raster (
     tile_o.is_inside = left_q.is_inside && is_visit;
   end
   assign edges_o = left_edges_q;
+  assign visit_edges_o = '0;
 
   // --- Counters
   logic            left_is_triangle;

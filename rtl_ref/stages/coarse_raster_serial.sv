@@ -21,11 +21,13 @@ module coarse_raster_serial (
     output logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step_o,
     input  logic                             slot_free_i,  // interpolate has read a slot for the last time
 
-    // To fine_raster; edges_o is the context of the tile's primitive
+    // To fine_raster; edges_o is the context of the tile's primitive, visit_edges_o the edge_value of tile_o for a visit, of
+    // which no edge is far below 0: so only what is too large is cut
     output logic                      tile_valid_o,
     input  logic                      tile_ready_i,
     output raster_pkg::tile_packet_t  tile_o,
     output raster_pkg::edge_context_t edges_o,
+    output logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_o,
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,
@@ -67,8 +69,10 @@ module coarse_raster_serial (
   logic       is_new_q;   // TURN for the first tile, without a step
 
   /* verilator lint_off UNUSEDSIGNAL */  // edges and planes are in the registers below
-  raster_pkg::setup_packet_t s_q;
+  raster_pkg::setup_packet_t s_q;  // its box complemented, as cull holds it
   /* verilator lint_on UNUSEDSIGNAL */
+  raster_pkg::pixel_box_t bounds;
+  raster_pkg::setup_packet_t setup;  // as it was taken
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
   logic [SLOT-1:0] slot_q;   // of the primitive in s_q
@@ -82,6 +86,11 @@ module coarse_raster_serial (
   logic is_behind, is_settled, visits_are_done, is_skipped, tile_taken;
   logic outside_q, inside_q;      // some edge, all edges
   logic ends_way_q, ends_left_q;  // outside of an edge that gets no better this way, to the left
+  assign bounds         = ~s_q.box;
+  always_comb begin
+    setup     = s_q;
+    setup.box = bounds;
+  end
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = s_q.kind[1];  // fast clear, flush, line
@@ -108,12 +117,12 @@ module coarse_raster_serial (
   logic          was_left_q;         // the way before it
   logic [TX-1:0] group_end;  // the last tile of the group that is cleared
   logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, goes_down;
-  assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
-  assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
-  assign is_last_group  = (tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
+  assign is_leftmost    = tile_x_q == bounds.left[PX-1:TS];
+  assign is_rightmost   = tile_x_q == bounds.right[PX-1:TS];
+  assign is_last_group  = (tile_x_q ^ bounds.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
   assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
   assign is_last_column = goes_left_q ? is_leftmost : (clears ? is_last_group : is_rightmost);
-  assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
+  assign is_last_row    = tile_y_q == bounds.bottom[PY-1:TS];
   assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
   assign must_return    = must_return_q && !ends_left_q;
   assign exits          = is_last_column || ends_way_q;
@@ -156,16 +165,17 @@ module coarse_raster_serial (
 
     if (takes) begin
       s_q      <= setup_i;
+      s_q.box  <= ~setup_i.box;
       tile_x_q <= setup_i.box.left[PX-1:TS];
       tile_y_q <= setup_i.box.top[PY-1:TS];
     end else if (turns_end && is_token && !clears_bounds) begin
-      tile_x_q <= s_q.box.right[PX-1:TS];  // nothing to clear here
-      tile_y_q <= s_q.box.bottom[PY-1:TS];
+      tile_x_q <= bounds.right[PX-1:TS];  // nothing to clear here
+      tile_y_q <= bounds.bottom[PY-1:TS];
     end else if ((turns_end && !is_new_q) || (clears && !is_last_tile)) begin
       tile_x_q <= next_x;
       tile_y_q <= tile_y_q + TY'(goes_down);
     end else if (clears) begin
-      tile_x_q <= s_q.box.right[PX-1:TS];  // from its group to the last tile itself
+      tile_x_q <= bounds.right[PX-1:TS];  // from its group to the last tile itself
     end
 
     if (takes) begin
@@ -180,7 +190,7 @@ module coarse_raster_serial (
     end else if (steps) begin
       was_left_q    <= goes_left_q;
       goes_left_q   <= (goes_left_q || turns_back) && !row_ends;
-      must_return_q <= row_ends ? start_x_q != s_q.box.left[PX-1:TS] : must_return && !turns_back;
+      must_return_q <= row_ends ? start_x_q != bounds.left[PX-1:TS] : must_return && !turns_back;
       is_empty_q    <= row_ends || (is_empty_q && outside_q);
       goes_down_q   <= row_ends;
       turns_back_q  <= turns_back;
@@ -256,8 +266,10 @@ module coarse_raster_serial (
         assign sign = values[i*V+V-1];
         assign fits = values[i*V+TE-1+:V-TE+1] == {(V - TE + 1) {sign}};
         assign edge_value[i*TE+:TE] = fits ? values[i*V+:TE] : {sign, {(TE - 1) {~sign}}};
+        assign visit_edges_o[i*TE+:TE] = {sign, values[i*V+:TE-1] | {(TE - 1) {!sign && !fits}}};
       end else begin : gen_extend
         assign edge_value[i*TE+:TE] = TE'($signed(values[i*V+:V]));
+        assign visit_edges_o[i*TE+:TE] = edge_value[i*TE+:TE];
       end
     end
   endgenerate
@@ -330,7 +342,7 @@ module coarse_raster_serial (
   hiz u_hiz (
       .clk_i,
       .rst_ni,
-      .setup_i          (s_q),
+      .setup_i          (setup),
       .tile_x_i         (tile_x_q),
       .tile_y_i         (tile_y_q),
       .passes_i         (turns_end),
@@ -352,10 +364,10 @@ module coarse_raster_serial (
   // ----------------------------------------------------------------------------------------------------------- result
   // The tile's part of the box comes a cycle after the tile's coordinates, before a packet is offered.
   raster_pkg::tile_box_t box, box_q;
-  assign box.left   = is_leftmost ? s_q.box.left[TS-1:0] : '0;
-  assign box.top    = tile_y_q == s_q.box.top[PY-1:TS] ? s_q.box.top[TS-1:0] : '0;
-  assign box.right  = is_rightmost ? s_q.box.right[TS-1:0] : '1;
-  assign box.bottom = is_last_row ? s_q.box.bottom[TS-1:0] : '1;
+  assign box.left   = is_leftmost ? bounds.left[TS-1:0] : '0;
+  assign box.top    = tile_y_q == bounds.top[PY-1:TS] ? bounds.top[TS-1:0] : '0;
+  assign box.right  = is_rightmost ? bounds.right[TS-1:0] : '1;
+  assign box.bottom = is_last_row ? bounds.bottom[TS-1:0] : '1;
   always_ff @(posedge clk_i) box_q <= box;
 
   assign tile_o.kind           = s_q.kind;

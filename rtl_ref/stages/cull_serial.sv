@@ -132,7 +132,8 @@ module cull_serial (
   logic signed [B-1:0] above_x, below_x, above_y, below_y;
   /* verilator lint_on UNUSEDSIGNAL */
   logic signed [N-1:0] first_x, last_x, first_y, last_y, scissor_left, scissor_top, scissor_right, scissor_bottom;
-  logic signed [N-1:0] left, right, top, bottom, held_left, held_right, held_top, held_bottom;
+  logic signed [N-1:0] held_left, held_right, held_top, held_bottom;
+  logic                cuts_left, cuts_right, cuts_top, cuts_bottom;
   logic        [N-1:0] not_left_q, not_right_q, not_top_q, not_bottom_q;  // complements again
   logic                is_first, is_empty, is_empty_q;
   assign held_left         = ~not_left_q;
@@ -152,10 +153,10 @@ module cull_serial (
   assign scissor_top    = N'(primitive_i.box.top);
   assign scissor_right  = N'(primitive_i.box.right);
   assign scissor_bottom = N'(primitive_i.box.bottom);
-  assign left           = is_triangle && held_left > scissor_left ? held_left : scissor_left;
-  assign top            = is_triangle && held_top > scissor_top ? held_top : scissor_top;
-  assign right          = is_triangle && !(held_right >= scissor_right) ? held_right : scissor_right;
-  assign bottom         = is_triangle && !(held_bottom >= scissor_bottom) ? held_bottom : scissor_bottom;
+  assign cuts_left      = !is_triangle || !(held_left > scissor_left);
+  assign cuts_top       = !is_triangle || !(held_top > scissor_top);
+  assign cuts_right     = !is_triangle || held_right >= scissor_right;
+  assign cuts_bottom    = !is_triangle || held_bottom >= scissor_bottom;
   assign is_first       = count_q == '0;
   assign is_empty       = held_left > held_right || held_top > held_bottom;
 
@@ -168,10 +169,10 @@ module cull_serial (
       if (is_first || !(held_bottom >= last_y)) not_bottom_q <= ~last_y;
     end
     if (state_q == BOX && count_q == COUNT'(3)) begin
-      not_left_q   <= ~left;
-      not_right_q  <= ~right;
-      not_top_q    <= ~top;
-      not_bottom_q <= ~bottom;
+      if (cuts_left) not_left_q <= ~scissor_left;
+      if (cuts_right) not_right_q <= ~scissor_right;
+      if (cuts_top) not_top_q <= ~scissor_top;
+      if (cuts_bottom) not_bottom_q <= ~scissor_bottom;
     end
   end
 

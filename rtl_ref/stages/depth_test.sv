@@ -18,7 +18,7 @@ module depth_test (
     output logic                                                    access_valid_o,
     input  logic                                                    access_ready_i,
     output raster_pkg::fragment_packet_t                            access_o,
-    output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // of sample 0: a clear's colour
+    output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // of sample 0, a cycle later: a clear's colour
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_i,
 
     // To framebuffer; never waits. The depths of the packet are those of the fragment
@@ -75,7 +75,7 @@ module depth_test (
                      (fragment_q.mask & fragment_i.mask) != '0;
   assign access_valid_o   = fragment_valid_i && needs_access && !must_wait;
   assign access_o         = fragment_i;
-  assign access_color_o   = raster_pkg::STORED_COLOR_BITS'(color[0+:COLOR]);
+  assign access_color_o   = raster_pkg::STORED_COLOR_BITS'(color_q[0+:COLOR]);
   assign fragment_ready_o = !needs_access || (access_ready_i && !must_wait);
   assign takes_fragment   = fragment_valid_i && fragment_ready_o;
 

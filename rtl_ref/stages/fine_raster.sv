@@ -17,6 +17,9 @@ module fine_raster (
     output logic                      tile_ready_o,
     input  raster_pkg::tile_packet_t  tile_i,
     input  raster_pkg::edge_context_t edges_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // for the serial stage
+    input  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_i,
+    /* verilator lint_on UNUSEDSIGNAL */
 
     // To interpolate
     output logic                      stamp_valid_o,

@@ -1,11 +1,12 @@
-// Fine raster for the smallest parts: the bits of fine_raster.sv from one stamp position a cycle, stepped with one adder
-// an edge.
+// Fine raster for the smallest parts: the bits of fine_raster.sv from one stamp position a cycle, stepped with two adders
+// an edge: one to the right, and one that has the row below ready when a row ends.
 //
 // From the tile's first pixel it steps right to the box's first column of stamps, then down to the first row; then it
-// visits every stamp of the box, row by row. In the last row each covered stamp is held back until the next one is found,
-// because the last of them ends the visit. Whether the whole tile is inside is not looked at: then the edges say so at
-// each stamp, in the same cycle.
-// tile_i and edges_i are not stored: tile_ready_o comes with the last stamp. So a tile costs a cycle, one for each stamp
+// visits every stamp of the box, row by row. The row below is found in the first column, for the next cycle: so a row of
+// one stamp takes two cycles, and so does a row on the way down. In the last row each covered stamp is held back until the
+// next one is found, because the last of them ends the visit. Whether the whole tile is inside is not looked at: then the
+// edges say so at each stamp, in the same cycle.
+// tile_i and its edges are not stored: tile_ready_o comes with the last stamp. So a tile costs a cycle, one for each stamp
 // of its box, and the way to the first one. Specification: model/stages/fine_raster.hpp.
 module fine_raster_serial (
     input logic clk_i,
@@ -14,10 +15,11 @@ module fine_raster_serial (
     // From coarse_raster
     input  logic                      tile_valid_i,
     output logic                      tile_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // is_inside
+    /* verilator lint_off UNUSEDSIGNAL */  // is_inside; edge values come by visit_edges_i
     input  raster_pkg::tile_packet_t  tile_i,
     /* verilator lint_on UNUSEDSIGNAL */
     input  raster_pkg::edge_context_t edges_i,
+    input  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_i,  // of a visit
 
     // To interpolate
     output logic                      stamp_valid_o,
@@ -40,22 +42,24 @@ module fine_raster_serial (
   (* fsm_encoding = "none" *) logic [1:0] state_q;  // RIGHT, DOWN: on the way to the first stamp of the box
   logic [COLUMN-1:0] column_q, row_q;  // of the stamp whose edge values these are
   logic [COLUMN-1:0] first_column, last_column, first_row, last_row, next_column, next_row;
-  logic              scans, is_last_column, is_last_row, is_end, starts, passes, is_way_down, moves, tile_leaves;
+  logic              scans, is_first_column, is_last_column, is_last_row, is_end, starts, passes, is_way_down, moves, tile_leaves;
+  logic              has_below_q;  // below_q is the row below this one
   assign first_column   = COLUMN'(tile_i.box.left >> STAMP_SHIFT);
   assign last_column    = COLUMN'(tile_i.box.right >> STAMP_SHIFT);
   assign first_row      = COLUMN'(tile_i.box.top >> STAMP_SHIFT);
   assign last_row       = COLUMN'(tile_i.box.bottom >> STAMP_SHIFT);
   assign next_column    = column_q + COLUMN'(1);
   assign next_row       = row_q + COLUMN'(1);
-  assign scans          = state_q == SCAN;
-  assign is_last_column = column_q == last_column;
+  assign scans           = state_q == SCAN && (has_below_q || !is_last_column);
+  assign is_first_column = column_q == first_column;
+  assign is_last_column  = column_q == last_column;
   assign is_last_row    = row_q == last_row;
   assign is_end         = is_last_column && is_last_row;
 
   // Which way depends on the position only: whether the stamp is taken comes late.
   assign starts      = state_q == IDLE && tile_valid_i && tile_i.is_visit;
-  assign is_way_down = state_q == DOWN || (scans && is_last_column);
-  assign moves       = state_q == RIGHT || state_q == DOWN || passes;
+  assign is_way_down = state_q == DOWN || (state_q == SCAN && is_last_column);
+  assign moves       = state_q == RIGHT || (state_q == DOWN && has_below_q) || passes;
   assign tile_leaves = tile_valid_i && tile_ready_o;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -64,7 +68,7 @@ module fine_raster_serial (
       case (state_q)
         IDLE: if (starts) state_q <= first_column != '0 ? RIGHT : first_row != '0 ? DOWN : SCAN;
         RIGHT: if (next_column == first_column) state_q <= first_row != '0 ? DOWN : SCAN;
-        DOWN: if (next_row == first_row) state_q <= SCAN;
+        DOWN: if (has_below_q && next_row == first_row) state_q <= SCAN;
         default: if (tile_leaves) state_q <= IDLE;
       endcase
     end
@@ -78,6 +82,7 @@ module fine_raster_serial (
       if (moves) column_q <= is_way_down ? first_column : next_column;
       if (moves && is_way_down) row_q <= next_row;
     end
+    has_below_q <= !starts && !(moves && (is_way_down || state_q == RIGHT)) && (has_below_q || is_first_column);
   end
 
   logic [SAMPLES-1:0]   mask;
@@ -85,17 +90,15 @@ module fine_raster_serial (
   genvar e, i, j;
   generate
     for (e = 0; e < 3; e++) begin : gen_edge
-      logic signed [W-1:0] value_q, row_value_q;  // at the stamp's first sample; at that of its row's first stamp
-      logic signed [W-1:0] step_x, step_y, from, step, next, value_d;
-      assign step_x  = W'($signed(edges_i.step_x[e*STEP+:STEP]));
-      assign step_y  = W'($signed(edges_i.step_y[e*STEP+:STEP]));
-      assign from    = is_way_down ? row_value_q : value_q;
-      assign step    = is_way_down ? step_y : step_x;
-      assign next    = from + (step <<< STAMP_SHIFT);
-      assign value_d = starts ? W'($signed(tile_i.edge_value[e*TILE_EDGE+:TILE_EDGE])) : next;
+      logic signed [W-1:0] value_q, below_q;  // at the stamp's first sample; at that of the first stamp of the row below
+      logic signed [W-1:0] step_x, step_y, right;
+      assign step_x = W'($signed(edges_i.step_x[e*STEP+:STEP]));
+      assign step_y = W'($signed(edges_i.step_y[e*STEP+:STEP]));
+      assign right  = value_q + (step_x <<< STAMP_SHIFT);
       always_ff @(posedge clk_i) begin
-        if (starts || moves) value_q <= value_d;
-        if (starts || state_q == RIGHT || (moves && is_way_down)) row_value_q <= value_d;
+        if (starts) value_q <= W'($signed(visit_edges_i[e*TILE_EDGE+:TILE_EDGE]));
+        else if (moves) value_q <= is_way_down ? below_q : right;
+        if (is_first_column) below_q <= value_q + (step_y <<< STAMP_SHIFT);
       end
 
       for (j = 0; j < STAMP; j++) begin : gen_row

@@ -11,7 +11,7 @@ module framebuffer (
     input logic rst_ni,
 
     /* verilator lint_off UNUSEDSIGNAL */  // of the packets only some fields matter here
-    // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0
+    // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0 of the cycle before
     input  logic                                                       access_valid_i,
     output logic                                                       access_ready_o,
     input  raster_pkg::fragment_packet_t                               access_i,
@@ -80,8 +80,8 @@ module framebuffer (
   logic [TILE_X-1:0] walk_x_q;  // tile of a fast clear's or flush's walk
   logic [TILE_Y-1:0] walk_y_q;
   logic              walked_q;  // the walk is through
-  logic [CODE-1:0]   clear_depth_q;
-  logic [COLOR-1:0]  clear_color_q;
+  logic [CODE-1:0]   clear_depth;  // of the last fast clear
+  logic [COLOR-1:0]  clear_color;
 
   // Tags; those and the dirty bits of a line that is not valid mean nothing.
   logic [LINES-1:0]  valid_q;
@@ -98,9 +98,11 @@ module framebuffer (
   /* verilator lint_off UNUSEDSIGNAL */  // wider than a tile's y where the cache is larger than the target
   logic [LINE-1:0]   line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [TILE_X-1:0] tile_x, victim_x;
-  logic [TILE_Y-1:0] tile_y;
-  logic flag_depth, flag_color;  // the plane of the tile in memory is garbage: its value is the last fast clear's
+  logic [TILE_X-1:0] tile_x, tile_x_q, victim_x;
+  logic [TILE_Y-1:0] tile_y, tile_y_q;
+  logic              reads_flags;
+  logic flag_depth_q, flag_color_q;  // the plane of the tile in memory is garbage: its value is the last fast clear's
+  logic read_depth, read_color;      // the same, as its word has just been read
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
@@ -126,19 +128,28 @@ module framebuffer (
   assign sends     = state_q == SEND && !resolves;
   assign ends_row  = resolves ? walk_x_q == access_i.key.tile_x : walk_x_q >> BIT == access_i.key.tile_x >> BIT;
   assign ends_walk = ends_row && walk_y_q == access_i.key.tile_y;
-  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !flag_color : request_ready_i)) ||
+  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !read_color : request_ready_i)) ||
                      (is_resolve && ends_plane);
 
   assign access_ready_o = state_q == SERVE ? !is_token && hits : walked_q;
   assign moves_tiles_o  = state_q != SERVE || (access_valid_i && !access_ready_o);
   assign idle_o         = state_q == SERVE && !access_valid_i;
 
+  // Flags are read, then looked up in their word: for a tile that is moved CHECK takes two cycles.
+  logic waits, has_waited_q;
+  assign waits = !has_waited_q && state_q == CHECK && (line_depth_dirty || line_color_dirty || !is_token);
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) has_waited_q <= 1'b0;
+    else has_waited_q <= waits;
+  end
+
   always_comb begin
     state_d = state_q;
     case (state_q)
       SERVE: if (access_valid_i && !access_ready_o) state_d = clears_all ? MARK : CHECK;
       CHECK:
-      if (line_depth_dirty || line_color_dirty) state_d = EVICT;
+      if (waits) state_d = CHECK;
+      else if (line_depth_dirty || line_color_dirty) state_d = EVICT;
       else if (!is_token) state_d = FILL;
       else if (is_last_line) state_d = is_clear ? MARK : READ;
       EVICT: if (ends_plane) state_d = CHECK;
@@ -169,12 +180,39 @@ module framebuffer (
 
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE) line_q <= is_token ? '0 : access_line;
-    else if (state_q == CHECK && state_d == CHECK) line_q <= line_q + 1'b1;
+    else if (state_q == CHECK && is_token && !line_depth_dirty && !line_color_dirty && !is_last_line) line_q <= line_q + 1'b1;
     if (state_q == SERVE || state_q == CHECK) plane_q <= state_q == CHECK && !line_depth_dirty && line_color_dirty;
     else if (walks && ends_walk) plane_q <= 1'b1;
-    if (state_q == MARK && access_i.state.depth_write) clear_depth_q <= access_i.code[0+:CODE];
-    if (state_q == MARK && access_i.state.color_write) clear_color_q <= access_color_i;
   end
+
+  // The values of the last fast clear, each a word of a RAM, read in every cycle: what MARK writes is there long before a tile
+  // is filled with it.
+  sram #(
+      .WIDTH    (CODE),
+      .READS_OLD(0),
+      .BLOCK    (1)
+  ) u_clear_depth (
+      .clk_i,
+      .read_i         (1'b1),
+      .read_address_i (1'b0),
+      .data_o         (clear_depth),
+      .write_i        (state_q == MARK && access_i.state.depth_write),
+      .write_address_i(1'b0),
+      .data_i         (access_i.code[0+:CODE])
+  );
+  sram #(
+      .WIDTH    (COLOR),
+      .READS_OLD(0),
+      .BLOCK    (1)
+  ) u_clear_color (
+      .clk_i,
+      .read_i         (1'b1),
+      .read_address_i (1'b0),
+      .data_o         (clear_color),
+      .write_i        (state_q == MARK && access_i.state.color_write),
+      .write_address_i(1'b0),
+      .data_i         (access_color_i)
+  );
 
   // Stamps of a tile, in order: those of a row that are still to come are samples of stamps_q, the next row is read ahead.
   // A stamp is read out of the RAMs and is on offer in the cycle after that. A plane that memory has as garbage is written
@@ -208,14 +246,14 @@ module framebuffer (
     end
     if (takes_all) run = RUN'(ROWS * ROWS) - RUN'(stamp);
   end
-  assign runs      = state_q == EVICT || is_resolve || (is_fill && !flag_depth);
+  assign runs      = state_q == EVICT || is_resolve || (is_fill && !flag_depth_q);
   assign is_free   = !offers_q || request_ready_i;
   assign steps     = runs && left != '0 && is_free;
   assign loads     = runs ? row_q != (ROW_BITS + 1)'(ROWS) && (left == '0 || (steps && left == one)) :
                      begins_fill || (state_q == SEND && resolves && !walks);
-  assign takes_all = state_q != EVICT || (plane_q ? flag_color : flag_depth);
+  assign takes_all = state_q != EVICT || (plane_q ? flag_color_q : flag_depth_q);
   assign dirty_row = plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES];
-  assign begins_fill = state_q == CHECK && !line_depth_dirty && !line_color_dirty && !is_token;
+  assign begins_fill = state_q == CHECK && !line_depth_dirty && !line_color_dirty && !is_token && !waits;
   assign row       = begins_fill ? (ROW_BITS + 1)'(ROWS) : (runs ? row_q : '0) + (ROW_BITS + 1)'(loads);
   assign ends_plane      = left == '0 && row_q == (ROW_BITS + 1)'(ROWS) && is_free;
   assign request_valid_o = offers_q || sends;
@@ -245,7 +283,7 @@ module framebuffer (
   logic [STAMP_BITS-1:0] fill_stamp_q;
   logic                  fill_steps;
   assign response_ready_o = 1'b1;
-  assign fill_steps       = is_fill && (flag_depth || response_valid_i);
+  assign fill_steps       = is_fill && (flag_depth_q || response_valid_i);
   assign fill_ends        = fill_steps && fill_stamp_q == LAST_STAMP;
   always_ff @(posedge clk_i) begin
     if (!is_fill) fill_stamp_q <= '0;
@@ -283,22 +321,29 @@ module framebuffer (
       evict_o <= '0;
       clear_o <= '0;
     end else begin
-      fill_o  <= {1'b0, is_fill && !flag_depth && fill_steps};
+      fill_o  <= {1'b0, is_fill && !flag_depth_q && fill_steps};
       evict_o <= {1'b0, !is_fill && offers_q && request_ready_i};
-      clear_o <= {1'b0, is_fill && flag_depth};
+      clear_o <= {1'b0, is_fill && flag_depth_q};
     end
   end
 
-  // The tile that is moved, marked or looked at: of a line that is dirty, the one that leaves. CHECK is on its way to one that
-  // comes in; what it reads for a token is not looked at.
+  // The tile that is marked or whose flags are read: of a line that is dirty, the one that leaves. CHECK is on its way to one
+  // that comes in; what it reads for a token is not looked at. It stays in a register while it is moved.
   assign line_above_x = line_q >> LINE_X;
   assign victim_x     = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
   always_comb begin
-    tile_x = is_fill || state_q == CHECK ? access_i.key.tile_x : walk_x_q;
-    tile_y = is_fill || state_q == CHECK ? access_i.key.tile_y : walk_y_q;
-    if (state_q == EVICT || (state_q == CHECK && (line_depth_dirty || line_color_dirty))) begin
+    tile_x = state_q == CHECK ? access_i.key.tile_x : walk_x_q;
+    tile_y = state_q == CHECK ? access_i.key.tile_y : walk_y_q;
+    if (state_q == CHECK && (line_depth_dirty || line_color_dirty)) begin
       tile_x = victim_x;
       tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
+    end
+  end
+  assign reads_flags = (state_q == CHECK && !has_waited_q) || state_q == READ;
+  always_ff @(posedge clk_i) begin
+    if (reads_flags) begin
+      tile_x_q <= tile_x;
+      tile_y_q <= tile_y;
     end
   end
 
@@ -309,14 +354,21 @@ module framebuffer (
   /* verilator lint_off UNUSEDSIGNAL */  // no bits are left where a word is a row
   logic [TILE_X-1:0]  word_x, last_word;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [TILE_Y+WORD_X-1:0] flag_address;
-  // Looked at for a tile that leaves, is resolved or comes in; not while CHECK chooses between them.
-  assign bit_x      = state_q == EVICT ? BIT'(victim_x) : is_fill ? BIT'(access_i.key.tile_x) : BIT'(walk_x_q);
-  assign word_x     = tile_x >> BIT;
+  logic [TILE_Y+WORD_X-1:0] flag_read_address, flag_write_address;
+  // Looked at, and written but for MARK, when they have been read: the bit of the tile whose word that is.
+  assign bit_x      = BIT'(tile_x_q);
+  assign word_x     = tile_x_q >> BIT;
   assign last_word  = access_i.key.tile_x >> BIT;
-  assign flag_address = {tile_y, word_x[WORD_X-1:0]};
-  assign flag_depth = word_depth[bit_x];
-  assign flag_color = word_color[bit_x];
+  assign flag_read_address  = (TILE_Y + WORD_X)'({tile_y, WORD_X'(tile_x >> BIT)});
+  assign flag_write_address = state_q == MARK ? flag_read_address : {tile_y_q, word_x[WORD_X-1:0]};
+  assign read_depth = word_depth[bit_x];
+  assign read_color = word_color[bit_x];
+  always_ff @(posedge clk_i) begin
+    if (state_q == CHECK) begin
+      flag_depth_q <= read_depth;
+      flag_color_q <= read_color;
+    end
+  end
   assign flag_bit   = state_q == MARK ? '1 : WORD'(1) << bit_x;
   assign flag_write = (state_q == MARK) ? {access_i.state.color_write, access_i.state.depth_write}
                                         : {2{(state_q == EVICT || is_resolve) && ends_plane}} & {plane_q, !plane_q};
@@ -326,11 +378,11 @@ module framebuffer (
       .DEPTH(FLAGS)
   ) u_flag_depth (
       .clk_i,
-      .read_i         (state_q == CHECK || state_q == READ),
-      .read_address_i (flag_address),
+      .read_i         (reads_flags),
+      .read_address_i (flag_read_address),
       .data_o         (word_depth),
       .write_i        (flag_bit & {WORD{flag_write[0]}}),
-      .write_address_i(flag_address),
+      .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
   );
   masked_sram #(
@@ -338,11 +390,11 @@ module framebuffer (
       .DEPTH(FLAGS)
   ) u_flag_color (
       .clk_i,
-      .read_i         (state_q == CHECK || state_q == READ),
-      .read_address_i (flag_address),
+      .read_i         (reads_flags),
+      .read_address_i (flag_read_address),
       .data_o         (word_color),
       .write_i        (flag_bit & {WORD{flag_write[1]}}),
-      .write_address_i(flag_address),
+      .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
   );
 
@@ -361,13 +413,19 @@ module framebuffer (
   assign new_stamp    = is_fill ? fill_stamp_q : write_i.stamp;
   assign new_row      = new_stamp >> ROW_BITS;
 
-  // Beside them a bit for each sample and plane: written since the tile came in. A word is a row of stamps.
-  logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address;
+  // Beside them a bit for each sample and plane: written since the tile came in. A word is a row of stamps. What is written comes
+  // late, from the depth test, so it waits a cycle: a look at a line takes one more than that.
+  logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address, dirty_write_address_q;
+  logic                   sets_row_q;
   logic [ROWS-1:0]        column;  // of the stamp that is written
   assign dirty_read_address  = (ROW_ADDRESS'(line_q) << ROW_BITS) | (ROW_ADDRESS'(row) & ROW_ADDRESS'(ROWS - 1));
   assign dirty_write_address = (ROW_ADDRESS'(new_line) << ROW_BITS) | ROW_ADDRESS'(new_row);
   always_comb
     for (int i = 0; i < ROWS; i++) column[i] = (write_i.stamp & COLUMN_MASK) == STAMP_BITS'(i);
+  always_ff @(posedge clk_i) begin
+    dirty_write_address_q <= dirty_write_address;
+    sets_row_q            <= !is_fill;
+  end
 
   logic [SAMPLES*LANE-1:0] data;
   genvar s, c;
@@ -376,14 +434,14 @@ module framebuffer (
       logic              writes_depth, writes_color, is_here;
       logic [CODE-1:0]   depth, depth_new;
       logic [COLOR-1:0]  color, color_new;
-      logic [2*ROWS-1:0] dirty, writes_dirty;  // colour, depth
+      logic [2*ROWS-1:0] dirty, writes_dirty, writes_dirty_q;  // colour, depth
       assign writes_depth = is_fill ? fill_steps : write_valid_i && write_i.write_depth[s];
-      assign writes_color = is_fill ? fill_steps && flag_color : write_valid_i && write_i.write_color[s];
+      assign writes_color = is_fill ? fill_steps && flag_color_q : write_valid_i && write_i.write_color[s];
       assign writes_dirty = {2 * ROWS{is_fill}} | {column & {ROWS{writes_color}}, column & {ROWS{writes_depth}}};
       always_comb begin
         depth_new = write_i.depth[s*CODE+:CODE];
-        if (is_fill) depth_new = flag_depth ? clear_depth_q : response_i.data[s*LANE+:CODE];
-        color_new = is_fill ? clear_color_q : write_i.color[s*COLOR+:COLOR];
+        if (is_fill) depth_new = flag_depth_q ? clear_depth : response_i.data[s*LANE+:CODE];
+        color_new = is_fill ? clear_color : write_i.color[s*COLOR+:COLOR];
       end
 
       sram #(
@@ -420,17 +478,21 @@ module framebuffer (
           .read_i         (1'b1),
           .read_address_i (dirty_read_address),
           .data_o         (dirty),
-          .write_i        (writes_dirty),
-          .write_address_i(dirty_write_address),
-          .data_i         ({2 * ROWS{!is_fill}})
+          .write_i        (writes_dirty_q),
+          .write_address_i(dirty_write_address_q),
+          .data_i         ({2 * ROWS{sets_row_q}})
       );
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) writes_dirty_q <= '0;
+        else writes_dirty_q <= writes_dirty;
+      end
       for (c = 0; c < 2 * ROWS; c++) begin : gen_dirty
         assign dirty_rows[c*SAMPLES+s] = dirty[c];
       end
 
       assign stored_depth_o[s*CODE+:CODE] = depth;
       assign is_here = state_q == EVICT && strobe_q[s];
-      assign data[s*LANE+:LANE] = is_resolve ? LANE'(clear_color_q) : (plane_q ? LANE'(color) : LANE'(depth)) & {LANE{is_here}};
+      assign data[s*LANE+:LANE] = is_resolve ? LANE'(clear_color) : (plane_q ? LANE'(color) : LANE'(depth)) & {LANE{is_here}};
     end
   endgenerate
 
@@ -439,8 +501,8 @@ module framebuffer (
     request_o.is_write = !is_fill;
     request_o.plane    = plane_q ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
     request_o.strobe   = is_fill ? '0 : strobe_q;
-    request_o.tile_x   = tile_x;
-    request_o.tile_y   = tile_y;
+    request_o.tile_x   = tile_x_q;
+    request_o.tile_y   = tile_y_q;
     request_o.stamp    = stamp_q;
     request_o.run      = run_q;
     request_o.data     = data;

@@ -3,7 +3,9 @@
 // The context RAM's output is the only copy of a context: it is read when the first stamp of a primitive waits and
 // everything of the primitive before has left. Then one stamp a cycle; latency 2 cycles:
 //   x, y  from the anchor to the stamp's first sample; from there to each sample, of which the code is a part
-// The fragment is not stored: behind this stage is a skid buffer.
+// Step y ends in a block RAM, from which a fragment is also offered: three wait there at most, the newest in step y, the
+// others behind it as in a skid buffer. So what comes later waits for the framebuffer by registers alone. What is looked at
+// first, whether there is an access and of what, stands in registers all the way.
 // Specification: model/stages/interpolate.hpp.
 module interpolate_serial (
     input logic clk_i,
@@ -42,12 +44,15 @@ module interpolate_serial (
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end in the step x
-  raster_pkg::stamp_packet_t x_stamp_q, y_stamp_q;
+  raster_pkg::stamp_packet_t x_stamp_q;
   /* verilator lint_on UNUSEDSIGNAL */
+  localparam int FIRST = raster_pkg::KIND_BITS + raster_pkg::PRIMITIVE_ID_BITS + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS +
+                         raster_pkg::STAMP_INDEX_BITS + raster_pkg::SAMPLE_MASK_BITS;  // kind, key, stamp, mask
+  logic [FIRST-1:0] y_first_q;
   logic has_context_q, x_valid_q, y_valid_q;
-  logic x_ready, y_ready, is_empty;
+  logic x_ready, y_ready, buffer_ready, is_empty;
 
-  assign y_ready        = !y_valid_q || fragment_ready_i;
+  assign y_ready        = !y_valid_q || buffer_ready;
   assign x_ready        = !x_valid_q || y_ready;
   assign stamp_ready_o  = has_context_q && x_ready;
   assign is_empty       = !x_valid_q && !y_valid_q;
@@ -73,7 +78,7 @@ module interpolate_serial (
 
   always_ff @(posedge clk_i) begin
     if (x_ready) x_stamp_q <= stamp_i;
-    if (y_ready) y_stamp_q <= x_stamp_q;
+    if (y_ready) y_first_q <= {x_stamp_q.kind, x_stamp_q.key, x_stamp_q.stamp, x_stamp_q.mask};
   end
 
   // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
@@ -91,6 +96,7 @@ module interpolate_serial (
     end
   endgenerate
 
+  logic [SAMPLES*CODES-1:0] code;
   genvar p, s;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_plane
@@ -98,7 +104,7 @@ module interpolate_serial (
       localparam int LOCAL = LOCAL_AT[32*p+:32];
       localparam int B = CODE_BITS_OF[32*p+:32];
       localparam int CODE = CODE_AT[32*p+:32];
-      logic [W-1:0] anchor, step_x, step_y, x_value, y_value, x_value_q, y_value_q;
+      logic [W-1:0] anchor, step_x, step_y, x_value, y_value, x_value_q;
       assign anchor = stamp_i.anchor[LOCAL+:W];
       assign step_x = context_i.step_x[LOCAL+:W];
       assign step_y = context_i.step_y[LOCAL+:W];
@@ -123,10 +129,7 @@ module interpolate_serial (
           .offset_i(to_y),
           .value_o (y_value)
       );
-      always_ff @(posedge clk_i) begin
-        if (x_ready) x_value_q <= x_value;
-        if (y_ready) y_value_q <= y_value;
-      end
+      always_ff @(posedge clk_i) if (x_ready) x_value_q <= x_value;
 
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
         /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
@@ -136,25 +139,57 @@ module interpolate_serial (
             .WIDTH (W),
             .OFFSET(PIXEL)
         ) u_value (
-            .value_i (y_value_q),
+            .value_i (y_value),
             .step_x_i(step_x),
             .step_y_i(step_y),
             .x_i     (PIXEL'(s % STAMP)),
             .y_i     (PIXEL'(s / STAMP)),
             .value_o (value)
         );
-        assign fragment_o.code[s*CODES+CODE+:B] = {!value[L+B-1], value[L+:B-1]};  // anchors are offset by half of all codes
+        assign code[s*CODES+CODE+:B] = {!value[L+B-1], value[L+:B-1]};  // anchors are offset by half of all codes
       end
     end
   endgenerate
 
-  assign fragment_valid_o          = y_valid_q;
-  assign fragment_o.kind           = y_stamp_q.kind;
-  assign fragment_o.ends_visit     = y_stamp_q.ends_visit;
-  assign fragment_o.ends_primitive = y_stamp_q.ends_primitive;
-  assign fragment_o.key            = y_stamp_q.key;
-  assign fragment_o.stamp          = y_stamp_q.stamp;
-  assign fragment_o.mask           = y_stamp_q.mask;
-  assign fragment_o.state          = context_i.state;
+  // ----------------------------------------------------------------------------------------------------- the way out
+  skid_buffer #(
+      .WIDTH(FIRST)
+  ) u_first (
+      .clk_i,
+      .rst_ni,
+      .valid_i(y_valid_q),
+      .ready_o(buffer_ready),
+      .data_i (y_first_q),
+      .valid_o(fragment_valid_o),
+      .ready_i(fragment_ready_i),
+      .data_o ({fragment_o.kind, fragment_o.key, fragment_o.stamp, fragment_o.mask})
+  );
+
+  // The word on offer in the next cycle was written before this one: a fragment is in step y first.
+  logic [1:0] write_q, read_q, read;  // of four words: where the next fragment goes; the one on offer, now and in the next cycle
+  assign read = read_q + 2'(fragment_valid_o && fragment_ready_i);
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      write_q <= '0;
+      read_q  <= '0;
+    end else begin
+      write_q <= write_q + 2'(x_valid_q && y_ready);
+      read_q  <= read;
+    end
+  end
+  sram #(
+      .WIDTH    (raster_pkg::FRAGMENT_PACKET_BITS - FIRST),
+      .DEPTH    (4),
+      .READS_OLD(0),
+      .BLOCK    (1)
+  ) u_fragments (
+      .clk_i,
+      .read_i         (1'b1),
+      .read_address_i (read),
+      .data_o         ({fragment_o.ends_visit, fragment_o.ends_primitive, fragment_o.state, fragment_o.code}),
+      .write_i        (x_valid_q && y_ready),
+      .write_address_i(write_q),
+      .data_i         ({x_stamp_q.ends_visit, x_stamp_q.ends_primitive, context_i.state, code})
+  );
 
 endmodule

@@ -159,11 +159,16 @@ module memory_port (
   assign ends   = !request_i.is_write || request_i.run == RUN'(1) ||
                   (is_flags ? flag_ends : (is_color ? color_ends : depth_ends));
 
+  // A burst lies in a plane of a tile, or in a row of flags: no beat moves the address beyond these bits.
+  localparam int WIDEST = (PLANE > ROW) ? PLANE : ROW;
+  localparam int INSIDE = (WIDEST > PORT) ? WIDEST : PORT + 1;
+
   // The word on its way out. While it gathers, it is not complete and not on offer.
   logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
   logic [ADDRESS-1:PORT] address_q;  // without the rows above: a product is long enough by itself
   logic [ADDRESS-TILE-1:0] above_q;
   logic [LENGTH-1:0]  length_q;  // beats that are left of the burst
+  localparam bit SEVERAL = WORD > BYTES;  // beats in a word
   logic [7:0]         more_q;    // of the word behind the one on offer
   logic [8*WORD-1:0]  data_q;
   logic [WORD-1:0]    strobe_q;
@@ -200,7 +205,7 @@ module memory_port (
     if (takes) begin
       data_q   <= gathers_q ? data_q | word : word;
       strobe_q <= gathers_q ? strobe_q | strobe : strobe;
-      more_q   <= request_i.is_write ? more : '0;
+      more_q   <= SEVERAL && request_i.is_write ? more : '0;
       if (!gathers_q) begin
         is_write_q <= request_i.is_write;
         is_first_q <= !in_burst_q;
@@ -211,9 +216,9 @@ module memory_port (
     end else if (sends) begin
       data_q     <= data_q >> (8 * BYTES);
       strobe_q   <= strobe_q >> BYTES;
-      more_q     <= more_q - 8'(more_q != '0);
+      more_q     <= SEVERAL ? more_q - 8'(more_q != '0) : '0;
       is_first_q <= 1'b0;
-      address_q  <= address_q + 1'b1;
+      address_q[INSIDE-1:PORT] <= address_q[INSIDE-1:PORT] + 1'b1;
       length_q   <= length_q - 1'b1;
     end
   end

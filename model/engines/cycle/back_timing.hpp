@@ -345,11 +345,11 @@ class BackTiming {
 
     void look_at_line() { ++cycle; }
     void write_back(std::size_t, const TileAddress& address, const StampRows& rows, bool fills) {
-      cycle += 2;  // the look that found it dirty, and one for its first row of stamps
+      cycle += 3;  // the look that found it dirty, one for its flag and one for its first row of stamps
       timing.write_stamps(cycle, address, rows, fills, MoveCause::evict);
     }
     void fill(std::size_t, int x, int y, const std::array<bool, 2>& is_cleared) {
-      ++cycle;  // the look that found nothing dirty
+      cycle += 2;  // the look that found nothing dirty, and one for the tile's flag
       timing.fill(cycle, x, y, is_cleared[0]);
     }
     void mark_words(int words) { cycle += static_cast<Cycle>(words); }

@@ -103,10 +103,12 @@ class SerialTiming : public BackTiming {
     totals_.visit_cycles += starts - walk_;
     const Cycle offered = starts + 1;
     has_bound_ = false;
-    // From the tile's first stamp to the first one of the box, then one position a cycle.
+    // From the tile's first stamp to the first one of the box, two cycles a row on the way down; then one position a cycle,
+    // and one more in a row of one.
+    const int waits = tile.first_column == tile.last_column ? 1 : 0;
     Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
-               static_cast<Cycle>(tile.first_column + tile.first_row);
-    for (int row = tile.first_row; row < tile.last_row; ++row)
+               static_cast<Cycle>(tile.first_column + 2 * tile.first_row + waits);
+    for (int row = tile.first_row; row < tile.last_row; ++row, at += static_cast<Cycle>(waits))
       for (int column = tile.first_column; column <= tile.last_column; ++column, ++at)
         if (is_covered(tile, row, column)) at = send(at, 0, 0, [&](Cycle t) { return shade(t, row, column); });
     int held = -1;  // column of the last covered stamp of the last row so far
@@ -123,8 +125,9 @@ class SerialTiming : public BackTiming {
     fine_.leave(taken);
     walk_ = taken + 1 + SerialCycles::turn;
     work(Stage::coarse_raster, 1 + SerialCycles::turn);
-    const int positions = (tile.last_row - tile.first_row + 1) * (tile.last_column - tile.first_column + 1);
-    work(Stage::fine_raster, static_cast<std::uint64_t>(1 + tile.first_column + tile.first_row + positions));
+    const int row_cycles = tile.last_column - tile.first_column + 1 + waits;
+    work(Stage::fine_raster, static_cast<std::uint64_t>(1 + tile.first_column + 2 * tile.first_row +
+                                                        (tile.last_row - tile.first_row + 1) * row_cycles));
     if (tile.ends_primitive) coarse_.leave(taken);
     retire();
     visits_.leave(last_retire_);
