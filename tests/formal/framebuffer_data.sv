@@ -127,7 +127,7 @@
           if (reads) read_word_q <= word_q;
           if (writes_ram) ram_new_q <= sets_row_q;
           ram_new_then_q    <= ram_new_q;
-          writes_ram_then_q <= writes_ram;
+          writes_ram_then_q <= dirty_write_address_q == any_row_address && gen_sample[m].writes_dirty_q != '0;
           if (asks) answer_q <= memory_q;
           if (!is_fill || !rst_ni) asked_q <= 1'b0;
           else if (asks) asked_q <= 1'b1;
@@ -150,7 +150,7 @@
         assign passed  = row_q > any_row && !waits && !offered;
         always_comb if (runs_q) begin
           if (state_q == EVICT) assert (!writes_ram && !writes_ram_then_q && ram_new_then_q == ram_new_q);
-          if (has_waited_q) assert (!writes_ram);
+          if (has_waited_q || state_q == EVICT) assert (gen_sample[m].writes_dirty_q == '0);  // no bit of any row
           // Whichever tile is in the line, or comes in.
           if (valid_q[any_line] || (is_fill && line_q == any_line && fill_stamp_q > any_stamp))
             assert (is_new_q == (writes_ram ? sets_row_q : ram_new_q));
