@@ -59,7 +59,7 @@
     if (state_q == EVICT && offers_q) assert (read_known_q && read_q == {line_q, stamp_q});
     if (state_q == EVICT && row_q != (ROW_BITS + 1)'(ROWS))
       assert (dirty_read_q == ((ROW_ADDRESS'(line_q) << ROW_BITS) | ROW_ADDRESS'(row_q)));
-    if (is_fill || state_q == EVICT || state_q == SEND || is_resolve) assert (word_read_q == word_is_it);
+    if (has_waited_q || is_fill || state_q == EVICT || state_q == SEND || is_resolve) assert (word_read_q == word_is_it);
   end
 
   logic [1:0] flag_g, flag_then_q, memory_flag_q, dirty, known_q;
@@ -127,7 +127,7 @@
           if (reads) read_word_q <= word_q;
           if (writes_ram) ram_new_q <= sets_row_q;
           ram_new_then_q    <= ram_new_q;
-          writes_ram_then_q <= writes_ram;
+          writes_ram_then_q <= dirty_write_address_q == any_row_address && gen_sample[m].writes_dirty_q != '0;
           if (asks) answer_q <= memory_q;
           if (!is_fill || !rst_ni) asked_q <= 1'b0;
           else if (asks) asked_q <= 1'b1;
@@ -150,8 +150,10 @@
         assign passed  = row_q > any_row && !waits && !offered;
         always_comb if (runs_q) begin
           if (state_q == EVICT) assert (!writes_ram && !writes_ram_then_q && ram_new_then_q == ram_new_q);
-          if (has_waited_q) assert (!writes_ram);
-          if (valid_q[any_line] || filled) assert (is_new_q == (writes_ram ? sets_row_q : ram_new_q));
+          if (has_waited_q || state_q == EVICT) assert (gen_sample[m].writes_dirty_q == '0);  // no bit of any row
+          // Whichever tile is in the line, or comes in.
+          if (valid_q[any_line] || (is_fill && line_q == any_line && fill_stamp_q > any_stamp))
+            assert (is_new_q == (writes_ram ? sets_row_q : ram_new_q));
         end
         always_comb if (runs_q && known_q[p]) begin
           if (p == 0 && looked_q && looked_at_it_q) assert (stored_depth_o[m*CODE+:CODE] == truth_then_q);
