@@ -115,7 +115,7 @@ mutant(127 stages/framebuffer.sv "write back: of a plane that memory has as garb
 mutant(128 stages/framebuffer.sv "write back: the stamps of depth stand for those of colour"
   [=[plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES]]=] [=[dirty_rows[0+:ROWS*SAMPLES]]=])
 mutant(129 stages/framebuffer.sv "flush: a tile whose colour is cleared counts as resolved"
-  [=[(resolves ? !read_color : request_ready_i)]=] [=[(resolves || request_ready_i)]=])
+  [=[(resolves ? !flag_color_q : request_ready_i)]=] [=[(resolves || request_ready_i)]=])
 
 # reset
 mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"

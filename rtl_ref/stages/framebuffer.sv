@@ -102,7 +102,6 @@ module framebuffer (
   logic [TILE_Y-1:0] tile_y, tile_y_q;
   logic              reads_flags;
   logic flag_depth_q, flag_color_q;  // the plane of the tile in memory is garbage: its value is the last fast clear's
-  logic read_depth, read_color;      // the same, as its word has just been read
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
@@ -128,16 +127,17 @@ module framebuffer (
   assign sends     = state_q == SEND && !resolves;
   assign ends_row  = resolves ? walk_x_q == access_i.key.tile_x : walk_x_q >> BIT == access_i.key.tile_x >> BIT;
   assign ends_walk = ends_row && walk_y_q == access_i.key.tile_y;
-  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !read_color : request_ready_i)) ||
+  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !flag_color_q : request_ready_i)) ||
                      (is_resolve && ends_plane);
 
   assign access_ready_o = state_q == SERVE ? !is_token && hits : walked_q;
   assign moves_tiles_o  = state_q != SERVE || (access_valid_i && !access_ready_o);
   assign idle_o         = state_q == SERVE && !access_valid_i;
 
-  // Flags are read, then looked up in their word: for a tile that is moved CHECK takes two cycles.
+  // Flags are read, then looked up in their word: where they matter, CHECK and READ take two cycles.
   logic waits, has_waited_q;
-  assign waits = !has_waited_q && state_q == CHECK && (line_depth_dirty || line_color_dirty || !is_token);
+  assign waits = !has_waited_q && ((state_q == CHECK && (line_depth_dirty || line_color_dirty || !is_token)) ||
+                                   (state_q == READ && resolves && !walked_q));
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) has_waited_q <= 1'b0;
     else has_waited_q <= waits;
@@ -155,7 +155,8 @@ module framebuffer (
       EVICT: if (ends_plane) state_d = CHECK;
       FILL: if (fill_ends) state_d = SERVE;
       MARK: if (ends_walk) state_d = READ;
-      READ: if (!walked_q) state_d = SEND;
+      READ: if (waits) state_d = READ;
+      else if (!walked_q) state_d = SEND;
       else if (access_valid_i) state_d = SERVE;
       default: if (walks) state_d = READ;
       else if (resolves) state_d = RESOLVE;
@@ -339,7 +340,7 @@ module framebuffer (
       tile_y = (tag_y << LINE_Y) | TILE_Y'(line_above_x);
     end
   end
-  assign reads_flags = (state_q == CHECK && !has_waited_q) || state_q == READ;
+  assign reads_flags = state_q == CHECK || state_q == READ;
   always_ff @(posedge clk_i) begin
     if (reads_flags) begin
       tile_x_q <= tile_x;
@@ -361,12 +362,10 @@ module framebuffer (
   assign last_word  = access_i.key.tile_x >> BIT;
   assign flag_read_address  = (TILE_Y + WORD_X)'({tile_y, WORD_X'(tile_x >> BIT)});
   assign flag_write_address = state_q == MARK ? flag_read_address : {tile_y_q, word_x[WORD_X-1:0]};
-  assign read_depth = word_depth[bit_x];
-  assign read_color = word_color[bit_x];
   always_ff @(posedge clk_i) begin
-    if (state_q == CHECK) begin
-      flag_depth_q <= read_depth;
-      flag_color_q <= read_color;
+    if (reads_flags) begin
+      flag_depth_q <= word_depth[bit_x];
+      flag_color_q <= word_color[bit_x];
     end
   end
   assign flag_bit   = state_q == MARK ? '1 : WORD'(1) << bit_x;

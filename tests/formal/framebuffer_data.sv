@@ -18,14 +18,8 @@
                          !(is_fill && line_q == any_line);
   assign is_it         = access_i.key.tile_x == any_x && access_i.key.tile_y == any_y;
   assign walk_is_it    = walk_x_q == any_x && walk_y_q == any_y;
-  logic chooses;  // between tiles; otherwise that one is moved which was chosen
-  logic [TILE_X-1:0] x;
-  logic [TILE_Y-1:0] y;
-  assign chooses       = state_q == SERVE || state_q == CHECK || state_q == MARK || state_q == READ;
-  assign x             = chooses ? tile_x : tile_x_q;
-  assign y             = chooses ? tile_y : tile_y_q;
-  assign tile_is_it    = x == any_x && y == any_y;
-  assign word_is_it    = x >> BIT == any_x >> BIT && y == any_y;
+  assign tile_is_it    = tile_x == any_x && tile_y == any_y;
+  assign word_is_it    = tile_x >> BIT == any_x >> BIT && tile_y == any_y;
   assign has_passed    = walk_y_q > any_y || (walk_y_q == any_y &&  // the walk
                          (resolves ? walk_x_q > any_x : walk_x_q >> BIT > any_x >> BIT));
   assign request_is_it = takes_request && !sends && tile_is_it && stamp_q == any_stamp;
@@ -47,7 +41,7 @@
     end
     dirty_read_q <= dirty_read_address;
     looked_q <= rst_ni && takes_access && !token && is_it && access_i.stamp == any_stamp;
-    if (reads_flags) word_read_q <= word_is_it;  // the word of its flags
+    if (state_q == CHECK || state_q == READ) word_read_q <= word_is_it;  // the word of its flags
   end
   always_comb if (runs_q) begin
     if (access_taken_q) assert (state_q == SERVE);
@@ -59,7 +53,7 @@
     if (state_q == EVICT && offers_q) assert (read_known_q && read_q == {line_q, stamp_q});
     if (state_q == EVICT && row_q != (ROW_BITS + 1)'(ROWS))
       assert (dirty_read_q == ((ROW_ADDRESS'(line_q) << ROW_BITS) | ROW_ADDRESS'(row_q)));
-    if (has_waited_q || is_fill || state_q == EVICT || state_q == SEND || is_resolve) assert (word_read_q == word_is_it);
+    if (is_fill || state_q == EVICT || state_q == SEND || is_resolve) assert (word_read_q == word_is_it);
   end
 
   logic [1:0] flag_g, flag_then_q, memory_flag_q, dirty, known_q;
@@ -83,14 +77,14 @@
       // The flag of the tile, what a read of its word found (sram_word), and what memory has of it.
       always_ff @(posedge clk_i) begin
         if (flag_write[p] && flag_bit[BIT'(any_x)] && word_is_it) flag_g[p] <= state_q == MARK;
-        if (reads_flags) flag_then_q[p] <= flag_g[p];
+        if (state_q == CHECK || state_q == READ) flag_then_q[p] <= flag_g[p];
         if (takes_request && sends && word_is_it && plane_q == p) memory_flag_q[p] <= request_o.data[BIT'(any_x)];
         if (!rst_ni) known_q[p] <= 1'b0;
         else if (takes_access && token && is_clear && is_masked) known_q[p] <= 1'b1;
       end
       always_comb if (runs_q && known_q[p]) begin
         if (word_read_q && flags_stay_q == 1'b0) assume (word_bit == flag_then_q[p]);
-        if (word_read_q && (has_waited_q || is_fill || state_q == EVICT || state_q == SEND || is_resolve)) assert (word_bit == flag_g[p]);
+        if (word_read_q && (is_fill || state_q == EVICT || state_q == SEND || is_resolve)) assert (word_bit == flag_g[p]);
       end
       always_comb if (runs_q) begin
         if (is_marked && (has_passed || walked_q)) assert (flag_g[p]);
@@ -103,8 +97,7 @@
       for (m = 0; m < SAMPLES; m++) begin : gen_truth
         logic [BITS-1:0] truth_q, word_q, memory_q, read_word_q, answer_q, word, lane, new_word, response, truth_then_q;
         logic            writes, writes_word, writes_then_q, asks, asked_q, looked_at_it_q;
-        logic            is_new_q, writes_row, reads_new;  // written since the tile came in
-        logic            ram_new_q, ram_new_then_q, writes_ram, writes_ram_then_q;  // what the RAM has of that, a cycle later
+        logic            is_new_q, is_new_then_q, writes_row, writes_row_then_q, reads_new;  // written since the tile came in
         assign word        = p == 0 ? BITS'(gen_sample[m].depth) : BITS'(gen_sample[m].color);
         assign new_word    = p == 0 ? BITS'(gen_sample[m].depth_new) : BITS'(gen_sample[m].color_new);
         assign lane        = request_o.data[m*LANE+:BITS];
@@ -113,7 +106,6 @@
         assign writes_word = (p == 0 ? gen_sample[m].writes_depth : gen_sample[m].writes_color) && {new_line, new_stamp} == {any_line, any_stamp};
         assign writes_row  = dirty_write_address == any_row_address && gen_sample[m].writes_dirty[dirty_bit];
         assign reads_new   = gen_sample[m].dirty[dirty_bit];
-        assign writes_ram  = dirty_write_address_q == any_row_address && gen_sample[m].writes_dirty_q[dirty_bit];
         assign asks        = takes_request && !request_o.is_write && tile_is_it && p == 0;  // all of its stamps
         always_ff @(posedge clk_i) begin
           // Without a cache.
@@ -125,9 +117,8 @@
           if (writes_row) is_new_q <= !is_fill;
           if (request_is_it && request_o.is_write && plane_q == p && request_o.strobe[m]) memory_q <= lane;
           if (reads) read_word_q <= word_q;
-          if (writes_ram) ram_new_q <= sets_row_q;
-          ram_new_then_q    <= ram_new_q;
-          writes_ram_then_q <= dirty_write_address_q == any_row_address && gen_sample[m].writes_dirty_q != '0;
+          is_new_then_q     <= is_new_q;
+          writes_row_then_q <= writes_row;
           if (asks) answer_q <= memory_q;
           if (!is_fill || !rst_ni) asked_q <= 1'b0;
           else if (asks) asked_q <= 1'b1;
@@ -135,7 +126,7 @@
         always_comb if (runs_q) begin
           // What sram_word proves; not of a word that is written in the cycle in which it is read. And memory: in turn.
           if (!words_stay_q && !writes_then_q && read_q == {any_line, any_stamp}) assume (word == read_word_q);
-          if (dirty_read_q == any_row_address && !writes_ram_then_q) assume (reads_new == ram_new_then_q);
+          if (dirty_read_q == any_row_address && !writes_row_then_q) assume (reads_new == is_new_then_q);
           if (response_valid_i && asked_q && answered == ASK'(any_stamp)) assume (response == answer_q);
         end
         always_ff @(posedge clk_i) begin
@@ -148,13 +139,7 @@
         assign offered = offers_q && stamp_q == any_stamp && strobe_q[m];
         assign waits   = is_row && stamps_q[32'(any_stamp & COLUMN_MASK)*SAMPLES+m];
         assign passed  = row_q > any_row && !waits && !offered;
-        always_comb if (runs_q) begin
-          if (state_q == EVICT) assert (!writes_ram && !writes_ram_then_q && ram_new_then_q == ram_new_q);
-          if (has_waited_q || state_q == EVICT) assert (gen_sample[m].writes_dirty_q == '0);  // no bit of any row
-          // Whichever tile is in the line, or comes in.
-          if (valid_q[any_line] || (is_fill && line_q == any_line && fill_stamp_q > any_stamp))
-            assert (is_new_q == (writes_ram ? sets_row_q : ram_new_q));
-        end
+        always_comb if (runs_q && state_q == EVICT) assert (!writes_row_then_q && is_new_then_q == is_new_q);
         always_comb if (runs_q && known_q[p]) begin
           if (p == 0 && looked_q && looked_at_it_q) assert (stored_depth_o[m*CODE+:CODE] == truth_then_q);
           if (takes_access && token && !is_clear) assert ((is_sent && memory_flag_q[p] ? cleared : memory_q) == truth_q);
@@ -169,7 +154,7 @@
           if (is_resolve && walk_is_it && p == 1 && passed) assert (memory_q == cleared);
           if (filled) assert (!is_new_q);
           if (filled && (p == 0 || flag_g[p])) assert (word_q == truth_q);
-          if (p == 0 && is_fill && is_it && !flag_depth_q) begin
+          if (p == 0 && is_fill && is_it && !flag_depth) begin
             assert (asked_q == (asked > ASK'(any_stamp)));
             if (asked_q) assert (answer_q == memory_q);
           end

@@ -36,7 +36,7 @@
     if (part == 2'd2) begin
       first  = WIDE'(LINES - 1) - WIDE'(line_q);
       second = WIDE'(line_depth_dirty) + WIDE'(line_color_dirty);
-      stage  = state_q == CHECK ? (has_waited_q ? 4'd1 : 4'd2) : 4'd0;
+      stage  = state_q == CHECK ? 4'd1 : 4'd0;
     end else if (is_fill) first = WIDE'(STAMPS) - WIDE'(answered);
     else if (walks_tiles && !walked_q) begin
       planes = state_q == MARK || !plane_q ? 2'd2 : 2'd1;

@@ -356,7 +356,7 @@ class BackTiming {
     void write_flags(TilePlane plane, int word, int words, int y, std::uint64_t) {
       cycle = timing.write_flag_word(cycle + 1, plane, word, words, y);
     }
-    void look_at_tile() { cycle += 2; }
+    void look_at_tile() { cycle += 3; }
     void write_clear_value(const TileAddress& address, const StampRows& rows) {
       timing.write_stamps(cycle, address, rows, true, MoveCause::clear);
     }
