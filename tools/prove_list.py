@@ -138,7 +138,7 @@ PROOFS = [
           quick=TINY, twins=(('if (read_i) data_q <= memory_q[read_address_i];', 'data_q <= memory_q[read_address_i];'),)),
     Proof('masked_sram_word', 'd', 'lib/masked_sram.sv', 'a read gives what was written last, bit by bit', has_reset=False,
           parameters=(('WIDTH', 'FLAG_WORD'), ('DEPTH', 8)),
-          quick=TINY, twins=(('if (write_i[i]) memory_q', 'memory_q'),)),
+          quick=TINY, twins=(('if (write[i]) memory_q', 'memory_q'),)),
     Proof('sram_word_parts', 'd', 'lib/sram.sv', 'the same where it is two RAMs', has_reset=False, file='sram_word',
           parameters=(('WIDTH', 4), ('DEPTH', 18), ('WHOLE', 4)), presets=('embedded',),
           twins=(('is_high_q   <= read_address_i[ADDRESS-1];', 'is_high_q   <= write_address_i[ADDRESS-1];'),

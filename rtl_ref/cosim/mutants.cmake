@@ -101,7 +101,7 @@ mutant(38 stages/framebuffer.sv "tag: only the tile's column is compared"
 mutant(121 stages/framebuffer.sv "write back: a plane ends with the first row of stamps that has none to write"
   [=[row_q == (ROW_BITS + 1)'(ROWS) && is_free]=] [=[row_q != '0 && is_free]=])
 mutant(122 stages/framebuffer.sv "fill: what was not drawn into keeps what the colour RAM had"
-  [=[fill_steps && flag_color_q]=] [=[1'b0]=])
+  [=[fill_steps && flag_color]=] [=[1'b0]=])
 mutant(123 stages/framebuffer.sv "fill: the stamps that the tile before had written count as written"
   [=[{2 * ROWS{is_fill}}]=] [=[{2 * ROWS{1'b0}}]=])
 mutant(124 stages/framebuffer.sv "fast clear, flush: the walk over the flags ends with the first row of tiles"
@@ -111,11 +111,11 @@ mutant(125 stages/framebuffer.sv "flags: with that of a tile those of its word f
 mutant(126 stages/framebuffer.sv "run of stamps: a row comes before the last one has been read"
   [=[(steps && left == one)]=] [=[steps]=])
 mutant(127 stages/framebuffer.sv "write back: of a plane that memory has as garbage only what was written"
-  [=[state_q != EVICT || (plane_q ? flag_color_q : flag_depth_q)]=] [=[state_q != EVICT]=])
+  [=[state_q != EVICT || (plane_q ? flag_color : flag_depth)]=] [=[state_q != EVICT]=])
 mutant(128 stages/framebuffer.sv "write back: the stamps of depth stand for those of colour"
   [=[plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES]]=] [=[dirty_rows[0+:ROWS*SAMPLES]]=])
 mutant(129 stages/framebuffer.sv "flush: a tile whose colour is cleared counts as resolved"
-  [=[(resolves ? !flag_color_q : request_ready_i)]=] [=[(resolves || request_ready_i)]=])
+  [=[(resolves ? !flag_color : request_ready_i)]=] [=[(resolves || request_ready_i)]=])
 
 # reset
 mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets the second slot"

@@ -3,6 +3,7 @@
 module masked_sram #(
     parameter int WIDTH = 1,
     parameter int DEPTH = 2,               // words, at least 2
+    parameter bit EARLY = 0,               // 1: may_write_i comes earlier than write_i
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
     input logic clk_i,
@@ -11,20 +12,32 @@ module masked_sram #(
     input  logic [ADDRESS-1:0] read_address_i,
     output logic [WIDTH-1:0]   data_o,
 
+    /* verilator lint_off UNUSEDSIGNAL */  // unless it comes early
+    input logic               may_write_i,  // high where a bit of write_i is
+    /* verilator lint_on UNUSEDSIGNAL */
     input logic [WIDTH-1:0]   write_i,
     input logic [ADDRESS-1:0] write_address_i,
     input logic [WIDTH-1:0]   data_i
 );
 
-  (* no_rw_check *)
-  logic [WIDTH-1:0] memory_q[0:DEPTH-1];
-  logic [WIDTH-1:0] data_q;
+  // Synthesis takes for the enable of a block RAM what any bit of it is enabled by. A bit that nobody reads is written with
+  // may_write_i: then that alone is the enable.
+  localparam int BITS = EARLY ? WIDTH + 1 : WIDTH;
+  logic [BITS-1:0] write, data;
+  assign write = BITS'({may_write_i, write_i});
+  assign data  = BITS'({1'b1, data_i});
 
-  assign data_o = data_q;
+  (* no_rw_check *)
+  logic [BITS-1:0] memory_q[0:DEPTH-1];
+  /* verilator lint_off UNUSEDSIGNAL */  // the bit that nobody reads
+  logic [BITS-1:0] data_q;
+  /* verilator lint_on UNUSEDSIGNAL */
+
+  assign data_o = data_q[WIDTH-1:0];
 
   always_ff @(posedge clk_i) begin
     if (read_i) data_q <= memory_q[read_address_i];
-    for (int i = 0; i < WIDTH; i++) if (write_i[i]) memory_q[write_address_i][i] <= data_i[i];
+    for (int i = 0; i < BITS; i++) if (write[i]) memory_q[write_address_i][i] <= data[i];
   end
 
 endmodule

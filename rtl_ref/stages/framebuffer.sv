@@ -101,7 +101,7 @@ module framebuffer (
   logic [TILE_X-1:0] tile_x, tile_x_q, victim_x;
   logic [TILE_Y-1:0] tile_y, tile_y_q;
   logic              reads_flags;
-  logic flag_depth_q, flag_color_q;  // the plane of the tile in memory is garbage: its value is the last fast clear's
+  logic flag_depth, flag_color;  // the plane of the tile in memory is garbage: its value is the last fast clear's
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
@@ -127,36 +127,25 @@ module framebuffer (
   assign sends     = state_q == SEND && !resolves;
   assign ends_row  = resolves ? walk_x_q == access_i.key.tile_x : walk_x_q >> BIT == access_i.key.tile_x >> BIT;
   assign ends_walk = ends_row && walk_y_q == access_i.key.tile_y;
-  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !flag_color_q : request_ready_i)) ||
+  assign walks     = state_q == MARK || (state_q == SEND && (resolves ? !flag_color : request_ready_i)) ||
                      (is_resolve && ends_plane);
 
   assign access_ready_o = state_q == SERVE ? !is_token && hits : walked_q;
   assign moves_tiles_o  = state_q != SERVE || (access_valid_i && !access_ready_o);
   assign idle_o         = state_q == SERVE && !access_valid_i;
 
-  // Flags are read, then looked up in their word: where they matter, CHECK and READ take two cycles.
-  logic waits, has_waited_q;
-  assign waits = !has_waited_q && ((state_q == CHECK && (line_depth_dirty || line_color_dirty || !is_token)) ||
-                                   (state_q == READ && resolves && !walked_q));
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) has_waited_q <= 1'b0;
-    else has_waited_q <= waits;
-  end
-
   always_comb begin
     state_d = state_q;
     case (state_q)
       SERVE: if (access_valid_i && !access_ready_o) state_d = clears_all ? MARK : CHECK;
       CHECK:
-      if (waits) state_d = CHECK;
-      else if (line_depth_dirty || line_color_dirty) state_d = EVICT;
+      if (line_depth_dirty || line_color_dirty) state_d = EVICT;
       else if (!is_token) state_d = FILL;
       else if (is_last_line) state_d = is_clear ? MARK : READ;
       EVICT: if (ends_plane) state_d = CHECK;
       FILL: if (fill_ends) state_d = SERVE;
       MARK: if (ends_walk) state_d = READ;
-      READ: if (waits) state_d = READ;
-      else if (!walked_q) state_d = SEND;
+      READ: if (!walked_q) state_d = SEND;
       else if (access_valid_i) state_d = SERVE;
       default: if (walks) state_d = READ;
       else if (resolves) state_d = RESOLVE;
@@ -181,7 +170,7 @@ module framebuffer (
 
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE) line_q <= is_token ? '0 : access_line;
-    else if (state_q == CHECK && is_token && !line_depth_dirty && !line_color_dirty && !is_last_line) line_q <= line_q + 1'b1;
+    else if (state_q == CHECK && state_d == CHECK) line_q <= line_q + 1'b1;
     if (state_q == SERVE || state_q == CHECK) plane_q <= state_q == CHECK && !line_depth_dirty && line_color_dirty;
     else if (walks && ends_walk) plane_q <= 1'b1;
   end
@@ -247,14 +236,14 @@ module framebuffer (
     end
     if (takes_all) run = RUN'(ROWS * ROWS) - RUN'(stamp);
   end
-  assign runs      = state_q == EVICT || is_resolve || (is_fill && !flag_depth_q);
+  assign runs      = state_q == EVICT || is_resolve || (is_fill && !flag_depth);
   assign is_free   = !offers_q || request_ready_i;
   assign steps     = runs && left != '0 && is_free;
   assign loads     = runs ? row_q != (ROW_BITS + 1)'(ROWS) && (left == '0 || (steps && left == one)) :
                      begins_fill || (state_q == SEND && resolves && !walks);
-  assign takes_all = state_q != EVICT || (plane_q ? flag_color_q : flag_depth_q);
+  assign takes_all = state_q != EVICT || (plane_q ? flag_color : flag_depth);
   assign dirty_row = plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES];
-  assign begins_fill = state_q == CHECK && !line_depth_dirty && !line_color_dirty && !is_token && !waits;
+  assign begins_fill = state_q == CHECK && !line_depth_dirty && !line_color_dirty && !is_token;
   assign row       = begins_fill ? (ROW_BITS + 1)'(ROWS) : (runs ? row_q : '0) + (ROW_BITS + 1)'(loads);
   assign ends_plane      = left == '0 && row_q == (ROW_BITS + 1)'(ROWS) && is_free;
   assign request_valid_o = offers_q || sends;
@@ -284,7 +273,7 @@ module framebuffer (
   logic [STAMP_BITS-1:0] fill_stamp_q;
   logic                  fill_steps;
   assign response_ready_o = 1'b1;
-  assign fill_steps       = is_fill && (flag_depth_q || response_valid_i);
+  assign fill_steps       = is_fill && (flag_depth || response_valid_i);
   assign fill_ends        = fill_steps && fill_stamp_q == LAST_STAMP;
   always_ff @(posedge clk_i) begin
     if (!is_fill) fill_stamp_q <= '0;
@@ -322,9 +311,9 @@ module framebuffer (
       evict_o <= '0;
       clear_o <= '0;
     end else begin
-      fill_o  <= {1'b0, is_fill && !flag_depth_q && fill_steps};
+      fill_o  <= {1'b0, is_fill && !flag_depth && fill_steps};
       evict_o <= {1'b0, !is_fill && offers_q && request_ready_i};
-      clear_o <= {1'b0, is_fill && flag_depth_q};
+      clear_o <= {1'b0, is_fill && flag_depth};
     end
   end
 
@@ -362,12 +351,8 @@ module framebuffer (
   assign last_word  = access_i.key.tile_x >> BIT;
   assign flag_read_address  = (TILE_Y + WORD_X)'({tile_y, WORD_X'(tile_x >> BIT)});
   assign flag_write_address = state_q == MARK ? flag_read_address : {tile_y_q, word_x[WORD_X-1:0]};
-  always_ff @(posedge clk_i) begin
-    if (reads_flags) begin
-      flag_depth_q <= word_depth[bit_x];
-      flag_color_q <= word_color[bit_x];
-    end
-  end
+  assign flag_depth = word_depth[bit_x];
+  assign flag_color = word_color[bit_x];
   assign flag_bit   = state_q == MARK ? '1 : WORD'(1) << bit_x;
   assign flag_write = (state_q == MARK) ? {access_i.state.color_write, access_i.state.depth_write}
                                         : {2{(state_q == EVICT || is_resolve) && ends_plane}} & {plane_q, !plane_q};
@@ -380,6 +365,7 @@ module framebuffer (
       .read_i         (reads_flags),
       .read_address_i (flag_read_address),
       .data_o         (word_depth),
+      .may_write_i    (1'b1),
       .write_i        (flag_bit & {WORD{flag_write[0]}}),
       .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
@@ -392,6 +378,7 @@ module framebuffer (
       .read_i         (reads_flags),
       .read_address_i (flag_read_address),
       .data_o         (word_color),
+      .may_write_i    (1'b1),
       .write_i        (flag_bit & {WORD{flag_write[1]}}),
       .write_address_i(flag_write_address),
       .data_i         ({WORD{state_q == MARK}})
@@ -412,19 +399,13 @@ module framebuffer (
   assign new_stamp    = is_fill ? fill_stamp_q : write_i.stamp;
   assign new_row      = new_stamp >> ROW_BITS;
 
-  // Beside them a bit for each sample and plane: written since the tile came in. A word is a row of stamps. What is written comes
-  // late, from the depth test, so it waits a cycle: a look at a line takes one more than that.
-  logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address, dirty_write_address_q;
-  logic                   sets_row_q;
+  // Beside them a bit for each sample and plane: written since the tile came in. A word is a row of stamps.
+  logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address;
   logic [ROWS-1:0]        column;  // of the stamp that is written
   assign dirty_read_address  = (ROW_ADDRESS'(line_q) << ROW_BITS) | (ROW_ADDRESS'(row) & ROW_ADDRESS'(ROWS - 1));
   assign dirty_write_address = (ROW_ADDRESS'(new_line) << ROW_BITS) | ROW_ADDRESS'(new_row);
   always_comb
     for (int i = 0; i < ROWS; i++) column[i] = (write_i.stamp & COLUMN_MASK) == STAMP_BITS'(i);
-  always_ff @(posedge clk_i) begin
-    dirty_write_address_q <= dirty_write_address;
-    sets_row_q            <= !is_fill;
-  end
 
   logic [SAMPLES*LANE-1:0] data;
   genvar s, c;
@@ -433,13 +414,13 @@ module framebuffer (
       logic              writes_depth, writes_color, is_here;
       logic [CODE-1:0]   depth, depth_new;
       logic [COLOR-1:0]  color, color_new;
-      logic [2*ROWS-1:0] dirty, writes_dirty, writes_dirty_q;  // colour, depth
+      logic [2*ROWS-1:0] dirty, writes_dirty;  // colour, depth
       assign writes_depth = is_fill ? fill_steps : write_valid_i && write_i.write_depth[s];
-      assign writes_color = is_fill ? fill_steps && flag_color_q : write_valid_i && write_i.write_color[s];
+      assign writes_color = is_fill ? fill_steps && flag_color : write_valid_i && write_i.write_color[s];
       assign writes_dirty = {2 * ROWS{is_fill}} | {column & {ROWS{writes_color}}, column & {ROWS{writes_depth}}};
       always_comb begin
         depth_new = write_i.depth[s*CODE+:CODE];
-        if (is_fill) depth_new = flag_depth_q ? clear_depth : response_i.data[s*LANE+:CODE];
+        if (is_fill) depth_new = flag_depth ? clear_depth : response_i.data[s*LANE+:CODE];
         color_new = is_fill ? clear_color : write_i.color[s*COLOR+:COLOR];
       end
 
@@ -469,21 +450,22 @@ module framebuffer (
           .write_address_i({new_line, new_stamp}),
           .data_i         (color_new)
       );
-      masked_sram #(
-          .WIDTH(2 * ROWS),
-          .DEPTH(1 << ROW_ADDRESS)
-      ) u_dirty (
-          .clk_i,
-          .read_i         (1'b1),
-          .read_address_i (dirty_read_address),
-          .data_o         (dirty),
-          .write_i        (writes_dirty_q),
-          .write_address_i(dirty_write_address_q),
-          .data_i         ({2 * ROWS{sets_row_q}})
-      );
-      always_ff @(posedge clk_i or negedge rst_ni) begin
-        if (!rst_ni) writes_dirty_q <= '0;
-        else writes_dirty_q <= writes_dirty;
+      // Which bits are written comes late, from the depth test; that any may be does not.
+      for (c = 0; c < 2; c++) begin : gen_plane
+        masked_sram #(
+            .WIDTH(ROWS),
+            .DEPTH(1 << ROW_ADDRESS),
+            .EARLY(1)
+        ) u_dirty (
+            .clk_i,
+            .read_i         (1'b1),
+            .read_address_i (dirty_read_address),
+            .data_o         (dirty[c*ROWS+:ROWS]),
+            .may_write_i    (is_fill || write_valid_i),
+            .write_i        (writes_dirty[c*ROWS+:ROWS]),
+            .write_address_i(dirty_write_address),
+            .data_i         ({ROWS{!is_fill}})
+        );
       end
       for (c = 0; c < 2 * ROWS; c++) begin : gen_dirty
         assign dirty_rows[c*SAMPLES+s] = dirty[c];

@@ -181,7 +181,7 @@ void Generator::set_shapes() {
     if (type == PrimitiveType::point) state.smooth = of_rectangles.next() % 8 == 0;
     if (random.next() % 3 != 0) continue;
     if (type == PrimitiveType::line)
-      state.line_width = std::min(widest, static_cast<int>(2 + random.next() % 6));
+      state.line_width = std::clamp(static_cast<int>(2 + random.next() % 6), 1, std::max(widest, 1));
     else
       state.point_shape = PointShape::round;
   }

@@ -18,8 +18,14 @@
                          !(is_fill && line_q == any_line);
   assign is_it         = access_i.key.tile_x == any_x && access_i.key.tile_y == any_y;
   assign walk_is_it    = walk_x_q == any_x && walk_y_q == any_y;
-  assign tile_is_it    = tile_x == any_x && tile_y == any_y;
-  assign word_is_it    = tile_x >> BIT == any_x >> BIT && tile_y == any_y;
+  logic chooses;  // between tiles; otherwise that one is moved which was chosen
+  logic [TILE_X-1:0] x;
+  logic [TILE_Y-1:0] y;
+  assign chooses       = state_q == SERVE || state_q == CHECK || state_q == MARK || state_q == READ;
+  assign x             = chooses ? tile_x : tile_x_q;
+  assign y             = chooses ? tile_y : tile_y_q;
+  assign tile_is_it    = x == any_x && y == any_y;
+  assign word_is_it    = x >> BIT == any_x >> BIT && y == any_y;
   assign has_passed    = walk_y_q > any_y || (walk_y_q == any_y &&  // the walk
                          (resolves ? walk_x_q > any_x : walk_x_q >> BIT > any_x >> BIT));
   assign request_is_it = takes_request && !sends && tile_is_it && stamp_q == any_stamp;

@@ -7,13 +7,14 @@
   // for what sram_word proves: they stay until the next read.
   logic token;  // fast clear, flush
   assign token = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
-  logic access_waits_q, access_taken_q, takes_request;
+  logic access_waits_q, access_waited_q, access_taken_q, takes_request;
   assign takes_request = request_valid_o && request_ready_i;
   raster_pkg::fragment_packet_t       access_before_q;
   logic [COLOR-1:0]                       access_color_before_q;
   logic [STAMP_BITS+1:0]                  unanswered_q;
   always_ff @(posedge clk_i) begin
     access_waits_q        <= rst_ni && (access_valid_i || access_waits_q) && !(access_valid_i && access_ready_o);
+    access_waited_q       <= rst_ni && access_waits_q;
     access_taken_q        <= rst_ni && access_valid_i && access_ready_o && access_i.mask != '0;
     access_before_q       <= access_i;
     access_color_before_q <= access_color_i;
@@ -21,7 +22,8 @@
                                       (STAMP_BITS + 2)'(response_valid_i) : '0;
   end
   always_comb if (runs_q) begin
-    if (access_waits_q) assume (access_i == access_before_q && access_color_i == access_color_before_q);
+    if (access_waits_q) assume (access_i == access_before_q);
+    if (access_waits_q && access_waited_q) assume (access_color_i == access_color_before_q);  // it is a cycle behind
     if (token) assume (access_i.mask == '0);
     assume (write_valid_i == access_taken_q);
     if (write_valid_i)
@@ -40,6 +42,18 @@
     words_stay_q        <= !reads;
   end
   always_comb if (runs_q && flags_stay_q) assume (word_depth == word_depth_before_q && word_color == word_color_before_q);
+  logic [CODE-1:0]  clear_depth_q;
+  logic [COLOR-1:0] clear_color_q;
+  logic             marked_q;
+  always_ff @(posedge clk_i) begin
+    marked_q <= state_q == MARK;
+    if (state_q == MARK && access_i.state.depth_write) clear_depth_q <= access_i.code[0+:CODE];
+    if (state_q == MARK && access_i.state.color_write) clear_color_q <= access_color_i;
+  end
+  always_comb if (runs_q) begin
+    if (!marked_q) assume (clear_depth == clear_depth_q && clear_color == clear_color_q);
+    if (is_fill || is_resolve) assert (!marked_q);
+  end
   genvar r;
   generate
     for (r = 0; r < SAMPLES; r++) begin : gen_word
@@ -79,6 +93,9 @@
     if (state_q == CHECK || state_q == EVICT || is_fill) assert (token || line_q == access_line);
     if (state_q == CHECK || state_q == EVICT) assert (!(token && clears_all));
     if (state_q == EVICT) assert (plane_q ? line_color_dirty : line_depth_dirty);
+    if (state_q == EVICT) assert (tile_x_q == victim_x && tile_y_q == ((tag_y << LINE_Y) | TILE_Y'(line_above_x)));
+    if (is_fill) assert (tile_x_q == access_i.key.tile_x && tile_y_q == access_i.key.tile_y);
+    if (state_q == SEND || is_resolve) assert (tile_x_q == walk_x_q && tile_y_q == walk_y_q);
     if (state_q == MARK || is_fill) assert (!plane_q);
     if (is_resolve) assert (resolves && flag_color);
     if (is_fill) assert (!token && !line_depth_dirty && !line_color_dirty);

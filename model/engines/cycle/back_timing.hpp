@@ -345,18 +345,18 @@ class BackTiming {
 
     void look_at_line() { ++cycle; }
     void write_back(std::size_t, const TileAddress& address, const StampRows& rows, bool fills) {
-      cycle += 3;  // the look that found it dirty, one for its flag and one for its first row of stamps
+      cycle += 2;  // the look that found it dirty, and one for its first row of stamps
       timing.write_stamps(cycle, address, rows, fills, MoveCause::evict);
     }
     void fill(std::size_t, int x, int y, const std::array<bool, 2>& is_cleared) {
-      cycle += 2;  // the look that found nothing dirty, and one for the tile's flag
+      ++cycle;  // the look that found nothing dirty
       timing.fill(cycle, x, y, is_cleared[0]);
     }
     void mark_words(int words) { cycle += static_cast<Cycle>(words); }
     void write_flags(TilePlane plane, int word, int words, int y, std::uint64_t) {
       cycle = timing.write_flag_word(cycle + 1, plane, word, words, y);
     }
-    void look_at_tile() { cycle += 3; }
+    void look_at_tile() { cycle += 2; }
     void write_clear_value(const TileAddress& address, const StampRows& rows) {
       timing.write_stamps(cycle, address, rows, true, MoveCause::clear);
     }

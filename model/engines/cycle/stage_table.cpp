@@ -36,7 +36,8 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
           {Stage::coarse_raster, text(1 + SerialCycles::turn) + " to the first tile",
            text(1 + SerialCycles::turn) + " a tile, one more for a visit, one more where a HiZ bound is read",
            number(config.context_slots) + " primitives up to interpolate, " + number(config.hiz_lag) + " visits"},
-          {Stage::fine_raster, "1 and the way to the first stamp of the box", "1 a stamp of the box", "1 tile"},
+          {Stage::fine_raster, "1 and the way to the first stamp of the box, 2 a row down",
+           "1 a stamp of the box, 1 more in a row of one stamp", "1 tile"},
           {Stage::interpolate, number(SerialCycles::interpolate_steps) + ", then 1 in the buffer", "1",
            number(SerialCycles::interpolate_steps) + ", and " + stamps + " in the buffer"}};
 }
