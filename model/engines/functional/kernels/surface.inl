@@ -118,13 +118,17 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
   alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
   if constexpr (kSampling == Sampling::nearest) {
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      if (block_bits(pixels, block) == 0) return;
       (void)ramps.find_coordinates(of, block, at[block]);
       const Places places(nearest_places(of.texture, at[block], BaseLevel(of.texture)));
       fetch_texels(of.texture.texels, places, nearest.data() + block * kBlockPixels);
     });
   } else if constexpr (kHasTexture) {
-    for_each_block([&](auto block) HALFPLANE_LAMBDA { lod[block] = ramps.find_coordinates(of, block, at[block]); });
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      if (block_bits(pixels, block) != 0) lod[block] = ramps.find_coordinates(of, block, at[block]);
+    });
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      if (block_bits(pixels, block) == 0) return;
       const ColorPairs texels = texels_at<kSampling>(of.texture, at[block], lod[block]);
       red_blue[block] = texels.red_blue;
       green_alpha[block] = texels.green_alpha;
