@@ -1,5 +1,6 @@
 #include "host_stream.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "fragment_ops.hpp"
@@ -273,9 +274,9 @@ void HostStream::send_clears() {
   if (!bins_->cleared()) {
     pending_.insert(pending_.end(), clears_.begin(), clears_.end());
   } else {
-    for (auto clear = clears_.rbegin(); clear != clears_.rend(); ++clear) {
-      if (!clear->packet.state.color_write) continue;
-      HostPrimitive part = *clear;
+    const auto has_color = [](const HostPrimitive& clear) { return clear.packet.state.color_write; };
+    if (const auto last = std::find_if(clears_.rbegin(), clears_.rend(), has_color); last != clears_.rend()) {
+      HostPrimitive part = *last;
       part.packet.state.depth_test = DepthFunc::equal;  // clears_bin()
       part.packet.state.depth_write = false;
       part.units.stencil = {};
@@ -283,7 +284,6 @@ void HostStream::send_clears() {
         part.packet.box = to_box(box);
         pending_.push_back(part);
       }
-      break;
     }
     for (HostPrimitive& clear : clears_) {
       if (!clear.packet.state.depth_write || !bins_->has_next()) continue;

@@ -82,7 +82,7 @@ std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Area&& area) {
   std::vector<SmoothPixel> pixels;
   for (int y = box.top; y <= box.bottom; ++y)
     for (int x = box.left; x <= box.right; ++x) {
-      const auto coverage = static_cast<std::uint32_t>(area(x, y) * kWholePixel + 0.5);
+      const auto coverage = static_cast<std::uint32_t>(std::lround(area(x, y) * kWholePixel));
       if (coverage != 0) pixels.push_back({x, y, coverage});
     }
   return pixels;
