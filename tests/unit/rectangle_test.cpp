@@ -257,6 +257,15 @@ TEST(Rectangles, ALineBeyondTheGuardBandIsCutWhereNobodySeesIt) {
   EXPECT_THROW((void)render_functional(scene_of_lines(state, {at(1, 1), at(9, 9)}), config), InputError);
 }
 
+TEST(Rectangles, OfALineBesideTheGuardBandNothingIsLeft) {
+  const Vertex inside = at(10, 20), beside = at(120, 20), far = at(140, -20), below = at(10, 200);
+  EXPECT_FALSE(clip_to_square(100, beside, far));
+  EXPECT_FALSE(clip_to_square(100, below, below));
+  const auto cut = clip_to_square(100, inside, beside);
+  ASSERT_TRUE(cut);
+  EXPECT_EQ((*cut)[1].x, 100);
+}
+
 TEST(Rectangles, HardwareWithoutAUnitForLinesDrawsThem) {
   Config config = preset("embedded");
   config.line_units = 0;
