@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <functional>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -539,20 +539,13 @@ Signature signature_of(const State& state) {
     const StateValue value = row.value(state);
     hash.add(value.word);
     for (const double number : std::span(value.numbers).first(row.numbers.size()))
-      hash.add(std::bit_cast<std::uint64_t>(number));
+      hash.add(std::bit_cast<std::uint64_t>(number + 0.0));  // -0 is 0
   }
   return hash.signature();
 }
 
 std::size_t StateHash::operator()(const State& state) const {
-  std::uint64_t hash = 0;
-  const auto mix = [&hash](std::uint64_t value) { hash = (hash ^ value) * 0x9e3779b97f4a7c15U + (hash >> 29); };
-  for (const DrawState& row : table) {
-    const StateValue value = row.value(state);
-    mix(value.word);
-    for (const double number : std::span(value.numbers).first(row.numbers.size())) mix(std::hash<double>{}(number));
-  }
-  return static_cast<std::size_t>(hash);
+  return static_cast<std::size_t>(signature_of(state).low);
 }
 
 }  // namespace halfplane

@@ -75,7 +75,7 @@ struct DrawState {
 /// The row of that name. Precondition: there is one.
 [[nodiscard]] const DrawState& draw_state(std::string_view name);
 
-/// Of all values of a state.
+/// Of all values of a state: equal states have equal signatures.
 [[nodiscard]] Signature signature_of(const State& state);
 
 /// Equal states have equal hashes.

@@ -302,7 +302,7 @@ CounterPacket as_counted(CounterPacket counters, const Widths& widths) {
   return counters;
 }
 
-CounterPacket difference(CounterPacket now, const CounterPacket& before) {
+CounterPacket since(CounterPacket now, const CounterPacket& before) {
   using P = CounterPacket;
   for (auto counter : {&P::primitives_in,   &P::zero_area,      &P::backface,       &P::empty,
                        &P::no_sample,       &P::tiles_visited,  &P::tiles_outside,  &P::trivially_accepted,
@@ -336,9 +336,13 @@ void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters
 }
 
 Rendering HardwareFrames::draw(const Scene& scene, const RenderOptions& options) {
-  const auto started = std::chrono::steady_clock::now();
   if (!options.skip.bins) held_.forget();
-  HostStream host(scene, config_, &held_);
+  return draw(scene, options, &held_);
+}
+
+Rendering HardwareFrames::draw(const Scene& scene, const RenderOptions& options, BinContents* held) {
+  const auto started = std::chrono::steady_clock::now();
+  HostStream host(scene, config_, held);
   model_.hold_textures(scene);
   DrawnCount drawn;
   std::uint32_t sent = 0;
@@ -351,14 +355,14 @@ Rendering HardwareFrames::draw(const Scene& scene, const RenderOptions& options)
   Rendering rendering;
   rendering.frame = to_framebuffer(model_.memory(), scene.width, scene.height, config_);
   rendering.counters = host.counters();
-  count_hardware(difference(model_.counters(), counted_), drawn.count(), rendering.counters);
+  count_hardware(since(model_.counters(), counted_), drawn.count(), rendering.counters);
   counted_ = model_.counters();
   rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return rendering;
 }
 
 Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options) {
-  return HardwareFrames(config).draw(scene, options);
+  return HardwareFrames(config).draw(scene, options, nullptr);
 }
 
 }  // namespace halfplane

@@ -110,8 +110,8 @@ class HardwareModel final : private MemoryPort {
 /// The counters of the RTL after so many items: `overflow` tells whether one of them has passed its width.
 [[nodiscard]] CounterPacket as_counted(CounterPacket counters, const Widths& widths);
 
-/// What was counted between two moments.
-[[nodiscard]] CounterPacket difference(CounterPacket now, const CounterPacket& before);
+/// What was counted behind `before`.
+[[nodiscard]] CounterPacket since(CounterPacket now, const CounterPacket& before);
 
 /// Adds what the hardware counted to what the host did (HostStream::counters). `drawn`: input triangles of which at
 /// least one piece passed cull.
@@ -147,6 +147,10 @@ class HardwareFrames {
   [[nodiscard]] Rendering draw(const Scene& scene, const RenderOptions& options = {});
 
  private:
+  friend Rendering render_hardware(const Scene& scene, const Config& config, const RenderOptions& options);
+  /// Bins are compared with what they held, if there is anything to compare them with.
+  [[nodiscard]] Rendering draw(const Scene& scene, const RenderOptions& options, BinContents* held);
+
   PacketSink nobody_;
   Config config_;
   HardwareModel model_;

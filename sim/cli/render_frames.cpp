@@ -115,11 +115,9 @@ class FrameDrawer {
     }
   }
 
-  [[nodiscard]] bool compares_frames() const { return functional_ || cycle_ || rtl_; }
-
   Rendering draw(const RenderCommand& own, const Scene& scene, const Config& config, CycleFacts& facts,
                  const std::function<void(double)>& progress) {
-    if (!compares_frames()) return run_engine(own, scene, config, &facts, progress);
+    if (!functional_ && !cycle_ && !rtl_) return run_engine(own, scene, config, &facts, progress);
     RenderOptions render;
     render.skip = parse_skip(options_.skip);
     render.progress = progress;
@@ -246,7 +244,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
   out << '\n';
   if (!rows[0]["cycles"].is_null()) print_range(out, rows, "cycles", "cycles");
   if (!rows[0]["bytes"].is_null()) print_range(out, rows, "bytes", "bytes");
-  if (drawer.compares_frames()) print_bins(out, rows);
+  print_bins(out, rows);
   if (!options.color_path.empty())
     out << "pictures    " << numbered(options.color_path, 0, options.frames) << " to "
         << numbered(options.color_path, static_cast<int>(rows.size()) - 1, options.frames) << '\n';

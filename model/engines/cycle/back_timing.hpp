@@ -53,18 +53,6 @@ struct TimingTotals {
   }
 };
 
-/// What was counted behind `before`, and of the frame at work the rest.
-[[nodiscard]] inline TimingTotals since(TimingTotals now, const TimingTotals& before) {
-  using T = TimingTotals;
-  for (auto count : {&T::hazard_cycles, &T::move_cycles, &T::memory_cycles, &T::bound_cycles, &T::visit_cycles,
-                     &T::slot_cycles, &T::texel_beats})
-    now.*count -= before.*count;
-  for (std::size_t i = 0; i < kStages; ++i) now.works[i] -= before.works[i];
-  for (std::size_t cause = 0; cause < now.beats.size(); ++cause)
-    for (const std::size_t plane : {0U, 1U}) now.beats[cause][plane] -= before.beats[cause][plane];
-  return now;
-}
-
 class BackTiming {
  public:
   /// `memory` and `sink`, which may be null, must outlive this.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <type_traits>
 
 #include "../../stages/color_packets.hpp"
@@ -69,7 +68,7 @@ class CycleModelOf final : public CycleModel {
   void begin(int width, int height, Cycle cycle) override {
     Framebuffer held = std::move(rendering_.frame);
     rendering_ = {};
-    if (held.width == width && held.height == height && !held.color.empty()) {
+    if (held.width == width && held.height == height) {
       rendering_.frame = std::move(held);
     } else {
       rendering_.frame = Framebuffer(width, height, T);
@@ -663,55 +662,6 @@ std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming&
   validate(options.parameters, config);
   return config.setup_kind == SetupKind::pipelined ? make<PipelinedTiming>(config, memory, options)
                                                    : make<SerialTiming>(config, memory, options);
-}
-
-CycleFrames::CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options)
-    : config_(config), model_(make_cycle_model(config, memory, options)) {}
-
-CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render) {
-  const auto started = std::chrono::steady_clock::now();
-  if (!render.skip.bins) held_.forget();
-  HostStream host(scene, config_, &held_);
-  model_->hold_textures(scene);
-  model_->begin(scene.width, scene.height, start_);
-  DrawnCount drawn;
-  std::uint32_t sent = 0;
-  while (const auto primitive = host.next()) {
-    const std::uint64_t dropped_before = drawn.dropped(model_->counters());
-    model_->run(*primitive);
-    drawn.add(*primitive, drawn.dropped(model_->counters()) == dropped_before);
-    if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
-  }
-  CycleRendering result{model_->rendering(), {}, model_->cost(), model_->misses()};
-  result.rendering.counters = host.counters();
-  count_hardware(difference(model_->counters(), counted_), drawn.count(), result.rendering.counters);
-  result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  CycleRun& run = result.run;
-  run.totals = since(model_->totals(), totals_);
-  run.cycles = model_->totals().last + 1 - start_;
-  run.raster_cycles = run.totals.raster_cycles();
-  run.tile_cycles = run.totals.tile_cycles;
-  run.totals.works[index(Stage::framebuffer)] =
-      run.totals.move_cycles - std::min(run.totals.move_cycles, run.totals.memory_cycles);
-  for (const Arrow arrow : kElastic) {
-    const StreamUse now = model_->stream(arrow).use(0), before = std::exchange(use_[index(arrow)], now);
-    StreamUse& use = run.use[index(arrow)];
-    use.busy = now.busy - before.busy;
-    use.stalled = now.stalled - before.stalled;
-    use.starved = run.cycles - use.busy - use.stalled;
-  }
-  counted_ = model_->counters();
-  totals_ = model_->totals();
-  start_ = totals_.last + 1;
-  return result;
-}
-
-CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory, const RenderOptions& render,
-                            const CycleOptions& options) {
-  CycleOptions wanted = options;
-  wanted.want_count = render.want_count;
-  wanted.want_ids = render.want_ids;
-  return CycleFrames(config, memory, wanted).draw(scene, render);
 }
 
 }  // namespace halfplane

@@ -83,6 +83,11 @@ class CycleFrames {
   [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render = {});
 
  private:
+  friend CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory,
+                                     const RenderOptions& render, const CycleOptions& options);
+  /// Bins are compared with what they held, if there is anything to compare them with.
+  [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render, BinContents* held);
+
   Config config_;
   std::unique_ptr<CycleModel> model_;
   BinContents held_;

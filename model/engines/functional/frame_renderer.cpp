@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kSlicePrimitives = 2048;  // small enough that two threads share a small frame evenly
 constexpr std::size_t kBatchPrimitives = 1 << 18;
+constexpr std::size_t kTiles = std::size_t{kBinTiles} * kBinTiles;  // of a bin
 
 /// The range of a tile that holds no depth: in nobody's way.
 constexpr struct { std::uint16_t low = 0xffff, high = 0; } kNoDepth;
@@ -294,7 +295,6 @@ void FrameRenderer::settle(const Rect& rect) {
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
   const bool is_whole = rect == Rect{0, 0, frame.width, frame.height};
   for_each_index(arena_.get(), bins, [&](std::size_t bin) {
-    constexpr std::size_t kTiles = std::size_t{kBinTiles} * kBinTiles;
     std::uint8_t* const waits = tiles_.pending.data() + bin * kTiles;
     std::uint8_t is_missing = 0;  // in memory
     for (std::size_t i = 0; i < kTiles; ++i)
@@ -526,7 +526,6 @@ void FrameRenderer::flush(bool is_last) {
     if (compares_) {
       const Signature now = signature_of_bin(bin, slices);
       if (std::exchange(held_bins_[bin], now) == now && is_known) {
-        constexpr std::size_t kTiles = std::size_t{kBinTiles} * kBinTiles;
         std::fill_n(tiles_.pending.begin() + static_cast<std::ptrdiff_t>(bin * kTiles), kTiles, std::uint8_t{0});
         if (!is_idle) forget_depths(bin * kTiles, kTiles);
         bin_counters_[bin].skipped.bins = is_idle ? 0 : 1;

@@ -1,0 +1,81 @@
+// Frames through the cycle model: what each of them cost.
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "../hardware.hpp"
+#include "cycle_model.hpp"
+
+namespace halfplane {
+namespace {
+
+/// What was counted behind `before`, and of the frame at work the rest.
+TimingTotals since(TimingTotals now, const TimingTotals& before) {
+  using T = TimingTotals;
+  for (auto count : {&T::hazard_cycles, &T::move_cycles, &T::memory_cycles, &T::bound_cycles, &T::visit_cycles,
+                     &T::slot_cycles, &T::texel_beats})
+    now.*count -= before.*count;
+  for (std::size_t i = 0; i < kStages; ++i) now.works[i] -= before.works[i];
+  for (std::size_t cause = 0; cause < now.beats.size(); ++cause)
+    for (const std::size_t plane : {0U, 1U}) now.beats[cause][plane] -= before.beats[cause][plane];
+  return now;
+}
+
+}  // namespace
+
+CycleFrames::CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options)
+    : config_(config), model_(make_cycle_model(config, memory, options)) {}
+
+CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render) {
+  if (!render.skip.bins) held_.forget();
+  CycleRendering result = draw(scene, render, &held_);
+  model_->rendering().frame = result.rendering.frame;  // what the next frame does not draw
+  return result;
+}
+
+CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render, BinContents* held) {
+  const auto started = std::chrono::steady_clock::now();
+  HostStream host(scene, config_, held);
+  model_->hold_textures(scene);
+  model_->begin(scene.width, scene.height, start_);
+  DrawnCount drawn;
+  std::uint32_t sent = 0;
+  while (const auto primitive = host.next()) {
+    const std::uint64_t dropped_before = drawn.dropped(model_->counters());
+    model_->run(*primitive);
+    drawn.add(*primitive, drawn.dropped(model_->counters()) == dropped_before);
+    if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
+  }
+  CycleRendering result{std::move(model_->rendering()), {}, std::move(model_->cost()), std::move(model_->misses())};
+  result.rendering.counters = host.counters();
+  count_hardware(since(model_->counters(), counted_), drawn.count(), result.rendering.counters);
+  result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  CycleRun& run = result.run;
+  run.totals = since(model_->totals(), totals_);
+  run.cycles = model_->totals().last + 1 - start_;
+  run.raster_cycles = run.totals.raster_cycles();
+  run.tile_cycles = run.totals.tile_cycles;
+  run.totals.works[index(Stage::framebuffer)] =
+      run.totals.move_cycles - std::min(run.totals.move_cycles, run.totals.memory_cycles);
+  for (const Arrow arrow : kElastic) {
+    const StreamUse now = model_->stream(arrow).use(0), before = std::exchange(use_[index(arrow)], now);
+    StreamUse& use = run.use[index(arrow)];
+    use.busy = now.busy - before.busy;
+    use.stalled = now.stalled - before.stalled;
+    use.starved = run.cycles - use.busy - use.stalled;
+  }
+  counted_ = model_->counters();
+  totals_ = model_->totals();
+  start_ = totals_.last + 1;
+  return result;
+}
+
+CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory, const RenderOptions& render,
+                            const CycleOptions& options) {
+  CycleOptions wanted = options;
+  wanted.want_count = render.want_count;
+  wanted.want_ids = render.want_ids;
+  return CycleFrames(config, memory, wanted).draw(scene, render, nullptr);
+}
+
+}  // namespace halfplane
