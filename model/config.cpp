@@ -101,9 +101,8 @@ const std::array kSettings{
             &Config::counter_units},
     Setting{"counters.bits", "bits", "of a performance counter of the RTL; a sticky bit tells that one has wrapped", 16,
             32, &Config::counter_bits},
-    Setting{"msaa.samples", "samples",
-            "of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each; the RTL and the cycle engine have 1",
-            1, kMaxPixelSamples, &Config::msaa_samples},
+    Setting{"msaa.samples", "samples", "of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each", 1,
+            kMaxPixelSamples, &Config::msaa_samples},
     Setting{"msaa.pattern", "standard|<X>,<Y>;...",
             "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner", 0, 0,
             &Config::msaa_pattern},
@@ -296,6 +295,18 @@ void require_one_sample(const Config& config, std::string_view who) {
   if (config.msaa_samples != 1)
     throw InputError("msaa.samples: " + std::string(who) +
                      " has one sample a pixel; use msaa.samples=1, or the functional, scalar or golden engine");
+}
+
+void require_sampled_hardware(const Config& config, std::string_view who) {
+  if (config.msaa_samples == 1) return;
+  const char* unit = config.setup_kind == SetupKind::serial        ? "setup.kind=serial"
+                     : config.texture_unit != TextureUnitKind::off ? "a texture unit"
+                                                                   : nullptr;
+  if (unit != nullptr)
+    throw InputError(
+        "msaa.samples: " + std::string(who) + " has one sample a pixel with " + unit +
+        "; use msaa.samples=1, setup.kind=pipelined and texture.unit=off, or the functional, scalar or golden "
+        "engine");
 }
 
 void validate(const Config& config) {

@@ -88,7 +88,7 @@ struct Config {
   int line_units = 1;     ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
   int counter_units = 1;  ///< 1: the RTL counts its work; 0: its counters are left out
   int counter_bits = 32;  ///< of each of them
-  int msaa_samples = 1;   ///< samples of a pixel, 1, 2, 4 or 8. No RTL has more than one yet
+  int msaa_samples = 1;   ///< samples of a pixel, 1, 2, 4 or 8
   SamplePattern msaa_pattern;
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
   DepthFormat depth_format;                               ///< the RTL has `plane` alone
@@ -99,6 +99,9 @@ struct Config {
 /// Throws InputError, naming `who`, for a configuration with several samples a pixel.
 void require_one_sample(const Config& config, std::string_view who);
 
+/// Throws InputError, naming `who`, for a configuration with several samples a pixel whose hardware has a unit that takes one.
+void require_sampled_hardware(const Config& config, std::string_view who);
+
 /// The highest bits of a depth code that a tile's HiZ bound keeps: hiz.bits, or all where a code has fewer; 0: no HiZ.
 [[nodiscard]] constexpr int hiz_code_bits(const Config& config) { return std::min(config.hiz_bits, config.depth_bits); }
 
@@ -108,6 +111,13 @@ void require_one_sample(const Config& config, std::string_view who);
   const int centres = std::max(config.subpixel_bits, 1);
   if (config.msaa_samples == 1) return centres;
   return std::max(centres, pattern_bits(resolved_pattern(config.msaa_pattern, config.msaa_samples)));
+}
+
+/// T, or where pixels have several samples T + 2: the halves of a tile's last place that the roundings of a plane's steps may
+/// add up to, but for that of its anchor. T/2 pixels along x and along y; half a pixel more each, and where that ends is rounded
+/// once (stages/multisample.hpp).
+[[nodiscard]] constexpr int plane_roundings(const Config& config) {
+  return config.tile_size + (config.msaa_samples > 1 ? 2 : 0);
 }
 
 /// One setting: its key in TOML and `--set`, its range, and where it lives.
@@ -127,8 +137,7 @@ struct Setting {
     return !std::holds_alternative<DepthMapping Config::*>(member) &&
            !std::holds_alternative<DepthFormat Config::*>(member) &&
            !std::holds_alternative<FrameOrder Config::*>(member) &&
-           !std::holds_alternative<FrameStore Config::*>(member) &&
-           !std::holds_alternative<SamplePattern Config::*>(member) && key != "msaa.samples";
+           !std::holds_alternative<FrameStore Config::*>(member);
   }
 };
 

@@ -47,6 +47,9 @@ using FragmentState = PrimitiveState;
   return config;
 }
 
+/// The samples of a draw that State::sample_mask lets pass, a bit each.
+[[nodiscard]] constexpr unsigned drawn_samples(const State& state) { return state.sample_mask.value_or(~0U); }
+
 /// All of it.
 struct FragmentOps {
   FragmentState state;

@@ -16,15 +16,19 @@ PixelBounds intersection(const PixelBounds& a, const PixelBounds& b) {
   return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
-/// Whether a triangle of positive area may cover a sample of `box`: exact where the box is small, otherwise by the corner
-/// that lies farthest inside of each edge.
-bool touches(const std::array<SnappedVertex, 3>& v, const PixelBounds& box, int grid_bits) {
-  const auto edge = [&](std::size_t i, int x, int y) { return edge_function(v[i], v[(i + 1) % 3], x, y, grid_bits); };
+/// Whether a triangle of positive area may cover a sample of `box`: exact where the box is small and a pixel has one sample,
+/// otherwise by the corner that lies farthest inside of each edge.
+bool touches(const std::array<SnappedVertex, 3>& v, const PixelBounds& box, const Widths& widths) {
+  const auto edge = [&](std::size_t i, int x, int y) {
+    return edge_function(v[i], v[(i + 1) % 3], x, y, widths.grid_bits);
+  };
   for (std::size_t i = 0; i < 3; ++i) {
     const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
-    if (edge(i, to.y < from.y ? box.right : box.left, to.x > from.x ? box.bottom : box.top) < 0) return false;
+    const EdgeValue reach =
+        widths.has_samples != 0 ? sample_edge_reach(EdgeValue{to.x} - from.x, EdgeValue{to.y} - from.y) : 0;
+    if (edge(i, to.y < from.y ? box.right : box.left, to.x > from.x ? box.bottom : box.top) + reach < 0) return false;
   }
-  if (box.samples() > kFewSamples) return true;
+  if (box.samples() > kFewSamples || widths.has_samples != 0) return true;
   for (int y = box.top; y <= box.bottom; ++y)
     for (int x = box.left; x <= box.right; ++x)
       if (edge(0, x, y) >= 0 && edge(1, x, y) >= 0 && edge(2, x, y) >= 0) return true;
@@ -79,13 +83,12 @@ bool FrameBins::add_to_bins(const PixelBounds& box, Touches&& touches) {
 
 bool FrameBins::add(const HostPrimitive& primitive) {
   const PrimitivePacket& packet = primitive.packet;
-  const int s = widths_.grid_bits;
   bool is_seen = false;
   if (packet.kind == PrimitiveKind::triangle) {
     auto v = to_snapped(packet.vertex);
     v = canonical(v, signed_area(v[0], v[1], v[2]));
-    const PixelBounds box = pixel_bounds(v, to_bounds(packet.box), s);
-    is_seen = add_to_bins(box, [&](const PixelBounds& bin) { return touches(v, intersection(box, bin), s); });
+    const PixelBounds box = sample_bounds(v, to_bounds(packet.box), widths_.grid_bits, widths_.pixel_samples);
+    is_seen = add_to_bins(box, [&](const PixelBounds& bin) { return touches(v, intersection(box, bin), widths_); });
   } else {
     is_seen = add_to_bins(to_bounds(packet.box), [](const PixelBounds&) { return true; });
   }
@@ -163,14 +166,15 @@ Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLin
 std::uint64_t FrameBins::least_cycles(std::size_t bin) const {
   constexpr std::uint64_t kSetup = 4;  // cycles from primitive to primitive
   const auto stamps = [this](const PixelBounds& box) {
-    return box.samples() / static_cast<std::uint64_t>(widths_.samples);
+    return box.samples() / static_cast<std::uint64_t>(widths_.pixels);
   };
   const PixelBounds bounds = box_of(bin);
   std::uint64_t cycles = 0;
   for (const std::uint32_t item : bin_[bin]) {
     const PrimitivePacket& packet = items_[item].packet;
     PixelBounds box = intersection(to_bounds(packet.box), bounds);
-    if (packet.kind == PrimitiveKind::triangle) box = pixel_bounds(to_snapped(packet.vertex), box, widths_.grid_bits);
+    if (packet.kind == PrimitiveKind::triangle)
+      box = sample_bounds(to_snapped(packet.vertex), box, widths_.grid_bits, widths_.pixel_samples);
     cycles += kSetup + stamps(box) / 2;
   }
   return compares_ == FrameClears::resolve ? std::max(cycles, stamps(bounds) / 2) : cycles;

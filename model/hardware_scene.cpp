@@ -45,6 +45,8 @@ std::string fragment_fault(const State& state, const Config& config) {
            " (with cache.kind=blocks and setup.kind=pipelined), or leave it out";
   };
   if (ops.alpha.func != DepthFunc::always && !tests_alpha(config)) return "alpha_test" + unit("alpha.unit=1");
+  if (state.alpha_to_coverage && config.msaa_samples > 1 && !tests_alpha(config))
+    return "alpha_to_coverage" + unit("alpha.unit=1");
   if (ops.stencil && !has_stencil(config))
     return "stencil, but this hardware keeps none; set stencil.bits=8 (with cache.kind=blocks, "
            "setup.kind=pipelined and depth.bits up to 24), or leave it out";
@@ -61,7 +63,7 @@ std::string fragment_fault(const State& state, const Config& config) {
 }  // namespace
 
 void check_hardware_scene(const Scene& scene, const Config& config) {
-  require_one_sample(config, "this hardware");
+  require_sampled_hardware(config, "this hardware");
   check_scene(scene, config);
   if (!DepthEncode(config, scene.planes).is_identity())
     throw InputError(

@@ -345,6 +345,9 @@ PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& b
   packet.kind = kind;
   packet.state = fragment_state(state, config_.color_format);
   if (const auto& sides = context_->fragment_ops.stencil) (void)set_stencil_flags(packet.state, *sides);
+  if (widths_.has_samples != 0)
+    packet.state.masked_samples =
+        static_cast<std::uint8_t>(~drawn_samples(state) & ((1U << widths_.pixel_samples) - 1));
   packet.box = to_box(box);
   return packet;
 }

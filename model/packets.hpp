@@ -271,6 +271,7 @@ struct PrimitiveState {
   FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it changes, on a side and of some sample
   FIELD(bool, marks_failed, &Widths::flag, &Widths::stencil_flags)    ///< also where a sample fails one of the tests
   FIELD(bool, is_back, &Widths::flag, &Widths::stencil_flags)  ///< of a triangle that shows its back, from cull on
+  FIELD(std::uint8_t, masked_samples, &Widths::masked_samples, &Widths::has_samples)  ///< of each pixel: are not drawn
   PACKET_END
   [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
   /// Whether anything of a stored depth may change: it, or the stencil above it.
@@ -344,6 +345,7 @@ struct MemoryLayout {
 /// One value for each edge of a triangle.
 using EdgeValues = std::array<std::int64_t, 3>;
 using EdgeDeltas = std::array<std::int32_t, 3>;
+using EdgeLows = std::array<std::uint16_t, 3>;
 
 /// Colours of a vertex or a sample, 8 bits a channel, R lowest: what goes into a texture unit, which stands in front of rop.
 [[nodiscard]] constexpr std::uint32_t vertex_color(const PerPlane<std::uint32_t>& code, const Widths& widths) {
@@ -380,6 +382,7 @@ struct TrianglePacket {
   FIELD(CoordinateFrame, coordinates, Nested{})
   FIELD(std::uint64_t, area, &Widths::area)           ///< twice the area, square subpixels; 0 for other kinds
   FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< at the first pixel of the first tile; 0 for other kinds
+  FIELD(EdgeLows, edge_low, &Widths::edge_low, &Widths::edge_lows)  ///< edge_low() of each; likewise
   PACKET_END
 };
 
@@ -392,9 +395,10 @@ struct SetupPacket {
   FIELD(PrimitiveState, state, Nested{})
   FIELD(EdgeDeltas, dx, &Widths::delta)  ///< of each edge, subpixels; 0 for other kinds than triangles
   FIELD(EdgeDeltas, dy, &Widths::delta)
-  FIELD(EdgeValues, edge_value, &Widths::edge_value)             ///< edge_function at the first pixel of the first tile
-  FIELD(PerPlane<std::int64_t>, value, &AttributeWidths::plane)  ///< Plane::value + plane_bias()
-  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::plane)  ///< per subpixel
+  FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< edge_function at the first pixel of the first tile
+  FIELD(EdgeLows, edge_low, &Widths::edge_low, &Widths::edge_lows)  ///< the bits that it has lost
+  FIELD(PerPlane<std::int64_t>, value, &AttributeWidths::plane)     ///< Plane::value + plane_bias()
+  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::plane)    ///< per subpixel
   FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::plane)
   FIELD(CodeRange, range, Nested{})
   FIELD(CoordinateFrame, coordinates, Nested{})
@@ -405,8 +409,8 @@ struct SetupPacket {
 struct ContextPacket {
   PACKET(ContextPacket, "context_packet");
   FIELD(PrimitiveState, state, Nested{})
-  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::local)  ///< LocalPlane steps
-  FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::local)
+  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::step)  ///< LocalPlane steps
+  FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::step)
   FIELD(CodeRange, range, Nested{})
   FIELD(CoordinateFrame, coordinates, Nested{})
   PACKET_END
@@ -431,8 +435,9 @@ struct TilePacket {
 /// The part of a triangle's constants that fine_raster reads: what each edge value gains per pixel.
 struct EdgeContext {
   PACKET(EdgeContext, "edge_context");
-  FIELD(EdgeDeltas, step_x, &Widths::edge_step)  ///< -dy: per pixel to the right
-  FIELD(EdgeDeltas, step_y, &Widths::edge_step)  ///< dx: per pixel down
+  FIELD(EdgeDeltas, step_x, &Widths::edge_step)                ///< -dy: per pixel to the right
+  FIELD(EdgeDeltas, step_y, &Widths::edge_step)                ///< dx: per pixel down
+  FIELD(EdgeLows, low, &Widths::edge_low, &Widths::edge_lows)  ///< bits below the values
   PACKET_END
 };
 
@@ -444,8 +449,9 @@ struct StampPacket {
   FIELD(bool, ends_primitive, &Widths::flag)  ///< the last of its primitive
   FIELD(TileKey, key, Nested{})
   FIELD(std::uint8_t, slot, &Widths::slot)
-  FIELD(std::uint16_t, stamp, &Widths::stamp_index)  ///< row-major number of the stamp in its tile
-  FIELD(SampleMask, mask, &Widths::sample_mask)      ///< covered samples
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)                     ///< row-major number of the stamp in its tile
+  FIELD(SampleMask, mask, &Widths::sample_mask)                         ///< covered samples
+  FIELD(SampleMask, centre, &Widths::pixel_mask, &Widths::has_samples)  ///< pixels whose centre is covered
   FIELD(PerPlane<std::int64_t>, anchor, &AttributeWidths::local)
   PACKET_END
 };
@@ -464,9 +470,26 @@ struct FragmentPacket {
   FIELD(CoordinateFrame, coordinates, Nested{})
   FIELD(std::uint32_t, least_color, &Widths::vertex_color, &Widths::has_colors_over_w)     ///< to which a quotient is
   FIELD(std::uint32_t, greatest_color, &Widths::vertex_color, &Widths::has_colors_over_w)  ///< held, R lowest
-  FIELD(Codes, code, &AttributeWidths::fragment, &Widths::samples)  ///< of each sample: clamped codes, local Q and P
+  using Depths = std::array<std::uint32_t, kMaxSamples>;
+  FIELD(Depths, further_depth, &Widths::further_depth,
+        &Widths::further_samples)  ///< of the samples but the first of each pixel
+  FIELD(Codes, code, &AttributeWidths::fragment,
+        &Widths::pixels)  ///< of each pixel: clamped codes, local Q and P; its depth
+                          ///< is that of its first sample
   PACKET_END
 };
+
+/// The depth code of sample `s` of a stamp.
+[[nodiscard]] inline std::uint32_t fragment_depth(const FragmentPacket& fragment, std::size_t s, const Widths& widths) {
+  const auto n = static_cast<std::size_t>(widths.pixel_samples), pixel = s / n, k = s % n;
+  return k == 0 ? fragment.code[pixel][kDepthPlane] : fragment.further_depth[pixel * (n - 1) + k - 1];
+}
+
+/// The codes of the pixel of sample `s`. Their depth is that of its first sample.
+[[nodiscard]] inline const PerPlane<std::uint32_t>& fragment_code(const FragmentPacket& fragment, std::size_t s,
+                                                                  const Widths& widths) {
+  return fragment.code[s / static_cast<std::size_t>(widths.pixel_samples)];
+}
 
 /// depth_test, rop -> framebuffer: what is written, and where; sent for every stamp with a covered sample.
 struct WritePacket {

@@ -49,6 +49,7 @@ constexpr PlaneTable kPlaneTables[] = {{"CODE", &AttributeWidths::code, "codes"}
                                        {"RECIPROCAL", &AttributeWidths::reciprocal, "reciprocals of the area"},
                                        {"PLANE", &AttributeWidths::plane, "values and gradients"},
                                        {"LOCAL", &AttributeWidths::local, "values and gradients inside a tile"},
+                                       {"STEP", &AttributeWidths::step, "gradients per pixel inside a tile"},
                                        {"FRAGMENT", &AttributeWidths::fragment, "values of a sample"},
                                        {"AFFINE_CODE", &AttributeWidths::affine_code, "codes that are clamped"},
                                        {"LINE", &AttributeWidths::line, "values along a line"}};
@@ -75,6 +76,22 @@ void print_plane_table(std::ostream& out, const PlaneTable& table, const Widths&
   out << type << "_BITS_OF = {" << bits << "};  // " << table.what << "\n" << type << "_AT = {" << at << "};\n";
   print_constant(out, "ALL_" + word + "_BITS", sum, "of one for each plane");
   print_constant(out, "MAX_" + word + "_BITS", most, "of the widest");
+}
+
+/// msaa.pattern: the way from a pixel's centre to each of its samples.
+void print_sample_places(std::ostream& out, const Widths& widths) {
+  std::string x, y;
+  for (int k = widths.pixel_samples - 1; k >= 0; --k) {
+    const SampleOffset& o = widths.sample_offset[static_cast<std::size_t>(k)];
+    const auto entry = [k](int way) {
+      return (way < 0 ? "-32'sd" : "32'sd") + std::to_string(way < 0 ? -way : way) + (k == 0 ? "" : ", ");
+    };
+    x += entry(o.x);
+    y += entry(o.y);
+  }
+  const std::string type = "  localparam logic [32*MSAA_SAMPLES-1:0] MSAA_";
+  out << type << "X = {" << x << "};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest\n"
+      << type << "Y = {" << y << "};  // and down\n";
 }
 
 template <class Enum>
@@ -147,7 +164,7 @@ std::uint64_t config_id(const Config& config) {
 }
 
 std::string raster_pkg(const Config& config) {
-  require_one_sample(config, "the RTL");
+  require_sampled_hardware(config, "the RTL");
   validate(config);
   const Widths widths = derive_widths(config);
   std::ostringstream out;
@@ -176,6 +193,8 @@ std::string raster_pkg(const Config& config) {
     else if (std::holds_alternative<SetupKind Config::*>(setting.member))
       print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
                      "0 pipelined, 1 serial: " + std::string(setting.meaning));
+    else if (std::holds_alternative<SamplePattern Config::*>(setting.member))
+      print_sample_places(out, widths);
     else
       print_constant(out, constant_name(setting.key), std::stoll(get(config, setting)), std::string(setting.meaning));
   }
@@ -201,7 +220,8 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "STATE_WORD_BITS", state_word_bits(widths), "of a token: the codes of all planes but those");
   print_constant(out, "TEXTURE_STAMPS", texture_stamps(config), "between X and W, with a texture unit");
   print_constant(out, "TEXTURE_PORT_BITS", 8 * widths.texture_port_bytes, "data of a beat of texels");
-  print_constant(out, "SAMPLES", widths.samples, "samples of a stamp");
+  print_constant(out, "PIXELS", widths.pixels, "pixels of a stamp");
+  print_constant(out, "SAMPLES", widths.samples, "samples of a stamp, those of a pixel beside each other");
   print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
   print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
   print_constant(out, "HIZ_GROUP_BITS", widths.hiz_group_bits, "bounds of 2^this tiles of a row are cleared at once");

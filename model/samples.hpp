@@ -1,6 +1,7 @@
 // The samples of a stamp: how many there are, which number each has, and which of them a mask holds.
 //
-// A stamp is a square of pixels. Its samples are numbered pixel by pixel, row by row; a pixel has one sample, at its centre.
+// A stamp is a square of pixels. Its samples are numbered pixel by pixel, row by row, and those of a pixel follow each other. A
+// pixel has one sample, at its centre, or several (sample_pattern.hpp).
 #pragma once
 
 #include <bit>
@@ -60,13 +61,32 @@ struct PixelOffset {
 struct StampGrid {
   int size = 1;            ///< pixels along the side of a stamp
   int stamps_per_row = 1;  ///< stamps along the side of a tile
+  int per_pixel = 1;       ///< samples of a pixel
 
   [[nodiscard]] constexpr int stamps() const { return stamps_per_row * stamps_per_row; }
-  [[nodiscard]] constexpr int samples() const { return size * size; }
+  [[nodiscard]] constexpr int pixels() const { return size * size; }
+  [[nodiscard]] constexpr int samples() const { return pixels() * per_pixel; }
   /// The pixel of a sample, in its stamp.
-  [[nodiscard]] constexpr PixelOffset pixel_of(int sample) const { return {sample % size, sample / size}; }
-  /// The sample of a pixel of the stamp.
-  [[nodiscard]] constexpr int sample_at(int x, int y) const { return y * size + x; }
+  [[nodiscard]] constexpr PixelOffset pixel_of(int sample) const {
+    return {sample / per_pixel % size, sample / per_pixel / size};
+  }
+  /// The first sample of a pixel of the stamp.
+  [[nodiscard]] constexpr int sample_at(int x, int y) const { return (y * size + x) * per_pixel; }
+  /// All samples of a pixel of the stamp.
+  [[nodiscard]] constexpr SampleMask samples_at(int x, int y) const {
+    return SampleMask(SampleMask::all(per_pixel).bits() << sample_at(x, y));
+  }
+  /// Of the samples of pixel `pixel` of the stamp those in `mask`, sample 0 of the pixel the lowest bit.
+  [[nodiscard]] constexpr unsigned of_pixel(SampleMask mask, int pixel) const {
+    return static_cast<unsigned>(mask.bits() >> pixel * per_pixel & SampleMask::all(per_pixel).bits());
+  }
+  /// In every pixel the same samples: the lowest bits of `of_pixel`.
+  [[nodiscard]] constexpr SampleMask in_every_pixel(unsigned of_pixel) const {
+    const std::uint64_t samples = of_pixel & SampleMask::all(per_pixel).bits();
+    std::uint64_t bits = 0;
+    for (int pixel = 0; pixel < pixels(); ++pixel) bits |= samples << pixel * per_pixel;
+    return SampleMask(bits);
+  }
   /// The first pixel of a stamp, in its tile.
   [[nodiscard]] constexpr PixelOffset origin_of(int stamp) const {
     return {stamp % stamps_per_row * size, stamp / stamps_per_row * size};

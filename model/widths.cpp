@@ -56,6 +56,9 @@ AttributeWidths derive_attribute(const Attribute& a, int128 side, const Widths& 
   d.product = exact(name + " product", name + " numerator * reciprocal", d.numerator.range * d.reciprocal.range);
   d.plane = modular(name + " plane", bound("modulo 2^(# + 1 + F)"), a.bits + 1 + w.plane_fraction);
   d.local = modular("local " + name, bound("modulo 2^(# + 1 + l)"), a.bits + 1 + a.guard_bits);
+  d.step = d.local;
+  if (w.has_samples != 0)
+    d.step = modular(name + " step", bound("modulo 2^(# + 1 + l + s)"), a.bits + 1 + a.guard_bits + w.grid_bits);
   d.fragment = a.is_clamped ? d.code : d.local;
   if (a.is_clamped) {
     d.line = residue("line " + name, bound("modulo 2^(# + G')"), a.bits + w.line_guard_bits);
@@ -189,8 +192,12 @@ Widths derive_widths(const Config& config) {
   // of a whole tile leaves as they are lie below them.
   w.guard_bits = std::max(ceil_log2(static_cast<uint128>(4 * band)) + 4, config.local_guard_bits + w.tile_shift);
   w.plane_fraction = w.guard_bits + s;
-  w.stamps = {config.stamp_size, config.tile_size / config.stamp_size};
+  w.stamps = {config.stamp_size, config.tile_size / config.stamp_size, config.msaa_samples};
   w.samples = w.stamps.samples();
+  w.pixels = w.stamps.pixels();
+  w.further_samples = w.samples - w.pixels;
+  w.has_samples = config.msaa_samples > 1 ? 1 : 0;
+  w.edge_lows = 3 * w.has_samples;
   w.tiles_x = (config.target_width + config.tile_size - 1) / config.tile_size;
   w.tiles_y = (config.target_height + config.tile_size - 1) / config.tile_size;
   const int line_bits = floor_log2(static_cast<uint128>(config.cache_lines));
@@ -208,12 +215,17 @@ Widths derive_widths(const Config& config) {
   w.area = exact("area", "L^2, L the side of the guard band", {0, edge.hi});
   w.edge_value = exact("edge value", "(+-L^2 - 1) >> s", (edge + Interval{-1, 0}) >> s);
   w.edge_step = exact("edge step", "delta: one pixel changes E >> s by dx or dy", delta);
-  const int128 extent = 2 * side * (config.tile_size - 1);  // |dx| + |dy| over T - 1 pixels
-  w.tile_edge =
-      exact("tile edge", "saturated beyond (T-1)(|dx|+|dy|) at the tile's first pixel", {-extent - 1, extent});
+  // |dx| + |dy| over T - 1 pixels, and to a sample (sample_edge_reach()).
+  const int128 to_sample = w.has_samples != 0 ? side + 1 : 0, extent = 2 * side * (config.tile_size - 1) + to_sample;
+  w.tile_edge = exact("tile edge",
+                      w.has_samples != 0 ? "saturated beyond (T-1/2)(|dx|+|dy|) + 1 at the tile's first pixel"
+                                         : "saturated beyond (T-1)(|dx|+|dy|) at the tile's first pixel",
+                      {-extent - 1, extent});
   // All of its bits are used: saturating at a power of two is a look at the high bits, where a clamp would subtract.
   w.tile_edge.range = {-(int128{1} << (w.tile_edge.bits - 1)), (int128{1} << (w.tile_edge.bits - 1)) - 1};
-  w.sample_edge = exact("sample edge", "tile edge + (T-1)(|dx|+|dy|)", w.tile_edge.range + symmetric(extent));
+  w.sample_edge =
+      exact("sample edge", w.has_samples != 0 ? "tile edge + (T-1/2)(|dx|+|dy|) + 1" : "tile edge + (T-1)(|dx|+|dy|)",
+            w.tile_edge.range + symmetric(extent));
 
   derive_attributes(w, config, side);
 
@@ -232,6 +244,10 @@ Widths derive_widths(const Config& config) {
   };
   const int color_bits = config.color_format == ColorFormat::rgb565 ? 16 : 32;
   w.sample_mask = bits("sample mask", "one bit a sample", w.samples);
+  w.pixel_mask = bits("pixel mask", "one bit a pixel of a stamp", w.pixels);
+  w.masked_samples = bits("masked samples", "msaa.samples", config.msaa_samples);
+  w.edge_low = bits("edge low", "s", s);
+  w.further_depth = bits("further depth", "depth.bits", config.depth_bits);
   w.stored_color = bits("stored color", "color.format", color_bits);
   w.stencil_flags = config.stencil_bits != 0 ? 1 : 0;
   w.stored_depth = bits("stored depth", "a depth code, stencil.bits above it", config.depth_bits + config.stencil_bits);
@@ -264,7 +280,7 @@ double depth_error_bound(const Config& config) {
   const double local = std::ldexp(1.0, -config.local_guard_bits - 1);  // one rounding to the local guard bits
   return 0.5                                                           // storage
          + std::ldexp(1.0, -config.reciprocal_extra_bits)              // the reciprocal, over the full depth range
-         + (config.tile_size + 1) * local                              // T/2 steps in x and in y, and the anchor
+         + (plane_roundings(config) + 1) * local                       // the steps, and the anchor
          + std::ldexp(1.0, -5);  // wide gradients over the guard band: guard_bits is chosen so
 }
 
@@ -337,6 +353,8 @@ std::vector<const Width*> Widths::all() const& {
        &pixel_y,        &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane,
        &counter,        &run,           &address,      &row_stride, &burst_length, &port_strobe,  &port_byte,
        &line_numerator, &line_position, &line_product, &line_error, &line_stay,    &line_move,    &line_count});
+  if (has_samples != 0) add_of_attributes({&A::step});
+  if (has_samples != 0) add({&edge_low, &pixel_mask, &masked_samples, &further_depth});
   for (int a = 0; a < attributes.attributes; ++a)
     if (attributes.attribute[static_cast<std::size_t>(a)].is_clamped)
       list.push_back(&attribute[static_cast<std::size_t>(a)].line);

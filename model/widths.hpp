@@ -46,6 +46,7 @@ struct Width {
 /// What each plane of an attribute takes.
 struct AttributeWidths {
   Width code, delta, numerator, reciprocal, product, plane, local;
+  Width step;               ///< of a local plane; with several samples s bits more, of which d takes the upper ones
   Width fragment;           ///< what a fragment has of it: the code, or without a clamp the local value
   Width line, affine_code;  ///< along a line, and a code that is clamped; no bits where the attribute has none
 
@@ -106,6 +107,10 @@ struct Widths {
 
   // Samples of a pixel.
   int pixel_samples = 1;
+  int pixels = 1;           ///< of a stamp
+  int has_samples = 0;      ///< 1: a pixel has several
+  int edge_lows = 0;        ///< 3 then: of each edge the bits that edge_function() has lost
+  int further_samples = 0;  ///< of a stamp, but for the first of each pixel
   std::array<SampleOffset, kMaxPixelSamples> sample_offset{};  ///< of each, from the pixel's centre, 2^-s pixel
 
   // Coverage.
@@ -118,6 +123,7 @@ struct Widths {
   Width reciprocal, reciprocal_shift;     ///< the widest, which the others are the upper bits of
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color, stored_depth;
+  Width edge_low, pixel_mask, masked_samples, further_depth;  // of several samples a pixel
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane,
       depth_source, memory_lane, counter;
   // The memory port.

@@ -119,7 +119,7 @@ module raster_top (
   logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
   logic                             slot_free;
   logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
-  logic [2*raster_pkg::TILE_SHIFT:0] samples_tested;
+  logic [2*raster_pkg::TILE_SHIFT+$clog2(raster_pkg::MSAA_SAMPLES):0] samples_tested;
   logic                              context_read;
   raster_pkg::context_packet_t   stamp_context;
   /* verilator lint_off UNUSEDSIGNAL */  // with pipelined stages

@@ -52,9 +52,6 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
   if (!owners.visible.empty()) owners.visible[plain] = visible;
 }
 
-/// The samples of a draw that State::sample_mask lets pass, a bit each.
-[[nodiscard]] inline unsigned drawn_samples(const State& state) { return state.sample_mask.value_or(~0U); }
-
 /// A pixel that is covered as a whole, or, where it has several samples, those of them that `covered` names: plane_code(k)
 /// gives the depth of each, `color()` the colour of all.
 template <class Depth, class Color>

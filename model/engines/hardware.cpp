@@ -12,6 +12,7 @@
 #include "../stages/fine_raster.hpp"
 #include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
+#include "../stages/resolve.hpp"
 #include "../stages/rop.hpp"
 #include "../stages/state_packets.hpp"
 #include "../stages/surface.hpp"
@@ -92,9 +93,10 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   Framebuffer frame(width, height, config.tile_size);
   std::ranges::fill(frame.depth, snap_depth(1.0, config.depth_bits));
   std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
+  frame.samples.assign(config.msaa_samples == 1 ? 0 : static_cast<std::size_t>(config.msaa_samples), frame);
   const Widths widths = derive_widths(config);
   const int tile = config.tile_size, size = config.stamp_size;
-  const StampGrid stamps{size, tile / size};
+  const StampGrid& stamps = widths.stamps;
   std::array<std::uint32_t, kMaxSamples> data;
   const auto copy_stamp = [&](bool is_color, int x, int y) {
     const int stamp = stamps.stamp_at(x % tile, y % tile);
@@ -105,13 +107,15 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
     for (int s = 0; s < stamps.samples(); ++s) {
       const PixelOffset pixel = stamps.pixel_of(s);
       if (x + pixel.x >= width || y + pixel.y >= height) continue;
+      Framebuffer& of_sample =
+          frame.samples.empty() ? frame : frame.samples[static_cast<std::size_t>(s % stamps.per_pixel)];
       const std::size_t at = frame.at(x + pixel.x, y + pixel.y);
       const std::uint32_t code = data[static_cast<std::size_t>(s)];
       if (is_color) {
-        frame.color[at] = code;
+        of_sample.color[at] = code;
       } else {
-        frame.depth[at] = depth_of(code, widths);
-        frame.stencil[at] = stencil_of(code, widths);
+        of_sample.depth[at] = depth_of(code, widths);
+        of_sample.stencil[at] = stencil_of(code, widths);
       }
     }
   };
@@ -120,6 +124,7 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
       copy_stamp(false, x, y);
       copy_stamp(true, x, y);
     }
+  resolve(frame, config.color_format);
   return frame;
 }
 
@@ -196,9 +201,8 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     WritePacket packet = rop(fragment, depth_test(fragment, stored, stencil_, widths_), config_, widths_);
     SampleMask kept = packet.passed;
     if (!texture_) {
-      const SampleMask opaque = alpha_passes(colors_.alpha, fragment.mask,
-                                             [&](std::size_t s) { return color_channels(fragment.code[s])[3]; });
-      keep(opaque, packet);
+      const SampleMask opaque = opaque_samples(fragment, colors_, widths_);
+      keep_opaque(opaque, fragment, packet, widths_);
       kept = kept & opaque;
     }
     sink_.take(on<Arrow::write>, packet);

@@ -115,13 +115,17 @@ class SampledTriangle {
  public:
   SampledTriangle(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
                   const TriangleSetup& setup)
-      : engine_(engine), context_(context), t_(t), setups_(t.triangle, setup, engine.widths) {
+      : engine_(engine),
+        context_(context),
+        t_(t),
+        setups_(setup, engine.widths),
+        packet_(to_setup_packet(setup, engine.widths)),
+        edges_(make_edge_context(setup)) {
     places_.reserve(setups_.sample.size() + 1);
     for (int k = kAtCentre; k < engine.widths.pixel_samples; ++k) {
       const SampleOffset o = k == kAtCentre ? SampleOffset{} : engine.widths.sample_offset[static_cast<std::size_t>(k)];
       const TriangleSetup& at = setups_.at(k);
-      places_.push_back({at, to_setup_packet(at, engine.widths),
-                         surface_of(context, moved_to_sample(t.triangle, o), at, engine.widths)});
+      places_.push_back({at, surface_of(context, moved_to_sample(t.triangle, o), at, engine.widths)});
     }
     const auto& v = t.triangle.v;
     is_back_ = context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front);
@@ -138,21 +142,27 @@ class SampledTriangle {
  private:
   struct Place {
     const TriangleSetup& setup;
-    SetupPacket packet;
     std::optional<Surface> surface;
   };
   [[nodiscard]] const Place& at(int place) const { return places_[static_cast<std::size_t>(place + 1)]; }
 
-  [[nodiscard]] TileMask mask_at(const Place& place, int tile_x, int tile_y, bool is_accepted) const {
+  /// Of a tile, the covered pixels at their centres, if a sample of them is, and at each sample.
+  [[nodiscard]] std::vector<TileMask> masks_in(int tile_x, int tile_y, bool is_accepted) const {
     const Widths& widths = engine_.widths;
-    TilePacket tile = make_tile_packet(place.packet, tile_x, tile_y, 0, false, widths);
+    const StampGrid& stamps = widths.stamps;
+    TilePacket tile = make_tile_packet(packet_, tile_x, tile_y, 0, false, widths);
     tile.is_inside = is_accepted;
-    TileMask mask{};
-    fine_raster(tile, make_edge_context(place.setup), widths, [&](const StampPacket& covered) {
-      const PixelOffset origin = widths.stamps.origin_of(covered.stamp);
+    std::vector<TileMask> mask(setups_.sample.size() + 1);
+    fine_raster(tile, edges_, widths, [&](const StampPacket& covered) {
+      const PixelOffset origin = stamps.origin_of(covered.stamp);
+      const auto set = [&](TileMask& at, int pixel) {
+        const PixelOffset in_stamp = stamps.pixel_of(pixel * stamps.per_pixel);
+        at[static_cast<std::size_t>(origin.y + in_stamp.y)] |= 1U << (origin.x + in_stamp.x);
+      };
+      covered.centre.for_each([&](std::size_t pixel) { set(mask[0], static_cast<int>(pixel)); });
       covered.mask.for_each([&](std::size_t s) {
-        const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
-        mask[static_cast<std::size_t>(origin.y + pixel.y)] |= 1U << (origin.x + pixel.x);
+        const int sample = static_cast<int>(s);
+        set(mask[static_cast<std::size_t>(sample % stamps.per_pixel) + 1], sample / stamps.per_pixel);
       });
     });
     return mask;
@@ -180,8 +190,7 @@ class SampledTriangle {
       ++counters.skipped.trivially_accepted;
     else
       counters.samples_tested += pixels * setups_.sample.size();
-    std::vector<TileMask> mask;  // of the centre, and of each sample
-    for (const Place& place : places_) mask.push_back(mask_at(place, tile_x, tile_y, is_accepted));
+    const std::vector<TileMask> mask = masks_in(tile_x, tile_y, is_accepted);
     for (int j = 0; j < engine_.config.tile_size; ++j)
       for (int i = 0; i < engine_.config.tile_size; ++i) {
         const auto is_set = [&](std::size_t m) { return (mask[m][static_cast<std::size_t>(j)] >> i & 1U) != 0; };
@@ -225,6 +234,8 @@ class SampledTriangle {
   const DrawContext& context_;
   const NumberedTriangle& t_;
   SampledSetup setups_;
+  SetupPacket packet_;
+  EdgeContext edges_;
   std::vector<Place> places_;  ///< of the centre, and of each sample
   bool is_back_ = false;
 };

@@ -27,7 +27,7 @@ class BlockCache {
 
   /// A token has set what is done with colours, or with the stencil.
   void set(const ColorState& colors, const StencilState& stencil) {
-    directory_.set(colors.ops.reads_stored(), colors.alpha.func != DepthFunc::always, stencil.replaces());
+    directory_.set(colors.ops.reads_stored(), colors.tests_alpha(), stencil.replaces());
   }
 
   /// Writes what came of the fragment of the last access.

@@ -32,7 +32,8 @@ TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, st
   packet.box = {inside_tile(setup.box.left, tile_x), inside_tile(setup.box.top, tile_y),
                 inside_tile(setup.box.right, tile_x), inside_tile(setup.box.bottom, tile_y)};
   const EdgeValues value = edges_at_tile(setup, tile_x, tile_y, widths);
-  packet.is_inside = classify(setup.dx, setup.dy, value, 1 << widths.tile_shift) == TileClass::inside;
+  packet.is_inside = classify(setup.dx, setup.dy, moved_by_samples(value, setup.dx, setup.dy, false, widths),
+                              1 << widths.tile_shift) == TileClass::inside;
   for (std::size_t i = 0; i < 3; ++i) packet.edge_value[i] = saturate_tile_edge(value[i], widths);
   const int dx = tile_x - (setup.box.left >> widths.tile_shift), dy = tile_y - (setup.box.top >> widths.tile_shift);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
@@ -48,7 +49,7 @@ ContextPacket make_context(const SetupPacket& setup, const Widths& widths) {
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const Width &plane = widths.of_plane(p).plane, &local = widths.of_plane(p).local;
     const auto per_pixel = [&](std::int64_t step) {  // rounded
-      return wrap_signed(round_shift(step, plane.bits - local.bits - widths.grid_bits), local.bits);
+      return wrap_signed(round_shift(step, plane.bits - local.bits - widths.grid_bits), widths.of_plane(p).step.bits);
     };
     context.step_x[p] = per_pixel(setup.step_x[p]);
     context.step_y[p] = per_pixel(setup.step_y[p]);

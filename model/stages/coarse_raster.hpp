@@ -7,7 +7,8 @@
 //
 // Edge values leave here narrow: inside a tile they move by at most M = (T-1)(|dx| + |dy|), so saturating the value at the
 // first pixel to [-M_max - 1, M_max] leaves the sign of every sample as it was. A tile that an edge accepts or rejects
-// as a whole needs no case of its own.
+// as a whole needs no case of its own. With several samples a pixel M has room for the way to a sample, and tiles are sorted by
+// edges moved by sample_edge_reach(): that of the sample that lies farthest out, wherever it is.
 #pragma once
 
 #include <algorithm>
@@ -46,6 +47,18 @@ enum class TileClass { outside, cut, inside };
   for (std::size_t i = 0; i < 3; ++i)
     if (largest_in_tile(value[i], edge_dx[i], edge_dy[i], tile_size) < 0) edges |= 1U << i;
   return edges;
+}
+
+/// Where a pixel has several samples, the edge values moved as far out or in as a sample of it may lie: with those a tile is outside
+/// when no sample of it can be inside an edge, and inside when all are.
+[[nodiscard]] inline EdgeValues moved_by_samples(EdgeValues value, const EdgeDeltas& dx, const EdgeDeltas& dy,
+                                                 bool outwards, const Widths& widths) {
+  if (widths.has_samples == 0) return value;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const EdgeValue reach = sample_edge_reach(dx[i], dy[i]);
+    value[i] += outwards ? reach : -reach;
+  }
+  return value;
 }
 
 /// The way through the tiles of a primitive's box. A row is walked to the right from its start, then from there to the
@@ -198,7 +211,8 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
   do {
     ++count.tiles_visited;
     const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
-    outside = outside_edges(setup.dx, setup.dy, edges, 1 << widths.tile_shift);
+    outside = outside_edges(setup.dx, setup.dy, moved_by_samples(edges, setup.dx, setup.dy, true, widths),
+                            1 << widths.tile_shift);
     if (outside != 0) {
       ++count.tiles_outside;
     } else if (asks_hiz && hiz.rejects(setup, walk.x(), walk.y())) {
@@ -210,7 +224,8 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       if (packet.is_inside != 0)
         ++count.trivially_accepted;
       else
-        count.samples_tested += static_cast<std::uint32_t>(to_bounds(packet.box).samples());
+        count.samples_tested += static_cast<std::uint32_t>(to_bounds(packet.box).samples()) *
+                                static_cast<std::uint32_t>(widths.pixel_samples);
       emit(packet);
     }
   } while (walk.next(outside));

@@ -69,13 +69,19 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
   return constant;
 }
 
-/// The function, and above it the reference.
-[[nodiscard]] constexpr std::uint32_t pack(const AlphaTest& alpha) {
-  return static_cast<std::uint32_t>(alpha.func) | std::uint32_t{alpha.reference} << color_packets_detail::kFunction;
+/// The function, above it the reference, and above that whether alpha says how many of a pixel's samples are drawn.
+[[nodiscard]] constexpr std::uint32_t pack(const AlphaTest& alpha, bool covers = false) {
+  using namespace color_packets_detail;
+  return static_cast<std::uint32_t>(alpha.func) | std::uint32_t{alpha.reference} << kFunction |
+         std::uint32_t{covers} << (kFunction + kByte);
 }
 [[nodiscard]] constexpr AlphaTest unpack_alpha(std::uint64_t word) {
   using namespace color_packets_detail;
   return {static_cast<DepthFunc>(word & ((1U << kFunction) - 1)), static_cast<std::uint8_t>(word >> kFunction)};
+}
+[[nodiscard]] constexpr bool unpack_alpha_covers(std::uint64_t word) {
+  using namespace color_packets_detail;
+  return (word >> (kFunction + kByte) & 1) != 0;
 }
 
 /// What a draw asks of the units that this hardware has.
@@ -85,7 +91,7 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
     words.ops = pack(ops.color);
     if (ops.color.reads_constant()) words.constant = pack(ops.color.constant);
   }
-  if (tests_alpha(config)) words.alpha = pack(ops.alpha);
+  if (tests_alpha(config)) words.alpha = pack(ops.alpha, ops.alpha_samples != 0);
   return words;
 }
 
@@ -93,14 +99,38 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
 struct ColorState {
   ColorOps ops;
   AlphaTest alpha;
+  bool alpha_covers = false;  ///< alpha says how many of a pixel's samples are drawn
+
+  /// Whether a fragment may be dropped by its alpha.
+  [[nodiscard]] constexpr bool tests_alpha() const { return alpha.func != DepthFunc::always || alpha_covers; }
+  /// Whether it is kept at sample `k` of its pixel's `samples`.
+  [[nodiscard]] constexpr bool keeps(std::uint32_t value, std::uint32_t k, std::uint32_t samples) const {
+    return depth_passes(alpha.func, value, std::uint32_t{alpha.reference}) &&
+           (!alpha_covers || k < samples_of_alpha(value, samples));
+  }
 
   /// A token sets one of them.
   constexpr void set(StateRegister which, std::uint64_t word) {
     if (which == StateRegister::color_ops) unpack(word, ops);
     if (which == StateRegister::blend_constant) ops.constant = unpack_constant(word);
-    if (which == StateRegister::alpha_test) alpha = unpack_alpha(word);
+    if (which == StateRegister::alpha_test) {
+      alpha = unpack_alpha(word);
+      alpha_covers = unpack_alpha_covers(word);
+    }
   }
 };
+
+/// The samples of a fragment that its alpha keeps.
+[[nodiscard]] inline SampleMask opaque_samples(const FragmentPacket& fragment, const ColorState& colors,
+                                               const Widths& widths) {
+  const auto n = static_cast<std::uint32_t>(widths.pixel_samples);
+  SampleMask kept;
+  fragment.mask.for_each([&](std::size_t s) {
+    kept.set(static_cast<int>(s),
+             colors.keeps(color_channels(fragment_code(fragment, s, widths))[3], static_cast<std::uint32_t>(s) % n, n));
+  });
+  return kept;
+}
 
 /// A token may set one of them.
 inline void set_colors(const FragmentPacket& fragment, ColorState& colors, const Widths& widths) {

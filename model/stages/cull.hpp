@@ -114,7 +114,7 @@ template <class Box>
   return {box.left, box.top, box.right, box.bottom};
 }
 
-/// Whether a triangle covers no sample and is small enough for the pipelined cull to see that: its box has at most 2x2 of
+/// Of pixels with one sample: whether a triangle covers none and is small enough for the pipelined cull to see that: its box has at most 2x2 of
 /// them, and each of its sides, in the order in which `v` came to cull, is in [-4, 4) pixels long in x and in y.
 [[nodiscard]] inline bool is_seen_sampleless(const TrianglePacket& triangle, const std::array<SnappedVertex, 3>& v,
                                              const Widths& widths) {
@@ -168,7 +168,7 @@ template <class Box>
     ++(result == CullResult::zero_area ? counters.zero_area : counters.backface);
     return kept;
   }
-  const PixelBounds bounds = pixel_bounds(v, to_bounds(in.box), widths.grid_bits);
+  const PixelBounds bounds = sample_bounds(v, to_bounds(in.box), widths.grid_bits, widths.pixel_samples);
   if (bounds.is_empty()) {
     ++counters.empty;
     return kept;
@@ -184,9 +184,11 @@ template <class Box>
     out.vertex.y[i] = in.vertex.y[from];
     out.vertex.code[i] = in.vertex.code[from];
     out.edge_value[i] = edge_function(v[from], v[to], first_x, first_y, widths.grid_bits);
+    if (widths.has_samples != 0)
+      out.edge_low[i] = static_cast<std::uint16_t>(edge_low(v[from], v[to], widths.grid_bits));
   }
   out.area = static_cast<std::uint64_t>(area < 0 ? -area : area);
-  if (looks_at_samples && is_seen_sampleless(out, v, widths)) {
+  if (looks_at_samples && widths.has_samples == 0 && is_seen_sampleless(out, v, widths)) {
     ++counters.no_sample;
     kept.reset();
   }

@@ -33,6 +33,13 @@ inline void keep(SampleMask kept, WritePacket& packet) {
   packet.write_color = packet.write_color & kept;
 }
 
+/// The same where alpha is tested beside the depth: what is not written has the fragment's own depth in its packet.
+inline void keep_opaque(SampleMask opaque, const FragmentPacket& fragment, WritePacket& packet, const Widths& widths) {
+  keep(opaque, packet);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s)
+    if (!packet.write_depth.has(s)) packet.depth[s] = fragment_depth(fragment, s, widths);
+}
+
 /// A stored depth: the stencil above the depth code, where there is one.
 [[nodiscard]] inline std::uint32_t depth_of(std::uint32_t word, const Widths& widths) {
   return word & static_cast<std::uint32_t>(widths.depth().code.range.hi);
@@ -77,7 +84,7 @@ struct TestedSample {
   packet.key = fragment.key;
   packet.stamp = fragment.stamp;
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
-    packet.depth[s] = fragment.code[s][kDepthPlane];
+    packet.depth[s] = fragment_depth(fragment, s, widths);
     if (!fragment.mask.has(s)) continue;
     const TestedSample sample = test_sample(state, side, packet.depth[s], stored[s], widths);
     packet.passed.set(static_cast<int>(s), sample.passes);
@@ -114,7 +121,7 @@ class TileVisit {
   void add(const FragmentPacket& fragment, SampleMask passed, SampleMask written, const Widths& widths) {
     full_stamps_ += written.count() == widths.samples ? 1 : 0;
     has_passed_ = has_passed_ || passed.any();
-    passed.for_each([&](std::size_t s) { largest_ = std::max(largest_, fragment.code[s][kDepthPlane]); });
+    passed.for_each([&](std::size_t s) { largest_ = std::max(largest_, fragment_depth(fragment, s, widths)); });
   }
 
   /// The end of the visit; `last` is its last stamp.

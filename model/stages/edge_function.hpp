@@ -32,4 +32,24 @@ using EdgeValue = std::int64_t;  ///< floor((E + bias) / 2^s) at a pixel centre;
   return edge_function(from, to, x, y, grid_bits, is_top_left(from, to) ? 0 : 1);
 }
 
+/// The grid_bits bits that edge_function() has lost below its value: the same at every pixel centre.
+[[nodiscard]] constexpr EdgeValue edge_low(const SnappedVertex& from, const SnappedVertex& to, int grid_bits) {
+  const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
+  const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
+  const std::int64_t at_centre = dx * (half - from.y) - dy * (half - from.x) - (is_top_left(from, to) ? 0 : 1);
+  return at_centre & (2 * half - 1);
+}
+
+/// c: what an edge gains from the centre of a pixel to a sample that lies `o` from it, in 2^-s pixel. `step_x`, `step_y`: what
+/// it gains per pixel.
+[[nodiscard]] constexpr EdgeValue sample_edge_offset(EdgeValue low, EdgeValue step_x, EdgeValue step_y,
+                                                     const SampleOffset& o, int grid_bits) {
+  return (low + step_x * o.x + step_y * o.y) >> grid_bits;
+}
+
+/// Wherever in its pixel a sample lies, |c| is at most this.
+[[nodiscard]] constexpr EdgeValue sample_edge_reach(EdgeValue step_x, EdgeValue step_y) {
+  return ((step_x < 0 ? -step_x : step_x) + (step_y < 0 ? -step_y : step_y) + 1) >> 1;
+}
+
 }  // namespace halfplane

@@ -1,5 +1,7 @@
 #include "interpolate.hpp"
 
+#include <bit>
+
 namespace halfplane {
 
 PixelPlace place_of(const TriangleSetup& setup, const Widths& widths, int x, int y) {
@@ -51,6 +53,13 @@ std::uint32_t wrapped_code(std::uint64_t value, const LocalFormat<std::uint64_t>
   return static_cast<std::uint32_t>(((value >> format.guard_bits) - half) & (2 * half - 1));
 }
 
+/// Where a pixel of a stamp is shaded: at its centre, or if a sample is covered and the centre is not, at the first such.
+SampleOffset shaded_offset(const StampPacket& stamp, int pixel, const Widths& widths) {
+  const unsigned covered = widths.stamps.of_pixel(stamp.mask, pixel);
+  if (widths.has_samples == 0 || covered == 0 || stamp.centre.has(static_cast<std::size_t>(pixel))) return {};
+  return widths.sample_offset[static_cast<std::size_t>(std::countr_zero(covered))];
+}
+
 }  // namespace
 
 FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths) {
@@ -60,30 +69,38 @@ FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& contex
   fragment.ends_primitive = stamp.ends_primitive;
   fragment.key = stamp.key;
   fragment.stamp = stamp.stamp;
-  fragment.mask = stamp.mask;
   fragment.state = context.state;
+  fragment.mask = stamp.mask & widths.stamps.in_every_pixel(~unsigned{context.state.masked_samples});
   fragment.coordinates = context.coordinates;
   if (widths.has_colors_over_w != 0) {
     fragment.least_color = vertex_color(context.range.low, widths);
     fragment.greatest_color = vertex_color(context.range.high, widths);
   }
-  const PixelOffset origin = widths.stamps.origin_of(stamp.stamp);
+  const StampGrid& stamps = widths.stamps;
+  const PixelOffset origin = stamps.origin_of(stamp.stamp);
   const int half_tile = 1 << (widths.tile_shift - 1);
-  for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
-    const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
-    const auto i = static_cast<std::uint64_t>(std::int64_t{origin.x + pixel.x - half_tile});  // from the anchor
-    const auto j = static_cast<std::uint64_t>(std::int64_t{origin.y + pixel.y - half_tile});
+  for (int pixel = 0; pixel < stamps.pixels(); ++pixel) {
+    const auto at = static_cast<std::size_t>(pixel), n = static_cast<std::size_t>(widths.pixel_samples);
+    const PixelOffset in_stamp = stamps.pixel_of(pixel * stamps.per_pixel);
+    const auto i = static_cast<std::uint64_t>(std::int64_t{origin.x + in_stamp.x - half_tile});  // from the anchor
+    const auto j = static_cast<std::uint64_t>(std::int64_t{origin.y + in_stamp.y - half_tile});
+    const auto value_at = [&](std::size_t p, const SampleOffset& o) {
+      return static_cast<std::uint64_t>(stamp.anchor[p]) + i * static_cast<std::uint64_t>(context.step_x[p]) +
+             j * static_cast<std::uint64_t>(context.step_y[p]) +
+             static_cast<std::uint64_t>(sample_plane_offset(context.step_x[p], context.step_y[p], o, widths.grid_bits));
+    };
+    const SampleOffset shaded = shaded_offset(stamp, pixel, widths);
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
-      const std::uint64_t value = static_cast<std::uint64_t>(stamp.anchor[p]) +
-                                  i * static_cast<std::uint64_t>(context.step_x[p]) +
-                                  j * static_cast<std::uint64_t>(context.step_y[p]);
+      const std::uint64_t value = value_at(p, p == kDepthPlane ? widths.sample_offset[0] : shaded);
       if (static_cast<int>(p) >= widths.affine_planes) {  // Q and P as they are: the texture unit divides
-        fragment.code[s][p] = static_cast<std::uint32_t>(wrap_unsigned(value, widths.of_plane(p).local.bits));
+        fragment.code[at][p] = static_cast<std::uint32_t>(wrap_unsigned(value, widths.of_plane(p).local.bits));
         continue;
       }
-      const LocalFormat<std::uint64_t> format(widths.of_plane(p));
-      fragment.code[s][p] = wrapped_code(value, format);
+      fragment.code[at][p] = wrapped_code(value, LocalFormat<std::uint64_t>(widths.of_plane(p)));
     }
+    for (std::size_t k = 1; k < n; ++k)
+      fragment.further_depth[at * (n - 1) + k - 1] =
+          wrapped_code(value_at(kDepthPlane, widths.sample_offset[k]), LocalFormat<std::uint64_t>(widths.depth()));
   }
   return fragment;
 }

@@ -61,6 +61,13 @@ template <class SignedLane, class Lane>
   return code < low ? low : code > high ? high : code;
 }
 
+/// d: what a plane gains from the centre of a pixel to a sample that lies `o` from it, in 2^-s pixel. Steps: those of a
+/// LocalPlane, with their sign, modulo 2^s times as much: d is what it is modulo.
+[[nodiscard]] constexpr std::int64_t sample_plane_offset(std::int64_t step_x, std::int64_t step_y,
+                                                         const SampleOffset& o, int grid_bits) {
+  return round_shift(step_x * o.x + step_y * o.y, grid_bits);
+}
+
 /// Where a pixel is: its tile, and how many pixels it lies from the tile's anchor, modulo 2^64.
 struct PixelPlace {
   TileOffset tile;

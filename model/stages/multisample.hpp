@@ -4,10 +4,9 @@
 // lies o = (o_x, o_y) from the centre, in 2^-s pixel, the same in all pixels, so it costs one constant an edge and plane:
 //
 //   edges   e + c,  c = (low + dx o_y - dy o_x) >> s,  low: the s bits that e, as floor((E - bias) / 2^s), has lost. They are the
-//           same at all centres, so e + c is floor((E(o) - bias) / 2^s): exact, and nothing that follows knows of samples
-//   planes  z + N_x o_x + N_y o_y, of the wide gradients, before anything is narrowed: no further rounding
-//
-// It is bit for bit the setup of the triangle moved by -o, in the first tile of the unmoved one.
+//           same at all centres, so e + c is floor((E(o) - bias) / 2^s): exact, the edges of the triangle moved by -o
+//   planes  z + d,  d = (n_x o_x + n_y o_y + 1/2) >> s,  n: the steps per pixel that a tile keeps. So interpolate makes d of what it
+//           has, for 2 halves of a tile's last place more of error: half a pixel's way along each axis, and the rounding of d
 //
 // A pixel with a covered sample is shaded once: at its centre, or where that is not covered, at its lowest-numbered covered
 // sample. A perspective plane there may be read; at a centre outside it may have no meaning.
@@ -18,32 +17,24 @@
 #include <vector>
 
 #include "coarse_raster.hpp"
+#include "interpolate.hpp"
 #include "triangle_setup.hpp"
 
 namespace halfplane {
 
-/// c of the edge from `from` to `to` of a triangle of positive area.
-[[nodiscard]] constexpr EdgeValue sample_edge_offset(const SnappedVertex& from, const SnappedVertex& to,
-                                                     const SampleOffset& o, int grid_bits) {
-  const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
-  const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-  const std::int64_t at_centre = dx * (half - from.y) - dy * (half - from.x) - (is_top_left(from, to) ? 0 : 1);
-  const std::int64_t low = at_centre & (2 * half - 1);
-  return (low + dx * o.y - dy * o.x) >> grid_bits;
-}
-
-/// The setup of a triangle at a sample. `v`: its vertices in canonical order.
-[[nodiscard]] inline TriangleSetup setup_at_sample(TriangleSetup setup, const std::array<SnappedVertex, 3>& v,
-                                                   const SampleOffset& o, const Widths& widths) {
+/// The setup of a triangle at a sample.
+[[nodiscard]] inline TriangleSetup setup_at_sample(TriangleSetup setup, const SampleOffset& o, const Widths& widths) {
   for (std::size_t i = 0; i < 3; ++i)
-    setup.edge[i].value += sample_edge_offset(v[i], v[(i + 1) % 3], o, widths.grid_bits);
+    setup.edge[i].value +=
+        sample_edge_offset(setup.edge[i].low, -EdgeValue{setup.edge[i].dy}, setup.edge[i].dx, o, widths.grid_bits);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     Plane& plane = setup.plane[p];
-    const std::uint64_t moved =
-        static_cast<std::uint64_t>(plane.value) +
-        static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(std::int64_t{o.x}) +
-        static_cast<std::uint64_t>(plane.step_y) * static_cast<std::uint64_t>(std::int64_t{o.y});
-    plane.value = wrap_signed(static_cast<std::int64_t>(moved), widths.of_plane(p).plane.bits);
+    const int drop = widths.plane_fraction - widths.of_plane(p).guard_bits();  // bits that a tile does not keep
+    const auto step = [&](PlaneValue per_subpixel) { return round_shift(per_subpixel, drop - widths.grid_bits); };
+    const std::int64_t offset = sample_plane_offset(step(plane.step_x), step(plane.step_y), o, widths.grid_bits);
+    plane.value = wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) +
+                                                        (static_cast<std::uint64_t>(offset) << drop)),
+                              widths.of_plane(p).plane.bits);
   }
   return setup;
 }
@@ -65,10 +56,9 @@ struct SampledSetup {
   TriangleSetup centre;
   std::vector<TriangleSetup> sample;
 
-  SampledSetup(const Triangle& triangle, const TriangleSetup& setup, const Widths& widths) : centre(setup) {
-    const auto v = canonical(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
+  SampledSetup(const TriangleSetup& setup, const Widths& widths) : centre(setup) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(widths.pixel_samples); ++k)
-      sample.push_back(setup_at_sample(setup, v, widths.sample_offset[k], widths));
+      sample.push_back(setup_at_sample(setup, widths.sample_offset[k], widths));
   }
   [[nodiscard]] const TriangleSetup& at(int place) const {
     return place == kAtCentre ? centre : sample[static_cast<std::size_t>(place)];

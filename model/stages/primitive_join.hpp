@@ -11,7 +11,7 @@
 
 namespace halfplane {
 
-/// A pixel of the line whose place is `token`: a stamp with one covered sample, which belongs to no tile visit.
+/// A pixel of the line whose place is `token`: a stamp with one covered pixel, all of whose samples are drawn that the state lets, which belongs to no tile visit.
 [[nodiscard]] inline FragmentPacket line_fragment(const FragmentPacket& token, const LinePixel& pixel,
                                                   const Widths& widths) {
   const StampGrid& stamps = widths.stamps;
@@ -23,9 +23,11 @@ namespace halfplane {
   fragment.key.tile_x = static_cast<std::uint16_t>(pixel.x >> widths.tile_shift);
   fragment.key.tile_y = static_cast<std::uint16_t>(pixel.y >> widths.tile_shift);
   fragment.stamp = static_cast<std::uint16_t>(stamps.stamp_at(x, y));
-  fragment.mask = SampleMask::only(stamps.sample_at(x % stamps.size, y % stamps.size));
-  // In every lane: the other samples are not looked at, and a lane of hardware need not know which one is.
-  std::fill_n(fragment.code.begin(), widths.samples, pixel.code);
+  fragment.mask = stamps.samples_at(x % stamps.size, y % stamps.size) &
+                  stamps.in_every_pixel(~unsigned{token.state.masked_samples});
+  // In every lane: the other pixels are not looked at, and a lane of hardware need not know which one is.
+  std::fill_n(fragment.code.begin(), widths.pixels, pixel.code);
+  std::fill_n(fragment.further_depth.begin(), widths.further_samples, pixel.code[kDepthPlane]);
   return fragment;
 }
 

@@ -21,7 +21,8 @@ namespace halfplane {
   WritePacket packet = tested;
   const bool is_packed = !has_texture_planes(config) && !packs_at_write(config);
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s)
-    packet.color[s] = is_packed ? stored_color(fragment.code[s], config) : vertex_color(fragment.code[s], widths);
+    packet.color[s] = is_packed ? stored_color(fragment_code(fragment, s, widths), config)
+                                : vertex_color(fragment_code(fragment, s, widths), widths);
   return packet;
 }
 

@@ -59,6 +59,7 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
   for (std::size_t i = 0; i < 3; ++i) {
     const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
     setup.edge[i] = {to.x - from.x, to.y - from.y, edge_function(from, to, first_x, first_y, s)};
+    if (widths.has_samples != 0) setup.edge[i].low = static_cast<std::uint16_t>(edge_low(from, to, s));
   }
 
   const PlaneFrame frame = plane_frame(v[0], v[1], v[2], first_x, first_y, config.tile_size, widths);
@@ -146,6 +147,7 @@ SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths) {
     packet.dx[i] = setup.edge[i].dx;
     packet.dy[i] = setup.edge[i].dy;
     packet.edge_value[i] = setup.edge[i].value;
+    packet.edge_low[i] = setup.edge[i].low;
   }
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const AttributeWidths& attribute = widths.of_plane(p);

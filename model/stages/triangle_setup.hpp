@@ -28,6 +28,7 @@ using PlaneValue = std::int64_t;  ///< 2^-F LSB, modulo 2^(bits + 1 + F)
 struct Edge {
   std::int32_t dx = 0, dy = 0;  ///< subpixels; one pixel to the right adds -dy, one pixel down adds dx
   EdgeValue value = 0;          ///< at the first pixel of the first tile
+  std::uint16_t low = 0;        ///< edge_low(), where a pixel has several samples
 };
 
 /// One attribute over the triangle.

@@ -6,7 +6,7 @@ mutant(1 stages/cull.sv "tie rule: bottom edges take the samples on them, top ed
 mutant(2 stages/cull.sv "sign: the front face is the other one"
   [=[area[E] != front_cw_q]=] [=[area[E] == front_cw_q]=])
 mutant(3 stages/cull.sv "off by one: the box loses a first column whose centre is on the leftmost vertex"
-  [=[(B'(x_min_q) + HALF - B'(1)) >>> S]=] [=[(B'(x_min_q) + HALF) >>> S]=])
+  [=[(B'(x_min_q) + TO_FIRST) >>> S]=] [=[(B'(x_min_q) + HALF) >>> S]=])
 mutant(4 stages/cull.sv "order: of vertices 1 and 2 the larger one comes first"
   [=[key1 <= key2]=] [=[key1 >= key2]=])
 mutant(5 stages/cull.sv "carry: turned edges gain the +1 of a negation"
@@ -47,7 +47,7 @@ mutant_text(18 stages/coarse_raster.sv "tile walk: a row of tiles starts where t
 mutant(19 stages/coarse_raster.sv "off by one: the last column of a tile that the box crosses is left out"
   [=[is_rightmost ? s_q.box.right[TS-1:0] : '1]=] [=[is_rightmost ? s_q.box.right[TS-1:0] : ~TS'(1)]=])
 mutant(20 stages/coarse_raster.sv "rounding: the local x step of depth is truncated"
-  [=[B'(step_x[NARROW-1])]=] [=[i == 0 ? B'(0) : B'(step_x[NARROW-1])]=])
+  [=[SB'(step_x[NARROW-1])]=] [=[i == 0 ? SB'(0) : SB'(step_x[NARROW-1])]=])
 mutant(21 stages/coarse_raster.sv "counter: rectangles count as triangles"
   [=[steps && is_triangle]=] [=[steps]=])
 mutant(22 stages/coarse_raster.sv "context: the last slot is never given"
@@ -140,14 +140,14 @@ mutant(46 stages/line_raster.sv "dropped stall: the next line is taken while the
 
 # primitive_join
 mutant(47 stages/primitive_join.sv "mask: row and column of the sample are swapped"
-  [=[inner_x == TS'(s % SIZE) && inner_y == TS'(s / SIZE)]=]
-  [=[inner_y == TS'(s % SIZE) && inner_x == TS'(s / SIZE)]=])
+  [=[inner_x == TS'(s / N % SIZE) && inner_y == TS'(s / N / SIZE)]=]
+  [=[inner_y == TS'(s / N % SIZE) && inner_x == TS'(s / N / SIZE)]=])
 mutant(48 stages/primitive_join.sv "end of line: a line's place is gone after one pixel"
   [=[(pixel_valid_i && pixel_i.is_last)]=] [=[pixel_valid_i]=])
 mutant_text(49 stages/primitive_join.sv "state: lines write depth, whatever the mask"
-  [=[      fragment_o.mask           = mask;]=]
-  [=[      fragment_o.mask           = mask;
-      if (raster_cosim.mutant_q == 16'd49) fragment_o.state.depth_write = 1'b1;]=])
+  [=[      joined.mask           = mask;]=]
+  [=[      joined.mask           = mask;
+      if (raster_cosim.mutant_q == 16'd49) joined.state.depth_write = 1'b1;]=])
 mutant(50 stages/primitive_join.sv "order: a pixel goes first when it is there first"
   [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE]=] [=[pixel_valid_i]=])
 
@@ -406,7 +406,7 @@ mutant(199 stages/block_cache.sv "colours: an answer goes to the other plane"
 
 # alpha test
 mutant(200 lib/alpha_test.sv "alpha: equal passes for less"
-  [=[alpha_i[8*s+:8] < reference_i]=] [=[alpha_i[8*s+:8] <= reference_i]=])
+  [=[alpha_i[8*p+:8] < reference_i]=] [=[alpha_i[8*p+:8] <= reference_i]=])
 mutant(201 stages/depth_test.sv "alpha: what may still be dropped sets the bound of HiZ"
   [=[kept == '1 && !is_late]=] [=[kept == '1]=])
 mutant(202 stages/block_cache.sv "alpha: depth is written before it is decided"
@@ -425,7 +425,7 @@ mutant(324 lib/alpha_test.sv "alpha: less and greater are exchanged"
   [=[is_less ? less_passes : (is_equal ? equal_passes : greater_passes)]=]
   [=[is_less ? greater_passes : (is_equal ? equal_passes : less_passes)]=])
 mutant(325 lib/alpha_test.sv "alpha: values that differ in the lowest bit are equal"
-  [=[alpha_i[8*s+:8] == reference_i]=] [=[alpha_i[8*s+1+:7] == reference_i[7:1]]=])
+  [=[alpha_i[8*p+:8] == reference_i]=] [=[alpha_i[8*p+1+:7] == reference_i[7:1]]=])
 mutant(326 stages/block_cache.sv "alpha: the reference is a bit further up in its word"
   [=[w_word[10:3]]=] [=[w_word[11:4]]=])
 mutant(327 stages/block_cache.sv "alpha: what it drops writes its depth"
@@ -567,8 +567,8 @@ mutant(356 stages/color_write.sv "colours: dithering: a stamp has the place of t
 mutant_text(357 stages/color_write.sv "colours: dithering: what is blended is dithered as it came"
   [=[.rgba_i     (rgba),]=] [=[.rgba_i     (raster_cosim.mutant_q == 16'd357 ? color_2_q[s*SHADED+:SHADED] : rgba),]=])
 mutant_text(358 lib/sample_place.sv "colours: dithering: the columns of a stamp have one threshold"
-  [=[* 2'(SIZE) + 2'(SAMPLE % SIZE);]=]
-  [=[* 2'(SIZE) + (raster_cosim.mutant_q == 16'd358 ? 2'd0 : 2'(SAMPLE % SIZE));]=])
+  [=[* 2'(SIZE) + 2'(PIXEL % SIZE);]=]
+  [=[* 2'(SIZE) + (raster_cosim.mutant_q == 16'd358 ? 2'd0 : 2'(PIXEL % SIZE));]=])
 mutant(359 lib/sample_place.sv "colours: dithering: every stamp begins at the matrix' first row"
   [=[2'(stamp_i[2*SIDE_BITS-1:SIDE_BITS])]=] [=[2'd0]=])
 
@@ -597,3 +597,37 @@ mutant(379 stages/cache_tags.sv "colours: masks: what has been read for the chan
 mutant_text(403 stages/color_write.sv "colours: masks: they hold for what is blended only"
   [=[out_2_q      <= ops_q[DITHERS:WRITES];]=]
   [=[out_2_q      <= ops_q[DITHERS:WRITES] | {1'b0, {4{raster_cosim.mutant_q == 16'd403 && !ops_q[BLENDS]}}};]=])
+
+# several samples a pixel
+mutant(420 lib/sample_offset.sv "samples: pattern: the way right is the way down, too"
+  [=[moved(moved(value_i, step_x_i, X), step_y_i, Y)]=] [=[moved(moved(value_i, step_x_i, X), step_y_i, X)]=])
+mutant(421 stages/fine_raster.sv "samples: pattern: the bits below an edge's value are taken for 0"
+  [=[WIDE'(edges_i.low[e*S+:S])]=] [=[WIDE'(0)]=])
+mutant(422 stages/cull.sv "samples: the bits below the value of a turned edge stay as they were"
+  [=[~low_q[(2-l)*S+:S]]=] [=[low_q[(2-l)*S+:S]]=])
+mutant(423 stages/cull.sv "samples: the box ends with the last pixel whose centre is inside"
+  [=[(B'(x_max_q) - TO_LAST) >>> S]=] [=[(B'(x_max_q) - HALF) >>> S]=])
+mutant(424 stages/coarse_raster.sv "samples: a tile is accepted by the centres of its pixels"
+  [=[(TE'(worst) <<< TS) - TE'(worst) - TE'(reach)]=] [=[(TE'(worst) <<< TS) - TE'(worst)]=])
+mutant(425 stages/coarse_raster.sv "samples: a tile is rejected by the centres of its pixels"
+  [=[(TE'(best) <<< TS) - TE'(best) + TE'(reach)]=] [=[(TE'(best) <<< TS) - TE'(best)]=])
+mutant(426 stages/coarse_raster.sv "samples: counter: pixels are counted for samples"
+  [=[(2 * TS + 1 + SAMPLE_SHIFT)'(area) << SAMPLE_SHIFT]=] [=[(2 * TS + 1 + SAMPLE_SHIFT)'(area)]=])
+mutant_text(427 stages/interpolate.sv "samples: a pixel is shaded at its first covered sample, its centre covered or not"
+  [=[y_stamp_q.centre[i] ?]=] [=[y_stamp_q.centre[i] && raster_cosim.mutant_q != 16'd427 ?]=])
+mutant(428 stages/interpolate.sv "samples: pattern: the way of a plane to a sample is cut instead of rounded"
+  [=[WIDE'(1 << (S - 1))]=] [=[WIDE'(0)]=])
+mutant(429 stages/interpolate.sv "samples: mask: it is not looked at"
+  [=[~{PIXELS{samples_context_q.state.masked_samples}}]=] [=[{raster_pkg::SAMPLES{1'b1}}]=])
+mutant(430 stages/primitive_join.sv "samples: mask: lines do not look at it"
+  [=[!fragment_i.state.masked_samples[s%N]]=] [=[1'b1]=])
+mutant(431 lib/alpha_test.sv "samples: alpha: it covers a sample too many"
+  [=[(SHIFT + 1)'(k) < count]=] [=[(SHIFT + 1)'(k) < count + 1'b1]=])
+mutant(432 stages/depth_test.sv "samples: HiZ: a tile's bound is that of its first samples"
+  [=[depths[(pixel*N+i+1)*CODE-1-:HIZ] > farthest]=] [=[1'b0]=])
+mutant(433 stages/cache_tags.sv "samples: alpha: what it may leave out is not asked for"
+  [=[(raster_pkg::MSAA_SAMPLES > 1 && fragment_q.code[11])]=] [=[1'b0]=])
+mutant_text(434 stages/fine_raster.sv "samples: the centres of an accepted tile are looked at by edges that may have been saturated"
+  [=[(tile_q.is_inside || !(centres_outside]=] [=[((tile_q.is_inside && raster_cosim.mutant_q != 16'd434) || !(centres_outside]=])
+mutant(435 lib/colored_stamps.sv "samples: colours: a pixel has its neighbour's"
+  [=[w_color[s/N*COLOR+:COLOR]]=] [=[w_color[(N > 1 ? (s/N) ^ 1 : s/N)*COLOR+:COLOR]]=])

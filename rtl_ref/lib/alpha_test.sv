@@ -1,11 +1,18 @@
-// Alpha test: the samples of a stamp whose alpha compares with the reference as the function says. Combinational.
-// Specification: alpha_passes of model/stages/depth_test.hpp.
+// Alpha test: the samples of a stamp whose alpha compares with the reference as the function says; and of a pixel's samples,
+// where alpha covers, the first of them, as many as it says: samples * alpha / 255, rounded. Combinational.
+// Specification: ColorState::keeps of model/stages/color_packets.hpp.
 module alpha_test (
     input  logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,
     input  logic [7:0]                             reference_i,
-    input  logic [8*raster_pkg::SAMPLES-1:0]       alpha_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // where a pixel has one sample
+    input  logic                                   covers_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input  logic [8*raster_pkg::PIXELS-1:0]        alpha_i,
     output logic [raster_pkg::SAMPLES-1:0]         passes_o
 );
+
+  localparam int N = raster_pkg::MSAA_SAMPLES;
+  localparam int SHIFT = $clog2(N);
 
   logic less_passes, equal_passes, greater_passes;
   passing_orders u_orders (
@@ -15,13 +22,27 @@ module alpha_test (
       .greater_o(greater_passes)
   );
 
-  genvar s;
+  genvar p, k;
   generate
-    for (s = 0; s < raster_pkg::SAMPLES; s++) begin : gen_sample
-      logic is_less, is_equal;
-      assign is_less     = alpha_i[8*s+:8] < reference_i;
-      assign is_equal    = alpha_i[8*s+:8] == reference_i;
-      assign passes_o[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
+    for (p = 0; p < raster_pkg::PIXELS; p++) begin : gen_pixel
+      logic is_less, is_equal, passes;
+      assign is_less  = alpha_i[8*p+:8] < reference_i;
+      assign is_equal = alpha_i[8*p+:8] == reference_i;
+      assign passes   = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
+      if (N > 1) begin : gen_covers
+        /* verilator lint_off UNUSEDSIGNAL */  // a division by 255 keeps the upper bits
+        logic [SHIFT+8:0] scaled, divided;
+        /* verilator lint_on UNUSEDSIGNAL */
+        logic [SHIFT:0]   count;
+        assign scaled  = ((SHIFT + 9)'(alpha_i[8*p+:8]) << SHIFT) + (SHIFT + 9)'(128);
+        assign divided = scaled + (scaled >> 8);
+        assign count   = divided[SHIFT+8:8];
+        for (k = 0; k < N; k++) begin : gen_sample
+          assign passes_o[p*N+k] = passes && (!covers_i || (SHIFT + 1)'(k) < count);
+        end
+      end else begin : gen_one
+        assign passes_o[p] = passes;
+      end
     end
   endgenerate
 

@@ -18,8 +18,8 @@ module colored_stamps #(
     /* verilator lint_off UNUSEDSIGNAL */  // likewise; most of the fragment goes along by itself
     input logic [raster_pkg::SAMPLES-1:0]                                writes_i,  // samples whose colour is written
     input raster_pkg::fragment_packet_t                                  fragment_i,
+    input logic [raster_pkg::SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0] color_i,  // the same at all samples of a pixel
     /* verilator lint_on UNUSEDSIGNAL */
-    input logic [raster_pkg::SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0] color_i,
 
     // To W
     output logic                                                        stamp_valid_o,
@@ -55,17 +55,27 @@ module colored_stamps #(
       /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
       logic w_ready;
       /* verilator lint_on UNUSEDSIGNAL */
+      // A pixel has one colour, whatever samples it is written to.
+      localparam int PIXELS = raster_pkg::PIXELS;
+      localparam int N = raster_pkg::MSAA_SAMPLES;
+      logic [PIXELS*COLOR-1:0] of_pixels, w_color;
+      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        if (s % N == 0) begin : gen_first
+          assign of_pixels[s/N*COLOR+:COLOR] = color_i[s*COLOR+:COLOR];
+        end
+        assign color_o[s*COLOR+:COLOR] = w_color[s/N*COLOR+:COLOR];
+      end
       skid_buffer #(
-          .WIDTH(CARRIED + SAMPLES * COLOR)
+          .WIDTH(CARRIED + PIXELS * COLOR)
       ) u_colored (
           .clk_i,
           .rst_ni,
           .valid_i(stamp_valid_i),
           .ready_o(w_ready),
-          .data_i ({carried_i, color_i}),
+          .data_i ({carried_i, of_pixels}),
           .valid_o(stamp_valid_o),
           .ready_i(stamp_ready_i),
-          .data_o ({carried_o, color_o})
+          .data_o ({carried_o, w_color})
       );
       assign alpha_o           = '0;
       assign texture_is_idle_o = 1'b1;

@@ -1,6 +1,6 @@
 // Where a sample lies in its block of 4x4 pixels: the low bits of its pixel's place. Combinational.
 module sample_place #(
-    parameter int SAMPLE = 0,  // of the stamp, row by row
+    parameter int SAMPLE = 0,  // of the stamp, pixel by pixel and row by row
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
     parameter int STAMP = (SIDE_BITS == 0) ? 1 : 2 * SIDE_BITS
 ) (
@@ -12,13 +12,14 @@ module sample_place #(
 );
 
   localparam int SIZE = raster_pkg::STAMP_SIZE;
+  localparam int PIXEL = SAMPLE / raster_pkg::MSAA_SAMPLES;
   generate
     if (SIDE_BITS == 0) begin : gen_stamp
-      assign x_o = 2'(SAMPLE % SIZE);
-      assign y_o = 2'(SAMPLE / SIZE);
+      assign x_o = 2'(PIXEL % SIZE);
+      assign y_o = 2'(PIXEL / SIZE);
     end else begin : gen_stamps
-      assign x_o = 2'(stamp_i[SIDE_BITS-1:0]) * 2'(SIZE) + 2'(SAMPLE % SIZE);
-      assign y_o = 2'(stamp_i[2*SIDE_BITS-1:SIDE_BITS]) * 2'(SIZE) + 2'(SAMPLE / SIZE);
+      assign x_o = 2'(stamp_i[SIDE_BITS-1:0]) * 2'(SIZE) + 2'(PIXEL % SIZE);
+      assign y_o = 2'(stamp_i[2*SIDE_BITS-1:SIDE_BITS]) * 2'(SIZE) + 2'(PIXEL / SIZE);
     end
   endgenerate
 

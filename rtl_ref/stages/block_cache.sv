@@ -77,9 +77,10 @@ module block_cache (
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int PIXELS = raster_pkg::PIXELS;
   localparam int COUNT = $clog2(SAMPLES + 1);
   localparam int CODE = raster_pkg::STORED_DEPTH_BITS;  // a depth, the stencil above it where there is one
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample of a fragment; the lowest is its depth
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel of a fragment; the lowest is its depth
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
   localparam bit HAS_STENCIL = raster_pkg::STENCIL_BITS != 0;
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
@@ -234,8 +235,8 @@ module block_cache (
   raster_pkg::fragment_packet_t made_packed;
   generate
     if (PACKS) begin : gen_packed
-      logic [SAMPLES*COLOR-1:0] made_colors;
-      for (s = 0; s < SAMPLES; s++) begin : gen_rop
+      logic [PIXELS*COLOR-1:0] made_colors;
+      for (s = 0; s < PIXELS; s++) begin : gen_rop
         rop u_rop (
             .rgba_i (made.code[s*CODES+Z+:raster_pkg::VERTEX_COLOR_BITS]),
             .color_o(made_colors[s*COLOR+:COLOR])
@@ -243,7 +244,7 @@ module block_cache (
       end
       always_comb begin
         made_packed = made;
-        for (int i = 0; i < SAMPLES; i++)
+        for (int i = 0; i < PIXELS; i++)
           if (i != 0 || !HAS_STENCIL || made.kind != raster_pkg::PRIMITIVE_KIND_STATE)  // whose word is in the first
             made_packed.code[i*CODES+Z+:raster_pkg::VERTEX_COLOR_BITS] =
                 raster_pkg::VERTEX_COLOR_BITS'(made_colors[i*COLOR+:COLOR]);
@@ -670,6 +671,7 @@ module block_cache (
       alpha_test u_alpha (
           .func_i     (func_q),
           .reference_i(reference_q),
+          .covers_i   (1'b0),  // a texture unit takes one sample a pixel
           .alpha_i    (w_alpha),
           .passes_o   (alpha_passes)
       );

@@ -407,7 +407,8 @@ module cache_tags #(
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) tests_alpha_q <= 1'b0;
         else if (leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_ALPHA_TEST)
-          tests_alpha_q <= fragment_q.code[2:0] != raster_pkg::DEPTH_FUNC_ALWAYS;
+          tests_alpha_q <= fragment_q.code[2:0] != raster_pkg::DEPTH_FUNC_ALWAYS ||
+                           (raster_pkg::MSAA_SAMPLES > 1 && fragment_q.code[11]);
       end
       assign tests_alpha = tests_alpha_q;
     end else begin : gen_no_alpha

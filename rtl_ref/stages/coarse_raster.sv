@@ -45,7 +45,7 @@ module coarse_raster (
     output logic                                 is_outside_o,
     output logic                                 is_accepted_o,
     output logic                                 is_hiz_o,
-    output logic [2*raster_pkg::TILE_SHIFT:0]    samples_tested_o,
+    output logic [2*raster_pkg::TILE_SHIFT+$clog2(raster_pkg::MSAA_SAMPLES):0] samples_tested_o,
 
     output logic visits_are_done_o  // every tile visit has retired
 );
@@ -63,7 +63,10 @@ module coarse_raster (
   localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
+  localparam logic [32*PLANES-1:0] STEP_BITS_OF = raster_pkg::STEP_BITS_OF;
+  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam int S = raster_pkg::GRID_BITS;
+  localparam int SAMPLE_SHIFT = $clog2(raster_pkg::MSAA_SAMPLES);
   localparam int SLOTS = raster_pkg::CONTEXT_SLOTS;
   localparam int SLOT = raster_pkg::SLOT_BITS;
 
@@ -100,7 +103,7 @@ module coarse_raster (
   logic [raster_pkg::HIZ_CODE_BITS:0]   left_limit_q;
   logic left_raises_q;  // it may raise a depth by its state
   raster_pkg::tile_packet_t  left_q;
-  raster_pkg::edge_context_t left_edges_q;
+  raster_pkg::edge_context_t edges, left_edges_q;
   logic is_visit, is_dropped, tile_taken, left_is_free;
   assign left_behind  = {1'b0, left_bound_q} < left_limit_q;
   assign is_visit     = left_q.is_visit && !left_behind;
@@ -224,6 +227,16 @@ module coarse_raster (
       assign dy    = s_q.dy[i*D+:D];
       assign best  = (dx > 0 ? (D + 1)'(dx) : '0) - (dy < 0 ? (D + 1)'(dy) : '0);
       assign worst = (dx < 0 ? (D + 1)'(dx) : '0) - (dy > 0 ? (D + 1)'(dy) : '0);
+      // Of several samples a pixel the one that lies farthest out, wherever it is: half of |dx| + |dy| away, rounded up.
+      logic [D-1:0] reach;
+      if (raster_pkg::MSAA_SAMPLES > 1) begin : gen_reach
+        logic [D:0] size_x, size_y;
+        assign size_x = dx < 0 ? (D + 1)'(0) - (D + 1)'(dx) : (D + 1)'(dx);
+        assign size_y = dy < 0 ? (D + 1)'(0) - (D + 1)'(dy) : (D + 1)'(dy);
+        assign reach  = D'((size_x + size_y + (D + 1)'(1)) >> 1);
+      end else begin : gen_centre
+        assign reach = '0;
+      end
       assign from  = returns ? row_q : value_q;
       assign step  = starts ? '0 : row_ends ? (V - TS)'(dx) : (V - TS)'(dy);
       assign next  = {sum, from[TS-1:0]};
@@ -242,8 +255,8 @@ module coarse_raster (
         end else if (goes_on) value_q <= next;
         if (notes_start) row_q <= next;
         if (state_q == PREPARE) begin  // times T - 1
-          best_q  <= (TE'(best) <<< TS) - TE'(best);
-          worst_q <= (TE'(worst) <<< TS) - TE'(worst);
+          best_q  <= (TE'(best) <<< TS) - TE'(best) + TE'(reach);
+          worst_q <= (TE'(worst) <<< TS) - TE'(worst) - TE'(reach);
           no_better_left_q[i]  <= !(dy > 0);
           no_better_right_q[i] <= !dy[D-1];
         end
@@ -277,6 +290,8 @@ module coarse_raster (
       localparam int LOCAL = LOCAL_AT[32*i+:32];
       localparam int M = P - TS - S;  // a tile's step leaves the bits below as they are
       localparam int NARROW = P - B - S;  // bits that a local step loses
+      localparam int SB = STEP_BITS_OF[32*i+:32];
+      localparam int STEP = STEP_AT[32*i+:32];
       /* verilator lint_off UNUSEDSIGNAL */  // those bits
       logic [P-1:0] value;
       /* verilator lint_on UNUSEDSIGNAL */
@@ -302,8 +317,8 @@ module coarse_raster (
         if (notes_start) row_q <= next;
       end
       assign anchor[LOCAL+:B]           = value_q[M-1-:B];
-      assign context_o.step_x[LOCAL+:B] = B'($signed(step_x) >>> NARROW) + B'(step_x[NARROW-1]);
-      assign context_o.step_y[LOCAL+:B] = B'($signed(step_y) >>> NARROW) + B'(step_y[NARROW-1]);
+      assign context_o.step_x[STEP+:SB] = SB'($signed(step_x) >>> NARROW) + SB'(step_x[NARROW-1]);
+      assign context_o.step_y[STEP+:SB] = SB'($signed(step_y) >>> NARROW) + SB'(step_y[NARROW-1]);
     end
   endgenerate
   assign context_step_o  = '0;
@@ -362,7 +377,12 @@ module coarse_raster (
     for (i = 0; i < 3; i++) begin : gen_step
       assign step_x[i*D+:D] = -s_q.dy[i*D+:D];
     end
+    if (raster_pkg::MSAA_SAMPLES > 1) begin : gen_edge_lows
+      assign edges.low = s_q.edge_low;
+    end
   endgenerate
+  assign edges.step_x = step_x;
+  assign edges.step_y = s_q.dx;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) left_valid_q <= 1'b0;
@@ -384,8 +404,7 @@ module coarse_raster (
       left_q.is_inside           <= is_inside;
       left_q.edge_value          <= edge_value;
       left_q.anchor              <= anchor;
-      left_edges_q.step_x        <= step_x;
-      left_edges_q.step_y        <= s_q.dx;
+      left_edges_q               <= edges;
     end
   end
   always_comb begin
@@ -420,7 +439,8 @@ module coarse_raster (
       is_outside_o     <= steps && is_outside && is_triangle;
       is_hiz_o         <= left_valid_q && left_behind && left_is_free;
       is_accepted_o    <= starts_visit && left_q.is_inside && left_is_triangle;
-      samples_tested_o <= starts_visit && !left_q.is_inside && left_is_triangle ? area : '0;
+      samples_tested_o <= starts_visit && !left_q.is_inside && left_is_triangle ?
+                          (2 * TS + 1 + SAMPLE_SHIFT)'(area) << SAMPLE_SHIFT : '0;
     end
   end
 

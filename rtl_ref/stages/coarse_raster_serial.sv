@@ -38,7 +38,7 @@ module coarse_raster_serial (
     output logic                                 is_outside_o,
     output logic                                 is_accepted_o,
     output logic                                 is_hiz_o,
-    output logic [2*raster_pkg::TILE_SHIFT:0]    samples_tested_o,
+    output logic [2*raster_pkg::TILE_SHIFT+$clog2(raster_pkg::MSAA_SAMPLES):0] samples_tested_o,
 
     output logic visits_are_done_o  // every tile visit has retired
 );

@@ -110,10 +110,13 @@ module cull (
     y_max = y0 < y1 ? y1 : y0;
     y_max = y_max < y2 ? y2 : y_max;
   end
-  assign first_x = (B'(x_min_q) + HALF - B'(1)) >>> S;
-  assign first_y = (B'(y_min_q) + HALF - B'(1)) >>> S;
-  assign last_x  = (B'(x_max_q) - HALF) >>> S;
-  assign last_y  = (B'(y_max_q) - HALF) >>> S;
+  localparam bit HAS_SAMPLES = raster_pkg::MSAA_SAMPLES > 1;  // then the box has the pixels that the triangle touches
+  localparam logic signed [B-1:0] TO_FIRST = HAS_SAMPLES ? '0 : HALF - B'(1);
+  localparam logic signed [B-1:0] TO_LAST = HAS_SAMPLES ? '0 : HALF;
+  assign first_x = (B'(x_min_q) + TO_FIRST) >>> S;
+  assign first_y = (B'(y_min_q) + TO_FIRST) >>> S;
+  assign last_x  = (B'(x_max_q) - TO_LAST) >>> S;
+  assign last_y  = (B'(y_max_q) - TO_LAST) >>> S;
   assign left    = is_triangle && first_x > $signed(B'(p_q.box.left)) ? first_x : $signed(B'(p_q.box.left));
   assign top     = is_triangle && first_y > $signed(B'(p_q.box.top)) ? first_y : $signed(B'(p_q.box.top));
   assign right   = is_triangle && last_x < $signed(B'(p_q.box.right)) ? last_x : $signed(B'(p_q.box.right));
@@ -316,7 +319,7 @@ module cull (
       is_small_q      <= is_small;
       has_inside_q    <= has_inside;
       has_outside_q   <= has_outside;
-      is_sampleless_q <= has_2x2_q && is_small && is_missed == '1;
+      is_sampleless_q <= !HAS_SAMPLES && has_2x2_q && is_small && is_missed == '1;
     end
   end
 
@@ -361,7 +364,16 @@ module cull (
     end
   end
 
+  // With several samples a pixel the bits of the edge functions below the point go along.
   generate
+    if (HAS_SAMPLES) begin : gen_edge_lows
+      logic [3*S-1:0] low_q;  // before orientation; the newest is the highest
+      genvar l;
+      always_ff @(posedge clk_i) if (decide_moves && d_is_triangle) low_q <= {edge_value[0+:S], low_q[S+:2*S]};
+      for (l = 0; l < 3; l++) begin : gen_edge
+        assign triangle_o.edge_low[l*S+:S] = !d_is_triangle ? '0 : is_negative ? ~low_q[(2-l)*S+:S] : low_q[l*S+:S];
+      end
+    end
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
       logic [raster_pkg::COORDINATE_FRAME_BITS-1:0] coordinates_q;
       always_ff @(posedge clk_i) if (decide_ready) coordinates_q <= p_q.coordinates;

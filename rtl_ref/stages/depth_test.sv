@@ -39,10 +39,12 @@ module depth_test (
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int PIXELS = raster_pkg::PIXELS;
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
   localparam int WORD = raster_pkg::STORED_DEPTH_BITS;  // a code and above it the stencil, where there is one
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample; the lowest is its depth, above that its colours
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel; the lowest is its depth, above that its colours
   localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
   localparam int COLOR = raster_pkg::WRITTEN_COLOR_BITS;
   localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
@@ -69,7 +71,9 @@ module depth_test (
   logic [SAMPLES-1:0]       changes;       // samples whose stored word is
   logic                     is_stamp;
 
-  assign needs_access = fragment_i.kind[1] || fragment_i.mask != '0;
+  // Of a line's pixel no sample may be drawn, where it has several.
+  assign needs_access = (fragment_i.kind[1] && !(N > 1 && fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE)) ||
+                        fragment_i.mask != '0;
   assign must_wait = raster_pkg::CACHE_KIND == 0 && valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x &&
                      fragment_q.key.tile_y == fragment_i.key.tile_y && fragment_q.stamp == fragment_i.stamp &&
                      (fragment_q.mask & fragment_i.mask) != '0;
@@ -123,25 +127,29 @@ module depth_test (
       localparam int ALPHA = CODE + COLORS - 8;  // the last colour
       logic [raster_pkg::DEPTH_FUNC_BITS-1:0] alpha_func_q;
       logic [7:0] reference_q;
+      logic       covers_q;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) begin
           alpha_func_q <= raster_pkg::DEPTH_FUNC_ALWAYS;
           reference_q  <= '0;
+          covers_q     <= 1'b0;
         end else if (valid_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
                      fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_ALPHA_TEST) begin
           alpha_func_q <= fragment_q.code[2:0];
           reference_q  <= fragment_q.code[10:3];
+          covers_q     <= fragment_q.code[11];
         end
       end
       if (raster_pkg::COORDINATES == 0) begin : gen_here
-        logic [8*SAMPLES-1:0] alpha;
-        logic [SAMPLES-1:0]   alpha_passes;
-        for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        logic [8*PIXELS-1:0] alpha;
+        logic [SAMPLES-1:0]  alpha_passes;
+        for (s = 0; s < PIXELS; s++) begin : gen_pixel
           assign alpha[8*s+:8] = fragment_q.code[s*CODES+ALPHA+:8];
         end
         alpha_test u_alpha (
             .func_i     (alpha_func_q),
             .reference_i(reference_q),
+            .covers_i   (covers_q),
             .alpha_i    (alpha),
             .passes_o   (alpha_passes)
         );
@@ -149,8 +157,8 @@ module depth_test (
         assign is_late = 1'b0;
       end else begin : gen_late
         /* verilator lint_off UNUSEDSIGNAL */
-        logic [7:0] unused;
-        assign unused = reference_q;
+        logic [8:0] unused;
+        assign unused = {covers_q, reference_q};
         /* verilator lint_on UNUSEDSIGNAL */
         assign opaque  = '1;
         assign is_late = alpha_func_q != raster_pkg::DEPTH_FUNC_ALWAYS;
@@ -213,7 +221,12 @@ module depth_test (
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
       logic is_less, is_equal;
-      assign depth[s*CODE+:CODE] = fragment_q.code[s*CODES+:CODE];
+      localparam int PIXEL = s / N;
+      if (s % N == 0) begin : gen_first
+        assign depth[s*CODE+:CODE] = fragment_q.code[PIXEL*CODES+:CODE];
+      end else begin : gen_further
+        assign depth[s*CODE+:CODE] = fragment_q.further_depth[(PIXEL*(N-1)+s%N-1)*CODE+:CODE];
+      end
       assign is_less  = depth[s*CODE+:CODE] < stored_depth_i[s*WORD+:CODE];
       assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*WORD+:CODE];
       assign is_nearer[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
@@ -223,11 +236,11 @@ module depth_test (
       if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
           (raster_pkg::CACHE_KIND == 0 || raster_pkg::ALPHA_UNIT != 0)) begin : gen_rop
         rop u_rop (
-            .rgba_i (fragment_i.code[s*CODES+CODE+:COLORS]),
+            .rgba_i (fragment_i.code[PIXEL*CODES+CODE+:COLORS]),
             .color_o(color[s*COLOR+:COLOR])
         );
       end else begin : gen_whole  // packed by the cache of blocks, behind the texture unit, or where it is written
-        assign color[s*COLOR+:COLOR] = COLOR'(fragment_i.code[s*CODES+CODE+:COLORS]);
+        assign color[s*COLOR+:COLOR] = COLOR'(fragment_i.code[PIXEL*CODES+CODE+:COLORS]);
       end
     end
   endgenerate
@@ -312,12 +325,18 @@ module depth_test (
       assign covers_tile = is_full && full_stamps_q == STAMP_BITS'(STAMPS - 1);
 
       // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a
-      // corner of the tile. So one sample of a stamp is enough, the one towards the tile's corner on the stamp's side.
+      // corner of the tile. So one pixel of a stamp is enough, the one towards the tile's corner on the stamp's side; of its
+      // samples, whose planes are moved ones, the farthest.
+      function automatic [HIZ-1:0] farthest(input [SAMPLES*CODE-1:0] depths, input int pixel);
+        farthest = depths[(pixel*N+1)*CODE-1-:HIZ];
+        for (int i = 1; i < N; i++)
+          if (depths[(pixel*N+i+1)*CODE-1-:HIZ] > farthest) farthest = depths[(pixel*N+i+1)*CODE-1-:HIZ];
+      endfunction
       logic [HIZ-1:0] corner_00, corner_01, corner_10, corner_11, corner;  // row, column
-      assign corner_00 = depth[CODE-1-:HIZ];
-      assign corner_01 = depth[STAMP*CODE-1-:HIZ];
-      assign corner_10 = depth[(SAMPLES-STAMP+1)*CODE-1-:HIZ];
-      assign corner_11 = depth[SAMPLES*CODE-1-:HIZ];
+      assign corner_00 = farthest(depth, 0);
+      assign corner_01 = farthest(depth, STAMP - 1);
+      assign corner_10 = farthest(depth, PIXELS - STAMP);
+      assign corner_11 = farthest(depth, PIXELS - 1);
 
       if (STAMPS == 1) begin : gen_one_stamp
         logic [HIZ-1:0] top, bottom;

@@ -36,6 +36,10 @@ module fine_raster (
   localparam int TILE_EDGE = raster_pkg::TILE_EDGE_BITS;
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
+  localparam int PIXELS = raster_pkg::PIXELS;   // of a stamp
+  localparam int CENTRES = PER_ROW * PIXELS;
+  localparam int S = raster_pkg::GRID_BITS;
   localparam int ROW = PER_ROW * SAMPLES;  // samples of a row of stamps; those of one stamp are neighbours
   localparam int COLUMN = PER_ROW > 1 ? $clog2(PER_ROW) : 1;
 
@@ -43,13 +47,19 @@ module fine_raster (
   /* verilator lint_off UNUSEDSIGNAL */  // edge_value is stepped in gen_edge from the moment it enters
   raster_pkg::tile_packet_t  tile_q;
   /* verilator lint_on UNUSEDSIGNAL */
+  /* verilator lint_off UNUSEDSIGNAL */  // of the bits below the values the sums are kept
   raster_pkg::edge_context_t edges_q;
+  /* verilator lint_on UNUSEDSIGNAL */
   logic             row_valid_q;
   logic [PIXEL-1:0] y_q;  // first pixel row of the current row of stamps
 
   logic             takes_tile, row_leaves, is_last_row, coverage_ready;
   logic [ROW-1:0]   covered;
   logic [3*ROW-1:0] outside;  // by edge
+  /* verilator lint_off UNUSEDSIGNAL */  // where a pixel has one sample, its centre
+  logic [3*CENTRES-1:0] centres_outside;
+  logic [CENTRES-1:0]   centre;  // pixels whose centres are covered
+  /* verilator lint_on UNUSEDSIGNAL */
   logic [TILE-1:0]  column_in_box;
   logic [STAMP-1:0] row_in_box;
   logic [ROW-1:0]   in_box;
@@ -75,7 +85,8 @@ module fine_raster (
     end else if (row_leaves) y_q <= y_q + PIXEL'(STAMP);
   end
 
-  genvar e, i, j;
+  localparam int PLACES = N == 1 ? 1 : N + 1;  // of a pixel: its samples, and behind them its centre
+  genvar e, i, j, k;
   generate
     for (e = 0; e < 3; e++) begin : gen_edge
       logic signed [W-1:0] value_q;  // edge value at column 0 of the first pixel row of this row of stamps
@@ -97,6 +108,33 @@ module fine_raster (
           .value_o (start)
       );
 
+      // What the edge gains on the way to each place.
+      logic [PLACES*W-1:0] place_q;
+      if (N == 1) begin : gen_one
+        assign place_q = '0;
+      end else begin : gen_places
+        assign place_q[N*W+:W] = '0;
+        for (k = 0; k < N; k++) begin : gen_place
+          localparam int WIDE = STEP + S + 1;
+          /* verilator lint_off UNUSEDSIGNAL */  // narrower where a tile bounds it
+          logic signed [WIDE-1:0] way, gained;
+          /* verilator lint_on UNUSEDSIGNAL */
+          assign gained = way >>> S;
+          sample_offset #(
+              .WIDTH (WIDE),
+              .SAMPLE(k)
+          ) u_way (
+              .value_i (WIDE'(edges_i.low[e*S+:S])),
+              .step_x_i(WIDE'($signed(edges_i.step_x[e*STEP+:STEP]))),
+              .step_y_i(WIDE'($signed(edges_i.step_y[e*STEP+:STEP]))),
+              .value_o (way)
+          );
+          logic signed [W-1:0] moved_q;
+          always_ff @(posedge clk_i) if (takes_tile) moved_q <= W'(gained);
+          assign place_q[k*W+:W] = moved_q;
+        end
+      end
+
       always_ff @(posedge clk_i) begin
         if (takes_tile) value_q <= start;
         else if (row_leaves) value_q <= value_q + (step_y <<< STAMP_SHIFT);
@@ -104,7 +142,6 @@ module fine_raster (
 
       for (j = 0; j < STAMP; j++) begin : gen_row
         logic signed [W-1:0] row_value;
-        logic [TILE-1:0]     outside_columns;
         edge_offset #(
             .WIDTH (W),
             .OFFSET(PIXEL)
@@ -116,16 +153,24 @@ module fine_raster (
             .y_i     (PIXEL'(j)),
             .value_o (row_value)
         );
-        edge_columns #(
-            .WIDTH (W),
-            .OFFSET(PIXEL)
-        ) u_columns (
-            .value_i  (row_value),
-            .step_x_i (step_x),
-            .outside_o(outside_columns)
-        );
-        for (i = 0; i < TILE; i++) begin : gen_column
-          assign outside[e*ROW+(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = outside_columns[i];
+        // At the centres of pixels, or at each of their samples, and at the centres as well.
+        for (k = 0; k < PLACES; k++) begin : gen_place
+          logic [TILE-1:0] outside_columns;
+          edge_columns #(
+              .WIDTH (W),
+              .OFFSET(PIXEL)
+          ) u_columns (
+              .value_i  (row_value + place_q[k*W+:W]),
+              .step_x_i (step_x),
+              .outside_o(outside_columns)
+          );
+          for (i = 0; i < TILE; i++) begin : gen_column
+            if (k < N) begin : gen_sample
+              assign outside[e*ROW+(i/STAMP)*SAMPLES+(j*STAMP+i%STAMP)*N+k] = outside_columns[i];
+            end else begin : gen_centre
+              assign centres_outside[e*CENTRES+(i/STAMP)*PIXELS+j*STAMP+i%STAMP] = outside_columns[i];
+            end
+          end
         end
       end
     end
@@ -139,11 +184,19 @@ module fine_raster (
     for (j = 0; j < STAMP; j++) begin : gen_box_row
       assign row_in_box[j] = tile_q.is_visit && y_q + PIXEL'(j) >= tile_q.box.top && y_q + PIXEL'(j) <= tile_q.box.bottom;
       for (i = 0; i < TILE; i++) begin : gen_sample
-        assign in_box[(i/STAMP)*SAMPLES+j*STAMP+i%STAMP] = column_in_box[i] && row_in_box[j];
+        assign in_box[(i/STAMP)*SAMPLES+(j*STAMP+i%STAMP)*N+:N] = {N{column_in_box[i] && row_in_box[j]}};
+        assign centre[(i/STAMP)*PIXELS+j*STAMP+i%STAMP] =
+            column_in_box[i] && row_in_box[j] &&
+            (tile_q.is_inside || !(centres_outside[(i/STAMP)*PIXELS+j*STAMP+i%STAMP] ||
+                                   centres_outside[CENTRES+(i/STAMP)*PIXELS+j*STAMP+i%STAMP] ||
+                                   centres_outside[2*CENTRES+(i/STAMP)*PIXELS+j*STAMP+i%STAMP]));
       end
     end
     /* verilator lint_on CMPCONST */
     /* verilator lint_on UNSIGNED */
+    if (N == 1) begin : gen_no_centres
+      assign centres_outside = '0;
+    end
   endgenerate
 
   // ---------------------------------------------------------------------------------------------------------- coverage
@@ -237,6 +290,23 @@ module fine_raster (
   assign stamp_o.key            = stamp_tile_q.key;
   assign stamp_o.slot           = stamp_tile_q.slot;
   assign stamp_o.mask           = mask;
+  // Beside them, of a row's pixels those whose centres are covered.
+  generate
+    if (N > 1) begin : gen_centre
+      logic [CENTRES-1:0] centre_q, stamps_centre_q;
+      always_ff @(posedge clk_i) begin
+        if (coverage_ready) centre_q <= centre;
+        if (stamps_ready) stamps_centre_q <= centre_q;
+      end
+      logic [PIXELS-1:0] stamp_centre;
+      always_comb begin
+        stamp_centre = '0;
+        for (int s = 0; s < PER_ROW; s++)
+          if (mask != '0 && COLUMN'(s) == column) stamp_centre = stamps_centre_q[s*PIXELS+:PIXELS];
+      end
+      assign stamp_o.centre = stamp_centre;
+    end
+  endgenerate
   assign stamp_o.anchor         = stamp_tile_q.anchor;
 
   generate

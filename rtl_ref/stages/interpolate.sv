@@ -35,13 +35,16 @@ module interpolate (
 
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int STAMP_SHIFT = $clog2(STAMP);
-  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int PIXELS = raster_pkg::PIXELS;  // of a stamp
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
+  localparam int S = raster_pkg::GRID_BITS;
+  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam int PLANES = raster_pkg::PLANES;
   localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = raster_pkg::FRAGMENT_BITS_OF;
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
@@ -107,22 +110,39 @@ module interpolate (
     end
   endgenerate
 
-  logic [SAMPLES*CODES-1:0] code;
+  logic [PIXELS*CODES-1:0]      code;
+  raster_pkg::fragment_packet_t made;
 
-  genvar p, s;
+  // Where each pixel is shaded, a bit for each of its samples: the first that is covered, unless its centre is. None: its centre.
+  /* verilator lint_off UNUSEDSIGNAL */  // where a pixel has one sample
+  logic [PIXELS*N-1:0] shaded_at;
+  /* verilator lint_on UNUSEDSIGNAL */
+  generate
+    if (N > 1) begin : gen_shaded
+      always_comb begin
+        for (int i = 0; i < PIXELS; i++)
+          shaded_at[i*N+:N] = y_stamp_q.centre[i] ? '0 : y_stamp_q.mask[i*N+:N] & (~y_stamp_q.mask[i*N+:N] + 1'b1);
+      end
+    end else begin : gen_centres
+      assign shaded_at = '0;
+    end
+  endgenerate
+
+  genvar p, s, k;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_plane
       localparam int W = LOCAL_BITS_OF[32*p+:32];
       localparam int LOCAL = LOCAL_AT[32*p+:32];
       localparam int B = FRAGMENT_BITS_OF[32*p+:32];
       localparam int CODE = FRAGMENT_AT[32*p+:32];  // and in ranges, whose planes come first
+      localparam int STEP = STEP_AT[32*p+:32];
       logic signed [W-1:0] anchor, context_step_x, x_step_y, y_step_x, y_step_y;  // modulo 2^W signs do not matter
       logic signed [W-1:0] x_value_q, y_value_q;
       assign anchor         = context_stamp_q.anchor[LOCAL+:W];
-      assign context_step_x = context_i.step_x[LOCAL+:W];
-      assign x_step_y       = x_context_q.step_y[LOCAL+:W];
-      assign y_step_x       = y_context_q.step_x[LOCAL+:W];
-      assign y_step_y       = y_context_q.step_y[LOCAL+:W];
+      assign context_step_x = context_i.step_x[STEP+:W];
+      assign x_step_y       = x_context_q.step_y[STEP+:W];
+      assign y_step_x       = y_context_q.step_x[STEP+:W];
+      assign y_step_y       = y_context_q.step_y[STEP+:W];
 
       // x, then y; the stamp lies on either side of the centre.
       logic signed [W-1:0] x_value, y_value;
@@ -151,9 +171,32 @@ module interpolate (
         y_value_q <= y_value;
       end
 
-      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+      // With several samples a pixel, what the plane gains from its centre to each of them, rounded to the local guard bits.
+      logic [N*W-1:0] to_sample_q;
+      if (N > 1) begin : gen_to_sample
+        localparam int WIDE = W + S;  // of a step
+        for (k = 0; k < N; k++) begin : gen_place
+          /* verilator lint_off UNUSEDSIGNAL */  // the bits below are rounded off
+          logic signed [WIDE-1:0] way;
+          /* verilator lint_on UNUSEDSIGNAL */
+          sample_offset #(
+              .WIDTH (WIDE),
+              .SAMPLE(k)
+          ) u_way (
+              .value_i (WIDE'(1 << (S - 1))),
+              .step_x_i(x_context_q.step_x[STEP+:WIDE]),
+              .step_y_i(x_context_q.step_y[STEP+:WIDE]),
+              .value_o (way)
+          );
+          always_ff @(posedge clk_i) to_sample_q[k*W+:W] <= way[S+:W];
+        end
+      end else begin : gen_centre
+        assign to_sample_q = '0;
+      end
+
+      for (s = 0; s < PIXELS; s++) begin : gen_pixel
         /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
-        logic signed [W-1:0] value;
+        logic signed [W-1:0] value, way;
         logic [W-1:0]        value_q;
         /* verilator lint_on UNUSEDSIGNAL */
         edge_offset #(
@@ -167,7 +210,12 @@ module interpolate (
             .y_i     (PIXEL'(s / STAMP)),
             .value_o (value)
         );
-        always_ff @(posedge clk_i) value_q <= value;
+        // Depth is that of the first sample, all else belongs to where the pixel is shaded.
+        always_comb begin
+          way = p == 0 ? to_sample_q[0+:W] : '0;
+          for (int i = 0; i < N; i++) if (p != 0 && shaded_at[s*N+i]) way = way | to_sample_q[i*W+:W];
+        end
+        always_ff @(posedge clk_i) value_q <= value + way;
 
         // The code that is offset by half of all: modulo 2^B its highest bit is another one, and nothing else.
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
@@ -175,20 +223,32 @@ module interpolate (
         end else begin : gen_over_w
           assign code[s*CODES+CODE+:B] = value_q;
         end
+        if (p == 0) begin : gen_depth  // of its other samples
+          for (k = 1; k < N; k++) begin : gen_further
+            /* verilator lint_off UNUSEDSIGNAL */
+            logic [W-1:0] further_q;
+            /* verilator lint_on UNUSEDSIGNAL */
+            always_ff @(posedge clk_i) further_q <= value + to_sample_q[k*W+:W];
+            assign made.further_depth[(s*(N-1)+k-1)*B+:B] = {!further_q[L+B-1], further_q[L+:B-1]};
+          end
+        end
       end
     end
   endgenerate
 
-  raster_pkg::fragment_packet_t made;
   assign made.kind           = samples_stamp_q.kind;
   assign made.ends_visit     = samples_stamp_q.ends_visit;
   assign made.ends_primitive = samples_stamp_q.ends_primitive;
   assign made.key            = samples_stamp_q.key;
   assign made.stamp          = samples_stamp_q.stamp;
-  assign made.mask           = samples_stamp_q.mask;
   assign made.state          = samples_context_q.state;
   assign made.code           = code;
   generate
+    if (N > 1) begin : gen_masked  // samples that the state does not draw
+      assign made.mask = samples_stamp_q.mask & ~{PIXELS{samples_context_q.state.masked_samples}};
+    end else begin : gen_all
+      assign made.mask = samples_stamp_q.mask;
+    end
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
       assign made.coordinates = samples_context_q.coordinates;
     end

@@ -24,6 +24,7 @@ module primitive_join (
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int SIZE = raster_pkg::STAMP_SIZE;
   localparam int SS = $clog2(SIZE);
@@ -49,23 +50,41 @@ module primitive_join (
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
-      assign mask[s] = inner_x == TS'(s % SIZE) && inner_y == TS'(s / SIZE);
+      logic is_drawn;
+      if (N > 1) begin : gen_masked
+        assign is_drawn = !fragment_i.state.masked_samples[s%N];
+      end else begin : gen_all
+        assign is_drawn = 1'b1;
+      end
+      assign mask[s] = inner_x == TS'(s / N % SIZE) && inner_y == TS'(s / N / SIZE) && is_drawn;
     end
   endgenerate
 
+  raster_pkg::fragment_packet_t joined;
   always_comb begin
-    fragment_o = fragment_i;
+    joined = fragment_i;
     if (is_line) begin
-      fragment_o.ends_visit     = 1'b0;
-      fragment_o.ends_primitive = pixel_i.is_last;
-      fragment_o.key.tile_x     = TX'(pixel_i.x >> TS);
-      fragment_o.key.tile_y     = TY'(pixel_i.y >> TS);
-      fragment_o.stamp          = stamp;
-      fragment_o.mask           = mask;
-      for (int i = 0; i < SAMPLES; i++)  // nothing behind the colours
-        fragment_o.code[i*raster_pkg::ALL_FRAGMENT_BITS+:raster_pkg::ALL_FRAGMENT_BITS] =
+      joined.ends_visit     = 1'b0;
+      joined.ends_primitive = pixel_i.is_last;
+      joined.key.tile_x     = TX'(pixel_i.x >> TS);
+      joined.key.tile_y     = TY'(pixel_i.y >> TS);
+      joined.stamp          = stamp;
+      joined.mask           = mask;
+      for (int i = 0; i < raster_pkg::PIXELS; i++)  // nothing behind the colours
+        joined.code[i*raster_pkg::ALL_FRAGMENT_BITS+:raster_pkg::ALL_FRAGMENT_BITS] =
             raster_pkg::ALL_FRAGMENT_BITS'(pixel_i.code);
     end
   end
+  generate
+    if (N > 1) begin : gen_further
+      always_comb begin
+        fragment_o = joined;
+        if (is_line)
+          fragment_o.further_depth = {(SAMPLES - raster_pkg::PIXELS) {pixel_i.code[0+:raster_pkg::DEPTH_CODE_BITS]}};
+      end
+    end else begin : gen_one
+      assign fragment_o = joined;
+    end
+  endgenerate
 
 endmodule

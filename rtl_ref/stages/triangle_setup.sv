@@ -155,7 +155,8 @@ module triangle_setup (
   // its sign. Where it is negative nothing is taken back: twice that and the area is what twice the rest less the area would be.
   // So the chain subtracts or adds, and what stands in the register is twice its last result. Each divider goes on where the one
   // before it stopped.
-  localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS;  // in a packet
+  localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS +  // in a packet
+                           (raster_pkg::MSAA_SAMPLES > 1 ? 3 * raster_pkg::GRID_BITS : 0);
   localparam int REMAINDER = A + 2;                          // -2 A <= it < 2 A
   /* verilator lint_off UNUSEDSIGNAL */  // behind the last divider nobody takes the remainder
   logic [DIVIDERS*REMAINDER-1:0] remainders;
@@ -501,6 +502,9 @@ module triangle_setup (
   assign made.edge_value   = last_packet.edge_value;
 
   generate
+    if (raster_pkg::MSAA_SAMPLES > 1) begin : gen_edge_lows
+      assign made.edge_low = last_packet.edge_low;
+    end
     for (p = 0; p < PLANES; p++) begin : gen_plane
       localparam int B = PLANE_BITS_OF[32*p+:32];
       localparam int AT = PLANE_AT[32*p+:32];

@@ -185,7 +185,7 @@ int run(const CosimOptions& options) {
     throw InputError(options.scene.empty() ? "nothing to run; give a SCENE or --random N"
                                            : "a SCENE and --random exclude each other; leave one of them out");
   const Config config = effective_config(options);
-  require_one_sample(config, "the RTL");
+  require_sampled_hardware(config, "the RTL");
   check_output(options.save_path, ".hpt");
   check_distinct({options.scene, options.json, options.save_path, options.junit_path, options.trace_path});
   check_output(options.junit_path);

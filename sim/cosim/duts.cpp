@@ -85,7 +85,7 @@ std::span<const Mutant> mutants() {
 }
 
 const DutFactory& find_dut(const Config& config) {
-  require_one_sample(config, "the RTL");
+  require_sampled_hardware(config, "the RTL");
   const auto& duts = verilated_duts();
   if (duts.empty())
     throw std::runtime_error(

@@ -21,7 +21,7 @@ class Generator {
   Generator(const Config& config, std::uint64_t seed)
       : config_(config), widths_(derive_widths(config)), seed_(seed), random_(seed) {
     unit_ = std::int64_t{1} << widths_.grid_bits;
-    step_ = config.subpixel_bits == 0 ? 2 : 1;  // at S = 0 a vertex has even coordinates
+    step_ = std::int64_t{1} << (widths_.grid_bits - config.subpixel_bits);  // at S = 0 a vertex has even coordinates
     scene_.name = "random-" + std::to_string(seed);
     const int limit = config.stamp_size == 1 ? 2 : 1;
     scene_.width = extent(std::min(640 / limit, config.target_width));
@@ -59,6 +59,7 @@ class Generator {
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
     if (config_.fog_units != 0) set_fogs();
+    if (config_.msaa_samples > 1) set_samples();
     if (has_colors_over_w(config_)) set_colors_over_w();
     return std::move(scene_);
   }
@@ -90,6 +91,7 @@ class Generator {
   void set_textures();
   void set_shapes();
   void set_fogs();
+  void set_samples();
   void set_colors_over_w();
   void clear();
   void line_and_point_state(State& s);
@@ -185,6 +187,16 @@ void Generator::set_shapes() {
     else
       state.point_shape = PointShape::round;
   }
+}
+
+/// In a third of the draws some of a pixel's samples; by alpha where the hardware has it. By random numbers of their own, as
+/// above.
+void Generator::set_samples() {
+  Random random(seed_ ^ 0x5a3b1e5u);
+  StateRows rows = states_named({"sample_mask"});
+  if (tests_alpha(config_)) rows.push_back(&draw_state("alpha_to_coverage"));
+  for (State& state : scene_.states)
+    if (random.next() % 3 == 0) state = random_state(state, rows, chooser(random));
 }
 
 /// States of the units that this hardware has behind the depth test, in runs of draws with and without. By random numbers of

@@ -193,9 +193,8 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
       SampleMask kept = tested.passed;
       const bool may_fail = is_late(fragment->state, colors.alpha, config);
       if (!has_texture_planes(config)) {
-        const SampleMask opaque = alpha_passes(colors.alpha, fragment->mask,
-                                               [&](std::size_t s) { return color_channels(fragment->code[s])[3]; });
-        keep(opaque, tested);
+        const SampleMask opaque = halfplane::opaque_samples(*fragment, colors, widths);
+        keep_opaque(opaque, *fragment, tested, widths);
         kept = kept & opaque;
       }
       run.send(0, tested);
@@ -383,7 +382,7 @@ const JudgedStage& judged_stage(std::string_view name) {
 }
 
 void require_stage(const JudgedStage& stage, const Config& config) {
-  require_one_sample(config, "the RTL");
+  require_sampled_hardware(config, "the RTL");
   const bool is_of_texture = stage.stage == Stage::texture_unit || stage.stage == Stage::texture_memory;
   if (is_of_texture && !has_texture_planes(config))
     throw InputError("stage " + std::string(info(stage.stage).name) +

@@ -25,6 +25,7 @@ Config random_config(Random& random) {
     Config config = preset(preset_names()[below(preset_names().size())]);
     for (const Setting& setting : settings()) {
       if (!setting.is_hardware() || below(2) == 0) continue;
+      if (std::holds_alternative<SamplePattern Config::*>(setting.member)) continue;  // the standard one
       if (const auto* number = std::get_if<int Config::*>(&setting.member)) {
         int value = setting.min + static_cast<int>(below(static_cast<std::size_t>(setting.max - setting.min) + 1));
         if (setting.max > 64 && below(3) != 0) value = 1 << below(12);  // small targets, powers of two
@@ -32,6 +33,7 @@ Config random_config(Random& random) {
         if (setting.key.ends_with(".size") || setting.key.ends_with(".slots") || setting.key.ends_with(".lag") ||
             setting.key.starts_with("cache.") || setting.key.starts_with("texture."))
           value = 1 << below(7);
+        if (setting.key == "msaa.samples") value = 1 << below(4);
         if (setting.key == "stencil.bits") value = 8 * static_cast<int>(below(2));
         config.** number = value;
       } else {  // "rgb565|rgba8888": one of them
@@ -43,6 +45,7 @@ Config random_config(Random& random) {
     }
     try {
       validate(config);
+      require_sampled_hardware(config, "the RTL");
       return config;
     } catch (const InputError&) {  // another one
     }

@@ -160,6 +160,12 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   stencilled.stencil_bits = 8;
   stencilled.fog_units = 1;
   EXPECT_EQ(file_text("presets/stencilled/raster_pkg.sv"), raster_pkg(stencilled));
+  Config sampled;
+  sampled.alpha_units = sampled.dither_units = 1;
+  sampled.blend_lanes = 4;
+  sampled.stencil_bits = 8;
+  sampled.msaa_samples = 4;
+  EXPECT_EQ(file_text("presets/sampled/raster_pkg.sv"), raster_pkg(sampled));
 }
 
 TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("cosim/taps.svh"), raster_taps()); }

@@ -112,9 +112,9 @@ class BackTiming {
   }
 
   /// A stamp without a covered sample, on offer to depth_test from `offered` on. Returns when it moves.
-  Cycle pass(Cycle offered) {
-    if (blocks_) return take_block(offered, {}, {}, 0);
-    const Cycle moved = stream(Arrow::fragment).transfer(offered, 0);
+  Cycle pass(Cycle offered, unsigned others = 0) {
+    if (blocks_) return take_block(offered, {}, {}, others);
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, 0, others);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
     last_place_ = {};
@@ -136,7 +136,9 @@ class BackTiming {
   /// there is one behind it; `place` is then where it lies. Returns when the last one moves.
   template <class Step, class LookUp>
   Cycle take_pixels(Cycle offered, const FragmentPlace& place, Step&& step, LookUp&& look_up) {
-    return take_pixels_by(offered, step, [&](Cycle at, unsigned others) { return access(at, place, look_up, others); });
+    return take_pixels_by(offered, step, [&](Cycle at, unsigned others) {
+      return place.mask.any() ? access(at, place, look_up, others) : pass(at, others);
+    });
   }
 
   /// The same in a framebuffer of blocks: look_up(item) gives the tags of the pixel, and says what the test made of it.

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "../../stages/resolve.hpp"
 #include "../hardware.hpp"
 #include "cycle_model.hpp"
 
@@ -46,6 +47,7 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
     drawn.add(*primitive, drawn.dropped(model_->counters()) == dropped_before);
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }
+  resolve(model_->rendering().frame, config_.color_format);
   CycleRendering result{std::move(model_->rendering()), {}, std::move(model_->cost()), std::move(model_->misses())};
   result.rendering.counters = host.counters();
   count_hardware(since(model_->counters(), counted_), drawn.count(), result.rendering.counters);

@@ -9,6 +9,7 @@
 #include "../../stages/depth_test.hpp"
 #include "../../stages/hiz.hpp"
 #include "../../stages/line_raster.hpp"
+#include "../../stages/rop.hpp"
 #include "../../stages/state_packets.hpp"
 #include "../../stages/surface.hpp"
 #include "../../stages/texture_packets.hpp"
@@ -16,6 +17,7 @@
 #include "../hardware.hpp"
 #include "../tile_kernel.hpp"
 #include "pipelined_timing.hpp"
+#include "sampled_stamps.hpp"
 #include "serial_timing.hpp"
 
 namespace halfplane {
@@ -74,6 +76,8 @@ class CycleModelOf final : public CycleModel {
       rendering_.frame = Framebuffer(width, height, T);
       fill_padding(rendering_.frame.depth, snap_depth(1.0, config_.depth_bits));  // as in an empty target
       fill_padding(rendering_.frame.color, pack_color(config_.color_format, {0, 0, 0, 255}));
+      if (widths_.has_samples != 0)
+        rendering_.frame.samples.assign(static_cast<std::size_t>(config_.msaa_samples), Framebuffer(rendering_.frame));
     }
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
@@ -163,17 +167,26 @@ class CycleModelOf final : public CycleModel {
       if (config_.hiz_bits != 0)
         timing_.clear_bounds(static_cast<std::uint64_t>((last_x >> widths_.hiz_group_bits) + 1) *
                              static_cast<std::uint64_t>(last_y + 1));
-      fill(rendering_.frame.depth, to_bounds(clear.box), code[kDepthPlane]);
-      if (has_stencil(config_)) fill(rendering_.frame.stencil, to_bounds(clear.box), stencil_.clear_value());
+      for (Framebuffer& frame : frames()) {
+        fill(frame.depth, to_bounds(clear.box), code[kDepthPlane]);
+        if (has_stencil(config_)) fill(frame.stencil, to_bounds(clear.box), stencil_.clear_value());
+      }
     }
     if (planes[1])
-      fill(rendering_.frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
+      for (Framebuffer& frame : frames())
+        fill(frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
       if (blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
       return timing_.pass_token(offered,
                                 [&](auto& mover) { tiles_->fast_clear(last_x, last_y, planes, mover, counters_); });
     });
+  }
+
+  /// Of each sample of a pixel.
+  [[nodiscard]] std::span<Framebuffer> frames() {
+    if (widths_.has_samples == 0) return {&rendering_.frame, 1};
+    return rendering_.frame.samples;
   }
 
   /// The right ends of the rows and the rows below; the first clear fills the rest.
@@ -205,30 +218,29 @@ class CycleModelOf final : public CycleModel {
     LineState next = first_state(line);
     FragmentPlace place;
     place.depth_write = state.depth_write;
-    PixelFate pixel_fate;
-    const Fate& fate = pixel_fate.fate;
+    PixelFates fates;
     const auto step = [&] {
       const LinePixel pixel = pixel_of(next, line, widths_);
       const int x = pixel.x & (T - 1), y = pixel.y & (T - 1);
       place.tile_x = pixel.x / T;
       place.tile_y = pixel.y / T;
       place.stamp = stamps.stamp_at(x, y);
-      place.mask = SampleMask::only(stamps.sample_at(x % stamps.size, y % stamps.size));
-      pixel_fate = shade_pixel(state, pixel, primitive);
+      place.mask =
+          stamps.samples_at(x % stamps.size, y % stamps.size) & stamps.in_every_pixel(~unsigned{state.masked_samples});
+      fates = shade_pixel(state, pixel, primitive, place.mask);
       if (!pixel.is_last) advance(next, line, widths_);
       return !pixel.is_last;
     };
     const auto look_up = [&](auto& mover) {
       const bool hits = tiles_->access(place.tile_x, place.tile_y, mover, counters_);
-      if (fate == Fate::passed)
+      if (fates.kept.any())
         tiles_->wrote(place.tile_x, place.tile_y, place.stamp, state.depth_write, state.color_write);
       return hits;
     };
     const auto look_up_block = [&](BlockItem& item) {
+      if (!place.mask.any()) return TagResult{};  // none of its samples is drawn
       const TagResult tags = block_access(place, state, item);
-      note_result(
-          state, fate != Fate::failed ? place.mask : SampleMask(), fate == Fate::passed ? place.mask : SampleMask(),
-          {pixel_fate.changes ? place.mask : SampleMask(), pixel_fate.writes ? place.mask : SampleMask()}, item);
+      note_result(state, fates.passed, fates.kept, fates.changes, item);
       return tags;
     };
     const Cycle before = timing_.last_fragment();
@@ -259,10 +271,10 @@ class CycleModelOf final : public CycleModel {
   struct Changes {
     SampleMask wanted, written;
   };
-  /// The same of a pixel, and its fate.
-  struct PixelFate {
-    Fate fate = Fate::failed;
-    bool changes = false, writes = false;
+  /// The same of a pixel of a line, and the samples that passed the tests, and the alpha test too.
+  struct PixelFates {
+    SampleMask passed, kept;
+    Changes changes;
   };
 
   /// What became of it: of its samples some passed the depth test, and of those the alpha test kept some.
@@ -272,29 +284,42 @@ class CycleModelOf final : public CycleModel {
     if (state.color_write) item.colors = kept;
     item.is_shaded = (tests_alpha() ? passed | changes.wanted : item.colors).any();
   }
-  [[nodiscard]] bool tests_alpha() const { return colors_.alpha.func != DepthFunc::always; }
+  [[nodiscard]] bool tests_alpha() const { return colors_.tests_alpha(); }
 
-  /// depth_test and rop of a pixel of a line.
-  PixelFate shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive) {
-    Framebuffer& frame = rendering_.frame;
-    const std::size_t at = frame.at(pixel.x, pixel.y);
-    ++counters_.covered;
-    const std::size_t plain = plain_index(pixel.x, pixel.y);
-    if (!rendering_.count.empty()) ++rendering_.count[plain];
-    PixelFate result;
-    result.changes = test_sample(state, stencil_.side[0], pixel.code[kDepthPlane], stored_word(at), widths_).changes;
-    result.writes = result.changes && (!tests_alpha() || depth_passes(colors_.alpha.func, color_channels(pixel.code)[3],
-                                                                      colors_.alpha.reference));
-    result.fate =
-        apply_fragment(FragmentOps{state, colors_.alpha, sides_of(state), colors_.ops}, config_.color_format,
-                       {pixel.code[kDepthPlane], pixel.x, pixel.y}, [&pixel] { return color_channels(pixel.code); },
-                       {frame.depth[at], frame.color[at], frame.stencil[at]});
-    if (result.fate == Fate::failed) return result;
-    ++counters_.depth_passed;
-    if (result.fate == Fate::killed) ++counters_.alpha_killed;
-    if (result.fate == Fate::killed || !state.writes()) return result;
-    ++counters_.written;
-    if (!rendering_.ids.empty()) rendering_.ids[plain] = static_cast<std::int32_t>(primitive);
+  /// depth_test and rop of a pixel of a line; `samples`: of its stamp.
+  PixelFates shade_pixel(const PrimitiveState& state, const LinePixel& pixel, std::uint32_t primitive,
+                         SampleMask samples) {
+    PixelFates result;
+    samples.for_each([&](std::size_t s) {
+      const auto k = static_cast<std::uint32_t>(s) % static_cast<std::uint32_t>(widths_.pixel_samples);
+      Framebuffer& frame = frames()[k];
+      const std::size_t at = frame.at(pixel.x, pixel.y), plain = plain_index(pixel.x, pixel.y);
+      const int sample = static_cast<int>(s);
+      ++counters_.covered;
+      if (!rendering_.count.empty()) ++rendering_.count[plain];
+      const bool changes =
+          test_sample(state, stencil_.side[0], pixel.code[kDepthPlane], stored_word(frame, at), widths_).changes;
+      result.changes.wanted.set(sample, changes);
+      result.changes.written.set(
+          sample, changes && (!tests_alpha() || colors_.keeps(color_channels(pixel.code)[3], k,
+                                                              static_cast<std::uint32_t>(widths_.pixel_samples))));
+      const Fate fate = apply_fragment(FragmentOps{state, colors_.alpha, sides_of(state), colors_.ops,
+                                                   colors_.alpha_covers ? widths_.pixel_samples : 0},
+                                       config_.color_format, {pixel.code[kDepthPlane], pixel.x, pixel.y, false, k},
+                                       [&pixel] { return color_channels(pixel.code); },
+                                       {frame.depth[at], frame.color[at], frame.stencil[at]});
+      if (fate == Fate::failed) return;
+      result.passed.set(sample);
+      ++counters_.depth_passed;
+      if (fate == Fate::killed) {
+        ++counters_.alpha_killed;
+        return;
+      }
+      result.kept.set(sample);
+      if (!state.writes()) return;
+      ++counters_.written;
+      if (k == 0 && !rendering_.ids.empty()) rendering_.ids[plain] = static_cast<std::int32_t>(primitive);
+    });
     return result;
   }
 
@@ -303,8 +328,8 @@ class CycleModelOf final : public CycleModel {
     return state.tests_stencil ? std::optional(stencil_.side) : std::nullopt;
   }
   /// What is stored at a pixel, as hardware has it.
-  [[nodiscard]] std::uint32_t stored_word(std::size_t at) const {
-    return depth_word(rendering_.frame.depth[at], rendering_.frame.stencil[at], widths_);
+  [[nodiscard]] std::uint32_t stored_word(const Framebuffer& frame, std::size_t at) const {
+    return depth_word(frame.depth[at], frame.stencil[at], widths_);
   }
 
   [[nodiscard]] std::size_t plain_index(int x, int y) const {
@@ -315,6 +340,8 @@ class CycleModelOf final : public CycleModel {
   void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
     const Kernel kernel({state_of_kernel(packet.state), {}, stencil_of_kernel(packet.state), {}}, config_, widths_);
     const TriangleLanes<T, Lane> lanes(setup, widths_);
+    std::optional<SampledStamps> stamps;
+    if (widths_.has_samples != 0) stamps.emplace(setup, packet.kind, packet.state, widths_);
     CounterPacket uncounted;
     CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
     const bool asks_hiz = hiz_.is_eligible(packet, widths_);
@@ -325,7 +352,7 @@ class CycleModelOf final : public CycleModel {
     do {
       ++count.tiles_visited;
       const EdgeValues edges = edges_at_tile(setup, tiles.x(), tiles.y(), widths_);
-      outside = outside_edges(packet.dx, packet.dy, edges, T);
+      outside = outside_edges(packet.dx, packet.dy, moved_by_samples(edges, packet.dx, packet.dy, true, widths_), T);
       if (options_.parameters.rejects == 0) outside = 0;
       if (outside != 0) {
         ++count.tiles_outside;
@@ -340,14 +367,20 @@ class CycleModelOf final : public CycleModel {
           continue;
         }
       }
-      const bool is_inside = classify(setup, edges, T) == TileClass::inside;
+      const bool is_inside =
+          classify(packet.dx, packet.dy, moved_by_samples(edges, packet.dx, packet.dy, false, widths_), T) ==
+          TileClass::inside;
       const PixelBounds box = tile_box(setup, tiles.x(), tiles.y(), widths_);
       if (is_inside)
         ++count.trivially_accepted;
       else
-        count.samples_tested += static_cast<std::uint32_t>(box.samples());
+        count.samples_tested +=
+            static_cast<std::uint32_t>(box.samples()) * static_cast<std::uint32_t>(widths_.pixel_samples);
       has_ended = tiles.is_last();
-      visit(kernel, setup, lanes, edges, is_inside, packet, box, tiles.x(), tiles.y(), has_ended, primitive);
+      if (stamps)
+        visit_samples(*stamps, packet, box, tiles.x(), tiles.y(), has_ended, primitive);
+      else
+        visit(kernel, setup, lanes, edges, is_inside, packet, box, tiles.x(), tiles.y(), has_ended, primitive);
       if (asks_hiz && !has_ended) timing_.read_ahead();
     } while (tiles.next(outside));
     if (!has_ended) timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
@@ -454,6 +487,104 @@ class CycleModelOf final : public CycleModel {
           cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles / static_cast<float>(covered);
   }
 
+  /// visit() where pixels have several samples.
+  void visit_samples(SampledStamps& stamps, const SetupPacket& packet, const PixelBounds& box, int tile_x, int tile_y,
+                     bool ends_primitive, std::uint32_t primitive) {
+    const int size = config_.stamp_size;
+    TileVisitWork work{ends_primitive, box.top / size, box.bottom / size, box.left / size, box.right / size, {}};
+    stamps.enter(tile_x, tile_y, [&](int stamp) {
+      work.columns[static_cast<std::size_t>(stamp / widths_.stamps.stamps_per_row)] |=
+          1U << stamp % widths_.stamps.stamps_per_row;
+    });
+    CounterPacket count;  // of this visit
+    bool is_resident = false;
+    const Cycle before = timing_.last_fragment();
+    if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
+    timing_.visit(work, [&](Cycle offered, int row, int column) {
+      if (column < 0) return timing_.pass(offered);
+      const int stamp = row * widths_.stamps.stamps_per_row + column;
+      const FragmentPacket fragment = stamps.fragment(stamp);
+      if (!fragment.mask.any()) return timing_.pass(offered);
+      FragmentPlace place{tile_x, tile_y, stamp, fragment.mask, packet.state.depth_write};
+      WritePacket written = tested(fragment);
+      const SampleMask wanted = written.write_depth,
+                       opaque = tests_alpha() ? opaque_samples(fragment, colors_, widths_) : fragment.mask,
+                       kept = written.passed & opaque;
+      keep(opaque, written);
+      count.covered += static_cast<std::uint64_t>(fragment.mask.count());
+      count.depth_passed += static_cast<std::uint64_t>(written.passed.count());
+      count.written += static_cast<std::uint64_t>(kept.count());
+      store_samples(fragment, written, kept, packet, primitive);
+      if (blocks_) {
+        BlockItem item;
+        const TagResult tags = block_access(place, packet.state, item);
+        note_result(packet.state, written.passed, kept, {wanted, written.write_depth}, item);
+        return timing_.access(offered, tags, item);
+      }
+      const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
+        return is_resident || ((is_resident = true), tiles_->access(tile_x, tile_y, mover, counters_));
+      });
+      if (written.passed.any())
+        tiles_->wrote(tile_x, tile_y, place.stamp, packet.state.depth_write, packet.state.color_write);
+      return moved;
+    });
+    if (is_counted(packet.kind)) {
+      counters_.covered += count.covered;
+      counters_.depth_passed += count.depth_passed;
+      counters_.alpha_killed += count.depth_passed - count.written;
+      if (packet.state.writes()) counters_.written += count.written;
+    }
+    retire(packet, tile_x, tile_y, static_cast<std::uint32_t>(count.written), false);
+    if (!options_.want_cost) return;
+    const auto cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(box.samples());
+    for (int j = box.top; j <= box.bottom; ++j)
+      for (int i = box.left; i <= box.right; ++i) cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles;
+  }
+
+  /// The first pixel of a fragment's stamp, in the target.
+  [[nodiscard]] PixelOffset first_pixel(const FragmentPacket& fragment) const {
+    const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp);
+    return {fragment.key.tile_x * T + origin.x, fragment.key.tile_y * T + origin.y};
+  }
+
+  /// depth_test of a stamp, and what rop makes of its colours.
+  [[nodiscard]] WritePacket tested(const FragmentPacket& fragment) {
+    std::array<std::uint32_t, kMaxSamples> stored{};
+    const PixelOffset first = first_pixel(fragment);
+    fragment.mask.for_each([&](std::size_t s) {
+      const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
+      const Framebuffer& frame = frames()[s % static_cast<std::size_t>(widths_.pixel_samples)];
+      stored[s] = stored_word(frame, frame.at(first.x + pixel.x, first.y + pixel.y));
+    });
+    return rop(fragment, depth_test(fragment, stored, stencil_, widths_), config_, widths_);
+  }
+
+  /// The framebuffer of a stamp that has been tested.
+  void store_samples(const FragmentPacket& fragment, const WritePacket& written, SampleMask kept,
+                     const SetupPacket& packet, std::uint32_t primitive) {
+    const PixelOffset first = first_pixel(fragment);
+    fragment.mask.for_each([&](std::size_t s) {
+      const std::size_t k = s % static_cast<std::size_t>(widths_.pixel_samples);
+      const PixelOffset in_stamp = widths_.stamps.pixel_of(static_cast<int>(s));
+      const int x = first.x + in_stamp.x, y = first.y + in_stamp.y;
+      Framebuffer& frame = frames()[k];
+      const std::size_t at = frame.at(x, y);
+      if (written.write_depth.has(s)) {
+        frame.depth[at] = depth_of(written.depth[s], widths_);
+        frame.stencil[at] = stencil_of(written.depth[s], widths_);
+      }
+      if (written.write_color.has(s)) {
+        const Channels<std::uint32_t> channels = color_channels(fragment_code(fragment, s, widths_));
+        frame.color[at] = store_color<std::uint32_t>(colors_.ops, config_.color_format, channels, frame.color[at],
+                                                     dither_threshold(x, y));
+      }
+      const std::size_t plain = plain_index(x, y);
+      if (is_counted(packet.kind) && !rendering_.count.empty()) ++rendering_.count[plain];
+      if (k == 0 && kept.has(s) && !rendering_.ids.empty() && (packet.state.writes() || !is_counted(packet.kind)))
+        rendering_.ids[plain] = is_counted(packet.kind) ? static_cast<std::int32_t>(primitive) : -1;
+    });
+  }
+
   /// The covered samples of a stamp whose stored word the tests change.
   [[nodiscard]] SampleMask changed_samples(const PrimitiveState& state, SampleMask covered, SampleMask passed_stencil,
                                            SampleMask passed) const {
@@ -522,7 +653,7 @@ class CycleModelOf final : public CycleModel {
     const std::size_t pixel = frame.at(at.x, at.y);
     const std::uint32_t depth = plane_at(setup, kDepthPlane, widths_, at.x, at.y).code;
     const std::uint32_t word =
-        test_sample(state, stencil_.side[state.is_back ? 1 : 0], depth, stored_word(pixel), widths_).word;
+        test_sample(state, stencil_.side[state.is_back ? 1 : 0], depth, stored_word(frame, pixel), widths_).word;
     frame.depth[pixel] = depth_of(word, widths_);
     frame.stencil[pixel] = stencil_of(word, widths_);
   }
@@ -595,12 +726,14 @@ class CycleModelOf final : public CycleModel {
     RetirePacket retired;
     retired.key.tile_x = static_cast<std::uint16_t>(tile_x);
     retired.key.tile_y = static_cast<std::uint16_t>(tile_y);
-    const bool is_full = packet.state.depth_write && passed == T * T && !is_late;
+    const bool is_full =
+        packet.state.depth_write && passed == static_cast<std::uint32_t>(T * T * widths_.pixel_samples) && !is_late;
     std::uint32_t largest = 0;
     if (is_full)  // the codes of a covered tile are a plane, rounded and clamped: the largest is at a corner
       for (const int y : {0, T - 1})
         for (const int x : {0, T - 1})
-          largest = std::max(largest, rendering_.frame.depth[rendering_.frame.at(tile_x * T + x, tile_y * T + y)]);
+          for (const Framebuffer& frame : frames())
+            largest = std::max(largest, frame.depth[frame.at(tile_x * T + x, tile_y * T + y)]);
     set_hiz_update(retired, packet.state, is_full, passed != 0, largest, config_, widths_);
     hiz_.retire(retired);
   }

@@ -62,7 +62,7 @@ class SampledTiles {
         lanes_(lanes),
         index_(index),
         out_(rendering),
-        setups_(triangle, setup, widths),
+        setups_(setup, widths),
         samples_(setups_.sample.size()),
         writes_(context.fragment_ops.state.writes()) {
     const auto& v = triangle.v;

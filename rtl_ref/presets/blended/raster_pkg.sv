@@ -40,7 +40,10 @@ package raster_pkg;
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'hb4598aa51e8bb2ac;  // hash of the above
+  localparam int MSAA_SAMPLES = 1;  // of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each
+  localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
+  localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
+  localparam logic [63:0] CONFIG_ID = 64'h85fec5bf4544527b;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -60,7 +63,8 @@ package raster_pkg;
   localparam int STATE_WORD_BITS = 116;  // of a token: the codes of all planes but those
   localparam int TEXTURE_STAMPS = 32;  // between X and W, with a texture unit
   localparam int TEXTURE_PORT_BITS = 64;  // data of a beat of texels
-  localparam int SAMPLES = 4;  // samples of a stamp
+  localparam int PIXELS = 4;  // pixels of a stamp
+  localparam int SAMPLES = 4;  // samples of a stamp, those of a pixel beside each other
   localparam int TILES_X = 240;  // tiles along the top of the widest target
   localparam int TILES_Y = 135;  // tiles along the side of the highest target
   localparam int HIZ_GROUP_BITS = 3;  // bounds of 2^this tiles of a row are cleared at once
@@ -197,6 +201,10 @@ package raster_pkg;
   localparam logic [32*PLANES-1:0] LOCAL_AT = {32'd138, 32'd110, 32'd83, 32'd68, 32'd53, 32'd38, 32'd23, 32'd0};
   localparam int ALL_LOCAL_BITS = 166;  // of one for each plane
   localparam int MAX_LOCAL_BITS = 28;  // of the widest
+  localparam logic [32*PLANES-1:0] STEP_BITS_OF = {32'd28, 32'd28, 32'd27, 32'd15, 32'd15, 32'd15, 32'd15, 32'd23};  // gradients per pixel inside a tile
+  localparam logic [32*PLANES-1:0] STEP_AT = {32'd138, 32'd110, 32'd83, 32'd68, 32'd53, 32'd38, 32'd23, 32'd0};
+  localparam int ALL_STEP_BITS = 166;  // of one for each plane
+  localparam int MAX_STEP_BITS = 28;  // of the widest
   localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = {32'd28, 32'd28, 32'd27, 32'd8, 32'd8, 32'd8, 32'd8, 32'd16};  // values of a sample
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = {32'd103, 32'd75, 32'd48, 32'd40, 32'd32, 32'd24, 32'd16, 32'd0};
   localparam int ALL_FRAGMENT_BITS = 131;  // of one for each plane
@@ -397,8 +405,8 @@ package raster_pkg;
 
   typedef struct packed {
     primitive_state_t state;
-    logic [ALL_LOCAL_BITS-1:0] step_x;
-    logic [ALL_LOCAL_BITS-1:0] step_y;
+    logic [ALL_STEP_BITS-1:0] step_x;
+    logic [ALL_STEP_BITS-1:0] step_y;
     code_range_t range;
     coordinate_frame_t coordinates;
   } context_packet_t;

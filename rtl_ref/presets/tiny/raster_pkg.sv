@@ -40,7 +40,10 @@ package raster_pkg;
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 16;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'h2534430b6463237b;  // hash of the above
+  localparam int MSAA_SAMPLES = 1;  // of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each
+  localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
+  localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
+  localparam logic [63:0] CONFIG_ID = 64'he7480c17d102687a;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 2;  // s: fraction bits of a coordinate, at least 1
@@ -60,7 +63,8 @@ package raster_pkg;
   localparam int STATE_WORD_BITS = 32;  // of a token: the codes of all planes but those
   localparam int TEXTURE_STAMPS = 16;  // between X and W, with a texture unit
   localparam int TEXTURE_PORT_BITS = 16;  // data of a beat of texels
-  localparam int SAMPLES = 1;  // samples of a stamp
+  localparam int PIXELS = 1;  // pixels of a stamp
+  localparam int SAMPLES = 1;  // samples of a stamp, those of a pixel beside each other
   localparam int TILES_X = 2;  // tiles along the top of the widest target
   localparam int TILES_Y = 2;  // tiles along the side of the highest target
   localparam int HIZ_GROUP_BITS = 1;  // bounds of 2^this tiles of a row are cleared at once
@@ -183,6 +187,10 @@ package raster_pkg;
   localparam logic [32*PLANES-1:0] LOCAL_AT = {32'd45, 32'd30, 32'd15, 32'd0};
   localparam int ALL_LOCAL_BITS = 60;  // of one for each plane
   localparam int MAX_LOCAL_BITS = 15;  // of the widest
+  localparam logic [32*PLANES-1:0] STEP_BITS_OF = {32'd15, 32'd15, 32'd15, 32'd15};  // gradients per pixel inside a tile
+  localparam logic [32*PLANES-1:0] STEP_AT = {32'd45, 32'd30, 32'd15, 32'd0};
+  localparam int ALL_STEP_BITS = 60;  // of one for each plane
+  localparam int MAX_STEP_BITS = 15;  // of the widest
   localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd8};  // values of a sample
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = {32'd24, 32'd16, 32'd8, 32'd0};
   localparam int ALL_FRAGMENT_BITS = 32;  // of one for each plane
@@ -374,8 +382,8 @@ package raster_pkg;
 
   typedef struct packed {
     primitive_state_t state;
-    logic [ALL_LOCAL_BITS-1:0] step_x;
-    logic [ALL_LOCAL_BITS-1:0] step_y;
+    logic [ALL_STEP_BITS-1:0] step_x;
+    logic [ALL_STEP_BITS-1:0] step_y;
     code_range_t range;
   } context_packet_t;
   localparam int CONTEXT_PACKET_BITS = 189;  // of the struct above

@@ -76,8 +76,8 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
   }
   setup_ = golden::setup_triangle(v);
   if (state_.color_interp == ColorInterp::perspective)
-    color_bound_ = over_w_bound(largest_code, ratio_of(w), format, format.color, config.tile_size);
-  if (state_.fog) set_fog(w, format, config.tile_size);
+    color_bound_ = over_w_bound(largest_code, ratio_of(w), format, format.color, plane_roundings(config));
+  if (state_.fog) set_fog(w, format, plane_roundings(config));
   if (texture_ == nullptr) return;
   sampler_ = Sampler(*texture_, state_);
   const double w_ratio = state_.texture_interp == TextureInterp::affine ? 1 : ratio_of(w);
@@ -86,7 +86,7 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
     const auto [low, high] = std::minmax({v[0].uv[axis], v[1].uv[axis], v[2].uv[axis]});
     const double extent = (high - low) * sampler_.axes[axis].size;
     coordinate_bound_[axis] = extent < std::ldexp(1.0, kMaxReach)  // farther from u_ref, it is held
-                                  ? over_w_bound(extent, w_ratio, format, format.coordinate, config.tile_size)
+                                  ? over_w_bound(extent, w_ratio, format, format.coordinate, plane_roundings(config))
                                   : HUGE_VAL;
   }
 }

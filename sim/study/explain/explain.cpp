@@ -22,6 +22,7 @@ Stored stored_at(const Framebuffer& frame, Pixel pixel) {
 /// Why the hardware cannot draw the scene; empty: it can.
 std::string hardware_refusal(const Scene& scene, const Config& config) {
   try {
+    require_one_sample(config, "the hardware whose record is kept here");
     check_hardware_scene(scene, config);
     return {};
   } catch (const InputError& error) {

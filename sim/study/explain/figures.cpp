@@ -34,18 +34,6 @@ std::int64_t exact_edge(const SnappedVertex& from, const SnappedVertex& to, Pixe
   return (std::int64_t{to.x} - from.x) * (py - from.y) - (std::int64_t{to.y} - from.y) * (px - from.x);
 }
 
-/// The sample of a pixel in its tile's stamp.
-struct SamplePlace {
-  PixelOffset origin;
-  std::size_t sample;
-};
-SamplePlace sample_place(Pixel pixel, const Widths& widths) {
-  const StampGrid& stamps = widths.stamps;
-  const int last = (1 << widths.tile_shift) - 1, x = pixel.x & last, y = pixel.y & last;
-  return {stamps.origin_of(stamps.stamp_at(x, y)),
-          static_cast<std::size_t>(stamps.sample_at(x % stamps.size, y % stamps.size))};
-}
-
 PlaneFigure plane_figure(const Widths& widths, std::size_t plane, int guard_bits, const PlaneSample& sample,
                          const exact::Rational& oracle) {
   return {widths.plane_name(plane),
@@ -100,12 +88,6 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
   return figure;
 }
 
-TriangleSetup setup_at_place(const TriangleSetup& setup, const Triangle& triangle, const SampleOffset& offset,
-                             const Widths& widths) {
-  const auto& v = triangle.v;
-  return setup_at_sample(setup, canonical(v, signed_area(v[0], v[1], v[2])), offset, widths);
-}
-
 std::optional<Surface> made_surface(const DrawContext& context, const Triangle& triangle, const TriangleSetup& setup,
                                     const Widths& widths) {
   if (setup.is_empty()) return std::nullopt;
@@ -143,8 +125,8 @@ TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, c
       widths_(widths),
       triangle_(moved_to_sample(triangle, offset)),
       offset_(offset),
-      setup_(setup_at_place(setup_triangle(triangle, context.config, widths, context.rect), triangle, offset, widths)),
-      whole_(setup_at_place(setup_triangle(triangle, context.config, widths), triangle, offset, widths)),
+      setup_(setup_at_sample(setup_triangle(triangle, context.config, widths, context.rect), offset, widths)),
+      whole_(setup_at_sample(setup_triangle(triangle, context.config, widths), offset, widths)),
       oracle_(triangle_, widths.grid_bits),
       surface_(made_surface(context, triangle_, setup_, widths)) {
   const auto& v = triangle_.v;
@@ -164,11 +146,10 @@ EdgeValues TrianglePiece::edges_at(Pixel pixel) const {
 
 /// As fine_raster has it.
 bool TrianglePiece::is_covered(Pixel pixel) const {
-  const int shift = widths_.tile_shift;
+  const int shift = widths_.tile_shift, last = (1 << shift) - 1;
   const TilePacket tile =
       make_tile_packet(to_setup_packet(setup_, widths_), pixel.x >> shift, pixel.y >> shift, 0, false, widths_);
-  const SamplePlace place = sample_place(pixel, widths_);
-  return stamp_mask(tile, make_edge_context(setup_), place.origin, widths_.stamps).has(place.sample);
+  return halfplane::is_covered(tile, make_edge_context(setup_), {}, pixel.x & last, pixel.y & last);
 }
 
 Outcome TrianglePiece::outcome_at(Pixel pixel, const EdgeValues& edges) const {

@@ -229,7 +229,7 @@ void constant_coordinate(Unit& unit) {
   (void)check_surfaces(unit, scene, [&](const TappedFragment&, const SurfaceSample& s) {
     worst = std::max(worst, std::abs(s.coordinate[0] - u * side));
   });
-  if (over_w_bound(0, std::exp2(octaves), format, format.coordinate, unit.config.tile_size) < step)
+  if (over_w_bound(0, std::exp2(octaves), format, format.coordinate, plane_roundings(unit.config)) < step)
     unit.measure("constant", "texels", worst, 0, scene);
 }
 
@@ -267,7 +267,7 @@ void wrap_across_a_tile(Unit& unit) {
   const std::int64_t right = std::int64_t{unit.width(32)} * unit.pixel(),
                      bottom = std::int64_t{unit.height(32)} * unit.pixel();
   Scene scene = rectangle(unit, state, random_texture(unit, side, side), {0, 0}, {right, bottom});
-  const double pixels = unit.random.between(2.5, unit.config.tile_size);  // of one image
+  const double pixels = unit.random.between(2.5, plane_roundings(unit.config));  // of one image
   const double w = std::exp2(3 * unit.random.unit());
   for (Vertex& vertex : scene.vertices) {
     vertex.u = std::round(vertex.x / pixels * 1024) / 1024;
@@ -307,7 +307,7 @@ void texture_viewport(Unit& unit) {
   const Scene scene = rectangle(unit, state, random_texture(unit, width, height), {from.x * p, from.y * p},
                                 {(from.x + width) * p, (from.y + height) * p});
   const PerspectiveFormat format = perspective_format(unit.config);
-  const auto off = [&](int side) { return over_w_bound(side, 1, format, format.coordinate, unit.config.tile_size); };
+  const auto off = [&](int side) { return over_w_bound(side, 1, format, format.coordinate, plane_roundings(unit.config)); };
   int worst = 0;
   (void)check_surfaces(unit, scene, [&](const TappedFragment& f, const SurfaceSample& s) {
     const Texel texel = scene.textures[0].texel(0, f.x - static_cast<int>(from.x), f.y - static_cast<int>(from.y));

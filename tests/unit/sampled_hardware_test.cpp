@@ -1,0 +1,76 @@
+// Several samples a pixel in hardware: its packets and its cycle engine draw what the specification draws, sample by sample.
+#include <gtest/gtest.h>
+
+#include "model/engines/cycle/cycle_model.hpp"
+#include "model/engines/hardware.hpp"
+#include "model/engines/scalar.hpp"
+#include "model/timing/memory.hpp"
+#include "sim/cosim/random_scene.hpp"
+#include "sim/scene/builtin.hpp"
+
+namespace halfplane {
+namespace {
+
+Config hardware(std::string_view name, int samples, std::string_view pattern = "standard", bool has_units = false) {
+  Config config = preset(name);
+  config.msaa_samples = samples;
+  config.msaa_pattern = parse_sample_pattern(pattern);
+  while (config.stamp_size * config.stamp_size * samples > 64) config.stamp_size /= 2;
+  if (has_units) {
+    config.blend_lanes = 4;
+    config.alpha_units = config.dither_units = 1;
+    config.stencil_bits = 8;
+  }
+  validate(config);
+  return config;
+}
+
+/// Those that tests go over: both framebuffers, every number of samples, all units, patterns of another kind.
+std::vector<Config> sampled_hardware() {
+  std::vector<Config> configs{hardware("tiny", 2), hardware("tiny", 8)};
+  for (const int samples : {2, 4, 8}) configs.push_back(hardware("embedded", samples));
+  for (const int samples : {2, 4, 8}) configs.push_back(hardware("full", samples));
+  configs.push_back(hardware("embedded", 4, "standard", true));
+  configs.push_back(hardware("full", 4, "standard", true));
+  configs.push_back(hardware("embedded", 2, "0,0;0.99609375,0.99609375", true));
+  return configs;
+}
+
+void expect_same(const Framebuffer& a, const Framebuffer& b, const Config& config) {
+  ASSERT_EQ(a.color, b.color);
+  ASSERT_EQ(a.depth, b.depth);
+  if (has_stencil(config)) ASSERT_EQ(a.stencil, b.stencil);
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  for (std::size_t k = 0; k < a.samples.size(); ++k) {
+    SCOPED_TRACE("sample " + std::to_string(k));
+    expect_same(a.samples[k], b.samples[k], config);
+  }
+}
+
+TEST(SampledHardware, DrawsTheSpecificationsSamplesInRandomScenes) {
+  for (const Config& config : sampled_hardware())
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      SCOPED_TRACE(label(config) + ", seed " + std::to_string(seed));
+      const Scene scene = random_scene(config, seed, 40);
+      const Rendering scalar = render_scalar(scene, config), hardware = render_hardware(scene, config);
+      {
+        SCOPED_TRACE("packets against the specification");
+        expect_same(hardware.frame, scalar.frame, config);
+      }
+      const auto memory = make_memory({}, config);
+      const CycleRendering cycle = render_cycle(scene, config, *memory);
+      expect_same(cycle.rendering.frame, hardware.frame, config);
+      const Counters &a = hardware.counters, &b = cycle.rendering.counters;
+      EXPECT_EQ(a.covered, b.covered);
+      EXPECT_EQ(a.depth_passed, b.depth_passed);
+      EXPECT_EQ(a.alpha_killed, b.alpha_killed);
+      EXPECT_EQ(a.written, b.written);
+      EXPECT_EQ(a.samples_tested, b.samples_tested);
+      EXPECT_EQ(a.tiles_visited, b.tiles_visited);
+      EXPECT_EQ(a.skipped.tiles_hiz, b.skipped.tiles_hiz);
+      EXPECT_EQ(a.written, scalar.counters.written);
+    }
+}
+
+}  // namespace
+}  // namespace halfplane
