@@ -30,6 +30,7 @@ package raster_pkg;
   localparam int TEXTURE_UNIT = 1;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
   localparam int TEXTURE_LANES = 1;  // that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
+  localparam int TEXTURE_WAYS = 1;  // in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced
   localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
   localparam int RECIPROCAL_KIND = 0;  // 0 table, 1 restoring: what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time
   localparam int ALPHA_UNIT = 1;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
@@ -40,7 +41,7 @@ package raster_pkg;
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
   localparam int COUNTERS_BITS = 32;  // of a performance counter of the RTL; a sticky bit tells that one has wrapped
-  localparam logic [63:0] CONFIG_ID = 64'hdae9e3c099fe6e52;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h2db43a047a3f705b;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
