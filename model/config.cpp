@@ -74,6 +74,9 @@ const std::array kSettings{
             1, 4, &Config::texture_lanes},
     Setting{"texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64,
             &Config::texture_cache_kb},
+    Setting{"texture.ways", "places",
+            "in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced",
+            1, 2, &Config::texture_ways},
     Setting{"texture.queue", "samples",
             "between their coordinates and their texels in the texture unit; a power of two", 8, 128,
             &Config::texture_queue},
@@ -337,6 +340,10 @@ void validate(const Config& config) {
                   "texture.lanes=1");
     refuse_unless(config.stamp_size >= 2, "four lanes of a texture unit take 2x2 samples of a stamp: raise stamp.size");
   }
+  refuse_unless(
+      config.texture_ways == 1 || config.texture_unit != TextureUnitKind::nearest || config.texture_lanes != 1,
+      "a texture unit with one nearest texel a clock has one way: use texture.unit=bilinear or trilinear, "
+      "texture.lanes=4, or texture.ways=1");
   refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
                 "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
   refuse_unless(config.perspective_colors == 0 || config.texture_unit != TextureUnitKind::off,

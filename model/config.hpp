@@ -78,6 +78,7 @@ struct Config {
   TextureUnitKind texture_unit = TextureUnitKind::off;
   int texture_lanes = 1;     ///< samples that go through it together: 1, or 4 of a stamp
   int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two
+  int texture_ways = 1;      ///< places there in which a block of them may lie: 1 or 2
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
   ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit
   int alpha_units = 0;    ///< 1: alpha is interpolated whatever the format stores, and tested

@@ -62,6 +62,9 @@ BINS_IN_WORDS = (*BLOCKS, ('LINE_X_BITS', 0), ('LINE_Y_BITS', 1), ('FRAME_CLEARS
 # Blocks with blending, a sample a clock; a word of operations fits a depth code.
 BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
             ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
+# What the properties of texture caches call the registers of texture_answers.
+TEXTURE_ANSWERS = tuple((name, f'u_answers.{name}') for name in
+                        ('fills_ready', 'fills_valid', 'request_valid_q', 'recovers_q', 'request_address_q', 'request_size_q', 'beat_q', 'unanswered_q'))
 # Blocks whose depths have a stencil above them, without the other units of that preset; a word of its registers fits a code.
 STENCIL = (*BLOCKS, ('ALPHA_UNIT', 0), ('BLEND_LANES', 0), ('DITHER_UNIT', 0), ('FOG_UNIT', 0), ('TEXTURE_UNIT', 0), ('COORDINATES', 0),
            ('DEPTH_CODE_BITS', 21), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 22), ('ALL_FRAGMENT_BITS', 22), ('MEMORY_LANE_BITS', 29),
@@ -171,6 +174,14 @@ PROOFS = [
           presets=TINY, parameters=(('TAIL', 2),), k=2, quick=TINY, cover_depth=6, cuts=MULTIPLIERS,
           twins=(('if (!is_second_i) lower_q', 'lower_q'), ('!valid_q || is_first_q || ready_i', "1'b1"),
                  ('if (valid_i && ready_o) begin', 'if (ready_o) begin'))),
+    Proof('texture_cache_data', 'd, f', 'stages/texture_cache.sv', 'a texel is what memory holds there, in its turn; no deadlock',
+          presets=TINY, parameters=(('LINES', 2), ('IN_FLIGHT', 4), ('TAIL', 5)), k=2, cuts=(*SRAMS, '*fifo*'), wires=TEXTURE_ANSWERS,
+          cover_depth=16,
+          twins=(256, ('tag == t_address_q', 'tag[9:0] == t_address_q[9:0]'), ('(!is_miss || has_come)', "1'b1"),
+                 ('{fill_line, fill_place}', '{fill_line, ~fill_place}'), ("drop_i || (sweeps_q && sweep_q != '1)", "sweeps_q && sweep_q != '1"),
+                 ('is_occupied &&', "1'b0 &&"), ('t_goes && line_i == t_line_q', "1'b0"), ('same_line_q  <= address_i == t_address_q', "same_line_q  <= 1'b1"),
+                 ('sweeps_q ? last_group : group}', "sweeps_q ? group - NUMBER'(64) : group}"),
+                 ('(same_place_q ? last_group : tag_group)', 'tag_group'), ('(is_referenced || !may_ask)', 'is_referenced'))),
     Proof('colors_over_w_range', 'e', 'stages/colors_over_w.sv', 'the nearest code to the quotient, held to the range of the vertices',
           presets=TINY, parameters=(('CHANNELS', 1),), has_reset=False, quick=TINY, cover_depth=6, cuts=MULTIPLIERS,
           twins=(280, ("code_q < $signed(WHOLE'(least[n*8+:8]))", "1'b0"),

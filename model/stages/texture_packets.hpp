@@ -22,7 +22,8 @@ namespace halfplane {
           has_levels,
           line_part_bits(state_word_bits(widths)),
           config.texture_lanes,
-          config.stamp_size};
+          config.stamp_size,
+          config.texture_ways};
 }
 
 /// Q and P of a sample, not its pixel.

@@ -6,6 +6,8 @@
 // below 4 are padded to a block, palettes are gone (rgba8888). Where the levels begin says texture_levels.hpp. A block is a line
 // of the cache: 16, 32 or 64 bytes. The lowest bits of its column and row say where in the cache it may lie; of a draw that
 // looks at two levels the highest of those of the row says whether the level is odd, so that no level is in the other's way.
+// Of two ways a block may lie in two places, told apart by the highest bit that its row would have given, or its column where that
+// gives more; it takes that of the line that was looked up longer ago. Then two levels share all places.
 //
 // A sample between two levels goes through cache and filter twice, once where the second would add nothing.
 //
@@ -82,6 +84,7 @@ struct TextureSettings {
   int line_bits = 104;      ///< of a TextureLines in a token
   int lanes = 1;            ///< LANES: samples that go together, 1 or 4; those without levels
   int stamp_size = 2;       ///< of several lanes: samples along a stamp's side
+  int ways = 1;             ///< places in the cache where a line may lie: 1, or 2 where lines are in banks
   /// Lines in four banks, asked for one by one.
   [[nodiscard]] bool has_banks() const { return has_linear || lanes != 1; }
   /// Beats of a line.
@@ -134,39 +137,63 @@ struct TextureUse {
 /// Which lines are in the cache.
 class TextureCache {
  public:
-  explicit TextureCache(int lines) : lines_(static_cast<std::size_t>(lines)) {
+  struct Access {
+    std::uint32_t line = 0;  ///< where it is now
+    bool is_hit = false;     ///< and was
+  };
+
+  explicit TextureCache(int lines, int ways = 1) : lines_(static_cast<std::size_t>(lines)) {
     const int bits = floor_log2(static_cast<unsigned>(lines));
     x_bits_ = (bits + 1) / 2;
     y_bits_ = bits / 2;
+    if (ways == 2) second_ = std::uint32_t{1} << ((x_bits_ == y_bits_ ? bits : x_bits_) - 1);
   }
 
-  /// Where the block of that column and row may lie.
+  /// Where the block of that column and row may lie; of two ways the first.
   [[nodiscard]] std::uint32_t line_of(std::uint32_t x, std::uint32_t y) const {
-    return (y & ((1U << y_bits_) - 1)) << x_bits_ | (x & ((1U << x_bits_) - 1));
+    return ((y & ((1U << y_bits_) - 1)) << x_bits_ | (x & ((1U << x_bits_) - 1))) & ~second_;
   }
-  /// The same in the half for even or for odd levels.
+  /// The same in the half for even or for odd levels, where there is one way.
   [[nodiscard]] std::uint32_t line_of(std::uint32_t x, std::uint32_t y, int level) const {
+    if (second_ != 0) return line_of(x, y);
     const auto half = std::uint32_t{1} << (y_bits_ - 1);
     return line_of(x, (y & (half - 1)) | ((level & 1) != 0 ? half : 0));
   }
-  /// Whether the line was there; it is now.
-  bool access(std::uint32_t address, std::uint32_t line) {
-    Line& l = lines_[line];
-    const bool is_hit = l.is_valid && l.address == address;
-    l = {true, address};
-    return is_hit;
+  /// Of a line that is there, where; `first` as line_of() has it.
+  [[nodiscard]] std::uint32_t find(std::uint32_t address, std::uint32_t first) const {
+    return is_at(address, first) ? first : first | second_;
+  }
+  /// The line is there now: of two ways in place of that which was looked up longer ago, if it was not.
+  Access access(std::uint32_t address, std::uint32_t first) {
+    const std::uint32_t second = first | second_;
+    Access result{first, is_at(address, first)};
+    if (!result.is_hit && second != first) {
+      const bool is_second = is_at(address, second);
+      if (is_second || !lines_[first].is_second_newer) result.line = second;
+      result.is_hit = is_second;
+    }
+    lines_[result.line].is_valid = true;
+    lines_[result.line].address = address;
+    lines_[first].is_second_newer = result.line != first;
+    return result;
   }
   void drop() {
-    for (Line& line : lines_) line.is_valid = false;
+    for (Line& line : lines_) line.is_valid = line.is_second_newer = false;
   }
 
  private:
   struct Line {
     bool is_valid = false;
+    bool is_second_newer = false;  ///< of a first way: the second was looked up later
     std::uint32_t address = 0;
   };
+  [[nodiscard]] bool is_at(std::uint32_t address, std::uint32_t line) const {
+    return lines_[line].is_valid && lines_[line].address == address;
+  }
+
   std::vector<Line> lines_;
   int x_bits_ = 0, y_bits_ = 0;
+  std::uint32_t second_ = 0;  ///< the bit of a place that tells two ways apart; of one way 0
 };
 
 /// What the samples of a triangle share, u and v; and how its colours are read back where they lie over w too.
@@ -192,7 +219,7 @@ class TextureUnit {
       : settings_(settings),
         format_(format),
         lines_(settings.line_bits),
-        cache_(settings.lines),
+        cache_(settings.lines, settings.ways),
         data_(static_cast<std::size_t>(settings.lines)) {}
 
   [[nodiscard]] const TextureState& state() const { return state_; }
@@ -411,17 +438,21 @@ class TextureUnit {
       if ((texel / kTextureBlock & 1) == bit) return texel / kTextureBlock;
     return -1;
   }
+  [[nodiscard]] std::uint32_t address_of(int level, std::uint32_t block_x, std::uint32_t block_y) const {
+    const int row = std::max(0, state_.log2_size[0] - 2 - level);
+    const std::uint32_t block = level_place(state_.log2_size, level).block + (block_y << row) + block_x;
+    return state_.base + (block << (4 + texel_size_log2(state_.format)));
+  }
   [[nodiscard]] std::uint32_t line_of(int level, std::uint32_t block_x, std::uint32_t block_y) const {
     return levels_.has_two() ? cache_.line_of(block_x, block_y, level) : cache_.line_of(block_x, block_y);
   }
   template <class Read>
   void look_up(int level, std::uint32_t block_x, std::uint32_t block_y, Read&& read) {
-    const int row = std::max(0, state_.log2_size[0] - 2 - level);
-    const std::uint32_t block = level_place(state_.log2_size, level).block + (block_y << row) + block_x;
     TextureLookup lookup;
-    lookup.address = state_.base + (block << (4 + texel_size_log2(state_.format)));
-    lookup.line = line_of(level, block_x, block_y);
-    lookup.is_miss = !cache_.access(lookup.address, lookup.line);
+    lookup.address = address_of(level, block_x, block_y);
+    const TextureCache::Access access = cache_.access(lookup.address, line_of(level, block_x, block_y));
+    lookup.line = access.line;
+    lookup.is_miss = !access.is_hit;
     lookup.beats = settings_.beats(state_.format);
     lookup.ends = false;
     if (lookup.is_miss) data_[lookup.line] = read(lookup.address, lookup.beats);
@@ -431,7 +462,8 @@ class TextureUnit {
   [[nodiscard]] Texel texel(int level, int column, int row) const {
     const std::uint32_t corner = level_place(state_.log2_size, level).is_corner ? 2 : 0;
     const auto x = static_cast<std::uint32_t>(column) + corner, y = static_cast<std::uint32_t>(row) + corner;
-    const TextureLine& line = data_[line_of(level, x / kTextureBlock, y / kTextureBlock)];
+    const std::uint32_t block_x = x / kTextureBlock, block_y = y / kTextureBlock;
+    const TextureLine& line = data_[cache_.find(address_of(level, block_x, block_y), line_of(level, block_x, block_y))];
     const int size = texel_size_log2(state_.format);
     const std::uint32_t at = (y % kTextureBlock * kTextureBlock + x % kTextureBlock) << size;
     std::uint32_t code = 0;

@@ -529,6 +529,18 @@ mutant(343 stages/texture_lanes.sv "lanes: counter: a sample finds its lines onl
 mutant(344 stages/texture_unit.sv "lanes: the last pass colours all samples"
   [=[e_lanes_q[i%LANES]]=] [=[1'b1]=])
 
+# Two ways of the texture cache.
+mutant(345 stages/texture_tags.sv "texture, two ways: the line that was looked up last goes"
+  [=[same_place_q ? !recent_way_q : !newer]=] [=[same_place_q ? !recent_way_q : newer]=])
+mutant(346 stages/texture_tags.sv "texture, two ways: the line in front is in both"
+  [=[same_place_q && recent_way == 1'(w)]=] [=[same_place_q]=])
+mutant(347 stages/texture_tags.sv "texture, two ways: a line takes both places"
+  [=[sweeps_q || way[b] == 1'(w)]=] [=[1'b1]=])
+mutant(348 stages/texture_tags.sv "texture, two ways: a line that is still to be read in the second is overwritten"
+  [=[groups[way[b]*NUMBER+:NUMBER]]=] [=[groups[0+:NUMBER]]=])
+mutant(349 stages/texture_cache_linear.sv "texture, two ways: all texels are read in the way of the first bank"
+  [=[found_ways[{at_y[Y*WAY_Y+1], at_x[X*WAY_X+1]}]]=] [=[found_ways[0]]=])
+
 # Colours over w in the texture unit.
 mutant(280 stages/colors_over_w.sv "texture, colours over w: the quotient is cut off"
   [=[WHOLE'(placed[POINT-1])]=] [=[WHOLE'(1'b0)]=])

@@ -187,6 +187,7 @@ module colored_stamps #(
           .QUEUE         (PLACES),
           .IN_FLIGHT     (raster_pkg::TEXTURE_QUEUE),
           .LINES         (16 * raster_pkg::TEXTURE_CACHE_KB),
+          .WAYS          (raster_pkg::TEXTURE_WAYS),
           .PORT_BITS     (raster_pkg::TEXTURE_PORT_BITS),
           .WORD          (WORD),
           .PIXEL         (PIXEL),

@@ -80,6 +80,8 @@ module texture_cache #(
   logic              tag_valid, is_known;
   logic              sweeps_q;
   logic [LINE-1:0]   sweep_q;
+  logic [LINE-1:0]   tag_write_line;
+  logic [NUMBER+28:0] tag_new;
   logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags, and those of them that have been read
   /* verilator lint_off UNUSEDSIGNAL */
   logic [COUNT-1:0]  last;              // the number of the last that has left
@@ -101,9 +103,12 @@ module texture_cache #(
       .read_address_i (line_i),
       .data_o         ({tag_valid, tag, tag_group}),
       .write_i        (t_goes || sweeps_q),
-      .write_address_i(sweeps_q ? sweep_q : t_line_q),
-      .data_i         ({!sweeps_q, t_address_q, sweeps_q ? last_group : group})
+      .write_address_i(tag_write_line),
+      .data_i         (tag_new)
   );
+
+  assign tag_write_line = sweeps_q ? sweep_q : t_line_q;
+  assign tag_new        = {!sweeps_q, t_address_q, sweeps_q ? last_group : group};
 
   assign last         = issued_q - 1'b1;
   assign last_group   = last[COUNT-1:GROUP];
@@ -204,6 +209,7 @@ module texture_cache #(
   logic [2:0]           format;
   logic [TAIL-1:0]      tail;
   logic [5:0]           offset;  // bytes
+  logic [LINE+WORDS-1:0] data_read_address, data_write_address;
   logic [WORD_BITS-1:0] word;
   logic                 d_valid_q, d_ready;
   logic [WORD-1:0]      d_offset_q;
@@ -226,6 +232,8 @@ module texture_cache #(
   assign reads      = waiting_valid && d_ready && (!is_miss || has_come);
   assign reads_miss = reads && is_miss;
   assign offset     = 6'(texel) << size_of(format);
+  assign data_read_address  = {line, offset[5:WORD]};
+  assign data_write_address = {fill_line, fill_place};
 
   sram #(
       .WIDTH    (WORD_BITS),
@@ -234,10 +242,10 @@ module texture_cache #(
   ) u_data (
       .clk_i,
       .read_i         (reads),
-      .read_address_i ({line, offset[5:WORD]}),
+      .read_address_i (data_read_address),
       .data_o         (word),
       .write_i        (fills_word),
-      .write_address_i({fill_line, fill_place}),
+      .write_address_i(data_write_address),
       .data_i         (fill_word)
   );
 

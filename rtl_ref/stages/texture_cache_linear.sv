@@ -5,6 +5,7 @@
 // Specification and times: those of texture_cache.sv.
 module texture_cache_linear #(
     parameter int LINES = 64,      // a power of two, at least 16
+    parameter int WAYS = 1,        // 1 or 2
     parameter int PORT_BITS = 64,  // 16, 32 or 64
     parameter int IN_FLIGHT = 32,  // samples that wait; a power of two
     parameter int REQUESTS = 16,   // lines that are not answered; a power of two
@@ -80,10 +81,13 @@ module texture_cache_linear #(
   assign block_x    = {first_x[0] ? first_x : second_x, first_x[0] ? second_x : first_x};
   assign block_y    = {first_y[0] ? first_y : second_y, first_y[0] ? second_y : first_y};
 
+  localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // of a line's number the bit that is the way: texture_tags.sv
+  localparam logic [LINE-1:0] FIRST = ~(LINE'(WAYS - 1) << WAY_AT);
+
   // What a texel needs of a column or row to be read: the line's part, and the bit above the bank's.
   localparam int WAY_X = LINE_X + 1;
   localparam int WAY_Y = LINE_Y + 1;
-  localparam logic [WAY_Y-1:0] HALF_OF_WAY = WAY_Y'(1) << LINE_Y;  // its highest bit, that of a place along y likewise
+  localparam logic [WAY_Y-1:0] HALF_OF_WAY = WAY_Y'(WAYS == 1) << LINE_Y;  // its highest bit, that of a place along y likewise
   logic [2*WAY_X-1:0] way_x;
   logic [2*WAY_Y-1:0] way_y;
   assign way_x = x_i[0] ? {x_i[1+:WAY_X], x_i[SIDE_BITS+1+:WAY_X]} : {x_i[SIDE_BITS+1+:WAY_X], x_i[1+:WAY_X]};
@@ -102,21 +106,22 @@ module texture_cache_linear #(
   logic [TAIL-1:0]    tail;
   logic [2*WAY_X-1:0] at_x;
   logic [2*WAY_Y-1:0] at_y;
-  logic [3:0]         parity, d_parity_q;
+  logic [3:0]         parity, d_parity_q, found_ways;
   logic               d_valid_q;
   logic [1:0]         d_odd_x_q;  // of the even and the odd column, the bit above the lowest
   logic [2:0]         d_format_q;
   logic [TAIL-1:0]    d_tail_q;
-  localparam int WAYS = 2 * WAY_X + 2 * WAY_Y + 4 + 3;
+  localparam int PLACES = 2 * WAY_X + 2 * WAY_Y + 4 + 3;
   /* verilator lint_off UNUSEDSIGNAL */
-  logic [WAYS-1:0]    looked_up_ways;
+  logic [PLACES-1:0]  looked_up_places;
   /* verilator lint_on UNUSEDSIGNAL */
   texture_tags #(
       .LINES    (LINES),
+      .WAYS     (WAYS),
       .PORT_BITS(PORT_BITS),
       .IN_FLIGHT(IN_FLIGHT),
       .REQUESTS (REQUESTS),
-      .CARRIED  (WAYS + TAIL),
+      .CARRIED  (PLACES + TAIL),
       .SIDE_BITS(SIDE_BITS)
   ) u_tags (
       .clk_i,
@@ -138,11 +143,12 @@ module texture_cache_linear #(
       .tags_are_empty_o,
       .looked_up_o,
       .lacks_o            (lacks),
-      .looked_up_carried_o({looked_up_ways, looked_up_tail_o}),
+      .looked_up_carried_o({looked_up_places, looked_up_tail_o}),
       .miss_o,
       .found_valid_o      (found_valid),
       .found_ready_i      (!d_valid_q || code_ready_i),
       .found_carried_o    ({at_x, at_y, parity, format, tail}),
+      .found_ways_o       (found_ways),
       .word_valid_o       (fills_word),
       .word_o             (fill_word),
       .line_o             (fill_line),
@@ -181,14 +187,17 @@ module texture_cache_linear #(
       logic [31:0]     word, data;
       logic [15:0]     half;
       logic            is_row, row, pair;
-      logic [LINE-1:0] line;
+      logic [LINE-1:0] line, place;
+      logic            way;
       // A word of 64 bits has two rows of bytes, a row of halves, or half a row; of its texels every second is the bank's.
       assign is_row = fill_size == 2'd0 || (fill_size == 2'd1 ? fill_place[0] : fill_place[1]) == 1'(Y);
       assign row    = fill_size == 2'd0 ? fill_place[0] : fill_size == 2'd1 ? fill_place[1] : fill_place[2];
       assign pair   = fill_size == 2'd2 && fill_place[0];
       assign data   = fill_size == 2'd0 ? {16'd0, fill_word[8*(4*Y+X+2)+:8], fill_word[8*(4*Y+X)+:8]} :
                       fill_size == 2'd1 ? {fill_word[16*(X+2)+:16], fill_word[16*X+:16]} : fill_word[32*X+:32];
-      assign line   = {at_y[Y*WAY_Y+1+:LINE_Y], at_x[X*WAY_X+1+:LINE_X]};
+      assign place  = {at_y[Y*WAY_Y+1+:LINE_Y], at_x[X*WAY_X+1+:LINE_X]};
+      assign way    = found_ways[{at_y[Y*WAY_Y+1], at_x[X*WAY_X+1]}];
+      assign line   = (place & FIRST) | LINE'(way) << WAY_AT;
       sram #(
           .WIDTH    (32),
           .DEPTH    (4 * LINES),

@@ -12,6 +12,7 @@ module texture_lanes #(
     parameter int SIDE_BITS = 12,
     parameter int AHEAD = 16,      // groups
     parameter int LINES = 64,      // a power of two, at least 16
+    parameter int WAYS = 1,        // 1 or 2
     parameter int PORT_BITS = 64,  // 16, 32 or 64
     parameter int IN_FLIGHT = 32,  // passes that wait; a power of two
     parameter int TAIL = 1         // bits that go along with a group
@@ -215,7 +216,9 @@ module texture_lanes #(
     end
 
   // ----------------------------------------------------------------------------------------------------------------- tags
-  localparam int WAYS = 2 * (BANK_X + BANK_Y);  // of the lines, what says where in their bank they lie
+  localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // of a line's number the bit that is the way: texture_tags.sv
+  localparam logic [LINE-1:0] FIRST = ~(LINE'(WAYS - 1) << WAY_AT);
+  localparam int PLACES = 2 * (BANK_X + BANK_Y);  // of the lines, what says where in their bank they lie
   localparam int SHAPE = 8 + 16 * ENDS + 4;     // odd, low, joins
   localparam int REST = 1 + 3 + PARTS + TAIL;
   logic               fills_word, tags_are_idle, looked_up, found, reads;
@@ -224,7 +227,8 @@ module texture_lanes #(
   logic [63:0]        fill_word;
   logic [2:0]         fill_place;  // of the word in its line
   logic [3:0]         lacks;
-  logic [WAYS-1:0]    p_ways, ways;
+  logic [PLACES-1:0]  p_places, places;
+  logic [3:0]         found_ways;
   logic [7:0]         t_odd, odd_at;
   logic [16*ENDS-1:0] t_low, low_at;
   logic [3:0]         t_joins, joins_at;
@@ -233,17 +237,18 @@ module texture_lanes #(
   logic [PARTS-1:0] parts_at;
   logic [TAIL-1:0]    tail;
   /* verilator lint_off UNUSEDSIGNAL */
-  logic [WAYS-1:0]    t_ways;
+  logic [PLACES-1:0]  t_places;
   logic [REST-1:0]    t_rest;
   /* verilator lint_on UNUSEDSIGNAL */
   logic               d_valid_q, d_ready;
-  assign p_ways = {p_block_q[3*BLOCK+1+:BANK_Y], p_block_q[2*BLOCK+1+:BANK_Y],
-                   p_block_q[BLOCK+1+:BANK_X], p_block_q[1+:BANK_X]};
+  assign p_places = {p_block_q[3*BLOCK+1+:BANK_Y], p_block_q[2*BLOCK+1+:BANK_Y],
+                     p_block_q[BLOCK+1+:BANK_X], p_block_q[1+:BANK_X]};
   texture_tags #(
       .LINES    (LINES),
+      .WAYS     (WAYS),
       .PORT_BITS(PORT_BITS),
       .IN_FLIGHT(IN_FLIGHT),
-      .CARRIED  (WAYS + SHAPE + REST),
+      .CARRIED  (PLACES + SHAPE + REST),
       .SIDE_BITS(SIDE_BITS)
   ) u_tags (
       .clk_i,
@@ -254,7 +259,7 @@ module texture_lanes #(
       .used_i             (p_used_q),
       .block_x_i          (p_block_q[2*BLOCK-1:0]),
       .block_y_i          (p_block_q[4*BLOCK-1:2*BLOCK]),
-      .carried_i          ({p_ways, p_odd_q, p_low_q, p_joins_q, p_ends_q, format_i, p_parts_q, p_tail_q}),
+      .carried_i          ({p_places, p_odd_q, p_low_q, p_joins_q, p_ends_q, format_i, p_parts_q, p_tail_q}),
       .offset_i           (24'd0),
       .row_i,
       .is_odd_i           (1'b0),
@@ -265,11 +270,12 @@ module texture_lanes #(
       .tags_are_empty_o   (tags_are_empty),
       .looked_up_o        (looked_up),
       .lacks_o            (lacks),
-      .looked_up_carried_o({t_ways, t_odd, t_low, t_joins, t_rest}),
+      .looked_up_carried_o({t_places, t_odd, t_low, t_joins, t_rest}),
       .miss_o,
       .found_valid_o      (found),
       .found_ready_i      (d_ready),
-      .found_carried_o    ({ways, odd_at, low_at, joins_at, ends_at, format, parts_at, tail}),
+      .found_carried_o    ({places, odd_at, low_at, joins_at, ends_at, format, parts_at, tail}),
+      .found_ways_o       (found_ways),
       .word_valid_o       (fills_word),
       .word_o             (fill_word),
       .line_o             (fill_line),
@@ -345,15 +351,17 @@ module texture_lanes #(
       for (x = 0; x < 4; x++) begin : gen_bank
         logic              is_there;
         logic [31:0]       data;
-        logic [BANK_X-1:0] way_x;
-        logic [BANK_Y-1:0] way_y;
+        logic [BANK_X-1:0] place_x;
+        logic [BANK_Y-1:0] place_y;
+        logic              way;
         // A word of 64 bits has two rows of bytes, a row of halves, or half a row.
         assign is_there = fill_size == 2'd0 ? fill_place[0] == 1'(y / 2) : fill_size == 2'd1 ? fill_place[1:0] == 2'(y) :
                           fill_place == 3'(2 * y + x / 2);
         assign data  = fill_size == 2'd0 ? {24'd0, fill_word[8*(4*(y%2)+x)+:8]} :
                        fill_size == 2'd1 ? {16'd0, fill_word[16*x+:16]} : fill_word[32*(x%2)+:32];
-        assign way_x = odd_at[x] ? ways[BANK_X+:BANK_X] : ways[0+:BANK_X];
-        assign way_y = odd_at[4+y] ? ways[2*BANK_X+BANK_Y+:BANK_Y] : ways[2*BANK_X+:BANK_Y];
+        assign place_x = odd_at[x] ? places[BANK_X+:BANK_X] : places[0+:BANK_X];
+        assign place_y = odd_at[4+y] ? places[2*BANK_X+BANK_Y+:BANK_Y] : places[2*BANK_X+:BANK_Y];
+        assign way     = found_ways[{odd_at[4+y], odd_at[x]}];
         sram #(
             .WIDTH    (32),
             .DEPTH    (LINES),
@@ -361,7 +369,7 @@ module texture_lanes #(
         ) u_data (
             .clk_i,
             .read_i         (reads),
-            .read_address_i ({way_y, odd_at[4+y], way_x, odd_at[x]}),
+            .read_address_i (({place_y, odd_at[4+y], place_x, odd_at[x]} & FIRST) | LINE'(way) << WAY_AT),
             .data_o         (code[32*(4*y+x)+:32]),
             .write_i        (fills_word && is_there),
             .write_address_i(fill_line),

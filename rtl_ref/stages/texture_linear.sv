@@ -10,6 +10,7 @@ module texture_linear #(
     parameter int SIDE_BITS = 12,
     parameter int AHEAD = 16,
     parameter int LINES = 64,
+    parameter int WAYS = 1,
     parameter int PORT_BITS = 64,
     parameter int IN_FLIGHT = 32,
     parameter int TAIL = 1,
@@ -226,6 +227,7 @@ module texture_linear #(
 
   texture_cache_linear #(
       .LINES    (LINES),
+      .WAYS     (WAYS),
       .PORT_BITS(PORT_BITS),
       .IN_FLIGHT(IN_FLIGHT),
       .TAIL     (CARRIED),

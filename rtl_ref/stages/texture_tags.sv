@@ -7,9 +7,14 @@
 // four banks, by the lowest bits of a block's column and row, so each bank looks up at most one line of a pass. A pass whose
 // lines are all there takes a clock, one with n misses n clocks; they are asked for bank by bank, and the pass waits in the queue
 // until all have come. What may be given away for a line, and what a reset leaves: as in texture_cache.sv.
+//
+// Of two ways a block may lie in two places: the highest bit of a place's row, or of its column where that has more of them, is
+// not the block's but the way. Not there, it takes the place of the one that was looked up longer ago, in the order of passes; so
+// the way follows from the data alone. Levels then need no halves of their own.
 // Specification: look_up() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_tags #(
     parameter int LINES = 64,      // a power of two, at least 16
+    parameter int WAYS = 1,        // 1 or 2
     parameter int PORT_BITS = 64,  // 16, 32 or 64
     parameter int IN_FLIGHT = 32,  // passes that wait; a power of two
     parameter int REQUESTS = 16,   // lines that are not answered; a power of two
@@ -55,6 +60,7 @@ module texture_tags #(
     output logic               found_valid_o,
     input  logic               found_ready_i,
     output logic [CARRIED-1:0] found_carried_o,
+    output logic [3:0]         found_ways_o,  // of each bank's line the way; of one 0
 
     // A word of a line has come: of which size (log2 of the line's bytes, less 4), line and place in it
     output logic            word_valid_o,
@@ -80,20 +86,28 @@ module texture_tags #(
   localparam int BANK_X = LINE_X - 1;     // of a line's number in its bank
   localparam int BANK_Y = LINE_Y - 1;
   localparam int BANK = BANK_X + BANK_Y;
+  localparam int WAY_AT = (LINE % 2 == 0 ? BANK : BANK_X) - 1;  // the bit of a place in its bank that is the way
+  localparam int SET = BANK - WAYS + 1;
+  localparam int SETS = LINES / 4 / WAYS;
   localparam int NUMBER = 7;
   localparam int GROUP = 3;
   localparam int COUNT = NUMBER + GROUP;
   localparam int COME = $clog2(4 * (IN_FLIGHT + 1) + 1);
-  localparam logic [BANK_Y-1:0] HALF_OF_BANK = BANK_Y'(1) << (BANK_Y - 1);
+  localparam logic [BANK_Y-1:0] HALF_OF_BANK = BANK_Y'(WAYS == 1) << (BANK_Y - 1);
+  localparam logic [BANK-1:0] FIRST = ~(BANK'(WAYS - 1) << WAY_AT);  // of a place the bits without the way
+
+  function automatic [SET-1:0] set_of(input [BANK-1:0] place);
+    set_of = WAYS == 1 ? SET'(place) : SET'(place >> (WAY_AT + 1) << WAY_AT) | SET'(place & BANK'((1 << WAY_AT) - 1));
+  endfunction
 
   // -------------------------------------------------------------------------------------------------------------------- tags
   logic               t_valid_q, t_enters, t_goes;
   logic [CARRIED-1:0] t_carried_q;
-  logic [3:0]         t_used_q, known, referenced, missing, asks, asked_q;
+  logic [3:0]         t_used_q, known, referenced, missing, asks, asked_q, way;
   logic [4*28-1:0]    t_address_q;
   logic [4*BANK-1:0]  t_place_q;
   logic               sweeps_q, is_occupied, blocked, any_asks;
-  logic [BANK-1:0]    sweep_q;
+  logic [SET-1:0]     sweep_q;
   logic [COUNT-1:0]   issued_q, read_q;
   /* verilator lint_off UNUSEDSIGNAL */
   logic [COUNT-1:0]   last;
@@ -110,35 +124,72 @@ module texture_tags #(
   assign oldest_group     = read_q[COUNT-1:GROUP];
   assign is_occupied      = issued_q != read_q;
 
-  genvar b;
+  genvar b, w;
   generate
     for (b = 0; b < 4; b++) begin : gen_tags
       localparam int X = b % 2;
       localparam int Y = b / 2;
-      logic              tag_valid, same_place_q, same_line_q;
-      logic [27:0]       tag, address;
-      logic [NUMBER-1:0] tag_group;
-      logic [BANK-1:0]   place;
+      logic                   same_place_q, same_line_q, writes, recent_way;  // the way of the line in front
+      logic [WAYS-1:0]        is_there;
+      logic [WAYS*NUMBER-1:0] groups;
+      logic [27:0]            address;
+      logic [BANK-1:0]        place;
+      logic [SET-1:0]         set, write_set;
       assign address = {base_i, 2'd0} + (28'(block_y_i[Y*BLOCK+:BLOCK]) << row_i |
                                          28'(block_x_i[X*BLOCK+:BLOCK]) << size_i | 28'(offset_i));
       assign place   = {(block_y_i[Y*BLOCK+1+:BANK_Y] & ~(HALF_OF_BANK & {BANK_Y{shares_i}})) |
-                        (HALF_OF_BANK & {BANK_Y{shares_i && is_odd_i}}), block_x_i[X*BLOCK+1+:BANK_X]};
-      sram #(
-          .WIDTH    (1 + 28 + NUMBER),
-          .DEPTH    (LINES / 4),
-          .READS_OLD(0)
-      ) u_tags (
-          .clk_i,
-          .read_i         (t_enters),
-          .read_address_i (place),
-          .data_o         ({tag_valid, tag, tag_group}),
-          .write_i        ((t_goes && t_used_q[b]) || sweeps_q),
-          .write_address_i(sweeps_q ? sweep_q : t_place_q[b*BANK+:BANK]),
-          .data_i         ({!sweeps_q, t_address_q[b*28+:28], sweeps_q ? last_group : group})
-      );
-      assign known[b] = same_place_q ? same_line_q : tag_valid && tag == t_address_q[b*28+:28];
-      assign referenced[b] = is_occupied && NUMBER'(group - (same_place_q ? last_group : tag_group)) <=
-                                            NUMBER'(group - oldest_group);
+                        (HALF_OF_BANK & {BANK_Y{shares_i && is_odd_i}}), block_x_i[X*BLOCK+1+:BANK_X]} & FIRST;
+      assign set       = set_of(place);
+      assign writes    = (t_goes && t_used_q[b]) || sweeps_q;
+      assign write_set = sweeps_q ? sweep_q : set_of(t_place_q[b*BANK+:BANK]);
+      for (w = 0; w < WAYS; w++) begin : gen_ways
+        logic              tag_valid, is_written, is_recent;  // what was written as this was read
+        logic [27:0]       tag;
+        logic [NUMBER-1:0] tag_group;
+        logic [NUMBER+28:0] tag_new;
+        assign is_written = sweeps_q || way[b] == 1'(w);
+        assign tag_new    = {!sweeps_q, t_address_q[b*28+:28], sweeps_q ? last_group : group};
+        sram #(
+            .WIDTH    (1 + 28 + NUMBER),
+            .DEPTH    (SETS),
+            .READS_OLD(0)
+        ) u_tags (
+            .clk_i,
+            .read_i         (t_enters),
+            .read_address_i (set),
+            .data_o         ({tag_valid, tag, tag_group}),
+            .write_i        (writes && is_written),
+            .write_address_i(write_set),
+            .data_i         (tag_new)
+        );
+        assign is_recent   = same_place_q && recent_way == 1'(w);
+        assign is_there[w] = is_recent ? same_line_q : tag_valid && tag == t_address_q[b*28+:28];
+        assign groups[w*NUMBER+:NUMBER] = is_recent ? last_group : tag_group;
+      end
+      if (WAYS == 1) begin : gen_one_way
+        assign recent_way = 1'b0;
+        assign way[b]     = 1'b0;
+      end else begin : gen_two_ways
+        logic recent_way_q, newer;  // of a set the way that was looked up last
+        sram #(
+            .WIDTH    (1),
+            .DEPTH    (SETS),
+            .READS_OLD(0)
+        ) u_newer (
+            .clk_i,
+            .read_i         (t_enters),
+            .read_address_i (set),
+            .data_o         (newer),
+            .write_i        (writes),
+            .write_address_i(write_set),
+            .data_i         (way[b] && !sweeps_q)
+        );
+        assign recent_way = recent_way_q;
+        assign way[b]     = known[b] ? is_there[1] : same_place_q ? !recent_way_q : !newer;
+        always_ff @(posedge clk_i) if (t_enters) recent_way_q <= way[b];
+      end
+      assign known[b]      = is_there != '0;
+      assign referenced[b] = is_occupied && NUMBER'(group - groups[way[b]*NUMBER+:NUMBER]) <= NUMBER'(group - oldest_group);
       always_ff @(posedge clk_i)
         if (t_enters) begin
           t_address_q[b*28+:28]     <= address;
@@ -176,7 +227,7 @@ module texture_tags #(
       t_valid_q <= t_enters || (t_valid_q && !t_goes);
       asked_q   <= t_goes ? '0 : asked_q | (asks & {4{any_asks}});
       sweeps_q  <= drop_i || (sweeps_q && sweep_q != '1);
-      sweep_q   <= drop_i ? '0 : sweep_q + BANK'(sweeps_q);
+      sweep_q   <= drop_i ? '0 : sweep_q + SET'(sweeps_q);
       issued_q  <= issued_q + COUNT'(t_goes);
       read_q    <= read_q + COUNT'(reads);
     end
@@ -197,7 +248,7 @@ module texture_tags #(
     for (int i = 0; i < 4; i++)
       if (asks[i]) begin
         asked_address = t_address_q[i*28+:28];
-        asked_place   = t_place_q[i*BANK+:BANK];
+        asked_place   = t_place_q[i*BANK+:BANK] | BANK'(way[i]) << WAY_AT;
       end
   end
   assign asked_line = {asked_place[BANK-1:BANK_X], |asks[3:2], asked_place[BANK_X-1:0], asks[3] || asks[1]};
@@ -235,20 +286,25 @@ module texture_tags #(
   );
 
   // ---------------------------------------------------------------------------------------------------- passes that wait
-  logic [2:0] waits_for;
+  localparam int CARRIES_WAYS = (WAYS == 1) ? 0 : 4;
+  localparam int WAITING = CARRIES_WAYS + 3 + CARRIED;
+  logic [2:0]         waits_for;
+  logic [WAITING-1:0] found;
   fifo #(
-      .WIDTH(3 + CARRIED),
+      .WIDTH(WAITING),
       .DEPTH(IN_FLIGHT)
   ) u_waiting (
       .clk_i,
       .rst_ni,
       .valid_i(t_goes),
       .ready_o(waiting_ready),
-      .data_i ({misses, t_carried_q}),
+      .data_i (WAITING'({way, misses, t_carried_q})),
       .valid_o(waiting_valid),
       .ready_i(reads),
-      .data_o ({waits_for, found_carried_o})
+      .data_o (found)
   );
+  assign {waits_for, found_carried_o} = found[3+CARRIED-1:0];
+  assign found_ways_o = 4'(found >> (3 + CARRIED));
   assign found_valid_o = waiting_valid && come_q >= COME'(waits_for);
   assign reads         = found_valid_o && found_ready_i;
 

@@ -30,6 +30,7 @@ module texture_unit #(
     parameter int QUEUE = 16,           // stamps inside; a power of two
     parameter int IN_FLIGHT = 32,       // samples between address and texel; a power of two
     parameter int LINES = 64,           // of the cache; a power of two
+    parameter int WAYS = 1,             // of them, in which a block may lie: 1 or 2, not of one nearest texel
     parameter int PORT_BITS = 64,       // of a beat
     parameter int WORD = 46,            // bits that a state brings: of a level's lines 70 or 104, else 46
     parameter int PIXEL = 12,           // of a pixel's column and row
@@ -444,6 +445,7 @@ module texture_unit #(
           .SIDE_BITS(SIDE_BITS),
           .AHEAD    (AHEAD),
           .LINES    (LINES),
+          .WAYS     (WAYS),
           .PORT_BITS(PORT_BITS),
           .IN_FLIGHT(IN_FLIGHT),
           .TAIL     (TAIL)
@@ -531,6 +533,7 @@ module texture_unit #(
           .SIDE_BITS     (SIDE_BITS),
           .AHEAD         (AHEAD),
           .LINES         (LINES),
+          .WAYS          (WAYS),
           .PORT_BITS     (PORT_BITS),
           .IN_FLIGHT     (IN_FLIGHT),
           .TAIL          (TAIL)

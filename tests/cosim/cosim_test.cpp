@@ -310,6 +310,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   Config with_textures = preset("embedded");
   with_textures.texture_unit = TextureUnitKind::trilinear;
   with_textures.perspective_colors = 1;
+  with_textures.texture_ways = 2;
   Config with_operations = preset("embedded");
   with_operations.texture_unit = TextureUnitKind::bilinear;
   with_operations.texture_lanes = 4;

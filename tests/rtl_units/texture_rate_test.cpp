@@ -144,5 +144,30 @@ TEST(TextureRate, FourLanesTakeAStampAClock) {
       }
 }
 
+// Where two levels' lines want one place each, again and again, a second place keeps both.
+TEST(TextureRate, TwoWaysHoldTwoLevels) {
+  Config config;
+  config.memory_port_bits = 64;
+  for (const int lines : {16, 32, 64})
+    for (const Lod lod : {64, 128, 192})
+      for (const double degrees : {0.0, 30.0, 90.0}) {
+        std::array<Rate, 2> of_ways{};
+        for (const int ways : {1, 2}) {
+          TextureSettings settings{lines, 64, 16, 32, true, true};
+          settings.ways = ways;
+          const auto memory = make_memory({MemoryKind::ddr3, 0, 50}, config);
+          of_ways[static_cast<std::size_t>(ways - 1)] =
+              rate(TextureFormat::rgb565, *memory, settings, degrees, 8, TextureMin::linear_mipmap_linear, lod);
+        }
+        EXPECT_GE(of_ways[1].hits, of_ways[0].hits) << lines << ' ' << lod << ' ' << degrees;
+        if (lines >= 32) {
+          EXPECT_GE(of_ways[1].samples, 0.46) << "one in two clocks is what two levels leave";
+        }
+        std::cout << lines << " lines, level of detail " << lod / 256.0 << ", " << degrees << " degrees: one way "
+                  << 100 * of_ways[0].hits << " % hits, " << of_ways[0].samples << " samples a clock; two ways "
+                  << 100 * of_ways[1].hits << " %, " << of_ways[1].samples << '\n';
+      }
+}
+
 }  // namespace
 }  // namespace halfplane

@@ -18,6 +18,7 @@
 #include "VTextureUnitLevels.h"
 #include "VTextureUnitLevelsFaults.h"
 #include "VTextureUnitLevelsTiny.h"
+#include "VTextureUnitLevelsWays.h"
 #include "VTextureUnitLinear.h"
 #include "VTextureUnitLinearFaults.h"
 #include "VTextureUnitLinearTiny.h"
@@ -33,8 +34,10 @@ const UnitFormat kLinear{4, 4, {64, 64, 16, 32, true}, kEmbeddedPerspective};
 const UnitFormat kLinearTiny{1, 3, {16, 16, 4, 8, true}, kTinyPerspective};
 const UnitFormat kLevels{4, 4, {64, 64, 16, 32, true, true, 104}, kEmbeddedPerspective, true};
 const UnitFormat kLevelsTiny{1, 3, {16, 16, 4, 8, true, true, 70}, kTinyPerspective};
+const UnitFormat kLevelsWays{1, 3, {16, 16, 4, 8, true, true, 70, 1, 1, 2}, kTinyPerspective};
 const UnitFormat kLanes{4, 4, {64, 64, 32, 32, true, false, 104, 4, 2}, kEmbeddedPerspective, true};
-const UnitFormat kLanesFull{16, 4, {16, 16, 8, 8, false, false, 104, 4, 4}, kFullPerspective, true};
+const UnitFormat kLanesWays{4, 4, {16, 64, 32, 32, true, false, 104, 4, 2, 2}, kEmbeddedPerspective, true};
+const UnitFormat kLanesFull{16, 4, {256, 16, 8, 8, false, false, 104, 4, 4, 2}, kFullPerspective, true};
 const UnitFormat kFull{16, 4, {256, 128, 16, 64}, kFullPerspective, true};
 
 std::uint64_t seed_of_run() {
@@ -279,6 +282,9 @@ TEST(TextureUnit, WithLevelsItIsItsSpecificationInEveryCycle) { expect_right<VTe
 TEST(TextureUnit, TinyWithLevelsItIsItsSpecificationInEveryCycle) {
   expect_right<VTextureUnitLevelsTiny>(kLevelsTiny, 50'000);
 }
+TEST(TextureUnit, WithLevelsAndTwoWaysItIsItsSpecificationInEveryCycle) {
+  expect_right<VTextureUnitLevelsWays>(kLevelsWays, 100'000);
+}
 TEST(TextureUnit, FullIsItsSpecificationInEveryCycle) { expect_right<VTextureUnitFull>(kFull, 200'000); }
 
 TEST(TextureUnit, OfFourLanesItIsItsSpecificationInEveryCycle) { expect_right<VTextureUnitLanes>(kLanes, 400'000); }
@@ -311,8 +317,8 @@ TEST(TextureUnit, FaultsOfLevelsAreFound) {
 TEST(TextureUnit, FaultsOfColorsOverWAreFound) {
   expect_found<VTextureUnitFaults>(kEmbedded, TEXTURE_LEVELS_FAULTS + 1, TEXTURE_COLORS_FAULTS);
 }
-TEST(TextureUnit, FaultsOfLanesAreFound) {
-  expect_found<VTextureUnitLanesFaults>(kLanes, TEXTURE_COLORS_FAULTS + 1, TEXTURE_FAULTS);
+TEST(TextureUnit, FaultsOfLanesAndWaysAreFound) {
+  expect_found<VTextureUnitLanesFaults>(kLanesWays, TEXTURE_COLORS_FAULTS + 1, TEXTURE_FAULTS);
 }
 
 }  // namespace

@@ -147,6 +147,7 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   Config textured;
   textured.texture_unit = TextureUnitKind::trilinear;
   textured.perspective_colors = 1;
+  textured.texture_ways = 2;
   EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
   Config blended;
   blended.texture_unit = TextureUnitKind::bilinear;

@@ -43,6 +43,9 @@ const std::vector<Config>& configurations() {
       with("full", {{"texture.unit", "trilinear"}, {"perspective.colors", "1"}}),
       with("embedded", {{"texture.unit", "bilinear"}, {"texture.lanes", "4"}, {"perspective.colors", "1"}}),
       with("full", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"texture.cache_kb", "1"}}),
+      with("embedded", {{"texture.unit", "trilinear"}, {"texture.cache_kb", "1"}, {"texture.ways", "2"}}),
+      with("full",
+           {{"texture.unit", "bilinear"}, {"texture.lanes", "4"}, {"texture.cache_kb", "2"}, {"texture.ways", "2"}}),
       with("full", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}, {"stamp.size", "1"}}),
       with("tiny", {{"texture.unit", "nearest"},
                     {"perspective.colors", "1"},
@@ -376,9 +379,40 @@ TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
   EXPECT_THROW(validate(with("full", {{"texture.unit", "nearest"}, {"stamp.size", "8"}})), InputError);
   EXPECT_THROW(validate(with("embedded", {{"texture.cache_kb", "3"}})), InputError);
   EXPECT_THROW(validate(with("embedded", {{"texture.lanes", "2"}})), InputError);
+  EXPECT_THROW(validate(with("embedded", {{"texture.ways", "3"}})), InputError);
+  EXPECT_THROW(validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.ways", "2"}})), InputError);
+  EXPECT_NO_THROW(
+      validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"texture.ways", "2"}})));
   EXPECT_THROW(validate(with("embedded", {{"texture.unit", "trilinear"}, {"texture.lanes", "4"}})), InputError);
   EXPECT_THROW(validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"stamp.size", "1"}})),
                InputError);
+}
+
+// Of two ways the one looked up longer ago goes, whether it was found then or filled; of one way the only one.
+TEST(TextureCacheWays, ABlockTakesThePlaceOfTheOneLookedUpLongerAgo) {
+  TextureCache one(16), two(16, 2);
+  EXPECT_EQ(one.line_of(3, 2), 11U);
+  EXPECT_EQ(two.line_of(3, 2), 3U) << "the highest bit of the row is the way";
+  EXPECT_EQ(TextureCache(32, 2).line_of(7, 3), 27U) << "or of the column, which has more";
+  EXPECT_EQ(one.line_of(1, 0, 1), 9U);
+  EXPECT_EQ(two.line_of(1, 0, 1), 1U) << "levels have no halves";
+  const auto hits = [](TextureCache& cache, std::uint32_t address) {
+    const auto [line, is_hit] = cache.access(address, 1);
+    EXPECT_EQ(cache.find(address, 1), line);
+    return is_hit;
+  };
+  for (const std::uint32_t address : {64U, 128U}) EXPECT_FALSE(hits(two, address));
+  EXPECT_NE(two.find(64, 1), two.find(128, 1));
+  EXPECT_TRUE(hits(two, 64));
+  EXPECT_FALSE(hits(two, 192));
+  EXPECT_TRUE(hits(two, 64)) << "looked up after 128, which has gone";
+  EXPECT_FALSE(hits(two, 128));
+  EXPECT_FALSE(hits(two, 192)) << "gone for 128";
+  two.drop();
+  EXPECT_FALSE(hits(two, 192));
+  EXPECT_FALSE(hits(one, 64));
+  EXPECT_FALSE(hits(one, 128));
+  EXPECT_FALSE(hits(one, 64));
 }
 
 // A triangle in window space may have any w; by one that is not above 0 nothing can be divided.

@@ -67,7 +67,7 @@ soak_cosim() {
     'embedded tile.size=4 stamp.size=1 cache.lines=64 context.slots=8 hiz.bits=0'
     'small lines.unit=1 tile.size=16 context.slots=4 hiz.bits=5'
     'embedded stamp.size=4 memory.port_bits=32 texture.unit=nearest texture.cache_kb=1 texture.queue=8'
-    'full texture.unit=trilinear' 'full texture.unit=nearest texture.lanes=4 texture.cache_kb=1 texture.queue=8')
+    'full texture.unit=trilinear' 'full texture.unit=nearest texture.lanes=4 texture.cache_kb=1 texture.ways=2 texture.queue=8')
   [[ $primitives =~ ^[1-9][0-9]*$ ]] || { say "./dev soak-cosim: N is a whole number, not '$primitives'"; exit 2; }
   ensure "${everyday[@]}"
   insist build sim rtl
@@ -80,7 +80,7 @@ soak_cosim() {
     "-DHALFPLANE_RTL_CONFIGS=$rtl_presets" "-DHALFPLANE_RTL_EXTRA=$(IFS=';' && echo "${folders[*]}")"
   step 'build them' cmake --build build/soak --parallel "$(jobs)" --target halfplane_program
   say "== $primitives random primitives per configuration; a twentieth of it for full with its stamp of 4, and for corners"
-  local whole=(small tiny embedded 'embedded perspective.colors=1 texture.unit=trilinear' "${sizes[@]}") all
+  local whole=(small tiny embedded 'embedded perspective.colors=1 texture.unit=trilinear texture.ways=2' "${sizes[@]}") all
   all=("${whole[@]}" full "${corners[@]}")
   for i in "${!all[@]}"; do
     config=${all[i]} left=$primitives

@@ -95,7 +95,7 @@ class TextureTiming {
         ahead_(kAhead, settings.has_levels ? kLevelClocks : kClocks, 1),
         waiting_(settings.in_flight, 1, 1),
         requests_(settings.has_banks() ? kRequests : settings.in_flight, 1, 1),
-        sweep_(static_cast<Cycle>(settings.has_banks() ? settings.lines / 4 : settings.lines)),
+        sweep_(static_cast<Cycle>(settings.has_banks() ? settings.lines / 4 / settings.ways : settings.lines)),
         swept_(start + sweep_),
         request_room_(std::max(start, recovered)),
         lines_(static_cast<std::size_t>(settings.lines)),

@@ -29,6 +29,7 @@ package raster_pkg;
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
   localparam int TEXTURE_LANES = 1;  // that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4
+  localparam int TEXTURE_WAYS = 1;
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
   localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
   localparam int RECIPROCAL_KIND = 0;  // 0 table, 1 restoring: what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time
