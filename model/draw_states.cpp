@@ -178,7 +178,7 @@ constexpr std::array<Words, 8> depth_words{"never",   "less",   "lequal",   "equ
 constexpr std::array<Words, 2> switch_words{"off", "on"};
 constexpr std::array<Words, 4> cull_words{"none", "back", "front", "both"};
 constexpr std::array<Words, 2> front_words{"ccw", "cw"};
-constexpr std::array<Words, 2> shade_words{"smooth", "flat"};
+constexpr std::array<Words, 3> shade_words{"smooth", "flat", "phong"};
 constexpr std::array<Words, 2> interp_words{"affine", "perspective"};
 constexpr std::array<Words, 2> clip_z_words{"minus_one_one", "zero_one"};
 constexpr std::array<Words, 2> pixel_center_words{"half", "integer"};
@@ -254,6 +254,21 @@ constexpr std::array<StateNumber, 3> fog_numbers{
      {.what = "fog's end", .low = 0, .high = farthest, .random_step = 0.25, .random_count = 13, .repeats = 1}}};
 constexpr std::array<StateNumber, 3> fog_color_numbers{
     {byte_number("fog_color's red"), byte_number("fog_color's green"), byte_number("fog_color's blue")}};
+constexpr std::array<StateNumber, 3> light_direction_numbers{
+    {{"light_direction's x", -farthest, farthest, false, false, -1, 0.5, 5},
+     {"light_direction's y", -farthest, farthest, false, false, -1, 0.5, 5},
+     {"light_direction's z", -farthest, farthest, false, false, -1, 0.5, 5}}};
+constexpr std::array<StateNumber, 3> light_half_numbers{
+    {{"light_half's x", -farthest, farthest, false, false, -1, 0.5, 5},
+     {"light_half's y", -farthest, farthest, false, false, -1, 0.5, 5},
+     {"light_half's z", -farthest, farthest, false, false, -1, 0.5, 5}}};
+constexpr std::array<StateNumber, 3> light_ambient_numbers{
+    {byte_number("light_ambient's red"), byte_number("light_ambient's green"), byte_number("light_ambient's blue")}};
+constexpr std::array<StateNumber, 3> light_diffuse_numbers{
+    {byte_number("light_diffuse's red"), byte_number("light_diffuse's green"), byte_number("light_diffuse's blue")}};
+constexpr std::array<StateNumber, 3> light_specular_numbers{
+    {byte_number("light_specular's red"), byte_number("light_specular's green"), byte_number("light_specular's blue")}};
+constexpr std::array<StateNumber, 1> light_shininess_numbers{{{"light_shininess", 1, 128, false, false, 1, 0.75, 170}}};
 constexpr std::array<StateNumber, 2> alpha_test_numbers{
     {word_number("alpha_test's function", depth_words), byte_number("alpha_test's reference")}};
 constexpr std::array<StateNumber, 4> blend_numbers{
@@ -345,7 +360,9 @@ constexpr std::array table{
                         .home = StateHome::primitive}),
     row<&State::shade>({.name = "shade",
                         .words = shade_words,
-                        .purpose = "flat: the colour of the provoking vertex, all over the primitive"}),
+                        .purpose = "flat: the colour of the provoking vertex, all over the primitive; phong: of filled "
+                                   "triangles, colours in the light of each fragment",
+                        .refused = "phong"}),
     row<&State::color_interp>({.name = "color_interp",
                                .words = interp_words,
                                .purpose = "how colours run over a primitive",
@@ -459,6 +476,38 @@ constexpr std::array table{
                             .form = "r g b",
                             .purpose = "the colour of fog, which takes the place of the rest",
                             .home = StateHome::unit}),
+    row<&State::light_direction>({.name = "light_direction",
+                                  .numbers = light_direction_numbers,
+                                  .form = "x y z",
+                                  .purpose = "of `shade phong`: to the light, in the space of the normals, of any "
+                                             "length",
+                                  .home = StateHome::unit}),
+    row<&State::light_half>(
+        {.name = "light_half",
+         .numbers = light_half_numbers,
+         .form = "x y z",
+         .purpose = "the direction between that one and the one to the eye, in which highlights lie",
+         .home = StateHome::unit}),
+    row<&State::light_ambient>({.name = "light_ambient",
+                                .numbers = light_ambient_numbers,
+                                .form = "r g b",
+                                .purpose = "what of a colour shows without light, 255 for all of it",
+                                .home = StateHome::unit}),
+    row<&State::light_diffuse>({.name = "light_diffuse",
+                                .numbers = light_diffuse_numbers,
+                                .form = "r g b",
+                                .purpose = "what shows besides where the light falls straight on it",
+                                .home = StateHome::unit}),
+    row<&State::light_specular>({.name = "light_specular",
+                                 .numbers = light_specular_numbers,
+                                 .form = "r g b",
+                                 .purpose = "the colour of highlights, which is added",
+                                 .home = StateHome::unit}),
+    row<&State::light_shininess>({.name = "light_shininess",
+                                  .numbers = light_shininess_numbers,
+                                  .form = "power",
+                                  .purpose = "the power of N·H that a highlight is",
+                                  .home = StateHome::unit}),
     row<&State::alpha_test>({.name = "alpha_test",
                              .numbers = alpha_test_numbers,
                              .form = "func ref",

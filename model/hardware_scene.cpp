@@ -9,6 +9,8 @@ namespace {
 
 /// What of a textured draw, or one with colours over w, the hardware lacks; empty: nothing.
 std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
+  if (state.shade == Shade::phong && state.color_write)
+    return "shade phong: this hardware lights no fragments; light the vertices and use shade smooth";
   if (state.color_interp == ColorInterp::perspective && !has_colors_over_w(config))
     return "color_interp perspective: this hardware divides no colours by w; set texture.unit=nearest and "
            "perspective.colors=1";

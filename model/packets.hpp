@@ -100,8 +100,9 @@ struct SnappedVertex {
 
 /// What of a vertex lives over w: host side.
 struct SurfaceVertex {
-  double w = 1;         ///< clip-space w
-  double u = 0, v = 0;  ///< 0 and 1 are the sides of a texture
+  double w = 1;                          ///< clip-space w
+  double u = 0, v = 0;                   ///< 0 and 1 are the sides of a texture
+  std::array<std::int32_t, 3> normal{};  ///< of shade phong: codes of 2^-15
 };
 
 /// A triangle between viewport and triangle_setup: where the RTL starts. One input triangle that was clipped yields

@@ -74,7 +74,21 @@ SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uin
                      {context.scene.name, context.draw.line, number});
 }
 
-SurfaceVertex surface_vertex(const Vertex& v) { return {v.w, v.u, v.v}; }
+SurfaceVertex surface_vertex(const Vertex& v) { return {v.w, v.u, v.v, {}}; }
+
+/// The same triangle cut once more, with its normals as colours: the cuts are the same, for they look at places alone.
+void clip_normals(const DrawContext& context, const std::array<std::uint32_t, 3>& index, std::array<Vertex, 3> v,
+                  SnappedPolygon& polygon) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto n = unit_normal(context.scene.normal(index[i]));
+    v[i].rgba = {n[0], n[1], n[2], 0};
+  }
+  const ClipPolygon clipped = clip(context.guard_band, v[0], v[1], v[2]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(clipped.size); ++i) {
+    const auto& n = clipped.v[i].rgba;
+    polygon.surface[i].normal = normal_codes({n[0], n[1], n[2]});
+  }
+}
 
 SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
   const auto& vertices = context.scene.vertices;
@@ -88,6 +102,7 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
     polygon.v[i] = snap_clipped(corners[i], context, index[0]);
     polygon.surface[i] = surface_vertex(corners[i]);
   }
+  if (context.phong) clip_normals(context, index, v, polygon);
   return polygon;
 }
 
@@ -130,7 +145,10 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
     polygon.v[1] = b.snapped;
     polygon.v[2] = c.snapped;
     if (has_surface(context.state))
-      for (std::size_t i = 0; i < 3; ++i) polygon.surface[i] = surface_vertex(context.scene.vertices[index[i]]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        polygon.surface[i] = surface_vertex(context.scene.vertices[index[i]]);
+        if (context.phong) polygon.surface[i].normal = normal_codes(unit_normal(context.scene.normal(index[i])));
+      }
   }
   if (context.state.shade == Shade::flat)
     for (SnappedVertex& v : polygon.v) copy_color(v.code, flat_color(context, index[0]), context.config);
@@ -391,7 +409,7 @@ State rectangle_state(State state) {
   state.texture.reset();
   state.fog.reset();
   state.stencil_back.reset();
-  state.shade = Shade::smooth;  // flat colours are at both ends, and fog made two of one
+  state.shade = Shade::smooth;  // flat colours are at both ends, and fog made two of one; a line has no normal
   return state;
 }
 
@@ -412,7 +430,8 @@ DrawContext::DrawContext(const Scene& scene_, const Config& config_, const Draw&
       frustum(view_volume_planes(state.clip_z, viewport, 1)),
       depth_encode(config_, scene_.planes),
       fragment_ops(halfplane::fragment_ops(state, config_.color_format)),
-      fog(fog_table(scene_.states[draw_.state])) {
+      fog(fog_table(scene_.states[draw_.state])),
+      phong(phong_light(state)) {
   if (state.alpha_to_coverage && config_.msaa_samples > 1) fragment_ops.alpha_samples = config_.msaa_samples;
 }
 
@@ -421,7 +440,7 @@ void require_positive_w(const DrawContext& context, const Triangle& triangle) {
   throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": triangle " +
                    std::to_string(triangle.primitive) +
                    " has a vertex with w <= 0, by which its attributes cannot be divided; give w > 0, or state "
-                   "texture_interp and color_interp affine, fog off and w 1");
+                   "texture_interp and color_interp affine, fog off, shade smooth and w 1");
 }
 
 const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {

@@ -15,6 +15,7 @@
 #include "stages/depth_encode.hpp"
 #include "stages/fog.hpp"
 #include "stages/line_setup.hpp"
+#include "stages/phong.hpp"
 #include "stages/point_raster.hpp"
 #include "stages/primitive_assembly.hpp"
 #include "stages/viewport.hpp"
@@ -37,7 +38,8 @@ struct DrawContext {
       frustum;  ///< the view volume and a pixel around it: what is outside of this snaps to no pixel of the viewport
   DepthEncode depth_encode;
   FragmentOps fragment_ops;
-  std::shared_ptr<const FogTable> fog;  ///< none: no fog
+  std::shared_ptr<const FogTable> fog;      ///< none: no fog
+  std::shared_ptr<const PhongLight> phong;  ///< none: colours are not lit by fragments
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
 };

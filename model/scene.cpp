@@ -51,6 +51,14 @@ void check_vertices(const Scene& scene, const Place& place) {
   }
 }
 
+void check_normals(const Scene& scene, const Place& place) {
+  if (scene.normals.size() > scene.vertices.size()) place.fail("more normals than vertices");
+  for (std::size_t i = 0; i < scene.normals.size(); ++i)
+    for (const double c : scene.normals[i])
+      if (!is_between(c, -kLargestNormal, kLargestNormal))
+        place.fail("normal " + std::to_string(i) + " has a component beyond 1e12");
+}
+
 /// A texture is what make_texture() makes, and its name is a word of a capture.
 void check_texture(const Scene& scene, std::size_t index, const Place& place) {
   const Texture& texture = scene.textures[index];
@@ -135,6 +143,7 @@ void validate(const Scene& scene) {
     if (!(near > 0 && near < far) || std::isinf(near)) place.fail("planes must be 0 < near < far; far may be infinite");
   }
   check_vertices(scene, place);
+  check_normals(scene, place);
   for (std::size_t i = 0; i < scene.textures.size(); ++i) check_texture(scene, i, place);
   for (std::size_t i = 0; i < scene.states.size(); ++i) check_state(scene, i, place);
   std::size_t primitives = 0;  // at most: an index makes no more than one

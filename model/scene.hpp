@@ -18,7 +18,8 @@ enum class Topology { triangles, triangle_strip, triangle_fan, lines, line_strip
 enum class DepthFunc { never, less, lequal, equal, greater, gequal, notequal, always };
 enum class Cull { none, back, front, both };
 enum class FrontFace { ccw, cw };
-enum class Shade { smooth, flat };
+/// phong: colours as smooth has them, in the light of each fragment of filled triangles (State::light_direction).
+enum class Shade { smooth, flat, phong };
 enum class ColorInterp { affine, perspective };
 /// What is drawn of a triangle that is not culled: its samples, its three edges as lines, or its three corners as points.
 enum class PolygonMode { fill, line, point };
@@ -139,7 +140,7 @@ struct State {
   bool color_write = true;
   Cull cull = Cull::none;
   FrontFace front = FrontFace::ccw;  ///< as seen on the screen
-  Shade shade = Shade::smooth;       ///< flat: the colour of the provoking vertex
+  Shade shade = Shade::smooth;       ///< flat: the colour of the provoking vertex; phong: Scene::normals
   Provoking provoking = Provoking::first;
   ColorInterp color_interp = ColorInterp::affine;
   PolygonMode polygon_mode = PolygonMode::fill;
@@ -166,6 +167,12 @@ struct State {
   TextureCombine texture_combine = TextureCombine::modulate;
   std::optional<Fog> fog;  ///< none: colours stay as they are
   std::array<std::uint8_t, 3> fog_color{};
+  // Of shade phong: a fragment of colour C and normal N becomes C (ambient + diffuse N.L) + specular (N.H)^shininess, the
+  // highlight where N.L > 0, held to 255. L and H may have any length.
+  std::array<double, 3> light_direction{0, 0, 1};  ///< L: to the light, in the space of the normals
+  std::array<double, 3> light_half{0, 0, 1};       ///< H: between L and the direction to the eye
+  std::array<std::uint8_t, 3> light_ambient{51, 51, 51}, light_diffuse{255, 255, 255}, light_specular{};
+  double light_shininess = 32;
   AlphaTest alpha_test;
   std::optional<BlendFactors> blend;                       ///< none: the fragment's colour replaces the stored one
   std::array<BlendEquation, 2> blend_equation{};           ///< of colour and of alpha
@@ -208,15 +215,23 @@ struct EndFrame {};
 
 using Command = std::variant<Clear, Draw, EndFrame>;
 
-inline constexpr int kLargestSide = 16384;  ///< pixels along a side of any target
+inline constexpr int kLargestSide = 16384;      ///< pixels along a side of any target
+inline constexpr double kLargestNormal = 1e12;  ///< component of a normal
 
 /// A whole input. Its invariants are what validate() checks; every reader keeps them.
 struct Scene {
+  /// 0 for a vertex that has none.
+  [[nodiscard]] std::array<double, 3> normal(std::size_t vertex) const {
+    return vertex < normals.size() ? normals[vertex] : std::array<double, 3>{};
+  }
+
   std::string name;
   int width = 640, height = 480;  ///< target, pixels
   /// Near and far, eye-space units, 0 < near < far: what depth mappings refer to. None: the scene's maker did not say.
   std::optional<std::array<double, 2>> planes;
   std::vector<Vertex> vertices;
+  /// Of shade phong: of the first vertices, of any length, 0 for none. Those behind have none: see normal().
+  std::vector<std::array<double, 3>> normals;
   std::vector<std::uint32_t> indices;
   std::vector<State> states;
   std::vector<Texture> textures;

@@ -147,8 +147,14 @@ class CaptureFromBytes {
       };
       text += held(x_) + " " + held(y_) + " " + exact(depth()) + " 1";
     }
-    for (int c = 0; c < 4; ++c) text += " " + std::to_string(bytes_.byte());
+    std::string normal = "a normal";  // of shade phong, from the same bytes
+    for (int c = 0; c < 4; ++c) {
+      const int byte = bytes_.byte();
+      text += " " + std::to_string(byte);
+      if (c < 3) normal += " " + std::to_string(byte - 128);
+    }
     line(text);
+    line(normal);
     ++vertices_;
   }
 

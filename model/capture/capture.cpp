@@ -48,6 +48,7 @@ class CaptureReader {
   void read_state();
   void read_object();
   void read_vertex();
+  void read_attribute();
   void grow_vertices();
   void read_draw(const CaptureDraw& draw);
 
@@ -98,6 +99,7 @@ void CaptureReader::read_line(std::string_view word) {
 }
 
 void CaptureReader::read_rare_line(std::string_view word) {
+  if (word == "a") return read_attribute();
   if (word == "object") return read_object();
   if (word == "clear") return read_clear();
   if (word == "target") return read_target();
@@ -113,7 +115,7 @@ void CaptureReader::read_rare_line(std::string_view word) {
     text_.fail("a second 'halfplane' line; a file holds one capture: remove the line, or split the file");
   } else {
     text_.fail(quoted_word(word) +
-               " begins no line of a capture; write one of target, clear, space, state, v, t, ts, tf, " +
+               " begins no line of a capture; write one of target, clear, space, state, v, a, t, ts, tf, " +
                "l, ls, ll, p, object, texture, palette, texels, planes, frame, or # before a comment");
   }
 }
@@ -238,6 +240,20 @@ void CaptureReader::read_vertex() {
   }
   if (scene_.vertices.size() == scene_.vertices.capacity()) grow_vertices();
   scene_.vertices.push_back(vertex);
+}
+
+/// One more attribute of the vertex above.
+void CaptureReader::read_attribute() {
+  const std::string_view name = text_.word();
+  if (name != "normal")
+    text_.fail((name.empty() ? "an attribute without a name" : quoted_word(name) + " is no attribute of a vertex") +
+               "; write a normal x y z");
+  if (scene_.vertices.empty()) text_.fail("a normal without a vertex; write it below the 'v' line of its vertex");
+  if (scene_.normals.size() == scene_.vertices.size())
+    text_.fail("a second normal of vertex " + std::to_string(scene_.vertices.size() - 1) + "; remove one of them");
+  scene_.normals.resize(scene_.vertices.size());
+  for (double& component : scene_.normals.back())
+    component = text_.number("a component of a normal", -kLargestNormal, kLargestNormal);
 }
 
 /// Makes room for as many vertices as the text will have if it goes on like this: touching fresh memory, which doubling

@@ -80,7 +80,11 @@ class CaptureWriter {
       write_texture(texture, buffer_);
       flush_if_full();
     }
-    for (const Vertex& vertex : scene_.vertices) write_vertex(vertex);
+    for (std::size_t i = 0; i < scene_.vertices.size(); ++i) {
+      write_vertex(scene_.vertices[i]);
+      if (const std::array<double, 3> normal = scene_.normal(i); normal != std::array<double, 3>{})
+        write_normal(normal);
+    }
     for (const Command& command : scene_.commands) {
       if (const auto* clear = std::get_if<Clear>(&command)) write_clear(*clear);
       if (const auto* draw = std::get_if<Draw>(&command)) write_draw(*draw);
@@ -93,6 +97,7 @@ class CaptureWriter {
 
  private:
   void write_vertex(const Vertex& vertex);
+  void write_normal(const std::array<double, 3>& normal);
   void write_clear(const Clear& clear);
   void write_draw(const Draw& draw);
   void write_state(const State& wanted);
@@ -125,6 +130,15 @@ void CaptureWriter::write_vertex(const Vertex& vertex) {
   }
   buffer_ += '\n';
   flush_if_full();
+}
+
+void CaptureWriter::write_normal(const std::array<double, 3>& normal) {
+  buffer_ += "a normal";
+  for (const double component : normal) {
+    buffer_ += ' ';
+    append_number(buffer_, component);
+  }
+  buffer_ += '\n';
 }
 
 void CaptureWriter::write_state(const State& wanted) {
@@ -231,6 +245,8 @@ void write_capture(const Scene& scene, std::ostream& out) {
 }
 
 bool same_scene(const Scene& a, const Scene& b) {
+  for (std::size_t i = 0; i < std::max(a.normals.size(), b.normals.size()); ++i)
+    if (a.normal(i) != b.normal(i)) return false;
   return a.width == b.width && a.height == b.height && a.planes == b.planes && a.states == b.states &&
          a.textures == b.textures && a.objects == b.objects &&
          std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),

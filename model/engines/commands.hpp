@@ -90,8 +90,8 @@ inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap&
   if (!has_surface(state)) return std::nullopt;
   require_positive_w(context, triangle);
   const Texture* texture = state.texture ? &context.scene.textures[*state.texture] : nullptr;
-  return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.fog.get(), context.config,
-                                widths);
+  return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.fog.get(), context.phong.get(),
+                                context.config, widths);
 }
 
 /// Its colour as codes.

@@ -306,8 +306,9 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
 void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, std::uint32_t& primitive,
                       Rendering& rendering) {
   if (has_surface(context.state))
-    throw InputError(place_of_draw(context.scene.name, context.draw.line) +
-                     ": clipping homogeneous has no textures, no colours over w and no fog; use clipping polygon");
+    throw InputError(
+        place_of_draw(context.scene.name, context.draw.line) +
+        ": clipping homogeneous has no textures, no colours over w, no fog and no light; use clipping polygon");
   const HomogeneousFrame frame{engine.config, engine.widths, context.state, context.viewport, context.rect};
   Counters& counters = rendering.counters;
   for_each_homogeneous(context.scene, context.draw, frame, [&](const HomogeneousSetup& setup) {

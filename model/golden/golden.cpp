@@ -14,6 +14,7 @@
 #include "homogeneous.hpp"
 #include "interpolate.hpp"
 #include "line.hpp"
+#include "phong.hpp"
 #include "polygon_offset.hpp"
 #include "primitive_assembly.hpp"
 #include "triangle_setup.hpp"
@@ -165,6 +166,9 @@ class Renderer {
     bool was_cut = false, was_drawn = false;
     bool is_back = false;       ///< of a filled triangle that shows its back
     bool is_rectangle = false;  ///< the triangle at work is half of a line
+    /// The triangle at work with its normals in place of its colours, where its fragments are lit: one of the two.
+    std::optional<Setup<Real>> normals{};
+    std::optional<HomogeneousSetup<Real>> homogeneous_normals{};
   };
 
   void draw(const Draw& draw, std::uint32_t command) {
@@ -182,10 +186,16 @@ class Renderer {
       d.primitive = static_cast<std::uint32_t>(image_.counters.primitives_in++);
       d.offset = 0;
       d.was_cut = d.was_drawn = d.is_back = d.is_rectangle = false;
+      d.normals.reset();
+      d.homogeneous_normals.reset();
       std::array<ClipVertex<Real>, 3> v;
       for (std::size_t i = 0; i < 3; ++i)
         v[i] = vertex(p.index[i], state.shade == Shade::flat ? p.provoking : p.index[i]);
-      if (p.corners == 3) draw_triangle(v, d);
+      if (p.corners == 3) {
+        std::optional<Corners> normals;
+        if (state.shade == Shade::phong) normals = with_normals(v, p);
+        draw_triangle(v, normals ? &*normals : nullptr, d);
+      }
       if (p.corners == 2) draw_line(v[0], v[1], d);
       if (p.corners == 1) draw_point(v[0], d);
       image_.counters.culled += d.was_drawn ? 0 : 1;
@@ -218,33 +228,60 @@ class Renderer {
             {real(v.u), real(v.v)}};
   }
 
+  using Corners = std::array<ClipVertex<Real>, 3>;
+
+  /// The vertices of a triangle with their normals as colours.
+  Corners with_normals(Corners v, const Primitive& p) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Direction n = unit(scene_.normal(p.index[i]));
+      v[i].rgba = {static_cast<Real>(n[0]), static_cast<Real>(n[1]), static_cast<Real>(n[2]), 0};
+    }
+    return v;
+  }
+
   /// From clip or window space to pixels.
   ScreenVertex<Real> screen(const ClipVertex<Real>& v, const DrawAtWork& d) const {
     return d.state.space == Space::clip ? to_screen(v, d.state, d.vp) : from_window(v, d.state, scene_);
   }
 
-  void draw_triangle(const std::array<ClipVertex<Real>, 3>& v, DrawAtWork& d) {
+  /// `normals`: the same with_normals(); none: its fragments are not lit.
+  void draw_triangle(const Corners& v, const Corners* normals, DrawAtWork& d) {
     if (options_.clipping == Clipping::homogeneous && d.state.space == Space::clip &&
-        d.state.polygon_mode == PolygonMode::fill)
+        d.state.polygon_mode == PolygonMode::fill) {
+      if (normals != nullptr) d.homogeneous_normals = setup_homogeneous(*normals, d.state, d.vp);
       return draw_homogeneous(v, d);
-    Polygon<Real> polygon;
-    for (const auto& corner : v) polygon.push(corner);
-    if (d.state.space == Space::clip) polygon = clip<Real>(polygon, d.planes, d.was_cut);
+    }
     std::array<ScreenVertex<Real>, 9> corners;
-    for (std::size_t i = 0; i < polygon.count; ++i) corners[i] = screen(polygon.vertex[i], d);
-    const std::span<const ScreenVertex<Real>> outline(corners.data(), polygon.count);
+    const std::span<const ScreenVertex<Real>> outline = clipped(v, corners, d);
     const PlaneNormal<Real> normal = plane_normal(outline);
     d.offset = polygon_offset(normal, d.state.polygon_offset, static_cast<Real>(depth_max_));
-    if (d.state.polygon_mode == PolygonMode::fill) return draw_fan(outline, d);
+    if (d.state.polygon_mode == PolygonMode::fill) {
+      if (normals == nullptr) return draw_fan(outline, {}, d);
+      std::array<ScreenVertex<Real>, 9> of_normals;
+      return draw_fan(outline, clipped(*normals, of_normals, d), d);
+    }
     if (is_culled(normal.z, d.state)) return;
     d.was_cut = false;  // what is cut now is an edge
     for (std::size_t i = 0; i < 3; ++i)
       d.state.polygon_mode == PolygonMode::line ? draw_line(v[i], v[(i + 1) % 3], d) : draw_point(v[i], d);
   }
 
-  void draw_fan(std::span<const ScreenVertex<Real>> polygon, DrawAtWork& d) {
+  /// A triangle's polygon on the screen, in `corners`.
+  std::span<const ScreenVertex<Real>> clipped(const Corners& v, std::array<ScreenVertex<Real>, 9>& corners,
+                                              DrawAtWork& d) const {
+    Polygon<Real> polygon;
+    for (const auto& corner : v) polygon.push(corner);
+    if (d.state.space == Space::clip) polygon = clip<Real>(polygon, d.planes, d.was_cut);
+    for (std::size_t i = 0; i < polygon.count; ++i) corners[i] = screen(polygon.vertex[i], d);
+    return {corners.data(), polygon.count};
+  }
+
+  /// `normals`: of the polygon's corners, as colours; empty: its fragments are not lit.
+  void draw_fan(std::span<const ScreenVertex<Real>> polygon, std::span<const ScreenVertex<Real>> normals,
+                DrawAtWork& d) {
     const std::size_t start = polygon.size() > 3 ? fan_start(polygon) : 0;
-    const auto corner = [&](std::size_t k) { return polygon[(start + k) % polygon.size()]; };
+    const auto place = [&](std::size_t k) { return (start + k) % polygon.size(); };
+    const auto corner = [&](std::size_t k) { return polygon[place(k)]; };
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
       std::array<ScreenVertex<Real>, 3> v{corner(0), corner(k), corner(k + 1)};
       if (is_culled(signed_area(v), d.state)) continue;
@@ -252,6 +289,8 @@ class Renderer {
       d.was_drawn = true;
       add_outline(v, d);
       for (auto& vertex : v) vertex.z += d.offset;
+      if (!normals.empty())
+        d.normals = setup_triangle(std::array{normals[place(0)], normals[place(k)], normals[place(k + 1)]});
       rasterize(setup_triangle(v), d);
     }
   }
@@ -271,7 +310,7 @@ class Renderer {
         const std::array<Real, 3> e{t.edge[0].value(px, py), t.edge[1].value(px, py), t.edge[2].value(px, py)};
         ++image_.counters.samples_tested;
         if (!covers(t, e)) continue;
-        Fragment<Real> fragment = interpolate(t, e, rules_of(d));
+        Fragment<Real> fragment = fragment_at(t, e, d);
         fragment.z += d.offset;
         shade_triangle(x, y, fragment, d);
       }
@@ -400,7 +439,7 @@ class Renderer {
         }
         ++image_.counters.samples_tested;
         if (!(t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]))) continue;
-        shade_triangle(x, y, interpolate(t, e, rules_of(d)), d);
+        shade_triangle(x, y, fragment_at(t, e, d), d);
       }
     }
   }
@@ -426,7 +465,7 @@ class Renderer {
       if (!shaded) shaded = at[k];
     }
     if (covered == 0) return;
-    Fragment<Real> fragment = with_surface(interpolate(t, *shaded, rules_of(d)), d);
+    Fragment<Real> fragment = with_surface(fragment_at(t, *shaded, d), d);
     for (std::size_t k = 0; k < samples_; ++k) {
       if ((covered >> k & 1U) == 0) continue;
       fragment.z = interpolate(t, at[k], rules_of(d)).z;
@@ -436,6 +475,23 @@ class Renderer {
 
   [[nodiscard]] InterpolationRules rules_of(const DrawAtWork& d) const {
     return {options_.color_interp.value_or(d.state.color_interp), d.state.texture_interp};
+  }
+
+  /// What is interpolated of a triangle, in its light if it has one.
+  template <class Triangle>
+  [[nodiscard]] Fragment<Real> fragment_at(const Triangle& t, const EdgeValues& e, const DrawAtWork& d) const {
+    Fragment<Real> fragment = interpolate(t, e, rules_of(d));
+    if (d.normals) add_light(*d.normals, e, d.state, fragment.rgba);
+    if (d.homogeneous_normals) add_light(*d.homogeneous_normals, e, d.state, fragment.rgba);
+    return fragment;
+  }
+
+  /// `normals`: the triangle whose colours are normals, which are interpolated over w.
+  template <class Triangle>
+  static void add_light(const Triangle& normals, const EdgeValues& e, const State& state, std::array<Real, 4>& rgba) {
+    const Color n = widen(interpolate(normals, e, {ColorInterp::perspective, TextureInterp::perspective}).rgba);
+    const Color lit = in_light(state, widen(rgba), light_factors(state, {n[0], n[1], n[2]}));
+    for (std::size_t c = 0; c < 4; ++c) rgba[c] = static_cast<Real>(lit[c]);
   }
 
   /// A fragment of a triangle: its texture and fog, if it has any, then shade().

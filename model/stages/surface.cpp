@@ -39,8 +39,8 @@ TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surfa
 }
 
 Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-                 const FogTable* fog, const Config& config, const Widths& widths)
-    : setup_(setup), widths_(widths), format_(perspective_format(config)), fog_(fog) {
+                 const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths)
+    : setup_(setup), widths_(widths), format_(perspective_format(config)), fog_(fog), phong_(phong) {
   order_ = canonical_order(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
   std::array<double, 3> w{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -57,18 +57,27 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
     }
   }
   if (texture != nullptr) set_texture(triangle, state, *texture);
-  if (fog != nullptr) set_fog(w, state.texture_interp == TextureInterp::perspective);
+  if (fog == nullptr && phong == nullptr) return;
+  const Divisor divisor = true_divisor(w, state.texture_interp == TextureInterp::perspective);
+  if (phong != nullptr) set_normals(triangle, divisor);
+  if (fog == nullptr) return;
+  fog_divisor_ = divisor;
+  fog_scale_ = q_exponent(w, format_.q_bits) + format_.guard_bits;
 }
 
-/// Q is that of colours or coordinates over w, where there are some: the same codes, and the same plane.
-void Surface::set_fog(const std::array<double, 3>& w, bool is_over_w) {
-  if (color_divisor_)
-    fog_divisor_ = color_divisor_;
-  else if (texture_divisor_ && is_over_w)
-    fog_divisor_ = texture_divisor_;
-  else
-    fog_divisor_ = make_divisor(quantize_q(w, format_.q_bits));
-  fog_scale_ = q_exponent(w, format_.q_bits) + format_.guard_bits;
+/// Q of fog and normals is that of colours or coordinates over w, where there are some: the same codes, and the same plane.
+Surface::Divisor Surface::true_divisor(const std::array<double, 3>& w, bool is_over_w) const {
+  if (color_divisor_) return *color_divisor_;
+  if (texture_divisor_ && is_over_w) return *texture_divisor_;
+  return make_divisor(quantize_q(w, format_.q_bits));
+}
+
+void Surface::set_normals(const Triangle& triangle, const Divisor& divisor) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto of = [&](std::size_t i) { return triangle.surface[order_[i]].normal[c]; };
+    normal_[c] = setup_over_w(quantize_normal({of(0), of(1), of(2)}, divisor.q, format_), divisor.frame,
+                              normal_format(format_), widths_);
+  }
 }
 
 void Surface::set_texture(const Triangle& triangle, const State& state, const Texture& texture) {
@@ -128,11 +137,21 @@ Texel Surface::primitive_color(int x, int y, const PixelPlace& place) const {
 SurfaceSample Surface::at(int x, int y, int weight_bits) const {
   const PixelPlace pixel = place_of(setup_, widths_, x, y);
   SurfaceSample s;
-  s.primitive = s.clear = primitive_color(x, y, pixel);
+  s.primitive = s.lit = primitive_color(x, y, pixel);
+  if (phong_ != nullptr) add_light(pixel, s);
+  s.clear = s.lit;
   if (texture_divisor_) add_texture(x, y, weight_bits, pixel, s);
   s.color = s.clear;
   if (fog_divisor_) add_fog(pixel, s);
   return s;
+}
+
+void Surface::add_light(const PixelPlace& pixel, SurfaceSample& s) const {
+  std::array<std::int64_t, 3> p{};
+  for (std::size_t c = 0; c < 3; ++c) p[c] = p_at(normal_[c], pixel, normal_format(format_), format_, widths_);
+  s.normal = block_normal(p);
+  s.light = phong_->factors(s.normal);
+  for (std::size_t c = 0; c < 3; ++c) s.lit[c] = static_cast<std::uint8_t>(phong_->lit(c, s.primitive[c], s.light));
 }
 
 void Surface::add_texture(int x, int y, int weight_bits, const PixelPlace& pixel, SurfaceSample& s) const {
@@ -148,7 +167,7 @@ void Surface::add_texture(int x, int y, int weight_bits, const PixelPlace& pixel
   }
   s.lod = level_of_detail(lod_, q, x, y);
   s.texel = sample(sampler_, s.place, s.lod);
-  s.clear = combined(s.primitive, s.texel, combine_, has_alpha(sampler_.texture->format));
+  s.clear = combined(s.lit, s.texel, combine_, has_alpha(sampler_.texture->format));
 }
 
 void Surface::add_fog(const PixelPlace& pixel, SurfaceSample& s) const {

@@ -1,7 +1,8 @@
 // Surface: the colour of a triangle at a covered sample, where it is more than the codes of its affine planes: colours over
-// w, a texture, the two combined, and what is left of that in fog.
+// w, their light, a texture, the two combined, and what is left of that in fog.
 //
 //   colours      affine codes, or P / Q (perspective.hpp)
+//   light        phong.hpp, from normals over w
 //   coordinates  u, v over w, or affine: the same planes with Q the same at all vertices
 //   level        level_of_detail.hpp, from the coordinates' planes
 //   texel        texture_sample.hpp
@@ -15,6 +16,7 @@
 #include "fog.hpp"
 #include "level_of_detail.hpp"
 #include "perspective.hpp"
+#include "phong.hpp"
 #include "texture_sample.hpp"
 
 namespace halfplane {
@@ -24,7 +26,8 @@ namespace halfplane {
 
 /// Whether the filled triangles of a draw need one.
 [[nodiscard]] constexpr bool has_surface(const State& state) {
-  return state.texture.has_value() || state.color_interp == ColorInterp::perspective || state.fog.has_value();
+  return state.texture.has_value() || state.color_interp == ColorInterp::perspective || state.fog.has_value() ||
+         state.shade == Shade::phong;
 }
 
 /// What a textured triangle sends to setup, vertices in the order of `surface`; every w > 0. Host.
@@ -40,6 +43,9 @@ struct TextureCoordinates {
 /// A surface at a covered sample, step by step.
 struct SurfaceSample {
   Texel primitive{};                   ///< its own colour
+  Normal normal{};                     ///< m; without light 0
+  PhongLight::Factors light{};         ///< N.L and the highlight, 2^-12; without light 0
+  Texel lit{};                         ///< the primitive's colour in its light; without light as it is
   std::array<double, 2> coordinate{};  ///< u and v, texels of level 0, before they wrap; 0 without a texture
   TexturePlace place;                  ///< the same as the filter gets it
   Lod lod = 0;                         ///< without bias and bounds
@@ -63,9 +69,10 @@ class Surface {
     Plane plane;
   };
 
-  /// `setup` of `triangle`, not empty; `texture`, `fog`: those of the state, or none. Every w > 0 (require_positive_w).
+  /// `setup` of `triangle`, not empty; `texture`, `fog`, `phong`: those of the state, or none. Every w > 0
+  /// (require_positive_w).
   Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-          const FogTable* fog, const Config& config, const Widths& widths);
+          const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths);
 
   [[nodiscard]] SurfaceSample at(int x, int y, int weight_bits = kTexelFraction) const;
   /// R, G, B, A at a covered sample.
@@ -77,6 +84,9 @@ class Surface {
   [[nodiscard]] const std::optional<Divisor>& texture_divisor() const { return texture_divisor_; }
   [[nodiscard]] const std::optional<Divisor>& fog_divisor() const { return fog_divisor_; }
   [[nodiscard]] const FogTable& fog() const { return *fog_; }
+  [[nodiscard]] bool is_lit() const { return phong_ != nullptr; }
+  [[nodiscard]] const PhongLight& phong() const { return *phong_; }
+  [[nodiscard]] const Plane& normal(std::size_t c) const { return normal_[c]; }
   /// q is Q 2^-scale.
   [[nodiscard]] int fog_scale() const { return fog_scale_; }
   [[nodiscard]] const Attribute& channel(std::size_t c) const { return color_[c]; }
@@ -95,7 +105,9 @@ class Surface {
   [[nodiscard]] std::int64_t value_of(const Attribute& attribute, const OverWFormat& of, const PixelReciprocal& q,
                                       const PixelPlace& place) const;
   void set_texture(const Triangle& triangle, const State& state, const Texture& texture);
-  void set_fog(const std::array<double, 3>& w, bool is_over_w);
+  [[nodiscard]] Divisor true_divisor(const std::array<double, 3>& w, bool is_over_w) const;
+  void set_normals(const Triangle& triangle, const Divisor& divisor);
+  void add_light(const PixelPlace& pixel, SurfaceSample& sample) const;
   void add_texture(int x, int y, int weight_bits, const PixelPlace& pixel, SurfaceSample& sample) const;
   void add_fog(const PixelPlace& pixel, SurfaceSample& sample) const;
 
@@ -108,6 +120,8 @@ class Surface {
   std::optional<Divisor> fog_divisor_;                      ///< none: no fog
   const FogTable* fog_;
   int fog_scale_ = 0;
+  const PhongLight* phong_;
+  std::array<Plane, 3> normal_{};
   std::array<Attribute, 4> color_{};
   std::array<Attribute, 2> coordinate_{};  ///< u and v, texels
   std::array<std::int32_t, 2> reference_{};

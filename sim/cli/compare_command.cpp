@@ -74,6 +74,14 @@ Json layers_json(const std::vector<LayerRow>& rows) {
   return json;
 }
 
+Json per_vertex_json(const std::vector<PerVertexRow>& rows) {
+  Json json = Json::array();
+  for (const PerVertexRow& row : rows)
+    json.push_back(
+        {{"area", row.area}, {"triangles", row.triangles}, {"pixels", row.pixels}, {"max", row.max}, {"rms", row.rms}});
+  return json;
+}
+
 Json comparison_json(const Comparison& c) {
   Json json{{"compared_pixels", c.compared_pixels},
             {"coverage",
@@ -103,10 +111,12 @@ Json comparison_json(const Comparison& c) {
               {"depth_bias", figure_of(c.datapath_bias, c.datapath_bias.mean)},
               {"color_lsb", moments_json(c.color_datapath)},
               {"color_over_w_lsb", part_json(c.color_over_w)},
+              {"light_lsb", part_json(c.light)},
               {"fog_lsb", part_json(c.fog)},
               {"color_bias", figure_of(c.color_datapath_bias, c.color_datapath_bias.mean)},
               {"stage_mismatches", c.stage_mismatches}}},
             {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)},
+            {"per_vertex", per_vertex_json(c.per_vertex)},
             {"layers", layers_json(c.layers)}};
   return json;
 }
@@ -160,6 +170,7 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
   lines.insert(lines.end(), {row("colour, all channels", c.color_lsb), row("colour datapath", c.color_datapath),
                              row("affine - perspective", c.affine)});
   if (c.color_over_w.count > 0) lines.push_back(row("colour over w", c.color_over_w));
+  if (c.light.count > 0) lines.push_back(row("colour in light", c.light));
   if (c.fog.count > 0) lines.push_back(row("colour in fog", c.fog));
   if (c.texture) {
     const TextureErrors& t = *c.texture;
@@ -168,6 +179,10 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
                                row("  rounding", t.part_rounding), row("coordinate, texels", t.coordinate),
                                row("coordinate, footprints", t.footprints), row("level of detail, levels", t.level)});
   }
+  if (!c.per_vertex.empty()) lines.emplace_back("light at vertices - at fragments, by pixels of a triangle");
+  for (const PerVertexRow& of : c.per_vertex)
+    lines.push_back((of.area < 1 ? "  below 1" : "  from " + fixed(of.area, 0)) + ": " + with_commas(of.triangles) +
+                    "\t" + fixed(of.max, 3) + "\t" + fixed(of.rms, 4));
   // Of many numbers of layers, powers of two and the last.
   for (const LayerRow& layer : c.layers)
     if ((layer.layers & (layer.layers - 1)) == 0 || &layer == &c.layers.back())

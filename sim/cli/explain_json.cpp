@@ -83,6 +83,11 @@ Json texel_color(const Texel& texel) { return Json{texel[0], texel[1], texel[2],
 Json surface_json(const SurfaceFigure& figure) {
   const SurfaceSample& s = figure.sample;
   Json json{{"primitive_color", texel_color(s.primitive)}, {"color", texel_color(s.color)}};
+  if (figure.is_lit)
+    json["light"] = {{"normal", s.normal},
+                     {"diffuse", std::ldexp(s.light.diffuse, -kLightFraction)},
+                     {"specular", std::ldexp(s.light.specular, -kLightFraction)},
+                     {"color", texel_color(s.lit)}};
   if (s.fog_q != 0) json["fog"] = {{"q", s.fog_q}, {"factor", std::ldexp(s.fog, -kFogFactorBits)}};
   if (figure.texture.empty()) return json;
   json["texture"] = figure.texture;

@@ -102,6 +102,10 @@ std::string texel_text(const Texel& c) {
 
 void print_surface(std::ostream& out, const SurfaceFigure& figure) {
   const SurfaceSample& s = figure.sample;
+  if (figure.is_lit)
+    out << label_text("light") << "normal " << s.normal[0] << ' ' << s.normal[1] << ' ' << s.normal[2] << ", N.L "
+        << fixed(std::ldexp(s.light.diffuse, -kLightFraction), 4) << ", highlight "
+        << fixed(std::ldexp(s.light.specular, -kLightFraction), 4) << '\n';
   if (s.fog_q != 0)
     out << label_text("fog") << "Q " << s.fog_q << ", " << fixed(std::ldexp(s.fog, -kFogFactorBits), 4)
         << " of the colour is left\n";

@@ -85,7 +85,8 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
                  "'name=NAME' for one of a glTF file's own; 'orbit' or 'orbit=DEGREES' turns it about the target");
   app.add_option("--light", options.lights,
                  "a light, each time it is given: 'from=X,Y,Z' where it comes from, 'at=X,Y,Z;range=R' where it is, "
-                 "'eye', each with ';color=R,G,B'; 'ambient=R,G,B'; 'off' (without it: the file's own, else one at the "
+                 "'eye', each with ';color=R,G,B'; 'ambient=R,G,B'; 'phong' beside one of them: at fragments; 'off' "
+                 "(without it: the file's own, else one at the "
                  "eye; docs/light.md)")
       ->check(refuse_empty)
       ->allow_extra_args(false);

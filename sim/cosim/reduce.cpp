@@ -19,6 +19,7 @@ struct Item {
   std::optional<Clear> clear;
   Topology topology = Topology::triangles;  ///< or lines or points: a list
   std::array<Vertex, 3> v{};
+  std::array<std::array<double, 3>, 3> normal{};
 
   [[nodiscard]] std::span<Vertex> corners() {
     return std::span(v).first(topology == Topology::triangles ? 3 : topology == Topology::lines ? 2 : 1);
@@ -27,9 +28,12 @@ struct Item {
 using Items = std::vector<Item>;
 
 void add_draw(Items& items, const Scene& scene, const Draw& draw) {
-  Item item{scene.states[draw.state], {}, Topology::triangles, {}};
+  Item item{scene.states[draw.state], {}, Topology::triangles, {}, {}};
   const auto add = [&](std::array<std::uint32_t, 3> index) {
-    for (std::size_t i = 0; i < item.corners().size(); ++i) item.v[i] = scene.vertices[index[i]];
+    for (std::size_t i = 0; i < item.corners().size(); ++i) {
+      item.v[i] = scene.vertices[index[i]];
+      item.normal[i] = scene.normal(index[i]);
+    }
     items.push_back(item);
   };
   switch (primitive_type(draw.topology)) {
@@ -52,7 +56,7 @@ Items items_of(const Scene& scene) {
   Items items;
   for (const Command& command : scene.commands) {
     if (const auto* clear = std::get_if<Clear>(&command))
-      items.push_back({scene.states[clear->state], *clear, Topology::triangles, {}});
+      items.push_back({scene.states[clear->state], *clear, Topology::triangles, {}, {}});
     if (const auto* draw = std::get_if<Draw>(&command)) add_draw(items, scene, *draw);
   }
   return items;
@@ -78,9 +82,12 @@ Scene scene_of(Items items, const Scene& like, int width, int height) {
       scene.commands.push_back(Draw{state, 0, item.topology, scene.indices.size(), 0, 0});
       draw = std::get_if<Draw>(&scene.commands.back());
     }
-    for (const Vertex& v : item.corners()) {
+    for (std::size_t i = 0; i < item.corners().size(); ++i) {
       scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-      scene.vertices.push_back(v);
+      scene.vertices.push_back(item.v[i]);
+      if (item.normal[i] == std::array<double, 3>{}) continue;
+      scene.normals.resize(scene.vertices.size());
+      scene.normals.back() = item.normal[i];
     }
     draw->count += item.corners().size();
   }
@@ -297,6 +304,7 @@ void Reducer::simplify_vertices() {
   for_vertices([&](Vertex& v, const Item& item) { return item.state.space == Space::window && assign(v.z, 0.5); });
   for_vertices([&](Vertex& v, const Item& item) { return assign(v.z, item.v[0].z); });
   for_vertices([&](Vertex& v, const Item&) { return (assign(v.u, 0.0) | assign(v.v, 0.0)) != 0; });
+  simplify([](Item& item) { return std::exchange(item.normal, {}) != decltype(item.normal){}; });
   for_vertices([&](Vertex& v, const Item& item) {
     if (item.state.space != Space::window) return false;
     const double most = config_.guard_band - 1;

@@ -170,6 +170,10 @@ std::uint32_t Restater::vertex(std::uint32_t index, const State& from) {
   }
   const auto place = static_cast<std::uint32_t>(scene_.vertices.size());
   scene_.vertices.push_back(v);
+  if (const auto normal = scene_.normal(index); normal != std::array<double, 3>{}) {
+    scene_.normals.resize(scene_.vertices.size());
+    scene_.normals.back() = normal;
+  }
   copies_.emplace(std::pair(index, terms), place);
   return place;
 }

@@ -175,7 +175,9 @@ void read_light(std::string_view text, LightRequest& request) {
   const std::string_view value = OptionParts::trimmed(first.substr(std::min(equals + 1, first.size())));
   Light light;
   std::vector<Light>* list = nullptr;
-  if (first == "off") {
+  if (first == "phong") {
+    request.is_phong = true;
+  } else if (first == "off") {
     request.is_off = true;
   } else if (first == "eye") {
     list = &request.at_eye;
@@ -218,13 +220,43 @@ std::vector<std::array<double, 4>> lit_colors(const Mesh& mesh, const LightReque
   std::vector<std::array<double, 4>> colors;
   colors.reserve(mesh.vertices.size());
   for (const MeshVertex& vertex : mesh.vertices) colors.push_back(vertex.rgba);
-  if (request.is_off) return colors;
+  if (request.is_off || request.is_phong) return colors;
   if (mesh.vertices.empty()) return colors;
   if (request.is_given() || !mesh.lights.empty())
     light_vertices(mesh, request, view, is_ortho, colors);
   else if (mesh.lit)
     light_from_the_eye(mesh, view, is_ortho, colors);
   return colors;
+}
+
+State phong_state(State state, const Mesh& mesh, const MeshMaterial& material, const LightRequest& request,
+                  const Mat4& view) {
+  constexpr Vec3 kToEye{0, 0, 1};
+  const bool is_asked_for = !request.lights.empty() || !request.at_eye.empty();
+  const std::vector<Light>& lights = is_asked_for ? request.lights : mesh.lights;
+  const std::size_t count = lights.size() + request.at_eye.size();
+  if (count > 1 || (!lights.empty() && lights[0].position[3] != 0))
+    kLightParts.fail("phong has one light from infinitely far, and " +
+                         (count > 1 ? "there are " + std::to_string(count) : "this one has a place"),
+                     "write for example --light phong --light from=1,2,3, or --light phong alone for one from the eye");
+  const Light light = !lights.empty()           ? in_eye_space(lights[0], view)
+                      : !request.at_eye.empty() ? request.at_eye[0]
+                                                : Light{};
+  const Vec3 direction =
+      lights.empty() ? kToEye : normalized({light.position[0], light.position[1], light.position[2]});
+  const auto code = [](double part) {
+    return static_cast<std::uint8_t>(std::floor(255 * std::clamp(part, 0.0, 1.0) + 0.5));
+  };
+  state.shade = Shade::phong;
+  state.light_direction = direction;
+  state.light_half = normalized(add(direction, kToEye));
+  state.light_shininess = std::clamp(material.shininess, 1.0, 128.0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    state.light_ambient[c] = code(request.ambient ? (*request.ambient)[c] : kAmbientOfCodes);
+    state.light_diffuse[c] = code(light.diffuse[c] * material.diffuse);
+    state.light_specular[c] = code(light.specular[c] * (material.specular[c] + material.mirrored));
+  }
+  return state;
 }
 
 double exposure_of(const Mesh& mesh) {

@@ -17,18 +17,24 @@ struct LightRequest {
   std::optional<Vec3> ambient;  ///< from everywhere, 1 for full
   std::vector<Light> lights;    ///< in world space
   std::vector<Light> at_eye;    ///< those that go with the eye
-  [[nodiscard]] bool is_given() const { return is_off || ambient || !lights.empty() || !at_eye.empty(); }
+  bool is_phong = false;        ///< fragments are lit, not vertices
+  [[nodiscard]] bool is_given() const { return is_off || is_phong || ambient || !lights.empty() || !at_eye.empty(); }
 };
 
 /// Reads what --light was given, each a light: `off`; `eye`; `from=X,Y,Z`, where it comes from; `at=X,Y,Z`, where it is;
 /// behind the last three `;color=R,G,B` (1 is full), of `at` also `;range=R` and `;attenuation=C,L,Q`. `ambient=R,G,B`
-/// replaces what comes from everywhere. Throws InputError that names the part and the mend.
+/// replaces what comes from everywhere; `phong` lights fragments. Throws InputError that names the part and the mend.
 [[nodiscard]] LightRequest parse_lights(std::span<const std::string> texts);
 
 /// The colours of a mesh's vertices as `view` (of the camera) shows them: 0...255, opacity as it was. `is_ortho`: the eye
 /// is infinitely far.
 [[nodiscard]] std::vector<std::array<double, 4>> lit_colors(const Mesh& mesh, const LightRequest& request,
                                                             const Mat4& view, bool is_ortho);
+
+/// The state of a material that is lit by fragments: `state` with `shade phong` and the one light from infinitely far that
+/// there is, in eye space; added up in display codes. Throws InputError for any other lights.
+[[nodiscard]] State phong_state(State state, const Mesh& mesh, const MeshMaterial& material,
+                                const LightRequest& request, const Mat4& view);
 
 /// By what the lights of a mesh are multiplied so that a white surface comes out white where the light is stronger than
 /// at 19 of 20 vertices: files have them in candela and lux. 1 without lights or normals.

@@ -50,6 +50,59 @@ std::vector<const MeshPart*> drawing_order(const Mesh& mesh, const std::vector<O
   return parts;
 }
 
+/// A run of a part's triangles that are drawn in one state.
+struct MaterialRun {
+  std::size_t first = 0, count = 0;       ///< triangles
+  std::optional<std::uint32_t> material;  ///< that fragments are lit by; none: they are not
+};
+
+/// Whether all corners have a normal, and a material that is lit.
+bool is_lit(const Mesh& mesh, std::size_t triangle) {
+  return std::ranges::all_of(mesh.triangles[triangle], [&mesh](std::uint32_t v) {
+    return mesh.vertices[v].normal != Vec3{} && mesh.materials[mesh.vertices[v].material].has_header_light;
+  });
+}
+
+/// Of a part whose vertices are lit, one.
+std::vector<MaterialRun> runs_of(const Mesh& mesh, const MeshPart& part, bool is_phong) {
+  if (!is_phong || part.topology != Topology::triangles) return {{part.first, part.count, std::nullopt}};
+  std::vector<MaterialRun> runs;
+  for (std::size_t t = part.first; t < part.first + part.count; ++t) {
+    const auto material = is_lit(mesh, t) ? std::optional(mesh.vertices[mesh.triangles[t][0]].material) : std::nullopt;
+    if (runs.empty() || runs.back().material != material) runs.push_back({t, 0, material});
+    ++runs.back().count;
+  }
+  return runs;
+}
+
+/// Normals in eye space. Of a triangle of two sides that shows its back at all corners they are turned over, on copies of its
+/// vertices; where corners differ, as at an outline, they stay.
+void set_normals(const Mesh& mesh, const Mat4& view, bool is_ortho, Scene& scene) {
+  const auto turned = [&view](const Vec3& v, double w) -> Vec3 {
+    const Vec4 eye = transform(view, {v[0], v[1], v[2], w});
+    return {eye[0], eye[1], eye[2]};
+  };
+  std::vector<bool> looks_away;
+  for (const MeshVertex& vertex : mesh.vertices) {
+    scene.normals.push_back(turned(vertex.normal, 0));
+    const Vec3 to_eye = is_ortho ? Vec3{0, 0, 1} : scaled(turned(vertex.position, 1), -1);
+    looks_away.push_back(mesh.materials[vertex.material].is_two_sided && dot(scene.normals.back(), to_eye) < 0);
+  }
+  std::map<std::uint32_t, std::uint32_t> copies;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!std::ranges::all_of(mesh.triangles[t], [&](std::uint32_t v) { return looks_away[v]; })) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::uint32_t& index = scene.indices[3 * t + i];
+      const auto [copy, is_new] = copies.try_emplace(index, static_cast<std::uint32_t>(scene.vertices.size()));
+      if (is_new) {
+        scene.vertices.push_back(Vertex(scene.vertices[index]));
+        scene.normals.push_back(scaled(Vec3(scene.normals[index]), -1));
+      }
+      index = copy->second;
+    }
+  }
+}
+
 bool finite(const Vertex& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
@@ -90,6 +143,8 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     scene.indices.insert(scene.indices.end(), triangle.begin(), triangle.end());
   }
   scene.indices.insert(scene.indices.end(), mesh.indices.begin(), mesh.indices.end());
+  const bool is_phong = options.light.is_phong && !options.light.is_off;
+  if (is_phong) set_normals(mesh, view, camera.ortho > 0, scene);
   // Object 0 of a scene is the unnamed one; a mesh's own unnamed part becomes it.
   std::vector<std::uint32_t> numbers;
   for (const std::string& name : mesh.objects) {
@@ -98,8 +153,8 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   }
   const Mat4 to_clip = product(projection, view);
   scene.textures = mesh.textures;
-  using Look = std::tuple<bool, std::optional<MeshSampler>, AlphaMode, double>;
-  std::map<Look, std::uint32_t> states{{{false, std::nullopt, AlphaMode::opaque, 0.0}, 0}};
+  using Look = std::tuple<bool, std::optional<MeshSampler>, AlphaMode, double, std::optional<std::uint32_t>>;
+  std::map<Look, std::uint32_t> states{{{false, std::nullopt, AlphaMode::opaque, 0.0, std::nullopt}, 0}};
   std::vector<std::uint8_t> outside;
   const std::vector<ObjectBounds> bounds = object_bounds(mesh);
   for (const ObjectBounds& object : bounds) outside.push_back(outside_view(object, to_clip));
@@ -107,21 +162,24 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
     const MeshPart& part = *at;
     const std::uint32_t object = numbers[part.object];
     const bool is_culled = !part.two_sided && cull == Cull::none;
-    const auto [state, is_new] =
-        states.try_emplace({is_culled, part.sampler, part.alpha, part.alpha == AlphaMode::mask ? part.alpha_cutoff : 0},
-                           static_cast<std::uint32_t>(scene.states.size()));
-    if (is_new) {
-      State& made = scene.states.emplace_back(scene.states[0]);
-      if (is_culled) made.cull = Cull::back;
-      if (part.sampler) look_up(made, *part.sampler);
-      set_opacity(made, part.alpha, part.alpha_cutoff);
-    }
     const bool is_filled = part.topology == Topology::triangles;
-    const std::size_t first = is_filled ? part.first * 3 : corners + part.first;
-    const std::size_t count = is_filled ? part.count * 3 : part.count;
     // Pixels of lines and points can reach beyond their vertices.
     const std::uint8_t is_outside = is_filled ? outside[part.object] : std::uint8_t{0};
-    scene.commands.push_back(Draw{state->second, object, part.topology, first, count, part.line, is_outside});
+    for (const MaterialRun& run : runs_of(mesh, part, is_phong)) {
+      const double cutoff = part.alpha == AlphaMode::mask ? part.alpha_cutoff : 0;
+      const auto [state, is_new] = states.try_emplace({is_culled, part.sampler, part.alpha, cutoff, run.material},
+                                                      static_cast<std::uint32_t>(scene.states.size()));
+      if (is_new) {
+        State& made = scene.states.emplace_back(scene.states[0]);
+        if (is_culled) made.cull = Cull::back;
+        if (part.sampler) look_up(made, *part.sampler);
+        set_opacity(made, part.alpha, part.alpha_cutoff);
+        if (run.material) made = phong_state(made, mesh, mesh.materials[*run.material], options.light, view);
+      }
+      const std::size_t first = is_filled ? run.first * 3 : corners + run.first;
+      const std::size_t count = is_filled ? run.count * 3 : run.count;
+      scene.commands.push_back(Draw{state->second, object, part.topology, first, count, part.line, is_outside});
+    }
   }
   return scene;
 }

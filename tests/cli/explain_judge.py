@@ -337,7 +337,7 @@ class Explained:
                             "decr_wrap": before - 1 & 255}[op]
                     j.same("stencil after", after, before & ~write | made & write)
                 stored["stencil"] = after
-            elif name in ("texture", "fog"):
+            elif name in ("light", "texture", "fog"):
                 color = step["after"]
             elif name == "blend":
                 if color:

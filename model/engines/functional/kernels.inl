@@ -22,6 +22,7 @@ namespace {
 #include "kernels/perspective.inl"      // attributes over w
 #include "kernels/level_of_detail.inl"  // how many texels a pixel spans
 #include "kernels/texture.inl"          // texels of sixteen pixels
+#include "kernels/light.inl"            // light of sixteen pixels
 #include "kernels/surface.inl"          // colours of a tile's pixels from them
 #include "kernels/seen.inl"             // whose colours wait
 #include "kernels/layers.inl"           // blended triangles that wait on whole tiles

@@ -61,9 +61,11 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
 
 /// What of a slice's vertices lives over w.
 void find_surface_vertices(const FrameContext& frame, Slice& slice) {
-  const auto surface_of = [&scene = frame.prepared.scene()](std::size_t i) -> SurfaceVertex {
+  const bool is_lit = slice.context->phong != nullptr;
+  const auto surface_of = [is_lit, &scene = frame.prepared.scene()](std::size_t i) -> SurfaceVertex {
     const Vertex& v = scene.vertices[i];
-    return {v.w, v.u, v.v};
+    const auto normal = is_lit ? normal_codes(unit_normal(scene.normal(i))) : Normal{};
+    return {v.w, v.u, v.v, normal};
   };
   slice.surface.clear();
   if (!slice.is_wide)
@@ -178,6 +180,9 @@ void FrameRenderer::sign(Slice& slice) const {
         if (!slice.state.has_surface) continue;
         const SurfaceVertex& surface = slice.surface[v];
         for (const double value : {surface.w, surface.u, surface.v}) hash.add(std::bit_cast<std::uint64_t>(value));
+        if (slice.context->phong == nullptr) continue;
+        hash.add(pair(surface.normal[0], surface.normal[1]));
+        hash.add(static_cast<std::uint32_t>(surface.normal[2]));
       }
     }
     slice.signatures[i] = hash.signature();

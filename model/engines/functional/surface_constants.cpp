@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace halfplane::functional {
 namespace {
@@ -64,8 +65,8 @@ bool is_nearest(TextureMin min) {
 StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record)
     : triangle(triangle_of(slice, record, frame.widths)),
       setup(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect)),
-      surface(triangle, setup, slice.context->state, texture_of(*slice.context), slice.context->fog.get(), frame.config,
-              frame.widths) {}
+      surface(triangle, setup, slice.context->state, texture_of(*slice.context), slice.context->fog.get(),
+              slice.context->phong.get(), frame.config, frame.widths) {}
 
 LaneDivision::LaneDivision(const PerspectiveFormat& format)
     : up(32 - q_local_bits(format)),
@@ -96,8 +97,10 @@ SurfaceConstants::SurfaceConstants(const StageSurface& from, const FrameContext&
   if (has_texture) set_texture(from, frame.widths, *texels);
   has_fog = from.surface.fog_divisor().has_value();
   if (has_fog) set_fog(from, frame.widths);
-  has_color = !has_texture || !sees_texture_alone(from);
-  if (has_color && is_color_over_w) set_color(from, frame.widths);
+  const bool is_lit = from.surface.is_lit();
+  has_color = !has_texture || (!is_lit && !sees_texture_alone(from));
+  if ((has_color || is_lit) && is_color_over_w) set_color(from, frame.widths);
+  if (is_lit) set_light(from, frame.widths);
 }
 
 /// Whether the primitive's colour makes no difference.
@@ -178,6 +181,26 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   texture.magnified = sampler.mag == TextureMag::linear && is_nearest(sampler.min) && has_levels ? 128 : 0;
   texture.combine = surface.combine();
   texture.has_alpha = has_alpha(sampler.texture->format);
+}
+
+void SurfaceConstants::set_light(const StageSurface& from, const Widths& widths) {
+  const Surface& surface = from.surface;
+  const PhongLight& phong = surface.phong();
+  auto made = std::make_unique<LaneLight>();
+  made->up = 32 - p_local_bits(normal_format(surface.format()), surface.format());
+  for (std::size_t c = 0; c < 3; ++c) {
+    made->normal[c] = lanes_of(surface.normal(c), from.setup, surface.format().guard_bits, made->up, widths);
+    made->ambient[c] = static_cast<std::int32_t>(phong.ambient()[c]);
+    made->diffuse[c] = static_cast<std::int32_t>(phong.diffuse()[c]);
+    made->specular[c] = phong.given().specular[c];
+  }
+  made->roots = root_lines().data();
+  made->power = phong.lines().data();
+  made->place_bits = phong.place_bits();
+  made->drop = phong.place_bits() + kPowerStartFraction - kLightFraction;
+  made->direction = phong.direction();
+  made->half = phong.half();
+  light = std::move(made);
 }
 
 void SurfaceConstants::set_fog(const StageSurface& from, const Widths& widths) {

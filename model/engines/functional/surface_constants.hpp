@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "../../stages/surface.hpp"
 #include "frame.hpp"
@@ -110,12 +111,23 @@ struct LaneFog {
   std::array<std::int32_t, 3> color{};
 };
 
+/// How fragments are lit.
+struct LaneLight {
+  std::array<LanePlane, 3> normal;
+  int up = 0;                          ///< bits below P in a lane
+  const FallingLine* roots = nullptr;  ///< of 1 / sqrt
+  const FallingLine* power = nullptr;
+  int place_bits = 0, drop = 0;  ///< of a power's line; from a line's sum to what it is
+  Normal direction{}, half{};
+  std::array<std::int32_t, 3> ambient{}, diffuse{}, specular{};
+};
+
 struct SurfaceConstants {
   SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels);
 
   bool are_in_lanes = true;  ///< what follows is all that there is to know
   bool has_texture = false;  ///< else the colour is all
-  bool has_color = true;     ///< else the texture's colour is all
+  bool has_color = true;     ///< else the texture's colour is all, but for one that is lit
   bool is_color_over_w = false;
   bool has_fog = false;
   LaneDivision division;
@@ -125,11 +137,13 @@ struct SurfaceConstants {
   std::array<std::uint32_t, 4> color_low{}, color_high{};  ///< of the vertices
   LaneTexture texture;
   LaneFog fog;
+  std::unique_ptr<const LaneLight> light;  ///< none: it is not lit
 
  private:
   void set_color(const StageSurface& from, const Widths& widths);
   void set_texture(const StageSurface& from, const Widths& widths, const TexelBlocks& texels);
   void set_fog(const StageSurface& from, const Widths& widths);
+  void set_light(const StageSurface& from, const Widths& widths);
   [[nodiscard]] bool sees_texture_alone(const StageSurface& from) const;
   [[nodiscard]] static bool is_never_held(const OverWFormat& format, const PerspectiveFormat& all, const QCodes& q);
   [[nodiscard]] LaneAttribute attribute_of(const Surface::Attribute& from, const OverWFormat& format,

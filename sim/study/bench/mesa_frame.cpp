@@ -169,6 +169,7 @@ void MesaFrame::check_draw_state(const State& state, Topology topology) const {
   if (state.origin != Origin::top_left) refuse("origin bottom_left");
   if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
   const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
+  if (state.shade == Shade::phong && drawn_as(state, topology) == PrimitiveType::triangle) refuse("shade phong");
   if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
   const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
   if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)

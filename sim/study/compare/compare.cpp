@@ -133,6 +133,7 @@ class AttributeComparison {
     result_.color_datapath = color_datapath_.stats();
     result_.color_over_w = color_over_w_.stats();
     result_.fog = fog_.stats();
+    result_.light = light_.stats();
     if (has_texture_) result_.texture = std::move(texture_).result();
     result_.layers = layer_rows_;
     result_.datapath_bias = datapath_bias_.stats();
@@ -357,6 +358,7 @@ class AttributeComparison {
     const SurfaceErrors errors = surface_oracle_->errors(*pixel.surface, f.x, f.y);
     if (std::isfinite(errors.color.bound)) color_over_w_.add(errors.color.value);
     if (errors.has_fog) fog_.add(errors.fog.value);
+    if (errors.is_lit) light_.add(errors.light.value);
     has_texture_ = has_texture_ || errors.has_texture;
     if (errors.has_texture) texture_.add(pixel.p, errors);
     return errors.exact;
@@ -382,7 +384,8 @@ class AttributeComparison {
   std::optional<SurfaceOracle> surface_oracle_;        // likewise
   std::optional<int> shaded_at_;                       // that place
   ErrorSet depth_, color_, eye_;
-  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_, fog_;
+  MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_, fog_,
+      light_;
   TextureErrorSets texture_;
   std::optional<LayeredColors> layers_;  // of the sample at work
   std::vector<LayerRow> layer_rows_;
@@ -480,6 +483,13 @@ Comparison compare(const Scene& scene, const Config& plain_config, const Compare
     golden_options.want_outlines = false;
     golden_options.progress = part(0.6, 0.8);
     perspective = golden::render(scene, config, golden_options);
+  }
+  if (has_light_of_fragments(scene)) {
+    golden_options.color_interp.reset();
+    golden_options.want_outlines = false;
+    golden_options.progress = part(0.8, 0.8);
+    const golden::Image at_vertices = golden::render(lit_at_vertices(scene), config, golden_options);
+    result.per_vertex = per_vertex_rows(scene, config, result.rendering, result.golden, at_vertices);
   }
   // With taps the functional engine draws by the stages: what it draws without them must be the same.
   if (is_default && !options.engine) {

@@ -19,6 +19,7 @@
 #include "model/engines/render.hpp"
 #include "model/golden/golden.hpp"
 #include "model/scene.hpp"
+#include "per_vertex.hpp"
 #include "statistics.hpp"
 #include "texture_errors.hpp"
 
@@ -66,9 +67,11 @@ struct Comparison {
   // H - S as well: the storage rounding of a plane that climbs by halves has a mean of its own.
   ErrorMoments datapath_bias, color_datapath_bias;
   ErrorMoments color_over_w;             ///< of surfaces: their primitive's own colour before a texture, LSB of 8 bits
+  ErrorMoments light;                    ///< of a colour in its light, against its own in real light; LSB of 8 bits
   ErrorMoments fog;                      ///< of a colour in fog, against its own in real fog; LSB of 8 bits
   ErrorMoments line_datapath;            ///< the depth of lines and points, whose bound is another; not in `datapath`
   std::optional<TextureErrors> texture;  ///< of the pixels that show one; none: no pixel does
+  std::vector<PerVertexRow> per_vertex;  ///< what light at vertices would cost; empty where no fragment is lit
   std::vector<LayerRow> layers;          ///< pixels whose colour is more than one fragment's; not in `color_parts`
   std::uint64_t visible_triangles = 0;   ///< of the model, behind those figures
   std::uint64_t stage_mismatches = 0;    ///< stored values, and owners, that differ from what the fragments leave

@@ -25,6 +25,7 @@ void raise(Held& worst, const Held& candidate) {
 
 void raise(SurfaceVerdict& worst, const SurfaceErrors& errors) {
   raise(worst.color, errors.color);
+  raise(worst.light, errors.light);
   raise(worst.fog_factor, errors.fog_factor);
   raise(worst.fog, errors.fog);
   if (!errors.has_texture) return;
@@ -158,6 +159,7 @@ std::vector<std::string> broken_fragment_bounds(const FragmentVerdict& verdict, 
     broken.emplace_back(text.data());
   };
   hold(verdict.surfaces.color, "fragments: a colour over w is %.3f LSB from the exact quotient (bound %.3f)");
+  hold(verdict.surfaces.light, "fragments: a colour is %.3f LSB from the same one in real light (bound %.3f)");
   hold(verdict.surfaces.coordinate, "fragments: a texture coordinate is %.4f texels from the exact one (bound %.4f)");
   hold(verdict.surfaces.level, "fragments: a level of detail is %.3f from the exact one (bound %.2f)");
   hold(verdict.surfaces.filter, "fragments: a texel is %.3f LSB from the real filter at its place (bound %.2f)");

@@ -26,7 +26,7 @@ struct PlaneVerdict {
 
 /// The samples of surfaces that are nearest to their bounds, or beyond them.
 struct SurfaceVerdict {
-  Held color, coordinate, level, filter, fog_factor, fog;
+  Held color, light, coordinate, level, filter, fog_factor, fog;
 };
 
 struct FragmentVerdict {

@@ -4,6 +4,7 @@
 
 #include "model/golden/exact.hpp"
 #include "model/golden/fog.hpp"
+#include "model/golden/phong.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kLevelBound = 0.1;           // levels
 constexpr double kRoundingBound = 0.5078125;  // LSB: a half, and 2^-7 for the one between two levels
+constexpr double kLargestTurn = 0.25;         // of a normal's length: beyond, nothing is promised of its light
 constexpr double kWeightBound = 1;            // LSB: two coordinates off by 2^-9 of 255
 
 std::int64_t grid_units(double lsb) {
@@ -74,10 +76,19 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
       largest_code = std::max(largest_code, from.code[kColorPlane + c]);
     }
   }
-  setup_ = golden::setup_triangle(v);
   if (state_.color_interp == ColorInterp::perspective)
     color_bound_ = over_w_bound(largest_code, ratio_of(w), format, format.color, plane_roundings(config));
-  if (state_.fog) set_fog(w, format, plane_roundings(config));
+  fog_ = fog_table(state_);
+  phong_ = phong_light(state_);
+  setup_ = golden::setup_triangle(v);
+  if (phong_) {
+    auto of_normals = v;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        of_normals[i].rgba[c] = std::ldexp(triangle.surface[i].normal[c], -kNormalFraction);
+    normals_ = golden::setup_triangle(of_normals);
+  }
+  if (fog_ || phong_) set_q(w, format, plane_roundings(config));
   if (texture_ == nullptr) return;
   sampler_ = Sampler(*texture_, state_);
   const double w_ratio = state_.texture_interp == TextureInterp::affine ? 1 : ratio_of(w);
@@ -92,13 +103,16 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
 }
 
 /// Q_i is rounded, one below 1/2 to 1, and its plane is off by delta; the reciprocal of the area is off in all of it.
-void SurfaceOracle::set_fog(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size) {
-  fog_ = fog_table(state_);
+void SurfaceOracle::set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size) {
   q_code_ = std::ldexp(1.0, -q_exponent(w, format.q_bits));
   const double smallest = 1 / std::max({w[0], w[1], w[2]}) / q_code_;
   const double delta = std::ldexp(tile_size + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);
   q_lost_ = (smallest < 0.5 ? 1 : 0.5) + delta;
   q_relative_ = std::ldexp(1.0, -format.reciprocal_bits);
+  // P_i is that of a rounded Q_i, and rounded itself.
+  const int less = format.q_bits - normal_format(format).bits;
+  normal_code_ = std::ldexp(q_code_, less);
+  normal_lost_ = std::sqrt(3.0) * (0.5 + delta) + std::ldexp(smallest < 0.5 ? 1 : 0.5, -less);
 }
 
 SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) const {
@@ -110,9 +124,41 @@ SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) c
   errors.color.bound = color_bound_;
   for (std::size_t c = 0; c < 4 && color_bound_ < HUGE_VAL; ++c)
     errors.color.value = std::max(errors.color.value, std::abs(sample.primitive[c] - exact.rgba[c]));
+  if (phong_) {
+    const golden::Color n =
+        golden::interpolate(normals_, e, {ColorInterp::perspective, TextureInterp::perspective}).rgba;
+    compare_light(sample, {n[0], n[1], n[2]}, exact.inverse_w, errors);
+  }
   if (texture_ != nullptr) compare_texels(sample, exact, errors);
   if (fog_) compare_fog(sample, exact.inverse_w, errors);
   return errors;
+}
+
+/// Of the model's own colour before the light.
+void SurfaceOracle::compare_light(const SurfaceSample& sample, const std::array<double, 3>& normal, double inverse_w,
+                                  SurfaceErrors& errors) const {
+  const golden::LightFactors real = golden::light_factors(state_, normal);
+  const double length = std::sqrt(golden::dot(normal, normal)) * inverse_w;  // of n / w
+  const golden::Direction n = golden::unit(normal);
+  errors.is_lit = true;
+  errors.light = {0, HUGE_VAL};
+  // The reciprocal of the area is off in what lies between the pixel and the farthest vertex, whose 1/w is no larger.
+  const double turn =
+      length > 0 ? normal_lost_ * normal_code_ / length + q_relative_ * (1 + inverse_w / length) : HUGE_VAL;
+  golden::RealColor own{};
+  for (std::size_t c = 0; c < 4; ++c) own[c] = sample.primitive[c];
+  const golden::RealColor lit = golden::in_light(state_, own, real);
+  if (turn < kLargestTurn) {
+    const PhongLight::Bounds bounds =
+        phong_->error_bounds(golden::dot(n, golden::unit(state_.light_direction)),
+                             golden::dot(n, golden::unit(state_.light_half)), turn * (1 + turn));
+    errors.light = {0, 0.5};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Held held{std::abs(sample.lit[c] - lit[c]), phong_->error_bound(c, sample.primitive[c], bounds)};
+      if (!(held.ratio() <= errors.light.ratio())) errors.light = held;
+    }
+  }
+  errors.exact = golden::in_light(state_, errors.exact, real);
 }
 
 /// Of the model's own colour before the fog: what is off is the factor, and the rounding of its product.
@@ -164,7 +210,7 @@ void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fr
     errors.texel.rounding[i] = grid_units(d) - grid_units(w[i]);
     errors.filter.value = std::max(errors.filter.value, std::abs(d - l[i]));
   }
-  errors.exact = golden::combined(exact.rgba, s, state_.texture_combine, has_alpha(texture_->format));
+  errors.exact = golden::combined(errors.exact, s, state_.texture_combine, has_alpha(texture_->format));
 }
 
 }  // namespace halfplane

@@ -38,9 +38,11 @@ struct TexelErrors {
 
 /// One sample of a surface against the real one.
 struct SurfaceErrors {
-  golden::Color exact{};     ///< what should show, 0...255
-  Held color;                ///< a colour over w, its worst channel, LSB of 8 bits
-  bool has_texture = false;  ///< otherwise nothing of what follows
+  golden::Color exact{};  ///< what should show, 0...255
+  Held color;             ///< a colour over w, its worst channel, LSB of 8 bits
+  bool is_lit = false;
+  Held light;                ///< the channel nearest to its bound, of the same colour in real light; LSB of 8 bits
+  bool has_texture = false;  ///< otherwise nothing of the texture
   Held coordinate;           ///< the worse of u and v, texels of level 0
   double footprints = 0;     ///< the same in extents of a pixel on the texture
   double level = 0;          ///< model less real, levels; what magnifies counts as one level below 0
@@ -59,7 +61,9 @@ class SurfaceOracle {
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
 
  private:
-  void set_fog(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size);
+  void set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size);
+  void compare_light(const SurfaceSample& sample, const std::array<double, 3>& normal, double inverse_w,
+                     SurfaceErrors& errors) const;
   void compare_fog(const SurfaceSample& sample, double inverse_w, SurfaceErrors& errors) const;
   void compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact, SurfaceErrors& errors) const;
 
@@ -67,10 +71,12 @@ class SurfaceOracle {
   const Texture* texture_;
   Sampler sampler_;
   golden::InterpolationRules rules_;
-  golden::Setup<double> setup_;
+  golden::Setup<double> setup_, normals_;  ///< the latter with normals as colours, where there is light
   double color_bound_ = HUGE_VAL, level_bound_ = HUGE_VAL;
   std::array<double, 2> coordinate_bound_{};
   std::shared_ptr<const FogTable> fog_;              ///< none: no fog
+  std::shared_ptr<const PhongLight> phong_;          ///< none: no light
+  double normal_code_ = 0, normal_lost_ = 0;         ///< what a code of P is of a normal over w, how many it is off
   double q_code_ = 0, q_lost_ = 0, q_relative_ = 0;  ///< what a code of Q is, how many it is off, and what part besides
 };
 

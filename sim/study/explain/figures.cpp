@@ -75,6 +75,7 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
                              Pixel pixel) {
   SurfaceFigure figure;
   figure.sample = surface.at(pixel.x, pixel.y);
+  figure.is_lit = surface.is_lit();
   figure.errors = oracle.errors(figure.sample, pixel.x, pixel.y);
   if (!context.state.texture) return figure;
   const Sampler& sampler = surface.sampler();

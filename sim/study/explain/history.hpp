@@ -69,9 +69,10 @@ struct TexelFigure {
   Texel color{};
 };
 
-/// A colour over w or a texture at the pixel.
+/// A colour over w, its light or a texture at the pixel.
 struct SurfaceFigure {
   SurfaceSample sample;
+  bool is_lit = false;
   std::string texture;  ///< its name; empty: colours over w alone
   SampleFilter filter;
   std::vector<TexelFigure> texels;

@@ -104,6 +104,16 @@ bool writes_color(const FragmentAtWork& f) { return f.context.fragment_ops.state
 bool is_seen(const FragmentAtWork& f) {
   return tests_alpha(f) || covers_by_alpha(f) || (writes_color(f) && !failed_test(f));
 }
+bool is_lit(const FragmentAtWork& f) { return f.surface != nullptr && f.context.phong && is_seen(f); }
+Result add_light(FragmentAtWork& f, OperationStep& step) {
+  const SurfaceSample& sample = f.surface->sample;
+  step.figures = {{"diffuse", {sample.light.diffuse}, kLightFraction + 1},
+                  {"specular", {sample.light.specular}, kLightFraction + 1},
+                  channels("before", f.color)};
+  for (std::size_t c = 0; c < 4; ++c) f.color[c] = sample.lit[c];
+  step.figures.push_back(channels("after", f.color));
+  return {};
+}
 bool is_textured(const FragmentAtWork& f) { return f.surface != nullptr && !f.surface->texture.empty() && is_seen(f); }
 Result texture(FragmentAtWork& f, OperationStep& step) {
   const SurfaceSample& sample = f.surface->sample;
@@ -176,6 +186,7 @@ constexpr Operation kOperations[] = {
     {"depth_encode", Stage::interpolate, is_encoded, encode},
     {"stencil_test", Stage::depth_test, has_stencil, test_stencil},
     {"depth_test", Stage::depth_test, always, test_depth},
+    {"light", Stage::texture_unit, is_lit, add_light},
     {"texture", Stage::texture_unit, is_textured, texture},
     {"fog", Stage::rop, is_fogged, add_fog},
     {"alpha_test", Stage::depth_test, tests_alpha, test_alpha},

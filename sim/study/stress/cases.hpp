@@ -81,6 +81,7 @@ void alpha_parts(Unit& unit);
 void mask_parts(Unit& unit);
 void stencil_counts(Unit& unit);
 void fog(Unit& unit);
+void light(Unit& unit);
 // sample_cases.cpp
 void samples(Unit& unit);
 void rectangles(Unit& unit);

@@ -214,4 +214,43 @@ void fog(Unit& unit) {
   unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
 }
 
+void light(Unit& unit) {
+  Random& random = unit.random;
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  state = with(unit, state, {"color_interp", "light_ambient", "light_diffuse", "light_specular", "blend"});
+  if (random.coin()) state = with(unit, state, {"fog", "fog_color"});
+  const auto direction = [&random] {
+    return std::array{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+  };
+  state.shade = Shade::phong;
+  state.light_direction = direction();
+  state.light_half = direction();
+  state.light_shininess = std::exp2(random.between(0, 7));
+  SceneBuilder builder(unit.width(40), unit.height(32), state);
+  add_triangles(unit, builder, 3);
+  Scene& scene = builder.scene;
+  const double ratio = std::exp2(random.between(0, 10)), scale = std::exp2(random.between(-20, 20));
+  // Of a flat triangle, of a curved one, or all at random; and where highlights are.
+  const double bend = std::exp2(random.between(-8, 1));
+  const auto middle = random.coin() ? state.light_half : direction();
+  for (Vertex& vertex : scene.vertices) {
+    vertex.w = scale * std::pow(ratio, random.unit());
+    auto normal = direction();
+    for (std::size_t c = 0; c < 3; ++c) normal[c] = middle[c] + bend * normal[c];
+    scene.normals.push_back(normal);
+  }
+  const Config config = with_alpha(unit.config, scene);
+  FragmentJudge judge(scene, config);
+  RenderOptions options = render_options();
+  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
+  const FragmentVerdict verdict = judge.finish(render_scalar(scene, unit.config, options));
+  unit.count_samples(verdict.fragments);
+  if (verdict.fragments > 0)
+    unit.measure("light", "LSB", verdict.surfaces.light.value, verdict.surfaces.light.bound, scene);
+  const Rendering drawn = rendered(unit, scene);
+  const Rendering plain = unit.engine(scene, unit.config, {});  // without taps, in its own way
+  unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
+}
+
 }  // namespace halfplane::stress

@@ -32,7 +32,7 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
       SurfaceConstants(*stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr), {}, nullptr});
   if (!drawn.constants.are_in_lanes)
     drawn.stage = std::move(stage);
-  else if (drawn.constants.has_color && !drawn.constants.is_color_over_w)
+  else if ((drawn.constants.has_color || drawn.constants.light) && !drawn.constants.is_color_over_w)
     set_up_surface_colors(bin, seen, drawn.colors);
   return drawn;
 }

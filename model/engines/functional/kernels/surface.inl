@@ -49,11 +49,12 @@ struct SurfaceRamps {
   ColorRamp color;
   LodRamps lod;
 
-  HALFPLANE_INLINE SurfaceRamps(const Bin& bin, const DrawnSurface& surface, int tile_x, int tile_y) {
+  /// `has_color`: whether own() is asked for.
+  HALFPLANE_INLINE SurfaceRamps(const Bin& bin, const DrawnSurface& surface, int tile_x, int tile_y, bool has_color) {
     const SurfaceConstants& of = surface.constants;
     if constexpr (kSampling != Sampling::none) coordinate.set(bin, of.coordinate, tile_x, tile_y);
     if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
-    if (!of.has_color) return;
+    if (!has_color) return;
     if (of.is_color_over_w) {
       color_over_w.set(bin, of.color, tile_x, tile_y);
       return;
@@ -112,7 +113,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
                               std::uint32_t* const colors, ColorFormat format) {
   constexpr bool kHasTexture = kSampling != Sampling::none;
   const SurfaceConstants& of = surface.constants;
-  const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles);
+  const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
   CoordinateLanes at[4];
   I16 lod[4], red_blue[4], green_alpha[4];
   alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
@@ -164,15 +165,42 @@ HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int ti
   }
 }
 
-/// What lanes do, but for fog.
-HALFPLANE_INLINE void shade_in_lanes(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                                     std::uint32_t* const colors, ColorFormat format) {
+/// The textures alone, or colours that are not lit.
+HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                                  std::uint32_t* const colors, ColorFormat format) {
   switch (sampling_of(surface.constants)) {
     case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels, colors, format);
     case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels, colors, format);
     case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels, colors, format);
     case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels, colors, format);
   }
+}
+
+/// What is lit: texels first, where there are some, in 8 bits a channel.
+HALFPLANE_NOINLINE void shade_lit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                                  std::uint32_t* const colors, ColorFormat format) {
+  const SurfaceConstants& of = surface.constants;
+  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> texels{};
+  if (of.has_texture) shade_unlit(bin, surface, tile, pixels, texels.data(), ColorFormat::rgba8888);
+  const SurfaceRamps<Sampling::none> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, true);
+  const NormalRamps normals(bin, *of.light, tile % kBinTiles, tile / kBinTiles);
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) return;
+    const ColorPairs lit = LightLanes(normals, *of.light, block).lit(ramps.own(bin, surface, block), *of.light);
+    const ColorPairs pairs =
+        of.has_texture ? combined(lit, ColorPairs(I16::load(texels.data() + block * kBlockPixels)), of.texture) : lit;
+    const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
+    std::uint32_t* const to = colors + block * kBlockPixels;
+    select_by_bits(bits, color, I16::load(to), bin.position.to_sign).store(to);
+  });
+}
+
+/// What lanes do, but for fog.
+HALFPLANE_INLINE void shade_in_lanes(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                                     std::uint32_t* const colors, ColorFormat format) {
+  if (surface.constants.light) return shade_lit(bin, surface, tile, pixels, colors, format);
+  shade_unlit(bin, surface, tile, pixels, colors, format);
 }
 
 /// f of pixels, 2^-12: FogTable::factor().
