@@ -29,8 +29,8 @@ package raster_pkg;
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
   localparam int TEXTURE_LANES = 1;  // that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4
-  localparam int TEXTURE_WAYS = 1;
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
+  localparam int TEXTURE_WAYS = 1;  // in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced
   localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
   localparam int RECIPROCAL_KIND = 0;  // 0 table, 1 restoring: what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time
   localparam int ALPHA_UNIT = 0;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
@@ -44,7 +44,7 @@ package raster_pkg;
   localparam int MSAA_SAMPLES = 1;  // of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
-  localparam logic [63:0] CONFIG_ID = 64'h07db315c1ea7ffdc;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h881e1a4348524e7f;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 8;  // s: fraction bits of a coordinate, at least 1
