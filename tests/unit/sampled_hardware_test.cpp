@@ -39,7 +39,9 @@ std::vector<Config> sampled_hardware() {
 void expect_same(const Framebuffer& a, const Framebuffer& b, const Config& config) {
   ASSERT_EQ(a.color, b.color);
   ASSERT_EQ(a.depth, b.depth);
-  if (has_stencil(config)) ASSERT_EQ(a.stencil, b.stencil);
+  if (has_stencil(config)) {
+    ASSERT_EQ(a.stencil, b.stencil);
+  }
   ASSERT_EQ(a.samples.size(), b.samples.size());
   for (std::size_t k = 0; k < a.samples.size(); ++k) {
     SCOPED_TRACE("sample " + std::to_string(k));
