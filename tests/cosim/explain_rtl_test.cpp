@@ -17,6 +17,7 @@ TEST(ExplainRtl, RandomPixelsAgreeWithTheRtlInEveryPacketAndCycle) {
   std::cout << "seed " << kSeed << '\n';
   for (const DutFactory& factory : verilated_duts()) {
     SCOPED_TRACE(factory.name);
+    if (factory.config.msaa_samples > 1) continue;  // explain keeps no record of such hardware, and says so
     const auto dut = make_dut(factory);
     Random random(kSeed);
     std::size_t packets = 0, cycles = 0;
