@@ -639,7 +639,5 @@ mutant(432 stages/depth_test.sv "samples: HiZ: a tile's bound is that of its fir
   [=[depths[(pixel*N+i+1)*CODE-1-:HIZ] > farthest]=] [=[1'b0]=])
 mutant(433 stages/cache_tags.sv "samples: alpha: what it may leave out is not asked for"
   [=[(raster_pkg::MSAA_SAMPLES > 1 && fragment_q.code[11])]=] [=[1'b0]=])
-mutant_text(434 stages/fine_raster.sv "samples: the centres of an accepted tile are looked at by edges that may have been saturated"
-  [=[(tile_q.is_inside || !(centres_outside]=] [=[((tile_q.is_inside && raster_cosim.mutant_q != 16'd434) || !(centres_outside]=])
 mutant(435 lib/colored_stamps.sv "samples: colours: a pixel has its neighbour's"
   [=[w_color[s/N*COLOR+:COLOR]]=] [=[w_color[(N > 1 ? (s/N) ^ 1 : s/N)*COLOR+:COLOR]]=])
