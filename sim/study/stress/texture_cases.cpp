@@ -307,7 +307,9 @@ void texture_viewport(Unit& unit) {
   const Scene scene = rectangle(unit, state, random_texture(unit, width, height), {from.x * p, from.y * p},
                                 {(from.x + width) * p, (from.y + height) * p});
   const PerspectiveFormat format = perspective_format(unit.config);
-  const auto off = [&](int side) { return over_w_bound(side, 1, format, format.coordinate, plane_roundings(unit.config)); };
+  const auto off = [&](int side) {
+    return over_w_bound(side, 1, format, format.coordinate, plane_roundings(unit.config));
+  };
   int worst = 0;
   (void)check_surfaces(unit, scene, [&](const TappedFragment& f, const SurfaceSample& s) {
     const Texel texel = scene.textures[0].texel(0, f.x - static_cast<int>(from.x), f.y - static_cast<int>(from.y));
