@@ -392,8 +392,9 @@ void validate(const Config& config) {
   const double bound = depth_error_bound(config);
   char text[16];
   std::snprintf(text, sizeof text, "%.2f", bound);
-  refuse_unless(bound <= 1.0, std::string("the depth error may reach ") + text +
-                                  " LSB (bound: 1/2 + 2^-extra + (T+1) 2^-(l+1) + 2^-5, at most 1); raise "
+  refuse_unless(bound <= 1.0, std::string("the depth error may reach ") + text + " LSB (bound: 1/2 + 2^-extra + (T+" +
+                                  (config.msaa_samples > 1 ? "3" : "1") +
+                                  ") 2^-(l+1) + 2^-5, at most 1); raise "
                                   "plane.local_guard_bits or reciprocal.extra_bits, or lower tile.size");
 }
 

@@ -10,14 +10,20 @@ namespace halfplane {
 
 using EdgeValue = std::int64_t;  ///< floor((E + bias) / 2^s) at a pixel centre; covered when >= 0
 
-/// E of the edge from `from` to `to` at the centre of pixel (x, y), >= 0 when covered: floor((E - bias) / 2^s). `bias`
-/// is 0 when samples exactly on the edge belong to the triangle, otherwise 1.
-[[nodiscard]] constexpr EdgeValue edge_function(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
+/// E - bias of the edge from `from` to `to` at the centre of pixel (x, y), square subpixels. `bias` is 0 when samples exactly on the
+/// edge belong to the triangle, otherwise 1.
+[[nodiscard]] constexpr std::int64_t exact_edge(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
                                                 int grid_bits, int bias) {
   const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
   const std::int64_t px = (std::int64_t{x} << grid_bits) + half, py = (std::int64_t{y} << grid_bits) + half;
   const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-  return (dx * (py - from.y) - dy * (px - from.x) - bias) >> grid_bits;
+  return dx * (py - from.y) - dy * (px - from.x) - bias;
+}
+
+/// What the pipeline has of it, >= 0 when covered: floor((E - bias) / 2^s).
+[[nodiscard]] constexpr EdgeValue edge_function(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
+                                                int grid_bits, int bias) {
+  return exact_edge(from, to, x, y, grid_bits, bias) >> grid_bits;
 }
 
 /// The pipeline's fill rule: a sample exactly on the edge belongs to the triangle when the edge is a top (dy = 0, dx > 0)
@@ -34,10 +40,7 @@ using EdgeValue = std::int64_t;  ///< floor((E + bias) / 2^s) at a pixel centre;
 
 /// The grid_bits bits that edge_function() has lost below its value: the same at every pixel centre.
 [[nodiscard]] constexpr EdgeValue edge_low(const SnappedVertex& from, const SnappedVertex& to, int grid_bits) {
-  const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
-  const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
-  const std::int64_t at_centre = dx * (half - from.y) - dy * (half - from.x) - (is_top_left(from, to) ? 0 : 1);
-  return at_centre & (2 * half - 1);
+  return exact_edge(from, to, 0, 0, grid_bits, is_top_left(from, to) ? 0 : 1) & ((EdgeValue{1} << grid_bits) - 1);
 }
 
 /// c: what an edge gains from the centre of a pixel to a sample that lies `o` from it, in 2^-s pixel. `step_x`, `step_y`: what

@@ -26,10 +26,10 @@ std::uint32_t q_code(double w, int e) {
 }  // namespace
 
 double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFormat& format,
-                              const OverWFormat& attribute, int tile_size) {
+                              const OverWFormat& attribute, int roundings) {
   // The largest |u'|: half the extent and what u_ref, an integer, is off the middle; all of it without a u_ref.
   const double reach = attribute.is_centred ? extent / 2 + 1 : extent;
-  const double delta = std::ldexp(tile_size + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of a plane, codes
+  const double delta = std::ldexp(roundings + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of a plane, codes
   const double smallest_q = std::ldexp(1.0, format.q_bits - 1) / w_ratio;
   const double p_code = 2 * reach * std::ldexp(1.0, format.q_bits - attribute.bits);  // 2^sp at most
   const double planes = extent / 4                         // Q_i rounded: shifts the weights of the vertices

@@ -70,13 +70,13 @@ inline constexpr int kMaxReach = 20;
 }
 
 /// The most that a coordinate is wrong, in texels, to first order: an attribute that spans `extent` texels over a triangle
-/// whose largest w is `w_ratio` times its smallest, in tiles of `tile_size` pixels. Without a u_ref: from 0 to `extent`.
+/// whose largest w is `w_ratio` times its smallest. `roundings`: plane_roundings(). Without a u_ref: from 0 to `extent`.
 [[nodiscard]] double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFormat& format,
-                                            const OverWFormat& attribute, int tile_size);
+                                            const OverWFormat& attribute, int roundings);
 /// That of a texture coordinate: A rho 2^-N (1.5 + 3 delta) + A (2^-r + 3.5 * 2^-k) + 2^-(f+1).
 [[nodiscard]] inline double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFormat& format,
-                                                   int tile_size) {
-  return coordinate_error_bound(extent, w_ratio, format, format.coordinate, tile_size);
+                                                   int roundings) {
+  return coordinate_error_bound(extent, w_ratio, format, format.coordinate, roundings);
 }
 
 // ---- Host

@@ -9,7 +9,6 @@
 #include "../../stages/depth_test.hpp"
 #include "../../stages/hiz.hpp"
 #include "../../stages/line_raster.hpp"
-#include "../../stages/rop.hpp"
 #include "../../stages/state_packets.hpp"
 #include "../../stages/surface.hpp"
 #include "../../stages/texture_packets.hpp"
@@ -155,7 +154,7 @@ class CycleModelOf final : public CycleModel {
     coordinates_ = triangle->coordinates;
     frame_ = texture_frame(triangle->coordinates, vertex_color(setup.range.low, widths_),
                            vertex_color(setup.range.high, widths_));
-    walk(setup, packet, host.primitive);
+    draw(setup, packet, host.primitive);
   }
 
   void fast_clear(const TrianglePacket& clear) {
@@ -337,11 +336,28 @@ class CycleModelOf final : public CycleModel {
   }
 
   /// coarse_raster, and for each visit the rest of the pipeline.
-  void walk(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
+  void draw(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
+    if (widths_.has_samples != 0) {
+      SampledStamps stamps(setup, packet.kind, packet.state, widths_);
+      walk(setup, packet, [&](const SentTile& tile) { visit_samples(stamps, packet, tile, primitive); });
+      return;
+    }
     const Kernel kernel({state_of_kernel(packet.state), {}, stencil_of_kernel(packet.state), {}}, config_, widths_);
     const TriangleLanes<T, Lane> lanes(setup, widths_);
-    std::optional<SampledStamps> stamps;
-    if (widths_.has_samples != 0) stamps.emplace(setup, packet.kind, packet.state, widths_);
+    walk(setup, packet, [&](const SentTile& tile) { visit(kernel, setup, lanes, packet, tile, primitive); });
+  }
+
+  /// A tile that coarse_raster sends on.
+  struct SentTile {
+    int x, y;
+    PixelBounds box;   ///< what the primitive's box has of it, in pixels of it
+    EdgeValues edges;  ///< at its first pixel
+    bool is_inside, ends_primitive;
+  };
+
+  /// coarse_raster. Calls visit(SentTile).
+  template <class Visit>
+  void walk(const TriangleSetup& setup, const SetupPacket& packet, Visit&& visit) {
     CounterPacket uncounted;
     CounterPacket& count = packet.kind == PrimitiveKind::triangle ? counters_ : uncounted;
     const bool asks_hiz = hiz_.is_eligible(packet, widths_);
@@ -377,10 +393,7 @@ class CycleModelOf final : public CycleModel {
         count.samples_tested +=
             static_cast<std::uint32_t>(box.samples()) * static_cast<std::uint32_t>(widths_.pixel_samples);
       has_ended = tiles.is_last();
-      if (stamps)
-        visit_samples(*stamps, packet, box, tiles.x(), tiles.y(), has_ended, primitive);
-      else
-        visit(kernel, setup, lanes, edges, is_inside, packet, box, tiles.x(), tiles.y(), has_ended, primitive);
+      visit(SentTile{tiles.x(), tiles.y(), box, edges, is_inside, has_ended});
       if (asks_hiz && !has_ended) timing_.read_ahead();
     } while (tiles.next(outside));
     if (!has_ended) timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
@@ -401,15 +414,22 @@ class CycleModelOf final : public CycleModel {
     return sides;
   }
 
-  void visit(const Kernel& kernel, const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
-             const EdgeValues& edges, bool is_inside, const SetupPacket& packet, const PixelBounds& box, int tile_x,
-             int tile_y, bool ends_primitive, std::uint32_t primitive) {
+  /// What fine_raster will have to do in it, but for the stamps.
+  [[nodiscard]] TileVisitWork work_in(const SentTile& tile) const {
     const int size = config_.stamp_size;
+    return {tile.ends_primitive,  tile.box.top / size,   tile.box.bottom / size,
+            tile.box.left / size, tile.box.right / size, {}};
+  }
+
+  void visit(const Kernel& kernel, const TriangleSetup& setup, const TriangleLanes<T, Lane>& lanes,
+             const SetupPacket& packet, const SentTile& tile, std::uint32_t primitive) {
+    const int size = config_.stamp_size, tile_x = tile.x, tile_y = tile.y;
+    const PixelBounds& box = tile.box;
     TileMask covered_rows{}, passed_rows{}, stencil_rows{};
-    TileVisitWork work{ends_primitive, box.top / size, box.bottom / size, box.left / size, box.right / size, {}};
+    TileVisitWork work = work_in(tile);
     Mask covered_count{}, passed_count{};
     const bool wants_bits = options_.want_count || options_.want_ids;
-    kernel.draw(setup, lanes, edges, is_inside, tile_x, tile_y, false, packet.state.is_back, rendering_.frame,
+    kernel.draw(setup, lanes, tile.edges, tile.is_inside, tile_x, tile_y, false, packet.state.is_back, rendering_.frame,
                 [&](int j, const Mask& covered_lanes, const typename Kernel::Fates& fates) {
                   const Mask& passed_lanes = fates.passed;
                   const std::uint32_t row = kernel.to_bits(covered_lanes);
@@ -488,25 +508,22 @@ class CycleModelOf final : public CycleModel {
   }
 
   /// visit() where pixels have several samples.
-  void visit_samples(SampledStamps& stamps, const SetupPacket& packet, const PixelBounds& box, int tile_x, int tile_y,
-                     bool ends_primitive, std::uint32_t primitive) {
-    const int size = config_.stamp_size;
-    TileVisitWork work{ends_primitive, box.top / size, box.bottom / size, box.left / size, box.right / size, {}};
-    stamps.enter(tile_x, tile_y, [&](int stamp) {
-      work.columns[static_cast<std::size_t>(stamp / widths_.stamps.stamps_per_row)] |=
-          1U << stamp % widths_.stamps.stamps_per_row;
-    });
+  void visit_samples(SampledStamps& stamps, const SetupPacket& packet, const SentTile& tile, std::uint32_t primitive) {
+    TileVisitWork work = work_in(tile);
+    const int per_row = widths_.stamps.stamps_per_row;
+    stamps.enter(tile.x, tile.y,
+                 [&](int stamp) { work.columns[static_cast<std::size_t>(stamp / per_row)] |= 1U << stamp % per_row; });
+    SampledTarget target{rendering_.frame.samples, config_, widths_};
     CounterPacket count;  // of this visit
     bool is_resident = false;
     const Cycle before = timing_.last_fragment();
-    if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
+    if (options_.sink != nullptr) options_.sink->visit(tile.x, tile.y);
     timing_.visit(work, [&](Cycle offered, int row, int column) {
       if (column < 0) return timing_.pass(offered);
-      const int stamp = row * widths_.stamps.stamps_per_row + column;
-      const FragmentPacket fragment = stamps.fragment(stamp);
+      const FragmentPacket fragment = stamps.fragment(row * per_row + column);
       if (!fragment.mask.any()) return timing_.pass(offered);
-      FragmentPlace place{tile_x, tile_y, stamp, fragment.mask, packet.state.depth_write};
-      WritePacket written = tested(fragment);
+      const FragmentPlace place{tile.x, tile.y, fragment.stamp, fragment.mask, packet.state.depth_write};
+      WritePacket written = target.test(fragment, stencil_);
       const SampleMask wanted = written.write_depth,
                        opaque = tests_alpha() ? opaque_samples(fragment, colors_, widths_) : fragment.mask,
                        kept = written.passed & opaque;
@@ -514,7 +531,8 @@ class CycleModelOf final : public CycleModel {
       count.covered += static_cast<std::uint64_t>(fragment.mask.count());
       count.depth_passed += static_cast<std::uint64_t>(written.passed.count());
       count.written += static_cast<std::uint64_t>(kept.count());
-      store_samples(fragment, written, kept, packet, primitive);
+      target.store(fragment, written, colors_.ops);
+      note_samples(target, fragment, kept, packet, primitive);
       if (blocks_) {
         BlockItem item;
         const TagResult tags = block_access(place, packet.state, item);
@@ -522,10 +540,10 @@ class CycleModelOf final : public CycleModel {
         return timing_.access(offered, tags, item);
       }
       const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
-        return is_resident || ((is_resident = true), tiles_->access(tile_x, tile_y, mover, counters_));
+        return is_resident || ((is_resident = true), tiles_->access(tile.x, tile.y, mover, counters_));
       });
       if (written.passed.any())
-        tiles_->wrote(tile_x, tile_y, place.stamp, packet.state.depth_write, packet.state.color_write);
+        tiles_->wrote(tile.x, tile.y, place.stamp, packet.state.depth_write, packet.state.color_write);
       return moved;
     });
     if (is_counted(packet.kind)) {
@@ -534,54 +552,25 @@ class CycleModelOf final : public CycleModel {
       counters_.alpha_killed += count.depth_passed - count.written;
       if (packet.state.writes()) counters_.written += count.written;
     }
-    retire(packet, tile_x, tile_y, static_cast<std::uint32_t>(count.written), false);
+    retire(packet, tile.x, tile.y, static_cast<std::uint32_t>(count.written), false);
     if (!options_.want_cost) return;
+    const PixelBounds& box = tile.box;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(box.samples());
     for (int j = box.top; j <= box.bottom; ++j)
-      for (int i = box.left; i <= box.right; ++i) cost_[plain_index(tile_x * T + i, tile_y * T + j)] += cycles;
+      for (int i = box.left; i <= box.right; ++i) cost_[plain_index(tile.x * T + i, tile.y * T + j)] += cycles;
   }
 
-  /// The first pixel of a fragment's stamp, in the target.
-  [[nodiscard]] PixelOffset first_pixel(const FragmentPacket& fragment) const {
-    const PixelOffset origin = widths_.stamps.origin_of(fragment.stamp);
-    return {fragment.key.tile_x * T + origin.x, fragment.key.tile_y * T + origin.y};
-  }
-
-  /// depth_test of a stamp, and what rop makes of its colours.
-  [[nodiscard]] WritePacket tested(const FragmentPacket& fragment) {
-    std::array<std::uint32_t, kMaxSamples> stored{};
-    const PixelOffset first = first_pixel(fragment);
+  /// Counts of a stamp's covered samples, and the owners of those that are stored: a pixel has that of its first.
+  void note_samples(const SampledTarget& target, const FragmentPacket& fragment, SampleMask kept,
+                    const SetupPacket& packet, std::uint32_t primitive) {
+    const bool counts = is_counted(packet.kind);
     fragment.mask.for_each([&](std::size_t s) {
-      const PixelOffset pixel = widths_.stamps.pixel_of(static_cast<int>(s));
-      const Framebuffer& frame = frames()[s % static_cast<std::size_t>(widths_.pixel_samples)];
-      stored[s] = stored_word(frame, frame.at(first.x + pixel.x, first.y + pixel.y));
-    });
-    return rop(fragment, depth_test(fragment, stored, stencil_, widths_), config_, widths_);
-  }
-
-  /// The framebuffer of a stamp that has been tested.
-  void store_samples(const FragmentPacket& fragment, const WritePacket& written, SampleMask kept,
-                     const SetupPacket& packet, std::uint32_t primitive) {
-    const PixelOffset first = first_pixel(fragment);
-    fragment.mask.for_each([&](std::size_t s) {
-      const std::size_t k = s % static_cast<std::size_t>(widths_.pixel_samples);
-      const PixelOffset in_stamp = widths_.stamps.pixel_of(static_cast<int>(s));
-      const int x = first.x + in_stamp.x, y = first.y + in_stamp.y;
-      Framebuffer& frame = frames()[k];
-      const std::size_t at = frame.at(x, y);
-      if (written.write_depth.has(s)) {
-        frame.depth[at] = depth_of(written.depth[s], widths_);
-        frame.stencil[at] = stencil_of(written.depth[s], widths_);
-      }
-      if (written.write_color.has(s)) {
-        const Channels<std::uint32_t> channels = color_channels(fragment_code(fragment, s, widths_));
-        frame.color[at] = store_color<std::uint32_t>(colors_.ops, config_.color_format, channels, frame.color[at],
-                                                     dither_threshold(x, y));
-      }
-      const std::size_t plain = plain_index(x, y);
-      if (is_counted(packet.kind) && !rendering_.count.empty()) ++rendering_.count[plain];
-      if (k == 0 && kept.has(s) && !rendering_.ids.empty() && (packet.state.writes() || !is_counted(packet.kind)))
-        rendering_.ids[plain] = is_counted(packet.kind) ? static_cast<std::int32_t>(primitive) : -1;
+      const PixelOffset at = target.pixel(fragment, s);
+      const std::size_t plain = plain_index(at.x, at.y);
+      if (counts && !rendering_.count.empty()) ++rendering_.count[plain];
+      if (s % static_cast<std::size_t>(widths_.pixel_samples) == 0 && kept.has(s) && !rendering_.ids.empty() &&
+          (packet.state.writes() || !counts))
+        rendering_.ids[plain] = counts ? static_cast<std::int32_t>(primitive) : -1;
     });
   }
 

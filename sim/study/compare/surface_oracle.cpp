@@ -42,13 +42,13 @@ std::array<double, 4> weighted_texel(const Sampler& s, const SurfaceSample& samp
 }  // namespace
 
 double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& format, const OverWFormat& attribute,
-                    int tile_size) {
-  const double delta = std::ldexp(tile_size + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of Q's plane, codes
+                    int roundings) {
+  const double delta = std::ldexp(roundings + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of Q's plane, codes
   const double smallest_q = std::ldexp(1.0, format.q_bits - 1) / w_ratio, lost = 0.5 + delta;
   // |U| <= 2^(x+1), 2^x at most twice the largest |u'| and its margin, and that from the real value.
   const double held = attribute.is_centred ? 5.01 * (extent / 2 + 1) : extent;
   if (smallest_q <= lost) return held;
-  const double first_order = coordinate_error_bound(extent, w_ratio, format, attribute, tile_size);
+  const double first_order = coordinate_error_bound(extent, w_ratio, format, attribute, roundings);
   return std::min(held, first_order * smallest_q / (smallest_q - lost));
 }
 
@@ -103,10 +103,10 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
 }
 
 /// Q_i is rounded, one below 1/2 to 1, and its plane is off by delta; the reciprocal of the area is off in all of it.
-void SurfaceOracle::set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size) {
+void SurfaceOracle::set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int roundings) {
   q_code_ = std::ldexp(1.0, -q_exponent(w, format.q_bits));
   const double smallest = 1 / std::max({w[0], w[1], w[2]}) / q_code_;
-  const double delta = std::ldexp(tile_size + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);
+  const double delta = std::ldexp(roundings + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);
   q_lost_ = (smallest < 0.5 ? 1 : 0.5) + delta;
   q_relative_ = std::ldexp(1.0, -format.reciprocal_bits);
   // P_i is that of a rounded Q_i, and rounded itself.

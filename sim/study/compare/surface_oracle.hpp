@@ -61,7 +61,7 @@ class SurfaceOracle {
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
 
  private:
-  void set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int tile_size);
+  void set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int roundings);
   void compare_light(const SurfaceSample& sample, const std::array<double, 3>& normal, double inverse_w,
                      SurfaceErrors& errors) const;
   void compare_fog(const SurfaceSample& sample, double inverse_w, SurfaceErrors& errors) const;
@@ -83,7 +83,7 @@ class SurfaceOracle {
 /// What real arithmetic allows an attribute over w to be off, texels or LSB: coordinate_error_bound(), which is to first
 /// order in the errors of Q, to all orders. Where Q is not known to be more than its error, whatever its bits can hold.
 [[nodiscard]] double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& format,
-                                  const OverWFormat& attribute, int tile_size);
+                                  const OverWFormat& attribute, int roundings);
 
 /// The largest w ratio to which a level of detail is promised to be 0.1 off at most: a code of Q is then 2^-9 of the
 /// smallest or less.

@@ -27,13 +27,6 @@ std::string_view side_of(const SnappedVertex& from, const SnappedVertex& to) {
   return dy < 0 ? "left" : "right";
 }
 
-/// E of an edge at a pixel's centre, square subpixels.
-std::int64_t exact_edge(const SnappedVertex& from, const SnappedVertex& to, Pixel pixel, int s) {
-  const std::int64_t half = std::int64_t{1} << (s - 1);
-  const std::int64_t px = (std::int64_t{pixel.x} << s) + half, py = (std::int64_t{pixel.y} << s) + half;
-  return (std::int64_t{to.x} - from.x) * (py - from.y) - (std::int64_t{to.y} - from.y) * (px - from.x);
-}
-
 PlaneFigure plane_figure(const Widths& widths, std::size_t plane, int guard_bits, const PlaneSample& sample,
                          const exact::Rational& oracle) {
   return {widths.plane_name(plane),
@@ -185,8 +178,9 @@ Entry TrianglePiece::at(Pixel pixel) const {
   const EdgeValues edges = edges_at(pixel);
   for (std::size_t i = 0; i < 3; ++i) {
     const SnappedVertex &from = corner_[i], &to = corner_[(i + 1) % 3];
-    entry.edges.push_back({order_[i], order_[(i + 1) % 3], edges[i], exact_edge(from, to, pixel, widths_.grid_bits),
-                           widths_.edge_value.bits, is_top_left(from, to), side_of(from, to)});
+    entry.edges.push_back({order_[i], order_[(i + 1) % 3], edges[i],
+                           exact_edge(from, to, pixel.x, pixel.y, widths_.grid_bits, 0), widths_.edge_value.bits,
+                           is_top_left(from, to), side_of(from, to)});
   }
   entry.oracle = OracleFigure{oracle_.covers(pixel.x, pixel.y),
                               exact::is_on_border(triangle_, pixel.x, pixel.y, widths_.grid_bits)};

@@ -58,6 +58,17 @@ void again(Scene& scene, const State& state) {
     }
 }
 
+/// Every fragment of the specification against the oracle.
+FragmentVerdict judged(Unit& unit, const Scene& scene) {
+  const Config config = with_alpha(unit.config, scene);
+  FragmentJudge judge(scene, config);
+  RenderOptions options = render_options();
+  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
+  const FragmentVerdict verdict = judge.finish(render_scalar(scene, unit.config, options));
+  unit.count_samples(verdict.fragments);
+  return verdict;
+}
+
 }  // namespace
 
 void random_operations(Unit& unit) {
@@ -199,12 +210,7 @@ void fog(Unit& unit) {
   add_triangles(unit, builder, 3);
   for (Vertex& vertex : builder.scene.vertices) vertex.w = distance();
   const Scene& scene = builder.scene;
-  const Config config = with_alpha(unit.config, scene);
-  FragmentJudge judge(scene, config);
-  RenderOptions options = render_options();
-  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
-  const FragmentVerdict verdict = judge.finish(render_scalar(scene, unit.config, options));
-  unit.count_samples(verdict.fragments);
+  const FragmentVerdict verdict = judged(unit, scene);
   if (verdict.fragments > 0) {
     unit.measure("fog", "LSB", verdict.surfaces.fog.value, verdict.surfaces.fog.bound, scene);
     unit.measure("factor", "LSB", verdict.surfaces.fog_factor.value, verdict.surfaces.fog_factor.bound, scene);
@@ -240,12 +246,7 @@ void light(Unit& unit) {
     for (std::size_t c = 0; c < 3; ++c) normal[c] = middle[c] + bend * normal[c];
     scene.normals.push_back(normal);
   }
-  const Config config = with_alpha(unit.config, scene);
-  FragmentJudge judge(scene, config);
-  RenderOptions options = render_options();
-  options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
-  const FragmentVerdict verdict = judge.finish(render_scalar(scene, unit.config, options));
-  unit.count_samples(verdict.fragments);
+  const FragmentVerdict verdict = judged(unit, scene);
   if (verdict.fragments > 0)
     unit.measure("light", "LSB", verdict.surfaces.light.value, verdict.surfaces.light.bound, scene);
   const Rendering drawn = rendered(unit, scene);

@@ -1,6 +1,8 @@
 // Several samples a pixel: each against the exact oracle at its own place, and the functional engine against the stages.
 #include <algorithm>
+#include <optional>
 
+#include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
@@ -39,10 +41,27 @@ bool has_lanes_enough(const Config& config) {
   }
 }
 
-/// Every fragment of the specification at each of its samples, and the unit's engine against it.
+/// The hardware with every unit that its framebuffer has room for; none: it does not take the scene with several samples.
+std::optional<Config> hardware_of(Config config, const Scene& scene) {
+  const bool has_blocks = config.cache_kind == CacheKind::blocks;
+  config.texture_unit = TextureUnitKind::off;
+  config.alpha_units = config.dither_units = has_blocks ? 1 : 0;
+  config.blend_lanes = has_blocks ? 4 : 0;
+  config.stencil_bits = has_blocks && config.depth_bits <= 24 ? 8 : 0;
+  try {
+    validate(config);
+    check_hardware_scene(scene, config);
+    return config;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Every fragment of the specification at each of its samples, and the unit's engine and the hardware against it.
 void check_samples(Unit& here, const Scene& scene) {
   const Config& config = here.config;
-  FragmentJudge judge(scene, with_alpha(config, scene));
+  const Config judged = with_alpha(config, scene);
+  FragmentJudge judge(scene, judged);
   RenderOptions options = render_options();
   options.fragment_tap = [&judge](const TappedFragment& fragment) { judge.add(fragment); };
   const Rendering specification = render_scalar(scene, config, options);
@@ -57,6 +76,9 @@ void check_samples(Unit& here, const Scene& scene) {
       here.measure("color of samples", "LSB of 8 bits", plane.worst, 1, scene);
   }
   expect_same_image(here, scene, specification, here.engine(scene, config, render_options()));
+  if (config.msaa_samples == 1) return;
+  if (const auto hardware = hardware_of(config, scene))
+    expect_same_image(here, scene, specification, render_hardware(scene, *hardware));
 }
 
 }  // namespace
