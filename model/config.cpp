@@ -109,6 +109,10 @@ const std::array kSettings{
     Setting{"msaa.pattern", "standard|<X>,<Y>;...",
             "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner", 0, 0,
             &Config::msaa_pattern},
+    Setting{"resolve.unit", "units",
+            "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store "
+            "colours alone; 0: it stores all samples",
+            0, 1, &Config::resolve_units},
     Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
             "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
             &Config::depth_mapping},
@@ -376,6 +380,9 @@ void validate(const Config& config) {
                 "a stamp holds at most 64 samples, stamp.size^2 * msaa.samples: lower one of them");
   refuse_unless(config.msaa_samples > 1 || config.msaa_pattern == SamplePattern{},
                 "the one sample of a pixel is its centre: raise msaa.samples, or leave msaa.pattern out");
+  refuse_unless(config.resolve_units == 0 || (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks),
+                "a mean is taken of several samples, in the framebuffer of blocks: raise msaa.samples and use "
+                "cache.kind=blocks, or resolve.unit=0");
   refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
                 "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
                     std::to_string(config.msaa_samples) + ": give as many");

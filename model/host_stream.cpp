@@ -37,6 +37,8 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
   return clear != nullptr && clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height} ? clear : nullptr;
 }
 
+}  // namespace
+
 /// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
 /// once.
 bool begins_once(const Scene& scene) {
@@ -48,8 +50,6 @@ bool begins_once(const Scene& scene) {
   }
   return true;
 }
-
-}  // namespace
 
 std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
   const PrimitivePacket& packet = primitive.packet;

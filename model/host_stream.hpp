@@ -25,6 +25,10 @@
 
 namespace halfplane {
 
+/// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
+/// once.
+[[nodiscard]] bool begins_once(const Scene& scene);
+
 /// The primitives of a scene, pulled one at a time. `scene` must outlive the stream.
 class HostStream {
  public:

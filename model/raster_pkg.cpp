@@ -235,7 +235,8 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "PORT_SHIFT", memory.port, "log2 of the bytes of a beat");
   print_constant(out, "DEPTH_SAMPLE_BYTES", 1 << memory.sample[0], "of a stored depth");
   print_constant(out, "COLOR_SAMPLE_BYTES", 1 << memory.sample[1], "of a stored colour");
-  const int stamp_bytes = widths.samples << std::max(memory.sample[0], memory.sample[1]);
+  print_constant(out, "MEMORY_COLORS", widths.memory_colors, "of a stamp in memory: of its samples, or of its pixels");
+  const int stamp_bytes = std::max(widths.samples << memory.sample[0], widths.memory_colors << memory.sample[1]);
   print_constant(out, "REQUEST_BYTES", std::max(stamp_bytes, widths.blocks.flag_word / 8),
                  "data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags");
   print_constant(out, "PLANE_SHIFT", memory.plane, "log2 of the bytes of a plane of a tile");

@@ -152,7 +152,7 @@ void derive_memory(Widths& w, const Config& config) {
   w.port_bytes = config.memory_port_bits / 8;
   m.port = log2(w.port_bytes);
   m.sample = {sample_bytes_log2(w.stored_depth.bits), sample_bytes_log2(w.stored_color.bits)};
-  for (const std::size_t p : {0U, 1U}) m.stamp[p] = m.sample[p] + log2(w.samples);
+  m.stamp = {m.sample[0] + log2(w.samples), m.sample[1] + log2(w.memory_colors)};
   m.flag_word = log2(w.blocks.flag_word) - 3;
   m.plane = std::max(std::max(m.stamp[0], m.stamp[1]) + log2(w.stamps.stamps()), m.port);
   const int words = (w.tiles_x * w.blocks.per_tile - 1) / w.blocks.flag_word + 1;
@@ -197,6 +197,7 @@ Widths derive_widths(const Config& config) {
   w.pixels = w.stamps.pixels();
   w.further_samples = w.samples - w.pixels;
   w.has_samples = config.msaa_samples > 1 ? 1 : 0;
+  w.memory_colors = config.resolve_units != 0 ? w.pixels : w.samples;
   w.edge_lows = 3 * w.has_samples;
   w.tiles_x = (config.target_width + config.tile_size - 1) / config.tile_size;
   w.tiles_y = (config.target_height + config.tile_size - 1) / config.tile_size;

@@ -111,6 +111,7 @@ struct Widths {
   int has_samples = 0;      ///< 1: a pixel has several
   int edge_lows = 0;        ///< 3 then: of each edge the bits that edge_function() has lost
   int further_samples = 0;  ///< of a stamp, but for the first of each pixel
+  int memory_colors = 0;    ///< of a stamp in memory: of its samples, or of its pixels, where the chip takes their mean
   std::array<SampleOffset, kMaxPixelSamples> sample_offset{};  ///< of each, from the pixel's centre, 2^-s pixel
 
   // Coverage.

@@ -70,7 +70,7 @@ void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
   const TilePlane plane = is_color ? TilePlane::color : TilePlane::depth;
   const Width& code = is_color ? widths_.stored_color : widths_.stored_depth;
   std::uint32_t address = byte_address(plane, tile_x, tile_y, stamp, layout_, widths_);
-  for (int s = 0; s < samples(); ++s) {
+  for (int s = 0; s < (is_color ? widths_.memory_colors : widths_.samples); ++s) {
     std::uint32_t value = 0;
     for (int n = 0; n < 1 << widths_.memory.sample[is_color ? 1 : 0]; ++n)
       value |= std::uint32_t{byte(address++)} << 8 * n;
@@ -93,7 +93,8 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   Framebuffer frame(width, height, config.tile_size);
   std::ranges::fill(frame.depth, snap_depth(1.0, config.depth_bits));
   std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
-  frame.samples.assign(config.msaa_samples == 1 ? 0 : static_cast<std::size_t>(config.msaa_samples), frame);
+  const bool has_samples = config.msaa_samples > 1 && config.resolve_units == 0;
+  frame.samples.assign(has_samples ? static_cast<std::size_t>(config.msaa_samples) : 0, frame);
   const Widths widths = derive_widths(config);
   const int tile = config.tile_size, size = config.stamp_size;
   const StampGrid& stamps = widths.stamps;
@@ -104,13 +105,14 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
       data.fill(memory.clear_value(is_color));
     else
       memory.read(is_color, x / tile, y / tile, stamp, data);
+    const bool is_mean = is_color && config.resolve_units != 0;  // a colour for each pixel
     for (int s = 0; s < stamps.samples(); ++s) {
       const PixelOffset pixel = stamps.pixel_of(s);
       if (x + pixel.x >= width || y + pixel.y >= height) continue;
       Framebuffer& of_sample =
           frame.samples.empty() ? frame : frame.samples[static_cast<std::size_t>(s % stamps.per_pixel)];
       const std::size_t at = frame.at(x + pixel.x, y + pixel.y);
-      const std::uint32_t code = data[static_cast<std::size_t>(s)];
+      const std::uint32_t code = data[static_cast<std::size_t>(is_mean ? s / stamps.per_pixel : s)];
       if (is_color) {
         of_sample.color[at] = code;
       } else {

@@ -35,7 +35,8 @@ class TileMemory {
   void read(std::uint32_t address, MemoryBeat::Bytes& data) const;
   /// Whether the target has what a beat is about.
   [[nodiscard]] bool has(const MemoryBeat& beat) const { return beat.address < end_; }
-  /// The codes of a stamp, of depth with the stencil above them: the first `samples` lanes of `data`; the others are left alone.
+  /// The codes of a stamp, of depth with the stencil above them: the first lanes of `data`, as many as memory has of the plane;
+  /// the others are left alone.
   void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
   /// The value that the last fast clear gave a plane: that of a block whose flag is set.
   void set_clear_value(TilePlane plane, std::uint32_t code) { clear_value_[static_cast<std::size_t>(plane)] = code; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "resolve.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -85,6 +87,21 @@ void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet
   if (fragment.state.color_write) add_dirty(TilePlane::color, packet.write_color, last_.starts_color);
 }
 
+/// The colours of a stamp on its way to memory become those of its pixels. All of a pixel's samples are there: its block leaves the
+/// chip once in a frame that began with a clear.
+void BlockCache::resolve_stamp(MemoryRequest& request) const {
+  const int n = widths_.pixel_samples;
+  SampleMask strobe;
+  for (int pixel = 0; pixel < widths_.pixels; ++pixel) {
+    const auto first = static_cast<std::size_t>(pixel * n);
+    strobe.set(pixel, request.strobe.has(first));
+    request.data[static_cast<std::size_t>(pixel)] = mean_color(
+        config_.color_format, n, [&](int k) { return request.data[first + static_cast<std::size_t>(k)]; });
+  }
+  std::fill(request.data.begin() + widths_.pixels, request.data.begin() + widths_.samples, 0U);
+  request.strobe = strobe;
+}
+
 /// The requests that an eviction comes to, before anything new is written into its line.
 void BlockCache::capture(const Eviction& eviction) {
   Victim& victim = victims_.emplace_back();
@@ -103,6 +120,7 @@ void BlockCache::capture(const Eviction& eviction) {
       if (!request.strobe.any()) continue;
       const auto codes = lanes(plane, at);
       request.strobe.for_each([&](std::size_t s) { request.data[s] = held.has(s) ? codes[s] : clear_value_[p]; });
+      if (plane == TilePlane::color && config_.resolve_units != 0) resolve_stamp(request);
       victim.requests.push_back(request);
       stamps[p] |= std::uint64_t{1} << stamp;
     }
@@ -171,7 +189,7 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
         MemoryRequest request = request_of(TilePlane::color, stamp_address({block, stamp}, widths_));
         request.is_write = true;
         request.run = static_cast<std::uint16_t>(widths_.blocks.stamps() - stamp);
-        request.strobe = SampleMask::all(widths_.samples);
+        request.strobe = SampleMask::all(widths_.memory_colors);
         request.strobe.for_each([&](std::size_t s) { request.data[s] = clear_value_[1]; });
         memory.request(request);
         ++counters.tile_evictions;

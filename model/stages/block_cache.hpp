@@ -55,6 +55,7 @@ class BlockCache {
   }
   void read_colors(MemoryPort& memory, CounterPacket& counters);
   void capture(const Eviction& eviction);
+  void resolve_stamp(MemoryRequest& request) const;
   void write_victims(int count, MemoryPort& memory, CounterPacket& counters);
   void evict_all(MemoryPort& memory, CounterPacket& counters);
 

@@ -217,7 +217,8 @@ class PortStage {
   [[nodiscard]] MemoryResponse unpack(const std::uint8_t* bytes) const {
     MemoryResponse response;
     const int size = 1 << widths_.memory.sample[read_.is_color ? 1 : 0];
-    for (std::size_t s = 0; s < static_cast<std::size_t>(widths_.samples); ++s) {
+    const auto codes = static_cast<std::size_t>(read_.is_color ? widths_.memory_colors : widths_.samples);
+    for (std::size_t s = 0; s < codes; ++s) {
       std::uint32_t value = 0;
       for (int n = 0; n < size; ++n) value |= std::uint32_t{*bytes++} << 8 * n;
       response.data[s] = static_cast<std::uint32_t>(wrap_unsigned(value, widths_.memory_lane.bits));

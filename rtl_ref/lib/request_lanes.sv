@@ -18,7 +18,11 @@ module request_lanes (
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
       assign depth[s*LANE+:LANE] = LANE'(bytes_i[s*DEPTH+:DEPTH]);
-      assign color[s*LANE+:LANE] = LANE'(bytes_i[s*COLOR+:COLOR]);
+      if (s < raster_pkg::MEMORY_COLORS) begin : gen_color
+        assign color[s*LANE+:LANE] = LANE'(bytes_i[s*COLOR+:COLOR]);
+      end else begin : gen_none
+        assign color[s*LANE+:LANE] = '0;
+      end
     end
   endgenerate
   assign data_o = plane_i[1] ? DATA'(bytes_i[raster_pkg::FLAG_WORD-1:0]) : plane_i[0] ? color : depth;

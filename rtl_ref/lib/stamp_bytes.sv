@@ -1,6 +1,7 @@
 // Stamp bytes: a stamp out of what memory has answered. Combinational. Specification: unpack() of
 // model/stages/memory_port.hpp.
 module stamp_bytes #(
+    parameter int CODES = raster_pkg::SAMPLES,  // of a stamp; the lanes behind them are 0
     parameter int SAMPLE_BYTES = 2,  // of a sample in memory
     parameter int WORD = 8,          // bytes of word_i
     parameter int SHARED = 0,        // log2 of the stamps in a beat
@@ -15,7 +16,7 @@ module stamp_bytes #(
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
-  localparam int BYTES = SAMPLES * SAMPLE_BYTES;
+  localparam int BYTES = CODES * SAMPLE_BYTES;
   localparam int TAKEN = (LANE < 8 * SAMPLE_BYTES) ? LANE : 8 * SAMPLE_BYTES;
 
   /* verilator lint_off UNUSEDSIGNAL */  // bits above a code
@@ -29,7 +30,11 @@ module stamp_bytes #(
       assign bytes = (8 * BYTES)'(word_i >> ((32'(sub_i) & 32'((1 << SHARED) - 1)) * (8 * BYTES)));
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
-      assign data_o[s*LANE+:LANE] = LANE'(bytes[8*SAMPLE_BYTES*s+:TAKEN]);
+      if (s < CODES) begin : gen_code
+        assign data_o[s*LANE+:LANE] = LANE'(bytes[8*SAMPLE_BYTES*s+:TAKEN]);
+      end else begin : gen_none
+        assign data_o[s*LANE+:LANE] = '0;
+      end
     end
   endgenerate
 

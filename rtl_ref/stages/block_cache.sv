@@ -856,8 +856,12 @@ module block_cache (
   localparam int DEPTH_WIDTH = 8 * raster_pkg::DEPTH_SAMPLE_BYTES;
   localparam int COLOR_WIDTH = 8 * raster_pkg::COLOR_SAMPLE_BYTES;
   localparam int DEPTHS = SAMPLES * DEPTH_WIDTH;
-  localparam int COLORS = SAMPLES * COLOR_WIDTH;
+  localparam int MEMORY_COLORS = raster_pkg::MEMORY_COLORS;  // of a stamp: of its samples, or their mean in each pixel
+  localparam int COLORS = MEMORY_COLORS * COLOR_WIDTH;
   localparam int DATA = 8 * raster_pkg::REQUEST_BYTES;
+  logic [MEMORY_COLORS*COLOR-1:0] stored;  // colours as memory has them
+  logic [MEMORY_COLORS-1:0]       stored_strobe, color_strobe;
+  assign color_strobe = stored_strobe | {MEMORY_COLORS{!is_here}};
   logic              sends_here, sends_flags, clears_depth, clears_color;
   logic [DEPTHS-1:0] depth_bytes, clear_depths;
   logic [COLORS-1:0] color_bytes, clear_colors;
@@ -868,9 +872,23 @@ module block_cache (
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_data
       assign depth_bytes[s*DEPTH_WIDTH+:DEPTH_WIDTH]  = DEPTH_WIDTH'(sent_depth[s*CODE+:CODE]);
-      assign color_bytes[s*COLOR_WIDTH+:COLOR_WIDTH]  = COLOR_WIDTH'(sent_color[s*COLOR+:COLOR]);
       assign clear_depths[s*DEPTH_WIDTH+:DEPTH_WIDTH] = DEPTH_WIDTH'(clear_depth) & {DEPTH_WIDTH{clears_depth}};
+    end
+    for (s = 0; s < MEMORY_COLORS; s++) begin : gen_colors
+      assign color_bytes[s*COLOR_WIDTH+:COLOR_WIDTH]  = COLOR_WIDTH'(stored[s*COLOR+:COLOR]);
       assign clear_colors[s*COLOR_WIDTH+:COLOR_WIDTH] = COLOR_WIDTH'(clear_color) & {COLOR_WIDTH{clears_color}};
+    end
+    if (raster_pkg::RESOLVE_UNIT != 0) begin : gen_resolve
+      resolve u_resolve (
+          .color_i(sent_color),
+          .color_o(stored)
+      );
+      for (s = 0; s < PIXELS; s++) begin : gen_strobe  // all of a pixel's samples are there, or none
+        assign stored_strobe[s] = sent_color_strobe[s*raster_pkg::MSAA_SAMPLES];
+      end
+    end else begin : gen_samples
+      assign stored        = sent_color;
+      assign stored_strobe = sent_color_strobe;
     end
   endgenerate
   logic [DEPTHS-1:0]                depth_part;
@@ -897,7 +915,7 @@ module block_cache (
       request_o.tile_y = sent_tile_y;
       request_o.stamp  = sent_index;
       if (is_color) request_o.plane = raster_pkg::TILE_PLANE_COLOR;
-      request_o.strobe = is_here ? (is_color ? sent_color_strobe : sent_depth_strobe) : '1;
+      request_o.strobe = is_color ? SAMPLES'(color_strobe) : is_here ? sent_depth_strobe : '1;
     end
     if (flush_valid) request_o = flush_request;
     request_o.data = '0;

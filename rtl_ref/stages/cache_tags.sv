@@ -640,6 +640,7 @@ module cache_tags #(
     request_o.tile_y   = resolve_tile_y;  // of a word of flags the same: that of its row of blocks
     if (state_q == RESOLVE) begin
       request_o.plane  = raster_pkg::TILE_PLANE_COLOR;
+      request_o.strobe = SAMPLES'({raster_pkg::MEMORY_COLORS{1'b1}});
       request_o.tile_x = resolve_tile_x;
       request_o.stamp  = resolve_stamp;
       for (int s = 0; s < SAMPLES; s++) request_o.data[s*LANE+:LANE] = LANE'(clear_color_q);

@@ -54,7 +54,8 @@ module memory_port (
   localparam int BYTES = 1 << PORT;  // of a beat
   localparam int HAS_BLOCKS = raster_pkg::CACHE_KIND;
   localparam int DEPTH_SHIFT = $clog2(SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES);  // log2 of the bytes of a stamp
-  localparam int COLOR_SHIFT = $clog2(SAMPLES * raster_pkg::COLOR_SAMPLE_BYTES);
+  localparam int COLORS = raster_pkg::MEMORY_COLORS;  // of a stamp
+  localparam int COLOR_SHIFT = $clog2(COLORS * raster_pkg::COLOR_SAMPLE_BYTES);
   localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
   localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
   localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;
@@ -118,12 +119,12 @@ module memory_port (
       .ends_o  (depth_ends)
   );
   beat_bytes #(
-      .SAMPLES     (SAMPLES),
+      .SAMPLES     (COLORS),
       .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
       .WORD        (WORD)
   ) u_color_bytes (
       .bytes_i (bytes),
-      .strobe_i(request_i.strobe),
+      .strobe_i(request_i.strobe[COLORS-1:0]),
       .place_i (place),
       .run_i   (request_i.run),
       .word_o  (color_word),
@@ -345,6 +346,7 @@ module memory_port (
     if (READS_COLOR) begin : gen_color_stamp
       logic [SAMPLES*LANE-1:0] color_data;
       stamp_bytes #(
+          .CODES       (COLORS),
           .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
           .WORD        (COLOR_SHARED != 0 ? BYTES : READ_WORD),
           .SHARED      (COLOR_SHARED),

@@ -60,6 +60,7 @@ class Generator {
     if (has_texture_planes(config_)) set_textures();
     if (config_.fog_units != 0) set_fogs();
     if (config_.msaa_samples > 1) set_samples();
+    if (config_.resolve_units != 0) drop_later_clears();
     if (has_colors_over_w(config_)) set_colors_over_w();
     return std::move(scene_);
   }
@@ -92,6 +93,7 @@ class Generator {
   void set_shapes();
   void set_fogs();
   void set_samples();
+  void drop_later_clears();
   void set_colors_over_w();
   void clear();
   void line_and_point_state(State& s);
@@ -197,6 +199,16 @@ void Generator::set_samples() {
   if (tests_alpha(config_)) rows.push_back(&draw_state("alpha_to_coverage"));
   for (State& state : scene_.states)
     if (random.next() % 3 == 0) state = random_state(state, rows, chooser(random));
+}
+
+/// Of clears behind something drawn those of colours alone stay.
+void Generator::drop_later_clears() {
+  bool is_behind = false;
+  std::erase_if(scene_.commands, [&](const Command& command) {
+    const auto* clear = std::get_if<Clear>(&command);
+    is_behind = is_behind || clear == nullptr;
+    return clear != nullptr && is_behind && (clear->depth || clear->stencil);
+  });
 }
 
 /// States of the units that this hardware has behind the depth test, in runs of draws with and without. By random numbers of

@@ -361,6 +361,7 @@ Scene window_scene(const Scene& scene, const Config& config) {
   const double largest = std::ldexp(1.0, config.depth_bits) - 1;
   Config in_program_order = config;  // each primitive once
   in_program_order.frame_order = FrameOrder::program;
+  in_program_order.resolve_units = 0;
   HostStream host(scene, in_program_order);
   Items items;
   while (const auto sent = host.next()) {

@@ -44,7 +44,8 @@ package raster_pkg;
   localparam int MSAA_SAMPLES = 1;  // of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
-  localparam logic [63:0] CONFIG_ID = 64'hbc08dea94a7be791;  // hash of the above
+  localparam int RESOLVE_UNIT = 0;  // 1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store colours alone; 0: it stores all samples
+  localparam logic [63:0] CONFIG_ID = 64'h438a5af5c924bafa;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 2;  // s: fraction bits of a coordinate, at least 1
@@ -77,6 +78,7 @@ package raster_pkg;
   localparam int PORT_SHIFT = 1;  // log2 of the bytes of a beat
   localparam int DEPTH_SAMPLE_BYTES = 1;  // of a stored depth
   localparam int COLOR_SAMPLE_BYTES = 2;  // of a stored colour
+  localparam int MEMORY_COLORS = 1;  // of a stamp in memory: of its samples, or of its pixels
   localparam int REQUEST_BYTES = 2;  // data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags
   localparam int PLANE_SHIFT = 7;  // log2 of the bytes of a plane of a tile
   localparam int FLAG_ROW_SHIFT = 1;  // log2 of the bytes from one row of flags to the next
