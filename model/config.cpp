@@ -109,10 +109,11 @@ const std::array kSettings{
     Setting{"msaa.pattern", "standard|<X>,<Y>;...",
             "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner", 0, 0,
             &Config::msaa_pattern},
-    Setting{"resolve.unit", "units",
-            "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store "
-            "colours alone; 0: it stores all samples",
-            0, 1, &Config::resolve_units},
+    Setting{
+        "resolve.unit", "units",
+        "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store "
+        "colours alone; 0: it stores all samples",
+        0, 1, &Config::resolve_units},
     Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
             "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
             &Config::depth_mapping},
@@ -383,6 +384,10 @@ void validate(const Config& config) {
   refuse_unless(config.resolve_units == 0 || (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks),
                 "a mean is taken of several samples, in the framebuffer of blocks: raise msaa.samples and use "
                 "cache.kind=blocks, or resolve.unit=0");
+  refuse_unless(
+      config.resolve_units == 0 || (config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color),
+      "a pixel's samples become one colour as their block leaves the chip, so they must leave it once, in bins, "
+      "and without their depths: use frame.order=bins and frame.store=color, or resolve.unit=0");
   refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
                 "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
                     std::to_string(config.msaa_samples) + ": give as many");

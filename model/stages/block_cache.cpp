@@ -95,8 +95,8 @@ void BlockCache::resolve_stamp(MemoryRequest& request) const {
   for (int pixel = 0; pixel < widths_.pixels; ++pixel) {
     const auto first = static_cast<std::size_t>(pixel * n);
     strobe.set(pixel, request.strobe.has(first));
-    request.data[static_cast<std::size_t>(pixel)] = mean_color(
-        config_.color_format, n, [&](int k) { return request.data[first + static_cast<std::size_t>(k)]; });
+    request.data[static_cast<std::size_t>(pixel)] =
+        mean_color(config_.color_format, n, [&](int k) { return request.data[first + static_cast<std::size_t>(k)]; });
   }
   std::fill(request.data.begin() + widths_.pixels, request.data.begin() + widths_.samples, 0U);
   request.strobe = strobe;

@@ -640,4 +640,12 @@ mutant(432 stages/depth_test.sv "samples: HiZ: a tile's bound is that of its fir
 mutant(433 stages/cache_tags.sv "samples: alpha: what it may leave out is not asked for"
   [=[(raster_pkg::MSAA_SAMPLES > 1 && fragment_q.code[11])]=] [=[1'b0]=])
 mutant(435 lib/colored_stamps.sv "samples: colours: a pixel has its neighbour's"
-  [=[w_color[s/N*COLOR+:COLOR]]=] [=[w_color[(N > 1 ? (s/N) ^ 1 : s/N)*COLOR+:COLOR]]=])
+  [=[w_color[s/N*COLOR+:COLOR]]=] [=[w_color[(s/N+N-1)%raster_pkg::PIXELS*COLOR+:COLOR]]=])
+mutant(436 lib/resolve.sv "resolve: means are cut off instead of rounded"
+  [=[(BITS + SHIFT)'(N / 2)]=] [=[(BITS + SHIFT)'(0)]=])
+mutant(437 lib/resolve.sv "resolve: the last sample counts as the first"
+  [=[(BITS + SHIFT)'(color_i[(p*N+k)*COLOR+AT+:BITS])]=] [=[(BITS + SHIFT)'(color_i[(p*N+k%(N-1))*COLOR+AT+:BITS])]=])
+mutant(438 stages/cache_tags.sv "resolve: a clear block is written with a colour for each sample"
+  [=[SAMPLES'({raster_pkg::MEMORY_COLORS{1'b1}})]=] [=['1]=])
+mutant(439 stages/block_cache.sv "resolve: a pixel is stored where its first sample is not"
+  [=[sent_color_strobe[s*raster_pkg::MSAA_SAMPLES]]=] [=[!sent_color_strobe[s*raster_pkg::MSAA_SAMPLES]]=])

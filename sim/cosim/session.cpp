@@ -17,8 +17,13 @@ constexpr std::uint64_t kLargestChunk = 2000;                  // primitives
 constexpr std::uint64_t kTraceBefore = 200, kTraceAfter = 20;  // cycles around the mismatch
 constexpr std::uint64_t kQuickTrace = 200'000;                 // cycles that a user who has pressed Ctrl-C waits for
 
+/// Whether the order of a frame is drawn: where no other was asked for.
+bool has_orders(const Config& config) {
+  return config.cache_kind == CacheKind::blocks && config.frame_order == FrameOrder::program &&
+         config.frame_store == FrameStore::all;
+}
+
 void draw_order(Random& random, Config& config) {
-  if (config.resolve_units != 0) return;
   const std::uint64_t drawn = random.next();
   config.frame_order = (drawn & 1) != 0 ? FrameOrder::bins : FrameOrder::program;
   config.frame_store = (drawn & 2) != 0 ? FrameStore::color : FrameStore::all;
@@ -45,14 +50,9 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
   const auto start = std::chrono::steady_clock::now();
   Session session;
   session.config = config;
-  if (config.resolve_units != 0 && orders == HostOrders::drawn) {  // the one order that it has
-    session.config.frame_order = FrameOrder::bins;
-    session.config.frame_store = FrameStore::color;
-  }
+  const bool is_drawn = orders == HostOrders::drawn, draws = is_drawn && has_orders(config);
   Lockstep lockstep(dut, config, options);
   Random random(options.seed);
-  const bool draws = orders == HostOrders::drawn && config.cache_kind == CacheKind::blocks &&
-                     config.frame_order == FrameOrder::program && config.frame_store == FrameStore::all;
   const auto run = [&](Scene scene) {
     const LockstepResult result = lockstep.run(scene, session.config);
     session.result.add(result);
@@ -64,7 +64,7 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
   while (auto scene = next()) {
     if (draws) draw_order(random, session.config);
     std::optional<Scene> second;  // a frame behind it, some of whose bins hold what they held
-    if ((draws || config.resolve_units != 0) && orders == HostOrders::drawn && compares_bins(session.config)) second = next_frame(*scene, random.next());
+    if (is_drawn && compares_bins(session.config)) second = next_frame(*scene, random.next());
     if (!run(std::move(*scene)) || (second && !run(std::move(*second)))) break;
   }
   session.has_trace = lockstep.has_traced();

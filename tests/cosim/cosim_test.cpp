@@ -327,15 +327,21 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_samples.alpha_units = with_samples.dither_units = 1;
   with_samples.blend_lanes = 4;
   with_samples.stencil_bits = 8;
+  Config with_means = preset("tiny");
+  with_means.cache_kind = CacheKind::blocks;
+  with_means.msaa_samples = 2;
+  with_means.resolve_units = 1;
   const DutFactory &embedded = find_dut(preset("embedded")), &tiny = find_dut(preset("tiny")),
                    &textured = find_dut(with_textures), &blended = find_dut(with_operations),
-                   &stencilled = find_dut(with_stencil), &sampled = find_dut(with_samples);
+                   &stencilled = find_dut(with_stencil), &sampled = find_dut(with_samples),
+                   &resolved = find_dut(with_means);
   ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants && textured.has_mutants && blended.has_mutants &&
-              stencilled.has_mutants && sampled.has_mutants);
+              stencilled.has_mutants && sampled.has_mutants && resolved.has_mutants);
   const auto is_of_operations = [](const Mutant& mutant) {
     return mutant.what.starts_with("colours") || mutant.what.starts_with("alpha") || mutant.what.starts_with("lanes");
   };
   const auto is_seen = [&](const Mutant& mutant) {  // `tiny` has the framebuffer of tiles
+    if (mutant.what.starts_with("resolve")) return is_caught(resolved, mutant, 0.2) || is_caught(resolved, mutant, 0);
     if (mutant.what.starts_with("samples")) return is_caught(sampled, mutant, 0.2) || is_caught(sampled, mutant, 0);
     return (mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
            (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||

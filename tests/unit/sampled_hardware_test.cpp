@@ -7,6 +7,7 @@
 #include "model/timing/memory.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/show/report/hardware.hpp"
 
 namespace halfplane {
 namespace {
@@ -72,6 +73,63 @@ TEST(SampledHardware, DrawsTheSpecificationsSamplesInRandomScenes) {
       EXPECT_EQ(a.skipped.tiles_hiz, b.skipped.tiles_hiz);
       EXPECT_EQ(a.written, scalar.counters.written);
     }
+}
+
+/// The same with a unit that takes means.
+Config with_resolve(Config config) {
+  config.cache_kind = CacheKind::blocks;
+  config.frame_order = FrameOrder::bins;
+  config.frame_store = FrameStore::color;
+  config.resolve_units = 1;
+  validate(config);
+  return config;
+}
+
+TEST(SampledHardware, StoresTheMeanOfAPixelsSamples) {
+  for (Config config : sampled_hardware()) {
+    config = with_resolve(config);
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      SCOPED_TRACE(label(config) + ", seed " + std::to_string(seed));
+      const Scene scene = random_scene(config, seed, 40);
+      const Rendering scalar = render_scalar(scene, config), hardware = render_hardware(scene, config);
+      EXPECT_EQ(hardware.frame.color, scalar.frame.color);
+      EXPECT_TRUE(hardware.frame.samples.empty());
+      const auto memory = make_memory({}, config);
+      EXPECT_EQ(render_cycle(scene, config, *memory).rendering.frame.color, scalar.frame.color);
+    }
+  }
+}
+
+/// Of a frame in bins a chip that takes the means moves what it moves with one sample a pixel: blocks of which a sample is
+/// covered and no centre come to a little more.
+TEST(SampledHardware, MeansMoveAsManyBytesAsOneSample) {
+  for (const char* name : {"teapot", "city"}) {
+    Config single = preset("embedded");
+    single.frame_order = FrameOrder::bins;
+    single.frame_store = FrameStore::color;
+    for (const FrameClears clears : {FrameClears::resolve, FrameClears::flags}) {
+      single.frame_clears = clears;
+      const auto bytes = [&](const Config& config) {
+        const auto memory = make_memory({}, config);
+        return traffic(render_cycle(make_builtin(name, 320, 240, {}, 1), config, *memory).run, config).total();
+      };
+      Config sampled = single;
+      sampled.msaa_samples = 4;
+      EXPECT_LE(bytes(with_resolve(sampled)), 1.1 * static_cast<double>(bytes(single))) << name;
+    }
+  }
+}
+
+TEST(SampledHardware, MeansWantFramesWhoseBlocksLeaveOnce) {
+  Config config = hardware("embedded", 4);
+  config.resolve_units = 1;
+  EXPECT_THROW(validate(config), InputError);  // in program order
+  config = with_resolve(hardware("embedded", 4));
+  config.msaa_samples = 1;
+  EXPECT_THROW(validate(config), InputError);
+  Scene scene = random_scene(with_resolve(hardware("embedded", 4)), 1, 40);
+  scene.commands.emplace_back(Clear{.depth = 1.0});
+  EXPECT_THROW((void)render_hardware(scene, with_resolve(hardware("embedded", 4))), InputError);
 }
 
 }  // namespace

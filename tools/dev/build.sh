@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Part of ./dev: configuring and building.
 
-readonly rtl_presets='embedded;tiny;small;full;textured;blended;stencilled;sampled'
+readonly rtl_presets='embedded;tiny;small;full;textured;blended;stencilled;sampled;resolved'
 
 # configure PRESET [ARGS]: Ninja or, without it, make; what is not installed is left out.
 configure() {

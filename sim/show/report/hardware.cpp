@@ -185,7 +185,7 @@ std::vector<OrderTrial> try_orders(const Scene& scene, const Hardware& hardware,
                                    const std::function<void(double)>& progress) {
   const std::string store = value_of(hardware, "frame.store");
   std::vector<OrderTrial> trials;
-  if (hardware.config.cache_kind == CacheKind::tiles) return trials;
+  if (hardware.config.cache_kind == CacheKind::tiles || hardware.config.resolve_units != 0) return trials;  // one order
   trials = {{"program", store}, {"bins", store}};
   if (store == "all") trials.push_back({"bins", "color"});
   for (std::size_t i = 0; i < trials.size(); ++i) {
