@@ -227,7 +227,7 @@ struct SampledTiles {
   }
 
   /// Colours of all pixels with a sample that has passed.
-  HALFPLANE_INLINE void find_colors(int tile, const SamplePixels& pixels, ColorFormat format, PixelColors& colors) {
+  HALFPLANE_NOINLINE void find_colors(int tile, const SamplePixels& pixels, ColorFormat format, PixelColors& colors) {
     const auto set = [&](std::int32_t number, auto&& anchor, std::uint64_t here) HALFPLANE_LAMBDA {
       if (t.surface != 0)
         return shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, here, colors.code.data(), format);
@@ -259,7 +259,7 @@ struct SampledTiles {
     return pixels.any == pixels.all && (bin.split & bit) == 0;
   }
 
-  HALFPLANE_INLINE void color(int tile, const SamplePixels& pixels) {
+  HALFPLANE_NOINLINE void color(int tile, const SamplePixels& pixels) {
     if (stays_whole(tile, pixels)) {
       const std::uint64_t centre = pixels.any & pixels.centre;
       if (t.surface != 0) {
@@ -302,7 +302,7 @@ struct SampledTiles {
   }
 
   /// operate_on_tile() of samples.
-  HALFPLANE_INLINE void operate(int tile, SamplePixels& pixels) {
+  HALFPLANE_NOINLINE void operate(int tile, SamplePixels& pixels) {
     const FragmentOps& ops = *bin.ops;
     const auto count = [&] {
       unsigned sum = 0;
