@@ -50,6 +50,7 @@ Rendering draw_once(const RenderCommand& options, const Scene& scene, const Conf
   render.want_count = !options.count_path.empty() || !options.draws_path.empty();
   render.want_ids = !options.ids_path.empty();
   render.progress = progress;
+  render.resolved_only = true;
   if (options.engine == "functional") return render_functional(scene, config, render);
   if (options.engine == "scalar") return render_scalar(scene, config, render);
   if (options.engine == "rtl") {

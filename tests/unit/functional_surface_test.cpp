@@ -248,7 +248,7 @@ functional::SurfaceConstants constants_of(const Scene& scene, const Config& conf
     slice.vertices.push_back(functional::row_of(snap_vertex(at, v.rgba, config, {"", 0, i})));
     slice.surface.push_back({v.w, v.u, v.v});
   }
-  return {functional::StageSurface(frame, slice, record), frame, texels};
+  return {functional::StageSurface(frame, slice, record, kAtCentre), frame, texels};
 }
 
 TEST(FunctionalSurface, WhatIsUsualIsDrawnInLanes) {

@@ -164,6 +164,7 @@ struct BinJob {
   TileStates& tiles;
   std::uint32_t clear_depth = 0, clear_color = 0;  ///< of pending tiles
   Counters& counters;
+  bool keeps_samples = false;  ///< their images are written, not the pixels' alone
 };
 
 /// The loops that are worth lanes, compiled for one instruction set.

@@ -72,14 +72,26 @@ bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
          std::ranges::all_of(scene.vertices, [](const Vertex& v) { return v.w > 0; });
 }
 
+/// Whether pixels with several samples are those of the fast path: triangles and points, no stencil, no alpha that chooses
+/// samples. Edges move to a sample in 32 bits.
+bool has_plain_samples(const Scene& scene, const Widths& widths, const RenderOptions& options) {
+  if (options.general_fragments || widths.delta.bits + widths.grid_bits > 31) return false;
+  if (std::ranges::any_of(scene.states, [](const State& s) { return s.stencil || s.alpha_to_coverage; })) return false;
+  return std::ranges::none_of(scene.commands, [&scene](const Command& command) {
+    const auto* draw = std::get_if<Draw>(&command);
+    return draw != nullptr && drawn_as(scene.states[draw->state], draw->topology) == PrimitiveType::line;
+  });
+}
+
 }  // namespace
 
 bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
-  if (options.rules != StudyRules{} || config.tile_size != kTileSize || config.msaa_samples != 1) return false;
+  if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
   if (std::ranges::any_of(scene.states, [](const State& s) { return s.stencil && has_surface(s); })) return false;
   if (std::ranges::any_of(scene.states, has_surface) && !has_plain_surfaces(scene, options)) return false;
   const Widths widths = derive_widths(config);
+  if (widths.has_samples != 0 && !has_plain_samples(scene, widths, options)) return false;
   // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
   return widths.depth().local.bits <= 32 && widths.color().local.bits <= 16 && config.depth_bits <= 30 &&
          widths.delta.bits <= 24 && widths.color().product.bits <= 64 && widths.color().line.bits <= 31 &&
@@ -125,6 +137,7 @@ Rendering FrameRenderer::take() {
 
 /// Whether all that happens in a bin is a clear that waits, and then what is drawn at once.
 bool FrameRenderer::compares(const RenderOptions& options) const {
+  if (keeps_samples_ && widths_.has_samples != 0) return false;
   if (!options.follows || !skip_.bins || !skip_.clear || options.onto != nullptr || !is_stencil_zero_) return false;
   if (std::ranges::any_of(scene_->states, [](const State& s) { return s.stencil.has_value(); })) return false;
   std::size_t primitives = 0;  // all of them wait together
@@ -163,7 +176,14 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
     if (options.instruction_set == kernels->name) kernels_ = kernels;
   Framebuffer& frame = rendering_.frame;
   const bool is_new = frame.width != scene.width || frame.height != scene.height;
-  if (is_new) frame = Framebuffer(scene.width, scene.height, config_.tile_size);
+  if (is_new) {
+    frame = Framebuffer(scene.width, scene.height, config_.tile_size);
+    spare_samples_.clear();
+  }
+  if (frame.samples.empty()) frame.samples.swap(spare_samples_);
+  keeps_samples_ = !options.resolved_only || options.onto != nullptr;
+  if (keeps_samples_) need_samples();
+  rendering_.sample_owners.assign(widths_.has_samples != 0 ? static_cast<std::size_t>(widths_.pixel_samples) : 0, {});
   is_stencil_zero_ |= is_new;
   rendering_.counters = {};
   rendering_.geometry_s = rendering_.raster_s = 0;
@@ -194,6 +214,14 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
     is_stencil_zero_ = false;
     forget_tiles();
   }
+}
+
+/// The images of the samples: made when somebody needs them.
+void FrameRenderer::need_samples() {
+  Framebuffer& frame = rendering_.frame;
+  if (widths_.has_samples == 0 || !frame.samples.empty()) return;
+  frame.samples.assign(static_cast<std::size_t>(widths_.pixel_samples),
+                       Framebuffer(frame.width, frame.height, config_.tile_size));
 }
 
 /// Nothing is known of what the frame holds: any depth.
@@ -232,9 +260,10 @@ void FrameRenderer::clear_whole(const Clear& command) {
   has_flushed_ = false;
   std::uint8_t bits = 0;
   if (command.stencil) {
-    Framebuffer& frame = rendering_.frame;  // not the padding
-    for (int y = 0; y < frame.height; ++y)
-      std::fill_n(frame.stencil.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), frame.width, *command.stencil);
+    for_each_image([&command](Framebuffer& image) {  // not the padding
+      for (int y = 0; y < image.height; ++y)
+        std::fill_n(image.stencil.begin() + static_cast<std::ptrdiff_t>(image.at(0, y)), image.width, *command.stencil);
+    });
     is_stencil_zero_ = *command.stencil == 0;
   }
   if (command.depth) {
@@ -268,6 +297,7 @@ void FrameRenderer::clear(const Clear& command) {
   const Rect rect = clear_rect(*scene_, command);
   if (rect.width <= 0 || rect.height <= 0) return;
   if (rect == Rect{0, 0, scene_->width, scene_->height}) return clear_whole(command);
+  need_samples();
   settle(rect);
   is_stencil_zero_ = is_stencil_zero_ && command.stencil.value_or(0) == 0;
   std::ranges::fill(tiles_.held, std::uint8_t{0});
@@ -299,7 +329,8 @@ void FrameRenderer::settle(const Rect& rect) {
     std::uint8_t is_missing = 0;  // in memory
     for (std::size_t i = 0; i < kTiles; ++i)
       is_missing |= static_cast<std::uint8_t>(waits[i] & ~tiles_.held[bin * kTiles + i]);
-    if (is_whole && is_missing == 0) {
+    // Of samples nobody knows what they hold.
+    if (is_whole && is_missing == 0 && frame.samples.empty()) {
       std::fill_n(waits, kTiles, std::uint8_t{0});
       return;
     }
@@ -312,14 +343,18 @@ void FrameRenderer::settle(const Rect& rect) {
       if (pending == 0 || x >= frame.width || y >= frame.height) continue;
       if (x >= rect.x + rect.width || x + kTileSize <= rect.x || y >= rect.y + rect.height || y + kTileSize <= rect.y)
         continue;
-      const auto fill = [&](std::uint8_t bit, std::uint32_t* image, std::uint32_t value) {
-        if ((pending & bit) == 0 || (tiles_.held[at] & bit) != 0) return;
+      const auto fill = [&](std::uint8_t bits, std::uint8_t bit, std::uint32_t* image, std::uint32_t value) {
+        if ((bits & bit) == 0) return;
         std::uint32_t* row = image + frame.at(x, y);
         for (int j = 0; j < kTileSize; ++j, row += frame.stride)
           for (int i = 0; i < kTileSize; ++i) row[i] = value;
       };
-      fill(TileStates::kDepthCleared, frame.depth.data(), clear_depth_);
-      fill(TileStates::kColorCleared, frame.color.data(), clear_color_);
+      const auto fill_image = [&](Framebuffer& image, std::uint8_t bits) {
+        fill(bits, TileStates::kDepthCleared, image.depth.data(), clear_depth_);
+        fill(bits, TileStates::kColorCleared, image.color.data(), clear_color_);
+      };
+      fill_image(frame, static_cast<std::uint8_t>(pending & ~tiles_.held[at]));
+      for (Framebuffer& sample : frame.samples) fill_image(sample, pending);
       tiles_.held[at] |= pending;
       pending = 0;
     }
@@ -333,16 +368,19 @@ void FrameRenderer::finish() {
   for (const std::uint8_t bits : tiles_.pending) pending += bits != 0 ? 1U : 0U;
   if (skip_.clear) rendering_.counters.skipped.clear += pending;
   Framebuffer& frame = rendering_.frame;
+  if (!keeps_samples_) spare_samples_.swap(frame.samples);
   if (pending != 0) settle({0, 0, frame.width, frame.height});
   const std::uint32_t far = DepthEncode(config_, scene_->planes).of_window(1.0);
   const std::uint32_t black = clear_color({0, 0, 0, 255}, config_.color_format);
   const auto stride = static_cast<std::size_t>(frame.stride);
   const std::size_t rows = frame.depth.size() / stride;
-  for (std::size_t y = 0; y < rows; ++y) {
-    const auto from = y < static_cast<std::size_t>(frame.height) ? static_cast<std::size_t>(frame.width) : 0;
-    std::fill_n(frame.depth.begin() + static_cast<std::ptrdiff_t>(y * stride + from), stride - from, far);
-    std::fill_n(frame.color.begin() + static_cast<std::ptrdiff_t>(y * stride + from), stride - from, black);
-  }
+  for_each_image([&](Framebuffer& image) {
+    for (std::size_t y = 0; y < rows; ++y) {
+      const auto from = y < static_cast<std::size_t>(frame.height) ? static_cast<std::size_t>(frame.width) : 0;
+      std::fill_n(image.depth.begin() + static_cast<std::ptrdiff_t>(y * stride + from), stride - from, far);
+      std::fill_n(image.color.begin() + static_cast<std::ptrdiff_t>(y * stride + from), stride - from, black);
+    }
+  });
   rendering_.raster_s += std::chrono::duration<double>(Clock::now() - started).count();
 }
 
@@ -511,6 +549,9 @@ void FrameRenderer::flush(bool is_last) {
   open_ = nullptr;
   if (slice_count_ == 0 && !(compares_ && is_last)) return;
   const auto started = Clock::now();
+  // What is drawn later looks at samples: then they must be there.
+  const bool writes_samples = widths_.has_samples != 0 && (keeps_samples_ || !is_last);
+  if (writes_samples) need_samples();
   for_each_index(arena_.get(), slice_count_, [this](std::size_t i) { build(slices_[i]); });
   const auto built = Clock::now();
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
@@ -533,8 +574,8 @@ void FrameRenderer::flush(bool is_last) {
       }
     }
     if (is_idle) return;
-    BinJob job{frame,  slices,       static_cast<int>(bin), rendering_.frame,
-               tiles_, clear_depth_, clear_color_,          bin_counters_[bin]};
+    BinJob job{frame,        slices,       static_cast<int>(bin), rendering_.frame, tiles_,
+               clear_depth_, clear_color_, bin_counters_[bin],    writes_samples};
     kernels_->raster(job);
   });
   for (std::size_t i = 0; i < slice_count_; ++i) add(rendering_.counters, slices_[i].counters);

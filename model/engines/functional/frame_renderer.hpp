@@ -29,6 +29,13 @@ class FrameRenderer {
   void start(const PreparedScene& prepared, const RenderOptions& options);
   void run_commands(const RenderOptions& options);
   void find_tiles();
+  void need_samples();
+  /// The image of the pixels, and those of their samples.
+  template <class Visit>
+  void for_each_image(Visit&& visit) {
+    visit(rendering_.frame);
+    for (Framebuffer& sample : rendering_.frame.samples) visit(sample);
+  }
   void forget_tiles();
   void forget_depths(std::size_t first, std::size_t count);
   void clear(const Clear& command);
@@ -67,6 +74,8 @@ class FrameRenderer {
       arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it
   int bins_x_ = 0, bins_y_ = 0;
   Rendering rendering_;
+  bool keeps_samples_ = true;               ///< somebody looks at Framebuffer::samples when the frame is done
+  std::vector<Framebuffer> spare_samples_;  ///< where nobody does: for the next frame
   TileStates tiles_;
   std::vector<std::uint8_t> is_in_target_;  ///< by tile: all bits or none
   std::uint32_t clear_depth_ = 0, clear_color_ = 0;

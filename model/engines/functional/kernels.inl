@@ -30,6 +30,7 @@ namespace {
 #include "kernels/samples.inl"          // small triangles: samples
 #include "kernels/small.inl"            // and blocks
 #include "kernels/tiles.inl"            // large triangles: tiles
+#include "kernels/multisample.inl"      // the same where pixels have several samples
 #include "kernels/lines.inl"            // pixels of lines
 #include "kernels/general.inl"          // fragments one by one
 #include "kernels/finish.inl"           // the end of a bin

@@ -31,10 +31,10 @@ void add_record(Slice& slice, const Record& record, std::size_t room) {
   slice.records[slice.record_count++] = record;
 }
 
-/// Appends a triangle of the host side, if there is a pixel centre in its box.
-void add_triangle(Slice& slice, const Triangle& triangle, const Rect& rect, int grid_bits, std::size_t room) {
-  const PixelBounds box =
-      pixel_bounds(triangle.v, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}, grid_bits);
+/// Appends a triangle of the host side, if there may be a sample in its box.
+void add_triangle(Slice& slice, const Triangle& triangle, const Rect& rect, const Widths& widths, std::size_t room) {
+  const PixelBounds box = sample_bounds(triangle.v, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1},
+                                        widths.grid_bits, widths.pixel_samples);
   if (box.is_empty()) return;
   const auto first = static_cast<std::uint32_t>(slice.vertices.size());
   for (const SnappedVertex& v : triangle.v) slice.vertices.push_back(row_of(v));
@@ -55,8 +55,7 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
   const std::size_t at = part.first + triangle;
   geometry(context, cache, {index[0][at], index[1][at], index[2][at]},
            part.primitive + static_cast<std::uint32_t>(triangle), frame.skip, slice.counters, pieces);
-  for (const Triangle& piece : pieces)
-    add_triangle(slice, piece, context.rect, frame.widths.grid_bits, slice.triangles);
+  for (const Triangle& piece : pieces) add_triangle(slice, piece, context.rect, frame.widths, slice.triangles);
 }
 
 /// What of a slice's vertices lives over w.
@@ -89,8 +88,8 @@ PixelBounds line_box(const LineSetup& line) {
 }
 
 /// Appends what the host side has made of a line or point.
-void add_outline(Slice& slice, const Outline& outline, const Rect& rect, int grid_bits, std::size_t room) {
-  for (const Triangle& triangle : outline.triangles) add_triangle(slice, triangle, rect, grid_bits, room);
+void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const Widths& widths, std::size_t room) {
+  for (const Triangle& triangle : outline.triangles) add_triangle(slice, triangle, rect, widths, room);
   for (const LinePrimitive& line : outline.lines) {
     const auto [low, high] = std::minmax({line.drawn.start.depth(), line.drawn.end.depth()});
     const auto at = static_cast<std::uint32_t>(slice.lines.size());
@@ -101,7 +100,7 @@ void add_outline(Slice& slice, const Outline& outline, const Rect& rect, int gri
     const auto at = static_cast<std::uint32_t>(slice.vertices.size());
     slice.vertices.push_back(row_of(point.drawn.at));
     const std::uint32_t z = point.drawn.at.depth();
-    for_each_run(point, grid_bits, [&](const PixelBounds& box) {
+    for_each_run(point, widths.grid_bits, [&](const PixelBounds& box) {
       add_record(slice, record_of({at, at, at}, z, z, box, RecordKind::rectangle), room);
     });
   }
@@ -117,7 +116,7 @@ void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part
   const std::uint32_t start = frame.prepared.index[0][at], end = frame.prepared.index[1][at];
   geometry(context, frame.widths, cache, {PrimitiveType::line, {start, end, end}},
            part.primitive + static_cast<std::uint32_t>(line), slice.counters, outline);
-  add_outline(slice, outline, context.rect, frame.widths.grid_bits, slice.triangles);
+  add_outline(slice, outline, context.rect, frame.widths, slice.triangles);
 }
 
 }  // namespace
@@ -197,7 +196,7 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   for (const AssembledPrimitive& assembled : slice.outlines) {
     outline.clear();
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
-    add_outline(slice, outline, context.rect, widths_.grid_bits, 0);
+    add_outline(slice, outline, context.rect, widths_, 0);
   }
 }
 

@@ -60,13 +60,21 @@ bool is_nearest(TextureMin min) {
          min == TextureMin::nearest_mipmap_linear;
 }
 
+/// Moves a triangle and its setup to a sample; returns the triangle.
+const Triangle& at_place(int place, const Widths& widths, Triangle& triangle, TriangleSetup& setup) {
+  if (place == kAtCentre) return triangle;
+  const SampleOffset& o = widths.sample_offset[static_cast<std::size_t>(place)];
+  setup = setup_at_sample(setup, o, widths);
+  return triangle = moved_to_sample(triangle, o);
+}
+
 }  // namespace
 
-StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record)
+StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place)
     : triangle(triangle_of(slice, record, frame.widths)),
       setup(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect)),
-      surface(triangle, setup, slice.context->state, texture_of(*slice.context), slice.context->fog.get(),
-              slice.context->phong.get(), frame.config, frame.widths) {}
+      surface(at_place(place, frame.widths, triangle, setup), setup, slice.context->state, texture_of(*slice.context),
+              slice.context->fog.get(), slice.context->phong.get(), frame.config, frame.widths) {}
 
 LaneDivision::LaneDivision(const PerspectiveFormat& format)
     : up(32 - q_local_bits(format)),

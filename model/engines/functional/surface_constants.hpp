@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "../../stages/multisample.hpp"
 #include "../../stages/surface.hpp"
 #include "frame.hpp"
 #include "texel_blocks.hpp"
@@ -15,9 +16,9 @@ namespace halfplane::functional {
 /// Of binary32.
 inline constexpr int kFloatFraction = 23, kFloatBias = 127;
 
-/// The surface of a record, through the stages.
+/// The surface of a record, through the stages. `place`: kAtCentre, or a sample of pixels.
 struct StageSurface {
-  StageSurface(const FrameContext& frame, const Slice& slice, const Record& record);
+  StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place);
   StageSurface(const StageSurface&) = delete;
   StageSurface& operator=(const StageSurface&) = delete;
 

@@ -32,6 +32,7 @@ FrameCost timed_frame(Work&& work) {
 Frame functional_frame(std::shared_ptr<const Scene> scene, const Config& config, int threads) {
   RenderOptions options;
   options.threads = threads;
+  options.resolved_only = true;
   // Prepared once, as the peer's buffers are filled once. The scene must live as long.
   auto prepared = std::make_shared<PreparedScene>(*scene);
   return [engine = std::make_shared<FunctionalEngine>(config), scene = std::move(scene), prepared, options] {

@@ -97,6 +97,7 @@ struct DrawnSurface {
 struct SeenSurface {
   const Slice* slice;
   const Record* record;
+  int place;           ///< kAtCentre, or the sample that shades
   std::int32_t drawn;  ///< into BinMemory::drawn, when it is set up; else -1
 };
 
@@ -140,6 +141,7 @@ struct Bin {
         first_y(job.bin / job.frame.bins_x * kBinSize),
         pixel(1.0 / static_cast<double>(std::int64_t{1} << widths.grid_bits)),
         are_lines(job.target.has_whole_lines()),
+        samples(static_cast<unsigned>(widths.pixel_samples)),
         is_narrow(config.depth_bits <= 16),
         tests_narrow(is_narrow && config.depth_bits >= 15 && depth_format.down - depth_format.up <= 12),
         range_bits_dropped(range_drop(config)),
@@ -166,6 +168,7 @@ struct Bin {
   int first_x, first_y;                     ///< pixels
   double pixel;                             ///< a subpixel, in pixels
   bool are_lines;                           ///< sixteen pixels of a row of the target are a cache line
+  unsigned samples;                         ///< of a pixel; several: multisample.inl
   bool is_narrow;                           ///< depths are in BinMemory::narrow_depth
   bool tests_narrow;  ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
   int range_bits_dropped;
@@ -174,11 +177,12 @@ struct Bin {
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
   // Of the primitive at work, once its alpha has been looked at:
-  bool has_operations = false;  ///< which are more than plain: operations.inl
-  bool lays_over = false;       ///< of them blending alone, by alpha
-  bool tests_alpha = false;     ///< colours are not known to pass
-  bool is_killed = false;       ///< they are known not to
-  bool is_back = false;         ///< the triangle at work shows its back, where somebody asks
+  bool has_operations = false;      ///< which are more than plain: operations.inl
+  bool lays_over = false;           ///< of them blending alone, by alpha
+  bool tests_alpha = false;         ///< colours are not known to pass
+  bool is_killed = false;           ///< they are known not to
+  std::uint32_t drawn_samples = 1;  ///< of pixels, by the draw's mask, a bit each
+  bool is_back = false;             ///< the triangle at work shows its back, where somebody asks
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
@@ -195,6 +199,7 @@ struct Bin {
   std::size_t surface_count = 0;  ///< of BinMemory::seen
   std::size_t layer_count = 0;    ///< of LayerMemory
   bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
+  std::uint64_t split = 0;        ///< tiles of which the samples of a pixel may differ in colour
   std::uint64_t in_memory = 0;    ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;

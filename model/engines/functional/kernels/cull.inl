@@ -136,15 +136,17 @@ struct CullLanes {
   /// The corners and boxes of triangles whose t.v is known.
   HALFPLANE_INLINE void load_corners(CullTriangles& t) {
     for (std::size_t k = 0; k < 3; ++k) t.v[k].store(at[k].data());
-    const int grid_bits = frame.widths.grid_bits, half = 1 << (grid_bits - 1);
+    // Pixels whose centre the box holds, or where they have several samples, those that it touches.
+    const int grid_bits = frame.widths.grid_bits, has_samples = frame.widths.has_samples;
+    const int half = has_samples != 0 ? 0 : 1 << (grid_bits - 1), before = has_samples != 0 ? 0 : half - 1;
     for (std::size_t k = 0; k < 3; ++k) {
       const SnappedLanes corner = load_rows(slice.vertices.data(), at[k].data());
       t.x[k] = corner.x;
       t.y[k] = corner.y;
       t.z[k] = corner.z;
     }
-    t.left = max(I16(limit.left), (min(min(t.x[0], t.x[1]), t.x[2]) + (half - 1)) >> grid_bits);
-    t.top = max(I16(limit.top), (min(min(t.y[0], t.y[1]), t.y[2]) + (half - 1)) >> grid_bits);
+    t.left = max(I16(limit.left), (min(min(t.x[0], t.x[1]), t.x[2]) + before) >> grid_bits);
+    t.top = max(I16(limit.top), (min(min(t.y[0], t.y[1]), t.y[2]) + before) >> grid_bits);
     t.right = min(I16(limit.right), (max(max(t.x[0], t.x[1]), t.x[2]) - half) >> grid_bits);
     t.bottom = min(I16(limit.bottom), (max(max(t.y[0], t.y[1]), t.y[2]) - half) >> grid_bits);
   }
@@ -173,7 +175,7 @@ struct CullLanes {
                                         : live & ~front;
     sets.empty = bits_of((t.left > t.right) | (t.top > t.bottom)) & live & ~sets.culled;
     sets.drawn = live & ~sets.culled & ~sets.empty;
-    const SampleLanes few = frame.skip.no_sample && sets.drawn != 0
+    const SampleLanes few = frame.skip.no_sample && sets.drawn != 0 && frame.widths.has_samples == 0
                                 ? covered_samples(t, is_turned, frame.widths.grid_bits)
                                 : SampleLanes{I16(0), I16(0)};
     sets.sampleless = bits_of(few.is_known & (few.samples == 0)) & sets.drawn;

@@ -59,9 +59,10 @@ HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t
   }
 }
 
-/// Depths of two tiles side by side, each a triangle's as a whole, row by row: a cache line each.
+/// Depths of two tiles side by side, each a triangle's as a whole, row by row: a cache line each. `left_moved`,
+/// `right_moved`: what they gain to a sample.
 HALFPLANE_INLINE void write_depth_rows(const Bin& bin, const BinTriangle& left, const BinTriangle& right, int tile,
-                                       PixelRows& rows) {
+                                       PixelRows& rows, std::int32_t left_moved = 0, std::int32_t right_moved = 0) {
   const int to = tile % kBinTiles * kTileSize;
   const auto both = [&](auto&& of) HALFPLANE_LAMBDA { return halves(of(left), of(right)); };
   const I16 step_y = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_y; });
@@ -69,8 +70,8 @@ HALFPLANE_INLINE void write_depth_rows(const Bin& bin, const BinTriangle& left, 
   const I16 high = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_high; });
   const I16 step_x = both([](const BinTriangle& t) HALFPLANE_LAMBDA { return t.z_step_x; });
   I16 value = (bin.position.pair_x - kTileSize / 2) * step_x - step_y * (kTileSize / 2) +
-              halves(depth_anchor(bin, left, tile % kBinTiles, tile / kBinTiles),
-                     depth_anchor(bin, right, tile % kBinTiles + 1, tile / kBinTiles));
+              halves(wrapped_sum(depth_anchor(bin, left, tile % kBinTiles, tile / kBinTiles), left_moved),
+                     wrapped_sum(depth_anchor(bin, right, tile % kBinTiles + 1, tile / kBinTiles), right_moved));
   for (auto& row : rows) {
     decode(value, bin.depth_format, low, high).store(row.data() + to);
     value += step_y;
@@ -104,12 +105,75 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
   }
 }
 
+/// The mean of the samples' colours: mean_color().
+HALFPLANE_INLINE I16 mean_colors(const Bin& bin, std::size_t at) {
+  const std::uint32_t(*const colors)[kBinSize * kBinSize] = SampleMemory::of_thread().color;
+  const bool is_short = bin.config.color_format == ColorFormat::rgb565;
+  // Two sums a lane: of red and blue, of green and alpha.
+  const int apart = is_short ? 11 : 16, down = is_short ? 5 : 8, log = std::countr_zero(bin.samples);
+  const std::int32_t outer = is_short ? 0xf81f : 0xff00ff, inner = is_short ? 0x3f : 0xff00ff,
+                     code = is_short ? 0x1f : 0xff, half = static_cast<std::int32_t>(bin.samples / 2);
+  I16 outer_sum(half | half << apart), inner_sum(half | half << 16);
+  for (unsigned k = 0; k < bin.samples; ++k) {
+    const I16 color = I16::load(colors[k] + at);
+    outer_sum += color & outer;
+    inner_sum += shift_right_logical(color, down) & inner;
+  }
+  const auto mean = [log](const I16& sum, int from, std::int32_t bits)
+                        HALFPLANE_LAMBDA { return shift_right_logical(sum, from + log) & bits; };
+  const I16 rest =
+      is_short ? mean(inner_sum, 0, 0x3f) << 5 : mean(inner_sum, 0, 0xff) << 8 | mean(inner_sum, 16, 0xff) << 24;
+  return mean(outer_sum, 0, code) | mean(outer_sum, apart, code) << apart | rest;
+}
+
+/// A tile's colours at sample k, or its resolved ones.
+constexpr unsigned kResolved = ~0U;
+HALFPLANE_INLINE TileBlocks sample_colors(const Bin& bin, int tile, unsigned k) {
+  TileBlocks blocks;
+  if ((bin.split >> tile & 1) == 0) {
+    const TileBlocks from = colors_of(bin, tile);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = from[i];
+    return blocks;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t at = static_cast<std::size_t>(first_of(tile)) + kBlockPixels * i;
+    blocks[i] = k == kResolved ? mean_colors(bin, at) : I16::load(SampleMemory::of_thread().color[k] + at);
+  }
+  return blocks;
+}
+
+/// A row of tiles whose pixels have several samples: the pixels' images, and those of the samples where somebody wants them.
+HALFPLANE_NOINLINE void finish_samples(Bin& bin, int first, int columns) {
+  const auto color_rows = [&bin](auto&&... of) HALFPLANE_LAMBDA { write_color_rows(bin, of...); };
+  const auto write = [&](Framebuffer& to, unsigned depth_of, unsigned color_of) {
+    const std::size_t at = to.at(bin.first_x, bin.first_y + first / kBinTiles * kTileSize);
+    finish_row(
+        bin, first, columns, to.depth.data() + at, bin.depth_owner, TileStates::kDepthCleared,
+        [&](int tile) HALFPLANE_LAMBDA { return sample_depths(bin, tile, depth_of); },
+        [&](const BinTriangle& left, const BinTriangle& right, int tile, PixelRows& rows) HALFPLANE_LAMBDA {
+          write_depth_rows(bin, left, right, tile, rows, depth_at_sample(bin, left, depth_of),
+                           depth_at_sample(bin, right, depth_of));
+        });
+    finish_row(
+        bin, first, columns, to.color.data() + at, bin.color_owner, TileStates::kColorCleared,
+        [&](int tile) HALFPLANE_LAMBDA { return sample_colors(bin, tile, color_of); }, color_rows);
+  };
+  write(bin.job.target, 0, kResolved);
+  if (!bin.job.keeps_samples) return;
+  for (unsigned k = 0; k < bin.samples; ++k) write(bin.job.target.samples[k], k, k);
+}
+
 /// Everything that is new goes to the target, a row of tiles at a time.
 inline void finish(Bin& bin) {
   if (bin.surface_count != 0) shade_all(bin);
   if (bin.layer_count != 0) lay_all(bin);
   const int columns = tiles_along(bin.job.target.width - bin.first_x),
             rows = tiles_along(bin.job.target.height - bin.first_y);
+  if (bin.samples > 1) {
+    for (int row = 0; row < rows; ++row) finish_samples(bin, row * kBinTiles, columns);
+    finish_lines();
+    return;
+  }
   const auto depths = [&bin](int tile) HALFPLANE_LAMBDA { return depths_of(bin, tile); };
   const auto colors = [&bin](int tile) HALFPLANE_LAMBDA { return colors_of(bin, tile); };
   const auto depth_rows = [&bin](auto&&... of) HALFPLANE_LAMBDA { write_depth_rows(bin, of...); };

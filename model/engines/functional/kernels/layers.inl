@@ -247,7 +247,7 @@ HALFPLANE_NOINLINE void add_layer(Bin& bin, const BinTriangle& t, std::uint64_t 
   bin.in_memory &= ~tiles;
   bin.job.counters.skipped.trivially_accepted += static_cast<unsigned>(std::popcount(tiles));
   const std::uint64_t pixels = std::uint64_t{kTileSize * kTileSize} * static_cast<unsigned>(std::popcount(tiles));
-  count_fragments(bin, pixels, pixels);
+  count_fragments(bin, pixels * bin.samples, pixels * bin.samples);
 }
 
 /// Fragments of layers on `tiles` that nobody will see.

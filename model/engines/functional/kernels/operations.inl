@@ -127,8 +127,9 @@ struct TileColors {
   }
 };
 
-/// Of `pixels`, those that the alpha test lets pass.
-HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, const TileColors& colors) {
+/// Of `pixels`, those that the alpha test lets pass. `colors`: of a block, as in TileColors.
+template <class Colors>
+HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, const Colors& colors) {
   const DepthFunc func = bin.ops->alpha.func;
   const I16 reference(bin.ops->alpha.reference);
   std::uint64_t passed = 0;
@@ -159,8 +160,9 @@ HALFPLANE_INLINE void write_depths(Bin& bin, const BinTriangle& t, int tile, std
   find_range(bin, tile);
 }
 
-/// Colours of `pixels` upon what is stored: store_color().
-HALFPLANE_INLINE void store_colors(Bin& bin, int tile, std::uint64_t pixels, const TileColors& colors) {
+/// Colours of `pixels` upon what is stored, a tile's 64: store_color().
+template <class Colors>
+HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pixels, const Colors& colors) {
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
@@ -168,7 +170,6 @@ HALFPLANE_INLINE void store_colors(Bin& bin, int tile, std::uint64_t pixels, con
       writes_all = writes_some && ops.writes == ColorOps{}.writes;
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const S32 thresholds = dithers ? block_thresholds() : S32(0);
-  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
   const bool skips = bin.skip.operations_early_z;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     const std::uint32_t bits = block_bits(pixels, block);
@@ -256,5 +257,5 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   if (bin.tests_alpha && ops.state.depth_write) write_depths(bin, t, tile, kept);
   if ((!ops.state.color_write && bin.skip.masked_draws) || (kept == 0 && bin.skip.operations_early_z)) return;
   need_color(bin, tile);
-  store_colors(bin, tile, kept, colors);
+  store_colors(bin, bin.memory.color.data() + first_of(tile), kept, colors);
 }

@@ -79,7 +79,10 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
   BinTriangle triangle;
   triangle.box = box;
   triangle.is_whole = record.has(Record::kWhole);
-  draw_large<Fragments>(bin, slice, record, live, triangle);
+  if (bin.samples > 1)
+    draw_large<Fragments, SeveralSamples>(bin, slice, record, live, triangle);
+  else
+    draw_large<Fragments, OneSample>(bin, slice, record, live, triangle);
 }
 
 /// Sixteen records at once, where all are small and each is nearer than what the first of its tiles may hold: a batch, of
@@ -162,9 +165,29 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   draw_lines<Fragments>(bin, slice);
 }
 
+/// Records whose fragments look at what is stored, or whose pixels have several samples: one after the other.
+template <class Fragments>
+HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first,
+                                              const std::uint32_t* last) {
+  while (first != last) {
+    const Record& record = slice.records[*first];
+    fetch_records(slice, first++, last);
+    const BinBounds box = box_of(bin, record);
+    const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
+    if (live != 0) draw_alone<Fragments>(bin, slice, record, box, live);
+    bin.is_range_old = true;
+  }
+  bin.closed_from = Bin::kOpen;
+}
+
 /// Records of one slice that are drawn the same way.
 HALFPLANE_INLINE void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                    const std::uint32_t* last) {
+  if (bin.samples > 1) {
+    if (bin.state.depth_test == DepthFunc::less)
+      return draw_records_in_order<OpaqueFragments<true>>(bin, slice, first, last);
+    return draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
+  }
   // Twice: for the test that nearly every scene has, and for any.
   if (bin.state.depth_test == DepthFunc::less)
     draw_records<OpaqueFragments<true>>(bin, slice, first, last);
@@ -229,21 +252,6 @@ struct RecordWays {
   HALFPLANE_INLINE static std::size_t flat_corner(RecordKind kind) { return kind == RecordKind::whole_line ? 2 : 0; }
 };
 
-/// Records whose fragments look at what is stored: one after the other.
-HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first,
-                                              const std::uint32_t* last) {
-  using Fragments = OpaqueFragments<false>;
-  while (first != last) {
-    const Record& record = slice.records[*first];
-    fetch_records(slice, first++, last);
-    const BinBounds box = box_of(bin, record);
-    const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
-    if (live != 0) draw_alone<Fragments>(bin, slice, record, box, live);
-    bin.is_range_old = true;
-  }
-  bin.closed_from = Bin::kOpen;
-}
-
 /// Records of one slice with operations, as long as they go the same way.
 HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, const std::uint32_t* first,
                                  const std::uint32_t* last) {
@@ -267,7 +275,8 @@ HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, co
   bin.tests_alpha = way == RecordWay::killed || (way == RecordWay::operated && ops.alpha.func != DepthFunc::always);
   bin.skip.tiles_hiz = bin.job.frame.skip.tiles_hiz && bin.skip.operations_early_z;
   if (bin.tests_alpha) bin.state.depth_write = false;  // depths wait for it
-  bin.lays_over ? draw_records(bin, slice, first, last) : draw_records_in_order(bin, slice, first, last);
+  bin.lays_over ? draw_records(bin, slice, first, last)
+                : draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
   skipped.operations_early_z += skipped.tiles_hiz - behind;  // of none where nobody asks
   bin.has_operations = bin.lays_over = bin.is_killed = bin.tests_alpha = false;
   bin.skip = bin.job.frame.skip;
@@ -298,6 +307,7 @@ static void raster(BinJob& job) {
     if (first == last) continue;
     bin.state = slice.state;
     bin.ops = &slice.context->fragment_ops;
+    bin.drawn_samples = drawn_samples(slice.context->state) & ((1U << bin.samples) - 1);
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;

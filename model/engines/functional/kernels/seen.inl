@@ -16,6 +16,7 @@ inline void set_up_surface_colors(Bin& bin, const SeenSurface& seen, BinTriangle
   const SliceState state = bin.state;
   bin.state = seen.slice->state;
   (void)set_up(bin, *seen.slice, *seen.record, out);
+  if (seen.place != kAtCentre) move_colors(bin, static_cast<std::size_t>(seen.place), out);
   bin.state = state;
 }
 
@@ -26,7 +27,7 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
   if (seen.drawn >= 0) return memory.drawn[static_cast<std::size_t>(seen.drawn)];
   seen.drawn = static_cast<std::int32_t>(memory.drawn.size());
   const FrameContext& frame = bin.job.frame;
-  auto stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record);
+  auto stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record, seen.place);
   const auto& texture = seen.slice->context->state.texture;
   DrawnSurface& drawn = memory.drawn.emplace_back(DrawnSurface{
       SurfaceConstants(*stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr), {}, nullptr});
@@ -72,9 +73,9 @@ HALFPLANE_INLINE void need_surfaces(Bin& bin, std::size_t count) {
 }
 
 /// The number of one more.
-inline std::uint16_t add_surface(Bin& bin, const Slice& slice, const Record& record) {
+inline std::uint16_t add_surface(Bin& bin, const Slice& slice, const Record& record, int place = kAtCentre) {
   const std::size_t number = ++bin.surface_count;
-  bin.memory.seen[number] = {&slice, &record, -1};
+  bin.memory.seen[number] = {&slice, &record, place, -1};
   return static_cast<std::uint16_t>(number);
 }
 

@@ -108,14 +108,16 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
 }
 
 /// How far the depths of a tile lie from the one at its anchor, from where it reaches four pixels to the left and up,
-/// three to the right and down. Steps of a pixel, in a tile's units.
-HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out) {
+/// three to the right and down. Steps of a pixel, in a tile's units; `least`, `most`: what a sample may add.
+HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out,
+                                 std::int64_t least = 0, std::int64_t most = 0) {
   const auto low = [](std::int64_t step)
                        HALFPLANE_LAMBDA { return std::min((kTileSize / 2 - 1) * step, -kTileSize / 2 * step); };
   const auto high = [](std::int64_t step)
                         HALFPLANE_LAMBDA { return std::max((kTileSize / 2 - 1) * step, -kTileSize / 2 * step); };
   const int drop = bin.depth_format.down - bin.depth_format.up + bin.range_bits_dropped;
-  const std::int64_t to_low = (low(step_x) + low(step_y)) >> drop, to_high = (high(step_x) + high(step_y)) >> drop;
+  const std::int64_t to_low = (low(step_x) + low(step_y) + least) >> drop,
+                     to_high = (high(step_x) + high(step_y) + most) >> drop;
   out.to_low = static_cast<std::int32_t>(to_low);
   out.to_high = static_cast<std::int32_t>(to_high);
   // One pixel of the tile is inside the triangle. From there to the anchor, and on to any other, 16 bits must hold the

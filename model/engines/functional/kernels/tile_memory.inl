@@ -182,6 +182,63 @@ HALFPLANE_INLINE void set_range(Bin& bin, int tile, std::int32_t low, std::int32
   bin.tile_high[tile] = static_cast<std::uint16_t>(high >> bin.range_bits_dropped);
 }
 
+/// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
+struct SampleMemory {
+  alignas(64) std::int32_t depth[kMaxPixelSamples][kBinSize * kBinSize];
+  alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinSize * kBinSize];
+  alignas(64) std::uint32_t color[kMaxPixelSamples][kBinSize * kBinSize];
+
+  static SampleMemory& of_thread() {
+    static thread_local SampleMemory memory;
+    return memory;
+  }
+};
+
+/// Depths of sample k in the block that begins with pixel `at`.
+HALFPLANE_INLINE I16 load_sample(const Bin& bin, unsigned k, std::size_t at) {
+  const SampleMemory& memory = SampleMemory::of_thread();
+  return bin.is_narrow ? load_narrow(memory.narrow_depth[k] + at) : I16::load(memory.depth[k] + at);
+}
+HALFPLANE_INLINE void store_sample(const Bin& bin, unsigned k, std::size_t at, const I16& depths) {
+  SampleMemory& memory = SampleMemory::of_thread();
+  if (bin.is_narrow)
+    store_narrow(depths, memory.narrow_depth[k] + at);
+  else
+    depths.store(memory.depth[k] + at);
+}
+
+/// A tile's depths at sample k, whoever holds them.
+HALFPLANE_INLINE TileBlocks sample_depths(const Bin& bin, int tile, unsigned k) {
+  TileBlocks blocks;
+  const std::int32_t owner = bin.depth_owner[tile];
+  if (owner >= 0) {
+    const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(owner)];
+    const auto ramp = depth_ramp(
+        bin, t, wrapped_sum(depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles), depth_at_sample(bin, t, k)));
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = block_depths(bin, t, ramp, i);
+  } else if (owner == Bin::kInMemory) {
+    const auto from = static_cast<std::size_t>(first_of(tile));
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = load_sample(bin, k, from + kBlockPixels * i);
+  } else {
+    const bool is_cleared = owner == Bin::kCleared;
+    const TileBlocks from = fetched(bin, tile, is_cleared, bin.job.clear_depth,
+                                    is_cleared ? bin.job.target.depth : bin.job.target.samples[k].depth);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = from[i];
+  }
+  return blocks;
+}
+
+HALFPLANE_INLINE void find_sample_range(Bin& bin, int tile) {
+  I16 low(0x7fffffff), high(0);
+  for (unsigned k = 0; k < bin.samples; ++k)
+    for (std::size_t i = 0; i < 4; ++i) {
+      const I16 depths = load_sample(bin, k, static_cast<std::size_t>(first_of(tile)) + kBlockPixels * i);
+      low = min(low, depths);
+      high = max(high, depths);
+    }
+  set_range(bin, tile, min_lane(low), max_lane(high));
+}
+
 /// The range of a tile's depths, from its pixels.
 HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
   if (bin.is_narrow) {

@@ -85,18 +85,20 @@ struct TileClasses {
   std::uint64_t outside, full;  ///< no pixel is covered; all are, if the box agrees
 };
 
-/// Each edge in units of 2^drop, floored: fifteen steps and a value make an error below 15.
-HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t) {
-  constexpr int kExtent = kTileSize - 1, kStepBits = 7, kFloored = 14, kLimit = 16192;
-  static_assert(kLimit + 2 * (kBinTiles - 1) * (kTileSize << kStepBits) + 2 * (kExtent << kStepBits) + kFloored <
-                1 << 15);
+/// Each edge in units of 2^drop, floored: fifteen steps and a value make an error below 15. `least`, `most`: what edges gain
+/// from the centre of a pixel to a sample of it, at most half a step along both axes.
+HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t, const EdgeWords& least,
+                                            const EdgeWords& most) {
+  constexpr int kExtent = kTileSize - 1, kStepBits = 7, kFloored = 14, kLimit = 16330,
+                kWay = (kBinTiles - 1) * (2 * kTileSize << kStepBits), kReach = (2 * kExtent + 1) << kStepBits;
+  static_assert(kLimit > kWay + kReach + kFloored && kLimit + kWay + kReach + kFloored < 1 << 15);
   const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
   const EdgeWords largest = larger(larger(dx, -dx), larger(dy, -dy));
   typedef float Floats __attribute__((vector_size(16)));
   const EdgeWords bits = ((EdgeWords) __builtin_convertvector(largest, Floats) >> 23) - 126;
   const EdgeWords drop = larger(bits - kStepBits, zero);
-  const EdgeWords to_largest = (larger(dx, zero) - smaller(dy, zero)) * kExtent,
-                  to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent;
+  const EdgeWords to_largest = (larger(dx, zero) - smaller(dy, zero)) * kExtent + most,
+                  to_smallest = (smaller(dx, zero) - larger(dy, zero)) * kExtent + least;
   const EdgeWords limit = zero + kLimit;
   const EdgeWords first = larger(smaller(load_edges(t.edge) >> drop, limit), -limit);
   const EdgeWords outer = ((to_largest + (1 << drop) - 1) >> drop) + ((drop != 0) & kFloored);
@@ -195,9 +197,11 @@ HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t t
     bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(unused));
     if (bin.layer_count != 0) drop_layers(bin, taken & layered_tiles(bin));
     replace(is_taken, plane, bin.color_owner.data());
+    bin.split &= ~taken;
   }
   bin.job.counters.skipped.trivially_accepted += tiles;
-  count_fragments(bin, 64 * std::uint64_t{tiles}, 64 * std::uint64_t{tiles});
+  const std::uint64_t fragments = 64 * std::uint64_t{tiles} * bin.samples;
+  count_fragments(bin, fragments, fragments);
 }
 
 /// What the tiles of a triangle have in common. Copies: what is stored to memory might change it, for all that the
@@ -238,9 +242,10 @@ struct TileConstants {
 };
 
 /// The pixels of a tile outside an edge, as signs. What an edge's smallest value is below its span, or above 0, is the
-/// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits.
-HALFPLANE_INLINE S64 outside_edges(const TileConstants& t, int tile_x, int tile_y) {
-  const EdgeWords at_tile = t.edge + (tile_y * t.tile_dx - tile_x * t.tile_dy);
+/// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits. `moved`: what edges gain from the
+/// centre of a pixel to where it is looked at.
+HALFPLANE_INLINE S64 outside_edges(const TileConstants& t, int tile_x, int tile_y, const EdgeWords& moved) {
+  const EdgeWords at_tile = t.edge + moved + (tile_y * t.tile_dx - tile_x * t.tile_dy);
   const auto first = stored(smaller(larger(at_tile + t.to_smallest, t.below), EdgeWords{}) - t.to_smallest);
   if (t.is_steep) return t.steep_edges[0](first[0]) | t.steep_edges[1](first[1]) | t.steep_edges[2](first[2]);
   const auto narrow = [&first](std::size_t e) HALFPLANE_LAMBDA { return static_cast<std::int16_t>(first[e]); };
@@ -255,25 +260,35 @@ HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_
          (lanes(box.bottom, tile_y) - y);
 }
 
-/// Depth test of a tile whose codes are of 16 bits, in memory or cleared. Returns what passed.
+/// Depths of a tile after the test, and which pixels passed.
+struct TestedTile {
+  U64 now;
+  std::uint64_t passed;
+};
+
+/// Depth test of a tile whose codes are of 16 bits.
+template <class Fragments>
+HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, std::int32_t anchor, const S64& outside,
+                                   const U64& stored) {
+  const S64 distance = t.depth((anchor >> bin.depth_format.up) + t.z_first);
+  const U64 depth = clamped(distance, t.z_low, t.z_high, t.middle);
+  if constexpr (Fragments::kIsLess) {
+    const U64 now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
+    return {now, ~bits_equal(now, stored)};
+  } else {
+    const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
+    return {select(passes, depth, stored), bits_of(passes)};
+  }
+}
+
+/// The same in memory, or where it is cleared. Returns what passed.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int tile, std::int32_t anchor,
                                            const S64& outside) {
-  const S64 distance = t.depth((anchor >> bin.depth_format.up) + t.z_first);
-  const U64 depth = clamped(distance, t.z_low, t.z_high, t.middle);
   if (bin.depth_owner[tile] != Bin::kCleared) need_depth(bin, tile);
   std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
   const U64 stored = U64::load(bin.depth_owner[tile] == Bin::kCleared ? bin.cleared_depths.data() : at);
-  U64 now;
-  std::uint64_t passed;
-  if constexpr (Fragments::kIsLess) {
-    now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
-    passed = ~bits_equal(now, stored);
-  } else {
-    const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
-    now = select(passes, depth, stored);
-    passed = bits_of(passes);
-  }
+  const auto [now, passed] = tested<Fragments>(bin, t, anchor, outside, stored);
   if (passed == 0 || !bin.state.depth_write) return passed;
   now.store(at);
   bin.depth_owner[tile] = Bin::kInMemory;
@@ -309,14 +324,15 @@ HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int til
   return passed;
 }
 
-/// Colours of the pixels that passed, of blocks that have any; of all where nobody may leave them out.
-HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
+/// Colours of the pixels that passed, of blocks that have any; of all where nobody may leave them out. `anchor`: the tile's.
+HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, const ChannelPairs& anchor,
+                                 std::uint64_t passed) {
   const bool is_cleared = bin.color_owner[tile] == Bin::kCleared;
   if (is_cleared)
     bin.color_owner[tile] = Bin::kInMemory;
   else
     need_color(bin, tile);
-  const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+  const ColorRamp plane = color_ramp(bin, t.color, anchor);
   std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
   const ColorSteps steps = t.color;
   const LaneFormat format = bin.color_format;
@@ -351,7 +367,7 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   }
   const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
   S64 outside(0);
-  if (!is_full) outside = outside_edges(constants, tile_x, tile_y);
+  if (!is_full) outside = outside_edges(constants, tile_x, tile_y, EdgeWords{});
   if (!constants.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
   const std::uint64_t covered = ~bits_of(outside);
   if (covered == 0) return;
@@ -364,7 +380,7 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   } else if (t.surface != 0) {
     if (passed != 0) see(bin, t.surface, tile, passed);
   } else if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) {
-    color_tile(bin, t, tile, passed);
+    color_tile(bin, t, tile, color_anchor(bin, t, tile_x, tile_y), passed);
   }
   pixels.covered += static_cast<unsigned>(std::popcount(covered));
   pixels.passed += static_cast<unsigned>(std::popcount(passed));
@@ -387,6 +403,24 @@ HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t
   count_fragments(bin, pixels.covered, pixels.passed);
 }
 
+/// A triangle where pixels have one sample: nothing moves.
+struct OneSample {
+  HALFPLANE_INLINE explicit OneSample(const Bin& /*bin*/) {}
+  HALFPLANE_INLINE void move_edges(const Bin&, const Corners&, const BinTriangle&) {}
+  HALFPLANE_INLINE void move_depths(const Bin&, BinTriangle&) {}
+  HALFPLANE_INLINE static EdgeWords least() { return EdgeWords{}; }
+  HALFPLANE_INLINE static EdgeWords most() { return EdgeWords{}; }
+  HALFPLANE_INLINE static std::size_t surfaces() { return 1; }  ///< that it may have
+  /// Tiles that it may take, and those that may be drawn without a look at single samples.
+  HALFPLANE_INLINE static std::uint64_t takeable() { return ~std::uint64_t{0}; }
+  HALFPLANE_INLINE static std::uint64_t as_one(const Bin&) { return ~std::uint64_t{0}; }
+  template <class Fragments>
+  HALFPLANE_INLINE static void draw(Bin& bin, const Slice&, const Record&, const BinTriangle& t, std::uint64_t tiles,
+                                    std::uint64_t full, std::uint64_t in_front) {
+    draw_tiles<Fragments>(bin, t, tiles, full, in_front);
+  }
+};
+
 /// Takes tiles out of a set, for a reason that counts.
 HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint64_t& counter) {
   counter += static_cast<unsigned>(std::popcount(live & out));
@@ -395,22 +429,27 @@ HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint
 
 /// A triangle or rectangle by itself. Of its tiles that are `live`, first those go that its edges leave, then those
 /// behind: only what is left asks for depths, then for colours.
-template <class Fragments>
+template <class Fragments, class Samples>
 HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& record, std::uint64_t live,
                                  BinTriangle& t) {
   const bool is_flat = record.kind() == RecordKind::rectangle;
   auto& skipped = bin.job.counters.skipped;
   Corners corners;
+  Samples samples(bin);
   if (is_flat) {
     set_up_flat(bin, slice.vertices[record.v[0]], t);
   } else {
     if (!find_corners(slice, record, corners)) return;
     set_up_edges(bin, *corners.a, *corners.b, *corners.c, t);
+    samples.move_edges(bin, corners, t);
   }
-  const TileClasses tiles = classify_tiles(bin, t);
+  const TileClasses tiles = classify_tiles(bin, t, samples.least(), samples.most());
   if (bin.skip.tiles_outside) take_out(live, tiles.outside, skipped.tiles_outside);
   if (live == 0) return;
-  if (!is_flat) set_up_planes(bin, record, corners, t);
+  if (!is_flat) {
+    set_up_planes(bin, record, corners, t);
+    samples.move_depths(bin, t);
+  }
   const TileDepths depths(bin, t);
   if (bin.skip.tiles_hiz) take_out(live, Fragments::tiles_behind(bin, depths), skipped.tiles_hiz);
   if (live == 0) return;
@@ -418,7 +457,7 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.is_killed) {
     // Nobody looks at a colour.
   } else if (bin.sees_surfaces() || (bin.has_operations && bin.state.has_surface)) {
-    need_surfaces(bin, 1);
+    need_surfaces(bin, samples.surfaces());
     t.surface = add_surface(bin, slice, record);
   } else if (!is_flat && (bin.state.color_write || bin.has_operations)) {
     set_up_colors(bin, corners, t);
@@ -426,9 +465,9 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   std::uint64_t full = 0, taken = 0, in_front = 0;
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
   if (full != 0 && bin.skip.attributes && !bin.has_operations && (bin.state.depth_write || bin.state.color_write))
-    taken = full & Fragments::tiles_in_front(bin, depths);
+    taken = full & samples.takeable() & Fragments::tiles_in_front(bin, depths);
   if (full != 0 && bin.has_operations && (!bin.tests_alpha || bin.is_killed)) {
-    in_front = full & Fragments::tiles_in_front(bin, depths);
+    in_front = full & samples.as_one(bin) & Fragments::tiles_in_front(bin, depths);
     if (in_front != 0 && bin.lays_over && t.surface == 0 && bin.skip.attributes) {
       add_layer(bin, t, in_front);
       if (bin.state.depth_write) (void)take_depths(bin, t, lanes_of(in_front), depths);
@@ -437,6 +476,6 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
     if (bin.state.depth_write) in_front = 0;  // pixel by pixel
   }
   if (taken != 0) take_tiles(bin, t, taken, depths);
-  if ((live & ~taken) != 0) draw_tiles<Fragments>(bin, t, live & ~taken, full, in_front);
+  if ((live & ~taken) != 0) samples.template draw<Fragments>(bin, slice, record, t, live & ~taken, full, in_front);
   if (bin.state.depth_write) bin.is_range_old = true;
 }

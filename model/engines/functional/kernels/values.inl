@@ -13,6 +13,38 @@ HALFPLANE_INLINE ChannelPairs color_anchor(const Bin& bin, const BinTriangle& t,
   return channel_pairs((Channels)((Unsigned)value >> bin.color_format.drop << bin.color_format.up));
 }
 
+/// Lanes wrap.
+HALFPLANE_INLINE std::int32_t wrapped_sum(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+
+/// What depth gains from the centre of a pixel to its sample k, in a tile's units: sample_plane_offset().
+HALFPLANE_INLINE std::int64_t depth_to_sample(const Bin& bin, const BinTriangle& t, unsigned k) {
+  const int s = bin.widths.grid_bits;
+  const auto step = [&](std::int64_t of_tile) HALFPLANE_LAMBDA {
+    return round_shift(of_tile >> (kTileShift + s), bin.depth_format.step_drop);
+  };
+  const SampleOffset& o = bin.widths.sample_offset[k];
+  return round_shift(step(t.z_tile_x) * o.x + step(t.z_tile_y) * o.y, s);
+}
+/// The same in a lane.
+HALFPLANE_INLINE std::int32_t depth_at_sample(const Bin& bin, const BinTriangle& t, unsigned k) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(depth_to_sample(bin, t, k)) << bin.depth_format.up);
+}
+
+/// Moves the colours' planes to a sample.
+inline void move_colors(const Bin& bin, std::size_t sample, BinTriangle& t) {
+  const int s = bin.widths.grid_bits;
+  const LaneFormat& format = bin.color_format;
+  const SampleOffset& o = bin.widths.sample_offset[sample];
+  const auto step = [&](std::int64_t of_tile) { return round_shift(of_tile >> (kTileShift + s), format.step_drop); };
+  for (std::size_t c = 0; c < 4; ++c) {
+    const std::int64_t gain = round_shift(step(t.c_tile_x[c]) * o.x + step(t.c_tile_y[c]) * o.y, s);
+    t.c_anchor[c] = static_cast<std::int64_t>(static_cast<std::uint64_t>(t.c_anchor[c]) +
+                                              (static_cast<std::uint64_t>(gain) << format.drop));
+  }
+}
+
 /// A plane over a tile: its first block, and the steps from there to the blocks on the right and below.
 template <class Lanes>
 struct BlockRamp {

@@ -1,0 +1,122 @@
+// Several samples a pixel on the functional engine's fast path: the scalar engine's bits of every sample, on every
+// instruction set and any number of threads.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/engines/functional.hpp"
+#include "model/engines/functional/frame_renderer.hpp"
+#include "model/engines/functional/kernels.hpp"
+#include "model/engines/scalar.hpp"
+#include "sim/cosim/random_scene.hpp"
+#include "sim/scene/builtin.hpp"
+#include "sim/scene/random_state.hpp"
+#include "sim/study/stress/unit.hpp"
+
+namespace halfplane {
+namespace {
+
+Config sampled(std::string_view name, int samples, std::string_view pattern = "standard") {
+  Config config = preset(name);
+  config.tile_size = 8;
+  config.msaa_samples = samples;
+  config.msaa_pattern = parse_sample_pattern(pattern);
+  while (config.stamp_size * config.stamp_size * samples > 64) config.stamp_size /= 2;
+  validate(config);
+  return config;
+}
+
+/// Triangles of all that the fast path takes.
+Scene random_triangles(const Config& config, std::uint64_t seed) {
+  Config plain = config;
+  plain.msaa_samples = 1;
+  plain.msaa_pattern = {};
+  Scene scene = random_scene(plain, seed, 60);
+  stress::Random random(seed);
+  for (State& state : scene.states) {
+    state.stencil.reset();
+    if (random.index(2) != 0)
+      state = random_state(state, states_named({"sample_mask", "blend", "color_mask", "dither", "alpha_test"}),
+                           chooser(random));
+    state.alpha_to_coverage = false;
+    state.stencil.reset();
+  }
+  std::erase_if(scene.commands, [&scene](const Command& command) {
+    const auto* draw = std::get_if<Draw>(&command);
+    return draw != nullptr && drawn_as(scene.states[draw->state], draw->topology) == PrimitiveType::line;
+  });
+  return scene;
+}
+
+void expect_same_images(const Framebuffer& a, const Framebuffer& b) {
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      ASSERT_EQ(a.depth[a.at(x, y)], b.depth[b.at(x, y)]) << x << ", " << y;
+      ASSERT_EQ(a.color[a.at(x, y)], b.color[b.at(x, y)]) << x << ", " << y;
+      ASSERT_EQ(a.stencil[a.at(x, y)], b.stencil[b.at(x, y)]) << x << ", " << y;
+    }
+}
+
+void expect_same_samples(const Framebuffer& a, const Framebuffer& b) {
+  expect_same_images(a, b);
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  for (std::size_t k = 0; k < a.samples.size(); ++k) {
+    SCOPED_TRACE("sample " + std::to_string(k));
+    expect_same_images(a.samples[k], b.samples[k]);
+  }
+}
+
+/// Every kernel and one and two threads against the scalar engine; then the picture alone.
+void expect_scalar_bits(const Scene& scene, const Config& config) {
+  const Rendering expected = render_scalar(scene, config, {});
+  ASSERT_TRUE(functional::is_supported(scene, config, {}));
+  FunctionalEngine engine(config);
+  for (const functional::Kernels* const kernels : functional::available_kernels())
+    for (const int threads : {1, 2}) {
+      SCOPED_TRACE(std::string(kernels->name) + ", threads " + std::to_string(threads));
+      RenderOptions options;
+      options.instruction_set = kernels->name;
+      options.threads = threads;
+      const Rendering& all = engine.render(scene, options);
+      expect_same_samples(all.frame, expected.frame);
+      EXPECT_EQ(all.counters.primitives_in, expected.counters.primitives_in);
+      EXPECT_EQ(all.counters.culled, expected.counters.culled);
+      EXPECT_EQ(all.counters.drawn, expected.counters.drawn);
+      EXPECT_EQ(all.counters.clipped, expected.counters.clipped);
+      options.resolved_only = true;
+      expect_same_images(engine.render(scene, options).frame, expected.frame);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(FunctionalSamples, RandomScenesAreTheScalarEngines) {
+  std::vector<Config> configs;
+  for (const char* name : {"embedded", "full"})
+    for (const int samples : {2, 4, 8}) configs.push_back(sampled(name, samples));
+  configs.push_back(sampled("embedded", 4, "0.5,0.5;0.0078125,0.25;0.25,0.9921875;0.75,0.75"));
+  configs.push_back(sampled("embedded", 2, "0,0;0.99609375,0.99609375"));
+  std::size_t drawn = 0;
+  for (const Config& config : configs)
+    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+      SCOPED_TRACE(std::to_string(config.msaa_samples) + " samples, seed " + std::to_string(seed));
+      const Scene scene = random_triangles(config, seed);
+      if (!functional::is_supported(scene, config, {})) continue;
+      ++drawn;
+      expect_scalar_bits(scene, config);
+      if (HasFatalFailure()) return;
+    }
+  EXPECT_GT(drawn, 100U);
+}
+
+TEST(FunctionalSamples, BuiltInScenesAreTheScalarEngines) {
+  const Config config = sampled("embedded", 4);
+  for (const char* name : {"teapot", "city", "knot", "coplanar", "slivers", "triangle", "layers", "layers_nearest",
+                           "layers_linear", "layers_glass", "layers_leaves", "ball", "blocks"}) {
+    SCOPED_TRACE(name);
+    expect_scalar_bits(make_builtin(name, 203, 149, {}, 1), config);
+    if (HasFatalFailure()) return;
+  }
+}
+
+}  // namespace
+}  // namespace halfplane
