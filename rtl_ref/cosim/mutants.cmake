@@ -517,6 +517,27 @@ mutant(320 stages/fog_unit.sv "fog: two lines of the table lie in one place"
   [=[word_i[START+RISE+:LINE]]=] [=[word_i[START+RISE+:LINE] & 8'hfe]=])
 mutant(321 stages/fog_unit.sv "fog: a stamp that waits reads the line of the one behind it"
   [=[enters_1 && !sets_line_i]=] [=[!sets_line_i]=])
+
+# light
+mutant(322 stages/light_unit.sv "light: a register changes under the samples in front of its token"
+  [=[head_sets && lit_q[LOOKS-1:1] != '0]=] [=[1'b0]=])
+mutant(323 stages/light_unit.sv "light: points and clears are lit too"
+  [=[enable_q && head_triangle]=] [=[enable_q && !head_sets]=])
+mutant(324 stages/light_unit.sv "light: m of 15 bits is not held where it rounds up to 16"
+  [=[moved[P-1-M] && moved[P-1-:M] != {1'b0, {(M - 1) {1'b1}}}]=] [=[moved[P-1-M]]=])
+mutant(325 stages/light_unit.sv "light: a long m counts as a short one"
+  [=[square_5_q[2*M-1:2*M-2] != '0]=] [=[square_5_q[2*M-1]]=])
+mutant(326 stages/light_unit.sv "light: what looks away has its highlight"
+  [=[light_cosine == '0 || place]=] [=[place]=])
+mutant(327 stages/light_unit.sv "light: the power is cut off"
+  [=[(START + PART + 2)'(2048)]=] [=[(START + PART + 2)'(0)]=])
+mutant(328 stages/light_unit.sv "light: what is brighter than 255 begins again"
+  [=[{8{colored[22:20] != '0}}]=] [=[8'd0]=])
+mutant(329 stages/light_unit.sv "light: a stamp's last sample lights all of them"
+  [=[first_q[11] || is_own]=] [=[first_q[11] || sample_q[11*SAMPLES-1]]=])
+mutant(330 lib/root_table.sv "light: the root has the line of the other octave"
+  [=[{!zeros[0], behind]=] [=[{zeros[0], behind]=])
+
 # Four lanes of a texture unit.
 mutant(340 stages/texture_lanes.sv "lanes: two texels of one bank go together"
   [=[a[1:0] != b[1:0]]=] [=[1'b1]=])
