@@ -34,7 +34,7 @@ TEST(PhongHardware, DrawsRandomScenesAsTheScalarEngine) {
         with("full", {{"texture.unit", "nearest"}, {"shade.unit", "1"}}),
         with("tiny",
              {{"cache.kind", "blocks"}, {"texture.unit", "nearest"}, {"shade.unit", "1"}, {"stencil.bits", "8"}})})
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       const Scene scene = random_scene(config, seed, 40);
       for (const State& state : scene.states) lit += state.shade == Shade::phong ? 1 : 0;
       const Rendering scalar = render_scalar(scene, config);
