@@ -20,7 +20,8 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
            "perspective, or fog off";
   if (state.shade == Shade::phong && state.color_write && state.texture &&
       state.texture_interp == TextureInterp::affine)
-    return "shade phong under a texture_interp affine: normals and coordinates start where one plane of 1/w says, which is "
+    return "shade phong under a texture_interp affine: normals and coordinates start where one plane of 1/w says, "
+           "which is "
            "not the same; use texture_interp perspective, or shade smooth";
   if (!state.texture) return "";
   if (state.color_interp == ColorInterp::perspective && state.texture_interp == TextureInterp::affine)

@@ -50,8 +50,7 @@ AttributeWidths derive_attribute(const Attribute& a, int128 side, const Widths& 
   d.code = a.is_signed ? exact(name + " code", "+-(" + largest + ")", symmetric(max))
                        : exact(name + " code", bound("2^# - 1"), {0, max});
   d.delta = exact(name + " delta", "code - code", symmetric(range));
-  d.numerator = exact(name + " numerator",
-                      a.is_signed ? "L * 2 (" + largest + ")" : bound("L * (2^# - 1)"),
+  d.numerator = exact(name + " numerator", a.is_signed ? "L * 2 (" + largest + ")" : bound("L * (2^# - 1)"),
                       symmetric(side * range));
   d.reciprocal = exact(name + " reciprocal",
                        a.is_clamped ? bound("2^(m+r) / A, r = # + extra") : std::string("2^(m+r) / A, r = N - 2"),

@@ -18,13 +18,13 @@ inline constexpr int kLightWordBit = 40;  ///< of the word of a token: LightWord
 
 /// Which registers a word of light sets, each with what it has from the lowest bit.
 enum class LightWord : std::uint8_t {
-  state,          ///< the highlight's colour, 8 each; whether there is light; narrow 3
-  ambient,        ///< 13 each of red, green and blue
-  diffuse,        ///< likewise
-  direction,      ///< x and y, 16 each
-  directions,     ///< z, and x of the half
-  half,           ///< y and z
-  line,           ///< of the power's table: fall 11, start 16, its number 8
+  state,       ///< the highlight's colour, 8 each; whether there is light; narrow 3
+  ambient,     ///< 13 each of red, green and blue
+  diffuse,     ///< likewise
+  direction,   ///< x and y, 16 each
+  directions,  ///< z, and x of the half
+  half,        ///< y and z
+  line,        ///< of the power's table: fall 11, start 16, its number 8
 };
 inline constexpr std::size_t kLightWords = 6;  ///< those but the lines
 

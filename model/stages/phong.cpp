@@ -127,8 +127,7 @@ PhongLight::Given PhongLight::given_by(const State& state) {
           state.light_diffuse,   state.light_specular, state.light_shininess};
 }
 
-PhongLight::PhongLight(const Given& given)
-    : given_(given) {
+PhongLight::PhongLight(const Given& given) : given_(given) {
   registers_.direction = direction_codes(given.direction);
   registers_.half = direction_codes(given.half);
   half_length_ = length_of(registers_.half);
