@@ -50,6 +50,9 @@ inline constexpr int kColorNarrowBits = 13;
 /// N_P of a colour over w: its P has no more bits than Q.
 [[nodiscard]] constexpr int color_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 18); }
 
+/// N_P of a normal over w: two bits more than a colour's, and no more than Q has.
+[[nodiscard]] constexpr int normal_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 20); }
+
 /// One value for each plane. Elements from plane_count() on are nobody's.
 template <class T>
 using PerPlane = std::array<T, kMaxPlanes>;
@@ -83,6 +86,11 @@ struct AttributeList {
 /// Whether the hardware tests alpha. Other hardware with alpha.unit interpolates it, and that is all.
 [[nodiscard]] constexpr bool tests_alpha(const Config& config) {
   return config.alpha_units != 0 && config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined;
+}
+
+/// Whether the hardware lights fragments: what validate() lets pass with shade.unit.
+[[nodiscard]] constexpr bool has_normals(const Config& config) {
+  return config.shade_units != 0 && config.texture_unit != TextureUnitKind::off && config.perspective_colors == 0;
 }
 
 /// The list.
@@ -132,6 +140,18 @@ struct AttributeList {
               .planes = needs_alpha(config) ? 4 : 3,
               .bits = color_over_w_bits(config) + 1,
               .symbol = "N_C + 1",
+              .reciprocal_bits = bits - kPerspectiveReciprocalLess,
+              .guard_bits = kPerspectiveGuardBits,
+              .is_signed = true,
+              .is_clamped = false,
+              .interpolation = Interpolation::over_w,
+              .base = BaseVertex::smallest_q});
+  if (has_normals(config))
+    list.add({.name = "normal over w",
+              .part = {"normal x over w", "normal y over w", "normal z over w"},
+              .planes = 3,
+              .bits = normal_over_w_bits(config) + 2,  // 2^N_P is a code: that of a normal along an axis
+              .symbol = "N_N + 2",
               .reciprocal_bits = bits - kPerspectiveReciprocalLess,
               .guard_bits = kPerspectiveGuardBits,
               .is_signed = true,

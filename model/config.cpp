@@ -94,6 +94,9 @@ const std::array kSettings{
             &Config::dither_units},
     Setting{"fog.unit", "units", "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1,
             &Config::fog_units},
+    Setting{"shade.unit", "units",
+            "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1,
+            &Config::shade_units},
     Setting{
         "stencil.bits", "bits",
         "of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
@@ -351,6 +354,12 @@ void validate(const Config& config) {
       "texture.lanes=4, or texture.ways=1");
   refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
                 "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
+  refuse_unless(config.shade_units == 0 || config.texture_unit != TextureUnitKind::off,
+                "normals lie over w and start where 1/w is smallest, which a texture unit's planes say: use "
+                "texture.unit=nearest, or shade.unit=0");
+  refuse_unless(config.shade_units == 0 || config.perspective_colors == 0,
+                "fragments are lit in front of the texture unit, which divides colours over w: use "
+                "perspective.colors=0, or shade.unit=0");
   refuse_unless(config.perspective_colors == 0 || config.texture_unit != TextureUnitKind::off,
                 "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
                 "perspective.colors=0");

@@ -85,6 +85,7 @@ struct Config {
   int blend_lanes = 0;    ///< samples that are blended in a clock: 0 (no unit), 1 or 4
   int dither_units = 0;   ///< 1: the RTL dithers colours of rgb565
   int fog_units = 0;      ///< 1: the RTL fogs triangles, behind its texture unit
+  int shade_units = 0;    ///< 1: the RTL lights fragments, in front of its texture unit
   int stencil_bits = 0;   ///< of the stencil that is stored above each depth: 0 (none) or 8
   int line_units = 1;     ///< 1: the RTL draws lines; 0: line_raster and what joins it are left out
   int counter_units = 1;  ///< 1: the RTL counts its work; 0: its counters are left out

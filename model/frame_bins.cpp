@@ -142,6 +142,20 @@ Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLin
     }
     hash.add(fog_signature_);
   }
+  hash.add(units.looks_at_light);
+  if (units.light != nullptr) {
+    if (units.light != light_) {
+      light_ = units.light;
+      SignatureHash registers;
+      for (const std::uint64_t word : light_words(light_->registers())) registers.add(word);
+      for (const FallingLine& entry : light_->lines()) {
+        registers.add(static_cast<std::uint64_t>(entry.start));
+        registers.add(static_cast<std::uint64_t>(entry.fall));
+      }
+      light_signature_ = registers.signature();
+    }
+    hash.add(light_signature_);
+  }
   for (const auto& word : {units.colors.ops, units.colors.constant, units.colors.alpha}) add_optional(word);
   for (const std::size_t side : {0U, 1U}) {
     add_optional(units.stencil.test[side]);

@@ -106,6 +106,8 @@ class FrameBins {
   std::optional<std::vector<PixelBounds>> cleared_;
   std::shared_ptr<const FogTable> fog_;  ///< the last one seen, and its signature
   Signature fog_signature_;
+  std::shared_ptr<const PhongLight> light_;  ///< likewise
+  Signature light_signature_;
 };
 
 }  // namespace halfplane

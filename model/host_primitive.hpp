@@ -8,6 +8,7 @@
 #include "signature.hpp"
 #include "stages/color_packets.hpp"
 #include "stages/fog_unit.hpp"
+#include "stages/light_unit.hpp"
 #include "stages/stencil_packets.hpp"
 #include "stages/texture_levels.hpp"
 
@@ -20,6 +21,8 @@ struct UnitWords {
   std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
   bool looks_at_fog = false;                    ///< of a triangle whose colours are written, with a unit for it
   std::shared_ptr<const FogTable> fog{};        ///< then: what is in the way; none: nothing
+  bool looks_at_light = false;                  ///< likewise
+  std::shared_ptr<const PhongLight> light{};    ///< then: what it is lit by; none: nothing
   ColorWords colors{};                          ///< of what is drawn
   StencilWords stencil{};                       ///< likewise; of a fast clear: its value
   Signature texels{};                           ///< of the texture of a triangle, where bins are compared

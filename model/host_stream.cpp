@@ -95,6 +95,7 @@ std::optional<HostPrimitive> HostStream::next() {
     set_colors(*primitive);
     set_stencil(*primitive);
     if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) {
+      set_light(*primitive);
       set_texture(*primitive);
       set_fog(*primitive);
     }
@@ -178,6 +179,25 @@ void HostStream::set_fog(const HostPrimitive& triangle) {
     fog_line_[n] = table->lines()[n];
     send_word(fog_line_word(n, *fog_line_[n]));
   }
+}
+
+/// The light of a triangle: what differs from what the unit has, of its registers and of the lines of its table.
+void HostStream::set_light(const HostPrimitive& triangle) {
+  if (!triangle.units.looks_at_light) return;
+  const PhongLight* light = triangle.units.light.get();
+  const auto send_word = [&](std::uint64_t word) {
+    in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
+  };
+  const auto set = [&](auto& held, const auto& wanted, std::uint64_t word) {
+    if (held == wanted) return;
+    held = wanted;
+    send_word(word);
+  };
+  if (light == nullptr) return set(light_word_[0], no_light_word(), no_light_word());
+  const auto words = light_words(light->registers());
+  for (std::size_t n = 0; n < words.size(); ++n) set(light_word_[n], words[n], words[n]);
+  for (std::size_t n = 0; n < light->lines().size(); ++n)
+    set(light_line_[n], light->lines()[n], light_line_word(n, light->lines()[n]));
 }
 
 /// A register of a unit has its value from here on.
@@ -363,9 +383,12 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   HostPrimitive out = drawn_primitive(packet, triangle.primitive);
   out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
   if (out.units.looks_at_fog && state.fog) out.units.fog = context_->fog;
+  out.units.looks_at_light = config_.shade_units != 0 && state.color_write;
+  if (out.units.looks_at_light) out.units.light = context_->phong;
   if (textures_ && state.texture) set_coordinates(triangle, out);
   if (state.color_interp == ColorInterp::perspective) set_colors_over_w(triangle, out.packet);
   if (out.units.fog) set_distance(triangle, out);
+  if (out.units.light) set_normals(triangle, out.packet);
   send(out);
 }
 
@@ -402,6 +425,22 @@ void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) cons
   const QCodes q = quantize_q(w, format.q_bits);
   for (std::size_t i = 0; i < 3; ++i) out.packet.vertex.code[i][widths_.q_plane] = q[i];
   out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
+}
+
+/// P of the normals, and Q, where their planes start. A texture and a fog have brought the same Q.
+void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) const {
+  require_positive_w(*context_, triangle);
+  const PerspectiveFormat format = perspective_format(config_);
+  const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
+  for (std::size_t i = 0; i < 3; ++i) packet.vertex.code[i][widths_.q_plane] = q[i];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto component = [&](std::size_t i) { return triangle.surface[i].normal[c]; };
+    const OverW over_w = quantize_normal({component(0), component(1), component(2)}, q, format);
+    const std::size_t p = widths_.normal_plane() + c;
+    for (std::size_t i = 0; i < 3; ++i)
+      packet.vertex.code[i][p] = static_cast<std::uint32_t>(
+          wrap_unsigned(static_cast<std::uint64_t>(over_w.p[i]), widths_.of_plane(p).code.bits));
+  }
 }
 
 /// Q and P of the colours, and how to read them back. With a texture over w Q is that of its coordinates, to the bit.

@@ -58,12 +58,14 @@ class HostStream {
   void set_coordinates(const Triangle& triangle, HostPrimitive& out);
   void set_distance(const Triangle& triangle, HostPrimitive& out) const;
   void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;
+  void set_normals(const Triangle& triangle, PrimitivePacket& packet) const;
   void set_colors(const HostPrimitive& primitive);
   void set_stencil(const HostPrimitive& primitive);
   void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
                   HostPrimitive& out) const;
   void set_texture(const HostPrimitive& triangle);
   void set_fog(const HostPrimitive& triangle);
+  void set_light(const HostPrimitive& triangle);
   [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
   [[nodiscard]] std::optional<HostPrimitive> next_primitive();
   void send_line(const LinePrimitive& line);
@@ -103,6 +105,8 @@ class HostStream {
   std::optional<std::uint32_t> texture_levels_;  ///< of one with levels, likewise
   std::optional<FogState> fog_state_;            ///< likewise, and the lines of its table
   std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
+  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise of light
+  std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};
   std::optional<TextureLines> texture_lines_;
   ColorWords colors_;                             ///< what else has been set since the scene began
   StencilWords stencil_;                          ///< likewise

@@ -217,6 +217,7 @@ std::string raster_pkg(const Config& config) {
                  "f: of a texture coordinate, texels");
   print_constant(out, "COLORS_OVER_W", widths.colors_over_w, "planes behind those, which the texture unit divides");
   print_constant(out, "COLOR_NARROW_BITS", kColorNarrowBits, "k_P of those");
+  print_constant(out, "NORMALS", widths.normals, "planes of those, over w; instead of colours");
   print_constant(out, "STATE_WORD_BITS", state_word_bits(widths), "of a token: the codes of all planes but those");
   print_constant(out, "TEXTURE_STAMPS", texture_stamps(config), "between X and W, with a texture unit");
   print_constant(out, "TEXTURE_PORT_BITS", 8 * widths.texture_port_bytes, "data of a beat of texels");

@@ -43,12 +43,14 @@ AttributeWidths derive_attribute(const Attribute& a, int128 side, const Widths& 
   const int128 max = (int128{1} << (a.bits - (a.is_signed ? 1 : 0))) - 1, range = a.is_signed ? 2 * max : max;
   const auto bound = [&a](const char* text) { return with_symbol(text, a.symbol); };
   AttributeWidths d;
-  const bool is_color = a.symbol == "N_C + 1";
-  d.code = a.is_signed ? exact(name + " code", is_color ? "+-(2^N_C - 1)" : "+-(2^N_P - 1)", symmetric(max))
+  // "2^N_C - 1", "2^N_P - 1", "2^(N_N + 1) - 1": without the sign.
+  const std::string largest = a.symbol == "N_C + 1"   ? "2^N_C - 1"
+                              : a.symbol == "N_N + 2" ? "2^(N_N + 1) - 1"
+                                                      : "2^N_P - 1";
+  d.code = a.is_signed ? exact(name + " code", "+-(" + largest + ")", symmetric(max))
                        : exact(name + " code", bound("2^# - 1"), {0, max});
   d.delta = exact(name + " delta", "code - code", symmetric(range));
-  d.numerator = exact(name + " numerator",
-                      a.is_signed ? (is_color ? "L * 2 (2^N_C - 1)" : "L * 2 (2^N_P - 1)") : bound("L * (2^# - 1)"),
+  d.numerator = exact(name + " numerator", a.is_signed ? "L * 2 (" + largest + ")" : bound("L * (2^# - 1)"),
                       symmetric(side * range));
   d.reciprocal = exact(name + " reciprocal",
                        a.is_clamped ? bound("2^(m+r) / A, r = # + extra") : std::string("2^(m+r) / A, r = N - 2"),
@@ -125,6 +127,7 @@ void derive_texture(Widths& w, const Config& config) {
   const int color_bits = color_over_w_bits(config);  // N_C
   w.colors_over_w = has_colors ? w.color_planes : 0;
   w.has_colors_over_w = has_colors ? 1 : 0;
+  w.normals = has_normals(config) ? 3 : 0;
   w.color_shift =
       exact("color shift", "c = 1 + x - sp - k_P, k_P = 13, N_C - N <= x - sp <= 1 + N_C",
             {1 + color_bits - config.perspective_bits - kColorNarrowBits, 2 + color_bits - kColorNarrowBits});

@@ -98,6 +98,7 @@ struct Widths {
   std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow, and colours over w
   int colors_over_w = 0;                 ///< how many of those
   int has_colors_over_w = 0;             ///< 1: there are some
+  int normals = 0;                       ///< planes of those, over w; instead of colours
   int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
   int samples = 0;                       ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
@@ -144,9 +145,11 @@ struct Widths {
   [[nodiscard]] const AttributeWidths& of_plane(std::size_t p) const { return attribute[attribute_of[p]]; }
   [[nodiscard]] const AttributeWidths& depth() const { return of_plane(kDepthPlane); }
   [[nodiscard]] const AttributeWidths& color() const { return of_plane(kColorPlane); }
-  /// The first colour over w, and how many planes there are in front of it: those that a token's value is spread over.
+  /// The first colour over w, or the first normal, and how many planes there are in front of it: those that a token's value is
+  /// spread over.
   [[nodiscard]] std::size_t color_over_w_plane() const { return static_cast<std::size_t>(token_planes()); }
-  [[nodiscard]] int token_planes() const { return planes - colors_over_w; }
+  [[nodiscard]] std::size_t normal_plane() const { return static_cast<std::size_t>(token_planes()); }
+  [[nodiscard]] int token_planes() const { return planes - colors_over_w - normals; }
   /// "depth", "red", ...
   [[nodiscard]] std::string_view plane_name(std::size_t p) const;
 

@@ -33,7 +33,7 @@ inline Config all_operations() {
   config.alpha_units = config.dither_units = 1;
   config.blend_lanes = 4;
   config.stencil_bits = 8;
-  config.fog_units = 1;
+  config.fog_units = config.shade_units = 1;
   return config;
 }
 

@@ -2,7 +2,7 @@
 // set by tokens, a line of the table each; a triangle brings where in the table its Q lies.
 //
 // The registers of a token are eight, and all of them have their use. Fog has that of a texture's levels, whose words are
-// short: two bits above them say what the word is (FogWord).
+// short: two bits above them say what the word is (FogWord). So has light (light_unit.hpp).
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline constexpr int kFogWordBit = 43;                          ///< of the word
 inline constexpr int kFogOctaveLow = -32, kFogOctaveHigh = 31;  ///< Widths::fog_octave
 
 /// What a word of the register texture_levels is.
-enum class FogWord : std::uint8_t { none, state, line };
+enum class FogWord : std::uint8_t { none, state, line, light };
 [[nodiscard]] constexpr FogWord fog_word(std::uint64_t word) { return static_cast<FogWord>(word >> kFogWordBit & 3); }
 
 /// What the unit knows of a draw, but for the table.

@@ -127,19 +127,19 @@ PhongLight::Given PhongLight::given_by(const State& state) {
           state.light_diffuse,   state.light_specular, state.light_shininess};
 }
 
-PhongLight::PhongLight(const Given& given)
-    : given_(given),
-      direction_(direction_codes(given.direction)),
-      half_(direction_codes(given.half)),
-      half_length_(length_of(half_)) {
+PhongLight::PhongLight(const Given& given) : given_(given) {
+  registers_.direction = direction_codes(given.direction);
+  registers_.half = direction_codes(given.half);
+  half_length_ = length_of(registers_.half);
   for (std::size_t c = 0; c < 3; ++c) {
-    ambient_[c] = factor_of(given.ambient[c]);
-    diffuse_[c] = factor_of(given.diffuse[c]);
+    registers_.ambient[c] = factor_of(given.ambient[c]);
+    registers_.diffuse[c] = factor_of(given.diffuse[c]);
   }
+  registers_.specular = given.specular;
   make_power();
 }
 
-/// Of what cosine() makes of an N.H: half_ is a hair too short. Not held to 1, which would be a bend in the first line.
+/// Of what cosine() makes of an N.H: the half is a hair too short. Not held to 1, which would be a bend in the first line.
 double PhongLight::real_power(double x) const {
   return half_length_ > 0 ? power_of(x / half_length_, shininess_code(given_.shininess)) : 0;
 }
@@ -147,36 +147,36 @@ double PhongLight::real_power(double x) const {
 /// As narrow as the power allows: what is left out shows no trace.
 void PhongLight::make_power() {
   const std::uint32_t n = shininess_code(given_.shininess);
-  while (power_of(1 - std::ldexp(0.5, -narrow_), n) < kTrace) ++narrow_;
-  place_bits_ = kCosineFraction - narrow_ - kPowerLines;
-  for (std::size_t i = 0; i < std::size_t{1} << kPowerLines; ++i) {
-    const auto at = [&](double line) { return real_power(1 - std::ldexp(line, -kPowerLines - narrow_)); };
+  int& narrow = registers_.narrow;
+  while (power_of(1 - std::ldexp(0.5, -narrow), n) < kTrace) ++narrow;
+  for (std::size_t i = 0; i < registers_.line.size(); ++i) {
+    const auto at = [&](double line) { return real_power(1 - std::ldexp(line, -kPowerLines - narrow)); };
     const auto line = static_cast<double>(i);
-    line_.push_back(chord(at(line), at(line + 0.5), at(line + 1), kPowerStartFraction, 0));
+    registers_.line[i] = chord(at(line), at(line + 0.5), at(line + 1), kPowerStartFraction, 0);
   }
 }
 
-std::uint32_t PhongLight::power(std::uint32_t cosine) const {
+std::uint32_t LightRegisters::power(std::uint32_t cosine) const {
   const auto away = std::max(0, (1 << kCosineFraction) - static_cast<std::int32_t>(cosine));
-  const auto line = static_cast<std::size_t>(away >> place_bits_);
-  if (line >= line_.size()) return 0;
-  const std::int32_t place = away & ((1 << place_bits_) - 1);
-  const int drop = place_bits_ + kPowerStartFraction - kLightFraction;
-  const std::int32_t sum = line_[line].start * (1 << place_bits_) - line_[line].fall * place;
+  const auto at = static_cast<std::size_t>(away >> place_bits());
+  if (at >= line.size()) return 0;
+  const std::int32_t place = away & ((1 << place_bits()) - 1);
+  const int drop = place_bits() + kPowerStartFraction - kLightFraction;
+  const std::int32_t sum = line[at].start * (1 << place_bits()) - line[at].fall * place;
   return static_cast<std::uint32_t>(std::clamp(round_shift(sum, drop), 0, 1 << kLightFraction));
 }
 
-PhongLight::Factors PhongLight::factors(const Normal& m) const {
+LightFactors LightRegisters::factors(const Normal& m) const {
   if (m == Normal{}) return {};
   const InverseLength length = inverse_length(m);
-  const std::uint32_t facing = cosine(m, length, direction_);
+  const std::uint32_t facing = cosine(m, length, direction);
   if (facing == 0) return {};
-  return {round_shift(facing, kCosineFraction - kLightFraction), power(cosine(m, length, half_))};
+  return {round_shift(facing, kCosineFraction - kLightFraction), power(cosine(m, length, half))};
 }
 
-std::uint32_t PhongLight::lit(std::size_t channel, std::uint32_t color, const Factors& factors) const {
-  const std::uint32_t much = ambient_[channel] + round_shift(diffuse_[channel] * factors.diffuse, kLightFraction);
-  const std::uint32_t sum = color * much + given_.specular[channel] * factors.specular;
+std::uint32_t LightRegisters::lit(std::size_t channel, std::uint32_t color, const LightFactors& factors) const {
+  const std::uint32_t much = ambient[channel] + round_shift(diffuse[channel] * factors.diffuse, kLightFraction);
+  const std::uint32_t sum = color * much + specular[channel] * factors.specular;
   return std::min(round_shift(sum, kLightFraction), 255U);
 }
 
@@ -200,10 +200,10 @@ PhongLight::Bounds PhongLight::error_bounds(double cosine_of_light, double cosin
   const double moved = turned * sine + turned * turned / 2 + cosine_rounded;
   const double n = given_.shininess, real = std::pow(std::min(x, 1.0), n);
   const double higher = std::pow(std::min(x + moved, 1.0), n), lower = std::pow(std::max(x - moved, 0.0), n);
-  const double width = std::ldexp(1.0, -kPowerLines - narrow_);
+  const double width = std::ldexp(1.0, -kPowerLines - narrow());
   const double bend = n * std::max(n - 1, 0.0) * width * width;  // the most of a line's second derivative
   const double table = bend / 16 * (1 + n * width) + std::ldexp(1.5, -kPowerStartFraction) +
-                       std::ldexp(0.5, -kLightFraction) + power_of(1 - std::ldexp(1.0, -narrow_), shininess_code(n));
+                       std::ldexp(0.5, -kLightFraction) + power_of(1 - std::ldexp(1.0, -narrow()), shininess_code(n));
   bounds.specular = std::max(higher - real, real - lower) + table;
   // At the edge of the light either side of N.L = 0 may be meant.
   if (std::abs(cosine_of_light) <= off) bounds.specular = std::max(bounds.specular, higher + table);

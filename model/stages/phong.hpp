@@ -14,7 +14,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "../config.hpp"
 #include "../scene.hpp"
@@ -72,6 +71,29 @@ struct InverseLength {
 /// The part of m that lies along a direction, of m's length: 0 to 2^17, and a hair more. 0 where it looks away.
 [[nodiscard]] std::uint32_t cosine(const Normal& m, const InverseLength& length, const Normal& direction);
 
+/// A normal's light.
+struct LightFactors {
+  std::uint32_t diffuse = 0;   ///< N.L, 2^-12: 0...2^12
+  std::uint32_t specular = 0;  ///< (N.H)^shininess, likewise; 0 where N.L is 0
+};
+
+/// What a pixel's light looks at: all that hardware has of it.
+struct LightRegisters {
+  Normal direction{}, half{};
+  std::array<std::uint32_t, 3> ambient{}, diffuse{};  ///< 2^-12
+  std::array<std::uint8_t, 3> specular{};
+  int narrow = 0;  ///< j: the table is of 1 - N.H below 2^-j
+  std::array<FallingLine, std::size_t{1} << kPowerLines> line{};
+
+  /// log2 of a line's places.
+  [[nodiscard]] constexpr int place_bits() const { return kCosineFraction - narrow - kPowerLines; }
+  [[nodiscard]] LightFactors factors(const Normal& m) const;
+  /// (N.H)^shininess of a cosine in 2^-17, 2^-12.
+  [[nodiscard]] std::uint32_t power(std::uint32_t cosine) const;
+  /// A channel of red, green and blue in this light.
+  [[nodiscard]] std::uint32_t lit(std::size_t channel, std::uint32_t color, const LightFactors& factors) const;
+};
+
 /// The light of a draw's state.
 class PhongLight {
  public:
@@ -86,26 +108,22 @@ class PhongLight {
   explicit PhongLight(const Given& given);
 
   [[nodiscard]] const Given& given() const { return given_; }
-  [[nodiscard]] const Normal& direction() const { return direction_; }
-  [[nodiscard]] const Normal& half() const { return half_; }
-  [[nodiscard]] const std::vector<FallingLine>& lines() const { return line_; }
-  /// j: the table is of 1 - N.H below 2^-j; log2 of a line's places.
-  [[nodiscard]] int narrow() const { return narrow_; }
-  [[nodiscard]] int place_bits() const { return place_bits_; }
+  [[nodiscard]] const LightRegisters& registers() const { return registers_; }
+  [[nodiscard]] const Normal& direction() const { return registers_.direction; }
+  [[nodiscard]] const Normal& half() const { return registers_.half; }
+  [[nodiscard]] const auto& lines() const { return registers_.line; }
+  [[nodiscard]] int narrow() const { return registers_.narrow; }
+  [[nodiscard]] int place_bits() const { return registers_.place_bits(); }
   /// What of a colour shows without light, and besides where it falls straight on it: 2^-12.
-  [[nodiscard]] const std::array<std::uint32_t, 3>& ambient() const { return ambient_; }
-  [[nodiscard]] const std::array<std::uint32_t, 3>& diffuse() const { return diffuse_; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& ambient() const { return registers_.ambient; }
+  [[nodiscard]] const std::array<std::uint32_t, 3>& diffuse() const { return registers_.diffuse; }
 
-  /// A normal's light.
-  struct Factors {
-    std::uint32_t diffuse = 0;   ///< N.L, 2^-12: 0...2^12
-    std::uint32_t specular = 0;  ///< (N.H)^shininess, likewise; 0 where N.L is 0
-  };
-  [[nodiscard]] Factors factors(const Normal& m) const;
-  /// (N.H)^shininess of a cosine in 2^-17, 2^-12.
-  [[nodiscard]] std::uint32_t power(std::uint32_t cosine) const;
-  /// A channel of red, green and blue in this light.
-  [[nodiscard]] std::uint32_t lit(std::size_t channel, std::uint32_t color, const Factors& factors) const;
+  using Factors = LightFactors;
+  [[nodiscard]] Factors factors(const Normal& m) const { return registers_.factors(m); }
+  [[nodiscard]] std::uint32_t power(std::uint32_t cosine) const { return registers_.power(cosine); }
+  [[nodiscard]] std::uint32_t lit(std::size_t channel, std::uint32_t color, const Factors& factors) const {
+    return registers_.lit(channel, color, factors);
+  }
 
   /// The most that factors are off those of a real normal, whose N.L and N.H are given, where that of the planes is off by
   /// `turn` of its length.
@@ -121,11 +139,8 @@ class PhongLight {
   void make_power();
 
   Given given_;
-  Normal direction_, half_;
-  double half_length_ = 1;                          ///< of half_, which the table makes up for
-  std::array<std::uint32_t, 3> ambient_, diffuse_;  ///< 2^-12
-  int narrow_ = 0, place_bits_ = 0;
-  std::vector<FallingLine> line_;
+  LightRegisters registers_;
+  double half_length_ = 1;  ///< of the half, which the table makes up for
 };
 
 /// The light of a draw's fragments; none: it has none. Draws of one state get the same one.

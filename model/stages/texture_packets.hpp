@@ -33,21 +33,26 @@ namespace halfplane {
   TextureSample sample{code[q], {p(q + 1), p(q + 2)}, 0, 0, {}};
   for (std::size_t c = 0; c < static_cast<std::size_t>(widths.colors_over_w); ++c)
     sample.color_p[c] = p(widths.color_over_w_plane() + c);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths.normals); ++c)
+    sample.normal[c] = p(widths.normal_plane() + c);
   return sample;
 }
 
-/// Whether a token is one of fog's, which the texture unit lets through.
+/// What a token is to the units around the texture unit, which lets their tokens through.
 template <class Codes>
-[[nodiscard]] bool is_of_fog(StateRegister which, const Codes& token, const Widths& widths) {
-  return which == StateRegister::texture_levels && fog_word(state_word(token, widths)) != FogWord::none;
+[[nodiscard]] FogWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {
+  return which == StateRegister::texture_levels ? fog_word(state_word(token, widths)) : FogWord::none;
 }
 
 /// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
+  const FogWord beside = word_beside_texture(which, token, widths);
   if (which == StateRegister::texture_lines)
     unit.move_in(wide_state_word(token, widths));
-  else if (is_of_fog(which, token, widths))
+  else if (beside == FogWord::light)
+    unit.light().set(state_word(token, widths));
+  else if (beside != FogWord::none)
     unit.fog().set(state_word(token, widths));
   else if (which == StateRegister::texture_levels)
     unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(state_word(token, widths))));

@@ -42,6 +42,7 @@ template <class Read>
     sample[s].y = (fragment.key.tile_y << widths.tile_shift) + origin.y + pixel.y;
     for (std::size_t c = 0; c < 4; ++c) color[s][c] = static_cast<std::uint8_t>(write.color[s] >> 8 * c);
     if (frame.divides_colors) unit.divide_colors(sample[s], frame, widths.color_planes, color[s]);
+    if (unit.light().is_lit(is_triangle)) unit.light().add(sample[s].normal, color[s]);
   });
   if (unit.is_textured(is_triangle, live)) result.use = use_of(unit.take(live, sample, frame, color, read));
   add_fog(unit, is_triangle, live, sample, fragment.coordinates, color);

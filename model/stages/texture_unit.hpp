@@ -33,6 +33,7 @@
 #include "../scene.hpp"
 #include "../texture.hpp"
 #include "fog_unit.hpp"
+#include "light_unit.hpp"
 #include "perspective.hpp"
 #include "texture_filter.hpp"
 #include "texture_levels.hpp"
@@ -211,6 +212,7 @@ struct TextureSample {
   std::array<std::int64_t, 2> p{};
   int x = 0, y = 0;
   std::array<std::int64_t, 4> color_p{};  ///< of a triangle whose colours lie over w
+  std::array<std::int64_t, 3> normal{};   ///< of one that is lit: P of its normal
 };
 
 class TextureUnit {
@@ -243,6 +245,9 @@ class TextureUnit {
   /// What fogs the colours behind it.
   [[nodiscard]] FogUnit& fog() { return fog_; }
   [[nodiscard]] const FogUnit& fog() const { return fog_; }
+  /// What lights those in front of it.
+  [[nodiscard]] LightUnit& light() { return light_; }
+  [[nodiscard]] const LightUnit& light() const { return light_; }
   [[nodiscard]] bool is_textured(bool is_triangle, SampleMask live) const {
     return state_.enable && is_triangle && live.any();
   }
@@ -474,6 +479,7 @@ class TextureUnit {
   TextureSettings settings_;
   PerspectiveFormat format_;
   FogUnit fog_;
+  LightUnit light_;
   TextureState state_;
   TextureLevels levels_;
   LineRegister lines_;

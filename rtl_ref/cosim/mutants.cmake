@@ -337,7 +337,7 @@ mutant(157 stages/texture_unit.sv "texture: the frame of a triangle goes with it
 mutant(158 stages/texture_levels.sv "texture: rows of blocks are as long on all levels"
   [=[less(wide_q, level)]=] [=[wide_q]=])
 mutant(159 lib/colored_stamps.sv "texture: a level of detail is that of the tile's first pixel"
-  [=[((PIXEL'(fragment_i.stamp) >> ROW) << STAMP)]=] [=[PIXEL'(0)]=])
+  [=[((PIXEL'(door_fragment.stamp) >> ROW) << STAMP)]=] [=[PIXEL'(0)]=])
 mutant(160 lib/colored_stamps.sv "texture: levels are never set"
   [=[fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS]=] [=[1'b0]=])
 mutant(161 stages/level_of_detail.sv "texture: the two slopes are one"
@@ -517,6 +517,25 @@ mutant(320 stages/fog_unit.sv "fog: two lines of the table lie in one place"
   [=[word_i[START+RISE+:LINE]]=] [=[word_i[START+RISE+:LINE] & 8'hfe]=])
 mutant(321 stages/fog_unit.sv "fog: a stamp that waits reads the line of the one behind it"
   [=[enters_1 && !sets_line_i]=] [=[!sets_line_i]=])
+
+# light
+mutant(441 stages/light_unit.sv "light: a register changes under the samples in front of its token"
+  [=[head_sets && lit_q[LOOKS-1:1] != '0]=] [=[1'b0]=])
+mutant(442 stages/light_unit.sv "light: points and clears are lit too"
+  [=[enable_q && head_triangle]=] [=[enable_q && !head_sets]=])
+mutant(443 stages/light_unit.sv "light: m of 15 bits is not held where it rounds up to 16"
+  [=[moved[P-1-:M] != {1'b0, {(M - 1) {1'b1}}}]=] [=[1'b1]=])
+mutant(444 stages/light_unit.sv "light: a long m counts as a short one"
+  [=[square_5_q[2*M-1:2*M-2] != '0]=] [=[square_5_q[2*M-1]]=])
+mutant(446 stages/light_unit.sv "light: the power is cut off"
+  [=[(START + PART + 2)'(2048)]=] [=[(START + PART + 2)'(0)]=])
+mutant(447 stages/light_unit.sv "light: what is brighter than 255 begins again"
+  [=[{8{colored[22:20] != '0}}]=] [=[8'd0]=])
+mutant(448 stages/light_unit.sv "light: a stamp's last sample lights all of them"
+  [=[first_q[11] || is_own]=] [=[first_q[11] || sample_q[11*SAMPLES-1]]=])
+mutant(449 lib/root_table.sv "light: the root has the line of the other octave"
+  [=[!zeros[0]]=] [=[zeros[0]]=])
+
 # Four lanes of a texture unit.
 mutant(340 stages/texture_lanes.sv "lanes: two texels of one bank go together"
   [=[a[1:0] != b[1:0]]=] [=[1'b1]=])
@@ -559,7 +578,7 @@ mutant(289 stages/texture_unit.sv "texture, colours over w: behind a texel the q
 mutant(290 stages/interpolate.sv "texture, colours over w: the range ends where it begins"
   [=[samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
 mutant(291 lib/colored_stamps.sv "texture, colours over w: they are affine"
-  [=[fragment_i.coordinates.divides_colors]=] [=[1'b0]=])
+  [=[door_fragment.coordinates.divides_colors]=] [=[1'b0]=])
 
 # Ordered dithering, as 194 and 195.
 mutant(350 lib/dithered_rop.sv "colours: dithering: the half of a threshold is left out"

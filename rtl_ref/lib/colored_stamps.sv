@@ -1,5 +1,5 @@
 // Colored stamps: what X is through with, on its way to W with the colours that are written: through the texture unit, where
-// there is one, fog and rop behind it; else as they are, two of them at most.
+// there is one, light in front of it, fog and rop behind it; else as they are, two of them at most.
 //
 // A stamp never waits on its way in: X counts those inside, at most PLACES.
 module colored_stamps #(
@@ -97,12 +97,20 @@ module colored_stamps #(
       localparam int NARROW = raster_pkg::PERSPECTIVE_MANTISSA_BITS - 1;  // k_P
       localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::STATE_WORD_BITS >= 104 ? 104 : 70;
       localparam int PIXEL = 12;
-      localparam int TOKEN = 43;  // of fog's tokens
+      localparam int TOKEN = 43;  // of tokens of fog and of light
       localparam int PLACES_BITS = 19 * SAMPLES > TOKEN ? 19 * SAMPLES : TOKEN;
       localparam int FOG = raster_pkg::FOG_UNIT == 0 ? 0 : 3 + PLACES_BITS;  // that fog carries along
       logic [CARRIED+FOG-1:0] entering, unit_carried;
       logic [$clog2(raster_pkg::TEXTURE_LANES+1)-1:0] samples, hits;
       assign texture_use_o[5:0] = {3'(hits), 3'(samples)};
+      // At the door of the texture unit.
+      logic                                                     door_valid;
+      logic [CARRIED-1:0]                                       door_carried;
+      logic [SAMPLES-1:0]                                       door_writes;
+      /* verilator lint_off UNUSEDSIGNAL */  // most of the fragment goes along by itself
+      raster_pkg::fragment_packet_t                             door_fragment;
+      /* verilator lint_on UNUSEDSIGNAL */
+      logic [SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0]        door_color;
       localparam int TILE = raster_pkg::TILE_SHIFT;
       localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
       localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
@@ -114,9 +122,67 @@ module colored_stamps #(
       logic [SAMPLES*P-1:0]          u, v;
       logic [SAMPLES*8*CHANNELS-1:0] rgba;
       logic [SAMPLES-1:0]            mask;
-      logic is_token, is_triangle, is_levels, unit_valid, unit_ready, sets_fog, sets_fog_line;
+      logic is_token, is_triangle, is_levels, unit_valid, unit_ready, sets_light, sets_fog, sets_fog_line;
       logic [SAMPLES-1:0]            unit_mask;
       logic [SAMPLES*8*CHANNELS-1:0] unit_rgba;
+      /* verilator lint_off UNUSEDSIGNAL */
+      function automatic [raster_pkg::STATE_WORD_BITS-1:0] word_of(input [SAMPLES*FRAGMENT-1:0] code);
+        word_of = {code[Q_AT+Q+P+L+:P-L-1], code[Q_AT+Q+L+:P-L-1], code[Q_AT+L+:Q-L-1], code[0+:AFFINE_BITS]};
+      endfunction
+      /* verilator lint_on UNUSEDSIGNAL */
+
+      // Light: of the fragment goes along what is not of the normals.
+      if (raster_pkg::NORMALS == 0) begin : gen_unlit
+        assign door_valid    = stamp_valid_i;
+        assign door_carried  = carried_i;
+        assign door_writes   = writes_i;
+        assign door_fragment = fragment_i;
+        assign door_color    = color_i;
+      end else begin : gen_lit
+        localparam int NORMALS_AT = raster_pkg::FRAGMENT_AT[32*(AFFINE+3*(raster_pkg::NORMALS!=0 ? 1 : 0))+:32];
+        localparam int NORMAL = (FRAGMENT - NORMALS_AT) / 3;
+        localparam int HEADER = raster_pkg::FRAGMENT_PACKET_BITS - SAMPLES * FRAGMENT;
+        logic [SAMPLES*NORMALS_AT-1:0] others, door_others;
+        logic [3*NORMAL*SAMPLES-1:0]   normals;
+        logic [HEADER-1:0]             header, door_header;
+        logic [SAMPLES*FRAGMENT-1:0]   door_code;
+        /* verilator lint_off UNUSEDSIGNAL */
+        logic [raster_pkg::STATE_WORD_BITS-1:0] arriving;
+        /* verilator lint_on UNUSEDSIGNAL */
+        assign header   = fragment_i[raster_pkg::FRAGMENT_PACKET_BITS-1:SAMPLES*FRAGMENT];
+        assign arriving = word_of(fragment_i.code);
+        for (s = 0; s < SAMPLES; s++) begin : gen_sample
+          assign others[s*NORMALS_AT+:NORMALS_AT] = fragment_i.code[s*FRAGMENT+:NORMALS_AT];
+          assign normals[s*3*NORMAL+:3*NORMAL]    = fragment_i.code[s*FRAGMENT+NORMALS_AT+:3*NORMAL];
+          assign door_code[s*FRAGMENT+:FRAGMENT]  = {{(3*NORMAL) {1'b0}}, door_others[s*NORMALS_AT+:NORMALS_AT]};
+        end
+        assign door_fragment = {door_header, door_code};
+        light_unit #(
+            .SAMPLES (SAMPLES),
+            .CHANNELS(CHANNELS),
+            .P_BITS  (NORMAL),
+            .PAYLOAD (CARRIED + SAMPLES + HEADER + SAMPLES * NORMALS_AT),
+            .WORD    (TOKEN),
+            .PLACES  (PLACES)
+        ) u_light (
+            .clk_i,
+            .rst_ni,
+            .stamp_valid_i(stamp_valid_i),
+            .payload_i    ({carried_i, writes_i, header, others}),
+            .color_i      (color_i),
+            .is_triangle_i(fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE),
+            .mask_i       (writes_i),
+            .p_i          (normals),
+            .sets_i       (fragment_i.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
+                           fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS &&
+                           arriving[TOKEN+:2] == 2'd3),
+            .word_i       (arriving[TOKEN-1:0]),
+            .stamp_valid_o(door_valid),
+            .payload_o    ({door_carried, door_writes, door_header, door_others}),
+            .color_o      (door_color)
+        );
+      end
+
       // Colours over w, where there are some.
       localparam int OVER_W = raster_pkg::COLORS_OVER_W != 0 ? 1 : 0;
       localparam int COLOR_P = OVER_W != 0 ? raster_pkg::LOCAL_BITS_OF[32*(AFFINE+3*OVER_W)+:32] : 24;
@@ -126,14 +192,14 @@ module colored_stamps #(
       logic [CHANNELS*raster_pkg::COLOR_REACH_BITS-1:0] color_reach;
       logic [CHANNELS*8-1:0]                 least_color, greatest_color;
       if (OVER_W != 0) begin : gen_over_w
-        assign divides_colors = fragment_i.coordinates.divides_colors;
-        assign color_shift    = fragment_i.coordinates.color_shift;
-        assign color_reach    = fragment_i.coordinates.color_reach;
-        assign least_color    = fragment_i.least_color;
-        assign greatest_color = fragment_i.greatest_color;
+        assign divides_colors = door_fragment.coordinates.divides_colors;
+        assign color_shift    = door_fragment.coordinates.color_shift;
+        assign color_reach    = door_fragment.coordinates.color_reach;
+        assign least_color    = door_fragment.least_color;
+        assign greatest_color = door_fragment.greatest_color;
         for (s = 0; s < SAMPLES; s++) begin : gen_color
           assign color_p[s*CHANNELS*COLOR_P+:CHANNELS*COLOR_P] =
-              fragment_i.code[s*FRAGMENT+Q_AT+Q+2*P+:CHANNELS*COLOR_P];
+              door_fragment.code[s*FRAGMENT+Q_AT+Q+2*P+:CHANNELS*COLOR_P];
         end
       end else begin : gen_affine
         assign divides_colors = 1'b0;
@@ -143,19 +209,19 @@ module colored_stamps #(
         assign least_color    = '0;
         assign greatest_color = '0;
       end
-      assign stamp_x = (PIXEL'(fragment_i.key.tile_x) << TILE) |
-                       ((PIXEL'(fragment_i.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
-      assign stamp_y = (PIXEL'(fragment_i.key.tile_y) << TILE) | ((PIXEL'(fragment_i.stamp) >> ROW) << STAMP);
-      assign word = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
-                     fragment_i.code[0+:AFFINE_BITS]};
-      assign is_token = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_STATE;
-      assign is_triangle = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
-      assign is_levels = is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS;
-      assign entering[CARRIED-1:0] = carried_i;
+      assign stamp_x = (PIXEL'(door_fragment.key.tile_x) << TILE) |
+                       ((PIXEL'(door_fragment.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
+      assign stamp_y = (PIXEL'(door_fragment.key.tile_y) << TILE) | ((PIXEL'(door_fragment.stamp) >> ROW) << STAMP);
+      assign word = word_of(door_fragment.code);
+      assign is_token = door_fragment.kind == raster_pkg::PRIMITIVE_KIND_STATE;
+      assign is_triangle = door_fragment.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
+      assign is_levels = is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS;
+      assign sets_light = raster_pkg::NORMALS != 0 && is_levels && word[TOKEN+:2] == 2'd3;
+      assign entering[CARRIED-1:0] = door_carried;
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
-        assign q[s*Q+:Q] = fragment_i.code[s*FRAGMENT+Q_AT+:Q];
-        assign u[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+:P];
-        assign v[s*P+:P] = fragment_i.code[s*FRAGMENT+Q_AT+Q+P+:P];
+        assign q[s*Q+:Q] = door_fragment.code[s*FRAGMENT+Q_AT+:Q];
+        assign u[s*P+:P] = door_fragment.code[s*FRAGMENT+Q_AT+Q+:P];
+        assign v[s*P+:P] = door_fragment.code[s*FRAGMENT+Q_AT+Q+P+:P];
         logic [COLOR-1:0] packed_color;
         if (raster_pkg::BLEND_LANES != 0 || raster_pkg::DITHER_UNIT != 0) begin : gen_whole
           assign packed_color = rgba[s*8*CHANNELS+:8*CHANNELS];
@@ -200,20 +266,20 @@ module colored_stamps #(
           .clk_i,
           .power_on_ni,
           .rst_ni,
-          .stamp_valid_i  (stamp_valid_i),
+          .stamp_valid_i  (door_valid),
           .payload_i      (entering),
-          .mask_i         (writes_i),
-          .color_i        (color_i),
+          .mask_i         (door_writes),
+          .color_i        (door_color),
           .is_triangle_i  (is_triangle),
           .q_i            (q),
           .u_i            (u),
           .v_i            (v),
-          .shift_i        (fragment_i.coordinates.shift),
-          .reach_i        (fragment_i.coordinates.reach),
-          .reference_i    (fragment_i.coordinates.origin),
-          .sets_state_i   (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE),
-          .sets_levels_i  (is_levels && !sets_fog && !sets_fog_line),
-          .moves_in_i     (is_token && fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LINES),
+          .shift_i        (door_fragment.coordinates.shift),
+          .reach_i        (door_fragment.coordinates.reach),
+          .reference_i    (door_fragment.coordinates.origin),
+          .sets_state_i   (is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE),
+          .sets_levels_i  (is_levels && !sets_light && !sets_fog && !sets_fog_line),
+          .moves_in_i     (is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LINES),
           .x_i            (stamp_x),
           .y_i            (stamp_y),
           .state_i        (word[WORD-1:0]),
@@ -259,15 +325,15 @@ module colored_stamps #(
         assign sets_fog_line = is_levels && word[TOKEN+:2] == 2'd2;
         always_ff @(posedge clk_i or negedge rst_ni) begin
           if (!rst_ni) enable_q <= 1'b0;
-          else if (stamp_valid_i && sets_fog) enable_q <= word[COLOR_BITS+3];
+          else if (door_valid && sets_fog) enable_q <= word[COLOR_BITS+3];
         end
-        always_ff @(posedge clk_i) if (stamp_valid_i && sets_fog) octaves_q <= word[COLOR_BITS+:3];
+        always_ff @(posedge clk_i) if (door_valid && sets_fog) octaves_q <= word[COLOR_BITS+:3];
         for (s = 0; s < SAMPLES; s++) begin : gen_place
           fog_place #(
               .Q_BITS(Q)
           ) u_place (
               .q_i      (q[s*Q+:Q]),
-              .octave_i (fragment_i.coordinates.fog_octave),
+              .octave_i (door_fragment.coordinates.fog_octave),
               .octaves_i(octaves_q),
               .place_o  (places[19*s+:19])
           );

@@ -59,6 +59,7 @@ class Generator {
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
     if (config_.fog_units != 0) set_fogs();
+    if (has_normals(config_)) set_lights();
     if (config_.msaa_samples > 1) set_samples();
     if (config_.resolve_units != 0) drop_later_clears();
     if (has_colors_over_w(config_)) set_colors_over_w();
@@ -92,6 +93,7 @@ class Generator {
   void set_textures();
   void set_shapes();
   void set_fogs();
+  void set_lights();
   void set_samples();
   void drop_later_clears();
   void set_colors_over_w();
@@ -350,6 +352,49 @@ void Generator::set_fogs() {
     if (fog == nullptr || (state.texture && state.texture_interp == TextureInterp::affine)) continue;
     state.fog = fog->fog;
     state.fog_color = fog->fog_color;
+  }
+}
+
+/// A few lights, in runs of draws, since each brings a table; and normals, some of which are 0, along an axis, or nearly the
+/// same. By random numbers of their own, as above.
+void Generator::set_lights() {
+  Random random(seed_ ^ 0x11967u);
+  const auto below = [&random](std::uint64_t n) { return random.next() % n; };
+  const auto vector = [&]() -> std::array<double, 3> {
+    std::array<double, 3> v{};
+    if (below(6) == 0)
+      v[below(3)] = below(2) == 0 ? 1 : -1;
+    else if (below(12) != 0)
+      for (double& c : v) c = random.uniform(-1, 1);
+    return v;
+  };
+  std::vector<State> lights(1 + below(3));
+  for (State& state : lights) {
+    state.light_direction = vector();
+    state.light_half = below(2) == 0 ? state.light_direction : vector();
+    for (auto* color : {&state.light_ambient, &state.light_diffuse, &state.light_specular})
+      for (std::uint8_t& channel : *color) channel = static_cast<std::uint8_t>(below(4) == 0 ? 255 : below(256));
+    state.light_shininess = below(4) == 0 ? 1 : std::exp2(random.uniform(0, 7));
+  }
+  const State* light = nullptr;
+  for (State& state : scene_.states) {
+    if (below(4) == 0) light = below(3) == 0 ? nullptr : &lights[below(lights.size())];
+    if (light == nullptr || (state.texture && state.texture_interp == TextureInterp::affine)) continue;
+    state.shade = Shade::phong;
+    state.light_direction = light->light_direction;
+    state.light_half = light->light_half;
+    state.light_ambient = light->light_ambient;
+    state.light_diffuse = light->light_diffuse;
+    state.light_specular = light->light_specular;
+    state.light_shininess = light->light_shininess;
+  }
+  std::array<double, 3> axis = vector();
+  for (std::size_t n = 0; n < scene_.vertices.size(); ++n) {
+    if (below(9) == 0) axis = vector();
+    std::array<double, 3> normal = vector();
+    if (below(2) == 0)
+      for (std::size_t c = 0; c < 3; ++c) normal[c] = axis[c] + normal[c] / 16;
+    scene_.normals.push_back(normal);
   }
 }
 

@@ -321,7 +321,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_stencil.alpha_units = with_stencil.dither_units = 1;
   with_stencil.blend_lanes = 4;
   with_stencil.stencil_bits = 8;
-  with_stencil.fog_units = 1;
+  with_stencil.fog_units = with_stencil.shade_units = 1;
   Config with_samples = preset("embedded");
   with_samples.msaa_samples = 4;
   with_samples.alpha_units = with_samples.dither_units = 1;

@@ -159,7 +159,7 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   stencilled.texture_unit = TextureUnitKind::nearest;
   stencilled.texture_lanes = 1;
   stencilled.stencil_bits = 8;
-  stencilled.fog_units = 1;
+  stencilled.fog_units = stencilled.shade_units = 1;
   EXPECT_EQ(file_text("presets/stencilled/raster_pkg.sv"), raster_pkg(stencilled));
   Config sampled;
   sampled.alpha_units = sampled.dither_units = 1;

@@ -60,12 +60,40 @@ class FogTiming {
   Cycle left_ = 0;
 };
 
-/// What a fragment is to a texture unit.
+/// Light in front of a texture unit, rtl_ref/stages/light_unit.sv: a queue, and a lane that takes a sample a clock, or a stamp
+/// without any. Of stamp m:
+///
+///   l(m) = max(x + 2, l(m-1) + 1), and from there on a clock a sample; its light being set, the last lit l + 10
+///   on its way on kClocks behind the last
+class LightTiming {
+ public:
+  /// X let a stamp go in `x`, `lit` of whose samples are. Returns when X would have let it go without a unit.
+  Cycle take(Cycle x, int lit, bool sets) {
+    last_ = std::max(x + kDoor, last_ + 1);
+    if (sets) last_ = std::max(last_, looked_at_);
+    if (lit > 0) {
+      last_ += static_cast<Cycle>(lit) - 1;
+      looked_at_ = last_ + kLooks;
+    }
+    return last_ + kClocks - 1;
+  }
+
+ private:
+  static constexpr Cycle kDoor = 2;     ///< from X to the head of the queue
+  static constexpr Cycle kClocks = 12;  ///< from there to the texture unit's door
+  static constexpr Cycle kLooks = 10;   ///< of those, up to the last that looks at a register of the light
+  Cycle last_ = 0;                      ///< when the last sample, or stamp without any, went into the lane
+  Cycle looked_at_ = 0;                 ///< the last sample has looked at all registers
+};
+
+/// What a fragment is to a texture unit, and to those around it.
 struct TextureWork {
   std::optional<StateRegister> sets;       ///< a token
   bool invalidates = false;                ///< and what is in the cache goes
   std::span<const TextureLookup> lookups;  ///< of the samples that are textured
   int divided = 0;                         ///< groups of samples whose colours lie over w
+  int lit = 0;                             ///< samples
+  bool sets_light = false;                 ///< a token of the light's
 };
 
 /// What the test made of a fragment.
@@ -94,6 +122,7 @@ class BlockTiming {
         late_(kLateLines * static_cast<std::size_t>(widths.blocks.stamps())) {
     if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths));
     if (config.fog_units != 0) fog_.emplace();
+    if (has_normals(config)) light_.emplace();
   }
 
   /// When T can take the next fragment, but for cycles in which it is_busy().
@@ -217,11 +246,11 @@ class BlockTiming {
   template <class Ask>
   Cycle shaded(const TextureWork& work, Ask&& ask) {
     if (!texture_) return tested_ + 2;
-    if (work.sets == StateRegister::texture_lines) return texture_->set_lines(tested_);
-    if (work.sets) return texture_->set(tested_, work.invalidates);
-    if (work.lookups.empty())
-      return work.divided != 0 ? texture_->divide(tested_, work.divided) : texture_->pass(tested_);
-    return texture_->take(tested_, work.lookups, [&ask](Cycle cycle, std::uint32_t address, int beats) {
+    const Cycle x = light_ ? light_->take(tested_, work.lit, work.sets_light) : tested_;
+    if (work.sets == StateRegister::texture_lines) return texture_->set_lines(x);
+    if (work.sets) return texture_->set(x, work.invalidates);
+    if (work.lookups.empty()) return work.divided != 0 ? texture_->divide(x, work.divided) : texture_->pass(x);
+    return texture_->take(x, work.lookups, [&ask](Cycle cycle, std::uint32_t address, int beats) {
       return ask.texture(cycle, address, beats);
     });
   }
@@ -373,6 +402,7 @@ class BlockTiming {
   Station behind_{2, 0, 0};  ///< between X and W; or there is a
   std::optional<TextureTiming> texture_;
   std::optional<FogTiming> fog_;
+  std::optional<LightTiming> light_;
   Cycle looked_ = 0, left_ = 0, tested_ = 0, colored_ = 0,
         ordered_ = 0;  ///< when the last one was looked up in T, left it, X, W; the last request's cycle
   std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first

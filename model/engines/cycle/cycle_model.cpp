@@ -598,7 +598,8 @@ class CycleModelOf final : public CycleModel {
     const bool is_fogged =
         texture_ && texture_->fog().is_fogged(packet.kind == PrimitiveKind::triangle) && packet.state.color_write;
     const bool divides = frame_.divides_colors && live.any();
-    if (!live.any() || !(is_textured || divides || is_fogged || tests_alpha() || !colors_.ops.is_plain())) return all;
+    const bool is_lit = texture_ && texture_->light().is_lit(packet.kind == PrimitiveKind::triangle);
+    if (!live.any() || !(is_textured || divides || is_fogged || is_lit || tests_alpha() || !colors_.ops.is_plain())) return all;
     std::array<Texel, kMaxSamples> color{};
     std::array<PixelOffset, kMaxSamples> at;  // pixels of the target
     const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
@@ -609,10 +610,14 @@ class CycleModelOf final : public CycleModel {
         color[s][c] = static_cast<std::uint8_t>(plane_at(setup, kColorPlane + c, widths_, at[s].x, at[s].y).code);
     });
     std::array<TextureSample, kMaxSamples> sample;
-    if (is_textured || divides) set_samples(setup, live, at, sample);
+    if (is_textured || divides || is_lit) set_samples(setup, live, at, sample);
     if (divides) {
       item.texture.divided = texture_->groups(live);
       live.for_each([&](std::size_t s) { texture_->divide_colors(sample[s], frame_, widths_.color_planes, color[s]); });
+    }
+    if (is_lit) {
+      item.texture.lit = live.count();
+      live.for_each([&](std::size_t s) { texture_->light().add(sample[s].normal, color[s]); });
     }
     if (is_textured) look_up_texels(live, at, sample, color, item);
     if (is_fogged)
@@ -664,6 +669,9 @@ class CycleModelOf final : public CycleModel {
         sample[s].p[i] = p_at(setup.plane[q + 1 + i], where, perspective_.coordinate, perspective_, widths_);
       for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c)
         sample[s].color_p[c] = p_at(setup.plane[red + c], where, perspective_.color, perspective_, widths_);
+      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.normals); ++c)
+        sample[s].normal[c] = p_at(setup.plane[widths_.normal_plane() + c], where, normal_format(perspective_),
+                                   perspective_, widths_);
     });
   }
 
@@ -692,7 +700,9 @@ class CycleModelOf final : public CycleModel {
     const StateRegister which = state_register(token.state);
     if (is_of_texture(which)) {
       set_register(*texture_, which, token.vertex.code[2], widths_);  // what a lane of states leaves
-      if (is_of_fog(which, token.vertex.code[2], widths_)) return;
+      const FogWord beside = word_beside_texture(which, token.vertex.code[2], widths_);
+      texture.sets_light = beside == FogWord::light;
+      if (beside != FogWord::none) return;
       texture.sets = which;
       texture.invalidates = which == StateRegister::texture && texture_->state().invalidates;
       return;

@@ -37,6 +37,7 @@ package raster_pkg;
   localparam int BLEND_LANES = 0;  // blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
   localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles behind its texture unit; 0: it has no fog
+  localparam int SHADE_UNIT = 0;  // 1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none
   localparam int STENCIL_BITS = 0;  // of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
@@ -45,7 +46,7 @@ package raster_pkg;
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
   localparam int RESOLVE_UNIT = 0;  // 1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store colours alone; 0: it stores all samples
-  localparam logic [63:0] CONFIG_ID = 64'h05b13be8fe931860;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h3312ee69147839b0;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 8;  // s: fraction bits of a coordinate, at least 1
@@ -62,6 +63,7 @@ package raster_pkg;
   localparam int COORDINATE_FRACTION = 8;  // f: of a texture coordinate, texels
   localparam int COLORS_OVER_W = 0;  // planes behind those, which the texture unit divides
   localparam int COLOR_NARROW_BITS = 13;  // k_P of those
+  localparam int NORMALS = 0;  // planes of those, over w; instead of colours
   localparam int STATE_WORD_BITS = 56;  // of a token: the codes of all planes but those
   localparam int TEXTURE_STAMPS = 16;  // between X and W, with a texture unit
   localparam int TEXTURE_PORT_BITS = 64;  // data of a beat of texels

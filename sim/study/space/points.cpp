@@ -28,6 +28,7 @@ SpaceJson abilities(const Config& config) {
           {"blending", config.blend_lanes > 0 ? 1 : 0},
           {"dither", config.dither_units},
           {"fog", config.fog_units},
+          {"shade", config.shade_units},
           {"stencil", config.stencil_bits},
           {"lines", config.line_units},
           {"counters", config.counter_units},
