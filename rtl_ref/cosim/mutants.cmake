@@ -527,6 +527,8 @@ mutant(443 stages/light_unit.sv "light: m of 15 bits is not held where it rounds
   [=[moved[P-1-:M] != {1'b0, {(M - 1) {1'b1}}}]=] [=[1'b1]=])
 mutant(444 stages/light_unit.sv "light: a long m counts as a short one"
   [=[square_5_q[2*M-1:2*M-2] != '0]=] [=[square_5_q[2*M-1]]=])
+mutant(445 stages/light_unit.sv "light: what looks away has its highlight"
+  [=[light_cosine == '0]=] [=[1'b0]=])
 mutant(446 stages/light_unit.sv "light: the power is cut off"
   [=[(START + PART + 2)'(2048)]=] [=[(START + PART + 2)'(0)]=])
 mutant(447 stages/light_unit.sv "light: what is brighter than 255 begins again"

@@ -372,6 +372,8 @@ void Generator::set_lights() {
   for (State& state : lights) {
     state.light_direction = vector();
     state.light_half = below(2) == 0 ? state.light_direction : vector();
+    if (below(4) == 0)  // what looks away from the light would have the highlight
+      for (std::size_t c = 0; c < 3; ++c) state.light_half[c] = -state.light_direction[c];
     for (auto* color : {&state.light_ambient, &state.light_diffuse, &state.light_specular})
       for (std::uint8_t& channel : *color) channel = static_cast<std::uint8_t>(below(4) == 0 ? 255 : below(256));
     state.light_shininess = below(4) == 0 ? 1 : std::exp2(random.uniform(0, 7));
