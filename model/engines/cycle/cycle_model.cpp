@@ -599,7 +599,8 @@ class CycleModelOf final : public CycleModel {
         texture_ && texture_->fog().is_fogged(packet.kind == PrimitiveKind::triangle) && packet.state.color_write;
     const bool divides = frame_.divides_colors && live.any();
     const bool is_lit = texture_ && texture_->light().is_lit(packet.kind == PrimitiveKind::triangle);
-    if (!live.any() || !(is_textured || divides || is_fogged || is_lit || tests_alpha() || !colors_.ops.is_plain())) return all;
+    if (!live.any() || !(is_textured || divides || is_fogged || is_lit || tests_alpha() || !colors_.ops.is_plain()))
+      return all;
     std::array<Texel, kMaxSamples> color{};
     std::array<PixelOffset, kMaxSamples> at;  // pixels of the target
     const PixelOffset origin = widths_.stamps.origin_of(place.stamp);
@@ -670,8 +671,8 @@ class CycleModelOf final : public CycleModel {
       for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c)
         sample[s].color_p[c] = p_at(setup.plane[red + c], where, perspective_.color, perspective_, widths_);
       for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.normals); ++c)
-        sample[s].normal[c] = p_at(setup.plane[widths_.normal_plane() + c], where, normal_format(perspective_),
-                                   perspective_, widths_);
+        sample[s].normal[c] =
+            p_at(setup.plane[widths_.normal_plane() + c], where, normal_format(perspective_), perspective_, widths_);
     });
   }
 
