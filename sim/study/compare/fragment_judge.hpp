@@ -39,7 +39,8 @@ struct FragmentVerdict {
 class FragmentJudge {
  public:
   FragmentJudge(const Scene& scene, const Config& config, FillRule rule = FillRule::top_left);
-  FragmentJudge(const Scene&, const Config&&, FillRule = FillRule::top_left) = delete;  // it would not outlive the judge
+  FragmentJudge(const Scene&, const Config&&,
+                FillRule = FillRule::top_left) = delete;  // it would not outlive the judge
 
   /// The next fragment in program order.
   void add(const TappedFragment& fragment);
