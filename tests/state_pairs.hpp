@@ -73,6 +73,7 @@ inline std::vector<Dimension> dimensions() {
   };
   return {
       direct("depth_test", 8, &State::depth_test),
+      direct("shade", 3, &State::shade),
       direct("depth_write", 2, &State::depth_write),
       direct("color_write", 2, &State::color_write),
       direct("cull", 4, &State::cull),
@@ -120,14 +121,15 @@ inline std::vector<Dimension> dimensions() {
   };
 }
 
-/// Whether a draw can have both values: no part of what is off; no fog over an affine texture, which hardware refuses by name.
+/// Whether a draw can have both values: no part of what is off; no fog or light with an affine texture, which hardware refuses by
+/// name.
 inline bool is_possible(const Dimension& a, int va, const Dimension& b, int vb) {
   const auto is_part = [](const Dimension& part, const Dimension& whole, int v) {
     return part.part_of == whole.name && v == 0;
   };
-  const auto is_refused = [](const Dimension& fog, int v, const Dimension& interp, int w) {
-    return fog.name == "fog" && v != 0 && interp.name == "texture_interp" &&
-           w == static_cast<int>(TextureInterp::affine);
+  const auto is_refused = [](const Dimension& of, int v, const Dimension& interp, int w) {
+    return ((of.name == "fog" && v != 0) || (of.name == "shade" && v == static_cast<int>(Shade::phong))) &&
+           interp.name == "texture_interp" && w == static_cast<int>(TextureInterp::affine);
   };
   return !is_part(a, b, vb) && !is_part(b, a, va) && !is_refused(a, va, b, vb) && !is_refused(b, vb, a, va);
 }
