@@ -50,6 +50,9 @@ module colored_stamps #(
   localparam int COLOR = raster_pkg::SHADED_COLOR_BITS;  // as W takes it: as it is stored, unless it packs
 
   genvar s;
+  /* verilator lint_off UNUSEDSIGNAL */  // most of the fragment goes along by itself
+  raster_pkg::fragment_packet_t door_fragment;  // at the door of the texture unit; here, because Yosys knows no structs in blocks
+  /* verilator lint_on UNUSEDSIGNAL */
   generate
     if (raster_pkg::COORDINATES == 0) begin : gen_colored
       /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
@@ -77,6 +80,7 @@ module colored_stamps #(
           .ready_i(stamp_ready_i),
           .data_o ({carried_o, w_color})
       );
+      assign door_fragment     = fragment_i;
       assign alpha_o           = '0;
       assign texture_is_idle_o = 1'b1;
       assign texture_use_o     = '0;
@@ -104,13 +108,10 @@ module colored_stamps #(
       logic [$clog2(raster_pkg::TEXTURE_LANES+1)-1:0] samples, hits;
       assign texture_use_o[5:0] = {3'(hits), 3'(samples)};
       // At the door of the texture unit.
-      logic                                                     door_valid;
-      logic [CARRIED-1:0]                                       door_carried;
-      logic [SAMPLES-1:0]                                       door_writes;
-      /* verilator lint_off UNUSEDSIGNAL */  // most of the fragment goes along by itself
-      raster_pkg::fragment_packet_t                             door_fragment;
-      /* verilator lint_on UNUSEDSIGNAL */
-      logic [SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0]        door_color;
+      logic                                              door_valid;
+      logic [CARRIED-1:0]                                door_carried;
+      logic [SAMPLES-1:0]                                door_writes;
+      logic [SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0] door_color;
       localparam int TILE = raster_pkg::TILE_SHIFT;
       localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
       localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
@@ -125,12 +126,6 @@ module colored_stamps #(
       logic is_token, is_triangle, is_levels, unit_valid, unit_ready, sets_light, sets_fog, sets_fog_line;
       logic [SAMPLES-1:0]            unit_mask;
       logic [SAMPLES*8*CHANNELS-1:0] unit_rgba;
-      /* verilator lint_off UNUSEDSIGNAL */
-      function automatic [raster_pkg::STATE_WORD_BITS-1:0] word_of(input [SAMPLES*FRAGMENT-1:0] code);
-        word_of = {code[Q_AT+Q+P+L+:P-L-1], code[Q_AT+Q+L+:P-L-1], code[Q_AT+L+:Q-L-1], code[0+:AFFINE_BITS]};
-      endfunction
-      /* verilator lint_on UNUSEDSIGNAL */
-
       // Light: of the fragment goes along what is not of the normals.
       if (raster_pkg::NORMALS == 0) begin : gen_unlit
         assign door_valid    = stamp_valid_i;
@@ -150,7 +145,8 @@ module colored_stamps #(
         logic [raster_pkg::STATE_WORD_BITS-1:0] arriving;
         /* verilator lint_on UNUSEDSIGNAL */
         assign header   = fragment_i[raster_pkg::FRAGMENT_PACKET_BITS-1:SAMPLES*FRAGMENT];
-        assign arriving = word_of(fragment_i.code);
+        assign arriving = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
+                           fragment_i.code[0+:AFFINE_BITS]};  // as word below
         for (s = 0; s < SAMPLES; s++) begin : gen_sample
           assign others[s*NORMALS_AT+:NORMALS_AT] = fragment_i.code[s*FRAGMENT+:NORMALS_AT];
           assign normals[s*3*NORMAL+:3*NORMAL]    = fragment_i.code[s*FRAGMENT+NORMALS_AT+:3*NORMAL];
@@ -212,7 +208,8 @@ module colored_stamps #(
       assign stamp_x = (PIXEL'(door_fragment.key.tile_x) << TILE) |
                        ((PIXEL'(door_fragment.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
       assign stamp_y = (PIXEL'(door_fragment.key.tile_y) << TILE) | ((PIXEL'(door_fragment.stamp) >> ROW) << STAMP);
-      assign word = word_of(door_fragment.code);
+      assign word = {door_fragment.code[Q_AT+Q+P+L+:P-L-1], door_fragment.code[Q_AT+Q+L+:P-L-1], door_fragment.code[Q_AT+L+:Q-L-1],
+                     door_fragment.code[0+:AFFINE_BITS]};
       assign is_token = door_fragment.kind == raster_pkg::PRIMITIVE_KIND_STATE;
       assign is_triangle = door_fragment.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
       assign is_levels = is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS;
