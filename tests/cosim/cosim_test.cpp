@@ -155,7 +155,11 @@ TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
       SCOPED_TRACE(factory.name + ", " + std::string(kMemoryKinds[static_cast<std::size_t>(kind)]));
       const Session session = run(factory, options, random_scenes(factory.config, 8, 250));
       EXPECT_EQ(describe(session), "");
-      EXPECT_GT(session.result.cycles_compared[index(Arrow::response)], 1000u);
+      if (factory.config.resolve_units == 0) {  // else nothing is read
+        EXPECT_GT(session.result.cycles_compared[index(Arrow::response)], 1000u);
+      } else {
+        EXPECT_GT(session.result.cycles_compared[index(Arrow::beat)], 100u);
+      }
     }
 }
 
@@ -187,6 +191,7 @@ Scene clears_before_a_culled_triangle(int scissored, int whole) {
 TEST(Cosim, ClearsAroundTheFirstTriangleCountAsInTheRtl) {
   for (const DutFactory& factory : verilated_duts())
     for (const auto& [scissored, whole] : {std::pair{2, 0}, {1, 1}, {1, 7}, {3, 2}, {0, 2}}) {
+      if (factory.config.resolve_units != 0 && scissored != 0) continue;  // bins that begin twice are refused
       SCOPED_TRACE(factory.name + ", " + std::to_string(scissored) + " and " + std::to_string(whole));
       const Session session = run(factory, {}, single_scene(clears_before_a_culled_triangle(scissored, whole)));
       EXPECT_EQ(describe(session), "");
