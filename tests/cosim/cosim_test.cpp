@@ -350,7 +350,8 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
     if (mutant.what.starts_with("samples")) return is_caught(sampled, mutant, 0.2) || is_caught(sampled, mutant, 0);
     return (mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
            (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||
-           ((is_of_operations(mutant) || mutant.what.starts_with("stencil") || mutant.what.starts_with("fog")) &&
+           ((is_of_operations(mutant) || mutant.what.starts_with("stencil") || mutant.what.starts_with("fog") ||
+             mutant.what.starts_with("light")) &&
             (is_caught(stencilled, mutant, 0.2) || is_caught(stencilled, mutant, 0))) ||
            is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
            is_caught(embedded, mutant, 0.2, true);
