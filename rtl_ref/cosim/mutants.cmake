@@ -339,7 +339,7 @@ mutant(158 stages/texture_levels.sv "texture: rows of blocks are as long on all 
 mutant(159 lib/colored_stamps.sv "texture: a level of detail is that of the tile's first pixel"
   [=[((PIXEL'(door_fragment.stamp) >> ROW) << STAMP)]=] [=[PIXEL'(0)]=])
 mutant(160 lib/colored_stamps.sv "texture: levels are never set"
-  [=[fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS]=] [=[1'b0]=])
+  [=[is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS]=] [=[1'b0]=])
 mutant(161 stages/level_of_detail.sv "texture: the two slopes are one"
   [=[lines_q[128+32*(n%2)+:32]]=] [=[lines_q[128+:32]]=])
 mutant(162 stages/level_of_detail.sv "texture: the octagon is a square"
