@@ -309,7 +309,7 @@ mutant(143 stages/triangle_setup.sv "texture: the way to the anchor is that of v
 mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the one that comes"
   [=[raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q)]=] [=[raster_pkg::COORDINATE_FRAME_BITS'(p_q.coordinates)]=])
 mutant(145 lib/colored_stamps.sv "texture: points and clears have it too"
-  [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[fragment_i.kind != raster_pkg::PRIMITIVE_KIND_STATE]=])
+  [=[door_fragment.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[door_fragment.kind != raster_pkg::PRIMITIVE_KIND_STATE]=])
 mutant(146 stages/block_cache.sv "texture: samples that fail the depth test are looked up"
   [=[{SAMPLES{write_valid_i}} & (tests_alpha ? looked_at : write_i.write_color)]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
 mutant(147 stages/block_cache.sv "texture: idle though its memory has not answered what was asked for before a reset"
