@@ -129,32 +129,24 @@ Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLin
     }
   hash.add(units.looks_at_fog);
   if (units.fog != nullptr) {
-    if (units.fog != fog_) {
-      fog_ = units.fog;
-      SignatureHash table;
-      table.add(static_cast<std::uint64_t>(fog_->octave_bits()));
-      for (const std::uint8_t channel : fog_->color()) table.add(channel);
-      for (const FogLine& entry : fog_->lines()) {
+    hash.add(fog_.signature_of(units.fog, [](const FogTable& fog, SignatureHash& table) {
+      table.add(static_cast<std::uint64_t>(fog.octave_bits()));
+      for (const std::uint8_t channel : fog.color()) table.add(channel);
+      for (const FogLine& entry : fog.lines()) {
         table.add(static_cast<std::uint64_t>(entry.start));
         table.add(static_cast<std::uint64_t>(entry.rise));
       }
-      fog_signature_ = table.signature();
-    }
-    hash.add(fog_signature_);
+    }));
   }
   hash.add(units.looks_at_light);
   if (units.light != nullptr) {
-    if (units.light != light_) {
-      light_ = units.light;
-      SignatureHash registers;
-      for (const std::uint64_t word : light_words(light_->registers())) registers.add(word);
-      for (const FallingLine& entry : light_->lines()) {
+    hash.add(light_.signature_of(units.light, [](const PhongLight& light, SignatureHash& registers) {
+      for (const std::uint64_t word : light_words(light.registers())) registers.add(word);
+      for (const FallingLine& entry : light.lines()) {
         registers.add(static_cast<std::uint64_t>(entry.start));
         registers.add(static_cast<std::uint64_t>(entry.fall));
       }
-      light_signature_ = registers.signature();
-    }
-    hash.add(light_signature_);
+    }));
   }
   for (const auto& word : {units.colors.ops, units.colors.constant, units.colors.alpha}) add_optional(word);
   for (const std::size_t side : {0U, 1U}) {

@@ -11,11 +11,13 @@
 // chance once in 2^128 comparisons.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "config.hpp"
 #include "host_primitive.hpp"
+#include "signature.hpp"
 #include "stages/line_setup.hpp"
 
 namespace halfplane {
@@ -39,6 +41,26 @@ struct BinContents {
 [[nodiscard]] inline bool compares_bins(const Config& config) {
   return config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color;
 }
+
+/// The signature of what draws share, made again only where another one comes.
+template <class Shared>
+class SharedSignature {
+ public:
+  /// `add`: adds what counts of it to a hash.
+  [[nodiscard]] const Signature& signature_of(const std::shared_ptr<const Shared>& shared, const auto& add) {
+    if (shared != last_) {
+      last_ = shared;
+      SignatureHash hash;
+      add(*shared, hash);
+      signature_ = hash.signature();
+    }
+    return signature_;
+  }
+
+ private:
+  std::shared_ptr<const Shared> last_;
+  Signature signature_;
+};
 
 class FrameBins {
  public:
@@ -104,10 +126,8 @@ class FrameBins {
   std::size_t bin_next_ = 0, item_next_ = 0;  ///< what goes next
   std::uint64_t bins_ = 0, pairs_ = 0, left_out_ = 0;
   std::optional<std::vector<PixelBounds>> cleared_;
-  std::shared_ptr<const FogTable> fog_;  ///< the last one seen, and its signature
-  Signature fog_signature_;
-  std::shared_ptr<const PhongLight> light_;  ///< likewise
-  Signature light_signature_;
+  SharedSignature<FogTable> fog_;
+  SharedSignature<PhongLight> light_;
 };
 
 }  // namespace halfplane

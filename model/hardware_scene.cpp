@@ -15,14 +15,13 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
   if (state.color_interp == ColorInterp::perspective && !has_colors_over_w(config))
     return "color_interp perspective: this hardware divides no colours by w; set texture.unit=nearest and "
            "perspective.colors=1";
-  if (state.fog && state.color_write && state.texture && state.texture_interp == TextureInterp::affine)
+  const bool is_affine = state.texture && state.texture_interp == TextureInterp::affine;
+  if (state.fog && state.color_write && is_affine)
     return "fog over a texture_interp affine: both look at one plane of 1/w, which is not the same; use texture_interp "
            "perspective, or fog off";
-  if (state.shade == Shade::phong && state.color_write && state.texture &&
-      state.texture_interp == TextureInterp::affine)
+  if (state.shade == Shade::phong && state.color_write && is_affine)
     return "shade phong under a texture_interp affine: normals and coordinates start where one plane of 1/w says, "
-           "which is "
-           "not the same; use texture_interp perspective, or shade smooth";
+           "which is not the same; use texture_interp perspective, or shade smooth";
   if (!state.texture) return "";
   if (state.color_interp == ColorInterp::perspective && state.texture_interp == TextureInterp::affine)
     return "texture_interp affine: a triangle of this hardware has one plane of 1/w, and color_interp perspective "

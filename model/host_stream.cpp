@@ -392,6 +392,13 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   send(out);
 }
 
+/// Codes of a plane at the vertices, in the bits that a packet has for them.
+void HostStream::set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
+  for (std::size_t i = 0; i < 3; ++i)
+    packet.vertex.code[i][plane] = static_cast<std::uint32_t>(
+        wrap_unsigned(static_cast<std::uint64_t>(codes[i]), widths_.of_plane(plane).code.bits));
+}
+
 /// Q and P of the vertices, how to read them back, and what the texture unit must be set to.
 void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   const State& state = context_->state;
@@ -400,13 +407,10 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   const PerspectiveFormat format = perspective_format(config_);
   const TextureCoordinates coordinates = texture_coordinates(triangle.surface, state, texture, format);
   PrimitivePacket& packet = out.packet;
-  for (std::size_t i = 0; i < 3; ++i) packet.vertex.code[i][widths_.q_plane] = coordinates.q[i];
+  set_plane(widths_.q_plane, coordinates.q, packet);
   for (const std::size_t axis : {0U, 1U}) {
     const OverW& over_w = coordinates.over_w[axis];
-    const std::size_t p = widths_.q_plane + 1 + axis;
-    for (std::size_t i = 0; i < 3; ++i)
-      packet.vertex.code[i][p] = static_cast<std::uint32_t>(
-          wrap_unsigned(static_cast<std::uint64_t>(over_w.p[i]), widths_.of_plane(p).code.bits));
+    set_plane(widths_.q_plane + 1 + axis, over_w.p, packet);
     const OverWScale scale = over_w_scale(over_w, format.coordinate);
     packet.coordinates.shift[axis] = scale.shift;
     packet.coordinates.reach[axis] = scale.reach;
@@ -423,7 +427,7 @@ void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) cons
   const PerspectiveFormat format = perspective_format(config_);
   const std::array<double, 3> w{triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w};
   const QCodes q = quantize_q(w, format.q_bits);
-  for (std::size_t i = 0; i < 3; ++i) out.packet.vertex.code[i][widths_.q_plane] = q[i];
+  set_plane(widths_.q_plane, q, out.packet);
   out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
 }
 
@@ -432,14 +436,11 @@ void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) 
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
   const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
-  for (std::size_t i = 0; i < 3; ++i) packet.vertex.code[i][widths_.q_plane] = q[i];
+  set_plane(widths_.q_plane, q, packet);
   for (std::size_t c = 0; c < 3; ++c) {
     const auto component = [&](std::size_t i) { return triangle.surface[i].normal[c]; };
     const OverW over_w = quantize_normal({component(0), component(1), component(2)}, q, format);
-    const std::size_t p = widths_.normal_plane() + c;
-    for (std::size_t i = 0; i < 3; ++i)
-      packet.vertex.code[i][p] = static_cast<std::uint32_t>(
-          wrap_unsigned(static_cast<std::uint64_t>(over_w.p[i]), widths_.of_plane(p).code.bits));
+    set_plane(widths_.normal_plane() + c, over_w.p, packet);
   }
 }
 
@@ -448,16 +449,13 @@ void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& pa
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
   const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
-  for (std::size_t i = 0; i < 3; ++i) packet.vertex.code[i][widths_.q_plane] = q[i];
+  set_plane(widths_.q_plane, q, packet);
   packet.coordinates.divides_colors = true;
   for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c) {
     std::array<double, 3> value{};
     for (std::size_t i = 0; i < 3; ++i) value[i] = triangle.v[i].code[kColorPlane + c];
     const OverW over_w = quantize_over_w(value, q, format.color);
-    const std::size_t p = widths_.color_over_w_plane() + c;
-    for (std::size_t i = 0; i < 3; ++i)
-      packet.vertex.code[i][p] = static_cast<std::uint32_t>(
-          wrap_unsigned(static_cast<std::uint64_t>(over_w.p[i]), widths_.of_plane(p).code.bits));
+    set_plane(widths_.color_over_w_plane() + c, over_w.p, packet);
     const OverWScale scale = over_w_scale(over_w, format.color);
     packet.coordinates.color_shift[c] = scale.shift;
     packet.coordinates.color_reach[c] = scale.reach;

@@ -55,6 +55,7 @@ class HostStream {
   void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
+  void set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const;
   void set_coordinates(const Triangle& triangle, HostPrimitive& out);
   void set_distance(const Triangle& triangle, HostPrimitive& out) const;
   void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;

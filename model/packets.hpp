@@ -130,7 +130,7 @@ enum class PrimitiveKind : std::uint8_t {
 /// What a token of kind state sets.
 enum class StateRegister : std::uint8_t {
   texture = 0,         ///< TextureState
-  texture_levels = 1,  ///< TextureLevels; FogState and a line of its table too, told apart by kFogWordBit and the next
+  texture_levels = 1,  ///< TextureLevels; FogState and a line of its table too, or of light: LevelsWord
   texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
   color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
   blend_constant = 5,  ///< that

@@ -1,8 +1,7 @@
 // Fog unit: fog.hpp in hardware, behind the texture unit. Its table, the fog's colour and whether there is any are registers,
 // set by tokens, a line of the table each; a triangle brings where in the table its Q lies.
 //
-// The registers of a token are eight, and all of them have their use. Fog has that of a texture's levels, whose words are
-// short: two bits above them say what the word is (FogWord). So has light (light_unit.hpp).
+// Its tokens have the number of a texture's levels (LevelsWord).
 #pragma once
 
 #include <algorithm>
@@ -12,15 +11,11 @@
 
 #include "fog.hpp"
 #include "texture_filter.hpp"
+#include "texture_levels.hpp"
 
 namespace halfplane {
 
-inline constexpr int kFogWordBit = 43;                          ///< of the word of a token: FogWord, two bits
 inline constexpr int kFogOctaveLow = -32, kFogOctaveHigh = 31;  ///< Widths::fog_octave
-
-/// What a word of the register texture_levels is.
-enum class FogWord : std::uint8_t { none, state, line, light };
-[[nodiscard]] constexpr FogWord fog_word(std::uint64_t word) { return static_cast<FogWord>(word >> kFogWordBit & 3); }
 
 /// What the unit knows of a draw, but for the table.
 struct FogState {
@@ -30,9 +25,9 @@ struct FogState {
 
   /// From the lowest bit: R, G, B, octave_bits 3, enable.
   [[nodiscard]] constexpr std::uint64_t pack() const {
-    return std::uint64_t{static_cast<std::uint8_t>(FogWord::state)} << kFogWordBit |
-           std::uint64_t{enable ? 1U : 0U} << 27 | static_cast<std::uint64_t>(octave_bits) << 24 |
-           std::uint64_t{color[2]} << 16 | std::uint64_t{color[1]} << 8 | color[0];
+    return tag_of(LevelsWord::fog) | std::uint64_t{enable ? 1U : 0U} << 27 |
+           static_cast<std::uint64_t>(octave_bits) << 24 | std::uint64_t{color[2]} << 16 |
+           std::uint64_t{color[1]} << 8 | color[0];
   }
   [[nodiscard]] static constexpr FogState unpack(std::uint64_t word) {
     return {
@@ -45,7 +40,7 @@ struct FogState {
 
 /// A line of the table, from the lowest bit: rise 17, start 18, its number 8.
 [[nodiscard]] constexpr std::uint64_t fog_line_word(std::size_t number, const FogLine& line) {
-  return std::uint64_t{static_cast<std::uint8_t>(FogWord::line)} << kFogWordBit | std::uint64_t{number} << 35 |
+  return tag_of(LevelsWord::fog_line) | std::uint64_t{number} << 35 |
          (static_cast<std::uint64_t>(line.start) & 0x3ffff) << 17 | static_cast<std::uint64_t>(line.rise);
 }
 
@@ -58,7 +53,7 @@ class FogUnit {
  public:
   /// A token that is one of fog's.
   void set(std::uint64_t word) {
-    if (fog_word(word) == FogWord::state) {
+    if (levels_word(word) == LevelsWord::fog) {
       state_ = FogState::unpack(word);
       return;
     }

@@ -1,16 +1,16 @@
 // Light unit: phong.hpp in hardware, in front of the texture unit: what is combined with a texture is lit. Normals come with a
 // triangle, as planes; light, half, colours and the table of the power are registers, set by tokens.
 //
-// Tokens have the number of a texture's levels, as those of fog have (FogWord): above 40 bits three say which register it is.
+// Tokens have the number of a texture's levels, as those of fog have (LevelsWord): above 40 bits three say which register it is.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "../fixed.hpp"
-#include "fog_unit.hpp"
 #include "phong.hpp"
 #include "texture_filter.hpp"
+#include "texture_levels.hpp"
 
 namespace halfplane {
 
@@ -34,8 +34,7 @@ inline constexpr int kByte = 8, kFactor = kLightFraction + 1, kComponent = kNorm
 inline constexpr int kFall = 11, kStart = 16;
 
 [[nodiscard]] constexpr std::uint64_t word_of(LightWord which) {
-  return std::uint64_t{static_cast<std::uint8_t>(FogWord::light)} << kFogWordBit |
-         std::uint64_t{static_cast<std::uint8_t>(which)} << kLightWordBit;
+  return tag_of(LevelsWord::light) | std::uint64_t{static_cast<std::uint8_t>(which)} << kLightWordBit;
 }
 /// Fields of `bits` bits, the first one lowest.
 template <std::size_t N, class T>

@@ -16,6 +16,18 @@
 
 namespace halfplane {
 
+/// What a word of the register texture_levels is. The registers of tokens are eight, and all of them have their use; a texture's
+/// levels are short, so those of the units around the texture unit lie there too, told apart by two bits above.
+enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light };
+inline constexpr int kLevelsWordBit = 43;  ///< the lower of them
+[[nodiscard]] constexpr LevelsWord levels_word(std::uint64_t word) {
+  return static_cast<LevelsWord>(word >> kLevelsWordBit & 3);
+}
+/// Those two bits.
+[[nodiscard]] constexpr std::uint64_t tag_of(LevelsWord which) {
+  return std::uint64_t{static_cast<std::uint8_t>(which)} << kLevelsWordBit;
+}
+
 /// Of a draw.
 struct TextureLevels {
   static constexpr int kBits = 31;

@@ -40,19 +40,19 @@ namespace halfplane {
 
 /// What a token is to the units around the texture unit, which lets their tokens through.
 template <class Codes>
-[[nodiscard]] FogWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {
-  return which == StateRegister::texture_levels ? fog_word(state_word(token, widths)) : FogWord::none;
+[[nodiscard]] LevelsWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {
+  return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;
 }
 
 /// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
-  const FogWord beside = word_beside_texture(which, token, widths);
+  const LevelsWord beside = word_beside_texture(which, token, widths);
   if (which == StateRegister::texture_lines)
     unit.move_in(wide_state_word(token, widths));
-  else if (beside == FogWord::light)
+  else if (beside == LevelsWord::light)
     unit.light().set(state_word(token, widths));
-  else if (beside != FogWord::none)
+  else if (beside != LevelsWord::levels)
     unit.fog().set(state_word(token, widths));
   else if (which == StateRegister::texture_levels)
     unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(state_word(token, widths))));

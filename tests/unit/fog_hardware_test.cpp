@@ -51,7 +51,7 @@ TEST(FogHardware, TheTableComesOutOfItsTokensAsItWentIn) {
     EXPECT_EQ(FogState::unpack(state.pack()), state);
     unit.set(state.pack());
     for (std::size_t i = 0; i < table.lines().size(); ++i) {
-      EXPECT_EQ(fog_word(fog_line_word(i, table.lines()[i])), FogWord::line);
+      EXPECT_EQ(levels_word(fog_line_word(i, table.lines()[i])), LevelsWord::fog_line);
       EXPECT_LT(fog_line_word(i, table.lines()[i]), std::uint64_t{1} << 45);
       unit.set(fog_line_word(i, table.lines()[i]));
     }
@@ -105,9 +105,9 @@ std::array<std::size_t, 2> tokens_sent(const Scene& scene, const Config& config)
   while (const auto next = host.next())
     if (next->packet.kind == PrimitiveKind::state &&
         state_register(next->packet.state) == StateRegister::texture_levels) {
-      const FogWord word = fog_word(state_word(next->packet.vertex.code[0], widths));
-      sent[0] += word == FogWord::state ? 1U : 0U;
-      sent[1] += word == FogWord::line ? 1U : 0U;
+      const LevelsWord word = levels_word(state_word(next->packet.vertex.code[0], widths));
+      sent[0] += word == LevelsWord::fog ? 1U : 0U;
+      sent[1] += word == LevelsWord::fog_line ? 1U : 0U;
     }
   return sent;
 }

@@ -61,7 +61,7 @@ TEST(PhongHardware, TheLightComesOutOfItsTokensAsItWentIn) {
     LightUnit unit;
     EXPECT_FALSE(unit.is_lit(true));
     for (const std::uint64_t word : light_words(light.registers())) {
-      EXPECT_EQ(fog_word(word), FogWord::light);
+      EXPECT_EQ(levels_word(word), LevelsWord::light);
       EXPECT_LT(word, std::uint64_t{1} << 45);
       unit.set(word);
     }
@@ -126,7 +126,7 @@ std::size_t tokens_sent(const Scene& scene, const Config& config) {
   while (const auto next = host.next())
     if (next->packet.kind == PrimitiveKind::state &&
         state_register(next->packet.state) == StateRegister::texture_levels)
-      sent += fog_word(state_word(next->packet.vertex.code[0], widths)) == FogWord::light ? 1U : 0U;
+      sent += levels_word(state_word(next->packet.vertex.code[0], widths)) == LevelsWord::light ? 1U : 0U;
   return sent;
 }
 

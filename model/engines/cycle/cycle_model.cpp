@@ -701,9 +701,9 @@ class CycleModelOf final : public CycleModel {
     const StateRegister which = state_register(token.state);
     if (is_of_texture(which)) {
       set_register(*texture_, which, token.vertex.code[2], widths_);  // what a lane of states leaves
-      const FogWord beside = word_beside_texture(which, token.vertex.code[2], widths_);
-      texture.sets_light = beside == FogWord::light;
-      if (beside != FogWord::none) return;
+      const LevelsWord beside = word_beside_texture(which, token.vertex.code[2], widths_);
+      texture.sets_light = beside == LevelsWord::light;
+      if (beside != LevelsWord::levels) return;
       texture.sets = which;
       texture.invalidates = which == StateRegister::texture && texture_->state().invalidates;
       return;

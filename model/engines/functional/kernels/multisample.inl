@@ -126,7 +126,7 @@ struct PixelColors {
 };
 
 /// One triangle in its tiles.
-struct SampledTiles {
+struct SampledTriangle {
   Bin& bin;
   const Slice& slice;
   const Record& record;
@@ -135,8 +135,8 @@ struct SampledTiles {
   const TileConstants constants;
   std::array<std::int32_t, kMaxPixelSamples> surface{};  ///< its number where a sample shades; 0: none yet
 
-  HALFPLANE_INLINE SampledTiles(Bin& bin_, const Slice& slice_, const Record& record_, const BinTriangle& t_,
-                                const SeveralSamples& at_)
+  HALFPLANE_INLINE SampledTriangle(Bin& bin_, const Slice& slice_, const Record& record_, const BinTriangle& t_,
+                                   const SeveralSamples& at_)
       : bin(bin_), slice(slice_), record(record_), t(t_), at(at_), constants(bin_, t_) {}
 
   /// False where nothing is covered.
@@ -356,7 +356,7 @@ template <class Fragments>
 HALFPLANE_NOINLINE void draw_sampled_tiles(Bin& bin, const Slice& slice, const Record& record, const BinTriangle& t,
                                            const SeveralSamples& at, std::uint64_t tiles, std::uint64_t full,
                                            std::uint64_t in_front) {
-  SampledTiles drawn(bin, slice, record, t, at);
+  SampledTriangle drawn(bin, slice, record, t, at);
   PixelCounts pixels;
   constexpr std::uint64_t kPixels = kTileSize * kTileSize;
   bin.job.counters.skipped.trivially_accepted += static_cast<unsigned>(std::popcount(tiles & full));
