@@ -2,7 +2,7 @@
 
 # cull
 mutant(1 stages/cull.sv "tie rule: bottom edges take the samples on them, top edges leave them"
-  [=[dx_q > 0]=] [=[dx_q < 0]=])
+  [=[(!dx_q[D-1] && dx_q != '0)]=] [=[dx_q[D-1]]=])
 mutant(2 stages/cull.sv "sign: the front face is the other one"
   [=[area[E] != front_cw_q]=] [=[area[E] == front_cw_q]=])
 mutant(3 stages/cull.sv "off by one: the box loses a first column whose centre is on the leftmost vertex"
@@ -29,9 +29,9 @@ mutant(11 stages/triangle_setup.sv "carry: planes start half a local unit low"
 
 # coarse_raster
 mutant(12 stages/coarse_raster.sv "trivial reject: a tile whose best sample is on the edge is skipped"
-  [=[largest < 0]=] [=[largest <= 0]=])
+  [=[largest[V]]=] [=[largest[V] || largest == '0]=])
 mutant(13 stages/coarse_raster.sv "trivial accept: a tile whose worst sample is on the edge is not accepted"
-  [=[smallest >= 0]=] [=[smallest > 0]=])
+  [=[!smallest[V]]=] [=[!smallest[V] && smallest != '0]=])
 mutant(14 stages/coarse_raster.sv "saturation: large edge values wrap"
   [=[{value_q[V-1], {(TE - 1) {~value_q[V-1]}}}]=] [=[value_q[TE-1:0]]=])
 mutant(15 stages/hiz.sv "early HiZ: an update is seen as soon as it is there"
@@ -55,7 +55,7 @@ mutant(22 stages/coarse_raster.sv "context: the last slot is never given"
 
 # fine_raster
 mutant(23 lib/edge_columns.sv "tie rule: samples on an edge are outside"
-  [=[value < 0]=] [=[value <= 0]=])
+  [=[value[WIDTH-1]]=] [=[value[WIDTH-1] || value == '0]=])
 mutant(400 lib/edge_columns.sv "coverage: the last step of the search for an edge's column does not count"
   [=[OFFSET'(i) > column]=] [=[OFFSET'(i) > (column & ~OFFSET'(1))]=])
 mutant(24 stages/fine_raster.sv "scissor: the right side of the box is not looked at"
@@ -83,7 +83,7 @@ mutant(32 lib/passing_orders.sv "depth test: gequal fails on equal codes"
   [=[func_i == raster_pkg::DEPTH_FUNC_GEQUAL || func_i == raster_pkg::DEPTH_FUNC_ALWAYS]=]
   [=[func_i == raster_pkg::DEPTH_FUNC_ALWAYS]=])
 mutant(33 stages/depth_test.sv "HiZ: the bound comes from the stamp's first sample"
-  [=[corner > max_q ? corner : max_q]=] [=[corner_00 > max_q ? corner_00 : max_q]=])
+  [=[is_bottom ? (is_right ? pixel_11 : pixel_10) : (is_right ? pixel_01 : pixel_00)]=] [=[pixel_00]=])
 mutant(34 stages/depth_test.sv "stale HiZ: greater and its like leave the bound as it was"
   [=[fragment_q.state.depth_write && greater_passes && any_passed]=] [=[1'b0]=])
 mutant(35 stages/depth_test.sv "counter: samples count as written with both masks off"
@@ -123,7 +123,7 @@ mutant_text(39 stages/coarse_raster.sv "wrong reset: the first primitive gets th
 
 # line_raster
 mutant(40 stages/line_raster.sv "tie rule: an error of 0 stays in the row"
-  [=[error_q >= 0]=] [=[error_q > 0]=])
+  [=[!error_q[E-1]]=] [=[!error_q[E-1] && error_q != '0]=])
 mutant(41 stages/line_raster.sv "error: a step to the next row gains what a step within it gains"
   [=[(moves ? step_move : step_stay)]=] [=[step_stay]=])
 mutant(42 stages/line_raster.sv "direction: every line goes down"
@@ -184,7 +184,7 @@ mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes 
 mutant(65 stages/coarse_raster.sv "tile walk: what lies to the left of a row's start is left out"
   [=[start_x_q != s_q.box.left[PX-1:TS]]=] [=[1'b0]=])
 mutant(66 stages/coarse_raster.sv "tile walk: a row ends at an upright edge that has not been met"
-  [=[!(dy > 0)]=] [=[1'b1]=])
+  [=[(dy[D-1] || dy == '0)]=] [=[1'b1]=])
 mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the start has the planes of the start"
   [=[!starts && !row_ends && moves_left]=] [=[!starts && !row_ends && goes_left_q]=])
 
@@ -510,7 +510,7 @@ mutant(316 stages/fog_unit.sv "fog: f is cut off"
 mutant(317 stages/fog_unit.sv "fog: f goes beyond 1"
   [=[whole > 16'sd4096]=] [=[1'b0]=])
 mutant(318 stages/fog_unit.sv "fog: f goes below 0"
-  [=[whole < 0]=] [=[1'b0]=])
+  [=[whole[15]]=] [=[1'b0]=])
 mutant(319 stages/fog_unit.sv "fog: the mix is cut off"
   [=[12'd2048]=] [=[12'd0]=])
 mutant(320 stages/fog_unit.sv "fog: two lines of the table lie in one place"
@@ -632,10 +632,15 @@ mutant_text(403 stages/color_write.sv "colours: masks: they hold for what is ble
   [=[out_2_q      <= ops_q[DITHERS:WRITES] | {1'b0, {4{raster_cosim.mutant_q == 16'd403 && !ops_q[BLENDS]}}};]=])
 
 # several samples a pixel
-mutant(420 lib/sample_offset.sv "samples: pattern: the way right is the way down, too"
-  [=[moved(moved(value_i, step_x_i, X), step_y_i, Y)]=] [=[moved(moved(value_i, step_x_i, X), step_y_i, X)]=])
+mutant(420 lib/sample_offsets.sv "samples: pattern: the way right is the way down, too"
+  [=[times(step_y_i, SIZE_Y)]=] [=[times(step_y_i, SIZE_X)]=])
 mutant(421 stages/fine_raster.sv "samples: pattern: the bits below an edge's value are taken for 0"
   [=[WIDE'(edges_i.low[e*S+:S])]=] [=[WIDE'(0)]=])
+mutant_text(450 lib/registered_fifo.sv "samples: dropped stall: an item's depths give way before it is taken"
+  [=[.ready_i(is_free),
+          .data_o (data_o[STORED-1:0])]=]
+  [=[.ready_i(is_free || raster_cosim.mutant_q == 16'd450),
+          .data_o (data_o[STORED-1:0])]=])
 mutant(422 stages/cull.sv "samples: the bits below the value of a turned edge stay as they were"
   [=[~low_q[(2-l)*S+:S]]=] [=[low_q[(2-l)*S+:S]]=])
 mutant(423 stages/cull.sv "samples: the box ends with the last pixel whose centre is inside"
@@ -657,7 +662,7 @@ mutant(430 stages/primitive_join.sv "samples: mask: lines do not look at it"
 mutant(431 lib/alpha_test.sv "samples: alpha: it covers a sample too many"
   [=[(SHIFT + 1)'(k) < count]=] [=[(SHIFT + 1)'(k) < count + 1'b1]=])
 mutant(432 stages/depth_test.sv "samples: HiZ: a tile's bound is that of its first samples"
-  [=[depths[(pixel*N+i+1)*CODE-1-:HIZ] > farthest]=] [=[1'b0]=])
+  [=[depths[(i+1)*CODE-1-:HIZ] > farthest]=] [=[1'b0]=])
 mutant(433 stages/cache_tags.sv "samples: alpha: what it may leave out is not asked for"
   [=[(raster_pkg::MSAA_SAMPLES > 1 && fragment_q.code[11])]=] [=[1'b0]=])
 mutant(435 lib/colored_stamps.sv "samples: colours: a pixel has its neighbour's"

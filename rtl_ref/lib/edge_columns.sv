@@ -47,7 +47,7 @@ module edge_columns #(
         assign is_before = is_outside == rises;
         assign column[b] = is_before;
       end
-      assign is_outside = value < 0;
+      assign is_outside = value[WIDTH-1];
     end
     assign outside_o[0] = gen_look[OFFSET].is_outside;
     for (i = 1; i < 2 ** OFFSET; i++) begin : gen_column

@@ -2,9 +2,13 @@
 //
 // Latency two cycles; the item in the register is one of the DEPTH. Ready says nothing of the consumer: a place is free in
 // the cycle behind the one in which an item leaves.
+//
+// Of wide items the lowest STORED bits, which whoever takes an item does not look far at, may lie in an SRAM: its read is the
+// register.
 module registered_fifo #(
     parameter int WIDTH = 1,
-    parameter int DEPTH = 2  // a power of two
+    parameter int DEPTH = 2,  // a power of two
+    parameter int STORED = 0  // below WIDTH
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -24,9 +28,9 @@ module registered_fifo #(
 
   localparam int USED = $clog2(DEPTH + 1);
 
-  logic             waits, enters, leaves, is_free;  // an item behind the register; the register is, or will be
-  logic [WIDTH-1:0] next;
-  logic [USED-1:0]  used_q;  // items here
+  logic                    waits, enters, leaves, is_free;  // an item behind the register; the register is, or will be
+  logic [WIDTH-STORED-1:0] next, offered_q;
+  logic [USED-1:0]         used_q;  // items here
 
   assign ready_o    = used_q != USED'(DEPTH);
   assign is_empty_o = used_q == '0;
@@ -38,14 +42,14 @@ module registered_fifo #(
   logic waiting_ready;
   /* verilator lint_on UNUSEDSIGNAL */
   fifo #(
-      .WIDTH(WIDTH),
+      .WIDTH(WIDTH - STORED),
       .DEPTH(DEPTH)
   ) u_waiting (
       .clk_i,
       .rst_ni,
       .valid_i(enters),
       .ready_o(waiting_ready),
-      .data_i,
+      .data_i (data_i[WIDTH-1:STORED]),
       .valid_o(waits),
       .ready_i(is_free),
       .data_o (next)
@@ -61,6 +65,28 @@ module registered_fifo #(
     end
   end
 
-  always_ff @(posedge clk_i) if (is_free) data_o <= next;
+  always_ff @(posedge clk_i) if (is_free) offered_q <= next;
+  assign data_o[WIDTH-1:STORED] = offered_q;
+
+  generate
+    if (STORED != 0) begin : gen_stored
+      /* verilator lint_off UNUSEDSIGNAL */  // as above
+      logic stored_ready, stored_waits;
+      /* verilator lint_on UNUSEDSIGNAL */
+      sram_fifo #(
+          .WIDTH(STORED),
+          .DEPTH(DEPTH)
+      ) u_stored (
+          .clk_i,
+          .rst_ni,
+          .valid_i(enters),
+          .ready_o(stored_ready),
+          .data_i (data_i[STORED-1:0]),
+          .valid_o(stored_waits),
+          .ready_i(is_free),
+          .data_o (data_o[STORED-1:0])
+      );
+    end
+  endgenerate
 
 endmodule

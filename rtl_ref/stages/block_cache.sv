@@ -225,10 +225,10 @@ module block_cache (
   /* verilator lint_off UNUSEDSIGNAL */  // wider than a block's y where the cache is larger than the target
   logic [LINE-1:0]  line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
-  assign made_bits[ITEM-1:0] = {made_packed, made_line, made_stamp, made_source, made_starts_color, made_evicts,
-                                TAG_X'(made_x >> LINE_X), TAG_Y'(made_y >> LINE_Y), made_depth, made_color, made_fills};
-  assign {item, item_line, item_stamp, source, starts_color, evicts, evicts_tag_x, evicts_tag_y, evicts_depth, evicts_color,
-          fills} = item_bits[ITEM-1:0];
+  assign made_bits[ITEM-1:0] = {made_line, made_stamp, made_source, made_starts_color, made_evicts, TAG_X'(made_x >> LINE_X),
+                                TAG_Y'(made_y >> LINE_Y), made_depth, made_color, made_fills, made_packed};
+  assign {item_line, item_stamp, source, starts_color, evicts, evicts_tag_x, evicts_tag_y, evicts_depth, evicts_color, fills,
+          item} = item_bits[ITEM-1:0];
   assign line_above_x = item_line >> LINE_X;
   assign evicts_x = (BLOCK_X'(evicts_tag_x) << LINE_X) | (BLOCK_X'(item_line) & BLOCK_X'((1 << LINE_X) - 1));
   assign evicts_y = (BLOCK_Y'(evicts_tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
@@ -253,10 +253,13 @@ module block_cache (
       assign made_packed = made;
     end
   endgenerate
+  // Of several samples a pixel depths and colours are most of an item, and nobody looks at them here.
+  localparam int FURTHER = PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * Z;
   logic items_are_done;
   registered_fifo #(
-      .WIDTH(BITS),
-      .DEPTH(QUEUE)
+      .WIDTH (BITS),
+      .DEPTH (QUEUE),
+      .STORED(FURTHER == 0 ? 0 : FURTHER + PIXELS * CODES)
   ) u_items (
       .clk_i,
       .rst_ni,

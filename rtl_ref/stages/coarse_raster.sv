@@ -225,15 +225,14 @@ module coarse_raster (
       logic signed [V:0]    largest, smallest;
       assign dx    = s_q.dx[i*D+:D];
       assign dy    = s_q.dy[i*D+:D];
-      assign best  = (dx > 0 ? (D + 1)'(dx) : '0) - (dy < 0 ? (D + 1)'(dy) : '0);
-      assign worst = (dx < 0 ? (D + 1)'(dx) : '0) - (dy > 0 ? (D + 1)'(dy) : '0);
+      assign best  = (dx[D-1] ? '0 : (D + 1)'(dx)) - (dy[D-1] ? (D + 1)'(dy) : '0);
+      assign worst = (dx[D-1] ? (D + 1)'(dx) : '0) - (dy[D-1] ? '0 : (D + 1)'(dy));
       // Of several samples a pixel the one that lies farthest out, wherever it is: half of |dx| + |dy| away, rounded up.
       logic [D-1:0] reach;
       if (raster_pkg::MSAA_SAMPLES > 1) begin : gen_reach
-        logic [D:0] size_x, size_y;
-        assign size_x = dx < 0 ? (D + 1)'(0) - (D + 1)'(dx) : (D + 1)'(dx);
-        assign size_y = dy < 0 ? (D + 1)'(0) - (D + 1)'(dy) : (D + 1)'(dy);
-        assign reach  = D'((size_x + size_y + (D + 1)'(1)) >> 1);
+        logic [D:0] size;  // |dx| + |dy|
+        assign size  = best - worst;
+        assign reach = D'((size + (D + 1)'(1)) >> 1);
       end else begin : gen_centre
         assign reach = '0;
       end
@@ -257,15 +256,15 @@ module coarse_raster (
         if (state_q == PREPARE) begin  // times T - 1
           best_q  <= (TE'(best) <<< TS) - TE'(best) + TE'(reach);
           worst_q <= (TE'(worst) <<< TS) - TE'(worst) - TE'(reach);
-          no_better_left_q[i]  <= !(dy > 0);
+          no_better_left_q[i]  <= (dy[D-1] || dy == '0);
           no_better_right_q[i] <= !dy[D-1];
         end
       end
 
       assign largest            = (V + 1)'(value_q) + (V + 1)'(best_q);
       assign smallest           = (V + 1)'(value_q) + (V + 1)'(worst_q);
-      assign edge_is_outside[i] = largest < 0;
-      assign edge_is_inside[i]  = smallest >= 0;
+      assign edge_is_outside[i] = largest[V];
+      assign edge_is_inside[i]  = !smallest[V];
 
       if (V > TE) begin : gen_saturate
         logic fits;

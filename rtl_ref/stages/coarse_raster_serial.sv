@@ -250,10 +250,10 @@ module coarse_raster_serial (
 
   always_ff @(posedge clk_i) begin
     if (state_q == TURN) begin
-      outside_q   <= turn_q != 2'd0 && (outside_q || largest < 0);
-      inside_q    <= turn_q == 2'd0 || (inside_q && smallest >= 0);
-      ends_way_q  <= turn_q != 2'd0 && (ends_way_q || (largest < 0 && gets_no_better));
-      ends_left_q <= turn_q != 2'd0 && (ends_left_q || (largest < 0 && !test_right[D-1]));
+      outside_q   <= turn_q != 2'd0 && (outside_q || largest[V]);
+      inside_q    <= turn_q == 2'd0 || (inside_q && !smallest[V]);
+      ends_way_q  <= turn_q != 2'd0 && (ends_way_q || (largest[V] && gets_no_better));
+      ends_left_q <= turn_q != 2'd0 && (ends_left_q || (largest[V] && !test_right[D-1]));
     end
   end
 

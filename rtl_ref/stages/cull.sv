@@ -212,7 +212,7 @@ module cull (
   // backwards, it is -E - [top or left] = ~(E - [not top or left]): of one number all bits are turned.
   logic                is_top_left, is_biased, bias_q, edge_bias_q;
   logic signed [E-1:0] edge_value;
-  assign is_top_left = dy_q < 0 || (dy_q == 0 && dx_q > 0);
+  assign is_top_left = dy_q[D-1] || (dy_q == '0 && (!dx_q[D-1] && dx_q != '0));
   assign is_biased   = !is_top_left;
 
   cross_product #(
@@ -259,7 +259,7 @@ module cull (
   assign right_of = here - NV'(edge_y_q);
   assign below    = here + NV'(edge_x_q);
   assign across   = below - NV'(edge_y_q);
-  assign signs    = {across < 0, below < 0, right_of < 0, here < 0};
+  assign signs    = {across[NV-1], below[NV-1], right_of[NV-1], here[NV-1]};
 
   // Twice the area is the sum of the exact edge functions; the bias comes back as a carry.
   logic [3*V-1:0]      edge_q;  // before orientation; the newest is the highest
@@ -327,7 +327,7 @@ module cull (
   logic is_negative;
   assign d_is_triangle = kind_q == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_counted    = d_is_triangle || (kind_q[2] && !kind_q[0]);  // point, line
-  assign is_negative   = area_q < 0;
+  assign is_negative   = area_q[E-1];
   assign is_zero       = d_is_triangle && is_zero_q;
   assign is_back       = is_back_q && !is_zero;
   assign is_dropped    = is_zero || is_back_q || d_is_empty_q || is_sampleless_q;

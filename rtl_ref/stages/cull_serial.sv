@@ -222,7 +222,7 @@ module cull_serial (
   logic           any_q, borrow_q, is_top_left, is_value_bit;
   logic [COUNT-1:0] number;  // of the bit that comes out
   assign number       = count_q - COUNT'(1);
-  assign is_top_left  = dy < 0 || (dy == 0 && dx >= 0);
+  assign is_top_left  = dy[D-1] || (dy == '0 && !dx[D-1]);
   assign is_value_bit = number >= COUNT'(S) && number < COUNT'(S + V);
 
   always_ff @(posedge clk_i) begin

@@ -327,27 +327,32 @@ module depth_test (
       // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a
       // corner of the tile. So one pixel of a stamp is enough, the one towards the tile's corner on the stamp's side; of its
       // samples, whose planes are moved ones, the farthest.
-      function automatic [HIZ-1:0] farthest(input [SAMPLES*CODE-1:0] depths, input int pixel);
-        farthest = depths[(pixel*N+1)*CODE-1-:HIZ];
+      function automatic [HIZ-1:0] farthest(input [N*CODE-1:0] depths);
+        farthest = depths[CODE-1-:HIZ];
         for (int i = 1; i < N; i++)
-          if (depths[(pixel*N+i+1)*CODE-1-:HIZ] > farthest) farthest = depths[(pixel*N+i+1)*CODE-1-:HIZ];
+          if (depths[(i+1)*CODE-1-:HIZ] > farthest) farthest = depths[(i+1)*CODE-1-:HIZ];
       endfunction
-      logic [HIZ-1:0] corner_00, corner_01, corner_10, corner_11, corner;  // row, column
-      assign corner_00 = farthest(depth, 0);
-      assign corner_01 = farthest(depth, STAMP - 1);
-      assign corner_10 = farthest(depth, PIXELS - STAMP);
-      assign corner_11 = farthest(depth, PIXELS - 1);
+      logic [N*CODE-1:0] pixel_00, pixel_01, pixel_10, pixel_11;  // row, column
+      logic [HIZ-1:0]    corner;
+      assign pixel_00 = depth[0+:N*CODE];
+      assign pixel_01 = depth[(STAMP-1)*N*CODE+:N*CODE];
+      assign pixel_10 = depth[(PIXELS-STAMP)*N*CODE+:N*CODE];
+      assign pixel_11 = depth[(PIXELS-1)*N*CODE+:N*CODE];
 
       if (STAMPS == 1) begin : gen_one_stamp
-        logic [HIZ-1:0] top, bottom;
-        assign top    = corner_00 > corner_01 ? corner_00 : corner_01;
-        assign bottom = corner_10 > corner_11 ? corner_10 : corner_11;
-        assign corner = top > bottom ? top : bottom;
+        logic [HIZ-1:0] corner_00, corner_01, corner_10, corner_11, top, bottom;
+        assign corner_00 = farthest(pixel_00);
+        assign corner_01 = farthest(pixel_01);
+        assign corner_10 = farthest(pixel_10);
+        assign corner_11 = farthest(pixel_11);
+        assign top       = corner_00 > corner_01 ? corner_00 : corner_01;
+        assign bottom    = corner_10 > corner_11 ? corner_10 : corner_11;
+        assign corner    = top > bottom ? top : bottom;
       end else begin : gen_stamps
         logic is_bottom, is_right;
         assign is_bottom = fragment_q.stamp[STAMP_BITS-1];
         assign is_right  = fragment_q.stamp[STAMP_BITS/2-1];
-        assign corner    = is_bottom ? (is_right ? corner_11 : corner_10) : (is_right ? corner_01 : corner_00);
+        assign corner    = farthest(is_bottom ? (is_right ? pixel_11 : pixel_10) : (is_right ? pixel_01 : pixel_00));
       end
       assign max    = corner > max_q ? corner : max_q;
       assign sets   = fragment_q.state.depth_write && covers_tile;

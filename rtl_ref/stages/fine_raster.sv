@@ -113,22 +113,22 @@ module fine_raster (
       if (N == 1) begin : gen_one
         assign place_q = '0;
       end else begin : gen_places
+        localparam int WIDE = STEP + S + 1;
+        logic [N*WIDE-1:0] ways;
+        sample_offsets #(
+            .WIDTH(WIDE)
+        ) u_ways (
+            .value_i (WIDE'(edges_i.low[e*S+:S])),
+            .step_x_i(WIDE'($signed(edges_i.step_x[e*STEP+:STEP]))),
+            .step_y_i(WIDE'($signed(edges_i.step_y[e*STEP+:STEP]))),
+            .value_o (ways)
+        );
         assign place_q[N*W+:W] = '0;
         for (k = 0; k < N; k++) begin : gen_place
-          localparam int WIDE = STEP + S + 1;
           /* verilator lint_off UNUSEDSIGNAL */  // narrower where a tile bounds it
-          logic signed [WIDE-1:0] way, gained;
+          logic signed [WIDE-1:0] gained;
           /* verilator lint_on UNUSEDSIGNAL */
-          assign gained = way >>> S;
-          sample_offset #(
-              .WIDTH (WIDE),
-              .SAMPLE(k)
-          ) u_way (
-              .value_i (WIDE'(edges_i.low[e*S+:S])),
-              .step_x_i(WIDE'($signed(edges_i.step_x[e*STEP+:STEP]))),
-              .step_y_i(WIDE'($signed(edges_i.step_y[e*STEP+:STEP]))),
-              .value_o (way)
-          );
+          assign gained = $signed(ways[k*WIDE+:WIDE]) >>> S;
           logic signed [W-1:0] moved_q;
           always_ff @(posedge clk_i) if (takes_tile) moved_q <= W'(gained);
           assign place_q[k*W+:W] = moved_q;

@@ -123,7 +123,7 @@ module fog_unit #(
       assign product = (RISE + PART)'(rise) * (RISE + PART)'(part_q);
       assign sum     = $signed({start[START-1], start, {PART{1'b0}}}) + $signed({2'b00, product}) + 30'sd8192;
       assign whole   = sum[START+PART-:16];  // 12 fraction bits
-      assign factor  = whole < 0 ? '0 : whole > 16'sd4096 ? 13'd4096 : whole[FACTOR-1:0];
+      assign factor  = whole[15] ? '0 : whole > 16'sd4096 ? 13'd4096 : whole[FACTOR-1:0];
       always_ff @(posedge clk_i) if (enters_2) factor_q <= factor;
 
       for (c = 0; c < CHANNELS; c++) begin : gen_channel

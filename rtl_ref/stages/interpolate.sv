@@ -175,20 +175,19 @@ module interpolate (
       logic [N*W-1:0] to_sample_q;
       if (N > 1) begin : gen_to_sample
         localparam int WIDE = W + S;  // of a step
+        /* verilator lint_off UNUSEDSIGNAL */  // the bits below are rounded off
+        logic [N*WIDE-1:0] ways;
+        /* verilator lint_on UNUSEDSIGNAL */
+        sample_offsets #(
+            .WIDTH(WIDE)
+        ) u_ways (
+            .value_i (WIDE'(1 << (S - 1))),
+            .step_x_i(x_context_q.step_x[STEP+:WIDE]),
+            .step_y_i(x_context_q.step_y[STEP+:WIDE]),
+            .value_o (ways)
+        );
         for (k = 0; k < N; k++) begin : gen_place
-          /* verilator lint_off UNUSEDSIGNAL */  // the bits below are rounded off
-          logic signed [WIDE-1:0] way;
-          /* verilator lint_on UNUSEDSIGNAL */
-          sample_offset #(
-              .WIDTH (WIDE),
-              .SAMPLE(k)
-          ) u_way (
-              .value_i (WIDE'(1 << (S - 1))),
-              .step_x_i(x_context_q.step_x[STEP+:WIDE]),
-              .step_y_i(x_context_q.step_y[STEP+:WIDE]),
-              .value_o (way)
-          );
-          always_ff @(posedge clk_i) to_sample_q[k*W+:W] <= way[S+:W];
+          always_ff @(posedge clk_i) to_sample_q[k*W+:W] <= ways[k*WIDE+S+:W];
         end
       end else begin : gen_centre
         assign to_sample_q = '0;

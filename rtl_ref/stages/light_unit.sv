@@ -205,8 +205,8 @@ module light_unit #(
   always_ff @(posedge clk_i) begin
     light_6_q     <= part_of(light_5_q, is_long);
     half_6_q      <= part_of(half_5_q, is_long);
-    faces_light_q <= {faces_light_q[7:6], light_5_q > 0};
-    faces_half_q  <= {faces_half_q[7:6], half_5_q > 0};
+    faces_light_q <= {faces_light_q[7:6], !light_5_q[2*M-1] && light_5_q != '0};
+    faces_half_q  <= {faces_half_q[7:6], !half_5_q[2*M-1] && half_5_q != '0};
     root_7_q      <= root;
     light_7_q     <= light_6_q;
     half_7_q      <= half_6_q;
@@ -254,7 +254,7 @@ module light_unit #(
   assign sum      = $signed({2'b00, start, {PART{1'b0}}}) - $signed((START + PART + 2)'(fall) * (START + PART + 2)'(part_9_q)) +
                     (START + PART + 2)'(2048);
   assign whole    = sum[START+PART+1:12];
-  assign specular = is_dark_9_q || whole < 0 ? '0 : whole > 4096 ? FACTOR'(4096) : whole[FACTOR-1:0];
+  assign specular = is_dark_9_q || whole[START+PART-11] ? '0 : whole > 4096 ? FACTOR'(4096) : whole[FACTOR-1:0];
   always_ff @(posedge clk_i) begin
     diffuse_9_q   <= diffuse[5+:FACTOR];
     is_dark_9_q   <= light_cosine == '0 || place[ROOT+6:LINE+PART] != '0;

@@ -44,7 +44,7 @@ module line_raster (
   assign line_ready_o  = !valid_q;  // so that nothing in here waits for what is behind it
   assign takes         = line_valid_i && line_ready_o;
   assign pixel_valid_o = valid_q;
-  assign moves         = error_q >= 0;
+  assign moves         = !error_q[E-1];
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= 1'b0;
