@@ -620,7 +620,8 @@ struct TexelBeat {
 /// texture_unit, rop -> framebuffer: the colours of a stamp of which any sample lives; of other samples they are 0.
 struct ColorPacket {
   PACKET(ColorPacket, "color_packet");
-  FIELD(SampleMask, mask, &Widths::sample_mask)  ///< samples whose colour is written, or looked at by the alpha test
+  /// Samples whose colour is written, or looked at by the alpha test; of several in a pixel all, if one is.
+  FIELD(SampleMask, mask, &Widths::sample_mask)
   FIELD(WritePacket::Codes, color, &Widths::shaded_color,
         &Widths::samples)  ///< as it is stored, or before it is blended or dithered; 0 where none lives
   PACKET_END

@@ -87,6 +87,19 @@ struct StampGrid {
     for (int pixel = 0; pixel < pixels(); ++pixel) bits |= samples << pixel * per_pixel;
     return SampleMask(bits);
   }
+  /// The pixels with a sample in `mask`.
+  [[nodiscard]] constexpr SampleMask pixels_of(SampleMask mask) const {
+    SampleMask result;
+    for (int pixel = 0; pixel < pixels(); ++pixel) result.set(pixel, of_pixel(mask, pixel) != 0);
+    return result;
+  }
+  /// All samples of these pixels.
+  [[nodiscard]] constexpr SampleMask samples_of(SampleMask of_pixels) const {
+    std::uint64_t bits = 0;
+    for (int pixel = 0; pixel < pixels(); ++pixel)
+      if (of_pixels.has(static_cast<std::size_t>(pixel))) bits |= SampleMask::all(per_pixel).bits() << pixel * per_pixel;
+    return SampleMask(bits);
+  }
   /// The first pixel of a stamp, in its tile.
   [[nodiscard]] constexpr PixelOffset origin_of(int stamp) const {
     return {stamp % stamps_per_row * size, stamp / stamps_per_row * size};

@@ -209,7 +209,7 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     }
     sink_.take(on<Arrow::write>, packet);
     if (fragment.kind != PrimitiveKind::line) {
-      const bool may_fail = is_late(fragment.state, colors_.alpha, config_);
+      const bool may_fail = is_late(fragment.state, colors_.tests_alpha(), config_);
       visit_.add(fragment, kept, may_fail ? SampleMask() : kept, widths_);
     }
     if (texture_) kept = texture(fragment, packet);
@@ -247,12 +247,12 @@ void HardwareModel::set_state(const FragmentPacket& token) {
 /// samples that the alpha test lets pass, and only those are written.
 SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
   const TexturedStamp shaded =
-      texture_stamp(*texture_, fragment, packet, colors_.alpha, config_, widths_,
+      texture_stamp(*texture_, fragment, packet, colors_, config_, widths_,
                     [this](std::uint32_t address, int beats) { return read_texels(address, beats); });
   count(shaded.use, counters_);
   packet.color = shaded.packet.color;
   if (shaded.packet.mask.any()) sink_.take(on<Arrow::color>, shaded.packet);
-  if (colors_.alpha.func == DepthFunc::always) return packet.passed;
+  if (!colors_.tests_alpha()) return packet.passed;
   keep(shaded.opaque, packet);
   return shaded.opaque & packet.passed;
 }

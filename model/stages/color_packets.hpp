@@ -120,16 +120,23 @@ struct ColorState {
   }
 };
 
-/// The samples of a fragment that its alpha keeps.
-[[nodiscard]] inline SampleMask opaque_samples(const FragmentPacket& fragment, const ColorState& colors,
-                                               const Widths& widths) {
+/// Of a stamp's samples those that their alpha keeps. `alpha_of(s)`: the code of sample s.
+template <class AlphaOf>
+[[nodiscard]] SampleMask alpha_passes(const ColorState& colors, SampleMask samples, const Widths& widths,
+                                      AlphaOf&& alpha_of) {
   const auto n = static_cast<std::uint32_t>(widths.pixel_samples);
   SampleMask kept;
-  fragment.mask.for_each([&](std::size_t s) {
-    kept.set(static_cast<int>(s),
-             colors.keeps(color_channels(fragment_code(fragment, s, widths))[3], static_cast<std::uint32_t>(s) % n, n));
+  samples.for_each([&](std::size_t s) {
+    kept.set(static_cast<int>(s), colors.keeps(alpha_of(s), static_cast<std::uint32_t>(s) % n, n));
   });
   return kept;
+}
+
+/// The samples of a fragment that its own alpha keeps.
+[[nodiscard]] inline SampleMask opaque_samples(const FragmentPacket& fragment, const ColorState& colors,
+                                               const Widths& widths) {
+  return alpha_passes(colors, fragment.mask, widths,
+                      [&](std::size_t s) { return color_channels(fragment_code(fragment, s, widths))[3]; });
 }
 
 /// A token may set one of them.

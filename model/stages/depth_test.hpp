@@ -17,16 +17,6 @@
 
 namespace halfplane {
 
-/// Of a stamp's samples those that the alpha test lets pass. `alpha_of(s)`: the code of sample s.
-template <class AlphaOf>
-[[nodiscard]] SampleMask alpha_passes(const AlphaTest& alpha, SampleMask samples, AlphaOf&& alpha_of) {
-  SampleMask kept;
-  samples.for_each([&](std::size_t s) {
-    kept.set(static_cast<int>(s), depth_passes(alpha.func, alpha_of(s), std::uint32_t{alpha.reference}));
-  });
-  return kept;
-}
-
 /// Only these samples are written.
 inline void keep(SampleMask kept, WritePacket& packet) {
   packet.write_depth = packet.write_depth & kept;
@@ -96,8 +86,8 @@ struct TestedSample {
 }
 
 /// Whether depth, or the stencil above it, is written behind the texture: the alpha test decides there whether it is.
-[[nodiscard]] constexpr bool is_late(const PrimitiveState& state, const AlphaTest& alpha, const Config& config) {
-  return has_texture_planes(config) && alpha.func != DepthFunc::always && state.writes_word();
+[[nodiscard]] constexpr bool is_late(const PrimitiveState& state, bool tests_alpha, const Config& config) {
+  return has_texture_planes(config) && tests_alpha && state.writes_word();
 }
 
 /// What a visit that writes depth does to its tile's bound. `is_full`: every sample of the tile was covered and written,

@@ -26,7 +26,7 @@ namespace halfplane {
           config.texture_ways};
 }
 
-/// Q and P of a sample, not its pixel.
+/// Q and P where a pixel is shaded; not where that lies.
 [[nodiscard]] inline TextureSample texture_sample(const PerPlane<std::uint32_t>& code, const Widths& widths) {
   const std::size_t q = widths.q_plane;
   const auto p = [&](std::size_t plane) { return wrap_signed(code[plane], widths.of_plane(plane).local.bits); };
@@ -67,11 +67,11 @@ inline void count(const TextureUse& use, CounterPacket& counters) {
   counters.texture_fills += use.fills;
 }
 
-/// The colours of a stamp's live samples in fog, if there is any.
-inline void add_fog(const TextureUnit& unit, bool is_triangle, SampleMask live, std::span<const TextureSample> samples,
+/// The colours of a stamp's live pixels in fog, if there is any.
+inline void add_fog(const TextureUnit& unit, bool is_triangle, SampleMask live, std::span<const TextureSample> pixels,
                     const CoordinateFrame& frame, std::span<Texel> colors) {
   if (unit.fog().is_fogged(is_triangle))
-    live.for_each([&](std::size_t s) { unit.fog().add(samples[s].q, frame.fog_octave, colors[s]); });
+    live.for_each([&](std::size_t i) { unit.fog().add(pixels[i].q, frame.fog_octave, colors[i]); });
 }
 
 /// `least` and `greatest`: vertex_color() of the range of the vertices' codes.

@@ -636,6 +636,14 @@ mutant(420 lib/sample_offsets.sv "samples: pattern: the way right is the way dow
   [=[times(step_y_i, SIZE_Y)]=] [=[times(step_y_i, SIZE_X)]=])
 mutant(421 stages/fine_raster.sv "samples: pattern: the bits below an edge's value are taken for 0"
   [=[WIDE'(edges_i.low[e*S+:S])]=] [=[WIDE'(0)]=])
+mutant(451 lib/colored_stamps.sv "samples, textures: a pixel lives by its first sample"
+  [=[writes_i[s*N+:N] != '0]=] [=[writes_i[s*N]]=])
+mutant(452 lib/colored_stamps.sv "samples, textures: a pixel's colour goes to its first sample"
+  [=[{N{packed_color & {COLOR{mask[s]}}}}]=] [=[{N{packed_color & {COLOR{mask[s]}}}} & ~({(N * COLOR) {1'b1}} << COLOR)]=])
+mutant(453 stages/block_cache.sv "samples, textures: alpha behind the texture covers all samples or none"
+  [=[raster_pkg::MSAA_SAMPLES > 1 && w_word[11]]=] [=[1'b0]=])
+mutant(454 stages/block_cache.sv "samples, textures: what alpha does not cover is not late"
+  [=[(raster_pkg::MSAA_SAMPLES > 1 && item.code[11])]=] [=[1'b0]=])
 mutant_text(450 lib/registered_fifo.sv "samples: dropped stall: an item's depths give way before it is taken"
   [=[.ready_i(is_free),
           .data_o (data_o[STORED-1:0])]=]

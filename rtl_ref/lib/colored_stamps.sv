@@ -26,7 +26,7 @@ module colored_stamps #(
     input  logic                                                        stamp_ready_i,
     output logic [CARRIED-1:0]                                          carried_o,
     output logic [raster_pkg::SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] color_o,
-    output logic [raster_pkg::SAMPLES*8-1:0]                            alpha_o,  // with a texture unit; else known before
+    output logic [raster_pkg::PIXELS*8-1:0]                             alpha_o,  // with a texture unit; else known before
 
     // To and from the memory of textures
     output logic                         texture_valid_o,
@@ -47,6 +47,8 @@ module colored_stamps #(
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int PIXELS = raster_pkg::PIXELS;
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel, which has one colour, whatever samples it is written to
   localparam int COLOR = raster_pkg::SHADED_COLOR_BITS;  // as W takes it: as it is stored, unless it packs
 
   genvar s;
@@ -58,9 +60,6 @@ module colored_stamps #(
       /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
       logic w_ready;
       /* verilator lint_on UNUSEDSIGNAL */
-      // A pixel has one colour, whatever samples it is written to.
-      localparam int PIXELS = raster_pkg::PIXELS;
-      localparam int N = raster_pkg::MSAA_SAMPLES;
       logic [PIXELS*COLOR-1:0] of_pixels, w_color;
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
         if (s % N == 0) begin : gen_first
@@ -90,7 +89,7 @@ module colored_stamps #(
       assign packet_valid_o    = 1'b0;
       assign packet_o          = '0;
     end else begin : gen_textured
-      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a sample
+      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
       localparam int AFFINE = raster_pkg::AFFINE_PLANES;
       localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*AFFINE+:32];
       localparam int P = raster_pkg::FRAGMENT_BITS_OF[32*(AFFINE+1)+:32];
@@ -102,16 +101,24 @@ module colored_stamps #(
       localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::STATE_WORD_BITS >= 104 ? 104 : 70;
       localparam int PIXEL = 12;
       localparam int TOKEN = 43;  // of tokens of fog and of light
-      localparam int PLACES_BITS = 19 * SAMPLES > TOKEN ? 19 * SAMPLES : TOKEN;
+      localparam int PLACES_BITS = 19 * PIXELS > TOKEN ? 19 * PIXELS : TOKEN;
       localparam int FOG = raster_pkg::FOG_UNIT == 0 ? 0 : 3 + PLACES_BITS;  // that fog carries along
       logic [CARRIED+FOG-1:0] entering, unit_carried;
       logic [$clog2(raster_pkg::TEXTURE_LANES+1)-1:0] samples, hits;
       assign texture_use_o[5:0] = {3'(hits), 3'(samples)};
+      // Pixels with a sample that gets a colour, and their own.
+      logic [PIXELS-1:0]                                 writes;
+      logic [PIXELS*raster_pkg::WRITTEN_COLOR_BITS-1:0]  color;
+      for (s = 0; s < PIXELS; s++) begin : gen_shaded
+        assign writes[s] = writes_i[s*N+:N] != '0;
+        assign color[s*raster_pkg::WRITTEN_COLOR_BITS+:raster_pkg::WRITTEN_COLOR_BITS] =
+            color_i[s*N*raster_pkg::WRITTEN_COLOR_BITS+:raster_pkg::WRITTEN_COLOR_BITS];
+      end
       // At the door of the texture unit.
       logic                                              door_valid;
       logic [CARRIED-1:0]                                door_carried;
-      logic [SAMPLES-1:0]                                door_writes;
-      logic [SAMPLES*raster_pkg::WRITTEN_COLOR_BITS-1:0] door_color;
+      logic [PIXELS-1:0]                                door_writes;
+      logic [PIXELS*raster_pkg::WRITTEN_COLOR_BITS-1:0] door_color;
       localparam int TILE = raster_pkg::TILE_SHIFT;
       localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
       localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
@@ -119,55 +126,57 @@ module colored_stamps #(
       logic [raster_pkg::STATE_WORD_BITS-1:0] word;  // of a token: its codes
       logic [PIXEL-1:0] stamp_x, stamp_y;          // its first pixel, as levels want it
       /* verilator lint_on UNUSEDSIGNAL */
-      logic [SAMPLES*Q-1:0]          q;
-      logic [SAMPLES*P-1:0]          u, v;
-      logic [SAMPLES*8*CHANNELS-1:0] rgba;
-      logic [SAMPLES-1:0]            mask;
+      logic [PIXELS*Q-1:0]          q;
+      logic [PIXELS*P-1:0]          u, v;
+      logic [PIXELS*8*CHANNELS-1:0] rgba;
+      logic [PIXELS-1:0]            mask;
       logic is_token, is_triangle, is_levels, unit_valid, unit_ready, sets_light, sets_fog, sets_fog_line;
-      logic [SAMPLES-1:0]            unit_mask;
-      logic [SAMPLES*8*CHANNELS-1:0] unit_rgba;
+      logic [PIXELS-1:0]            unit_mask;
+      logic [PIXELS*8*CHANNELS-1:0] unit_rgba;
       // Light: of the fragment goes along what is not of the normals.
       if (raster_pkg::NORMALS == 0) begin : gen_unlit
         assign door_valid    = stamp_valid_i;
         assign door_carried  = carried_i;
-        assign door_writes   = writes_i;
+        assign door_writes   = writes;
         assign door_fragment = fragment_i;
-        assign door_color    = color_i;
+        assign door_color    = color;
       end else begin : gen_lit
         localparam int NORMALS_AT = raster_pkg::FRAGMENT_AT[32*(AFFINE+3*(raster_pkg::NORMALS!=0 ? 1 : 0))+:32];
         localparam int NORMAL = (FRAGMENT - NORMALS_AT) / 3;
-        localparam int HEADER = raster_pkg::FRAGMENT_PACKET_BITS - SAMPLES * FRAGMENT;
-        logic [SAMPLES*NORMALS_AT-1:0] others, door_others;
-        logic [3*NORMAL*SAMPLES-1:0]   normals;
+        localparam int HEADER_AT = PIXELS * FRAGMENT + PIXELS * (N - 1) * raster_pkg::DEPTH_CODE_BITS;  // depths end at the test
+        localparam int HEADER = raster_pkg::FRAGMENT_PACKET_BITS - HEADER_AT;
+        logic [PIXELS*NORMALS_AT-1:0] others, door_others;
+        logic [3*NORMAL*PIXELS-1:0]   normals;
         logic [HEADER-1:0]             header, door_header;
-        logic [SAMPLES*FRAGMENT-1:0]   door_code;
+        logic [PIXELS*FRAGMENT-1:0]   door_code;
         /* verilator lint_off UNUSEDSIGNAL */
         logic [raster_pkg::STATE_WORD_BITS-1:0] arriving;
         /* verilator lint_on UNUSEDSIGNAL */
-        assign header   = fragment_i[raster_pkg::FRAGMENT_PACKET_BITS-1:SAMPLES*FRAGMENT];
+        assign header   = fragment_i[raster_pkg::FRAGMENT_PACKET_BITS-1:HEADER_AT];
         assign arriving = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
                            fragment_i.code[0+:AFFINE_BITS]};  // as word below
-        for (s = 0; s < SAMPLES; s++) begin : gen_sample
+        for (s = 0; s < PIXELS; s++) begin : gen_pixel
           assign others[s*NORMALS_AT+:NORMALS_AT] = fragment_i.code[s*FRAGMENT+:NORMALS_AT];
           assign normals[s*3*NORMAL+:3*NORMAL]    = fragment_i.code[s*FRAGMENT+NORMALS_AT+:3*NORMAL];
           assign door_code[s*FRAGMENT+:FRAGMENT]  = {{(3*NORMAL) {1'b0}}, door_others[s*NORMALS_AT+:NORMALS_AT]};
         end
-        assign door_fragment = {door_header, door_code};
+        assign door_fragment = (raster_pkg::FRAGMENT_PACKET_BITS'(door_header) << HEADER_AT) |
+                               raster_pkg::FRAGMENT_PACKET_BITS'(door_code);
         light_unit #(
-            .SAMPLES (SAMPLES),
+            .SAMPLES (PIXELS),
             .CHANNELS(CHANNELS),
             .P_BITS  (NORMAL),
-            .PAYLOAD (CARRIED + SAMPLES + HEADER + SAMPLES * NORMALS_AT),
+            .PAYLOAD (CARRIED + PIXELS + HEADER + PIXELS * NORMALS_AT),
             .WORD    (TOKEN),
             .PLACES  (PLACES)
         ) u_light (
             .clk_i,
             .rst_ni,
             .stamp_valid_i(stamp_valid_i),
-            .payload_i    ({carried_i, writes_i, header, others}),
-            .color_i      (color_i),
+            .payload_i    ({carried_i, writes, header, others}),
+            .color_i      (color),
             .is_triangle_i(fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE),
-            .mask_i       (writes_i),
+            .mask_i       (writes),
             .p_i          (normals),
             .sets_i       (fragment_i.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
                            fragment_i.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS &&
@@ -183,7 +192,7 @@ module colored_stamps #(
       localparam int OVER_W = raster_pkg::COLORS_OVER_W != 0 ? 1 : 0;
       localparam int COLOR_P = OVER_W != 0 ? raster_pkg::LOCAL_BITS_OF[32*(AFFINE+3*OVER_W)+:32] : 24;
       logic                                  divides_colors;
-      logic [SAMPLES*CHANNELS*COLOR_P-1:0]   color_p;
+      logic [PIXELS*CHANNELS*COLOR_P-1:0]   color_p;
       logic [CHANNELS*raster_pkg::COLOR_SHIFT_BITS-1:0] color_shift;
       logic [CHANNELS*raster_pkg::COLOR_REACH_BITS-1:0] color_reach;
       logic [CHANNELS*8-1:0]                 least_color, greatest_color;
@@ -193,7 +202,7 @@ module colored_stamps #(
         assign color_reach    = door_fragment.coordinates.color_reach;
         assign least_color    = door_fragment.least_color;
         assign greatest_color = door_fragment.greatest_color;
-        for (s = 0; s < SAMPLES; s++) begin : gen_color
+        for (s = 0; s < PIXELS; s++) begin : gen_color
           assign color_p[s*CHANNELS*COLOR_P+:CHANNELS*COLOR_P] =
               door_fragment.code[s*FRAGMENT+Q_AT+Q+2*P+:CHANNELS*COLOR_P];
         end
@@ -215,7 +224,7 @@ module colored_stamps #(
       assign is_levels = is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS;
       assign sets_light = raster_pkg::NORMALS != 0 && is_levels && word[TOKEN+:2] == 2'd3;
       assign entering[CARRIED-1:0] = door_carried;
-      for (s = 0; s < SAMPLES; s++) begin : gen_sample
+      for (s = 0; s < PIXELS; s++) begin : gen_pixel
         assign q[s*Q+:Q] = door_fragment.code[s*FRAGMENT+Q_AT+:Q];
         assign u[s*P+:P] = door_fragment.code[s*FRAGMENT+Q_AT+Q+:P];
         assign v[s*P+:P] = door_fragment.code[s*FRAGMENT+Q_AT+Q+P+:P];
@@ -229,11 +238,12 @@ module colored_stamps #(
           );
         end
         assign alpha_o[s*8+:8] = rgba[(s+1)*8*CHANNELS-1-:8];
-        assign color_o[s*COLOR+:COLOR] = packed_color & {COLOR{mask[s]}};
+        assign color_o[s*N*COLOR+:N*COLOR]  = {N{packed_color & {COLOR{mask[s]}}}};
+        assign packet_o.mask[s*N+:N]        = {N{mask[s]}};
       end
 
       texture_unit #(
-          .SAMPLES       (SAMPLES),
+          .SAMPLES       (PIXELS),
           .LANES         (raster_pkg::TEXTURE_LANES),
           .Q_BITS        (Q),
           .P_BITS        (P),
@@ -325,7 +335,7 @@ module colored_stamps #(
           else if (door_valid && sets_fog) enable_q <= word[COLOR_BITS+3];
         end
         always_ff @(posedge clk_i) if (door_valid && sets_fog) octaves_q <= word[COLOR_BITS+:3];
-        for (s = 0; s < SAMPLES; s++) begin : gen_place
+        for (s = 0; s < PIXELS; s++) begin : gen_place
           fog_place #(
               .Q_BITS(Q)
           ) u_place (
@@ -335,17 +345,17 @@ module colored_stamps #(
               .place_o  (places[19*s+:19])
           );
         end
-        if (PLACES_BITS > 19 * SAMPLES) begin : gen_rest
-          assign places[PLACES_BITS-1:19*SAMPLES] = '0;
+        if (PLACES_BITS > 19 * PIXELS) begin : gen_rest
+          assign places[PLACES_BITS-1:19*PIXELS] = '0;
         end
         assign entering[CARRIED+:PLACES_BITS] = is_token ? PLACES_BITS'(word[TOKEN-1:0]) : places;
         assign entering[CARRIED+PLACES_BITS+:3] = {sets_fog_line, sets_fog,
             enable_q && is_triangle};
 
         fog_unit #(
-            .SAMPLES (SAMPLES),
+            .SAMPLES (PIXELS),
             .CHANNELS(CHANNELS),
-            .PAYLOAD (CARRIED + SAMPLES),
+            .PAYLOAD (CARRIED + PIXELS),
             .WORD    (PLACES_BITS)
         ) u_fog (
             .clk_i,
@@ -365,7 +375,6 @@ module colored_stamps #(
         );
       end
       assign packet_valid_o = stamp_valid_o && mask != '0;
-      assign packet_o.mask  = mask;
       assign packet_o.color = color_o;
     end
   endgenerate

@@ -128,6 +128,9 @@ module setup_states (
           if (is_next) setup_q.coordinates <= '0;
         end
     end
+    if (raster_pkg::MSAA_SAMPLES > 1) begin : gen_edge_lows
+      always_ff @(posedge clk_i) if (is_free) setup_q.edge_low <= is_next ? '0 : made_i.edge_low;
+    end
     for (p = 0; p < PLANES; p++) begin : gen_plane
       localparam int B = CODE_BITS_OF[32*p+:32];
       localparam int AT = CODE_AT[32*p+:32];

@@ -525,7 +525,7 @@ module block_cache (
   logic [STAMP-1:0]          w_stamp;
   logic [SAMPLES-1:0]        w_mask, w_kept;  // samples whose colour is written by the depth test, and by the alpha test
   /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
-  logic [SAMPLES*8-1:0]      w_alpha;
+  logic [PIXELS*8-1:0]       w_alpha;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*SHADED-1:0] w_color;
   logic [STAMPS-1:0]         w_stamps;
@@ -616,6 +616,7 @@ module block_cache (
       logic                 tests_alpha_q, is_late, enters, leaves;
       logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_q;
       logic [7:0]           reference_q;
+      logic                 covers_q;  // alpha says how many samples of a pixel are drawn
       logic                 w_late, w_on_chip, w_counted, w_writes;
       logic [SAMPLES-1:0]   w_passed, w_changes, alpha_passes;  // passed the tests; the depth or the stencil changes
       logic                 x1_writes_word;
@@ -640,7 +641,7 @@ module block_cache (
           late_behind_q <= late_behind_q + BEHIND'(enters) - BEHIND'(leaves);
           if (goes && item.kind == raster_pkg::PRIMITIVE_KIND_STATE &&
               item.state.depth_test == raster_pkg::STATE_REGISTER_ALPHA_TEST)
-            tests_alpha_q <= item.code[2:0] != raster_pkg::DEPTH_FUNC_ALWAYS;
+            tests_alpha_q <= item.code[2:0] != raster_pkg::DEPTH_FUNC_ALWAYS || (raster_pkg::MSAA_SAMPLES > 1 && item.code[11]);
         end
       end
       assign tests_alpha = tests_alpha_q;
@@ -666,15 +667,17 @@ module block_cache (
         if (!rst_ni) begin
           func_q      <= raster_pkg::DEPTH_FUNC_ALWAYS;
           reference_q <= '0;
+          covers_q    <= 1'b0;
         end else if (colors_done && w_sets_state && w_register == raster_pkg::STATE_REGISTER_ALPHA_TEST) begin
           func_q      <= w_word[2:0];
           reference_q <= w_word[10:3];
+          covers_q    <= raster_pkg::MSAA_SAMPLES > 1 && w_word[11];
         end
       end
       alpha_test u_alpha (
           .func_i     (func_q),
           .reference_i(reference_q),
-          .covers_i   (1'b0),  // a texture unit takes one sample a pixel
+          .covers_i   (covers_q),
           .alpha_i    (w_alpha),
           .passes_o   (alpha_passes)
       );

@@ -157,11 +157,11 @@ module depth_test (
         assign is_late = 1'b0;
       end else begin : gen_late
         /* verilator lint_off UNUSEDSIGNAL */
-        logic [8:0] unused;
-        assign unused = {covers_q, reference_q};
+        logic [7:0] unused;
+        assign unused = reference_q;
         /* verilator lint_on UNUSEDSIGNAL */
         assign opaque  = '1;
-        assign is_late = alpha_func_q != raster_pkg::DEPTH_FUNC_ALWAYS;
+        assign is_late = alpha_func_q != raster_pkg::DEPTH_FUNC_ALWAYS || (N > 1 && covers_q);
       end
     end else begin : gen_no_alpha
       assign opaque  = '1;

@@ -134,7 +134,7 @@ void set_stencil(const FragmentPacket& fragment, StencilState& stencil, const Wi
 
 /// An alpha test stands behind the texture.
 [[nodiscard]] bool is_alpha_late(const ColorState& colors, const Config& config) {
-  return has_texture_planes(config) && colors.alpha.func != DepthFunc::always;
+  return has_texture_planes(config) && colors.tests_alpha();
 }
 
 /// Color packets of this hardware have alpha.
@@ -147,9 +147,9 @@ void require_alpha(const Config& config) {
 }
 
 /// Those of `shaded` that it lets pass, by the next color packet of a port.
-[[nodiscard]] SampleMask opaque_samples(const Run& run, std::size_t port, SampleMask shaded, const AlphaTest& alpha) {
+[[nodiscard]] SampleMask opaque_samples(const Run& run, std::size_t port, SampleMask shaded, const ColorState& colors) {
   const auto packet = run.need<ColorPacket>(port, "color packet for a write");
-  return alpha_passes(alpha, shaded, [&](std::size_t s) { return packet.color[s] >> 24; });
+  return alpha_passes(colors, shaded, run.widths, [&](std::size_t s) { return packet.color[s] >> 24; });
 }
 
 /// The depths under all stamps, with the stencil above them, as the fragments themselves leave them.
@@ -191,7 +191,7 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
       const auto stored = depths.under(fragment->key, fragment->stamp);
       WritePacket tested = depth_test(*fragment, stored, stencil, widths);
       SampleMask kept = tested.passed;
-      const bool may_fail = is_late(fragment->state, colors.alpha, config);
+      const bool may_fail = is_late(fragment->state, colors.tests_alpha(), config);
       if (!has_texture_planes(config)) {
         const SampleMask opaque = halfplane::opaque_samples(*fragment, colors, widths);
         keep_opaque(opaque, *fragment, tested, widths);
@@ -200,8 +200,8 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
       run.send(0, tested);
       // Behind a texture the alpha test decides later what is written: its alpha comes with the colours.
       if (may_fail) require_alpha(config);
-      const SampleMask shaded = shaded_samples(tested, colors.alpha);
-      if (is_alpha_late(colors, config) && shaded.any()) keep(opaque_samples(run, 1, shaded, colors.alpha), tested);
+      const SampleMask shaded = shaded_samples(tested, colors);
+      if (is_alpha_late(colors, config) && shaded.any()) keep(opaque_samples(run, 1, shaded, colors), tested);
       tested.write_depth.for_each([&](std::size_t s) { stored[s] = tested.depth[s]; });
       if (fragment->kind != PrimitiveKind::line) visit.add(*fragment, kept, may_fail ? SampleMask() : kept, widths);
     }
@@ -259,12 +259,12 @@ void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
           (void)cache.access(*fragment, memory, counters);
           WritePacket write = run.need<WritePacket>(1, "write packet for a stamp");
           if (has_texture) {
-            const SampleMask shaded = shaded_samples(write, colors.alpha);
+            const SampleMask shaded = shaded_samples(write, colors);
             write.color = {};
             if (is_alpha_late(colors, config)) require_alpha(config);
             if (shaded.any()) write.color = run.need<ColorPacket>(3, "color packet for a write").color;
-            if (colors.alpha.func != DepthFunc::always)
-              keep(alpha_passes(colors.alpha, shaded, [&](std::size_t s) { return write.color[s] >> 24; }), write);
+            if (colors.tests_alpha())
+              keep(alpha_passes(colors, shaded, widths, [&](std::size_t s) { return write.color[s] >> 24; }), write);
           }
           if constexpr (has_colors)
             if (packs_at_write(config))
@@ -329,7 +329,7 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
       set_register(unit, state_register(fragment->state), *fragment, widths);
     if (!is_tested(*fragment)) continue;
     const auto write = run.need<WritePacket>(1, "write packet for a stamp");
-    const TexturedStamp shaded = texture_stamp(unit, *fragment, write, colors.alpha, config, widths, read);
+    const TexturedStamp shaded = texture_stamp(unit, *fragment, write, colors, config, widths, read);
     if (shaded.packet.mask.any()) run.send(1, shaded.packet);
   }
 }

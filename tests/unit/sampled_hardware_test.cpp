@@ -18,11 +18,17 @@ Config hardware(std::string_view name, int samples, std::string_view pattern = "
   config.msaa_pattern = parse_sample_pattern(pattern);
   while (config.stamp_size * config.stamp_size * samples > 64) config.stamp_size /= 2;
   if (has_units) {
+    config.cache_kind = CacheKind::blocks;
     config.blend_lanes = 4;
     config.alpha_units = config.dither_units = 1;
     config.stencil_bits = 8;
   }
   validate(config);
+  return config;
+}
+
+Config textured(Config config) {
+  config.texture_unit = TextureUnitKind::bilinear;
   return config;
 }
 
@@ -34,6 +40,13 @@ std::vector<Config> sampled_hardware() {
   configs.push_back(hardware("embedded", 4, "standard", true));
   configs.push_back(hardware("full", 4, "standard", true));
   configs.push_back(hardware("embedded", 2, "0,0;0.99609375,0.99609375", true));
+  for (const bool has_units : {false, true}) configs.push_back(textured(hardware("embedded", 4, "standard", has_units)));
+  configs.push_back(textured(hardware("tiny", 2, "standard", true)));
+  configs.back().perspective_colors = 1;
+  configs.push_back(textured(hardware("embedded", 8, "standard", true)));
+  configs.back().texture_lanes = 4;
+  configs.back().fog_units = configs.back().shade_units = 1;
+  for (const Config& config : configs) validate(config);
   return configs;
 }
 

@@ -11,7 +11,7 @@
 #include "../../stages/line_raster.hpp"
 #include "../../stages/state_packets.hpp"
 #include "../../stages/surface.hpp"
-#include "../../stages/texture_packets.hpp"
+#include "../../stages/texture_stage.hpp"
 #include "../../stages/viewport.hpp"
 #include "../hardware.hpp"
 #include "../tile_kernel.hpp"
@@ -261,7 +261,7 @@ class CycleModelOf final : public CycleModel {
     item.depth_write = state.writes_word();
     item.color_write = state.color_write;
     item.blends = colors_.ops.blends();
-    item.is_late = is_late(state, colors_.alpha, config_);
+    item.is_late = is_late(state, colors_.tests_alpha(), config_);
     return blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
   }
 
@@ -495,7 +495,7 @@ class CycleModelOf final : public CycleModel {
       counters_.alpha_killed += killed;
       if (packet.state.writes()) counters_.written += passed - killed;
     }
-    const bool is_late = halfplane::is_late(packet.state, colors_.alpha, config_);
+    const bool is_late = halfplane::is_late(packet.state, colors_.tests_alpha(), config_);
     retire(packet, tile_x, tile_y, is_late ? passed : passed - killed, is_late);
     if (!options_.want_cost) return;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before);
@@ -520,10 +520,12 @@ class CycleModelOf final : public CycleModel {
     if (options_.sink != nullptr) options_.sink->visit(tile.x, tile.y);
     timing_.visit(work, [&](Cycle offered, int row, int column) {
       if (column < 0) return timing_.pass(offered);
-      const FragmentPacket fragment = stamps.fragment(row * per_row + column);
+      FragmentPacket fragment = stamps.fragment(row * per_row + column);
       if (!fragment.mask.any()) return timing_.pass(offered);
       const FragmentPlace place{tile.x, tile.y, fragment.stamp, fragment.mask, packet.state.depth_write};
       WritePacket written = target.test(fragment, stencil_);
+      BlockItem item;
+      if (texture_) shade_pixels(target, shaded_samples(written, colors_), fragment, item);
       const SampleMask wanted = written.write_depth,
                        opaque = tests_alpha() ? opaque_samples(fragment, colors_, widths_) : fragment.mask,
                        kept = written.passed & opaque;
@@ -534,7 +536,6 @@ class CycleModelOf final : public CycleModel {
       target.store(fragment, written, colors_.ops);
       note_samples(target, fragment, kept, packet, primitive);
       if (blocks_) {
-        BlockItem item;
         const TagResult tags = block_access(place, packet.state, item);
         note_result(packet.state, written.passed, kept, {wanted, written.write_depth}, item);
         return timing_.access(offered, tags, item);
@@ -552,12 +553,41 @@ class CycleModelOf final : public CycleModel {
       counters_.alpha_killed += count.depth_passed - count.written;
       if (packet.state.writes()) counters_.written += count.written;
     }
-    retire(packet, tile.x, tile.y, static_cast<std::uint32_t>(count.written), false);
+    const bool is_late = halfplane::is_late(packet.state, tests_alpha(), config_);
+    retire(packet, tile.x, tile.y, static_cast<std::uint32_t>(is_late ? count.depth_passed : count.written), is_late);
     if (!options_.want_cost) return;
     const PixelBounds& box = tile.box;
     const auto cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(box.samples());
     for (int j = box.top; j <= box.bottom; ++j)
       for (int i = box.left; i <= box.right; ++i) cost_[plain_index(tile.x * T + i, tile.y * T + j)] += cycles;
+  }
+
+  /// The texture unit, light in front of it and fog behind it: pixels with a sample in `shaded` get their colours.
+  void shade_pixels(const SampledTarget& target, SampleMask shaded, FragmentPacket& fragment, BlockItem& item) {
+    const SampleMask live = widths_.stamps.pixels_of(shaded);
+    if (!live.any()) return;
+    const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
+    std::array<TextureSample, kMaxSamples> pixel;
+    std::array<Texel, kMaxSamples> color{};
+    std::array<PixelOffset, kMaxSamples> at;
+    live.for_each([&](std::size_t i) {
+      at[i] = target.pixel(fragment, i * static_cast<std::size_t>(widths_.pixel_samples));
+      pixel[i] = texture_sample(fragment.code[i], widths_);
+      pixel[i].x = at[i].x;
+      pixel[i].y = at[i].y;
+      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
+        color[i][c] = static_cast<std::uint8_t>(fragment.code[i][kColorPlane + c]);
+      if (frame_.divides_colors) texture_->divide_colors(pixel[i], frame_, widths_.color_planes, color[i]);
+      if (texture_->light().is_lit(is_triangle)) texture_->light().add(pixel[i].normal, color[i]);
+    });
+    if (frame_.divides_colors) item.texture.divided = texture_->groups(live);
+    if (texture_->light().is_lit(is_triangle)) item.texture.lit = live.count();
+    if (texture_->is_textured(is_triangle, live)) look_up_texels(live, at, pixel, color, item);
+    add_fog(*texture_, is_triangle, live, pixel, coordinates_, color);
+    live.for_each([&](std::size_t i) {
+      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
+        fragment.code[i][kColorPlane + c] = color[i][c];
+    });
   }
 
   /// Counts of a stamp's covered samples, and the owners of those that are stored: a pixel has that of its first.
@@ -627,7 +657,7 @@ class CycleModelOf final : public CycleModel {
     Framebuffer& frame = rendering_.frame;
     const auto index = [&](std::size_t s) { return frame.at(at[s].x, at[s].y); };
     const SampleMask kept =
-        alpha_passes(colors_.alpha, live, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
+        alpha_passes(colors_, live, widths_, [&](std::size_t s) { return std::uint32_t{color[s][3]}; });
     kept.for_each([&](std::size_t s) {
       const Texel& c = color[s];
       if (tests_alpha() && changed.has(s)) change_word(setup, packet.state, at[s]);
