@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <vector>
 
 #include "model/engines/functional.hpp"
 #include "sim/cli/commands.hpp"
@@ -17,7 +18,20 @@ namespace {
 
 struct MutantsCommand : CosimOptions {
   bool scenes = false;
+  std::vector<int> only;  ///< numbers of mutants; none: all
 };
+
+/// Those that are asked for, in the order of their list.
+std::vector<Mutant> asked_for(const MutantsCommand& options) {
+  if (options.only.empty()) return {mutants().begin(), mutants().end()};
+  std::vector<Mutant> some;
+  for (const Mutant& mutant : mutants())
+    if (std::ranges::find(options.only, mutant.id) != options.only.end()) some.push_back(mutant);
+  for (const int id : options.only)
+    if (std::ranges::find(some, id, &Mutant::id) == some.end())
+      throw InputError("--only: there is no mutant " + std::to_string(id) + "; without it `mutants` lists all");
+  return some;
+}
 
 /// A built-in scene and what the model shows of it.
 struct ModelPicture {
@@ -153,6 +167,7 @@ void check_pictures(const MutantsCommand& options, const Config& config, Dut& du
 int run(const MutantsCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
+  const std::vector<Mutant> asked = asked_for(options);
   const DutFactory& factory = find_dut(config);
   if (!factory.has_mutants) throw InputError("the RTL of " + factory.name + " has no mutants; use --config embedded");
   const std::unique_ptr<Dut> dut = make_dut(factory);
@@ -163,8 +178,8 @@ int run(const MutantsCommand& options) {
   {
     Progress progress(options, "running mutants");
     try {
-      for (const Mutant& mutant : mutants()) {
-        progress(static_cast<double>(verdicts.size()) / static_cast<double>(mutants().size()));
+      for (const Mutant& mutant : asked) {
+        progress(static_cast<double>(verdicts.size()) / static_cast<double>(asked.size()));
         verdicts.push_back(judge(options, factory, *dut, mutant, pictures));
       }
     } catch (const Interrupted&) {  // the verdicts so far stand
@@ -217,6 +232,9 @@ void add_mutants_command(CLI::App& app, Action& selected) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
       ->capture_default_str();
   add_stalls_option(*command, *options);
+  command->add_option("--only", options->only, "these mutants alone: numbers with commas")
+      ->delimiter(',')
+      ->type_name("LIST");
   command->add_flag("--scenes", options->scenes, "also says which pictures of the built-in scenes each mutant changes");
   command->add_option("--size", options->size, "of these pictures, WxH pixels")->capture_default_str();
   command->footer("\nExit status 1 when a mutant is not caught.\n\nExample:\n  halfplane mutants --json=mutants.json");

@@ -159,7 +159,7 @@ TEST_F(RtlJsonSchema, CosimIsDescribed) {
 TEST_F(RtlJsonSchema, MismatchesAreDescribed) {
   expect_results("cosim", {"triangle --size 32x32 --mutant 11"}, 1);
   expect_results("reduce", {"triangle --size 32x32 --mutant 11"});
-  expect_results("mutants", {"--random 20"}, 1);
+  expect_results("mutants", {"--random 20 --only 11,432"}, 1);
 }
 
 TEST_F(JsonSchema, EveryCommandWithAResultHasASchema) {
