@@ -125,6 +125,20 @@ def sources(proof, preset, folder, twin):
     return files
 
 
+def stale_twins():
+    """Of every proof, run or not, the twins that are none any more, because the module reads otherwise."""
+    faults, stale = seeded_faults(), []
+    for proof in PROOFS:
+        text = (RTL / proof.module).read_text(encoding='utf-8')
+        for twin in proof.twins:
+            if isinstance(twin, int):
+                if twin not in faults:
+                    stale.append(f'{proof.name}: there is no mutant {twin}')
+            elif text.count(twin[0]) != 1:
+                stale.append(f'{proof.name}: in {proof.module} this must occur exactly once, not {text.count(twin[0])} times: {twin[0]}')
+    return stale
+
+
 RUNNING = set()  # sessions, so that no solver outlives this program
 
 
@@ -328,6 +342,10 @@ def main():
         for outcome in pool.map(lambda pair: prove(*pair, options.limit, solver), chosen):
             print(line(outcome), flush=True)
             good = good and outcome.good
+    if not options.only:
+        stale = stale_twins()
+        print(*(f'NOT A TWIN  {text}' for text in stale), sep='\n', end='\n' if stale else '')
+        good = good and not stale
     if options.program and not options.only:
         good = enumerate_cases(options.program, not options.quick) and good
     print(f'{len(chosen)} proofs, {time.monotonic() - began:.0f} s: ' + ('all hold, every twin was caught' if good else 'FAILED'))

@@ -102,9 +102,9 @@ PROOFS = [
                  ('localparam int W = raster_pkg::SAMPLE_EDGE_BITS;', 'localparam int W = raster_pkg::SAMPLE_EDGE_BITS - 1;'))),
     Proof('fine_raster_samples', 'a, e', 'stages/fine_raster.sv', 'every sample is covered as the closed form says; no sum '
           'overflows', is_combinational=True, twins=(24, ('.step_x_i (step_x)', '.step_x_i (step_y)'),
-          ('.value_i  (row_value)', '.value_i  (row_value + W\'(1))'))),
+          ('(row_value + place_q[k*W+:W])', '(row_value + place_q[k*W+:W] + W\'(1))'))),
     Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
-          cuts=SRAMS, twins=(('assign from   = returns ?', 'assign from   = 1\'b0 ?'), ("best_q  <= (TE'(best) <<< TS) - TE'(best);", "best_q  <= TE'(best) <<< TS;"))),
+          cuts=SRAMS, twins=(('assign from   = returns ?', 'assign from   = 1\'b0 ?'), ("best_q  <= (TE'(best) <<< TS) - TE'(best) + TE'(reach);", "best_q  <= TE'(best) <<< TS;"))),
     Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
           is_combinational=True, twins=(27, 29)),
     Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',
@@ -118,9 +118,10 @@ PROOFS = [
           quick=TINY, twins=(1, 5), cuts=MULTIPLIERS),
     Proof('coarse_raster_reject', 'c, e', 'stages/coarse_raster.sv', 'outside, inside and the saturated value, wherever in '
           'the tile', is_combinational=True,
-          cuts=SRAMS, quick=TINY, twins=(14, ('largest < 0', 'largest < 1'), ('smallest >= 0', 'smallest >= -1'))),
+          cuts=SRAMS, quick=TINY, twins=(14, ('largest[V]', "largest[V] || largest == '0"),
+                                                 ('!smallest[V]', "!smallest[V] || smallest == '1"))),
     Proof('coarse_raster_corners', 'c, e', 'stages/coarse_raster.sv', 'every sample lies between the corners that are looked at',
-          is_combinational=True, cuts=SRAMS, quick=TINY, twins=(('assign best  = (dx > 0', 'assign best  = (dx < 0'),)),
+          is_combinational=True, cuts=SRAMS, quick=TINY, twins=(("assign best  = (dx[D-1] ? '0", "assign best  = (!dx[D-1] ? '0"),)),
     Proof('hiz_bound', 'd', 'stages/hiz.sv', 'a verdict knows the visits up to n - lag, exactly; what could pass is not '
           'rejected', presets=('embedded',), cuts=SRAMS, inputs='hiz_visits', twins=HIZ_TWINS, cover_depth=6),
     Proof('hiz_bound_lag_4', 'd', 'stages/hiz.sv', 'the same with hiz.lag=4', file='hiz_bound',
@@ -161,7 +162,7 @@ PROOFS = [
           twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
     Proof('registered_fifo_stream', 'f', 'lib/registered_fifo.sv', 'the same, the item on offer in a register', k=2, cover_depth=9,
           quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)), cuts=('*fifo*',),
-          twins=(402, ("used_q != USED'(DEPTH)", "used_q != '1"), ('if (is_free) data_o', 'if (ready_i) data_o'))),
+          twins=(402, ("used_q != USED'(DEPTH)", "used_q != '1"), ('if (is_free) offered_q', 'if (ready_i) offered_q'))),
     Proof('texture_levels_place', 'e', 'stages/texture_levels.sv', 'a level begins where the larger ones end, and its blocks lie '
           'below that', presets=TINY, parameters=(('TAIL', 2),), cover_depth=6,
           twins=(("(21'h155555 << new_odds)", "21'h155555"), ("(21'h1ffffe << blocks)", "(21'h1fffff << blocks)"),

@@ -29,15 +29,15 @@
         assert ($unsigned(gen_plane[k].x_value) == sum(anchor, from_middle_x, step_x_0));
         assert ($unsigned(gen_plane[k].y_value) == sum(gen_plane[k].x_value_q, from_middle_y, step_y_1));
       end
-      for (n = 0; n < SAMPLES; n++) begin : gen_proof_sample
+      for (n = 0; n < PIXELS; n++) begin : gen_proof_pixel
         logic [N-1:0] at_sample;
         logic [B-1:0] floored;
         assign at_sample = gen_plane[k].y_value_q + (((n / STAMP) & 2) ? step_y_2 << 1 : '0) +
                            (((n / STAMP) & 1) ? step_y_2 : '0) + (((n % STAMP) & 2) ? step_x_2 << 1 : '0) +
                            (((n % STAMP) & 1) ? step_x_2 : '0);
-        assign floored = B'(gen_plane[k].gen_sample[n].value_q >> L) - (B'(1) << (B - 1));
+        assign floored = B'(gen_plane[k].gen_pixel[n].value_q >> L) - (B'(1) << (B - 1));
         always_comb begin
-          assert ($unsigned(gen_plane[k].gen_sample[n].value) == at_sample);
+          assert ($unsigned(gen_plane[k].gen_pixel[n].value) == at_sample);
           assert (code[n*CODES+CODE+:B] == floored);
         end
       end
