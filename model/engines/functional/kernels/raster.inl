@@ -183,7 +183,8 @@ HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, cons
 /// Records of one slice that are drawn the same way.
 HALFPLANE_INLINE void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                    const std::uint32_t* last) {
-  if (bin.samples > 1) {
+  // Blocks of small triangles with several samples a pixel lay nothing over, and do not put colours off.
+  if (bin.samples > 1 && (bin.has_operations || bin.sees_surfaces())) {
     if (bin.state.depth_test == DepthFunc::less)
       return draw_records_in_order<OpaqueFragments<true>>(bin, slice, first, last);
     return draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
