@@ -167,7 +167,7 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
   const SmallBatch& batch = bin.small;
   const SliceState state = bin.state;
   const LanePositions& position = bin.position;
-  SampleMemory& memory = SampleMemory::of_thread();
+  SampleMemory& memory = bin.sample_memory;
   const Test test(bin, memory);
   std::uint32_t* const colors = memory.color[0];
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
