@@ -10,6 +10,7 @@
 #include "model/engines/scalar.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/scene/builtin.hpp"
+#include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/stress/unit.hpp"
 
@@ -106,6 +107,59 @@ TEST(FunctionalSamples, RandomScenesAreTheScalarEngines) {
       if (HasFatalFailure()) return;
     }
   EXPECT_GT(drawn, 100U);
+}
+
+/// Draws of many triangles of about so many pixels, slivers among them, one or two large ones in between, each draw with
+/// another depth test and other writes: what is set up sixteen at a time, and tiles that are whole, split and whole again.
+Scene small_triangles(std::uint64_t seed, double size) {
+  constexpr int kWidth = 150, kHeight = 140, kDraws = 8, kOfDraw = 70;
+  Scene scene = cleared_scene(kWidth, kHeight);
+  stress::Random random(seed);
+  const auto add_triangle = [&](double side, bool is_sliver) {
+    const double x = random.between(0, kWidth), y = random.between(0, kHeight), z = random.between(-0.9, 0.9);
+    for (int corner = 0; corner < 3; ++corner) {
+      const double thin = is_sliver ? 0.02 : 1, along = random.between(-side, side),
+                   aside = random.between(-side, side);
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+      scene.vertices.push_back({2 * (x + along) / kWidth - 1,
+                                2 * (y + (is_sliver ? along / 3 : 0) + thin * aside) / kHeight - 1,
+                                z + random.between(-0.1, 0.1),
+                                1,
+                                {random.between(0, 255), random.between(0, 255), random.between(0, 255), 255},
+                                0,
+                                0});
+    }
+  };
+  for (int draw = 0; draw < kDraws; ++draw) {
+    State state;
+    if (draw >= kDraws / 2) state.depth_test = static_cast<DepthFunc>(random.index(8));
+    state.depth_write = random.index(4) != 0;
+    state.color_write = random.index(4) != 0;
+    if (random.index(3) == 0) state.sample_mask = static_cast<std::uint32_t>(random.index(256));
+    if (random.index(4) == 0) state.shade = Shade::flat;
+    const auto number = static_cast<std::uint32_t>(scene.states.size());
+    scene.states.push_back(state);
+    const std::size_t first = scene.indices.size();
+    for (int i = 0; i < kOfDraw; ++i) add_triangle(i % 23 == 22 ? 80 : size, i % 7 == 6);
+    scene.commands.push_back(Draw{number, 0, Topology::triangles, first, scene.indices.size() - first, 0});
+  }
+  validate(scene);
+  return scene;
+}
+
+TEST(FunctionalSamples, SmallTrianglesAreTheScalarEngines) {
+  std::vector<Config> configs;
+  for (const char* name : {"embedded", "full"})
+    for (const int samples : {2, 4, 8}) configs.push_back(sampled(name, samples));
+  configs.push_back(sampled("embedded", 4, "0.5,0.5;0.0078125,0.25;0.25,0.9921875;0.75,0.75"));
+  configs.push_back(sampled("full", 2, "0,0;0.99609375,0.99609375"));
+  std::uint64_t seed = 1;
+  for (const Config& config : configs)
+    for (const double size : {0.7, 2.0, 5.0, 9.0}) {
+      SCOPED_TRACE(std::to_string(config.msaa_samples) + " samples, seed " + std::to_string(seed));
+      expect_scalar_bits(small_triangles(seed++, size), config);
+      if (HasFatalFailure()) return;
+    }
 }
 
 TEST(FunctionalSamples, BuiltInScenesAreTheScalarEngines) {

@@ -12,7 +12,9 @@ namespace {
 #include "kernels/project.inl"          // vertices: viewport, snap, codes
 #include "kernels/cull.inl"             // triangles to records
 #include "kernels/cull_lines.inl"       // lines to records
-#include "kernels/small_setup.inl"      // sixteen small triangles through triangle_setup
+#include "kernels/small_batch.inl"      // sixteen small triangles: records, corners, edges
+#include "kernels/small_setup.inl"      // their planes
+#include "kernels/small_samples.inl"    // and what these gain from centres to samples
 #include "kernels/line_setup.inl"       // sixteen lines through line_setup
 #include "kernels/bin.inl"              // the state of a bin
 #include "kernels/values.inl"           // depths and colours of a tile
@@ -31,6 +33,7 @@ namespace {
 #include "kernels/small.inl"            // and blocks
 #include "kernels/tiles.inl"            // large triangles: tiles
 #include "kernels/multisample.inl"      // the same where pixels have several samples
+#include "kernels/sampled_blocks.inl"   // blocks of small triangles where they have
 #include "kernels/lines.inl"            // pixels of lines
 #include "kernels/general.inl"          // fragments one by one
 #include "kernels/finish.inl"           // the end of a bin

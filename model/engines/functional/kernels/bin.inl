@@ -119,6 +119,18 @@ struct BinMemory {
   }
 };
 
+/// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
+struct SampleMemory {
+  alignas(64) std::int32_t depth[kMaxPixelSamples][kBinSize * kBinSize];
+  alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinSize * kBinSize];
+  alignas(64) std::uint32_t color[kMaxPixelSamples][kBinSize * kBinSize];
+
+  static SampleMemory& of_thread() {
+    static thread_local SampleMemory memory;
+    return memory;
+  }
+};
+
 struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
@@ -147,7 +159,8 @@ struct Bin {
         range_bits_dropped(range_drop(config)),
         tile_low(job.tiles.z_low.data() + std::ptrdiff_t{job.bin} * kTiles),
         tile_high(job.tiles.z_high.data() + std::ptrdiff_t{job.bin} * kTiles),
-        memory(BinMemory::of_thread()) {
+        memory(BinMemory::of_thread()),
+        sample_memory(SampleMemory::of_thread()) {
     const std::uint8_t* pending = job.tiles.pending.data() + std::ptrdiff_t{job.bin} * kTiles;
     for (int t = 0; t < kTiles; ++t) {
       depth_owner[t] = (pending[t] & TileStates::kDepthCleared) != 0 ? kCleared : kInTarget;
@@ -174,6 +187,7 @@ struct Bin {
   int range_bits_dropped;
   std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
+  SampleMemory& sample_memory;  ///< not of_thread() in a loop: it is a call, for all that the compiler knows
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
   // Of the primitive at work, once its alpha has been looked at:

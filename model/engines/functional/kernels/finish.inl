@@ -107,7 +107,7 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
 
 /// The mean of the samples' colours: mean_color().
 HALFPLANE_INLINE I16 mean_colors(const Bin& bin, std::size_t at) {
-  const std::uint32_t(*const colors)[kBinSize * kBinSize] = SampleMemory::of_thread().color;
+  const std::uint32_t(*const colors)[kBinSize * kBinSize] = bin.sample_memory.color;
   const bool is_short = bin.config.color_format == ColorFormat::rgb565;
   // Two sums a lane: of red and blue, of green and alpha.
   const int apart = is_short ? 11 : 16, down = is_short ? 5 : 8, log = std::countr_zero(bin.samples);
@@ -137,7 +137,7 @@ HALFPLANE_INLINE TileBlocks sample_colors(const Bin& bin, int tile, unsigned k) 
   }
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t at = static_cast<std::size_t>(first_of(tile)) + kBlockPixels * i;
-    blocks[i] = k == kResolved ? mean_colors(bin, at) : I16::load(SampleMemory::of_thread().color[k] + at);
+    blocks[i] = k == kResolved ? mean_colors(bin, at) : I16::load(bin.sample_memory.color[k] + at);
   }
   return blocks;
 }

@@ -132,6 +132,17 @@ HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
 #endif
 }
 
+/// One bit for each lane with a <= b.
+HALFPLANE_INLINE std::uint64_t bits_at_most(const S64& a, std::int16_t b) {
+#if HALFPLANE_ISA == 512
+  const __m512i most = _mm512_set1_epi16(b);
+  return _mm512_cmple_epi16_mask((__m512i)a.part[0], most) |
+         std::uint64_t{_mm512_cmple_epi16_mask((__m512i)a.part[1], most)} << 32;
+#else
+  return ~bits_of(a > b);
+#endif
+}
+
 /// The other way round: a mask.
 HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
   S64 r;

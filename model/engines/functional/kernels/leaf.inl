@@ -68,6 +68,12 @@ HALFPLANE_INLINE Lanes block_plane(const Lanes& column, const Lanes& row, const 
 /// Two channels in the halves of a lane: red and blue, green and alpha.
 using ChannelPairs = std::array<std::int32_t, 2>;
 
+/// Of each half by itself.
+HALFPLANE_INLINE std::int32_t sum_of_pairs(std::int32_t a, std::int32_t b) {
+  const auto first = static_cast<std::uint32_t>(a), second = static_cast<std::uint32_t>(b);
+  return static_cast<std::int32_t>(((first + second) & 0xffff) | ((first & 0xffff0000) + (second & 0xffff0000)));
+}
+
 /// The codes of values in lanes, clamped to those of the vertices.
 HALFPLANE_INLINE I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
   return min(max(shift_right_logical(value, format.down) - format.bias, low), high);

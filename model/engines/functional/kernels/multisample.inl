@@ -83,7 +83,7 @@ HALFPLANE_NOINLINE void need_sample_colors(Bin& bin, int tile) {
   if (bin.color_owner[tile] != Bin::kInTarget) return need_color(bin, tile);
   for (unsigned k = 0; k < bin.samples; ++k) {
     const TileBlocks blocks = fetched(bin, tile, false, 0, bin.job.target.samples[k].color);
-    std::uint32_t* const to = SampleMemory::of_thread().color[k] + first_of(tile);
+    std::uint32_t* const to = bin.sample_memory.color[k] + first_of(tile);
     for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
   }
   bin.color_owner[tile] = Bin::kInMemory;
@@ -96,7 +96,7 @@ HALFPLANE_NOINLINE void split_tile(Bin& bin, int tile) {
   const std::uint32_t* const from = bin.memory.color.data() + first_of(tile);
   for (unsigned k = 0; k < bin.samples; ++k)
     for (std::size_t i = 0; i < 4; ++i)
-      I16::load(from + kBlockPixels * i).store(SampleMemory::of_thread().color[k] + first_of(tile) + kBlockPixels * i);
+      I16::load(from + kBlockPixels * i).store(bin.sample_memory.color[k] + first_of(tile) + kBlockPixels * i);
   bin.split |= std::uint64_t{1} << tile;
 }
 
@@ -133,30 +133,45 @@ struct SampledTriangle {
   const BinTriangle& t;
   const SeveralSamples& at;
   const TileConstants constants;
-  std::array<std::int32_t, kMaxPixelSamples> surface{};  ///< its number where a sample shades; 0: none yet
+  std::array<std::int32_t, kMaxPixelSamples> surface{};   ///< its number where a sample shades; 0: none yet
+  std::array<ChannelPairs, kMaxPixelSamples> color_gain;  ///< from the centre to each sample: once somebody asks
+  bool has_gains = false;
 
   HALFPLANE_INLINE SampledTriangle(Bin& bin_, const Slice& slice_, const Record& record_, const BinTriangle& t_,
                                    const SeveralSamples& at_)
       : bin(bin_), slice(slice_), record(record_), t(t_), at(at_), constants(bin_, t_) {}
 
-  /// False where nothing is covered.
+  /// Takes the pixels outside an edge out of what is covered. `smallest`: its value at the centre where it is least.
+  HALFPLANE_INLINE void leave_out(std::size_t e, std::int32_t smallest, SamplePixels& pixels) const {
+    const std::int32_t below = constants.below[e], to_first = constants.to_smallest[e];
+    // As in outside_edges().
+    const auto first = [&](std::int32_t moved)
+                           HALFPLANE_LAMBDA { return std::min(std::max(smallest + moved, below), 0) - to_first; };
+    const auto each = [&](auto&& outside) HALFPLANE_LAMBDA {
+      pixels.centre &= ~outside(first(0));
+      for (unsigned k = 0; k < bin.samples; ++k) pixels.covered[k] &= ~outside(first(at.edge[k][e]));
+    };
+    if (constants.is_steep)
+      return each([&](std::int32_t from) HALFPLANE_LAMBDA { return bits_of(constants.steep_edges[e](from)); });
+    const S64 ramp = constants.edges[e](0);
+    each([&](std::int32_t from) HALFPLANE_LAMBDA { return bits_at_most(ramp, static_cast<std::int16_t>(~from)); });
+  }
+
+  /// False where nothing is covered. Mostly one edge cuts a tile: the others are not looked at.
   HALFPLANE_INLINE bool cover(int tile, bool is_full, SamplePixels& pixels) const {
-    if (is_full) {
-      pixels.covered.fill(~std::uint64_t{0});
-      return true;
-    }
+    std::uint64_t in_box = ~std::uint64_t{0};
     const int x = tile % kBinTiles, y = tile / kBinTiles;
-    S64 out(0);
-    if (!constants.is_whole) out = outside_box(bin, t.box, x, y);
-    const std::uint64_t in_box = ~bits_of(out);
+    if (!is_full && !constants.is_whole) in_box = ~bits_of(outside_box(bin, t.box, x, y));
+    pixels.centre = in_box;
+    for (unsigned k = 0; k < bin.samples; ++k) pixels.covered[k] = in_box;
+    if (is_full) return true;
+    const EdgeWords smallest = constants.edge + constants.to_smallest + (y * constants.tile_dx - x * constants.tile_dy);
+    const auto at_centre = stored(smallest), at_least = stored(smallest + at.edge_least);
+    for (std::size_t e = 0; e < 3; ++e)
+      if (at_least[e] < 0) leave_out(e, at_centre[e], pixels);
     std::uint64_t any = 0;
-    for (unsigned k = 0; k < bin.samples; ++k) {
-      pixels.covered[k] = in_box & ~bits_of(outside_edges(constants, x, y, at.edge[k]));
-      any |= pixels.covered[k];
-    }
-    if (any == 0) return false;
-    pixels.centre = in_box & ~bits_of(outside_edges(constants, x, y, EdgeWords{}));
-    return true;
+    for (unsigned k = 0; k < bin.samples; ++k) any |= pixels.covered[k];
+    return any != 0;
   }
 
   template <class Fragments>
@@ -164,17 +179,19 @@ struct SampledTriangle {
     need_sample_depths(bin, tile);
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
     const auto first = static_cast<std::size_t>(first_of(tile));
-    SampleMemory& memory = SampleMemory::of_thread();
     const bool writes = bin.state.depth_write;
     if (constants.is_narrow) {
+      std::uint16_t* const depths = bin.sample_memory.narrow_depth[0] + first;
+      const DepthLanes limits(constants.z_low, constants.z_high, constants.middle);
+      const unsigned samples = bin.samples;
       U64 low(0xffff), high(0);
-      for (unsigned k = 0; k < bin.samples; ++k) {
-        std::uint16_t* const to = memory.narrow_depth[k] + first;
+      for (unsigned k = 0; k < samples; ++k) {
+        std::uint16_t* const to = depths + k * std::size_t{kBinSize * kBinSize};
         const U64 stored = U64::load(to);
         U64 now = stored;
         if ((at.drawn >> k & 1) != 0) {
-          const TestedTile result =
-              tested<Fragments>(bin, constants, wrapped_sum(anchor, at.depth[k]), ~lanes_of(pixels.covered[k]), stored);
+          const TestedTile result = tested<Fragments>(bin, constants, limits, wrapped_sum(anchor, at.depth[k]),
+                                                      ~lanes_of(pixels.covered[k]), stored);
           pixels.passed[k] = result.passed;
           now = result.now;
           if (writes && result.passed != 0) now.store(to);
@@ -220,35 +237,63 @@ struct SampledTriangle {
     if (surface[m] == 0) surface[m] = add_surface(bin, slice, record, static_cast<int>(m));
     return surface[m];
   }
-  HALFPLANE_INLINE ChannelPairs anchor_at(unsigned m, int tile) const {
-    BinTriangle moved = t;
-    move_colors(bin, m, moved);
-    return color_anchor(bin, moved, tile % kBinTiles, tile / kBinTiles);
+  HALFPLANE_INLINE ChannelPairs anchor_of(int tile) const {
+    return color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
+  }
+  HALFPLANE_INLINE const ChannelPairs& gain_at(unsigned m) {
+    if (!has_gains)
+      for (unsigned k = 0; k < bin.samples; ++k) color_gain[k] = color_at_sample(bin, t, k);
+    has_gains = true;
+    return color_gain[m];
+  }
+  HALFPLANE_INLINE ChannelPairs anchor_at(unsigned m, int tile) {
+    const ChannelPairs centre = anchor_of(tile), gain = gain_at(m);
+    return {sum_of_pairs(centre[0], gain[0]), sum_of_pairs(centre[1], gain[1])};
   }
 
-  /// Colours of all pixels with a sample that has passed.
+  /// Colours of a block's pixels with a sample that has passed, `any` of them. `plane`: at the centres.
+  HALFPLANE_INLINE I16 colors_of_block(const ColorRamp& plane, const SamplePixels& pixels, std::size_t block,
+                                       std::uint32_t any, ColorFormat format) {
+    I16 color = block_colors(t.color, plane, block, bin.color_format, format);
+    std::uint32_t rest = any & ~block_bits(pixels.centre, block);
+    for (unsigned m = 0; rest != 0 && m < bin.samples; ++m) {
+      const std::uint32_t here = rest & block_bits(pixels.covered[m], block);
+      if (here == 0) continue;
+      rest &= ~here;
+      const ChannelPairs& gain = gain_at(m);
+      const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
+        return color_codes(plane[p](block) + as<S32>(I16(gain[p])), I16(t.color.low[p]), I16(t.color.high[p]),
+                           bin.color_format);
+      };
+      color = select_by_bits(here, packed(pair(0), pair(1), format), color, bin.position.to_sign);
+    }
+    return color;
+  }
+
+  /// Colours of all pixels with a sample that has passed, of a surface or of planes.
   HALFPLANE_NOINLINE void find_colors(int tile, const SamplePixels& pixels, ColorFormat format, PixelColors& colors) {
-    const auto set = [&](std::int32_t number, auto&& anchor, std::uint64_t here) HALFPLANE_LAMBDA {
-      if (t.surface != 0)
-        return shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, here, colors.code.data(), format);
-      const ColorRamp plane = color_ramp(bin, t.color, anchor());
-      for_each_block([&](auto block) HALFPLANE_LAMBDA {
-        const std::uint32_t bits = block_bits(here, block);
-        std::uint32_t* const to = colors.code.data() + block * kBlockPixels;
-        if (bits == 0) return;
-        select_by_bits(bits, block_colors(t.color, plane, block, bin.color_format, format), I16::load(to),
-                       bin.position.to_sign)
-            .store(to);
-      });
-    };
-    if ((pixels.any & pixels.centre) != 0)
-      set(
-          t.surface, [&] { return color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles); },
-          pixels.any & pixels.centre);
-    for_each_place(pixels, [&](unsigned m, std::uint64_t here) {
-      set(
-          t.surface != 0 ? surface_at(m) : 0, [&] { return anchor_at(m, tile); }, here);
+    if (t.surface != 0) {
+      const auto set = [&](std::int32_t number, std::uint64_t here) {
+        shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, here, colors.code.data(), format);
+      };
+      if ((pixels.any & pixels.centre) != 0) set(t.surface, pixels.any & pixels.centre);
+      return for_each_place(pixels, [&](unsigned m, std::uint64_t here) { set(surface_at(m), here); });
+    }
+    const ColorRamp plane = color_ramp(bin, t.color, anchor_of(tile));
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      const std::uint32_t any = block_bits(pixels.any, block);
+      if (any != 0) colors_of_block(plane, pixels, block, any, format).store(colors.code.data() + block * kBlockPixels);
     });
+  }
+
+  /// Colours of a block to the samples that have passed.
+  HALFPLANE_INLINE void store_samples(int tile, const SamplePixels& pixels, std::size_t block, const I16& color) const {
+    std::uint32_t* const to = bin.sample_memory.color[0] + first_of(tile) + block * kBlockPixels;
+    for (unsigned k = 0; k < bin.samples; ++k) {
+      std::uint32_t* const at_sample = to + k * std::size_t{kBinSize * kBinSize};
+      select_by_bits(block_bits(pixels.passed[k], block), color, I16::load(at_sample), bin.position.to_sign)
+          .store(at_sample);
+    }
   }
 
   /// Whether the pixels of a tile have one colour each, before and after; what is all covered is so in any case.
@@ -267,22 +312,27 @@ struct SampledTriangle {
         for_each_place(pixels, [&](unsigned m, std::uint64_t here) { see(bin, surface_at(m), tile, here); });
         return;
       }
-      if (centre != 0) color_tile(bin, t, tile, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles), centre);
+      if (centre != 0) color_tile(bin, t, tile, anchor_of(tile), centre);
       for_each_place(pixels,
                      [&](unsigned m, std::uint64_t here) { color_tile(bin, t, tile, anchor_at(m, tile), here); });
       return;
     }
-    PixelColors colors;
-    find_colors(tile, pixels, bin.config.color_format, colors);
     split_tile(bin, tile);
-    for (unsigned k = 0; k < bin.samples; ++k)
+    if (t.surface != 0) {
+      PixelColors colors;
+      find_colors(tile, pixels, bin.config.color_format, colors);
       for_each_block([&](auto block) HALFPLANE_LAMBDA {
-        const std::uint32_t bits = block_bits(pixels.passed[k], block);
-        if (bits == 0) return;
-        std::uint32_t* const to = SampleMemory::of_thread().color[k] + first_of(tile) + block * kBlockPixels;
-        select_by_bits(bits, I16::load(colors.code.data() + block * kBlockPixels), I16::load(to), bin.position.to_sign)
-            .store(to);
+        if (block_bits(pixels.any, block) != 0)
+          store_samples(tile, pixels, block, I16::load(colors.code.data() + block * kBlockPixels));
       });
+      return;
+    }
+    const ColorRamp plane = color_ramp(bin, t.color, anchor_of(tile));
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      const std::uint32_t any = block_bits(pixels.any, block);
+      if (any != 0)
+        store_samples(tile, pixels, block, colors_of_block(plane, pixels, block, any, bin.config.color_format));
+    });
   }
 
   /// Depths of what has passed every test.
@@ -331,7 +381,7 @@ struct SampledTriangle {
     split_tile(bin, tile);
     for (unsigned k = 0; k < bin.samples; ++k)
       if (pixels.passed[k] != 0)
-        store_colors(bin, SampleMemory::of_thread().color[k] + first_of(tile), pixels.passed[k], colors);
+        store_colors(bin, bin.sample_memory.color[k] + first_of(tile), pixels.passed[k], colors);
   }
 
   template <class Fragments>

@@ -152,11 +152,11 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     const BinBounds box = box_of(bin, record);
     const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
     if (live == 0) continue;
-    // A batch pays for medium triangles from the third in a row on.
-    constexpr int kAlone = 2;
+    // A batch pays for medium triangles from the third in a row on; with several samples, where tiles cost more, always.
+    const int most_alone = bin.samples > 1 ? 0 : 2;
     const bool is_medium = record.has(Record::kMedium);
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
-    if (!is_medium || bin.small_run <= kAlone)
+    if (!is_medium || bin.small_run <= most_alone)
       draw_alone<Fragments>(bin, slice, record, box, live);
     else
       add_medium<Fragments>(bin, slice, record, box);
@@ -183,7 +183,8 @@ HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, cons
 /// Records of one slice that are drawn the same way.
 HALFPLANE_INLINE void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                    const std::uint32_t* last) {
-  if (bin.samples > 1) {
+  // Blocks of small triangles with several samples a pixel lay nothing over, and do not put colours off.
+  if (bin.samples > 1 && (bin.has_operations || bin.sees_surfaces())) {
     if (bin.state.depth_test == DepthFunc::less)
       return draw_records_in_order<OpaqueFragments<true>>(bin, slice, first, last);
     return draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);

@@ -143,30 +143,61 @@ HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t quads, Coverage
   covered.quads = at;
   covered.pixels = pixels;
 }
-/// Triangle by triangle.
-HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
+/// The quads that boxes touch: four bits for each lane.
+HALFPLANE_INLINE std::uint64_t live_quads(const Bin& bin) {
   const I16 columns_rows = I16::load(bin.small.columns_rows.data());
   // A second column of quads, a second row, and what both make.
   const I16 aside = shift_right_logical(columns_rows, 1) & 1, below = shift_right_logical(columns_rows, 3);
   const I16 is_live = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(bin.small.live)) != 0;
-  const std::uint64_t quads = nibbles_of(((aside << 1) + 1) * ((below << 2) + 1) & is_live);
+  return nibbles_of(((aside << 1) + 1) * ((below << 2) + 1) & is_live);
+}
+/// Triangle by triangle.
+HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
+  const std::uint64_t quads = live_quads(bin);
   bin.has_short_edges ? find_covered<true>(bin, quads, covered) : find_covered<false>(bin, quads, covered);
   bin.job.counters.samples_tested += Quad::kBlocks * kBlockPixels * static_cast<unsigned>(covered.quads);
 }
 
-/// A block's depths in lanes of 32 bits, centred, while they are tested.
+/// Of the pixels of a bin, or of their first samples.
+template <class Depth, std::size_t N>
+HALFPLANE_INLINE Depth* first_depth(std::array<Depth, N>& pixels) {
+  return pixels.data();
+}
+template <class Depth, std::size_t N>
+HALFPLANE_INLINE Depth* first_depth(Depth (*samples)[N]) {
+  return samples[0];
+}
+
+/// A block's depths in lanes of 32 bits, centred, while they are tested. `Memory`: BinMemory or SampleMemory.
 struct WideTest {
   static constexpr unsigned kCount = 1;  ///< what count() says of a pixel
-  Bin& bin;
+  const Bin& bin;
   std::int32_t bias;
+  bool is_narrow;
+  std::uint16_t* narrow;
+  std::int32_t* wide;
 
-  HALFPLANE_INLINE explicit WideTest(Bin& bin_) : bin(bin_), bias(bin_.depth_format.bias) {}
+  template <class Memory>
+  HALFPLANE_INLINE WideTest(const Bin& bin_, Memory& memory)
+      : bin(bin_),
+        bias(bin_.depth_format.bias),
+        is_narrow(bin_.is_narrow),
+        narrow(first_depth(memory.narrow_depth)),
+        wide(first_depth(memory.depth)) {}
   HALFPLANE_INLINE static I16 codes(const I16& code, std::int32_t low, std::int32_t high) {
     return min(max(code, I16(low)), I16(high));
   }
-  HALFPLANE_INLINE I16 load(std::size_t at) const { return load_depths(bin, at) - bias; }
-  HALFPLANE_INLINE void store(std::size_t at, const I16& depth) const { store_depths(bin, at, depth + bias); }
+  HALFPLANE_INLINE I16 load(std::size_t at) const {
+    return (is_narrow ? load_narrow(narrow + at) : I16::load(wide + at)) - bias;
+  }
+  HALFPLANE_INLINE void store(std::size_t at, const I16& depth) const {
+    if (is_narrow)
+      store_narrow(depth + bias, narrow + at);
+    else
+      (depth + bias).store(wide + at);
+  }
 #if HALFPLANE_ISA == 512
+  using Passed = std::uint32_t;
   /// What is covered and passes: a bit a pixel.
   template <class Fragments>
   HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const I16& depth,
@@ -179,6 +210,7 @@ struct WideTest {
     return select_by_bits(pixels, a, b, bin.position.to_sign);
   }
 #else
+  using Passed = I16;
   /// What is covered and passes: the signs of lanes.
   template <class Fragments>
   HALFPLANE_INLINE I16 passed(const SliceState& state, std::uint32_t covered, const I16& depth,
@@ -204,11 +236,13 @@ using NarrowTest = WideTest;
 /// The same in 16 bits, which are half as many registers: for depths that the bin keeps in as many.
 struct NarrowTest {
   static constexpr unsigned kCount = kCountOfLane;
+  using Passed = S16;
   std::uint16_t* depths;
   std::int16_t bias;
 
-  HALFPLANE_INLINE explicit NarrowTest(Bin& bin)
-      : depths(bin.memory.narrow_depth.data()), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
+  template <class Memory>
+  HALFPLANE_INLINE NarrowTest(const Bin& bin, Memory& memory)
+      : depths(first_depth(memory.narrow_depth)), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
   /// `low`, `high`: in both halves.
   HALFPLANE_INLINE static S16 codes(const I16& code, std::int32_t low, std::int32_t high) {
     return min(max(saturated(code), repeated<S16>(low)), repeated<S16>(high));
@@ -271,7 +305,7 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   const SmallBatch& batch = bin.small;
   const SliceState state = bin.state;
   const LanePositions& position = bin.position;
-  const Test test(bin);
+  const Test test(bin, bin.memory);
   std::uint32_t* const colors = bin.memory.color.data();
   std::uint16_t* const surfaces = bin.memory.surface.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
@@ -324,9 +358,14 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
                         : draw_blocks<Fragments, Test, false>(bin, covered);
 }
 
+/// The same where pixels have several samples: sampled_blocks.inl.
+template <class Fragments>
+HALFPLANE_NOINLINE void draw_sampled_batch(Bin& bin, const Slice& slice);
+
 /// Draws a batch whose records are loaded.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
+  if (bin.samples > 1) return draw_sampled_batch<Fragments>(bin, slice);
   bin.line_tiles = 0;
   if (bin.sees_surfaces()) add_surfaces(bin, slice);
   const std::uint64_t tiles = batch_tiles(bin);
@@ -339,9 +378,10 @@ HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
     bin.is_narrow ? draw_samples<Fragments>(bin, rounds, bin.memory.narrow_depth.data())
                   : draw_samples<Fragments>(bin, rounds, bin.memory.depth.data());
   } else {
-    (is_short ? set_up_small<ShortArithmetic> : set_up_small<LongArithmetic>)(bin.small, slice, bin.widths,
-                                                                              bin.centred_depth, bin.centred_color,
-                                                                              bin.first_x, bin.first_y);
+    OnlyCentres centres;
+    (is_short ? set_up_small<ShortArithmetic, OnlyCentres>
+              : set_up_small<LongArithmetic, OnlyCentres>)(bin.small, slice, bin.widths, bin.centred_depth,
+                                                           bin.centred_color, bin.first_x, bin.first_y, centres);
     is_changed = touch_tiles<Fragments>(bin, tiles);
     Coverage covered;
     find_covered(bin, covered);

@@ -1,195 +1,5 @@
-// Sixteen small or medium triangles at a time through triangle_setup: the same integers, a triangle a lane.
+// Planes of sixteen small or medium triangles at a time, as triangle_setup has them: the same integers, a triangle a lane.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
-
-/// Two by two blocks in lanes of 16 bits.
-struct Quad {
-  static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
-  using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;  ///< a block, or two side by side
-  std::array<Part, static_cast<std::size_t>(kParts)> part;
-
-  /// A bit for each lane whose sign is set, block after block.
-  [[nodiscard]] HALFPLANE_INLINE std::uint64_t bits() const {
-#if HALFPLANE_ISA == 512
-    return bits_of(part[0]) | std::uint64_t{bits_of(part[1])} << 32;
-#else
-    return bits_of(part[0], part[1]) | std::uint64_t{bits_of(part[2], part[3])} << 32;
-#endif
-  }
-};
-
-/// Triangles of a slice that wait, as much of each as lies in a window of two by two tiles; and after set_up_small() their
-/// constants: fields of lanes, one for each.
-struct SmallBatch {
-  using Lane = std::array<std::int32_t, 16>;
-  template <std::size_t N>
-  using LaneArray = std::array<Lane, N>;
-  using FourChannels = std::array<std::uint64_t, 16>;  ///< of each lane, 16 bits a channel
-  static constexpr std::size_t kTiles = kSmallTiles * kSmallTiles;
-
-  int count = 0;
-  std::array<const Record*, 16> records;
-  alignas(64) Lane window{};  ///< from the box's first tile to the window's, pixels: column low, row high
-  bool has_samples = true;    ///< of all of them it is known which few they cover
-
-  alignas(64) LaneArray<3> corner;            ///< bytes from the slice's first vertex
-  std::uint32_t live = 0;                     ///< lanes that draw something in this bin
-  alignas(64) Lane left, top, right, bottom;  ///< of the part of a box that lies in the window, pixels of the bin
-  alignas(64) Lane samples;                   ///< Record::samples() of the part of its box that lies in the bin
-
-  alignas(64) LaneArray<3> edge;                    ///< at the first pixel of the first quad
-  alignas(64) LaneArray<3> edge_x, edge_y;          ///< from pixel to pixel
-  alignas(64) LaneArray<3> edge_aside, edge_below;  ///< from block to block; all in both halves where 16 bits hold them
-  alignas(64) Lane first_block;                     ///< of the first quad, among the four by four of the window
-  alignas(64) Lane columns_rows;                    ///< of blocks, less 1: two bits each
-  alignas(64) Lane place;                           ///< of the window's first tile in the bin's memory
-  /// Planes at the anchors of the window's tiles, centred; of colours 16 bits a channel.
-  struct alignas(256) Tile {
-    Lane depth;
-    FourChannels color;
-  };
-  std::array<Tile, kTiles> tile;
-  alignas(64) Lane z_step_x, z_step_y, z_step_below;  ///< the last of block_rows<I16> rows
-  alignas(64) Lane z_low, z_high;                     ///< centred, in both halves where 16 bits do
-  alignas(64) FourChannels c_step_x, c_step_y;
-  alignas(64) Lane c_low, c_high;  ///< a byte a channel, R lowest
-
-  /// True when that was the last for which there is room.
-  HALFPLANE_INLINE bool add(const Record& record, std::int32_t at_window) {
-    records[static_cast<std::size_t>(count)] = &record;
-    window[static_cast<std::size_t>(count)] = at_window;
-    return ++count == 16;
-  }
-};
-
-/// Four words of each record that waits, from word `from` on.
-HALFPLANE_INLINE Columns words_of(const SmallBatch& batch, int from) {
-  return turned_rows([&batch, from](int i) HALFPLANE_LAMBDA {
-    return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + from;
-  });
-}
-
-/// What a batch keeps of its records, whose words these are; live.
-HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, const Columns& upper, int first_x,
-                                    int first_y) {
-  constexpr int kRowBits = 4;
-  static_assert(sizeof(VertexRow) == 1 << kRowBits);
-  (lower.first << kRowBits).store(batch.corner[0].data());
-  (lower.second << kRowBits).store(batch.corner[1].data());
-  (lower.third << kRowBits).store(batch.corner[2].data());
-  const I16 &left_top = upper.second, &right_bottom = upper.third, &traits = upper.fourth;
-  const I16 covered = traits >> Record::kSamplesShift;
-  batch.has_samples = !is_any(covered == 0);
-  const I16 x0 = (left_top << 16 >> 16) - first_x, y0 = (left_top >> 16) - first_y;
-  const I16 box_x = max(x0, I16(0)), box_y = max(y0, I16(0));
-  const I16 window = I16::load(batch.window.data());
-  const I16 window_x = (box_x & ~(kTileSize - 1)) + (window & 0xffff),
-            window_y = (box_y & ~(kTileSize - 1)) + (window >> 16);
-  max(box_x, window_x).store(batch.left.data());
-  max(box_y, window_y).store(batch.top.data());
-  const auto last_in = [](const I16& last, const I16& first) HALFPLANE_LAMBDA {
-    return min(min(last, I16(kBinSize - 1)), first + (kSmallTiles * kTileSize - 1));
-  };
-  last_in((right_bottom << 16 >> 16) - first_x, window_x).store(batch.right.data());
-  last_in((right_bottom >> 16) - first_y, window_y).store(batch.bottom.data());
-  // Of two by two samples the bin may have one column or row: those on the left, or those on the right moved there.
-  constexpr std::int32_t kLeft = 1 | 4, kUpper = 1 | 2;
-  const I16 in_columns =
-      select(x0 < 0, shift_right_logical(covered, 1) & kLeft, select(x0 == kBinSize - 1, covered & kLeft, covered));
-  const I16 in_bin = select(y0 < 0, shift_right_logical(in_columns, 2) & kUpper,
-                            select(y0 == kBinSize - 1, in_columns & kUpper, in_columns));
-  in_bin.store(batch.samples.data());
-  batch.live =
-      ((1U << batch.count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
-}
-
-/// The fields of the records that wait.
-HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
-  for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
-  place_records(batch, words_of(batch, 0), words_of(batch, 4), first_x, first_y);
-}
-
-/// The corners of a batch's triangles as they come, b and c also from a; the first of them in the order of (Y, X), which
-/// the planes start from; and twice the area.
-struct SmallCorners {
-  SnappedLanes a, b, c, origin;
-  I16 ax, ay, bx, by;
-  I16 area, is_turned;  ///< its magnitude; a mask: it is negative
-  I16 z_low, z_high;
-};
-
-/// Takes those of no area out of batch.live. Extents of less than 2^14 subpixels.
-HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slice) {
-  const auto fetch = [&batch, vertices = reinterpret_cast<const char*>(slice.vertices.data())](std::size_t k)
-                         HALFPLANE_LAMBDA {
-                           return load_vertices([&batch, vertices, k](int i) HALFPLANE_LAMBDA {
-                             return vertices + static_cast<std::uint32_t>(batch.corner[k][static_cast<std::size_t>(i)]);
-                           });
-                         };
-  const auto choose = [](const I16& sign, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
-    return SnappedLanes{select_by_sign(sign, p.x, q.x), select_by_sign(sign, p.y, q.y), select_by_sign(sign, p.z, q.z),
-                        select_by_sign(sign, p.rgba, q.rgba)};
-  };
-  const SnappedLanes a = fetch(0), b = fetch(1), c = fetch(2);
-  const I16 ax = b.x - a.x, ay = b.y - a.y, bx = c.x - a.x, by = c.y - a.y;
-  const I16 area = cross(ax, ay, bx, by), is_turned = area >> 31;
-  batch.live &= ~bits_of(area == 0);
-  // (Y, X) from a, as one number.
-  const I16 b_key = (ay << 16) + ax, c_key = (by << 16) + bx;
-  return {a,
-          b,
-          c,
-          choose(c_key - min(b_key, I16(0)), c, choose(b_key, b, a)),
-          ax,
-          ay,
-          bx,
-          by,
-          turned(area, is_turned),
-          is_turned,
-          min(min(a.z, b.z), c.z),
-          max(max(a.z, b.z), c.z)};
-}
-
-/// Whether 16 bits hold the edges of small and medium triangles in the quads that their boxes touch. A box of so many
-/// pixels has an extent below one more; a quad reaches less than its size beyond it.
-HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
-  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kReach = kExtent + 2 * kBlockSize;
-  return (2 * kExtent * kReach << widths.grid_bits) < 1 << 15;
-}
-
-/// `s`: bits of the subpixel grid. `is_short`: are_short_edges().
-HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& corners, int s, bool is_short,
-                                         int first_x, int first_y) {
-  const int half = 1 << (s - 1);
-  const auto first_of_block = [&](const SmallBatch::Lane& box, int first) HALFPLANE_LAMBDA {
-    return (((I16::load(box.data()) & ~(kBlockSize - 1)) + first) << s) + half;
-  };
-  const I16 px = first_of_block(batch.left, first_x), py = first_of_block(batch.top, first_y);
-  // Turned so that no area is negative.
-  const auto& [a, b, c, origin, ax, ay, bx, by, area, is_turned, z_low, z_high] = corners;
-  const std::array<I16, 4> x{a.x, select(is_turned, c.x, b.x), select(is_turned, b.x, c.x), a.x},
-      y{a.y, select(is_turned, c.y, b.y), select(is_turned, b.y, c.y), a.y};
-  for (std::size_t e = 0; e < 3; ++e) {
-    const I16 dx = x[e + 1] - x[e], dy = y[e + 1] - y[e];
-    const I16 value = (cross(dx, dy, px - x[e], py - y[e]) + ~is_top_left(dx, dy)) >> s;
-    const auto store = [is_short](const I16& lanes, SmallBatch::Lane& to)
-                           HALFPLANE_LAMBDA { (is_short ? doubled(lanes) : lanes).store(to.data()); };
-    store(value, batch.edge[e]);
-    store(-dy, batch.edge_x[e]);
-    store(dx, batch.edge_y[e]);
-    store(-(dy << kBlockShift), batch.edge_aside[e]);
-    store(dx << kBlockShift, batch.edge_below[e]);
-  }
-}
-
-/// Where the windows are, and their boxes in blocks.
-HALFPLANE_INLINE void find_places(SmallBatch& batch) {
-  const auto block_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kBlockShift; };
-  const I16 column = block_of(batch.left), row = block_of(batch.top);
-  constexpr int kTilePixels = kTileSize * kTileSize;
-  ((column >> 1) * kTilePixels + (row >> 1) * (kBinTiles * kTilePixels)).store(batch.place.data());
-  ((column & 1) + (row & 1) * 4).store(batch.first_block.data());
-  ((block_of(batch.right) - column) + (block_of(batch.bottom) - row) * 4).store(batch.columns_rows.data());
-}
 
 /// A place to evaluate planes at, from their origin, subpixels.
 struct FromOrigin {
@@ -420,12 +230,14 @@ HALFPLANE_INLINE void find_anchors(const Step& first, const Step& step_x, const 
   out[3] = narrowed(lower + aside, format);
 }
 
-template <class Arithmetic>
+template <class Arithmetic, class Samples>
 HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes, const FromOrigin& to,
-                                         const LaneFormat& format) {
+                                         const LaneFormat& format, Samples& samples) {
   const SmallCorners& corners = planes.corners;
   const Widths& widths = planes.widths;
-  const auto [step_x, step_y] = planes.depth_gradients(format);
+  const auto steps = planes.depth_gradients(format);
+  const auto& [step_x, step_y] = steps;
+  samples.move_depth(steps, format);
   Anchors at;
   find_anchors(plane_at(to, widths.plane_fraction, corners.origin.z, step_x, step_y, format), step_x, step_y,
                kTileShift + widths.grid_bits, format, at);
@@ -447,9 +259,10 @@ struct SmallChannels {
   I16 step_x, step_y;
 };
 
-template <class Arithmetic>
+template <class Arithmetic, class Samples>
 HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes,
-                                          const FromOrigin& to, const LaneFormat& format, bool is_flat) {
+                                          const FromOrigin& to, const LaneFormat& format, bool is_flat,
+                                          Samples& samples) {
   const Widths& widths = planes.widths;
   const ColorRange range(planes.corners, is_flat);
   range.low.store(batch.c_low.data());
@@ -464,10 +277,13 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
       if (range.is_flat(2 * p + h)) {
         for (I16& at : half.at) at = I16(0);
         half.step_x = half.step_y = I16(0);
+        samples.keep_channel(2 * p + h);
         continue;
       }
       const auto of_half = [h](const I16& pair) HALFPLANE_LAMBDA { return PairCodes::of_half(pair, h); };
-      const auto [step_x, step_y] = channel_gradients(planes.corners, gradient, codes, h);
+      const auto steps = channel_gradients(planes.corners, gradient, codes, h);
+      const auto& [step_x, step_y] = steps;
+      samples.move_channel(2 * p + h, steps, format);
       find_anchors(plane_at(to, widths.plane_fraction, of_half(codes.at_origin), step_x, step_y, format), step_x,
                    step_y, kTileShift + widths.grid_bits, format, half.at);
       half.step_x = local_step(step_x, format);
@@ -482,19 +298,20 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
     store_interleaved(colors[0].at[i], colors[1].at[i], batch.tile[i].color.data());
   store_interleaved(colors[0].step_x, colors[1].step_x, batch.c_step_x.data());
   store_interleaved(colors[0].step_y, colors[1].step_y, batch.c_step_y.data());
+  samples.join_channels();
 }
 
 /// The constants of a batch that is loaded. Formats: centred.
-template <class Arithmetic>
+template <class Arithmetic, class Samples>
 HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, const Widths& widths,
                                      const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
-                                     int first_y) {
+                                     int first_y, Samples& samples) {
   const SmallCorners corners = small_corners(batch, slice);
-  set_up_small_edges(batch, corners, widths.grid_bits, are_short_edges(widths), first_x, first_y);
+  set_up_small_edges(batch, corners, widths.grid_bits, are_short_edges(widths), first_x, first_y, samples);
   find_places(batch);
   const SmallPlanes<Arithmetic> planes(corners, widths);
   const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
                                            widths.grid_bits, first_x, first_y);
-  set_up_small_depth(batch, planes, to, depth_format);
-  if (slice.state.color_write) set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat);
+  set_up_small_depth(batch, planes, to, depth_format, samples);
+  if (slice.state.color_write) set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
 }

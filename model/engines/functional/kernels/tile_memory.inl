@@ -182,25 +182,13 @@ HALFPLANE_INLINE void set_range(Bin& bin, int tile, std::int32_t low, std::int32
   bin.tile_high[tile] = static_cast<std::uint16_t>(high >> bin.range_bits_dropped);
 }
 
-/// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
-struct SampleMemory {
-  alignas(64) std::int32_t depth[kMaxPixelSamples][kBinSize * kBinSize];
-  alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinSize * kBinSize];
-  alignas(64) std::uint32_t color[kMaxPixelSamples][kBinSize * kBinSize];
-
-  static SampleMemory& of_thread() {
-    static thread_local SampleMemory memory;
-    return memory;
-  }
-};
-
 /// Depths of sample k in the block that begins with pixel `at`.
 HALFPLANE_INLINE I16 load_sample(const Bin& bin, unsigned k, std::size_t at) {
-  const SampleMemory& memory = SampleMemory::of_thread();
+  const SampleMemory& memory = bin.sample_memory;
   return bin.is_narrow ? load_narrow(memory.narrow_depth[k] + at) : I16::load(memory.depth[k] + at);
 }
 HALFPLANE_INLINE void store_sample(const Bin& bin, unsigned k, std::size_t at, const I16& depths) {
-  SampleMemory& memory = SampleMemory::of_thread();
+  SampleMemory& memory = bin.sample_memory;
   if (bin.is_narrow)
     store_narrow(depths, memory.narrow_depth[k] + at);
   else

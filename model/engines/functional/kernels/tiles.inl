@@ -60,10 +60,15 @@ struct LongRamp {
 
 HALFPLANE_INLINE S64 every_lane(int value) { return S64(static_cast<std::int16_t>(value)); }
 
-/// Within codes that lie as far from `middle` as 16 bits reach: those in [low, high], of distances.
-HALFPLANE_INLINE U64 clamped(const S64& distance, int low, int high, int middle) {
-  return as<U64>(min(max(distance, every_lane(low - middle)), every_lane(high - middle)) + every_lane(middle));
-}
+/// Codes that lie as far from `middle` as 16 bits reach, in [low, high].
+struct DepthLanes {
+  S64 low, high, middle;  ///< the first two from the middle
+
+  HALFPLANE_INLINE DepthLanes(int low_, int high_, int middle_)
+      : low(every_lane(low_ - middle_)), high(every_lane(high_ - middle_)), middle(every_lane(middle_)) {}
+  /// Of distances from the middle.
+  HALFPLANE_INLINE U64 clamped(const S64& distance) const { return as<U64>(min(max(distance, low), high) + middle); }
+};
 
 /// Of the three edges; the fourth lane is not used.
 typedef std::int32_t EdgeWords __attribute__((vector_size(16)));
@@ -138,7 +143,7 @@ struct TileDepths {
   HALFPLANE_INLINE U64 low() const { return is_known ? at(to_low) : U64(static_cast<std::uint16_t>(first)); }
   HALFPLANE_INLINE U64 high() const { return is_known ? at(to_high) : U64(static_cast<std::uint16_t>(last)); }
   HALFPLANE_INLINE U64 at(std::int32_t offset) const {
-    return clamped(anchor + every_lane(offset), first, last, middle);
+    return DepthLanes(first, last, middle).clamped(anchor + every_lane(offset));
   }
 };
 
@@ -268,10 +273,9 @@ struct TestedTile {
 
 /// Depth test of a tile whose codes are of 16 bits.
 template <class Fragments>
-HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, std::int32_t anchor, const S64& outside,
-                                   const U64& stored) {
-  const S64 distance = t.depth((anchor >> bin.depth_format.up) + t.z_first);
-  const U64 depth = clamped(distance, t.z_low, t.z_high, t.middle);
+HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, const DepthLanes& limits,
+                                   std::int32_t anchor, const S64& outside, const U64& stored) {
+  const U64 depth = limits.clamped(t.depth((anchor >> bin.depth_format.up) + t.z_first));
   if constexpr (Fragments::kIsLess) {
     const U64 now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
     return {now, ~bits_equal(now, stored)};
@@ -288,7 +292,8 @@ HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int
   if (bin.depth_owner[tile] != Bin::kCleared) need_depth(bin, tile);
   std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
   const U64 stored = U64::load(bin.depth_owner[tile] == Bin::kCleared ? bin.cleared_depths.data() : at);
-  const auto [now, passed] = tested<Fragments>(bin, t, anchor, outside, stored);
+  const auto [now, passed] =
+      tested<Fragments>(bin, t, DepthLanes(t.z_low, t.z_high, t.middle), anchor, outside, stored);
   if (passed == 0 || !bin.state.depth_write) return passed;
   now.store(at);
   bin.depth_owner[tile] = Bin::kInMemory;

@@ -32,17 +32,23 @@ HALFPLANE_INLINE std::int32_t depth_at_sample(const Bin& bin, const BinTriangle&
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(depth_to_sample(bin, t, k)) << bin.depth_format.up);
 }
 
+/// What colours gain, channel by channel.
+HALFPLANE_INLINE Channels color_to_sample(const Bin& bin, const BinTriangle& t, std::size_t k) {
+  const int s = bin.widths.grid_bits;
+  const auto step = [&](const std::array<std::int64_t, 4>& of_tile) HALFPLANE_LAMBDA {
+    return round_shift_channels(load(of_tile) >> (kTileShift + s), bin.color_format.step_drop);
+  };
+  const SampleOffset& o = bin.widths.sample_offset[k];
+  return round_shift_channels(step(t.c_tile_x) * o.x + step(t.c_tile_y) * o.y, s);
+}
+/// The same in lanes.
+HALFPLANE_INLINE ChannelPairs color_at_sample(const Bin& bin, const BinTriangle& t, std::size_t k) {
+  return channel_pairs(color_to_sample(bin, t, k) << bin.color_format.up);
+}
+
 /// Moves the colours' planes to a sample.
 inline void move_colors(const Bin& bin, std::size_t sample, BinTriangle& t) {
-  const int s = bin.widths.grid_bits;
-  const LaneFormat& format = bin.color_format;
-  const SampleOffset& o = bin.widths.sample_offset[sample];
-  const auto step = [&](std::int64_t of_tile) { return round_shift(of_tile >> (kTileShift + s), format.step_drop); };
-  for (std::size_t c = 0; c < 4; ++c) {
-    const std::int64_t gain = round_shift(step(t.c_tile_x[c]) * o.x + step(t.c_tile_y[c]) * o.y, s);
-    t.c_anchor[c] = static_cast<std::int64_t>(static_cast<std::uint64_t>(t.c_anchor[c]) +
-                                              (static_cast<std::uint64_t>(gain) << format.drop));
-  }
+  store(t.c_anchor, load(t.c_anchor) + (color_to_sample(bin, t, sample) << bin.color_format.drop));
 }
 
 /// A plane over a tile: its first block, and the steps from there to the blocks on the right and below.

@@ -1,0 +1,224 @@
+// Small and medium triangles where pixels have several samples: the blocks of 4 x 4 pixels of which they cover some. A
+// block's coverage, depths and colours go sample by sample through what one sample goes through; its tile is split, for of
+// small triangles hardly one leaves a pixel whole.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+/// touch_tiles() of tiles with several samples: in memory sample by sample, and split.
+template <class Fragments>
+HALFPLANE_INLINE bool touch_sampled_tiles(Bin& bin, std::uint64_t tiles) {
+  const bool is_color = bin.state.color_write;
+  for (std::uint64_t rest = tiles & ~(bin.in_memory & bin.split); rest != 0; rest &= rest - 1) {
+    const int at = std::countr_zero(rest);
+    need_sample_depths(bin, at);
+    if (is_color) split_tile(bin, at);
+  }
+  if (is_color) bin.in_memory |= tiles;
+  if (!bin.state.depth_write) return false;
+  bool is_changed = false;
+  for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) {
+    const auto at = static_cast<std::size_t>(std::countr_zero(rest));
+    if (++bin.touches[at] == kTouches) {
+      bin.touches[at] = 0;
+      find_sample_range(bin, static_cast<int>(at));
+      is_changed = true;
+    }
+    forget_range<Fragments>(bin, static_cast<int>(at));
+  }
+  return is_changed;
+}
+
+/// The edges of lane i over quad q of its window, as far as they differ from pixel to pixel; then from the values at its
+/// first pixel, at the centre or at a sample, a bit for each pixel that is outside.
+template <bool kShort>
+struct QuadEdges;
+
+template <>
+struct QuadEdges<true> {
+  std::array<Quad, 3> plane;
+
+  HALFPLANE_INLINE QuadEdges(const Bin& bin, std::size_t i, std::size_t q) {
+    using Part = Quad::Part;
+    const Part &column = bin.position.quad_x[q % 2], &row = bin.position.quad_y[q / 2];
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto both = [i](const SmallBatch::Lane& of) HALFPLANE_LAMBDA { return repeated<Part>(of[i]); };
+      constexpr std::size_t kLower = Quad::kParts / 2;
+      auto& part = plane[e].part;
+      const Part below = both(bin.small.edge_below[e]);
+      part[0] = column * both(bin.small.edge_x[e]) + row * both(bin.small.edge_y[e]);
+      part[kLower] = part[0] + below;
+      if constexpr (Quad::kPartBlocks == 1) {
+        part[1] = part[0] + both(bin.small.edge_aside[e]);
+        part[kLower + 1] = part[1] + below;
+      }
+    }
+  }
+  HALFPLANE_INLINE std::uint64_t outside(const SmallBatch::LaneArray<3>& first, std::size_t i) const {
+    const auto a = repeated<Quad::Part>(first[0][i]), b = repeated<Quad::Part>(first[1][i]),
+               c = repeated<Quad::Part>(first[2][i]);
+    Quad signs;
+    HALFPLANE_EACH_PART(Quad::kParts, k,
+                        signs.part[k] = (plane[0].part[k] + a) | (plane[1].part[k] + b) | (plane[2].part[k] + c))
+    return signs.bits();
+  }
+};
+
+template <>
+struct QuadEdges<false> {
+  std::array<std::array<I16, Quad::kBlocks>, 3> plane;
+
+  HALFPLANE_INLINE QuadEdges(const Bin& bin, std::size_t i, std::size_t q) {
+    constexpr int kSize = 2 * kBlockSize;
+    const I16 column = bin.position.block_x + static_cast<std::int32_t>(q % 2) * kSize,
+              row = bin.position.block_y + static_cast<std::int32_t>(q / 2) * kSize;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const I16 aside = I16(bin.small.edge_aside[e][i]), below = I16(bin.small.edge_below[e][i]);
+      auto& block = plane[e];
+      block[0] = column * bin.small.edge_x[e][i] + row * bin.small.edge_y[e][i];
+      block[1] = block[0] + aside;
+      block[2] = block[0] + below;
+      block[3] = block[1] + below;
+    }
+  }
+  HALFPLANE_INLINE std::uint64_t outside(const SmallBatch::LaneArray<3>& first, std::size_t i) const {
+    std::uint64_t bits = 0;
+    for (std::size_t k = 0; k < Quad::kBlocks; ++k)
+      bits |= std::uint64_t{bits_of((plane[0][k] + first[0][i]) | (plane[1][k] + first[1][i]) |
+                                    (plane[2][k] + first[2][i]))}
+              << 16 * k;
+    return bits;
+  }
+};
+
+/// What the triangles of a batch cover of their quads' pixels: at the centres, at each sample, and at any of these.
+struct SampledCoverage {
+  Coverage any;
+  using Blocks = std::array<std::uint16_t, Coverage::kMost * Quad::kBlocks>;
+  alignas(64) Blocks centre;
+  alignas(64) std::array<Blocks, kMaxPixelSamples> sample;
+  std::uint64_t samples = 0;  ///< that are covered and drawn
+
+  HALFPLANE_INLINE SampledCoverage() {}
+  HALFPLANE_INLINE static void set(Blocks& blocks, std::size_t quad, std::uint64_t bits) {
+    std::uint16_t* const to = &blocks[Quad::kBlocks * quad];
+    if constexpr (std::endian::native == std::endian::little)
+      std::memcpy(to, &bits, sizeof bits);
+    else
+      for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+  }
+};
+
+template <bool kShort>
+HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, std::uint64_t quads,
+                                   SampledCoverage& covered) {
+  std::size_t at = 0;
+  std::uint64_t sum = 0;
+  for (; quads != 0; quads &= quads - 1) {
+    const auto number = static_cast<std::size_t>(std::countr_zero(quads)), i = number / 4, q = number % 4;
+    const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q];
+    const QuadEdges<kShort> edges(bin, i, q);
+    std::uint64_t any = 0;
+    for (std::size_t k = 0; k < samples.count; ++k) {
+      const std::uint64_t bits = in_box & ~edges.outside(samples.edge[k], i);
+      SampledCoverage::set(covered.sample[k], at, bits);
+      any |= bits;
+      if ((bin.drawn_samples >> k & 1) != 0) sum += static_cast<unsigned>(std::popcount(bits));
+    }
+    SampledCoverage::set(covered.centre, at, in_box & ~edges.outside(bin.small.edge, i));
+    covered.any.set(at, i, bin.small.first_block[i] + kWindowQuads.first[q], any);
+    at += any != 0 ? 1 : 0;
+  }
+  covered.any.quads = at;
+  covered.samples = sum;
+}
+HALFPLANE_INLINE void find_sampled(Bin& bin, const SmallSamples& samples, SampledCoverage& covered) {
+  const std::uint64_t quads = live_quads(bin);
+  bin.has_short_edges ? find_sampled<true>(bin, samples, quads, covered)
+                      : find_sampled<false>(bin, samples, quads, covered);
+  bin.job.counters.samples_tested +=
+      Quad::kBlocks * kBlockPixels * bin.samples * static_cast<unsigned>(std::popcount(quads));
+}
+
+/// Colours of a block of lane i: at the centre, or where that is not covered at the first covered sample.
+HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples, const SampledCoverage& covered,
+                                    std::size_t number, std::size_t i, const SmallBatch::Tile& tile,
+                                    const LanePositions::Block& block, int down) {
+  const SmallBatch& batch = bin.small;
+  const S32 step_x = repeated(batch.c_step_x[i]), step_y = repeated(batch.c_step_y[i]);
+  const S32 left = block_plane(block.channel_column, block.channel_row, step_x, step_y, step_y * block_rows<S32>,
+                               repeated(tile.color[i])),
+            right = left + (step_x << 1);
+  const I16 low(batch.c_low[i]), high(batch.c_high[i]);
+  I16 rgba = ColorRange::clamped(saturated(left >> down, right >> down), low, high);
+  std::uint32_t rest = covered.any.block[number] & ~std::uint32_t{covered.centre[number]};
+  for (std::size_t k = 0; k < samples.count; ++k) {
+    const std::uint32_t here = rest & covered.sample[k][number];
+    rest &= ~here;
+    const S32 gain = repeated(samples.color[k][i]);
+    const I16 at_sample = ColorRange::clamped(saturated((left + gain) >> down, (right + gain) >> down), low, high);
+    rgba = select_by_bits(here, at_sample, rgba, bin.position.to_sign);
+  }
+  return bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
+}
+
+/// Depth, test and colour of the blocks of which samples are covered.
+template <class Fragments, class Test>
+HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& samples, const SampledCoverage& covered) {
+  constexpr std::size_t kPixels = kBinSize * kBinSize;
+  const SmallBatch& batch = bin.small;
+  const SliceState state = bin.state;
+  const LanePositions& position = bin.position;
+  SampleMemory& memory = bin.sample_memory;
+  const Test test(bin, memory);
+  std::uint32_t* const colors = memory.color[0];
+  const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
+  const std::size_t count = samples.count;
+  const std::uint32_t drawn = bin.drawn_samples;
+  unsigned passed_pixels = 0;
+  for (std::size_t first = 0; first < covered.any.quads; first += 16)
+    for (std::uint64_t rest = covered.any.blocks(first); rest != 0; rest &= rest - 1) {
+      const std::size_t number = Quad::kBlocks * first + static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t quad = number / Quad::kBlocks, i = covered.any.lane[quad];
+      const WindowBlock& in_window = kWindowBlocks[covered.any.first[quad]][number % Quad::kBlocks];
+      const SmallBatch::Tile& tile = batch.tile[in_window.tile];
+      const LanePositions::Block& block = position.block[in_window.block];
+      const auto at = static_cast<std::size_t>(batch.place[i]) + in_window.place;
+      const I16 value = block_plane(block.column, block.row, I16(batch.z_step_x[i]), I16(batch.z_step_y[i]),
+                                    I16(batch.z_step_below[i]), I16(tile.depth[i]));
+      typename Test::Passed passed[kMaxPixelSamples];
+      unsigned some = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t bits = covered.sample[k][number] & (0U - (drawn >> k & 1U));
+        const std::size_t to = k * kPixels + at;
+        const auto stored = test.load(to),
+                   depth = test.codes((value + samples.depth[k][i]) >> depth_down, batch.z_low[i], batch.z_high[i]);
+        passed[k] = test.template passed<Fragments>(state, bits, depth, stored);
+        some += test.count(passed[k]);
+        if (state.depth_write) test.store(to, test.choose(passed[k], depth, stored));
+      }
+      passed_pixels += some;
+      if (some == 0 || !state.color_write) continue;
+      const I16 color = sampled_colors(bin, samples, covered, number, i, tile, block, color_down);
+      for (std::size_t k = 0; k < count; ++k) {
+        std::uint32_t* const to = colors + k * kPixels + at;
+        test.choose_color(passed[k], color, I16::load(to)).store(to);
+      }
+    }
+  count_fragments(bin, covered.samples, passed_pixels / Test::kCount);
+}
+
+/// Draws a batch whose records are loaded, of no operations and no surfaces.
+template <class Fragments>
+HALFPLANE_NOINLINE void draw_sampled_batch(Bin& bin, const Slice& slice) {
+  const std::uint64_t tiles = batch_tiles(bin);
+  SmallSamples samples(bin.widths);
+  (bin.is_short ? set_up_small<ShortArithmetic, SmallSamples>
+                : set_up_small<LongArithmetic, SmallSamples>)(bin.small, slice, bin.widths, bin.centred_depth,
+                                                              bin.centred_color, bin.first_x, bin.first_y, samples);
+  const bool is_changed = touch_sampled_tiles<Fragments>(bin, tiles);
+  SampledCoverage covered;
+  find_sampled(bin, samples, covered);
+  bin.is_narrow ? draw_sampled_blocks<Fragments, NarrowTest>(bin, samples, covered)
+                : draw_sampled_blocks<Fragments, WideTest>(bin, samples, covered);
+  bin.small.count = 0;
+  if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
+}
