@@ -402,6 +402,29 @@ GltfModel posed(const GltfWorld& world, const GltfAnimation* animation, double t
   return model;
 }
 
+Mesh extent_over_time(const GltfWorld& world, const GltfAnimation& animation) {
+  constexpr int kSteps = 16;
+  Mesh extent;
+  for (int step = 0; step <= kSteps; ++step) {
+    const Mesh mesh = posed(world, &animation, animation.end * step / kSteps).mesh;
+    for (const GltfRun& run : world.runs) {
+      Vec3 low = mesh.vertices[run.first_vertex].position, high = low;
+      for (std::size_t i = 1; i < run.vertices; ++i) {
+        const Vec3& p = mesh.vertices[run.first_vertex + i].position;
+        for (std::size_t k = 0; k < 3; ++k) {
+          low[k] = std::min(low[k], p[k]);
+          high[k] = std::max(high[k], p[k]);
+        }
+      }
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        MeshVertex& made = extent.vertices.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) made.position[k] = (corner >> k & 1U) != 0 ? high[k] : low[k];
+      }
+    }
+  }
+  return extent;
+}
+
 GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
                      std::vector<std::string>& warnings, std::size_t most_triangles) {
   return posed(parse_gltf_world(std::move(bytes), file, source, warnings, most_triangles));

@@ -52,6 +52,10 @@ inline constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 25;
 /// its triangles round. Throws InputError for what leaves binary64.
 [[nodiscard]] GltfModel posed(const GltfWorld& world, const GltfAnimation* animation = nullptr, double time = 0);
 
+/// What a camera is framed around that stays for the whole of an animation: the corners of the boxes of all runs, at times
+/// from its first to its last.
+[[nodiscard]] Mesh extent_over_time(const GltfWorld& world, const GltfAnimation& animation);
+
 /// parse_gltf_world(), at rest.
 [[nodiscard]] GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,
                                    std::vector<std::string>& warnings, std::size_t most_triangles = kMostGltfTriangles);
