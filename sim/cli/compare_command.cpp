@@ -1,5 +1,6 @@
 #include "sim/study/compare/against.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/compare/per_vertex_cycles.hpp"
 #include "sim/study/compare/transform_errors.hpp"
 
 #include <algorithm>
@@ -82,6 +83,14 @@ Json per_vertex_json(const std::vector<PerVertexRow>& rows) {
   return json;
 }
 
+Json cycles_json(const std::optional<PerVertexCycles>& cycles) {
+  if (!cycles || !cycles->refused.empty()) return nullptr;
+  return {{"at_vertices", cycles->vertices},
+          {"at_fragments", cycles->fragments},
+          {"without_unit", cycles->without_unit},
+          {"set", cycles->set}};
+}
+
 Json comparison_json(const Comparison& c) {
   Json json{{"compared_pixels", c.compared_pixels},
             {"coverage",
@@ -151,8 +160,19 @@ std::vector<std::string> bound_lines(const std::vector<std::string>& broken, con
   return lines;
 }
 
+/// Below the rows of light at vertices and at fragments: what each costs in time.
+std::vector<std::string> cycles_lines(const PerVertexCycles& cycles) {
+  if (!cycles.refused.empty()) return {"  no cycles: " + cycles.refused};
+  std::string with = "shade.unit=1";
+  if (!cycles.set.empty()) with.clear();
+  for (const std::string& setting : cycles.set) with += (with.empty() ? "set " : ", ") + setting;
+  return {"  cycles at vertices: " + with_commas(cycles.vertices) + ", at fragments: " + with_commas(cycles.fragments),
+          "    " + with + "; at vertices with shade.unit=0: " + with_commas(cycles.without_unit)};
+}
+
 /// The figures that a person looks at first, for terminal and picture alike.
-std::vector<std::string> summary_lines(const Comparison& c, const std::vector<std::string>& bounds) {
+std::vector<std::string> summary_lines(const Comparison& c, const std::optional<PerVertexCycles>& cycles,
+                                       const std::vector<std::string>& bounds) {
   std::vector<std::string> lines{
       "oracle: " + with_commas(c.oracle.samples) + " samples, " + with_commas(c.oracle.mismatches) + " mismatches",
       "golden: " + with_commas(c.compared_pixels) + " pixels compared",
@@ -183,6 +203,8 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::vector<st
   for (const PerVertexRow& of : c.per_vertex)
     lines.push_back((of.area < 1 ? "  below 1" : "  from " + fixed(of.area, 0)) + ": " + with_commas(of.triangles) +
                     "\t" + fixed(of.max, 3) + "\t" + fixed(of.rms, 4));
+  if (cycles)
+    for (const std::string& line : cycles_lines(*cycles)) lines.push_back(line);
   // Of many numbers of layers, powers of two and the last.
   for (const LayerRow& layer : c.layers)
     if ((layer.layers & (layer.layers - 1)) == 0 || &layer == &c.layers.back())
@@ -306,12 +328,17 @@ int run(const CompareCommand& options) {
     compare_options.progress = [&progress](double fraction) { progress(fraction); };
     c = compare(scene, config, compare_options);
   }
+  std::optional<PerVertexCycles> cycles;
+  if (has_light_of_fragments(scene)) {
+    Progress progress(options, "counting cycles");
+    cycles = per_vertex_cycles(scene, config, [&progress](double fraction) { progress(fraction); });
+  }
   for (const std::string& name : options.panels)
     if (!c.texture && std::ranges::find(kTexturePanelNames, name) != kTexturePanelNames.end())
       throw InputError("--panels: " + name + " is about textures, and no pixel shows one; leave it out");
   const std::vector<std::string> broken = broken_bounds(c, config);
   const std::vector<std::string> given_up = given_up_bounds(rules);
-  auto lines = summary_lines(c, bound_lines(broken, given_up));
+  auto lines = summary_lines(c, cycles, bound_lines(broken, given_up));
   if (transform) {
     lines.emplace_back();
     lines.push_back("vertices in " + options.transform + "\tmax\trms");
@@ -344,6 +371,7 @@ int run(const CompareCommand& options) {
   result["samples_tested"] = c.rendering.counters.samples_tested;
   result["time_s"] = {{"load", load_s}, {"geometry", c.rendering.geometry_s}, {"raster", c.rendering.raster_s}};
   result.update(comparison_json(c));
+  result["per_vertex_cycles"] = cycles_json(cycles);
   std::optional<AgainstResult> against;
   if (foreign) {
     against = compare_against(scene, config, c, rules, *foreign);

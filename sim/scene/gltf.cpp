@@ -65,17 +65,21 @@ class GltfMeshBuilder {
     mesh_.is_linear = true;
     mesh_.materials.clear();
     for (const GltfInstance& instance : world.nodes.instances) {
-      if (instance.is_skinned) warn("skins are not read: meshes are shown as they were before any joint moved");
+      const GltfSkin* skin = instance.skin ? skin_of(*instance.skin, world) : nullptr;
       object_ = object_number(instance.name);
       const JsonPlace list = file_.item("meshes", instance.mesh).at("primitives");
       for (std::size_t i = 0; i < list.size(); ++i) {
-        GltfRun run{instance.node, mesh_.vertices.size(), 0, mesh_.triangles.size(), 0};
+        GltfRun run{instance.node, mesh_.vertices.size(), 0, mesh_.triangles.size(), 0, false, false, {}};
+        sources_.clear();
         add_primitive(list[i]);
         run.vertices = mesh_.vertices.size() - run.first_vertex;
         run.triangles = mesh_.triangles.size() - run.first_triangle;
         run.has_normals = material_.is_lit && attributes_.normal != nullptr;
         run.is_flat = is_flat();
-        if (run.vertices > 0) world.runs.push_back(run);
+        if (run.vertices == 0) continue;
+        if (const auto targets = list[i].find("targets")) spend(list[i], targets->size() * run.vertices);
+        run.deformation = read_deformation(file_, list[i], instance, world.nodes, skin, sources_, run.has_normals);
+        world.runs.push_back(std::move(run));
       }
     }
     if (mesh_.parts.empty()) {
@@ -89,6 +93,15 @@ class GltfMeshBuilder {
     if (warned_.insert(text).second) warnings_.push_back(file_.name() + ": " + text);
   }
 
+  // Read when a mesh first has it.
+  const GltfSkin* skin_of(std::size_t number, GltfWorld& world) {
+    world.skins.resize(file_.count("skins"));
+    if (!world.skins[number]) world.skins[number] = read_skin(file_, world.nodes, number);
+    if (!world.skins[number])
+      warn("skins with joints outside of the scene are not read: meshes are shown as they were before any joint moved");
+    return world.skins[number] ? &*world.skins[number] : nullptr;
+  }
+
   // Nodes of one name are one object.
   std::uint32_t object_number(const std::string& name) {
     const auto [place, added] = object_numbers_.try_emplace(name, static_cast<std::uint32_t>(mesh_.objects.size()));
@@ -99,7 +112,6 @@ class GltfMeshBuilder {
   void add_primitive(const JsonPlace& place) {
     spend(place, 1);  // its triangles come later: many empty ones cost time, too
     const std::uint64_t mode = place.whole_or("mode", 6, 4);
-    if (place.find("targets")) warn("morph targets are not read: the base shape is shown");
     const JsonPlace attributes = place.at("attributes");
     if (!attributes.find("POSITION")) {
       warn("primitives without POSITION are passed over");
@@ -219,7 +231,7 @@ class GltfMeshBuilder {
   // Only vertices that are used get into the mesh, each once: primitives often share one long list.
   std::uint32_t shared_vertex(std::uint64_t from) {
     const auto [place, added] = new_index_.try_emplace(from, static_cast<std::uint32_t>(mesh_.vertices.size()));
-    if (added) mesh_.vertices.push_back(make_vertex(from));
+    if (added) add_vertex(from);
     return place->second;
   }
 
@@ -228,7 +240,7 @@ class GltfMeshBuilder {
     for (std::size_t i = 0; i < 3; ++i) {
       if (is_flat()) {
         triangle[i] = static_cast<std::uint32_t>(mesh_.vertices.size());
-        mesh_.vertices.push_back(make_vertex(from[i]));
+        add_vertex(from[i]);
       } else {
         triangle[i] = shared_vertex(from[i]);
       }
@@ -240,6 +252,11 @@ class GltfMeshBuilder {
   bool is_flat() const {
     const bool has_light = attributes_.color == nullptr || has_lights_;
     return material_.is_lit && has_light && attributes_.normal == nullptr;
+  }
+
+  void add_vertex(std::uint64_t from) {
+    mesh_.vertices.push_back(make_vertex(from));
+    sources_.push_back(from);
   }
 
   MeshVertex make_vertex(std::uint64_t i) const {
@@ -285,13 +302,36 @@ class GltfMeshBuilder {
   std::uint32_t surface_ = 0;
   Attributes attributes_;
   std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
+  std::vector<std::uint64_t> sources_;  // of its vertices, in its accessors
 };
 
-/// Puts a run's vertices into the world, its triangles the right way round.
-void place_run(const GltfRun& run, const Placing& placing, Mesh& mesh) {
+/// Adds what its morph targets do to a run's vertices.
+void morph_run(const GltfRun& run, const std::vector<double>& weights, Mesh& mesh) {
+  for (std::size_t t = 0; t < weights.size(); ++t) {
+    const MorphTarget& target = run.deformation.targets[t];
+    if (weights[t] == 0) continue;
+    for (std::size_t i = 0; i < target.positions.size(); ++i) {
+      Vec3& position = mesh.vertices[run.first_vertex + i].position;
+      position = add(position, scaled(target.positions[i], weights[t]));
+    }
+    for (std::size_t i = 0; i < target.normals.size(); ++i) {
+      Vec3& normal = mesh.vertices[run.first_vertex + i].normal;
+      normal = add(normal, scaled(target.normals[i], weights[t]));
+    }
+  }
+}
+
+/// Puts a run's vertices into the world, by `joints` those of a skin, and its triangles the right way round.
+void place_run(const GltfRun& run, const Mat4& node, const std::vector<Mat4>& joints, Mesh& mesh) {
+  Placing placing = placing_of(node);
+  std::vector<bool> is_mirrored;  // of each vertex of a skin
   for (std::size_t i = 0; i < run.vertices; ++i) {
     MeshVertex& vertex = mesh.vertices[run.first_vertex + i];
     const Vec3 p = vertex.position, n = vertex.normal;
+    if (!joints.empty()) {
+      placing = placing_of(skin_matrix(run.deformation, joints, i));
+      is_mirrored.push_back(placing.is_mirrored);
+    }
     const Vec4 world = transform(placing.world, {p[0], p[1], p[2], 1});
     for (std::size_t k = 0; k < 3; ++k) {
       vertex.position[k] = world[k];
@@ -301,7 +341,8 @@ void place_run(const GltfRun& run, const Placing& placing, Mesh& mesh) {
   }
   for (std::size_t i = 0; i < run.triangles; ++i) {
     auto& triangle = mesh.triangles[run.first_triangle + i];
-    if (placing.is_mirrored) std::swap(triangle[1], triangle[2]);
+    const bool turns = joints.empty() ? placing.is_mirrored : is_mirrored[triangle[0] - run.first_vertex];
+    if (turns) std::swap(triangle[1], triangle[2]);
     if (!run.is_flat) continue;
     const auto corner = [&](std::size_t k) -> MeshVertex& { return mesh.vertices[triangle[k]]; };
     const Vec3 side = subtract(corner(1).position, corner(0).position);
@@ -347,11 +388,41 @@ GltfModel posed(const GltfWorld& world, const GltfAnimation* animation, double t
   model.mesh.lights = placed_lights(world.nodes, matrices);
   for (Light& light : model.mesh.lights)
     for (std::size_t c = 0; c < 3; ++c) light.specular[c] = light.diffuse[c] *= world.exposure;
+  std::vector<std::vector<Mat4>> joints;  // of each skin
+  const std::vector<Mat4> none;
+  for (const auto& skin : world.skins) joints.push_back(skin ? joint_matrices(*skin, matrices) : std::vector<Mat4>());
   for (const GltfRun& run : world.runs) {
-    place_run(run, placing_of(matrices[run.node]), model.mesh);
+    const GltfDeformation& deformation = run.deformation;
+    if (!deformation.targets.empty())
+      morph_run(run, morph_weights(deformation.targets, world.nodes.nodes[run.node].number, animation, time),
+                model.mesh);
+    place_run(run, matrices[run.node], deformation.skin ? joints[*deformation.skin] : none, model.mesh);
     check_places(world, run, model.mesh);
   }
   return model;
+}
+
+Mesh extent_over_time(const GltfWorld& world, const GltfAnimation& animation) {
+  constexpr int kSteps = 16;
+  Mesh extent;
+  for (int step = 0; step <= kSteps; ++step) {
+    const Mesh mesh = posed(world, &animation, animation.end * step / kSteps).mesh;
+    for (const GltfRun& run : world.runs) {
+      Vec3 low = mesh.vertices[run.first_vertex].position, high = low;
+      for (std::size_t i = 1; i < run.vertices; ++i) {
+        const Vec3& p = mesh.vertices[run.first_vertex + i].position;
+        for (std::size_t k = 0; k < 3; ++k) {
+          low[k] = std::min(low[k], p[k]);
+          high[k] = std::max(high[k], p[k]);
+        }
+      }
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        MeshVertex& made = extent.vertices.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) made.position[k] = (corner >> k & 1U) != 0 ? high[k] : low[k];
+      }
+    }
+  }
+  return extent;
 }
 
 GltfModel parse_gltf(std::string bytes, const std::string& file, const BufferSource& source,

@@ -38,8 +38,9 @@ GltfComponent component_of(const JsonPlace& place) {
 int width_of(const JsonPlace& place) {
   const std::string type = place.text();
   if (type == "SCALAR") return 1;
+  if (type == "MAT4") return 16;
   if (type.size() == 4 && type.substr(0, 3) == "VEC" && type[3] >= '2' && type[3] <= '4') return type[3] - '0';
-  place.fail("type " + in_quotes(type), "what is drawn is made of SCALAR, VEC2, VEC3 or VEC4");
+  place.fail("type " + in_quotes(type), "what is drawn is made of SCALAR, VEC2, VEC3, VEC4 or MAT4");
 }
 
 // `bytes` from `offset` on, when `count` elements of `size` bytes, `stride` apart, lie in them. count >= 1.
@@ -101,6 +102,27 @@ std::uint64_t find_sparse(const GltfAccessor& accessor, std::uint64_t i) {
   return found ? low : accessor.sparse_count;
 }
 
+/// The first N numbers of an element; those that it does not have are 0.
+template <std::size_t N>
+std::array<double, N> numbers_at(const GltfAccessor& accessor, std::uint64_t i) {
+  std::array<double, N> result{};
+  const std::size_t size = size_of(accessor.component), width = static_cast<std::size_t>(accessor.width);
+  const std::uint64_t sparse = find_sparse(accessor, i);
+  const bool is_replaced = sparse < accessor.sparse_count;
+  const ByteSpan bytes = is_replaced ? accessor.sparse_values : accessor.bytes;
+  if (bytes.empty()) return result;
+  const std::size_t at =
+      is_replaced ? static_cast<std::size_t>(sparse) * size * width : static_cast<std::size_t>(i) * accessor.stride;
+  for (std::size_t k = 0; k < std::min(N, width); ++k) {
+    result[k] = number_at(bytes, at + k * size, accessor.component, accessor.normalized);
+    if (!std::isfinite(result[k])) {
+      throw InputError(accessor.place + ": element " + std::to_string(i) +
+                       " is not a finite number; export the file again");
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 GltfAccessor GltfFile::make_accessor(const JsonPlace& place) {
@@ -153,24 +175,10 @@ void GltfFile::add_sparse(GltfAccessor& accessor, const JsonPlace& place) {
   }
 }
 
-std::array<double, 4> read_element(const GltfAccessor& accessor, std::uint64_t i) {
-  std::array<double, 4> result{};
-  const std::size_t size = size_of(accessor.component);
-  const std::uint64_t sparse = find_sparse(accessor, i);
-  const bool is_replaced = sparse < accessor.sparse_count;
-  const ByteSpan bytes = is_replaced ? accessor.sparse_values : accessor.bytes;
-  if (bytes.empty()) return result;
-  const std::size_t at = is_replaced
-                             ? static_cast<std::size_t>(sparse) * size * static_cast<std::size_t>(accessor.width)
-                             : static_cast<std::size_t>(i) * accessor.stride;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(accessor.width); ++k) {
-    result[k] = number_at(bytes, at + k * size, accessor.component, accessor.normalized);
-    if (!std::isfinite(result[k])) {
-      throw InputError(accessor.place + ": element " + std::to_string(i) +
-                       " is not a finite number; export the file again");
-    }
-  }
-  return result;
+std::array<double, 4> read_element(const GltfAccessor& accessor, std::uint64_t i) { return numbers_at<4>(accessor, i); }
+
+std::array<double, 16> read_matrix(const GltfAccessor& accessor, std::uint64_t i) {
+  return numbers_at<16>(accessor, i);
 }
 
 }  // namespace halfplane

@@ -52,10 +52,14 @@ std::optional<GltfTrack::Path> path_of(const std::string& word) {
   if (word == "translation") return GltfTrack::Path::translation;
   if (word == "rotation") return GltfTrack::Path::rotation;
   if (word == "scale") return GltfTrack::Path::scale;
+  if (word == "weights") return GltfTrack::Path::weight;
   return std::nullopt;
 }
 
 GltfTrack::Interpolation interpolation_of(const JsonPlace& sampler) {
+  // A number is none of the format, but an exporter for Maya and 3ds Max writes 0, the first of its own list: LINEAR.
+  const std::optional<JsonPlace> given = sampler.find("interpolation");
+  if (given && !given->is_text() && given->number() == 0) return GltfTrack::Interpolation::linear;
   const std::string word = sampler.text_or("interpolation", "LINEAR");
   if (word == "LINEAR") return GltfTrack::Interpolation::linear;
   if (word == "STEP") return GltfTrack::Interpolation::step;
@@ -95,6 +99,24 @@ void read_values(const GltfAccessor& output, const JsonPlace& place, GltfTrack& 
   }
 }
 
+/// Of a channel of weights: for each keyframe those of all targets; of a spline all in-tangents, then all values, then all
+/// out-tangents.
+void add_weights(const GltfAccessor& output, const JsonPlace& place, const GltfTrack& common,
+                 std::vector<GltfTrack>& tracks) {
+  const std::uint64_t parts = common.interpolation == GltfTrack::Interpolation::cubic_spline ? 3 : 1;
+  const std::uint64_t rows = common.times.size() * parts, targets = output.count / rows;
+  if (output.width != 1)
+    place.fail("an accessor of " + std::to_string(output.width) + " numbers an element", "use SCALAR");
+  if (targets * rows != output.count || targets == 0)
+    place.fail(std::to_string(output.count) + " weights for " + std::to_string(rows) + " keyframes and tangents",
+               "export the file again");
+  for (std::uint64_t k = 0; k < targets; ++k) {
+    GltfTrack& track = tracks.emplace_back(common);
+    track.target = static_cast<std::size_t>(k);
+    for (std::uint64_t row = 0; row < rows; ++row) track.values.push_back(read_element(output, row * targets + k));
+  }
+}
+
 }  // namespace
 
 std::size_t choose_animation(const GltfFile& file, const std::string& name) {
@@ -125,14 +147,20 @@ GltfAnimation read_animation(GltfFile& file, std::size_t number) {
     GltfTrack track;
     track.node = node->index(file.count("nodes"), "nodes");
     track.path = *path;
-    if (file.item("nodes", track.node).find("matrix"))
+    const bool is_weight = track.path == GltfTrack::Path::weight;
+    if (!is_weight && file.item("nodes", track.node).find("matrix"))
       node->fail("it moves a node that has a matrix", "give the node translation, rotation and scale");
     const JsonPlace sampler = samplers[channels[i].at("sampler").index(samplers.size(), "samplers")];
     track.interpolation = interpolation_of(sampler);
     read_times(file.accessor(sampler.at("input")), sampler.at("input"), track);
-    read_values(file.accessor(sampler.at("output")), sampler.at("output"), track);
     result.end = std::max(result.end, track.times.back());
-    result.tracks.push_back(std::move(track));
+    const JsonPlace output = sampler.at("output");
+    if (is_weight) {
+      add_weights(file.accessor(output), output, track, result.tracks);
+    } else {
+      read_values(file.accessor(output), output, track);
+      result.tracks.push_back(std::move(track));
+    }
   }
   return result;
 }
@@ -155,6 +183,7 @@ std::array<double, 4> value_at(const GltfTrack& track, double time) {
 }
 
 void apply(const GltfTrack& track, double time, NodeTransform& transform) {
+  if (track.path == GltfTrack::Path::weight) return;
   const Element value = value_at(track, time);
   if (track.path == GltfTrack::Path::rotation) {
     transform.rotation = value;

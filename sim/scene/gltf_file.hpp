@@ -23,7 +23,7 @@ using BufferSource = std::function<std::optional<std::string>(const std::string&
 /// The kinds of number in a buffer, by the codes of the file format.
 enum class GltfComponent : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
-/// A checked window on `count` elements of 1...4 numbers: every read of element i < count lies inside the bytes.
+/// A checked window on `count` elements of 1...4 numbers, or of the 16 of a matrix: every read of element i < count lies inside the bytes.
 struct GltfAccessor {
   std::uint64_t count = 0;
   int width = 1;  ///< numbers per element
@@ -43,6 +43,8 @@ struct GltfAccessor {
 /// Element i < count, converted as the format says (binary32 exactly); what an element does not have is 0. Throws
 /// InputError for a number that is NaN or infinite.
 [[nodiscard]] std::array<double, 4> read_element(const GltfAccessor& accessor, std::uint64_t i);
+/// The same of a matrix, column by column.
+[[nodiscard]] std::array<double, 16> read_matrix(const GltfAccessor& accessor, std::uint64_t i);
 
 class GltfFile {
  public:

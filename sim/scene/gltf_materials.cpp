@@ -101,6 +101,7 @@ GltfMaterial GltfMaterials::of(const JsonPlace& primitive) const {
   for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
     if (place.find(key)) warn_("of the textures only those of base colours are shown");
   }
+  if (place.find("emissiveTexture")) result.emission = {};  // what says that not all of it shines is not read
   if (const auto shading = place.find("pbrMetallicRoughness")) read_base_color(*shading, result);
   return result;
 }

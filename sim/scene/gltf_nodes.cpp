@@ -190,7 +190,9 @@ class Walker {
     if (const std::optional<JsonPlace> index = node.find("mesh")) {
       const std::size_t mesh = index->index(file_.count("meshes"), "meshes");
       const std::string name = node.text_or("name", file_.item("meshes", mesh).text_or("name", ""));
-      result_.instances.push_back({mesh, number, name, node.find("skin").has_value()});
+      GltfInstance& instance = result_.instances.emplace_back(GltfInstance{mesh, number, name, {}});
+      if (const std::optional<JsonPlace> skin = node.find("skin"))
+        instance.skin = skin->index(file_.count("skins"), "skins");
     }
     if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, number);
     if (const auto extensions = node.find("extensions"))

@@ -19,9 +19,9 @@ struct GltfNode {
 /// A mesh at a node.
 struct GltfInstance {
   std::size_t mesh = 0;
-  std::size_t node = 0;  ///< in GltfNodes::nodes
-  std::string name;      ///< the node's, else the mesh's, else empty
-  bool is_skinned = false;
+  std::size_t node = 0;             ///< in GltfNodes::nodes
+  std::string name;                 ///< the node's, else the mesh's, else empty
+  std::optional<std::size_t> skin;  ///< in the file's list of skins
 };
 
 /// A camera at a node: near, far, and fov or ortho. far may be infinite with fov.

@@ -64,8 +64,10 @@ std::uint64_t JsonPlace::whole(std::uint64_t most) const {
   return static_cast<std::uint64_t>(value);
 }
 
+bool JsonPlace::is_text() const { return value_->is_string(); }
+
 std::string JsonPlace::text() const {
-  if (!value_->is_string()) fail("not a string", "write \"...\" there");
+  if (!is_text()) fail("not a string", "write \"...\" there");
   return value_->get<std::string>();
 }
 

@@ -33,6 +33,7 @@ class JsonPlace {
   [[nodiscard]] double number() const;
   /// This value as a whole number of 0...most; 3.0 is one too.
   [[nodiscard]] std::uint64_t whole(std::uint64_t most) const;
+  [[nodiscard]] bool is_text() const;
   /// This value as a string. It may hold any byte that JSON lets through.
   [[nodiscard]] std::string text() const;
 

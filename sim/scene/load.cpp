@@ -101,11 +101,18 @@ MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, 
     if (!*known) *known = read_animation(*world->file, choose_animation(*world->file, name));
     return &**known;
   };
+  // The camera stays where it is while things move, whatever of the motion is asked for.
+  const auto extent = [world, animation, known = std::make_shared<std::optional<Mesh>>()] {
+    if (!*known) *known = extent_over_time(*world, *animation());
+    return &**known;
+  };
   if (!request.animation.empty()) (void)animation();
   const auto at = [=, name = request.name](const Moment& moment) {
     const GltfModel model = moment.time ? posed(*world, animation(), *moment.time) : posed(*world);
-    Scene scene = mesh_scene(model.mesh, at_turn(choose_camera(model.cameras, camera), moment.turn), width, height,
-                             Cull::none, options);
+    const CameraRequest chosen = choose_camera(model.cameras, camera);
+    const bool is_framed = !(chosen.eye && chosen.target && chosen.near && chosen.far);
+    Scene scene = mesh_scene(model.mesh, at_turn(chosen, moment.turn), width, height, Cull::none, options,
+                             moment.time && is_framed ? extent() : nullptr);
     scene.name = name;
     return scene;
   };

@@ -119,9 +119,9 @@ Scene cleared_scene(int width, int height) {
 }
 
 Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height, Cull cull,
-                 const MeshOptions& options) {
+                 const MeshOptions& options, const Mesh* framed) {
   const double aspect = static_cast<double>(width) / height;
-  const Camera camera = frame(request, mesh, aspect);
+  const Camera camera = frame(request, framed != nullptr ? *framed : mesh, aspect);
   const Mat4 view = view_matrix(camera), projection = projection_matrix(camera, aspect);
 
   Scene scene = cleared_scene(width, height);

@@ -21,9 +21,9 @@ struct MeshOptions {
 /// Objects that lie outside the view are marked (object_cull.hpp).
 /// `cull`: none where the winding is not known; a part that is not two-sided gets a state with Cull::back, one with a
 /// texture a state that looks it up, in perspective, times the colour. Throws InputError if the camera throws a vertex
-/// out of binary64.
+/// out of binary64. `framed`: whose vertices the camera is framed around, if others than the mesh's.
 [[nodiscard]] Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int height,
-                               Cull cull = Cull::none, const MeshOptions& options = {});
+                               Cull cull = Cull::none, const MeshOptions& options = {}, const Mesh* framed = nullptr);
 
 /// An empty clip-space scene of that size: one state and the clear to the house's background.
 [[nodiscard]] Scene cleared_scene(int width, int height);

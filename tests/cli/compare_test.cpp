@@ -45,6 +45,31 @@ TEST_F(CompareCommand, SmallerNumbersOfTheHostAreShownBesideTheRest) {
   }
 }
 
+TEST_F(CompareCommand, CyclesOfLightAreShownBesideItsErrors) {
+  const std::vector<std::string> lit{"compare", "knot:16", "--size", "96x64", "--light", "phong"};
+  const auto beside = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), lit.begin(), lit.end());
+    return words;
+  };
+  const Json cycles = result(lit)["per_vertex_cycles"];
+  EXPECT_EQ(cycles["set"], (Json{"texture.unit=nearest", "shade.unit=1"}));
+  const std::vector<std::string> unit{"--set", "texture.unit=nearest", "--set", "shade.unit=1"};
+  std::vector<std::string> render = beside(unit);
+  render[0] = "render";
+  render.insert(render.end(), {"--engine", "cycle"});
+  EXPECT_EQ(cycles["at_fragments"], result(render)["cycles"]);
+  EXPECT_LT(cycles["at_vertices"], cycles["at_fragments"]);
+  EXPECT_TRUE(result(beside(unit))["per_vertex_cycles"]["set"].empty());
+  EXPECT_NE(run(lit).out.find("set texture.unit=nearest, shade.unit=1"), std::string::npos);
+
+  EXPECT_TRUE(result({"compare", "knot:16", "--size", "96x64"})["per_vertex_cycles"].is_null());
+  const auto serial = beside({"--set", "setup.kind=serial"});
+  const Json refused = result(serial);
+  EXPECT_TRUE(refused["per_vertex_cycles"].is_null());
+  EXPECT_FALSE(refused["per_vertex"].empty());
+  EXPECT_NE(run(serial).out.find("no cycles: configuration refused: a texture unit"), std::string::npos);
+}
+
 TEST_F(CompareCommand, FiguresAreInOrderAndBounded) {
   for (const char* config : {"tiny", "embedded", "full"}) {
     const Json json = result({"compare", "teapot", "--config", config, "--size", "16x16"});

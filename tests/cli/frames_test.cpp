@@ -50,6 +50,25 @@ TEST_F(Frames, EachIsThePictureOfItsOwnTime) {
   EXPECT_EQ(result({"render", "move.gltf", "--size", "48x48"})["color_hash"], all["frames"][2]["color_hash"]);
 }
 
+// A camera that the file does not have is framed around all of the motion, not around each frame.
+TEST_F(Frames, WhatMovesIsSeenToMove) {
+  test::GltfBuilder b = test::one_triangle();
+  const std::size_t input = b.accessor(test::GltfBuilder::f32, 1, {0, 2});
+  const std::size_t output = b.accessor(test::GltfBuilder::f32, 3, {-2, 0, 0, 2, 0, 0});
+  b.json["animations"] = {{{"samplers", {{{"input", input}, {"output", output}}}},
+                           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+  write("move.gltf", b.text());
+  const Json all = result({"render", "move.gltf", "--size", "48x48", "--frames", "4"});
+  std::set<std::string> hashes;
+  for (const Json& frame : all["frames"]) {
+    EXPECT_GT(frame["fragments"]["written"], 5);
+    hashes.insert(frame["color_hash"].get<std::string>());
+    const Json one = result({"render", "move.gltf", "--size", "48x48", "--time", frame["time"].dump()});
+    EXPECT_EQ(one["color_hash"], frame["color_hash"]);
+  }
+  EXPECT_EQ(hashes.size(), 4U);
+}
+
 TEST_F(Frames, AnOrbitGoesRoundOnceAndKeepsItsDistance) {
   const auto hash = [this](const std::string& camera) {
     return result({"render", "teapot:2", "--size", "64x48", "--camera", camera})["color_hash"];

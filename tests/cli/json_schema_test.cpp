@@ -70,7 +70,8 @@ TEST_F(JsonSchema, CompareIsDescribed) {
         "v 5 30 0.5 2 0 0 255 255 0 1\nt 0 1 2\n");
   expect_results("compare", {"t.hpt"});
   expect_results("compare", {"triangle --size 32x32", "teapot:2 --size 32x32", "wires --size 32x32",
-                             "triangle --size 32x32 --traversal bbox"});
+                             "triangle --size 32x32 --traversal bbox", "teapot:2 --size 32x32 --light phong",
+                             "teapot:2 --size 32x32 --light phong --set setup.kind=serial"});
 }
 
 TEST_F(JsonSchema, ForeignImagesAreDescribed) {

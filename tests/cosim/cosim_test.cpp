@@ -80,7 +80,8 @@ TEST(Cosim, TexturesAreLookedUpInRandomScenes) {
   for (const DutFactory& factory : verilated_duts()) {
     if (!has_texture_planes(factory.config)) continue;
     ++units;
-    const Session session = run(factory, {}, random_scenes(factory.config, 31, 3000));
+    const std::uint64_t count = factory.config.target_width < 100 ? 12'000 : 3000;  // of few stamps each
+    const Session session = run(factory, {}, random_scenes(factory.config, 31, count));
     EXPECT_EQ(describe(session), "");
     EXPECT_GT(session.result.compared[index(Arrow::texture)], 150u);  // fewer where a stencil test is in front
     EXPECT_GT(session.result.compared[index(Arrow::color)], 10000u);
@@ -100,6 +101,7 @@ TEST(Cosim, ColoursAreBlendedInRandomScenes) {
       options.stall_probability = stalls;
       const Session session = run(factory, options, random_scenes(factory.config, 32, 3000), HostOrders::drawn);
       EXPECT_EQ(describe(session), "") << factory.name;
+      if (factory.config.frame_store == FrameStore::color) continue;  // bins, which read nothing
       EXPECT_GT(session.result.compared[index(Arrow::response)], 500u);
     }
   }

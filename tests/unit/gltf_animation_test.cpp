@@ -60,6 +60,14 @@ TEST(GltfAnimation, LinearTranslationGoesStraightAndStaysAtItsEnds) {
   EXPECT_EQ(animation_of(b).end, 4);
 }
 
+TEST(GltfAnimation, TheNumberThatAnExporterWritesForLinearIsTaken) {
+  GltfBuilder b = moved("translation", "LINEAR", {0, 1}, {0, 0, 0, 8, 0, 0});
+  b.json["animations"][0]["samplers"][0]["interpolation"] = 0;
+  expect_near(corner_at(b, 0.25, 0), {2, 0, 0});
+  b.json["animations"][0]["samplers"][0]["interpolation"] = 1;
+  EXPECT_THROW((void)animation_of(b), InputError);
+}
+
 TEST(GltfAnimation, StepsChangeAtTheirKeyframeAndNotBefore) {
   const GltfBuilder b = moved("scale", "STEP", {0, 1}, {1, 1, 1, 3, 3, 3});
   expect_near(corner_at(b, std::nextafter(1.0, 0.0), 1), {1, 0, 0});

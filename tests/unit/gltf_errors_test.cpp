@@ -105,7 +105,7 @@ const Damage kDamages[] = {
     {"/accessors/0/count", "1e18", "not a whole number of 0...4294967295"},
     {"/accessors/0/count", "4", "4 elements need 48 bytes of a buffer view of 36"},
     {"/accessors/0/byteOffset", "4", "3 elements need 40 bytes"},
-    {"/accessors/0/type", "\"MAT4\"", "type 'MAT4'"},
+    {"/accessors/0/type", "\"MAT3\"", "type 'MAT3'"},
     {"/accessors/0/type", "\"VEC9\"", "type 'VEC9'"},
     {"/accessors/0/componentType", "5124", "component type 5124"},
     {"/accessors/0/bufferView", "99", "index 99 of 5 bufferViews"},

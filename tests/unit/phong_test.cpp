@@ -449,29 +449,6 @@ TEST(Phong, AtAPowerOf64AMeshIsWithinTwoLsbOfTheGolden) {
   }
 }
 
-TEST(Phong, LightAtVerticesIsFartherOffTheLargerTrianglesAre) {
-  MeshOptions options;
-  options.light = parse_lights(std::vector<std::string>{"phong", "from=1,2,3"});
-  const auto rows = [&](const char* name) {
-    Scene scene = make_builtin(name, 160, 120, {}, 1, options);
-    for (State& state : scene.states) {
-      state.light_shininess = 64;
-      state.light_specular = {255, 255, 255};
-    }
-    return compare(scene, with_colors("embedded")).per_vertex;
-  };
-  const auto coarse = rows("knot:16"), fine = rows("knot:96");
-  ASSERT_FALSE(coarse.empty());
-  ASSERT_FALSE(fine.empty());
-  const auto worst = [](const std::vector<PerVertexRow>& of) {
-    double rms = 0;
-    for (const PerVertexRow& row : of) rms = std::max(rms, row.rms);
-    return rms;
-  };
-  EXPECT_GT(worst(coarse), 2 * worst(fine));
-  EXPECT_TRUE(compare(make_builtin("knot:16", 60, 40, {}, 1), with_colors("embedded")).per_vertex.empty());
-}
-
 // ---- meshes
 
 TEST(Phong, OneLightFromInfinitelyFarIsTaken) {
