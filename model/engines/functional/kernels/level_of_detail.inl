@@ -29,10 +29,11 @@ struct LodRamps {
       const std::uint32_t at_first = of.at_zero + static_cast<std::uint32_t>(first) * of.step;
       return pixel * static_cast<std::int32_t>(of.step) + static_cast<std::int32_t>(at_first);
     };
-    for (std::size_t c = 0; c < 2; ++c) {
-      along_x[c] = line(lod.along_x[c], bin.first_x + tile_x * kTileSize, bin.position.block_x);
-      along_y[c] = line(lod.along_y[c], bin.first_y + tile_y * kTileSize, bin.position.block_y);
-    }
+    const int x = bin.first_x + tile_x * kTileSize, y = bin.first_y + tile_y * kTileSize;
+    along_x[0] = line(lod.along_x[0], x, bin.position.block_x);
+    along_x[1] = line(lod.along_x[1], x, bin.position.block_x);
+    along_y[0] = line(lod.along_y[0], y, bin.position.block_y);
+    along_y[1] = line(lod.along_y[1], y, bin.position.block_y);
   }
 
   /// lambda in block 0...3 of the tile. `q`: float_bits() of Q.
