@@ -97,7 +97,8 @@ struct StampGrid {
   [[nodiscard]] constexpr SampleMask samples_of(SampleMask of_pixels) const {
     std::uint64_t bits = 0;
     for (int pixel = 0; pixel < pixels(); ++pixel)
-      if (of_pixels.has(static_cast<std::size_t>(pixel))) bits |= SampleMask::all(per_pixel).bits() << pixel * per_pixel;
+      if (of_pixels.has(static_cast<std::size_t>(pixel)))
+        bits |= SampleMask::all(per_pixel).bits() << pixel * per_pixel;
     return SampleMask(bits);
   }
   /// The first pixel of a stamp, in its tile.

@@ -42,14 +42,13 @@ TEST_F(AntialiasingCommand, SupersampledPicturesAreTheMeanOfWholeOnes) {
 TEST_F(AntialiasingCommand, WhoHasOneSampleAPixelSaysSo) {
   for (const Arguments& arguments :
        std::vector<Arguments>{{"render", "teapot", "--engine", "cycle", "--config", "small"},
-                              {"render", "teapot", "--engine", "cycle", "--set", "texture.unit=nearest"},
-                              {"cosim", "--random", "3", "--set", "texture.unit=nearest"},
+                              {"cosim", "--random", "3", "--config", "small"},
                               {"widths"},
                               {"depth"},
                               {"stress"},
                               {"vectors", "--random", "3", "--stage", "cull", "-o", "v", "--config", "small"},
-                              {"config", "--sv", "--set", "texture.unit=nearest"},
-                              {"config", "--dpi", "--set", "texture.unit=nearest"},
+                              {"config", "--sv", "--config", "small"},
+                              {"config", "--dpi", "--config", "small"},
                               {"render", "teapot", "--engine", "scalar", "--traversal", "bbox"}}) {
     Arguments with_samples = arguments;
     with_samples.insert(with_samples.end(), {"--set", "msaa.samples=4"});
