@@ -24,7 +24,30 @@ struct TexturedStamp {
   TextureUse use;
 };
 
-/// read(address, beats) gives a TextureLine.
+/// Light, the texture unit and fog: the colours of the `live` pixels, which come as the primitive's own. read(address, beats)
+/// gives a TextureLine. Returns what was looked up; it stays until the next stamp.
+template <class Read>
+std::span<const TextureLookup> shade_pixels(TextureUnit& unit, const FragmentPacket& fragment, SampleMask live,
+                                            const Widths& widths, std::span<Texel> color, Read&& read) {
+  const StampGrid& stamps = widths.stamps;
+  const PixelOffset origin = stamps.origin_of(fragment.stamp);
+  const TextureFrame frame = texture_frame(fragment);
+  const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
+  std::array<TextureSample, kMaxSamples> pixel;
+  live.for_each([&](std::size_t i) {
+    const PixelOffset at = stamps.pixel_of(static_cast<int>(i) * stamps.per_pixel);
+    pixel[i] = texture_sample(fragment.code[i], widths);
+    pixel[i].x = (fragment.key.tile_x << widths.tile_shift) + origin.x + at.x;
+    pixel[i].y = (fragment.key.tile_y << widths.tile_shift) + origin.y + at.y;
+    if (frame.divides_colors) unit.divide_colors(pixel[i], frame, widths.color_planes, color[i]);
+    if (unit.light().is_lit(is_triangle)) unit.light().add(pixel[i].normal, color[i]);
+  });
+  std::span<const TextureLookup> lookups;
+  if (unit.is_textured(is_triangle, live)) lookups = unit.take(live, pixel, frame, color, read);
+  add_fog(unit, is_triangle, live, pixel, fragment.coordinates, color);
+  return lookups;
+}
+
 template <class Read>
 [[nodiscard]] TexturedStamp texture_stamp(TextureUnit& unit, const FragmentPacket& fragment, const WritePacket& write,
                                           const ColorState& colors, const Config& config, const Widths& widths,
@@ -32,24 +55,12 @@ template <class Read>
   const StampGrid& stamps = widths.stamps;
   const SampleMask shaded = shaded_samples(write, colors), live = stamps.pixels_of(shaded);
   TexturedStamp result{{stamps.samples_of(live), {}}, {}, {}};
-  const PixelOffset origin = stamps.origin_of(fragment.stamp);
-  const TextureFrame frame = texture_frame(fragment);
-  const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
-  std::array<TextureSample, kMaxSamples> pixel;
   std::array<Texel, kMaxSamples> color;
   live.for_each([&](std::size_t i) {
-    const int first = static_cast<int>(i) * stamps.per_pixel;
-    const PixelOffset at = stamps.pixel_of(first);
-    pixel[i] = texture_sample(fragment.code[i], widths);
-    pixel[i].x = (fragment.key.tile_x << widths.tile_shift) + origin.x + at.x;
-    pixel[i].y = (fragment.key.tile_y << widths.tile_shift) + origin.y + at.y;
-    for (std::size_t c = 0; c < 4; ++c)
-      color[i][c] = static_cast<std::uint8_t>(write.color[static_cast<std::size_t>(first)] >> 8 * c);
-    if (frame.divides_colors) unit.divide_colors(pixel[i], frame, widths.color_planes, color[i]);
-    if (unit.light().is_lit(is_triangle)) unit.light().add(pixel[i].normal, color[i]);
+    const std::uint32_t own = write.color[i * static_cast<std::size_t>(stamps.per_pixel)];
+    for (std::size_t c = 0; c < 4; ++c) color[i][c] = static_cast<std::uint8_t>(own >> 8 * c);
   });
-  if (unit.is_textured(is_triangle, live)) result.use = use_of(unit.take(live, pixel, frame, color, read));
-  add_fog(unit, is_triangle, live, pixel, fragment.coordinates, color);
+  result.use = use_of(shade_pixels(unit, fragment, live, widths, color, read));
   const auto color_at = [&](std::size_t s) { return color[s / static_cast<std::size_t>(stamps.per_pixel)]; };
   result.packet.mask.for_each([&](std::size_t s) {
     const Texel of_pixel = color_at(s);

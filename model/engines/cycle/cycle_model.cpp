@@ -151,7 +151,7 @@ class CycleModelOf final : public CycleModel {
       packet.dx[i] = setup.edge[i].dx;
       packet.dy[i] = setup.edge[i].dy;
     }
-    coordinates_ = triangle->coordinates;
+    packet.coordinates = coordinates_ = triangle->coordinates;
     frame_ = texture_frame(triangle->coordinates, vertex_color(setup.range.low, widths_),
                            vertex_color(setup.range.high, widths_));
     draw(setup, packet, host.primitive);
@@ -338,7 +338,7 @@ class CycleModelOf final : public CycleModel {
   /// coarse_raster, and for each visit the rest of the pipeline.
   void draw(const TriangleSetup& setup, const SetupPacket& packet, std::uint32_t primitive) {
     if (widths_.has_samples != 0) {
-      SampledStamps stamps(setup, packet.kind, packet.state, widths_);
+      SampledStamps stamps(setup, packet, widths_);
       walk(setup, packet, [&](const SentTile& tile) { visit_samples(stamps, packet, tile, primitive); });
       return;
     }
@@ -566,27 +566,20 @@ class CycleModelOf final : public CycleModel {
   void shade_pixels(const SampledTarget& target, SampleMask shaded, FragmentPacket& fragment, BlockItem& item) {
     const SampleMask live = widths_.stamps.pixels_of(shaded);
     if (!live.any()) return;
-    const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
-    std::array<TextureSample, kMaxSamples> pixel;
-    std::array<Texel, kMaxSamples> color{};
+    const auto planes = static_cast<std::size_t>(widths_.color_planes);
+    std::array<Texel, kMaxSamples> color;
     std::array<PixelOffset, kMaxSamples> at;
     live.for_each([&](std::size_t i) {
       at[i] = target.pixel(fragment, i * static_cast<std::size_t>(widths_.pixel_samples));
-      pixel[i] = texture_sample(fragment.code[i], widths_);
-      pixel[i].x = at[i].x;
-      pixel[i].y = at[i].y;
-      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
+      color[i] = {0, 0, 0, 255};
+      for (std::size_t c = 0; c < planes; ++c)
         color[i][c] = static_cast<std::uint8_t>(fragment.code[i][kColorPlane + c]);
-      if (frame_.divides_colors) texture_->divide_colors(pixel[i], frame_, widths_.color_planes, color[i]);
-      if (texture_->light().is_lit(is_triangle)) texture_->light().add(pixel[i].normal, color[i]);
     });
     if (frame_.divides_colors) item.texture.divided = texture_->groups(live);
-    if (texture_->light().is_lit(is_triangle)) item.texture.lit = live.count();
-    if (texture_->is_textured(is_triangle, live)) look_up_texels(live, at, pixel, color, item);
-    add_fog(*texture_, is_triangle, live, pixel, coordinates_, color);
+    if (texture_->light().is_lit(fragment.kind == PrimitiveKind::triangle)) item.texture.lit = live.count();
+    note_lookups(at, halfplane::shade_pixels(*texture_, fragment, live, widths_, color, texel_reader()), item);
     live.for_each([&](std::size_t i) {
-      for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.color_planes); ++c)
-        fragment.code[i][kColorPlane + c] = color[i][c];
+      for (std::size_t c = 0; c < planes; ++c) fragment.code[i][kColorPlane + c] = color[i][c];
     });
   }
 
@@ -711,13 +704,23 @@ class CycleModelOf final : public CycleModel {
                       const std::array<TextureSample, kMaxSamples>& sample, std::array<Texel, kMaxSamples>& color,
                       BlockItem& item) {
     if (widths_.color_planes == 3) live.for_each([&](std::size_t s) { color[s][3] = 255; });
-    item.texture.lookups = texture_->take(live, sample, frame_, color, [this](std::uint32_t address, int) {
+    note_lookups(at, texture_->take(live, sample, frame_, color, texel_reader()), item);
+  }
+
+  /// Gives the texture unit its lines of texels.
+  [[nodiscard]] auto texel_reader() {
+    return [this](std::uint32_t address, int) {
       TextureLine line;
       texels_.read(address, line);
       return line;
-    });
-    count(use_of(item.texture.lookups), counters_);
-    if (options_.want_misses) note_misses(at, item.texture.lookups);
+    };
+  }
+
+  void note_lookups(const std::array<PixelOffset, kMaxSamples>& at, std::span<const TextureLookup> lookups,
+                    BlockItem& item) {
+    item.texture.lookups = lookups;
+    count(use_of(lookups), counters_);
+    if (options_.want_misses) note_misses(at, lookups);
   }
 
   /// Which pixels the lines are of that were asked for.

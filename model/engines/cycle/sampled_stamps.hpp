@@ -17,14 +17,15 @@ namespace halfplane {
 
 class SampledStamps {
  public:
-  /// Of a primitive, which rides with `kind` and `state`.
-  SampledStamps(const TriangleSetup& setup, PrimitiveKind kind, const PrimitiveState& state, const Widths& widths)
+  /// Of a primitive, which rides as `packet`.
+  SampledStamps(const TriangleSetup& setup, const SetupPacket& packet, const Widths& widths)
       : widths_(widths),
         setup_(to_setup_packet(setup, widths)),
         edges_(make_edge_context(setup_)),
         stamp_(static_cast<std::size_t>(widths.stamps.stamps())) {
-    setup_.kind = kind;
-    setup_.state = state;
+    setup_.kind = packet.kind;
+    setup_.state = packet.state;
+    setup_.coordinates = packet.coordinates;
     context_ = make_context(setup_, widths);
   }
 
