@@ -117,6 +117,10 @@ const std::array kSettings{
         "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store "
         "colours alone; 0: it stores all samples",
         0, 1, &Config::resolve_units},
+    Setting{"compress.unit", "units",
+            "1: the RTL stores one colour a pixel, not one a sample, of blocks whose pixels have one each, and a flag; "
+            "0: it stores all samples",
+            0, 1, &Config::compress_units},
     Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
             "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
             &Config::depth_mapping},
@@ -393,6 +397,10 @@ void validate(const Config& config) {
       config.resolve_units == 0 || (config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color),
       "a pixel's samples become one colour as their block leaves the chip, so they must leave it once, in bins, "
       "and without their depths: use frame.order=bins and frame.store=color, or resolve.unit=0");
+  refuse_unless(config.compress_units == 0 || (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks &&
+                                               config.resolve_units == 0),
+                "blocks whose pixels have one colour are told from others where pixels have several samples in memory, in the "
+                "framebuffer of blocks: raise msaa.samples, use cache.kind=blocks and resolve.unit=0, or compress.unit=0");
   refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
                 "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
                     std::to_string(config.msaa_samples) + ": give as many");

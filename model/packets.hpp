@@ -154,7 +154,8 @@ enum class StateRegister : std::uint8_t {
 enum class HizUpdate : std::uint8_t { none, set, clear };
 
 /// What a tile has of each pixel; and the flags of its cleared blocks, which a flush writes to memory.
-enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags };
+/// With compress.unit also the colours of blocks that have one a pixel, and the flags that say which.
+enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags, pixel_color = 5, pixel_flags = 7 };
 inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
 
 /// Where the depth test finds what is stored under a stamp; and where colour operations do.
@@ -229,7 +230,9 @@ struct WireEnum<TilePlane> {
   static constexpr Enumerator<TilePlane> all[] = {{TilePlane::depth, "depth"},
                                                   {TilePlane::color, "color"},
                                                   {TilePlane::depth_flags, "depth_flags"},
-                                                  {TilePlane::color_flags, "color_flags"}};
+                                                  {TilePlane::color_flags, "color_flags"},
+                                                  {TilePlane::pixel_color, "pixel_color"},
+                                                  {TilePlane::pixel_flags, "pixel_flags"}};
 };
 template <>
 struct WireEnum<DepthSource> {

@@ -156,10 +156,11 @@ void derive_memory(Widths& w, const Config& config) {
   m.port = log2(w.port_bytes);
   m.sample = {sample_bytes_log2(w.stored_depth.bits), sample_bytes_log2(w.stored_color.bits)};
   m.stamp = {m.sample[0] + log2(w.samples), m.sample[1] + log2(w.memory_colors)};
+  m.pixel_color = m.sample[1] + log2(w.pixels);
   m.flag_word = log2(w.blocks.flag_word) - 3;
   m.plane = std::max(std::max(m.stamp[0], m.stamp[1]) + log2(w.stamps.stamps()), m.port);
   const int words = (w.tiles_x * w.blocks.per_tile - 1) / w.blocks.flag_word + 1;
-  m.flag_row = std::max(log2(words) + m.flag_word, m.port);
+  m.flag_row = std::max(log2(words) + m.flag_word, m.port) + (config.compress_units != 0 ? 1 : 0);
 
   const int run = std::max(w.stamps.stamps(), words);
   w.run = exact("run", "stamps of a tile, words of a row of flags", {0, run});
@@ -268,7 +269,7 @@ Widths derive_widths(const Config& config) {
   w.hiz_code = bits("hiz code", "hiz.bits, at most depth.bits, at least 1", std::max(1, hiz_code_bits(config)));
   w.hiz_update = count("hiz update", "HizUpdate", 3);
   w.counter = bits("counter", "counters.bits", config.counter_bits);
-  w.tile_plane = count("tile plane", "TilePlane", 4);
+  w.tile_plane = count("tile plane", "TilePlane", 8);
   w.depth_source = count("depth source", "DepthSource", 4);
   w.memory_lane = bits("memory lane", "a stored depth or a stored colour", std::max(w.stored_depth.bits, color_bits));
   const int block = config.cache_kind == CacheKind::tiles ? config.tile_size : std::max(4, config.stamp_size);

@@ -71,6 +71,7 @@ struct MemoryGrid {
   int port = 0;                                         ///< a beat
   std::array<int, 2> sample{};                          ///< a sample of depth, of colour
   std::array<int, 2> stamp{};                           ///< a stamp
+  int pixel_color = 0;                                  ///< its colours, with one a pixel
   int flag_word = 0;                                    ///< a word of flags
   int plane = 0;                                        ///< a plane of a tile
   int flag_row = 0;                                     ///< from the flags of one row of blocks to the next

@@ -274,7 +274,7 @@ PROOFS = [
           twins=(104, 105, 106, 107, ("recovers_q <= !rst_ni ||", "recovers_q <= rst_ni &&"), ("length_q   <= length_q - 1'b1;", ''))),
     Proof('memory_port_data', 'f', 'stages/memory_port.sv', 'each byte of a stamp goes out once, to its address; what is read is what '
           'memory answered', has_reset=False, inputs='memory_port_inputs memory_port_stream', k=2, quick=TINY, cover_depth=9,
-          twins=(102, ("PLANE'(place) << COLOR_SHIFT :", "PLANE'(place) :"))),
+          twins=(102, ("color_offset = PLANE'(place) << COLOR_SHIFT;", "color_offset = PLANE'(place);"))),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, in its turn', cover_depth=14, k=2,
           cuts=MULTIPLIERS, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
 ]

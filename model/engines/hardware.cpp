@@ -33,6 +33,7 @@ TileMemory::TileMemory(const Config& config, const MemoryLayout& layout)
       layout_(layout),
       end_(layout_end(layout, widths_)),
       has_flags_{true, config.frame_clears == FrameClears::flags},
+      compresses_(config.compress_units != 0),
       page_((end_ - 1) / kPage + 1, kNone) {}
 
 std::uint8_t TileMemory::byte(std::uint32_t address) const {
@@ -65,12 +66,12 @@ void TileMemory::write(const MemoryBeat& beat) {
   }
 }
 
-void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
+void TileMemory::read(TilePlane plane, int tile_x, int tile_y, int stamp,
                       std::span<std::uint32_t, kMaxSamples> data) const {
-  const TilePlane plane = is_color ? TilePlane::color : TilePlane::depth;
+  const bool is_color = halfplane::is_of_color(plane);
   const Width& code = is_color ? widths_.stored_color : widths_.stored_depth;
   std::uint32_t address = byte_address(plane, tile_x, tile_y, stamp, layout_, widths_);
-  for (int s = 0; s < (is_color ? widths_.memory_colors : widths_.samples); ++s) {
+  for (int s = 0; s < codes_of_stamp(plane, widths_); ++s) {
     std::uint32_t value = 0;
     for (int n = 0; n < 1 << widths_.memory.sample[is_color ? 1 : 0]; ++n)
       value |= std::uint32_t{byte(address++)} << 8 * n;
@@ -79,12 +80,19 @@ void TileMemory::read(bool is_color, int tile_x, int tile_y, int stamp,
 }
 
 bool TileMemory::is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const {
-  if (!has_flags_[is_color ? 1 : 0]) return false;
+  return has_flags_[is_color ? 1 : 0] &&
+         flag(is_color ? TilePlane::color_flags : TilePlane::depth_flags, tile_x, tile_y, stamp);
+}
+
+bool TileMemory::is_of_pixels(int tile_x, int tile_y, int stamp) const {
+  return compresses_ && flag(TilePlane::pixel_flags, tile_x, tile_y, stamp);
+}
+
+bool TileMemory::flag(TilePlane flags, int tile_x, int tile_y, int stamp) const {
   const BlockAddress block = block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
                                           static_cast<std::uint16_t>(stamp)},
                                          widths_)
                                  .block;
-  const TilePlane flags = is_color ? TilePlane::color_flags : TilePlane::depth_flags;
   const std::uint32_t row = byte_address(flags, 0, tile_y, block.y % widths_.blocks.per_tile, layout_, widths_);
   return (byte(row + block.x / 8U) >> block.x % 8U & 1) != 0;
 }
@@ -101,18 +109,21 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   std::array<std::uint32_t, kMaxSamples> data;
   const auto copy_stamp = [&](bool is_color, int x, int y) {
     const int stamp = stamps.stamp_at(x % tile, y % tile);
+    const bool of_pixels = is_color && (config.resolve_units != 0 || memory.is_of_pixels(x / tile, y / tile, stamp));
+    const TilePlane plane = !is_color                               ? TilePlane::depth
+                            : of_pixels && config.compress_units != 0 ? TilePlane::pixel_color
+                                                                      : TilePlane::color;
     if (memory.is_cleared(is_color, x / tile, y / tile, stamp))
       data.fill(memory.clear_value(is_color));
     else
-      memory.read(is_color, x / tile, y / tile, stamp, data);
-    const bool is_mean = is_color && config.resolve_units != 0;  // a colour for each pixel
+      memory.read(plane, x / tile, y / tile, stamp, data);
     for (int s = 0; s < stamps.samples(); ++s) {
       const PixelOffset pixel = stamps.pixel_of(s);
       if (x + pixel.x >= width || y + pixel.y >= height) continue;
       Framebuffer& of_sample =
           frame.samples.empty() ? frame : frame.samples[static_cast<std::size_t>(s % stamps.per_pixel)];
       const std::size_t at = frame.at(x + pixel.x, y + pixel.y);
-      const std::uint32_t code = data[static_cast<std::size_t>(is_mean ? s / stamps.per_pixel : s)];
+      const std::uint32_t code = data[static_cast<std::size_t>(of_pixels ? s / stamps.per_pixel : s)];
       if (is_color) {
         of_sample.color[at] = code;
       } else {

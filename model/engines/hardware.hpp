@@ -37,12 +37,14 @@ class TileMemory {
   [[nodiscard]] bool has(const MemoryBeat& beat) const { return beat.address < end_; }
   /// The codes of a stamp, of depth with the stencil above them: the first lanes of `data`, as many as memory has of the plane;
   /// the others are left alone.
-  void read(bool is_color, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
+  void read(TilePlane plane, int tile_x, int tile_y, int stamp, std::span<std::uint32_t, kMaxSamples> data) const;
   /// The value that the last fast clear gave a plane: that of a block whose flag is set.
   void set_clear_value(TilePlane plane, std::uint32_t code) { clear_value_[static_cast<std::size_t>(plane)] = code; }
   [[nodiscard]] std::uint32_t clear_value(bool is_color) const { return clear_value_[is_color ? 1 : 0]; }
   /// Whether the stamp is garbage because its block's flag is set. Behind a flush.
   [[nodiscard]] bool is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const;
+  /// Whether its block has one colour a pixel, with compress.unit. Behind a flush.
+  [[nodiscard]] bool is_of_pixels(int tile_x, int tile_y, int stamp) const;
   [[nodiscard]] const MemoryLayout& layout() const { return layout_; }
   [[nodiscard]] int tiles_x() const { return widths_.tiles_x; }  ///< of the widest and highest target
   [[nodiscard]] int tiles_y() const { return widths_.tiles_y; }
@@ -56,10 +58,12 @@ class TileMemory {
  private:
   static constexpr std::uint32_t kNone = ~0U;
   [[nodiscard]] std::uint8_t byte(std::uint32_t address) const;
+  [[nodiscard]] bool flag(TilePlane flags, int tile_x, int tile_y, int stamp) const;
   Widths widths_;
   MemoryLayout layout_;
   std::uint64_t end_;              ///< one beyond the last byte
   std::array<bool, 2> has_flags_;  ///< of depth, of colour
+  bool compresses_;                ///< compress.unit
   std::array<std::uint32_t, 2> clear_value_{};
   std::vector<std::uint32_t> page_;  ///< which page of bytes_, or kNone
   std::vector<std::uint8_t> bytes_;

@@ -19,7 +19,8 @@ BlockCache::BlockCache(const Config& config, const Widths& widths)
       stored_(static_cast<std::size_t>(widths.samples)),
       stored_color_(static_cast<std::size_t>(widths.samples)),
       code_mask_{static_cast<std::uint32_t>(widths.stored_depth.range.hi),
-                 static_cast<std::uint32_t>(widths.stored_color.range.hi)} {
+                 static_cast<std::uint32_t>(widths.stored_color.range.hi)},
+      of_pixels_(widths) {
   const std::size_t stamps = stamp_index(directory_.lines(), 0);
   for (const TilePlane plane : kTilePlanes) {
     lanes_[number(plane)].resize(stamps * static_cast<std::size_t>(widths.samples));
@@ -42,7 +43,8 @@ std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment
                            [mask = code_mask_[0]](std::uint32_t lane) { return lane & mask; });
     ++counters.tile_fills;
   }
-  if (last_.color_source == DepthSource::memory) memory.request(request_of(TilePlane::color, at));
+  color_plane_ = of_pixels_.is_set(last_.block) ? TilePlane::pixel_color : TilePlane::color;
+  if (last_.color_source == DepthSource::memory) memory.request(request_of(color_plane_, at));
   if (last_.eviction) capture(*last_.eviction);
   read_colors(memory, counters);
   if (last_.source == DepthSource::chip) std::ranges::copy(lanes(TilePlane::depth, last_stamp_), stored_.begin());
@@ -55,8 +57,8 @@ void BlockCache::read_colors(MemoryPort& memory, CounterPacket& counters) {
   if (last_.color_source == DepthSource::none) return;
   if (last_.color_source == DepthSource::memory) {
     const MemoryResponse& response = memory.response();
-    std::ranges::transform(std::span(response.data).first(stored_color_.size()), stored_color_.begin(),
-                           [mask = code_mask_[1]](std::uint32_t lane) { return lane & mask; });
+    const auto samples = static_cast<std::size_t>(color_plane_ == TilePlane::color ? 1 : widths_.pixel_samples);
+    for (std::size_t s = 0; s < stored_color_.size(); ++s) stored_color_[s] = response.data[s / samples] & code_mask_[1];
     ++counters.tile_fills;
   }
   const auto held = lanes(TilePlane::color, last_stamp_);
@@ -102,10 +104,24 @@ void BlockCache::resolve_stamp(MemoryRequest& request) const {
   request.strobe = strobe;
 }
 
+/// A stamp whose pixels have one colour each, as memory has it then.
+void BlockCache::choose_pixels(MemoryRequest& request) const {
+  const auto n = static_cast<std::size_t>(widths_.pixel_samples);
+  SampleMask strobe;
+  for (int pixel = 0; pixel < widths_.pixels; ++pixel) {
+    const auto p = static_cast<std::size_t>(pixel);
+    strobe.set(pixel, request.strobe.has(p * n));
+    request.data[p] = request.data[p * n];
+  }
+  std::fill(request.data.begin() + widths_.pixels, request.data.begin() + widths_.samples, 0U);
+  request.strobe = strobe;
+  request.plane = TilePlane::pixel_color;
+}
+
 /// The requests that an eviction comes to, before anything new is written into its line.
 void BlockCache::capture(const Eviction& eviction) {
   Victim& victim = victims_.emplace_back();
-  std::array<std::uint64_t, 2> stamps{};  // that are written, by plane
+  victim.block = eviction.block;
   for (const TilePlane plane : kTilePlanes) {
     const std::size_t p = number(plane);
     for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
@@ -121,21 +137,72 @@ void BlockCache::capture(const Eviction& eviction) {
       const auto codes = lanes(plane, at);
       request.strobe.for_each([&](std::size_t s) { request.data[s] = held.has(s) ? codes[s] : clear_value_[p]; });
       if (plane == TilePlane::color && config_.resolve_units != 0) resolve_stamp(request);
-      victim.requests.push_back(request);
-      stamps[p] |= std::uint64_t{1} << stamp;
+      victim.stamps[p].push_back(request);
     }
   }
-  auto request = victim.requests.begin();
-  for (std::uint64_t left : stamps)  // stamps that follow each other are a run
-    for (; left != 0; left &= left - 1)
-      request++->run = static_cast<std::uint16_t>(std::countr_one(left >> std::countr_zero(left)));
+  if (config_.compress_units == 0) return;
+  const std::vector<MemoryRequest>& colors = victim.stamps[number(TilePlane::color)];
+  victim.colors.fills = eviction.fills[number(TilePlane::color)];
+  victim.colors.is_whole = colors.size() == static_cast<std::size_t>(widths_.blocks.stamps());
+  for (const MemoryRequest& request : colors) {
+    victim.colors.is_whole = victim.colors.is_whole && request.strobe == SampleMask::all(widths_.samples);
+    victim.colors.is_uniform = victim.colors.is_uniform && has_one_color(request.strobe, widths_, [&](std::size_t s) {
+                                 return request.data[s];
+                               });
+  }
+}
+
+/// Colours on their way to memory, as it has the block from now on.
+void BlockCache::compress(Victim& victim, MemoryPort& memory, CounterPacket& counters) {
+  std::vector<MemoryRequest>& colors = victim.stamps[number(TilePlane::color)];
+  if (colors.empty()) return;
+  const ColorMove move = color_move(victim.colors, of_pixels_.is_set(victim.block));
+  if (move == ColorMove::merge) merge(victim, memory, counters);
+  if (move == ColorMove::pixels)
+    for (MemoryRequest& request : colors) choose_pixels(request);
+  of_pixels_.set(victim.block, move == ColorMove::pixels);
+}
+
+/// All samples of the block: those that leave the chip over the colours of its pixels in memory.
+void BlockCache::merge(Victim& victim, MemoryPort& memory, CounterPacket& counters) {
+  std::vector<MemoryRequest> all;
+  for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
+    const StampAddress at = stamp_address({victim.block, stamp}, widths_);
+    memory.request(request_of(TilePlane::pixel_color, at));
+    ++counters.tile_fills;
+    MemoryRequest& request = all.emplace_back(request_of(TilePlane::color, at));
+    request.is_write = true;
+    request.strobe = SampleMask::all(widths_.samples);
+  }
+  for (MemoryRequest& request : all) {
+    const MemoryResponse& response = memory.response();
+    request.strobe.for_each([&](std::size_t s) {
+      request.data[s] = response.data[s / static_cast<std::size_t>(widths_.pixel_samples)] & code_mask_[1];
+    });
+    for (const MemoryRequest& leaving : victim.stamps[number(TilePlane::color)])
+      if (leaving.stamp == request.stamp)
+        leaving.strobe.for_each([&](std::size_t s) { request.data[s] = leaving.data[s]; });
+  }
+  victim.stamps[number(TilePlane::color)] = std::move(all);
 }
 
 void BlockCache::write_victims(int count, MemoryPort& memory, CounterPacket& counters) {
   for (; count > 0; --count) {
-    for (const MemoryRequest& request : victims_.front().requests) {
-      memory.request(request);
-      ++counters.tile_evictions;
+    Victim& victim = victims_.front();
+    const auto number_in_block = [&](const MemoryRequest& request) {
+      return block_stamp({request.tile_x, request.tile_y, request.stamp}, widths_).stamp;
+    };
+    for (const TilePlane plane : kTilePlanes) {
+      if (plane == TilePlane::color && config_.compress_units != 0) compress(victim, memory, counters);
+      std::vector<MemoryRequest>& stamps = victim.stamps[number(plane)];
+      for (auto request = stamps.begin(); request != stamps.end(); ++request) {
+        // Stamps that follow each other are a run.
+        auto last = request;
+        while (std::next(last) != stamps.end() && number_in_block(*std::next(last)) == number_in_block(*last) + 1) ++last;
+        request->run = static_cast<std::uint16_t>(last - request + 1);
+        memory.request(*request);
+        ++counters.tile_evictions;
+      }
     }
     victims_.pop_front();
   }
@@ -155,10 +222,14 @@ void BlockCache::fast_clear(const FragmentPacket& token, std::uint32_t depth, st
   const bool clears_bin = token.state.clears_bin();
   if (!(clears[0] && clears[1]) && !clears_bin) evict_all(memory, counters);
   write_victims(directory_.write_all(), memory, counters);
-  if (clears_bin)
+  if (clears_bin) {
     (void)directory_.mark_bin(token.key.tile_x, token.key.tile_y);
-  else
+    const auto [first, last] = directory_.bin_blocks(token.key.tile_x, token.key.tile_y);
+    of_pixels_.set_blocks(first, last, false);
+  } else {
     directory_.mark(token.key.tile_x, token.key.tile_y, clears);
+    if (clears[1]) of_pixels_.set_tiles(token.key.tile_x, token.key.tile_y, false);
+  }
   directory_.drop_depth(token.state.drops_depth());
   if (clears[0]) clear_value_[0] = depth;
   if (clears[1]) clear_value_[1] = color;
@@ -177,10 +248,18 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
   };
   if (!directory_.drops_depth()) write_flags(TilePlane::depth);
   directory_.drop_depth(false);
-  if (config_.frame_clears == FrameClears::flags) {
+  if (config_.frame_clears == FrameClears::flags)
     write_flags(TilePlane::color);
-    return;
-  }
+  else
+    write_cleared(last_x, last_y, memory, counters);
+  if (config_.compress_units == 0) return;
+  of_pixels_.for_each_word(last_x, last_y, [&](int word, int y, std::uint64_t bits) {
+    memory.request(flag_word_request(TilePlane::pixel_color, word, words, y, bits, widths_));
+  });
+}
+
+/// The colours of blocks in which nothing was drawn since they were cleared.
+void BlockCache::write_cleared(int last_x, int last_y, MemoryPort& memory, CounterPacket& counters) {
   directory_.for_each_flag_word(TilePlane::color, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
     for (; bits != 0; bits &= bits - 1) {
       const int x = word * widths_.blocks.flag_word + std::countr_zero(bits);
@@ -191,9 +270,11 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
         request.run = static_cast<std::uint16_t>(widths_.blocks.stamps() - stamp);
         request.strobe = SampleMask::all(widths_.memory_colors);
         request.strobe.for_each([&](std::size_t s) { request.data[s] = clear_value_[1]; });
+        if (config_.compress_units != 0) choose_pixels(request);
         memory.request(request);
         ++counters.tile_evictions;
       }
+      of_pixels_.set({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, true);
     }
   });
   directory_.resolve(TilePlane::color, last_x, last_y);

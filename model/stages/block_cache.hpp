@@ -9,6 +9,7 @@
 #include "cache_tags.hpp"
 #include "color_packets.hpp"
 #include "memory_port.hpp"
+#include "pixel_colors.hpp"
 #include "stencil_packets.hpp"
 
 namespace halfplane {
@@ -43,7 +44,9 @@ class BlockCache {
  private:
   /// A block that has left its line: what of it goes to memory.
   struct Victim {
-    std::vector<MemoryRequest> requests;
+    BlockAddress block;
+    std::array<std::vector<MemoryRequest>, 2> stamps;  ///< by plane, in order
+    LeavingColors colors;
   };
 
   [[nodiscard]] std::size_t stamp_index(std::size_t line, int stamp) const {
@@ -56,8 +59,12 @@ class BlockCache {
   void read_colors(MemoryPort& memory, CounterPacket& counters);
   void capture(const Eviction& eviction);
   void resolve_stamp(MemoryRequest& request) const;
+  void choose_pixels(MemoryRequest& request) const;
+  void compress(Victim& victim, MemoryPort& memory, CounterPacket& counters);
+  void merge(Victim& victim, MemoryPort& memory, CounterPacket& counters);
   void write_victims(int count, MemoryPort& memory, CounterPacket& counters);
   void evict_all(MemoryPort& memory, CounterPacket& counters);
+  void write_cleared(int last_x, int last_y, MemoryPort& memory, CounterPacket& counters);
 
   Config config_;
   Widths widths_;
@@ -66,11 +73,13 @@ class BlockCache {
   std::size_t last_stamp_ = 0;               ///< likewise, in the arrays below
   std::vector<std::uint32_t> stored_;        ///< likewise: what the depth test saw
   std::vector<std::uint32_t> stored_color_;  ///< likewise: what operations on colours see
+  TilePlane color_plane_ = TilePlane::color;  ///< likewise: where they come from
   std::array<std::uint32_t, 2> code_mask_;   ///< bits of a code of each plane
   std::array<std::uint32_t, 2> clear_value_{};
   std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
   std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that memory does not have
   std::deque<Victim> victims_;                       ///< oldest first
+  BlockBits of_pixels_;  ///< with compress.unit: blocks that memory has with one colour a pixel
 };
 
 }  // namespace halfplane

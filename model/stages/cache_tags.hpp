@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "clear_flags.hpp"
@@ -127,13 +128,18 @@ class CacheTags {
   /// A fast clear of the colours of the bin whose last tile this is. Precondition: nothing is on the chip. Returns how many words of
   /// flags it is in.
   int mark_bin(int last_x, int last_y) {
+    const auto [first, last] = bin_blocks(last_x, last_y);
+    flags_.mark_colors(first, last);
+    return (word_of(last.x) - word_of(first.x) + 1) * (last.y - first.y + 1);
+  }
+  /// The first and the last block of the bin whose last tile this is.
+  [[nodiscard]] std::pair<BlockAddress, BlockAddress> bin_blocks(int last_x, int last_y) const {
     const int per_tile = widths_.blocks.per_tile;
     const int right = (last_x + 1) * per_tile - 1, bottom = (last_y + 1) * per_tile - 1;
     const int left = right >> widths_.line_x_bits << widths_.line_x_bits,
               top = bottom >> widths_.line_y_bits << widths_.line_y_bits;
-    flags_.mark_colors({static_cast<std::uint16_t>(left), static_cast<std::uint16_t>(top)},
-                       {static_cast<std::uint16_t>(right), static_cast<std::uint16_t>(bottom)});
-    return (word_of(right) - word_of(left) + 1) * (bottom - top + 1);
+    return {{static_cast<std::uint16_t>(left), static_cast<std::uint16_t>(top)},
+            {static_cast<std::uint16_t>(right), static_cast<std::uint16_t>(bottom)}};
   }
 
   /// The words of the flags of a plane: visit(x, y, word), word x of the row y of blocks.

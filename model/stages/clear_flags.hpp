@@ -51,65 +51,88 @@ struct BlockStamp {
           static_cast<std::uint16_t>(y % per_tile)};
 }
 [[nodiscard]] constexpr TilePlane flags_of(TilePlane plane) {
-  return plane == TilePlane::color ? TilePlane::color_flags : TilePlane::depth_flags;
+  return static_cast<TilePlane>(static_cast<unsigned>(plane) | 2U);
 }
 
-class ClearFlags {
+/// A bit for each block of the widest target.
+class BlockBits {
  public:
-  explicit ClearFlags(const Widths& widths)
+  explicit BlockBits(const Widths& widths)
       : per_tile_(widths.blocks.per_tile),
         word_(widths.blocks.flag_word),
         row_((static_cast<std::size_t>(widths.tiles_x * per_tile_ - 1) / static_cast<std::size_t>(word_) + 1) *
-             static_cast<std::size_t>(word_)) {
-    for (auto& plane : is_set_) plane.resize(row_ * static_cast<std::size_t>(widths.tiles_y * per_tile_));
+             static_cast<std::size_t>(word_)),
+        is_set_(row_ * static_cast<std::size_t>(widths.tiles_y * per_tile_)) {}
+
+  [[nodiscard]] bool is_set(const BlockAddress& block) const { return is_set_[index(block.x, block.y)] != 0; }
+  void set(const BlockAddress& block, bool value) { is_set_[index(block.x, block.y)] = value ? 1 : 0; }
+  /// Those of tiles (0, 0) to (last_x, last_y).
+  void set_tiles(int last_x, int last_y, bool value) {
+    for (int y = 0; y < (last_y + 1) * per_tile_; ++y)
+      std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(0, y)), (last_x + 1) * per_tile_, value ? 1 : 0);
   }
 
-  [[nodiscard]] bool is_set(TilePlane plane, const BlockAddress& block) const {
-    return is_set_[number(plane)][index(block.x, block.y)] != 0;
-  }
-  /// Memory holds the block from now on.
-  void fall(TilePlane plane, const BlockAddress& block) { is_set_[number(plane)][index(block.x, block.y)] = 0; }
-
-  /// A fast clear of the planes in `clears`, tiles (0, 0) to (last_x, last_y).
-  void mark(int last_x, int last_y, const std::array<bool, 2>& clears) {
-    for (const TilePlane plane : kTilePlanes)
-      if (clears[number(plane)]) set(plane, last_x, last_y, 1);
-  }
-  /// A fast clear of the colours of the blocks `first` to `last`.
-  void mark_colors(const BlockAddress& first, const BlockAddress& last) {
+  /// Those of the blocks `first` to `last`.
+  void set_blocks(const BlockAddress& first, const BlockAddress& last, bool value) {
     for (int y = first.y; y <= last.y; ++y)
-      for (int x = first.x; x <= last.x; ++x) is_set_[number(TilePlane::color)][index(x, y)] = 1;
+      std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(first.x, y)), last.x - first.x + 1, value ? 1 : 0);
   }
-  /// The clear values of a plane have been written to memory.
-  void resolve(TilePlane plane, int last_x, int last_y) { set(plane, last_x, last_y, 0); }
 
-  /// The words of a plane: visit(x, y, word), word x of the row y of blocks.
+  /// Their words: visit(x, y, word), word x of the row y of blocks.
   template <class Visit>
-  void for_each_word(TilePlane plane, int last_x, int last_y, Visit&& visit) const {
+  void for_each_word(int last_x, int last_y, Visit&& visit) const {
     const int blocks = (last_x + 1) * per_tile_;
     for (int y = 0; y < (last_y + 1) * per_tile_; ++y)
       for (int word = 0; word * word_ < blocks; ++word) {
         std::uint64_t bits = 0;
         for (int x = word * word_; x < std::min(blocks, (word + 1) * word_); ++x)
-          bits |= std::uint64_t{is_set_[number(plane)][index(x, y)]} << (x - word * word_);
+          bits |= std::uint64_t{is_set_[index(x, y)]} << (x - word * word_);
         visit(word, y, bits);
       }
   }
 
  private:
-  [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x);
   }
-  void set(TilePlane plane, int last_x, int last_y, std::uint8_t value) {
-    for (int y = 0; y < (last_y + 1) * per_tile_; ++y)
-      std::fill_n(is_set_[number(plane)].begin() + static_cast<std::ptrdiff_t>(index(0, y)), (last_x + 1) * per_tile_,
-                  value);
+
+  int per_tile_, word_;  ///< blocks along the side of a tile, bits of a word
+  std::size_t row_;      ///< bits of a row, in whole words
+  std::vector<std::uint8_t> is_set_;
+};
+
+class ClearFlags {
+ public:
+  explicit ClearFlags(const Widths& widths) : flags_{BlockBits(widths), BlockBits(widths)} {}
+
+  [[nodiscard]] bool is_set(TilePlane plane, const BlockAddress& block) const { return of(plane).is_set(block); }
+  /// Memory holds the block from now on.
+  void fall(TilePlane plane, const BlockAddress& block) { of(plane).set(block, false); }
+
+  /// A fast clear of the planes in `clears`, tiles (0, 0) to (last_x, last_y).
+  void mark(int last_x, int last_y, const std::array<bool, 2>& clears) {
+    for (const TilePlane plane : kTilePlanes)
+      if (clears[number(plane)]) of(plane).set_tiles(last_x, last_y, true);
+  }
+  /// A fast clear of the colours of the blocks `first` to `last`.
+  void mark_colors(const BlockAddress& first, const BlockAddress& last) {
+    of(TilePlane::color).set_blocks(first, last, true);
+  }
+  /// The clear values of a plane have been written to memory.
+  void resolve(TilePlane plane, int last_x, int last_y) { of(plane).set_tiles(last_x, last_y, false); }
+
+  /// The words of a plane: visit(x, y, word), word x of the row y of blocks.
+  template <class Visit>
+  void for_each_word(TilePlane plane, int last_x, int last_y, Visit&& visit) const {
+    of(plane).for_each_word(last_x, last_y, visit);
   }
 
-  int per_tile_, word_;                              ///< blocks along the side of a tile, flags of a word
-  std::size_t row_;                                  ///< flags of a row, in whole words
-  std::array<std::vector<std::uint8_t>, 2> is_set_;  ///< by plane and block
+ private:
+  [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
+  [[nodiscard]] const BlockBits& of(TilePlane plane) const { return flags_[number(plane)]; }
+  [[nodiscard]] BlockBits& of(TilePlane plane) { return flags_[number(plane)]; }
+
+  std::array<BlockBits, 2> flags_;  ///< by plane
 };
 
 }  // namespace halfplane

@@ -62,25 +62,35 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
 }
 
 [[nodiscard]] constexpr bool is_flags(TilePlane plane) {
-  return plane == TilePlane::depth_flags || plane == TilePlane::color_flags;
+  return (static_cast<unsigned>(plane) & 2U) != 0;
 }
-[[nodiscard]] constexpr bool is_of_color(TilePlane plane) {
-  return plane == TilePlane::color || plane == TilePlane::color_flags;
+[[nodiscard]] constexpr bool is_of_color(TilePlane plane) { return (static_cast<unsigned>(plane) & 1U) != 0; }
+/// A colour a pixel, or the flags of the blocks that have those.
+[[nodiscard]] constexpr bool is_of_pixels(TilePlane plane) { return (static_cast<unsigned>(plane) & 4U) != 0; }
+
+/// Codes of a stamp in memory.
+[[nodiscard]] inline int codes_of_stamp(TilePlane plane, const Widths& widths) {
+  return is_of_pixels(plane) ? widths.pixels : is_of_color(plane) ? widths.memory_colors : widths.samples;
 }
 
 /// Log2 of the bytes of a stamp of the plane, or of a word of its flags.
 [[nodiscard]] inline int item_shift(TilePlane plane, const MemoryGrid& memory) {
-  return is_flags(plane) ? memory.flag_word : memory.stamp[is_of_color(plane) ? 1 : 0];
+  if (is_flags(plane)) return memory.flag_word;
+  return is_of_pixels(plane) ? memory.pixel_color : memory.stamp[is_of_color(plane) ? 1 : 0];
 }
 
-/// Where a stamp lies in its plane of a tile, in stamps: block by block, row by row in each.
-[[nodiscard]] inline std::uint32_t stamp_place(int stamp, const Widths& widths) {
+/// Where a stamp lies in its plane of a tile, in bytes: block by block, row by row in each. A block of one colour a pixel begins
+/// where it would with all its samples.
+[[nodiscard]] inline std::uint32_t stamp_offset(TilePlane plane, int stamp, const Widths& widths) {
   const BlockStamp at = block_stamp({0, 0, static_cast<std::uint16_t>(stamp)}, widths);
-  return static_cast<std::uint32_t>((at.block.y * widths.blocks.per_tile + at.block.x) * widths.blocks.stamps() +
-                                    at.stamp);
+  const auto block =
+      static_cast<std::uint32_t>((at.block.y * widths.blocks.per_tile + at.block.x) * widths.blocks.stamps());
+  return (block << widths.memory.stamp[is_of_color(plane) ? 1 : 0]) +
+         (static_cast<std::uint32_t>(at.stamp) << item_shift(plane, widths.memory));
 }
 
-/// The address of the first byte of a stamp, or of word tile_x of a row of flags (MemoryRequest).
+/// The address of the first byte of a stamp, or of word tile_x of a row of flags (MemoryRequest). The words of the flags of
+/// one colour a pixel lie in the second half of a row of flags of colour.
 [[nodiscard]] inline std::uint32_t byte_address(TilePlane plane, int tile_x, int tile_y, int stamp,
                                                 const MemoryLayout& layout, const Widths& widths) {
   const MemoryGrid& m = widths.memory;
@@ -90,11 +100,12 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
     const std::uint32_t row =
         y * static_cast<std::uint32_t>(widths.blocks.per_tile) + static_cast<std::uint32_t>(stamp);
     return multiple(is_of_color(plane) ? layout.color_flags_base : layout.depth_flags_base, m.flag_row) +
-           (row << m.flag_row) + (x << m.flag_word);
+           (row << m.flag_row) + (x << m.flag_word) +
+           (is_of_pixels(plane) ? std::uint32_t{1} << (m.flag_row - 1) : 0);
   }
   return multiple(is_of_color(plane) ? layout.color_base : layout.depth_base, m.plane) +
          y * multiple(layout.row_stride, m.tile()) + (x << m.tile()) +
-         (stamp_place(stamp, widths) << item_shift(plane, m));
+         stamp_offset(plane, stamp, widths);
 }
 
 /// The tiles of the widest target row by row, depth and colour of a tile side by side, then the flags of depth, of colour.
@@ -149,7 +160,7 @@ class PortStage {
       beat.is_first = true;
       beat.address = address >> m.port << m.port;
       beat.length = static_cast<std::uint16_t>(share.beats(request.run));
-      read_ = {is_of_color(request.plane), share, request.run, share.first, {}};
+      read_ = {request.plane, share, request.run, share.first, {}};
       send(beat);
       return;
     }
@@ -179,7 +190,7 @@ class PortStage {
     const std::size_t bytes = static_cast<std::size_t>(widths_.port_bytes);
     read_.bytes.insert(read_.bytes.end(), answer.data.begin(),
                        answer.data.begin() + static_cast<std::ptrdiff_t>(bytes));
-    const std::size_t size = std::size_t{1} << widths_.memory.stamp[read_.is_color ? 1 : 0];
+    const std::size_t size = std::size_t{1} << item_shift(read_.plane, widths_.memory);
     if (read_.bytes.size() < size) return;
     for (; read_.left > 0 && read_.next < read_.share.per_beat; ++read_.next, --read_.left)
       give(unpack(read_.bytes.data() + static_cast<std::size_t>(read_.next) * (size < bytes ? size : 0)));
@@ -189,7 +200,7 @@ class PortStage {
 
  private:
   struct Read {
-    bool is_color = false;
+    TilePlane plane = TilePlane::depth;
     BeatShare share{0, 0, 0};
     int left = 0;                     ///< stamps without a response
     int next = 0;                     ///< of them in its beat
@@ -216,8 +227,8 @@ class PortStage {
 
   [[nodiscard]] MemoryResponse unpack(const std::uint8_t* bytes) const {
     MemoryResponse response;
-    const int size = 1 << widths_.memory.sample[read_.is_color ? 1 : 0];
-    const auto codes = static_cast<std::size_t>(read_.is_color ? widths_.memory_colors : widths_.samples);
+    const int size = 1 << widths_.memory.sample[is_of_color(read_.plane) ? 1 : 0];
+    const auto codes = static_cast<std::size_t>(codes_of_stamp(read_.plane, widths_));
     for (std::size_t s = 0; s < codes; ++s) {
       std::uint32_t value = 0;
       for (int n = 0; n < size; ++n) value |= std::uint32_t{*bytes++} << 8 * n;

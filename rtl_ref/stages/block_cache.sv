@@ -115,6 +115,8 @@ module block_cache (
   localparam int PLACES = raster_pkg::COORDINATES == 0 ? 2 : raster_pkg::TEXTURE_STAMPS;  // between X and W
   localparam int BEHIND = $clog2(PLACES + 1);
   localparam int RUN = raster_pkg::RUN_BITS;
+  localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
+  localparam int PIXEL_COLORS = PIXELS * COLOR;  // of a stamp, one a pixel
 
   function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
     lowest = set & (~set + 1'b1);
@@ -160,6 +162,14 @@ module block_cache (
   logic [raster_pkg::TILE_Y_BITS-1:0] ordered_y;
   logic [INDEX-1:0]                 ordered_stamp;
   logic                             drained, flush_valid, tags_are_idle, is_cleared, is_resolved;
+  localparam int WORD_X = (BLOCK_X > $clog2(raster_pkg::FLAG_WORD)) ? BLOCK_X - $clog2(raster_pkg::FLAG_WORD) : 1;
+  /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
+  logic                             pixel_reads, pixel_writes;
+  logic [WORD_X-1:0]                pixel_word_x;
+  logic [BLOCK_Y-1:0]               pixel_word_y;
+  logic [raster_pkg::FLAG_WORD-1:0] pixel_word_new;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [raster_pkg::FLAG_WORD-1:0] pixel_word;
   /* verilator lint_off UNUSEDSIGNAL */  // its data are flush_word, or the clear value
   raster_pkg::memory_request_t  flush_request;
   /* verilator lint_on UNUSEDSIGNAL */
@@ -200,6 +210,12 @@ module block_cache (
       .request_ready_i,
       .request_o          (flush_request),
       .request_word_o     (flush_word),
+      .pixel_reads_o      (pixel_reads),
+      .pixel_writes_o     (pixel_writes),
+      .pixel_word_x_o     (pixel_word_x),
+      .pixel_word_y_o     (pixel_word_y),
+      .pixel_word_o       (pixel_word_new),
+      .pixel_word_i       (pixel_word),
       .clear_depth_o      (clear_depth),
       .clear_color_o      (clear_color),
       .is_cleared_o       (is_cleared),
@@ -303,10 +319,12 @@ module block_cache (
 
   // Answers: a place for each item that can wait for one, here for depth, and for colour (gen_blends) here and behind X.
   logic                      answer_valid, takes_answer, answers_depth, answers_ready;
+  logic                      merges;  // answers are of a block that is merged
   logic [SAMPLES*CODE-1:0]   answer_q, response_depth;  // the answer that X took last
   /* verilator lint_off UNUSEDSIGNAL */  // without blending
   logic                      read_goes, reads_color, takes_color;  // a read goes out; it is one of colours
   /* verilator lint_on UNUSEDSIGNAL */
+  logic                      of_pixels;  // the colours at work lie in memory with one a pixel
   logic                      order_reads_color, color_valid;
   logic [SAMPLES*COLOR-1:0]  stored_color;  // the answer that W took last
   logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] color_source;  // of the item at the head
@@ -326,24 +344,34 @@ module block_cache (
   generate
     if (BLENDS) begin : gen_blends
       localparam int READS = 1 << $clog2(2 * QUEUE + PLACES);  // that may not have been answered
-      logic                     is_color, color_ready;  // the next answer
+      logic                     is_color, color_ready, answers_pixels;  // the next answer
       logic [SAMPLES*COLOR-1:0] response_color;
       /* verilator lint_off UNUSEDSIGNAL */  // there is room, and one answer for each
       logic                     planes_ready, planes_valid;
       /* verilator lint_on UNUSEDSIGNAL */
       // Which plane the next answer is of: as the reads went out.
+      localparam int PLANE = COMPRESSES ? 2 : 1;
+      logic [PLANE-1:0] asked_plane, answered_plane;
+      assign is_color = answered_plane[0];
+      if (COMPRESSES) begin : gen_pixels
+        assign asked_plane    = {of_pixels, reads_color};
+        assign answers_pixels = answered_plane[1];
+      end else begin : gen_samples
+        assign asked_plane    = reads_color;
+        assign answers_pixels = 1'b0;
+      end
       fifo #(
-          .WIDTH(1),
+          .WIDTH(PLANE),
           .DEPTH(READS)
       ) u_planes (
           .clk_i,
           .rst_ni,
           .valid_i(read_goes),
           .ready_o(planes_ready),
-          .data_i (reads_color),
+          .data_i (asked_plane),
           .valid_o(planes_valid),
-          .ready_i(response_valid_i && response_ready_o),
-          .data_o (is_color)
+          .ready_i(response_valid_i && response_ready_o && !merges),
+          .data_o (answered_plane)
       );
       sram_fifo #(
           .WIDTH(SAMPLES * COLOR),
@@ -351,7 +379,7 @@ module block_cache (
       ) u_color_answers (
           .clk_i,
           .rst_ni,
-          .valid_i(response_valid_i && is_color),
+          .valid_i(response_valid_i && is_color && !merges),
           .ready_o(color_ready),
           .data_i (response_color),
           .valid_o(color_valid),
@@ -360,15 +388,17 @@ module block_cache (
       );
       genvar n;
       for (n = 0; n < SAMPLES; n++) begin : gen_response
-        assign response_color[n*COLOR+:COLOR] = response_i.data[n*LANE+:COLOR];
+        assign response_color[n*COLOR+:COLOR] =
+            response_i.data[LANE*(n/raster_pkg::MSAA_SAMPLES)+:COLOR] & {COLOR{answers_pixels}} |
+            response_i.data[n*LANE+:COLOR] & {COLOR{!answers_pixels}};
       end
-      assign answers_depth     = response_valid_i && !is_color;
-      assign response_ready_o  = is_color ? color_ready : answers_ready;
+      assign answers_depth     = response_valid_i && !is_color && !merges;
+      assign response_ready_o  = merges || (is_color ? color_ready : answers_ready);
       assign color_source      = item_bits[ITEM+:2];
       assign order_reads_color = order_bits[ORDER];
     end else begin : gen_replaces
-      assign answers_depth     = response_valid_i;
-      assign response_ready_o  = answers_ready;
+      assign answers_depth     = response_valid_i && !merges;
+      assign response_ready_o  = merges || answers_ready;
       assign color_valid       = 1'b0;
       assign stored_color      = '0;
       assign color_source      = raster_pkg::DEPTH_SOURCE_NONE;
@@ -760,6 +790,12 @@ module block_cache (
   logic              depth_asked_q;  // likewise: its read of depths has been taken, that of colours has not
 
   logic                        sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request;
+  logic                        colors_known, asks_pixels;  // how colours are written or read; a read of a merge
+  logic [STAMP-1:0]            asked_stamp;
+  /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
+  logic [PIXEL_COLORS-1:0]     merged;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic                        fills_left, takes_merged;  // of a block that is merged all stamps are written; with what was read
   logic [STAMPS-1:0]           depth_left, color_left, sent, here_depth, here_color;
   logic [STAMP-1:0]            sent_stamp;
   logic [BLOCK_X-1:0]          sent_x;
@@ -774,16 +810,113 @@ module block_cache (
   assign wants_write = order_valid && written_q != order_writes;
   assign wants_read  = order_valid && written_q == order_writes;  // an order that reads nothing ends with its writes
   assign is_ready    = depth_ready_q != '0 && color_ready_q != '0;
-  assign sends       = wants_write && is_ready && (depth_left != '0 || color_left != '0);
+  assign sends       = wants_write && is_ready && (depth_left != '0 || (color_left != '0 && colors_known));
   assign skips       = wants_write && is_ready && depth_left == '0 && color_left == '0;
   assign is_color    = depth_left == '0;
   assign sent        = lowest(is_color ? color_left : depth_left);
-  assign sent_stamp  = number_of(sent);
+  assign sent_stamp  = asks_pixels ? asked_stamp : number_of(sent);
   assign ends_victim = is_color ? color_left == sent : depth_left == sent && color_left == '0;
   assign is_here     = (sent & (is_color ? here_color : here_depth)) != '0;
   assign finishes    = skips || (sends && takes_request && ends_victim);
   assign reads_color = order_reads_color && (!order_reads || depth_asked_q);  // behind that of depth
   assign read_goes  = wants_read && takes_request;
+  generate
+    if (COMPRESSES) begin : gen_pixel_colors
+      // Of the colours in each slot: memory holds garbage; pixels have one each; all that have come are whole.
+      logic [VICTIMS-1:0] fills_color_q, is_uniform_q, is_full_q;
+      logic               is_uniform;  // the stamp that comes
+      always_comb begin
+        is_uniform = 1'b1;
+        for (int i = 0; i < SAMPLES; i++)
+          if (c_color_strobe[i] != c_color_strobe[i/raster_pkg::MSAA_SAMPLES*raster_pkg::MSAA_SAMPLES] ||
+              c_color[i*COLOR+:COLOR] != c_color[i/raster_pkg::MSAA_SAMPLES*raster_pkg::MSAA_SAMPLES*COLOR+:COLOR])
+            is_uniform = 1'b0;
+      end
+      always_ff @(posedge clk_i) begin
+        for (int i = 0; i < VICTIMS; i++) begin
+          if (goes && evicts && slot_q == VICTIM'(i)) begin
+            fills_color_q[i] <= fills[1];
+            is_uniform_q[i]  <= 1'b1;
+            is_full_q[i]     <= 1'b1;
+          end else if (c_valid && c_slot == VICTIM'(i)) begin
+            is_uniform_q[i] <= is_uniform_q[i] && is_uniform;
+            is_full_q[i]    <= is_full_q[i] && c_color_strobe == '1;
+          end
+        end
+      end
+
+      // The block whose colours are next, and the reads that have not been answered.
+      localparam int READS = $clog2((BLENDS ? 2 * QUEUE + PLACES : QUEUE) + 1);
+      logic               writes_color, reads_block, ends_block;
+      logic [BLOCK_X-1:0] read_x;
+      logic [BLOCK_Y-1:0] read_y;
+      logic [READS-1:0]   reads_q;
+      logic [PIXEL_COLORS-1:0] answer;
+      assign writes_color = wants_write && is_ready && is_color && color_left != '0;
+      assign reads_block  = wants_read && reads_color;
+      assign ends_block   = finishes || (reads_block && takes_request);
+      /* verilator lint_off PINCONNECTEMPTY */
+      block_stamp u_read_block (
+          .tile_x_i (order_x),
+          .tile_y_i (order_y),
+          .stamp_i  (order_stamp),
+          .block_x_o(read_x),
+          .block_y_o(read_y),
+          .stamp_o  ()
+      );
+      /* verilator lint_on PINCONNECTEMPTY */
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) reads_q <= '0;
+        else reads_q <= reads_q + READS'(read_goes) - READS'(response_valid_i && response_ready_o && !merges);
+      end
+      for (s = 0; s < PIXELS; s++) begin : gen_answer
+        assign answer[s*COLOR+:COLOR] = response_i.data[s*LANE+:COLOR];
+      end
+      logic is_merged;
+      pixel_colors u_pixel_colors (
+          .clk_i,
+          .rst_ni,
+          .writes_i      (writes_color),
+          .reads_i       (reads_block),
+          .block_x_i     (writes_color ? sent_x : read_x),
+          .block_y_i     (writes_color ? sent_y : read_y),
+          .ends_i        (ends_block),
+          .is_known_o    (colors_known),
+          .of_pixels_o   (of_pixels),
+          .fills_i       (fills_color_q[oldest_q]),
+          .is_uniform_i  (is_uniform_q[oldest_q]),
+          .is_whole_i    (is_full_q[oldest_q] && color_left == '1),
+          .merges_o      (is_merged),
+          .asks_o        (asks_pixels),
+          .ask_stamp_o   (asked_stamp),
+          .is_asked_i    (asks_pixels && takes_request),
+          .all_answered_i(reads_q == '0),
+          .answers_i     (merges && response_valid_i),
+          .answer_i      (answer),
+          .stamp_i       (sent_stamp),
+          .merged_o      (merged),
+          .token_reads_i (pixel_reads),
+          .token_writes_i(pixel_writes),
+          .word_x_i      (pixel_word_x),
+          .word_y_i      (pixel_word_y),
+          .word_i        (pixel_word_new),
+          .word_o        (pixel_word)
+      );
+      assign merges      = is_merged && reads_q == '0;
+      assign fills_left  = is_merged && !colors_known;
+      assign takes_merged = is_merged;
+    end else begin : gen_no_pixel_colors
+      assign colors_known = 1'b1;
+      assign of_pixels    = 1'b0;
+      assign merges       = 1'b0;
+      assign fills_left   = 1'b0;
+      assign takes_merged = 1'b0;
+      assign asks_pixels  = 1'b0;
+      assign asked_stamp  = '0;
+      assign merged       = '0;
+      assign pixel_word   = '0;
+    end
+  endgenerate
   assign takes_order = (finishes && written_q + 1'b1 == order_writes && !order_reads && !order_reads_color) ||
                        (read_goes && (reads_color || !order_reads_color));
   generate
@@ -797,7 +930,7 @@ module block_cache (
     end
   endgenerate
 
-  assign request_valid_o = flush_valid || sends || wants_read;
+  assign request_valid_o = flush_valid || sends || asks_pixels || (wants_read && (!reads_color || colors_known));
   assign takes_request   = request_valid_o && request_ready_i;
 
   assign {sent_depth_strobe, sent_depth} = victim_depth_q[{oldest_q, sent_stamp}];
@@ -841,6 +974,7 @@ module block_cache (
             color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << c_stamp);
           if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
           if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
+          if (fills_left && oldest_q == VICTIM'(v)) color_left_q[v] <= '1;
         end
       end
     end
@@ -867,14 +1001,15 @@ module block_cache (
   localparam int DATA = 8 * raster_pkg::REQUEST_BYTES;
   logic [MEMORY_COLORS*COLOR-1:0] stored;  // colours as memory has them
   logic [MEMORY_COLORS-1:0]       stored_strobe, color_strobe;
-  assign color_strobe = stored_strobe | {MEMORY_COLORS{!is_here}};
+  assign color_strobe = stored_strobe | {MEMORY_COLORS{!is_here && !of_pixels}} |
+                        MEMORY_COLORS'({PIXELS{!is_here}});
   logic              sends_here, sends_flags, clears_depth, clears_color;
   logic [DEPTHS-1:0] depth_bytes, clear_depths;
   logic [COLORS-1:0] color_bytes, clear_colors;
-  assign sends_here   = sends && is_here;
+  assign sends_here   = sends && (is_here || (is_color && takes_merged));
   assign sends_flags  = flush_valid && flush_request.plane[1];
   assign clears_depth = sends && !is_here && !is_color;
-  assign clears_color = (sends && !is_here && is_color) || (flush_valid && !flush_request.plane[1]);
+  assign clears_color = (sends && !is_here && is_color && !takes_merged) || (flush_valid && !flush_request.plane[1]);
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_data
       assign depth_bytes[s*DEPTH_WIDTH+:DEPTH_WIDTH]  = DEPTH_WIDTH'(sent_depth[s*CODE+:CODE]);
@@ -882,7 +1017,8 @@ module block_cache (
     end
     for (s = 0; s < MEMORY_COLORS; s++) begin : gen_colors
       assign color_bytes[s*COLOR_WIDTH+:COLOR_WIDTH]  = COLOR_WIDTH'(stored[s*COLOR+:COLOR]);
-      assign clear_colors[s*COLOR_WIDTH+:COLOR_WIDTH] = COLOR_WIDTH'(clear_color) & {COLOR_WIDTH{clears_color}};
+      assign clear_colors[s*COLOR_WIDTH+:COLOR_WIDTH] = COLOR_WIDTH'(clear_color) &
+          {COLOR_WIDTH{clears_color && (s < PIXELS || !(COMPRESSES && (flush_valid || of_pixels)))}};
     end
     if (raster_pkg::RESOLVE_UNIT != 0) begin : gen_resolve
       resolve u_resolve (
@@ -891,6 +1027,26 @@ module block_cache (
       );
       for (s = 0; s < PIXELS; s++) begin : gen_strobe  // all of a pixel's samples are there, or none
         assign stored_strobe[s] = sent_color_strobe[s*raster_pkg::MSAA_SAMPLES];
+      end
+    end else if (COMPRESSES) begin : gen_compress
+      // What is sent, over what was read; or of each pixel the first sample.
+      logic [SAMPLES*COLOR-1:0] all_color;
+      logic [SAMPLES-1:0]       here_strobe;
+      assign here_strobe = sent_color_strobe & {SAMPLES{is_here}};
+      for (s = 0; s < SAMPLES; s++) begin : gen_merged
+        localparam int PIXEL = s / raster_pkg::MSAA_SAMPLES;
+        assign all_color[s*COLOR+:COLOR] = takes_merged && !here_strobe[s] ? merged[PIXEL*COLOR+:COLOR] :
+                                                                             sent_color[s*COLOR+:COLOR];
+      end
+      for (s = 0; s < SAMPLES; s++) begin : gen_chosen
+        if (s < PIXELS) begin : gen_pixel
+          localparam int FIRST_SAMPLE = s * raster_pkg::MSAA_SAMPLES;
+          assign stored[s*COLOR+:COLOR] = of_pixels ? all_color[FIRST_SAMPLE*COLOR+:COLOR] : all_color[s*COLOR+:COLOR];
+          assign stored_strobe[s] = of_pixels ? here_strobe[FIRST_SAMPLE] : here_strobe[s] || takes_merged;
+        end else begin : gen_rest
+          assign stored[s*COLOR+:COLOR] = all_color[s*COLOR+:COLOR] & {COLOR{!of_pixels}};
+          assign stored_strobe[s]       = (here_strobe[s] || takes_merged) && !of_pixels;
+        end
       end
     end else begin : gen_samples
       assign stored        = sent_color;
@@ -907,10 +1063,12 @@ module block_cache (
   assign clear_part      = DATA'(clear_depths) | DATA'(clear_colors);
   assign request_bytes_o = DATA'(color_part) | DATA'(depth_part) | DATA'(flag_part) | clear_part;
 
+  raster_pkg::tile_plane_t color_plane;
+  assign color_plane = of_pixels || asks_pixels ? raster_pkg::TILE_PLANE_PIXEL_COLOR : raster_pkg::TILE_PLANE_COLOR;
   always_comb begin
     request_o          = '0;
     request_o.is_write = sends;
-    request_o.plane    = reads_color && !sends ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH;
+    request_o.plane    = reads_color && !sends ? color_plane : raster_pkg::TILE_PLANE_DEPTH;
     request_o.tile_x   = order_x;
     request_o.tile_y   = order_y;
     request_o.stamp    = order_stamp;
@@ -920,8 +1078,14 @@ module block_cache (
       request_o.tile_x = sent_tile_x;
       request_o.tile_y = sent_tile_y;
       request_o.stamp  = sent_index;
-      if (is_color) request_o.plane = raster_pkg::TILE_PLANE_COLOR;
+      if (is_color) request_o.plane = color_plane;
       request_o.strobe = is_color ? SAMPLES'(color_strobe) : is_here ? sent_depth_strobe : '1;
+    end
+    if (asks_pixels) begin
+      request_o.tile_x = sent_tile_x;
+      request_o.tile_y = sent_tile_y;
+      request_o.stamp  = sent_index;
+      request_o.plane  = color_plane;
     end
     if (flush_valid) request_o = flush_request;
     request_o.data = '0;
@@ -929,7 +1093,7 @@ module block_cache (
 
   assign drained = items_are_done && behind_q == '0 && !order_valid;
   assign idle_o  = tags_are_idle && drained && texture_is_idle && write_is_idle;
-  assign fill_o  = {1'b0, read_goes};
+  assign fill_o  = {1'b0, read_goes || (asks_pixels && takes_request)};
   assign evict_o = {1'b0, (sends && takes_request) || is_resolved};
   assign clear_o = {1'b0, is_cleared};
 

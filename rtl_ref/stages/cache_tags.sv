@@ -16,7 +16,8 @@ module cache_tags #(
     parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
     parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
     parameter int LINE = (raster_pkg::CACHE_LINES == 1) ? 1 : raster_pkg::LINE_X_BITS + raster_pkg::LINE_Y_BITS,
-    parameter int WRITES = $clog2(raster_pkg::CACHE_VICTIMS + 1)
+    parameter int WRITES = $clog2(raster_pkg::CACHE_VICTIMS + 1),
+    parameter int WORD_X = (BLOCK_X > $clog2(raster_pkg::FLAG_WORD)) ? BLOCK_X - $clog2(raster_pkg::FLAG_WORD) : 1
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -60,6 +61,14 @@ module cache_tags #(
     output raster_pkg::memory_request_t request_o,
     output logic [raster_pkg::FLAG_WORD-1:0] request_word_o,  // its data, of a word of flags
 
+    // Words of the bits of blocks with one colour a pixel: one is read, and there in the next cycle; or written
+    output logic                             pixel_reads_o,
+    output logic                             pixel_writes_o,
+    output logic [WORD_X-1:0]                pixel_word_x_o,
+    output logic [BLOCK_Y-1:0]               pixel_word_y_o,
+    output logic [raster_pkg::FLAG_WORD-1:0] pixel_word_o,
+    input  logic [raster_pkg::FLAG_WORD-1:0] pixel_word_i,
+
     output logic [raster_pkg::STORED_DEPTH_BITS-1:0] clear_depth_o,
     output logic [raster_pkg::STORED_COLOR_BITS-1:0] clear_color_o,
 
@@ -85,7 +94,6 @@ module cache_tags #(
   localparam int VICTIM = $clog2(VICTIMS);
   localparam int WORD = raster_pkg::FLAG_WORD;
   localparam int BIT = $clog2(WORD);
-  localparam int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1;  // bits of a word's number in its row
   localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // with blending: stamps whose colours are here
   localparam int REST = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;
   localparam int STATE = REST + KNOWN;  // of a line
@@ -513,7 +521,10 @@ module cache_tags #(
   logic [BLOCK_Y-1:0]      first_y, last_y;
   logic [BLOCK_X-1:0]      first_x, last_x;
   logic                    words_done_q, ends_words, is_last_line, ends_mark, next_word;
+  localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
   logic                    plane_q;  // 1: colour
+  logic                    pixels_q;  // and then which blocks have one colour a pixel
+  logic                    is_last_plane;
   logic [WORD-1:0]         word, bits_q;  // a word of flags on its way to memory; of colours that are resolved
   logic [STAMP-1:0]        stamp_q;
   logic                    resolves, ends_block, begins;
@@ -538,8 +549,9 @@ module cache_tags #(
   assign marks        = (word_x_q == last_word ? ~({WORD{1'b1}} << 1 << bit_of(last_x)) : '1) &
                         (word_x_q == first_word ? {WORD{1'b1}} << bit_of(first_x) : '1);
   assign token_word   = state_q == MARK ? marks | (clears_bin ? word_color : '0) : '0;
-  assign word         = plane_q ? word_color : word_depth;
-  assign resolves     = raster_pkg::FRAME_CLEARS == 0 && plane_q;
+  assign word         = COMPRESSES && pixels_q ? pixel_word_i : plane_q ? word_color : word_depth;
+  assign resolves     = raster_pkg::FRAME_CLEARS == 0 && plane_q && !pixels_q;
+  assign is_last_plane = COMPRESSES ? pixels_q : plane_q;
   assign ends_block   = request_valid_o && request_ready_i && stamp_q == STAMP'(STAMPS - 1);
   assign next_word    = (state_q == SEND && !resolves && request_ready_i) || (state_q == RESOLVE && (bits_q == '0 || (ends_block && bits_q[WORD-1:1] == '0)));
 
@@ -556,8 +568,8 @@ module cache_tags #(
       READ: state_d = is_clear ? MARK : SEND;
       SEND:
       if (resolves) state_d = RESOLVE;
-      else if (next_word) state_d = ends_words && plane_q ? DONE : READ;
-      RESOLVE: if (next_word) state_d = ends_words ? DONE : READ;
+      else if (next_word) state_d = ends_words && is_last_plane ? DONE : READ;
+      RESOLVE: if (next_word) state_d = ends_words && is_last_plane ? DONE : READ;
       default: if (fragment_valid_i) state_d = SERVE;
     endcase
   end
@@ -575,6 +587,7 @@ module cache_tags #(
       word_x_q     <= first_word;
       word_y_q     <= first_y;
       plane_q      <= !is_clear && drops_depth_q;  // a flush that drops depth writes no flags of it
+      pixels_q     <= 1'b0;
     end else begin
       if (looks || state_q == MARK) begin
         walk_q <= walk_q + 1'b1;
@@ -585,6 +598,7 @@ module cache_tags #(
         if (word_x_q == last_word) word_y_q <= ends_words ? '0 : word_y_q + 1'b1;
         if (ends_words) words_done_q <= 1'b1;
         if (ends_words) plane_q <= 1'b1;
+        if (ends_words && plane_q) pixels_q <= COMPRESSES;
       end
     end
     if (state_q == SEND) bits_q <= word_color;
@@ -618,9 +632,19 @@ module cache_tags #(
     else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) resolve_x_q <= resolve_x_q + 1'b1;
   end
 
+  // Blocks that are cleared have none until they are written, and one colour a pixel where that is what a flush writes.
+  assign pixel_reads_o  = COMPRESSES && state_q == READ;
+  assign pixel_writes_o = COMPRESSES && token_writes[1];
+  assign pixel_word_x_o = word_x_q;
+  assign pixel_word_y_o = word_y_q;
+  assign pixel_word_o   = !COMPRESSES ? '0 :
+                          state_q == RESOLVE ? pixel_word_i | word_color : pixel_word_i & ~marks & {WORD{clears_bin}};
+
   assign request_word_o  = word;
   assign request_valid_o = (state_q == SEND && !resolves) || (state_q == RESOLVE && bits_q[0]);
   assign is_resolved_o   = state_q == RESOLVE && request_valid_o && request_ready_i;
+  // What a cleared block is written as, and the flags behind those of colour.
+  localparam int CLEARED_COLORS = COMPRESSES ? raster_pkg::PIXELS : raster_pkg::MEMORY_COLORS;
   logic [raster_pkg::TILE_X_BITS-1:0] resolve_tile_x;
   logic [raster_pkg::TILE_Y_BITS-1:0] resolve_tile_y;
   logic [INDEX-1:0]                   resolve_stamp;
@@ -639,13 +663,14 @@ module cache_tags #(
     request_o.run      = RUN'(STAMPS) - RUN'(stamp_q);
     request_o.tile_y   = resolve_tile_y;  // of a word of flags the same: that of its row of blocks
     if (state_q == RESOLVE) begin
-      request_o.plane  = raster_pkg::TILE_PLANE_COLOR;
-      request_o.strobe = SAMPLES'({raster_pkg::MEMORY_COLORS{1'b1}});
+      request_o.plane  = COMPRESSES ? raster_pkg::TILE_PLANE_PIXEL_COLOR : raster_pkg::TILE_PLANE_COLOR;
+      request_o.strobe = SAMPLES'({CLEARED_COLORS{1'b1}});
       request_o.tile_x = resolve_tile_x;
       request_o.stamp  = resolve_stamp;
       for (int s = 0; s < SAMPLES; s++) request_o.data[s*LANE+:LANE] = LANE'(clear_color_q);
     end else begin
-      request_o.plane          = plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS;
+      request_o.plane          = pixels_q ? raster_pkg::TILE_PLANE_PIXEL_FLAGS :
+                                 plane_q ? raster_pkg::TILE_PLANE_COLOR_FLAGS : raster_pkg::TILE_PLANE_DEPTH_FLAGS;
       request_o.run            = RUN'(last_word) - RUN'(word_x_q) + 1'b1;
       request_o.tile_x         = raster_pkg::TILE_X_BITS'(word_x_q);
       request_o.stamp          = INDEX'(word_y_q) & INDEX'((1 << TILE_BITS) - 1);

@@ -56,6 +56,8 @@ module memory_port (
   localparam int DEPTH_SHIFT = $clog2(SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES);  // log2 of the bytes of a stamp
   localparam int COLORS = raster_pkg::MEMORY_COLORS;  // of a stamp
   localparam int COLOR_SHIFT = $clog2(COLORS * raster_pkg::COLOR_SAMPLE_BYTES);
+  localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
+  localparam int PIXEL_SHIFT = $clog2(raster_pkg::PIXELS * raster_pkg::COLOR_SAMPLE_BYTES);  // of colours, one a pixel
   localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
   localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
   localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;
@@ -82,19 +84,30 @@ module memory_port (
                   ((row & SIDE_MASK) << SIDE_BITS) | (column & SIDE_MASK);
 
   // The address: base, row of tiles, tile, stamp.
-  logic                     is_color, is_flags;
+  logic                     is_color, is_flags, of_pixels;  // of_pixels: with one colour a pixel, or flags that say so
   /* verilator lint_off UNUSEDSIGNAL */  // inside a beat it is the place that counts
   logic [ADDRESS-1:0]       address;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [ADDRESS-PLANE-1:0] base, planes;  // planes of tiles up to this one in its row
   logic [ADDRESS-TILE-1:0]  above;         // tiles in the rows above
-  logic [PLANE-1:0]         offset;
+  logic [PLANE-1:0]         color_offset, offset;
   assign is_color = request_i.plane[0];
   assign is_flags = request_i.plane[1];
   assign base     = is_color ? layout_i.color_base[ADDRESS-1:PLANE] : layout_i.depth_base[ADDRESS-1:PLANE];
   assign planes   = base + (ADDRESS - PLANE)'({request_i.tile_x, 1'b0});
   assign above    = (ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]);
-  assign offset   = is_color ? PLANE'(place) << COLOR_SHIFT : PLANE'(place) << DEPTH_SHIFT;
+  generate
+    if (COMPRESSES) begin : gen_pixel_offset
+      localparam logic [15:0] IN_BLOCK = 16'((1 << (2 * SIDE_BITS)) - 1);
+      assign of_pixels    = request_i.plane[2];  // from where the block begins in any case
+      assign color_offset = (PLANE'(place & ~IN_BLOCK) << COLOR_SHIFT) |
+                            (of_pixels ? PLANE'(place & IN_BLOCK) << PIXEL_SHIFT : PLANE'(place & IN_BLOCK) << COLOR_SHIFT);
+    end else begin : gen_offset
+      assign of_pixels    = 1'b0;
+      assign color_offset = PLANE'(place) << COLOR_SHIFT;
+    end
+  endgenerate
+  assign offset = is_color ? color_offset : PLANE'(place) << DEPTH_SHIFT;
 
   // The bytes, and the beats that they take.
   logic [8*WORD-1:0] depth_word, color_word, flag_word, word, bytes;
@@ -137,7 +150,9 @@ module memory_port (
   assign flag_base = is_color ? layout_i.color_flags_base[ADDRESS-1:ROW] : layout_i.depth_flags_base[ADDRESS-1:ROW];
   assign rows      = flag_base + ((ADDRESS - ROW)'(request_i.tile_y) << TILE_BITS) +
                      (ADDRESS - ROW)'(request_i.stamp);
-  assign address   = is_flags ? {rows, ROW'(request_i.tile_x) << FLAG_SHIFT} : {planes, offset};
+  logic [ROW-1:0] flag_offset;
+  assign flag_offset = ROW'(request_i.tile_x) << FLAG_SHIFT;
+  assign address   = is_flags ? {rows, flag_offset | (ROW'(of_pixels) << (ROW - 1))} : {planes, offset};
   beat_bytes #(
       .SAMPLES     (1),
       .SAMPLE_BYTES(FLAG_BYTES),
@@ -153,12 +168,52 @@ module memory_port (
       .length_o(flag_length),
       .ends_o  (flag_ends)
   );
-  assign word   = is_flags ? flag_word : (is_color ? color_word : depth_word);
-  assign strobe = is_flags ? flag_strobe : (is_color ? color_strobe : depth_strobe);
-  assign more   = is_flags ? flag_more : (is_color ? color_more : depth_more);
-  assign length = is_flags ? flag_length : (is_color ? color_length : depth_length);
+  logic [8*WORD-1:0] sample_word;
+  logic [WORD-1:0]   sample_strobe;
+  logic [7:0]        sample_more;
+  logic [LENGTH-1:0] sample_length;
+  logic              sample_ends;
+  generate
+    if (COMPRESSES) begin : gen_pixel_bytes
+      logic [8*WORD-1:0] pixel_word;
+      logic [WORD-1:0]   pixel_strobe;
+      logic [7:0]        pixel_more;
+      logic [LENGTH-1:0] pixel_length;
+      logic              pixel_ends;
+      beat_bytes #(
+          .SAMPLES     (raster_pkg::PIXELS),
+          .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
+          .WORD        (WORD)
+      ) u_pixel_bytes (
+          .bytes_i (bytes),
+          .strobe_i(request_i.strobe[raster_pkg::PIXELS-1:0]),
+          .place_i (16'(offset) >> PIXEL_SHIFT),
+          .run_i   (request_i.run),
+          .word_o  (pixel_word),
+          .strobe_o(pixel_strobe),
+          .more_o  (pixel_more),
+          .length_o(pixel_length),
+          .ends_o  (pixel_ends)
+      );
+      assign sample_word   = of_pixels ? pixel_word : color_word;
+      assign sample_strobe = of_pixels ? pixel_strobe : color_strobe;
+      assign sample_more   = of_pixels ? pixel_more : color_more;
+      assign sample_length = of_pixels ? pixel_length : color_length;
+      assign sample_ends   = of_pixels ? pixel_ends : color_ends;
+    end else begin : gen_sample_bytes
+      assign sample_word   = color_word;
+      assign sample_strobe = color_strobe;
+      assign sample_more   = color_more;
+      assign sample_length = color_length;
+      assign sample_ends   = color_ends;
+    end
+  endgenerate
+  assign word   = is_flags ? flag_word : (is_color ? sample_word : depth_word);
+  assign strobe = is_flags ? flag_strobe : (is_color ? sample_strobe : depth_strobe);
+  assign more   = is_flags ? flag_more : (is_color ? sample_more : depth_more);
+  assign length = is_flags ? flag_length : (is_color ? sample_length : depth_length);
   assign ends   = !request_i.is_write || request_i.run == RUN'(1) ||
-                  (is_flags ? flag_ends : (is_color ? color_ends : depth_ends));
+                  (is_flags ? flag_ends : (is_color ? sample_ends : depth_ends));
 
   // A burst lies in a plane of a tile, or in a row of flags: no beat moves the address beyond these bits.
   localparam int WIDEST = (PLANE > ROW) ? PLANE : ROW;
@@ -238,18 +293,25 @@ module memory_port (
   localparam int DEPTH_SHARED = (DEPTH_SHIFT < PORT) ? PORT - DEPTH_SHIFT : 0;  // log2 of the stamps in a beat
   localparam int DEPTH_STAMPS = (STAMPS < (1 << DEPTH_SHARED)) ? STAMPS : 1 << DEPTH_SHARED;  // read with it
   // With blending colours are read too. Unless their stamps are as large and fill beats, it must be known whose the next one is.
+  // And with COMPRESS_UNIT those of pixels.
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
-  localparam bit READS_COLOR = BLENDS && (COLOR_SHIFT != DEPTH_SHIFT || DEPTH_SHIFT < PORT);
-  localparam int COLOR_BEATS = (READS_COLOR && COLOR_SHIFT > PORT) ? 1 << (COLOR_SHIFT - PORT) : 1;
-  localparam int COLOR_SHARED = (READS_COLOR && COLOR_SHIFT < PORT) ? PORT - COLOR_SHIFT : 0;
-  localparam int MOST_BEATS = (COLOR_BEATS > DEPTH_BEATS) ? COLOR_BEATS : DEPTH_BEATS;
-  localparam int PART = (DEPTH_BEATS > 1 || COLOR_BEATS > 1) ? $clog2(MOST_BEATS) : 1;
-  localparam int SHARED = (COLOR_SHARED > DEPTH_SHARED) ? COLOR_SHARED : DEPTH_SHARED;
+  localparam bit READS_COLOR = COMPRESSES || (BLENDS && (COLOR_SHIFT != DEPTH_SHIFT || DEPTH_SHIFT < PORT));
+  localparam bit READS_SAMPLES = READS_COLOR && BLENDS;
+  localparam int COLOR_BEATS = (READS_SAMPLES && COLOR_SHIFT > PORT) ? 1 << (COLOR_SHIFT - PORT) : 1;
+  localparam int COLOR_SHARED = (READS_SAMPLES && COLOR_SHIFT < PORT) ? PORT - COLOR_SHIFT : 0;
+  localparam int PIXEL_BEATS = (COMPRESSES && PIXEL_SHIFT > PORT) ? 1 << (PIXEL_SHIFT - PORT) : 1;
+  localparam int PIXEL_SHARED = (COMPRESSES && PIXEL_SHIFT < PORT) ? PORT - PIXEL_SHIFT : 0;
+  localparam int MOST_BEATS = (COLOR_BEATS > DEPTH_BEATS) ? COLOR_BEATS : DEPTH_BEATS;  // of pixels no more
+  localparam int PART = (MOST_BEATS > 1) ? $clog2(MOST_BEATS) : 1;
+  localparam int MOST_SHARED = (COLOR_SHARED > DEPTH_SHARED) ? COLOR_SHARED : DEPTH_SHARED;
+  localparam int SHARED = (PIXEL_SHARED > MOST_SHARED) ? PIXEL_SHARED : MOST_SHARED;
   localparam int PARTS = (PART > SHARED) ? PART : SHARED;
   localparam int READ_WORD = MOST_BEATS * BYTES;
   // Stamps that are read at a time: with colours those that wait between X and W as well.
   localparam int PLACES = (raster_pkg::COORDINATES == 0) ? 2 : raster_pkg::TEXTURE_STAMPS;
-  localparam int WAITING = BLENDS ? 1 << $clog2(2 * raster_pkg::CACHE_QUEUE + PLACES) : raster_pkg::CACHE_QUEUE;
+  localparam int WAITS = BLENDS ? 1 << $clog2(2 * raster_pkg::CACHE_QUEUE + PLACES) : raster_pkg::CACHE_QUEUE;
+  localparam int IN_BLOCK = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE;  // stamps that are merged
+  localparam int WAITING = (COMPRESSES && WAITS < IN_BLOCK) ? IN_BLOCK : WAITS;
   localparam int MOST = MOST_BEATS * ((HAS_BLOCKS != 0) ? WAITING : STAMPS);
   localparam int READS = $clog2(MOST + 1);
   localparam int TAKEN = (READS < LENGTH) ? READS : LENGTH;
@@ -261,10 +323,12 @@ module memory_port (
   logic [SAMPLES*LANE-1:0] depth_data;
   logic                   answers, is_read, responds, is_whole, is_last;
   logic                   answers_color;  // the next stamp is one of colours
+  logic                   answers_pixels;  // of those with one a pixel
 
   assign is_read           = answer_valid_i && !answer_i.is_write;
   assign is_whole          = (!READS_COLOR && DEPTH_SHARED != 0) ||
-                             part_q == (answers_color ? PARTS'(COLOR_BEATS - 1) : PARTS'(DEPTH_BEATS - 1));
+                             part_q == (answers_pixels ? PARTS'(PIXEL_BEATS - 1) :
+                                        answers_color ? PARTS'(COLOR_BEATS - 1) : PARTS'(DEPTH_BEATS - 1));
   assign response_valid_o  = is_read && is_whole && !discards;
   assign responds          = response_valid_o && response_ready_i;
   assign answer_ready_o    = answer_i.is_write || discards || !is_whole || (is_last && response_ready_i);
@@ -279,7 +343,8 @@ module memory_port (
       assign beats = answer_i.data;
     end
     if (HAS_BLOCKS == 0) begin : gen_planes
-      assign answers_color = 1'b0;
+      assign answers_color  = 1'b0;
+      assign answers_pixels = 1'b0;
       assign sub     = part_q;  // whole planes are read
       assign is_last = DEPTH_SHARED == 0 || part_q == PARTS'(DEPTH_STAMPS - 1);
     end else begin : gen_stamps
@@ -289,22 +354,34 @@ module memory_port (
         logic read_valid, read_ready;
         logic [PARTS-1:0] place_in_beat;
         /* verilator lint_on UNUSEDSIGNAL */
-        assign place_in_beat = PARTS'(place);
+        localparam int READ = PARTS + (COMPRESSES ? 2 : 1);
+        logic [READ-1:0] asked_read, answered_read;
+        if (COMPRESSES) begin : gen_pixels
+          assign place_in_beat  = of_pixels ? PARTS'(offset >> PIXEL_SHIFT) : PARTS'(place);
+          assign asked_read     = {of_pixels, is_color, place_in_beat};
+          assign answers_pixels = answered_read[READ-1];
+        end else begin : gen_samples
+          assign place_in_beat  = PARTS'(place);
+          assign asked_read     = {is_color, place_in_beat};
+          assign answers_pixels = 1'b0;
+        end
+        assign {answers_color, sub} = answered_read[PARTS:0];
         fifo #(
-            .WIDTH(PARTS + 1),
+            .WIDTH(READ),
             .DEPTH(WAITING)
         ) u_reads (
             .clk_i,
             .rst_ni,
             .valid_i(takes && !request_i.is_write),
             .ready_o(read_ready),
-            .data_i ({is_color, place_in_beat}),
+            .data_i (asked_read),
             .valid_o(read_valid),
             .ready_i(responds),
-            .data_o ({answers_color, sub})
+            .data_o (answered_read)
         );
       end else if (DEPTH_SHARED != 0) begin : gen_subs
-        assign answers_color = 1'b0;
+        assign answers_color  = 1'b0;
+        assign answers_pixels = 1'b0;
         /* verilator lint_off UNUSEDSIGNAL */  // there is one for each answer, and room: the framebuffer waits for no more
         logic sub_valid, sub_ready;
         /* verilator lint_on UNUSEDSIGNAL */
@@ -327,7 +404,8 @@ module memory_port (
           assign sub[PARTS-1:DEPTH_SHARED] = '0;
         end
       end else begin : gen_no_subs
-        assign answers_color = 1'b0;
+        assign answers_color  = 1'b0;
+        assign answers_pixels = 1'b0;
         assign sub = '0;
       end
     end
@@ -344,19 +422,38 @@ module memory_port (
   );
   generate
     if (READS_COLOR) begin : gen_color_stamp
-      logic [SAMPLES*LANE-1:0] color_data;
-      stamp_bytes #(
-          .CODES       (COLORS),
-          .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
-          .WORD        (COLOR_SHARED != 0 ? BYTES : READ_WORD),
-          .SHARED      (COLOR_SHARED),
-          .PART        (PARTS)
-      ) u_color_stamp (
-          .word_i(beats[8*READ_WORD-1-:8*(COLOR_SHARED!=0?BYTES:READ_WORD)]),
-          .sub_i (sub),
-          .data_o(color_data)
-      );
-      assign response_o.data = answers_color ? color_data : depth_data;
+      logic [SAMPLES*LANE-1:0] color_data, pixel_data;
+      if (READS_SAMPLES) begin : gen_samples
+        stamp_bytes #(
+            .CODES       (COLORS),
+            .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
+            .WORD        (COLOR_SHARED != 0 ? BYTES : READ_WORD),
+            .SHARED      (COLOR_SHARED),
+            .PART        (PARTS)
+        ) u_color_stamp (
+            .word_i(beats[8*READ_WORD-1-:8*(COLOR_SHARED!=0?BYTES:READ_WORD)]),
+            .sub_i (sub),
+            .data_o(color_data)
+        );
+      end else begin : gen_no_samples
+        assign color_data = pixel_data;
+      end
+      if (COMPRESSES) begin : gen_pixels
+        stamp_bytes #(
+            .CODES       (raster_pkg::PIXELS),
+            .SAMPLE_BYTES(raster_pkg::COLOR_SAMPLE_BYTES),
+            .WORD        (PIXEL_SHARED != 0 ? BYTES : READ_WORD),
+            .SHARED      (PIXEL_SHARED),
+            .PART        (PARTS)
+        ) u_pixel_stamp (
+            .word_i(beats[8*READ_WORD-1-:8*(PIXEL_SHARED!=0?BYTES:READ_WORD)]),
+            .sub_i (sub),
+            .data_o(pixel_data)
+        );
+      end else begin : gen_no_pixels
+        assign pixel_data = color_data;
+      end
+      assign response_o.data = answers_pixels ? pixel_data : answers_color ? color_data : depth_data;
     end else begin : gen_depth_alone
       assign response_o.data = depth_data;
     end

@@ -331,6 +331,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_stencil.fog_units = with_stencil.shade_units = 1;
   Config with_samples = preset("embedded");
   with_samples.msaa_samples = 4;
+  with_samples.compress_units = 1;
   with_samples.alpha_units = with_samples.dither_units = 1;
   with_samples.blend_lanes = 4;
   with_samples.stencil_bits = 8;

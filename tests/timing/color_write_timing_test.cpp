@@ -16,6 +16,7 @@ struct NoMemory {
     ADD_FAILURE() << "asked";
     return {};
   }
+  [[nodiscard]] bool has_one_color(const StampAddress&, SampleMask) const { return false; }
 };
 
 // Of the same stamp as of different ones; with one lane a clock for each of its samples.

@@ -374,7 +374,7 @@ TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
   for (std::size_t n = 0; n < 8; ++n) beat.data[n] = static_cast<std::uint8_t>(n + 1);
   memory.write(beat);
   std::array<std::uint32_t, 64> back{};
-  memory.read(true, 2, 3, 5, back);
+  memory.read(TilePlane::color, 2, 3, 5, back);
   const auto garbage = [](std::uint32_t address) {
     return std::uint32_t{memory_garbage(address)} | std::uint32_t{memory_garbage(address + 1)} << 8;
   };
@@ -386,7 +386,7 @@ TEST(TileMemory, ReadsBackWhatWasWrittenAndGarbageElsewhere) {
   memory.read(beat.address, bytes);
   EXPECT_EQ(bytes[7], 8);
   EXPECT_EQ(bytes[2], memory_garbage(beat.address + 2));
-  memory.read(false, 0, 0, 0, back);
+  memory.read(TilePlane::depth, 0, 0, 0, back);
   EXPECT_EQ(back[0], garbage(0));
   EXPECT_NE(garbage(0), garbage(2));
   EXPECT_FALSE(memory.page(beat.address / TileMemory::kPage).empty());

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -64,7 +65,8 @@ class BackTiming {
         sink_(sink),
         widths_(widths),
         line_raster_(1, 1, 1),
-        resolves_(config.frame_clears == FrameClears::resolve) {
+        resolves_(config.frame_clears == FrameClears::resolve),
+        compresses_(config.compress_units != 0) {
     if (config.cache_kind == CacheKind::blocks) blocks_.emplace(config, widths);
     if (!has_texture_planes(config)) return;
     textures_ = make_memory(textures, config);
@@ -73,6 +75,9 @@ class BackTiming {
 
   /// Where the planes lie in memory, unless it is default_layout().
   void set_layout(const MemoryLayout& layout) { port_.set_layout(layout); }
+  /// With compress.unit: has_one_color() of a stamp's stored samples.
+  using OneColor = std::function<bool(const StampAddress&, SampleMask)>;
+  void look_at_colors(OneColor has_one_color) { has_one_color_ = std::move(has_one_color); }
   [[nodiscard]] const TimingTotals& totals() const { return totals_; }
   /// When the last fragment moved.
   [[nodiscard]] Cycle last_fragment() const { return last_fragment_; }
@@ -201,8 +206,11 @@ class BackTiming {
     // Of one bin a word is read, then written.
     if (clears_bin) {
       cycle += 2 * static_cast<Cycle>(directory.mark_bin(last_x, last_y));
+      const auto [first, last] = directory.bin_blocks(last_x, last_y);
+      blocks_->of_pixels().set_blocks(first, last, false);
     } else if (is_clear) {
       directory.mark(last_x, last_y, clears);
+      if (clears[1]) blocks_->of_pixels().set_tiles(last_x, last_y, false);
       cycle += std::max<Cycle>(directory.lines(),
                                static_cast<Cycle>(words) * static_cast<Cycle>((last_y + 1) * widths_.blocks.per_tile));
     } else {
@@ -214,6 +222,9 @@ class BackTiming {
         });
       }
       if (resolves_) directory.resolve(TilePlane::color, last_x, last_y);
+      for (int y = 0; compresses_ && y < (last_y + 1) * widths_.blocks.per_tile; ++y)
+        for (int word = 0; word < words; ++word)
+          cycle = write_flag_word(cycle + 1, TilePlane::pixel_color, word, words, y);
     }
     directory.drop_depth(is_clear && state.drops_depth());
     const Cycle moved = stream(Arrow::fragment).transfer(offered, cycle);
@@ -297,6 +308,9 @@ class BackTiming {
     PortTimes operator()(Cycle cycle, TilePlane plane, const StampAddress& at, int run, bool is_write) const {
       return timing.ask_of_block(cycle, plane, at, run, is_write ? MoveCause::evict : MoveCause::fill);
     }
+    [[nodiscard]] bool has_one_color(const StampAddress& at, SampleMask mask) const {
+      return timing.has_one_color_(at, mask);
+    }
   };
 
   /// The same of a framebuffer of blocks.
@@ -322,7 +336,9 @@ class BackTiming {
         const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
         const StampAddress at = stamp_address({block, stamp}, widths_);
         const int run = widths_.blocks.stamps() - stamp;
-        cycle = ask_of_block(cycle, TilePlane::color, at, run, MoveCause::clear).asked + 1;
+        const TilePlane plane = compresses_ ? TilePlane::pixel_color : TilePlane::color;
+        cycle = ask_of_block(cycle, plane, at, run, MoveCause::clear).asked + 1;
+        if (compresses_) blocks_->of_pixels().set(block, true);
       }
     }
     return cycle;
@@ -441,6 +457,8 @@ class BackTiming {
   Widths widths_;
   Station line_raster_;
   bool resolves_;                           ///< frame.clears
+  bool compresses_;                         ///< compress.unit
+  OneColor has_one_color_;
   std::optional<BlockTiming> blocks_;       ///< of cache.kind blocks
   std::unique_ptr<MemoryTiming> textures_;  ///< with a texture unit: the memory behind it
   std::optional<TexturePort> texture_port_;

@@ -17,6 +17,9 @@
 // a fragment that writes depth is late: W writes it, and at X none goes before that which is in the same place (kLateLines),
 // or is not late itself.
 //
+// With compress.unit a request for colours waits a cycle for the bit that says what memory has of the block; what must be merged
+// waits for all answers that are under way, and for its own.
+//
 // An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own, and
 // the next eviction waits. In W, where a stamp is in the RAM a cycle after w, that of the stamp at w is read first; so no stamp
 // waits, and an eviction only for the second one before it.
@@ -30,6 +33,7 @@
 #include <utility>
 
 #include "../../stages/cache_tags.hpp"
+#include "../../stages/pixel_colors.hpp"
 #include "../../stages/texture_packets.hpp"
 #include "../../timing/station.hpp"
 #include "texture_timing.hpp"
@@ -119,6 +123,9 @@ class BlockTiming {
         orders_(config.cache_queue, 1, 1),
         slots_(static_cast<std::size_t>(config.cache_victims)),
         dirty_(static_cast<std::size_t>(config.cache_lines)),
+        compresses_(config.compress_units != 0),
+        dirty_colors_(compresses_ ? dirty_.size() * static_cast<std::size_t>(widths.blocks.stamps()) : 0),
+        of_pixels_(widths),
         late_(kLateLines * static_cast<std::size_t>(widths.blocks.stamps())) {
     if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths));
     if (config.fog_units != 0) fog_.emplace();
@@ -172,7 +179,7 @@ class BlockTiming {
     else
       behind_.leave(colored_);
     if (fog_) fog_->leave(colored_);
-    if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready)));
+    if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready), ask));
     note_writes(tags, item);
   }
 
@@ -185,6 +192,9 @@ class BlockTiming {
       leave(cycle, false);
     return looked_;
   }
+
+  /// With compress.unit: which blocks memory has with one colour a pixel.
+  [[nodiscard]] BlockBits& of_pixels() { return of_pixels_; }
 
   /// All that has left the chip goes to memory, from `cycle` on. Returns when nothing is under way any more.
   template <class Ask>
@@ -214,6 +224,7 @@ class BlockTiming {
     std::array<std::uint64_t, 2> stamps;  ///< to be written, by plane
     std::size_t slot;
     Cycle ready;  ///< all of it is in the slot
+    LeavingColors colors;
   };
 
   /// When the answers to an item's reads have come.
@@ -349,13 +360,28 @@ class BlockTiming {
       const Victim& v = victims_.front();
       cycle = std::max(cycle, v.ready);
       Cycle behind = cycle + 1;  // nothing to write is found in a cycle too
-      for (const TilePlane plane : kTilePlanes)
-        for (std::uint64_t left = v.stamps[static_cast<std::size_t>(plane)]; left != 0; left &= left - 1) {
+      for (const TilePlane plane : kTilePlanes) {
+        std::uint64_t left = v.stamps[static_cast<std::size_t>(plane)];
+        ColorMove move = ColorMove::samples;
+        if (compresses_ && plane == TilePlane::color && left != 0) {
+          ++cycle;  // the bit is read
+          move = color_move(v.colors, of_pixels_.is_set(v.block));
+          of_pixels_.set(v.block, move == ColorMove::pixels);
+        }
+        if (move == ColorMove::merge) {
+          cycle = merge(cycle, v.block, ask);
+          left = all_stamps();
+        }
+        for (; left != 0; left &= left - 1) {
           const int stamp = std::countr_zero(left);
           const StampAddress at = stamp_address({v.block, stamp}, widths_);
-          behind = ask(cycle, plane, at, std::countr_one(left >> stamp), true).asked + 1;
+          behind = ask(cycle, move == ColorMove::pixels ? TilePlane::pixel_color : plane, at,
+                       std::countr_one(left >> stamp), true)
+                       .asked +
+                   1;
           cycle = behind;
         }
+      }
       cycle = behind;
       slots_[v.slot] = cycle;
       victims_.pop_front();
@@ -363,21 +389,53 @@ class BlockTiming {
     const auto read = [&](TilePlane plane) {
       const auto [asked, answered] = ask(cycle, plane, stamp_address({tags.block, item->stamp}, widths_), 1, false);
       cycle = asked + 1;
+      answered_ = answered;
       return answered;
     };
     if (tags.source == DepthSource::memory) answers.depth = read(TilePlane::depth);
-    if (tags.color_source == DepthSource::memory) answers.color = read(TilePlane::color);
+    if (tags.color_source == DepthSource::memory) {
+      if (compresses_) ++cycle;  // the bit is read
+      answers.color =
+          read(compresses_ && of_pixels_.is_set(tags.block) ? TilePlane::pixel_color : TilePlane::color);
+    }
     ordered_ = cycle - 1;
     orders_.leave(ordered_);
     return answers;
   }
 
-  [[nodiscard]] Victim victim(const Eviction& e, Cycle ready) {
-    Victim v{e.block, {}, next_slot_, ready};
+  /// Reads what memory has of a block's pixels, from `cycle` on. Returns when its samples can be written.
+  template <class Ask>
+  Cycle merge(Cycle cycle, const BlockAddress& block, Ask&& ask) {
+    cycle = std::max(cycle, answered_ + 1);
+    for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
+      const auto [asked, answered] = ask(cycle, TilePlane::pixel_color, stamp_address({block, stamp}, widths_), 1, false);
+      cycle = asked + 1;
+      answered_ = answered;
+    }
+    return answered_ + 1;
+  }
+
+  [[nodiscard]] std::uint64_t all_stamps() const { return ~std::uint64_t{0} >> (64 - widths_.blocks.stamps()); }
+
+  template <class Ask>
+  [[nodiscard]] Victim victim(const Eviction& e, Cycle ready, Ask&& ask) {
+    Victim v{e.block, {}, next_slot_, ready, {}};
     next_slot_ = (next_slot_ + 1) % slots_.size();
-    const std::uint64_t all = ~std::uint64_t{0} >> (64 - widths_.blocks.stamps());
-    for (const std::size_t p : {0U, 1U}) v.stamps[p] = e.fills[p] ? all : e.stamps[p] & dirty_[e.line][p];
+    for (const std::size_t p : {0U, 1U}) v.stamps[p] = e.fills[p] ? all_stamps() : e.stamps[p] & dirty_[e.line][p];
+    if (!compresses_) return v;
+    v.colors = {e.fills[1], true, v.stamps[1] == all_stamps()};
+    for (std::uint64_t left = v.stamps[1]; left != 0; left &= left - 1) {
+      const int stamp = std::countr_zero(left);
+      const SampleMask all = SampleMask::all(widths_.samples),
+                       mask = e.fills[1] ? all : dirty_colors_[color_place(e.line, stamp)];
+      v.colors.is_whole = v.colors.is_whole && mask == all;
+      v.colors.is_uniform = v.colors.is_uniform && ask.has_one_color(stamp_address({e.block, stamp}, widths_), mask);
+    }
     return v;
+  }
+
+  [[nodiscard]] std::size_t color_place(std::size_t line, int stamp) const {
+    return line * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
   }
 
   void note_writes(const TagResult& tags, const BlockItem& item) {
@@ -393,6 +451,9 @@ class BlockTiming {
     };
     note(dirty_[tags.line][0], starts_depth, item.wrote_depth);
     note(dirty_[tags.line][1], tags.starts_color, item.colors.any());
+    if (!compresses_) return;
+    SampleMask& dirty = dirty_colors_[color_place(tags.line, item.stamp)];
+    dirty = tags.starts_color ? item.colors : dirty | item.colors;
   }
 
   Widths widths_;
@@ -417,6 +478,10 @@ class BlockTiming {
   std::size_t next_slot_ = 0;
   std::deque<Victim> victims_;
   std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
+  bool compresses_;                                  ///< compress.unit
+  std::vector<SampleMask> dirty_colors_;             ///< then, by line and stamp: samples whose colours differ from memory
+  BlockBits of_pixels_;                              ///< likewise: blocks that memory has with one colour a pixel
+  Cycle answered_ = 0;                               ///< the last read
   std::vector<Cycle> late_;                          ///< by place: when W took the last late item
   Cycle last_late_ = 0;                              ///< the last of them all
 };

@@ -61,6 +61,10 @@ class CycleModelOf final : public CycleModel {
     else
       tiles_.emplace(config_, widths_);
     if (options.layout) timing_.set_layout(*options.layout);
+    if (config_.compress_units != 0)
+      timing_.look_at_colors([this](const StampAddress& at, SampleMask mask) {
+        return SampledTarget{rendering_.frame.samples, config_, widths_}.has_one_color(at, mask);
+      });
     if (has_texture_planes(config_)) texture_.emplace(texture_settings(config_, widths_), perspective_format(config_));
   }
 
@@ -171,15 +175,15 @@ class CycleModelOf final : public CycleModel {
         if (has_stencil(config_)) fill(frame.stencil, to_bounds(clear.box), stencil_.clear_value());
       }
     }
-    if (planes[1])
-      for (Framebuffer& frame : frames())
-        fill(frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
-    if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
     timing_.end_token([&](Cycle offered) {
       if (blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
       return timing_.pass_token(offered,
                                 [&](auto& mover) { tiles_->fast_clear(last_x, last_y, planes, mover, counters_); });
     });
+    if (planes[1])  // behind the blocks that leave the chip before it
+      for (Framebuffer& frame : frames())
+        fill(frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
+    if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
   }
 
   /// Of each sample of a pixel.

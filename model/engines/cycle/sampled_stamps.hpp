@@ -11,6 +11,7 @@
 #include "../../stages/fine_raster.hpp"
 #include "../../stages/framebuffer.hpp"
 #include "../../stages/interpolate.hpp"
+#include "../../stages/pixel_colors.hpp"
 #include "../../stages/rop.hpp"
 
 namespace halfplane {
@@ -60,10 +61,21 @@ struct SampledTarget {
 
   /// The pixel of a fragment's sample.
   [[nodiscard]] PixelOffset pixel(const FragmentPacket& fragment, std::size_t s) const {
-    const PixelOffset origin = widths.stamps.origin_of(fragment.stamp),
-                      in_stamp = widths.stamps.pixel_of(static_cast<int>(s));
-    return {(fragment.key.tile_x << widths.tile_shift) + origin.x + in_stamp.x,
-            (fragment.key.tile_y << widths.tile_shift) + origin.y + in_stamp.y};
+    return pixel({fragment.key.tile_x, fragment.key.tile_y, fragment.stamp}, s);
+  }
+  [[nodiscard]] PixelOffset pixel(const StampAddress& at, std::size_t s) const {
+    const PixelOffset origin = widths.stamps.origin_of(at.stamp), in_stamp = widths.stamps.pixel_of(static_cast<int>(s));
+    return {(at.tile_x << widths.tile_shift) + origin.x + in_stamp.x,
+            (at.tile_y << widths.tile_shift) + origin.y + in_stamp.y};
+  }
+
+  /// Whether of each pixel of a stamp all samples in `mask` are there, and stored alike, or none is.
+  [[nodiscard]] bool has_one_color(const StampAddress& at, SampleMask mask) const {
+    return halfplane::has_one_color(mask, widths, [&](std::size_t s) {
+      const PixelOffset place = pixel(at, s);
+      const Framebuffer& frame = frames[s % static_cast<std::size_t>(widths.pixel_samples)];
+      return frame.color[frame.at(place.x, place.y)];
+    });
   }
 
   /// depth_test, and rop behind it.

@@ -46,7 +46,8 @@ package raster_pkg;
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
   localparam int RESOLVE_UNIT = 0;  // 1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store colours alone; 0: it stores all samples
-  localparam logic [63:0] CONFIG_ID = 64'h02d2eee695ef39a6;  // hash of the above
+  localparam int COMPRESS_UNIT = 0;  // 1: the RTL stores one colour a pixel, not one a sample, of blocks whose pixels have one each, and a flag; 0: it stores all samples
+  localparam logic [63:0] CONFIG_ID = 64'he5525c2e17bbcd03;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
@@ -176,7 +177,7 @@ package raster_pkg;
   localparam int VERTEX_COLOR_BITS = 32;  // 8 bits a stored channel
   localparam int HIZ_CODE_BITS = 16;  // hiz.bits, at most depth.bits, at least 1
   localparam int HIZ_UPDATE_BITS = 2;  // HizUpdate
-  localparam int TILE_PLANE_BITS = 2;  // TilePlane
+  localparam int TILE_PLANE_BITS = 3;  // TilePlane
   localparam int DEPTH_SOURCE_BITS = 2;  // DepthSource
   localparam int MEMORY_LANE_BITS = 24;  // a stored depth or a stored colour
   localparam int COUNTER_BITS = 32;  // counters.bits
@@ -290,10 +291,12 @@ package raster_pkg;
   } hiz_update_t;
 
   typedef enum logic [TILE_PLANE_BITS-1:0] {
-    TILE_PLANE_DEPTH = 2'd0,
-    TILE_PLANE_COLOR = 2'd1,
-    TILE_PLANE_DEPTH_FLAGS = 2'd2,
-    TILE_PLANE_COLOR_FLAGS = 2'd3
+    TILE_PLANE_DEPTH = 3'd0,
+    TILE_PLANE_COLOR = 3'd1,
+    TILE_PLANE_DEPTH_FLAGS = 3'd2,
+    TILE_PLANE_COLOR_FLAGS = 3'd3,
+    TILE_PLANE_PIXEL_COLOR = 3'd5,
+    TILE_PLANE_PIXEL_FLAGS = 3'd7
   } tile_plane_t;
 
   typedef enum logic [DEPTH_SOURCE_BITS-1:0] {
@@ -510,7 +513,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] strobe;
     logic [4*MEMORY_LANE_BITS-1:0] data;
   } memory_request_t;
-  localparam int MEMORY_REQUEST_BITS = 128;  // of the struct above
+  localparam int MEMORY_REQUEST_BITS = 129;  // of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] is_write;
