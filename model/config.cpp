@@ -315,9 +315,10 @@ void require_one_sample(const Config& config, std::string_view who) {
 void require_sampled_hardware(const Config& config, std::string_view who) {
   if (config.msaa_samples == 1) return;
   if (config.setup_kind == SetupKind::serial)
-    throw InputError("msaa.samples: " + std::string(who) +
-                     " has one sample a pixel with setup.kind=serial; use msaa.samples=1 or setup.kind=pipelined, or the "
-                     "functional, scalar or golden engine");
+    throw InputError(
+        "msaa.samples: " + std::string(who) +
+        " has one sample a pixel with setup.kind=serial; use msaa.samples=1 or setup.kind=pipelined, or the "
+        "functional, scalar or golden engine");
 }
 
 void validate(const Config& config) {
@@ -397,10 +398,11 @@ void validate(const Config& config) {
       config.resolve_units == 0 || (config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color),
       "a pixel's samples become one colour as their block leaves the chip, so they must leave it once, in bins, "
       "and without their depths: use frame.order=bins and frame.store=color, or resolve.unit=0");
-  refuse_unless(config.compress_units == 0 || (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks &&
-                                               config.resolve_units == 0),
-                "blocks whose pixels have one colour are told from others where pixels have several samples in memory, in the "
-                "framebuffer of blocks: raise msaa.samples, use cache.kind=blocks and resolve.unit=0, or compress.unit=0");
+  refuse_unless(
+      config.compress_units == 0 ||
+          (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks && config.resolve_units == 0),
+      "blocks whose pixels have one colour are told from others where pixels have several samples in memory, in the "
+      "framebuffer of blocks: raise msaa.samples, use cache.kind=blocks and resolve.unit=0, or compress.unit=0");
   refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
                 "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
                     std::to_string(config.msaa_samples) + ": give as many");

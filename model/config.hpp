@@ -92,7 +92,7 @@ struct Config {
   int counter_bits = 32;  ///< of each of them
   int msaa_samples = 1;   ///< samples of a pixel, 1, 2, 4 or 8
   SamplePattern msaa_pattern;
-  int resolve_units = 0;  ///< 1: the RTL stores the mean of a pixel's samples, as its block leaves the chip
+  int resolve_units = 0;   ///< 1: the RTL stores the mean of a pixel's samples, as its block leaves the chip
   int compress_units = 0;  ///< 1: the RTL stores a colour a pixel of blocks whose pixels have one each
   DepthMapping depth_mapping = DepthMapping::projection;  ///< host side, but for w and log: no RTL has those
   DepthFormat depth_format;                               ///< the RTL has `plane` alone

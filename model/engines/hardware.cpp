@@ -110,7 +110,7 @@ Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, cons
   const auto copy_stamp = [&](bool is_color, int x, int y) {
     const int stamp = stamps.stamp_at(x % tile, y % tile);
     const bool of_pixels = is_color && (config.resolve_units != 0 || memory.is_of_pixels(x / tile, y / tile, stamp));
-    const TilePlane plane = !is_color                               ? TilePlane::depth
+    const TilePlane plane = !is_color                                 ? TilePlane::depth
                             : of_pixels && config.compress_units != 0 ? TilePlane::pixel_color
                                                                       : TilePlane::color;
     if (memory.is_cleared(is_color, x / tile, y / tile, stamp))

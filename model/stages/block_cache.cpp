@@ -58,7 +58,8 @@ void BlockCache::read_colors(MemoryPort& memory, CounterPacket& counters) {
   if (last_.color_source == DepthSource::memory) {
     const MemoryResponse& response = memory.response();
     const auto samples = static_cast<std::size_t>(color_plane_ == TilePlane::color ? 1 : widths_.pixel_samples);
-    for (std::size_t s = 0; s < stored_color_.size(); ++s) stored_color_[s] = response.data[s / samples] & code_mask_[1];
+    for (std::size_t s = 0; s < stored_color_.size(); ++s)
+      stored_color_[s] = response.data[s / samples] & code_mask_[1];
     ++counters.tile_fills;
   }
   const auto held = lanes(TilePlane::color, last_stamp_);
@@ -146,9 +147,8 @@ void BlockCache::capture(const Eviction& eviction) {
   victim.colors.is_whole = colors.size() == static_cast<std::size_t>(widths_.blocks.stamps());
   for (const MemoryRequest& request : colors) {
     victim.colors.is_whole = victim.colors.is_whole && request.strobe == SampleMask::all(widths_.samples);
-    victim.colors.is_uniform = victim.colors.is_uniform && has_one_color(request.strobe, widths_, [&](std::size_t s) {
-                                 return request.data[s];
-                               });
+    victim.colors.is_uniform = victim.colors.is_uniform &&
+                               has_one_color(request.strobe, widths_, [&](std::size_t s) { return request.data[s]; });
   }
 }
 
@@ -198,7 +198,8 @@ void BlockCache::write_victims(int count, MemoryPort& memory, CounterPacket& cou
       for (auto request = stamps.begin(); request != stamps.end(); ++request) {
         // Stamps that follow each other are a run.
         auto last = request;
-        while (std::next(last) != stamps.end() && number_in_block(*std::next(last)) == number_in_block(*last) + 1) ++last;
+        while (std::next(last) != stamps.end() && number_in_block(*std::next(last)) == number_in_block(*last) + 1)
+          ++last;
         request->run = static_cast<std::uint16_t>(last - request + 1);
         memory.request(*request);
         ++counters.tile_evictions;

@@ -69,12 +69,12 @@ class BlockCache {
   Config config_;
   Widths widths_;
   CacheTags directory_;
-  TagResult last_;                           ///< of the last access
-  std::size_t last_stamp_ = 0;               ///< likewise, in the arrays below
-  std::vector<std::uint32_t> stored_;        ///< likewise: what the depth test saw
-  std::vector<std::uint32_t> stored_color_;  ///< likewise: what operations on colours see
+  TagResult last_;                            ///< of the last access
+  std::size_t last_stamp_ = 0;                ///< likewise, in the arrays below
+  std::vector<std::uint32_t> stored_;         ///< likewise: what the depth test saw
+  std::vector<std::uint32_t> stored_color_;   ///< likewise: what operations on colours see
   TilePlane color_plane_ = TilePlane::color;  ///< likewise: where they come from
-  std::array<std::uint32_t, 2> code_mask_;   ///< bits of a code of each plane
+  std::array<std::uint32_t, 2> code_mask_;    ///< bits of a code of each plane
   std::array<std::uint32_t, 2> clear_value_{};
   std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
   std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that memory does not have

@@ -75,7 +75,8 @@ class BlockBits {
   /// Those of the blocks `first` to `last`.
   void set_blocks(const BlockAddress& first, const BlockAddress& last, bool value) {
     for (int y = first.y; y <= last.y; ++y)
-      std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(first.x, y)), last.x - first.x + 1, value ? 1 : 0);
+      std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(first.x, y)), last.x - first.x + 1,
+                  value ? 1 : 0);
   }
 
   /// Their words: visit(x, y, word), word x of the row y of blocks.

@@ -61,9 +61,7 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
   return request;
 }
 
-[[nodiscard]] constexpr bool is_flags(TilePlane plane) {
-  return (static_cast<unsigned>(plane) & 2U) != 0;
-}
+[[nodiscard]] constexpr bool is_flags(TilePlane plane) { return (static_cast<unsigned>(plane) & 2U) != 0; }
 [[nodiscard]] constexpr bool is_of_color(TilePlane plane) { return (static_cast<unsigned>(plane) & 1U) != 0; }
 /// A colour a pixel, or the flags of the blocks that have those.
 [[nodiscard]] constexpr bool is_of_pixels(TilePlane plane) { return (static_cast<unsigned>(plane) & 4U) != 0; }
@@ -100,12 +98,10 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
     const std::uint32_t row =
         y * static_cast<std::uint32_t>(widths.blocks.per_tile) + static_cast<std::uint32_t>(stamp);
     return multiple(is_of_color(plane) ? layout.color_flags_base : layout.depth_flags_base, m.flag_row) +
-           (row << m.flag_row) + (x << m.flag_word) +
-           (is_of_pixels(plane) ? std::uint32_t{1} << (m.flag_row - 1) : 0);
+           (row << m.flag_row) + (x << m.flag_word) + (is_of_pixels(plane) ? std::uint32_t{1} << (m.flag_row - 1) : 0);
   }
   return multiple(is_of_color(plane) ? layout.color_base : layout.depth_base, m.plane) +
-         y * multiple(layout.row_stride, m.tile()) + (x << m.tile()) +
-         stamp_offset(plane, stamp, widths);
+         y * multiple(layout.row_stride, m.tile()) + (x << m.tile()) + stamp_offset(plane, stamp, widths);
 }
 
 /// The tiles of the widest target row by row, depth and colour of a tile side by side, then the flags of depth, of colour.

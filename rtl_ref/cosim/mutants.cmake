@@ -681,20 +681,20 @@ mutant(437 lib/resolve.sv "resolve: the last sample counts as the first"
   [=[(BITS + SHIFT)'(color_i[(p*N+k)*COLOR+AT+:BITS])]=] [=[(BITS + SHIFT)'(color_i[(p*N+k%(N-1))*COLOR+AT+:BITS])]=])
 mutant(438 stages/cache_tags.sv "resolve: a clear block is written with a colour for each sample"
   [=[SAMPLES'({CLEARED_COLORS{1'b1}})]=] [=['1]=])
-mutant(439 stages/block_cache.sv "resolve: a pixel is stored where its first sample is not"
-  [=[sent_color_strobe[s*raster_pkg::MSAA_SAMPLES]]=] [=[!sent_color_strobe[s*raster_pkg::MSAA_SAMPLES]]=])
+mutant(439 lib/victim_bytes.sv "resolve: a pixel is stored where its first sample is not"
+  [=[color_strobe_i[s*N]]=] [=[!color_strobe_i[s*N]]=])
 mutant(455 stages/pixel_colors.sv "samples, compression: colours that differ are written with one a pixel"
-  [=[is_uniform_q && (fills_q || is_whole_q || is_stored)]=] [=[(fills_q || is_whole_q || is_stored)]=])
+  [=[is_even && (fills || is_whole_q || is_stored)]=] [=[(fills || is_whole_q || is_stored)]=])
 mutant(456 stages/pixel_colors.sv "samples, compression: a block's bit stays as it was"
   [=[updates || token_writes_i]=] [=[token_writes_i]=])
 mutant(457 stages/pixel_colors.sv "samples, compression: a merge reads one stamp again and again"
   [=[STAMP'(asked_q)]=] [=[STAMP'(asked_q == '0)]=])
 mutant(458 stages/pixel_colors.sv "samples, compression: a merge does not wait for the reads before it"
-  [=[(all_answered_i || asked_q != '0)]=] [=[1'b1]=])
-mutant(459 stages/block_cache.sv "samples, compression: a block that lacks samples counts as whole"
-  [=[c_color_strobe == '1]=] [=[c_color_strobe != '0]=])
-mutant(460 stages/block_cache.sv "samples, compression: what was read lies over what is sent"
-  [=[takes_merged && !here_strobe[s]]=] [=[takes_merged]=])
+  [=[merges_o && others_q == '0]=] [=[merges_o]=])
+mutant(459 stages/pixel_colors.sv "samples, compression: a block that lacks samples counts as whole"
+  [=[come_strobe_i == '1]=] [=[come_strobe_i != '0]=])
+mutant(460 lib/victim_bytes.sv "samples, compression: what was read lies over what is sent"
+  [=[merges_i && !here[s]]=] [=[merges_i]=])
 mutant(461 stages/cache_tags.sv "samples, compression: a cleared block keeps its bit"
   [=[pixel_word_i & ~marks & {WORD{clears_bin}}]=] [=[pixel_word_i]=])
 mutant(462 stages/memory_port.sv "samples, compression: pixels lie as far apart as all their samples"

@@ -795,7 +795,7 @@ module block_cache (
   /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
   logic [PIXEL_COLORS-1:0]     merged;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic                        fills_left, takes_merged;  // of a block that is merged all stamps are written; with what was read
+  logic                        takes_merged;  // all stamps of the block are written, with what was read
   logic [STAMPS-1:0]           depth_left, color_left, sent, here_depth, here_color;
   logic [STAMP-1:0]            sent_stamp;
   logic [BLOCK_X-1:0]          sent_x;
@@ -820,79 +820,44 @@ module block_cache (
   assign finishes    = skips || (sends && takes_request && ends_victim);
   assign reads_color = order_reads_color && (!order_reads || depth_asked_q);  // behind that of depth
   assign read_goes  = wants_read && takes_request;
+  /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
+  logic reads_block, merge_answers;  // colours are read; an answer belongs to a merge
+  /* verilator lint_on UNUSEDSIGNAL */
+  assign reads_block   = wants_read && reads_color;
+  assign merge_answers = response_valid_i && response_ready_o && merges;
   generate
     if (COMPRESSES) begin : gen_pixel_colors
-      // Of the colours in each slot: memory holds garbage; pixels have one each; all that have come are whole.
-      logic [VICTIMS-1:0] fills_color_q, is_uniform_q, is_full_q;
-      logic               is_uniform;  // the stamp that comes
-      always_comb begin
-        is_uniform = 1'b1;
-        for (int i = 0; i < SAMPLES; i++)
-          if (c_color_strobe[i] != c_color_strobe[i/raster_pkg::MSAA_SAMPLES*raster_pkg::MSAA_SAMPLES] ||
-              c_color[i*COLOR+:COLOR] != c_color[i/raster_pkg::MSAA_SAMPLES*raster_pkg::MSAA_SAMPLES*COLOR+:COLOR])
-            is_uniform = 1'b0;
-      end
-      always_ff @(posedge clk_i) begin
-        for (int i = 0; i < VICTIMS; i++) begin
-          if (goes && evicts && slot_q == VICTIM'(i)) begin
-            fills_color_q[i] <= fills[1];
-            is_uniform_q[i]  <= 1'b1;
-            is_full_q[i]     <= 1'b1;
-          end else if (c_valid && c_slot == VICTIM'(i)) begin
-            is_uniform_q[i] <= is_uniform_q[i] && is_uniform;
-            is_full_q[i]    <= is_full_q[i] && c_color_strobe == '1;
-          end
-        end
-      end
-
-      // The block whose colours are next, and the reads that have not been answered.
-      localparam int READS = $clog2((BLENDS ? 2 * QUEUE + PLACES : QUEUE) + 1);
-      logic               writes_color, reads_block, ends_block;
-      logic [BLOCK_X-1:0] read_x;
-      logic [BLOCK_Y-1:0] read_y;
-      logic [READS-1:0]   reads_q;
-      logic [PIXEL_COLORS-1:0] answer;
-      assign writes_color = wants_write && is_ready && is_color && color_left != '0;
-      assign reads_block  = wants_read && reads_color;
-      assign ends_block   = finishes || (reads_block && takes_request);
-      /* verilator lint_off PINCONNECTEMPTY */
-      block_stamp u_read_block (
-          .tile_x_i (order_x),
-          .tile_y_i (order_y),
-          .stamp_i  (order_stamp),
-          .block_x_o(read_x),
-          .block_y_o(read_y),
-          .stamp_o  ()
-      );
-      /* verilator lint_on PINCONNECTEMPTY */
-      always_ff @(posedge clk_i or negedge rst_ni) begin
-        if (!rst_ni) reads_q <= '0;
-        else reads_q <= reads_q + READS'(read_goes) - READS'(response_valid_i && response_ready_o && !merges);
-      end
-      for (s = 0; s < PIXELS; s++) begin : gen_answer
-        assign answer[s*COLOR+:COLOR] = response_i.data[s*LANE+:COLOR];
-      end
-      logic is_merged;
       pixel_colors u_pixel_colors (
           .clk_i,
           .rst_ni,
-          .writes_i      (writes_color),
+          .begins_i      (goes && evicts),
+          .begin_slot_i  (slot_q),
+          .begin_fills_i (fills[1]),
+          .comes_i       (c_valid),
+          .come_slot_i   (c_slot),
+          .come_strobe_i (c_color_strobe),
+          .come_color_i  (c_color),
+          .writes_i      (wants_write && is_ready && is_color && color_left != '0),
+          .slot_i        (oldest_q),
+          .is_every_i    (color_left == '1),
+          .write_x_i     (sent_x),
+          .write_y_i     (sent_y),
           .reads_i       (reads_block),
-          .block_x_i     (writes_color ? sent_x : read_x),
-          .block_y_i     (writes_color ? sent_y : read_y),
-          .ends_i        (ends_block),
+          .read_tile_x_i (order_x),
+          .read_tile_y_i (order_y),
+          .read_stamp_i  (order_stamp),
+          .ends_i        (finishes || (reads_block && takes_request)),
           .is_known_o    (colors_known),
           .of_pixels_o   (of_pixels),
-          .fills_i       (fills_color_q[oldest_q]),
-          .is_uniform_i  (is_uniform_q[oldest_q]),
-          .is_whole_i    (is_full_q[oldest_q] && color_left == '1),
-          .merges_o      (is_merged),
           .asks_o        (asks_pixels),
           .ask_stamp_o   (asked_stamp),
           .is_asked_i    (asks_pixels && takes_request),
-          .all_answered_i(reads_q == '0),
-          .answers_i     (merges && response_valid_i),
-          .answer_i      (answer),
+          .other_asked_i (read_goes),
+          .other_answered_i(response_valid_i && response_ready_o && !merges),
+          .answers_i     (merge_answers),
+          .answer_i      (response_i.data),
+          .merges_o      (takes_merged),
+          .takes_answers_o(merges),
           .stamp_i       (sent_stamp),
           .merged_o      (merged),
           .token_reads_i (pixel_reads),
@@ -902,14 +867,10 @@ module block_cache (
           .word_i        (pixel_word_new),
           .word_o        (pixel_word)
       );
-      assign merges      = is_merged && reads_q == '0;
-      assign fills_left  = is_merged && !colors_known;
-      assign takes_merged = is_merged;
     end else begin : gen_no_pixel_colors
       assign colors_known = 1'b1;
       assign of_pixels    = 1'b0;
       assign merges       = 1'b0;
-      assign fills_left   = 1'b0;
       assign takes_merged = 1'b0;
       assign asks_pixels  = 1'b0;
       assign asked_stamp  = '0;
@@ -974,7 +935,7 @@ module block_cache (
             color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << c_stamp);
           if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
           if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
-          if (fills_left && oldest_q == VICTIM'(v)) color_left_q[v] <= '1;
+          if (takes_merged && !colors_known && oldest_q == VICTIM'(v)) color_left_q[v] <= '1;
         end
       end
     end
@@ -992,76 +953,26 @@ module block_cache (
       .tile_y_o (sent_tile_y),
       .stamp_o  (sent_index)
   );
-  // Its data, as they lie in memory, from one of five: each by itself, so that nothing is chosen in a row.
-  localparam int DEPTH_WIDTH = 8 * raster_pkg::DEPTH_SAMPLE_BYTES;
-  localparam int COLOR_WIDTH = 8 * raster_pkg::COLOR_SAMPLE_BYTES;
-  localparam int DEPTHS = SAMPLES * DEPTH_WIDTH;
-  localparam int MEMORY_COLORS = raster_pkg::MEMORY_COLORS;  // of a stamp: of its samples, or their mean in each pixel
-  localparam int COLORS = MEMORY_COLORS * COLOR_WIDTH;
-  localparam int DATA = 8 * raster_pkg::REQUEST_BYTES;
-  logic [MEMORY_COLORS*COLOR-1:0] stored;  // colours as memory has them
-  logic [MEMORY_COLORS-1:0]       stored_strobe, color_strobe;
-  assign color_strobe = stored_strobe | {MEMORY_COLORS{!is_here && !of_pixels}} |
-                        MEMORY_COLORS'({PIXELS{!is_here}});
-  logic              sends_here, sends_flags, clears_depth, clears_color;
-  logic [DEPTHS-1:0] depth_bytes, clear_depths;
-  logic [COLORS-1:0] color_bytes, clear_colors;
-  assign sends_here   = sends && (is_here || (is_color && takes_merged));
-  assign sends_flags  = flush_valid && flush_request.plane[1];
-  assign clears_depth = sends && !is_here && !is_color;
-  assign clears_color = (sends && !is_here && is_color && !takes_merged) || (flush_valid && !flush_request.plane[1]);
-  generate
-    for (s = 0; s < SAMPLES; s++) begin : gen_data
-      assign depth_bytes[s*DEPTH_WIDTH+:DEPTH_WIDTH]  = DEPTH_WIDTH'(sent_depth[s*CODE+:CODE]);
-      assign clear_depths[s*DEPTH_WIDTH+:DEPTH_WIDTH] = DEPTH_WIDTH'(clear_depth) & {DEPTH_WIDTH{clears_depth}};
-    end
-    for (s = 0; s < MEMORY_COLORS; s++) begin : gen_colors
-      assign color_bytes[s*COLOR_WIDTH+:COLOR_WIDTH]  = COLOR_WIDTH'(stored[s*COLOR+:COLOR]);
-      assign clear_colors[s*COLOR_WIDTH+:COLOR_WIDTH] = COLOR_WIDTH'(clear_color) &
-          {COLOR_WIDTH{clears_color && (s < PIXELS || !(COMPRESSES && (flush_valid || of_pixels)))}};
-    end
-    if (raster_pkg::RESOLVE_UNIT != 0) begin : gen_resolve
-      resolve u_resolve (
-          .color_i(sent_color),
-          .color_o(stored)
-      );
-      for (s = 0; s < PIXELS; s++) begin : gen_strobe  // all of a pixel's samples are there, or none
-        assign stored_strobe[s] = sent_color_strobe[s*raster_pkg::MSAA_SAMPLES];
-      end
-    end else if (COMPRESSES) begin : gen_compress
-      // What is sent, over what was read; or of each pixel the first sample.
-      logic [SAMPLES*COLOR-1:0] all_color;
-      logic [SAMPLES-1:0]       here_strobe;
-      assign here_strobe = sent_color_strobe & {SAMPLES{is_here}};
-      for (s = 0; s < SAMPLES; s++) begin : gen_merged
-        localparam int PIXEL = s / raster_pkg::MSAA_SAMPLES;
-        assign all_color[s*COLOR+:COLOR] = takes_merged && !here_strobe[s] ? merged[PIXEL*COLOR+:COLOR] :
-                                                                             sent_color[s*COLOR+:COLOR];
-      end
-      for (s = 0; s < SAMPLES; s++) begin : gen_chosen
-        if (s < PIXELS) begin : gen_pixel
-          localparam int FIRST_SAMPLE = s * raster_pkg::MSAA_SAMPLES;
-          assign stored[s*COLOR+:COLOR] = of_pixels ? all_color[FIRST_SAMPLE*COLOR+:COLOR] : all_color[s*COLOR+:COLOR];
-          assign stored_strobe[s] = of_pixels ? here_strobe[FIRST_SAMPLE] : here_strobe[s] || takes_merged;
-        end else begin : gen_rest
-          assign stored[s*COLOR+:COLOR] = all_color[s*COLOR+:COLOR] & {COLOR{!of_pixels}};
-          assign stored_strobe[s]       = (here_strobe[s] || takes_merged) && !of_pixels;
-        end
-      end
-    end else begin : gen_samples
-      assign stored        = sent_color;
-      assign stored_strobe = sent_color_strobe;
-    end
-  endgenerate
-  logic [DEPTHS-1:0]                depth_part;
-  logic [COLORS-1:0]                color_part;
-  logic [raster_pkg::FLAG_WORD-1:0] flag_part;
-  logic [DATA-1:0]                  clear_part;  // of all samples the same: chosen once
-  assign depth_part      = depth_bytes & {DEPTHS{sends_here && !is_color}};
-  assign color_part      = color_bytes & {COLORS{sends_here && is_color}};
-  assign flag_part       = flush_word & {raster_pkg::FLAG_WORD{sends_flags}};
-  assign clear_part      = DATA'(clear_depths) | DATA'(clear_colors);
-  assign request_bytes_o = DATA'(color_part) | DATA'(depth_part) | DATA'(flag_part) | clear_part;
+  // Its data.
+  logic [raster_pkg::MEMORY_COLORS-1:0] color_strobe;
+  victim_bytes u_bytes (
+      .sends_depth_i  (sends && !is_color),
+      .sends_color_i  (sends && is_color),
+      .is_here_i      (is_here),
+      .depth_i        (sent_depth),
+      .color_i        (sent_color),
+      .color_strobe_i (sent_color_strobe),
+      .of_pixels_i    (of_pixels),
+      .merges_i       (takes_merged),
+      .merged_i       (merged),
+      .sends_flags_i  (flush_valid && flush_request.plane[1]),
+      .flags_i        (flush_word),
+      .sends_cleared_i(flush_valid && !flush_request.plane[1]),
+      .clear_depth_i  (clear_depth),
+      .clear_color_i  (clear_color),
+      .bytes_o        (request_bytes_o),
+      .color_strobe_o (color_strobe)
+  );
 
   raster_pkg::tile_plane_t color_plane;
   assign color_plane = of_pixels || asks_pixels ? raster_pkg::TILE_PLANE_PIXEL_COLOR : raster_pkg::TILE_PLANE_COLOR;

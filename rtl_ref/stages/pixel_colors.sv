@@ -1,6 +1,7 @@
 // Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one a
 // sample. A bit for each block of the target, in words of FLAG_WORD blocks of a row, says which.
 //
+//   victims -> [slots: is it uniform, is it whole] --.
 //   requests <-> [look: the block's bit] -> how its colours are written or read -> [merge: reads of its pixels, if need be]
 //
 // Whoever is about to ask for colours of a block, to write or to read, waits a cycle for its bit. What is written is uniform if of
@@ -19,35 +20,53 @@ module pixel_colors #(
     parameter int WORD = raster_pkg::FLAG_WORD,
     parameter int BIT = $clog2(WORD),
     parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1,  // bits of a word's number in its row
-    parameter int COLORS = raster_pkg::PIXELS * raster_pkg::STORED_COLOR_BITS  // of a stamp, one a pixel
+    parameter int SAMPLES = raster_pkg::SAMPLES,
+    parameter int COLOR = raster_pkg::STORED_COLOR_BITS,
+    parameter int COLORS = raster_pkg::PIXELS * COLOR,  // of a stamp, one a pixel
+    parameter int VICTIMS = raster_pkg::CACHE_VICTIMS,
+    parameter int VICTIM = $clog2(VICTIMS)
 ) (
     input logic clk_i,
     input logic rst_ni,
 
-    // Colours of a block are to be written, or read, in the order of requests, until the last of them has been taken
-    input  logic               writes_i,
-    input  logic               reads_i,
-    input  logic [BLOCK_X-1:0] block_x_i,
-    input  logic [BLOCK_Y-1:0] block_y_i,
-    input  logic               ends_i,
-    output logic               is_known_o,   // how: now
-    output logic               of_pixels_o,  // then: with one colour a pixel
+    // Slots of victims: an eviction begins, and whether memory holds garbage of its colours; a stamp of colours comes into one
+    input logic                     begins_i,
+    input logic [VICTIM-1:0]        begin_slot_i,
+    input logic                     begin_fills_i,
+    input logic                     comes_i,
+    input logic [VICTIM-1:0]        come_slot_i,
+    input logic [SAMPLES-1:0]       come_strobe_i,
+    input logic [SAMPLES*COLOR-1:0] come_color_i,
 
-    // Of a block that is written
-    input logic fills_i,       // memory holds garbage
-    input logic is_uniform_i,
-    input logic is_whole_i,    // all its samples are there
+    // Colours of a block are to be written, those of a slot, or a stamp's are to be read; in the order of requests, until the last
+    // of them has been taken
+    input  logic                                    writes_i,
+    input  logic [VICTIM-1:0]                       slot_i,
+    input  logic                                    is_every_i,  // stamp of it written
+    input  logic [BLOCK_X-1:0]                      write_x_i,
+    input  logic [BLOCK_Y-1:0]                      write_y_i,
+    input  logic                                    reads_i,
+    input  logic [raster_pkg::TILE_X_BITS-1:0]      read_tile_x_i,
+    input  logic [raster_pkg::TILE_Y_BITS-1:0]      read_tile_y_i,
+    input  logic [raster_pkg::STAMP_INDEX_BITS-1:0] read_stamp_i,
+    input  logic                                    ends_i,
+    output logic                                    is_known_o,   // how: now
+    output logic                                    of_pixels_o,  // then: with one colour a pixel
 
     // The merge: reads of its stamps, their answers in order, and one of them as it is written
-    output logic              merges_o,
-    output logic              asks_o,
-    output logic [STAMP-1:0]  ask_stamp_o,
-    input  logic              is_asked_i,  // taken
-    input  logic              all_answered_i,  // nothing that was asked for before is under way
-    input  logic              answers_i,
-    input  logic [COLORS-1:0] answer_i,
-    input  logic [STAMP-1:0]  stamp_i,
-    output logic [COLORS-1:0] merged_o,
+    output logic                             asks_o,
+    output logic [STAMP-1:0]                 ask_stamp_o,
+    input  logic                             is_asked_i,  // taken
+    input  logic                             other_asked_i,  // another read was taken, or answered
+    input  logic                             other_answered_i,
+    input  logic                             answers_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // lanes of samples
+    input  logic [SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] answer_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic                             merges_o,  // all stamps are written, with what was read
+    output logic                             takes_answers_o,  // none but its own are to come
+    input  logic [STAMP-1:0]                 stamp_i,
+    output logic [COLORS-1:0]                merged_o,
 
     // Tokens: a word is read, and is there in the next cycle; or written
     input  logic               token_reads_i,
@@ -61,16 +80,57 @@ module pixel_colors #(
   localparam int WORDS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
   localparam int ADDRESS = $clog2(WORDS);
   localparam int COUNT = $clog2(STAMPS + 1);
+  localparam int N = raster_pkg::MSAA_SAMPLES;
+  // Reads of depth, and with blending of colours, that may not have been answered.
+  localparam int PLACES = raster_pkg::COORDINATES == 0 ? 2 : raster_pkg::TEXTURE_STAMPS;
+  localparam int MOST = raster_pkg::BLEND_LANES == 0 ? raster_pkg::CACHE_QUEUE : 2 * raster_pkg::CACHE_QUEUE + PLACES;
+  localparam int READS = $clog2(MOST + 1);
+
+  // Of the colours in each slot: memory holds garbage; pixels have one each; what has come is whole.
+  logic [VICTIMS-1:0] fills_q, is_uniform_q, is_full_q;
+  logic               is_uniform;  // the stamp that comes
+  always_comb begin
+    is_uniform = 1'b1;
+    for (int i = 0; i < SAMPLES; i++)
+      if (come_strobe_i[i] != come_strobe_i[i/N*N] || come_color_i[i*COLOR+:COLOR] != come_color_i[i/N*N*COLOR+:COLOR])
+        is_uniform = 1'b0;
+  end
+  always_ff @(posedge clk_i) begin
+    for (int i = 0; i < VICTIMS; i++) begin
+      if (begins_i && begin_slot_i == VICTIM'(i)) begin
+        fills_q[i]      <= begin_fills_i;
+        is_uniform_q[i] <= 1'b1;
+        is_full_q[i]    <= 1'b1;
+      end else if (comes_i && come_slot_i == VICTIM'(i)) begin
+        is_uniform_q[i] <= is_uniform_q[i] && is_uniform;
+        is_full_q[i]    <= is_full_q[i] && come_strobe_i == '1;
+      end
+    end
+  end
 
   // The block at work.
+  logic [BLOCK_X-1:0] read_x, block_x;
+  logic [BLOCK_Y-1:0] read_y, block_y;
+  /* verilator lint_off PINCONNECTEMPTY */
+  block_stamp u_read_block (
+      .tile_x_i (read_tile_x_i),
+      .tile_y_i (read_tile_y_i),
+      .stamp_i  (read_stamp_i),
+      .block_x_o(read_x),
+      .block_y_o(read_y),
+      .stamp_o  ()
+  );
+  /* verilator lint_on PINCONNECTEMPTY */
+  assign block_x = writes_i ? write_x_i : read_x;
+  assign block_y = writes_i ? write_y_i : read_y;
   logic [WORD_X-1:0]  block_word;
   logic [WORD-1:0]    block_bit, word;
   logic               looks, known_q, is_stored, updates;
-  logic               fills_q, is_uniform_q, is_whole_q;
+  logic               fills, is_even, is_whole_q;
   logic [ADDRESS-1:0] block_address, token_address;
-  assign block_word    = WORD_X'(block_x_i >> BIT);
-  assign block_bit     = WORD'(1) << BIT'(block_x_i);
-  assign block_address = ADDRESS'({block_y_i, block_word});
+  assign block_word    = WORD_X'(block_x >> BIT);
+  assign block_bit     = WORD'(1) << BIT'(block_x);
+  assign block_address = ADDRESS'({block_y, block_word});
   assign token_address = ADDRESS'({word_y_i, word_x_i});
   assign looks         = (writes_i || reads_i) && !known_q;
   assign is_stored     = (word & block_bit) != '0;
@@ -94,32 +154,38 @@ module pixel_colors #(
     if (!rst_ni) known_q <= 1'b0;
     else known_q <= looks || (known_q && !ends_i);
   end
-  always_ff @(posedge clk_i) begin
-    if (looks) begin
-      fills_q      <= fills_i;
-      is_uniform_q <= is_uniform_i;
-      is_whole_q   <= is_whole_i;
-    end
-  end
-  assign of_pixels_o = writes_i ? is_uniform_q && (fills_q || is_whole_q || is_stored) : is_stored;
+  always_ff @(posedge clk_i) if (looks) is_whole_q <= is_full_q[slot_i] && is_every_i;
+  assign fills       = fills_q[slot_i];
+  assign is_even     = is_uniform_q[slot_i];
+  assign of_pixels_o = writes_i ? is_even && (fills || is_whole_q || is_stored) : is_stored;
 
   // The merge.
   logic [COUNT-1:0]  asked_q, answered_q;  // stamps
-  logic [COLORS-1:0] merged_q[0:STAMPS-1];
-  assign merges_o    = writes_i && known_q && !is_uniform_q && !fills_q && is_stored;
-  assign asks_o      = merges_o && asked_q != COUNT'(STAMPS) && (all_answered_i || asked_q != '0);
+  logic [READS-1:0]  others_q;  // reads that have not been answered
+  logic [COLORS-1:0] merged_q[0:STAMPS-1], answer;
+  assign merges_o    = writes_i && known_q && !is_even && !fills && is_stored;
+  assign takes_answers_o = merges_o && others_q == '0;
+  assign asks_o      = takes_answers_o && asked_q != COUNT'(STAMPS);
   assign ask_stamp_o = STAMP'(asked_q);
   assign is_known_o  = known_q && (!merges_o || answered_q == COUNT'(STAMPS));
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       asked_q    <= '0;
       answered_q <= '0;
+      others_q   <= '0;
     end else begin
+      others_q   <= others_q + READS'(other_asked_i) - READS'(other_answered_i);
       asked_q    <= ends_i ? '0 : asked_q + COUNT'(is_asked_i);
       answered_q <= ends_i ? '0 : answered_q + COUNT'(answers_i);
     end
   end
-  always_ff @(posedge clk_i) if (answers_i) merged_q[STAMP'(answered_q)] <= answer_i;
+  genvar p;
+  generate
+    for (p = 0; p < raster_pkg::PIXELS; p++) begin : gen_answer
+      assign answer[p*COLOR+:COLOR] = answer_i[p*raster_pkg::MEMORY_LANE_BITS+:COLOR];
+    end
+  endgenerate
+  always_ff @(posedge clk_i) if (answers_i) merged_q[STAMP'(answered_q)] <= answer;
   assign merged_o = merged_q[stamp_i];
 
 endmodule

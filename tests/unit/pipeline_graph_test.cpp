@@ -28,7 +28,8 @@ TEST(PipelineGraph, EveryStageIsAPairOfFilesOfItsNameAndAStageOfTheHostIsOne) {
 TEST(PipelineGraph, EveryModuleOfTheRtlIsAStage) {
   std::set<std::string> stages;
   for (const StageInfo& stage : kStageInfo) stages.emplace(stage.name);
-  stages.insert({"block_cache", "cache_tags", "clear_flags", "color_write"});  // the framebuffer of cache.kind blocks
+  // The framebuffer of cache.kind blocks.
+  stages.insert({"block_cache", "cache_tags", "clear_flags", "color_write", "pixel_colors"});
   for (const auto& file : std::filesystem::directory_iterator(kRoot / "rtl_ref" / "stages")) {
     std::string stem = file.path().stem().string();
     if (stem.ends_with("_serial")) stem.resize(stem.size() - std::string_view("_serial").size());

@@ -26,8 +26,7 @@ TEST(PixelColors, OneColourAPixelIsStoredWhereNothingElseOfTheBlockCounts) {
       for (const bool of_pixels : {false, true}) {
         EXPECT_EQ(move(fills, true, is_whole, of_pixels),
                   fills || is_whole || of_pixels ? ColorMove::pixels : ColorMove::samples);
-        EXPECT_EQ(move(fills, false, is_whole, of_pixels),
-                  of_pixels && !fills ? ColorMove::merge : ColorMove::samples);
+        EXPECT_EQ(move(fills, false, is_whole, of_pixels), of_pixels && !fills ? ColorMove::merge : ColorMove::samples);
       }
 }
 
@@ -50,7 +49,8 @@ TEST(PixelColors, APixelHasOneColourWhereAllItsSamplesAreThereAndEqual) {
 }
 
 Config compressed(const char* clears) {
-  return with("embedded", {{"msaa.samples", "4"}, {"compress.unit", "1"}, {"cache.lines", "1"}, {"frame.clears", clears}});
+  return with("embedded",
+              {{"msaa.samples", "4"}, {"compress.unit", "1"}, {"cache.lines", "1"}, {"frame.clears", clears}});
 }
 
 /// The whole block n of a target of 4 rows.

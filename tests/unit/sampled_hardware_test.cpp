@@ -40,7 +40,8 @@ std::vector<Config> sampled_hardware() {
   configs.push_back(hardware("embedded", 4, "standard", true));
   configs.push_back(hardware("full", 4, "standard", true));
   configs.push_back(hardware("embedded", 2, "0,0;0.99609375,0.99609375", true));
-  for (const bool has_units : {false, true}) configs.push_back(textured(hardware("embedded", 4, "standard", has_units)));
+  for (const bool has_units : {false, true})
+    configs.push_back(textured(hardware("embedded", 4, "standard", has_units)));
   configs.push_back(textured(hardware("tiny", 2, "standard", true)));
   configs.back().perspective_colors = 1;
   configs.push_back(textured(hardware("embedded", 8, "standard", true)));

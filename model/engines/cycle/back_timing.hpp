@@ -456,8 +456,8 @@ class BackTiming {
   TransferSink* sink_;
   Widths widths_;
   Station line_raster_;
-  bool resolves_;                           ///< frame.clears
-  bool compresses_;                         ///< compress.unit
+  bool resolves_;    ///< frame.clears
+  bool compresses_;  ///< compress.unit
   OneColor has_one_color_;
   std::optional<BlockTiming> blocks_;       ///< of cache.kind blocks
   std::unique_ptr<MemoryTiming> textures_;  ///< with a texture unit: the memory behind it

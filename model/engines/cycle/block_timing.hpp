@@ -395,8 +395,7 @@ class BlockTiming {
     if (tags.source == DepthSource::memory) answers.depth = read(TilePlane::depth);
     if (tags.color_source == DepthSource::memory) {
       if (compresses_) ++cycle;  // the bit is read
-      answers.color =
-          read(compresses_ && of_pixels_.is_set(tags.block) ? TilePlane::pixel_color : TilePlane::color);
+      answers.color = read(compresses_ && of_pixels_.is_set(tags.block) ? TilePlane::pixel_color : TilePlane::color);
     }
     ordered_ = cycle - 1;
     orders_.leave(ordered_);
@@ -408,7 +407,8 @@ class BlockTiming {
   Cycle merge(Cycle cycle, const BlockAddress& block, Ask&& ask) {
     cycle = std::max(cycle, answered_ + 1);
     for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
-      const auto [asked, answered] = ask(cycle, TilePlane::pixel_color, stamp_address({block, stamp}, widths_), 1, false);
+      const auto [asked, answered] =
+          ask(cycle, TilePlane::pixel_color, stamp_address({block, stamp}, widths_), 1, false);
       cycle = asked + 1;
       answered_ = answered;
     }
@@ -479,11 +479,11 @@ class BlockTiming {
   std::deque<Victim> victims_;
   std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
   bool compresses_;                                  ///< compress.unit
-  std::vector<SampleMask> dirty_colors_;             ///< then, by line and stamp: samples whose colours differ from memory
-  BlockBits of_pixels_;                              ///< likewise: blocks that memory has with one colour a pixel
-  Cycle answered_ = 0;                               ///< the last read
-  std::vector<Cycle> late_;                          ///< by place: when W took the last late item
-  Cycle last_late_ = 0;                              ///< the last of them all
+  std::vector<SampleMask> dirty_colors_;  ///< then, by line and stamp: samples whose colours differ from memory
+  BlockBits of_pixels_;                   ///< likewise: blocks that memory has with one colour a pixel
+  Cycle answered_ = 0;                    ///< the last read
+  std::vector<Cycle> late_;               ///< by place: when W took the last late item
+  Cycle last_late_ = 0;                   ///< the last of them all
 };
 
 }  // namespace halfplane

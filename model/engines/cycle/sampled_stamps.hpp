@@ -64,7 +64,8 @@ struct SampledTarget {
     return pixel({fragment.key.tile_x, fragment.key.tile_y, fragment.stamp}, s);
   }
   [[nodiscard]] PixelOffset pixel(const StampAddress& at, std::size_t s) const {
-    const PixelOffset origin = widths.stamps.origin_of(at.stamp), in_stamp = widths.stamps.pixel_of(static_cast<int>(s));
+    const PixelOffset origin = widths.stamps.origin_of(at.stamp),
+                      in_stamp = widths.stamps.pixel_of(static_cast<int>(s));
     return {(at.tile_x << widths.tile_shift) + origin.x + in_stamp.x,
             (at.tile_y << widths.tile_shift) + origin.y + in_stamp.y};
   }

@@ -47,6 +47,7 @@ std::optional<Config> hardware_of(Config config, const Scene& scene) {
   config.texture_unit = TextureUnitKind::off;
   config.alpha_units = config.dither_units = has_blocks ? 1 : 0;
   config.blend_lanes = has_blocks ? 4 : 0;
+  config.compress_units = has_blocks && scene.width % 2 == 0 ? 1 : 0;  // one colour a pixel in memory, or not
   config.stencil_bits = has_blocks && config.depth_bits <= 24 ? 8 : 0;
   try {
     validate(config);
