@@ -14,7 +14,7 @@
     if (order_stays_q) assume (order_valid && order == order_before_q);
     if (flush_stays_q) assume (flush_valid && flush_request == flush_before_q);
     // What a flush writes, beside the request: cache_tags_stream.
-    if (flush_valid) assume (flush_request.data == (flush_request.plane[1] ? DATA'(flush_word) : {SAMPLES{LANE'(clear_color)}}));
+    if (flush_valid) assume (flush_request.data == (flush_request.plane[1] ? (8 * raster_pkg::REQUEST_BYTES)'(flush_word) : {SAMPLES{LANE'(clear_color)}}));
     if (order_valid) assume (order_writes != '0 || order_reads);  // is_order
     if (order_valid) assert (written_q <= order_writes);
     if (order_valid && !order_reads) assert (written_q != order_writes);
