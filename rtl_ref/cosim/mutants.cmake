@@ -692,7 +692,7 @@ mutant(457 stages/pixel_colors.sv "samples, compression: a merge reads one stamp
 mutant(458 stages/pixel_colors.sv "samples, compression: a merge does not wait for the reads before it"
   [=[merges_o && others_q == '0]=] [=[merges_o]=])
 mutant(459 stages/pixel_colors.sv "samples, compression: a block that lacks samples counts as whole"
-  [=[come_strobe_i == '1]=] [=[come_strobe_i != '0]=])
+  [=[come_strobe_i == '1]=] [=[1'b1]=])
 mutant(460 lib/victim_bytes.sv "samples, compression: what was read lies over what is sent"
   [=[merges_i && !here[s]]=] [=[merges_i]=])
 mutant(461 stages/cache_tags.sv "samples, compression: a cleared block keeps its bit"
