@@ -275,7 +275,7 @@ void BlockCache::write_cleared(int last_x, int last_y, MemoryPort& memory, Count
         memory.request(request);
         ++counters.tile_evictions;
       }
-      of_pixels_.set({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, true);
+      of_pixels_.set({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, config_.compress_units != 0);
     }
   });
   directory_.resolve(TilePlane::color, last_x, last_y);
