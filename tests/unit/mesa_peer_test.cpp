@@ -18,6 +18,7 @@
 #include "model/engines/functional.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
+#include "sim/study/bench/engines.hpp"
 
 namespace halfplane {
 namespace {
@@ -143,6 +144,30 @@ TEST_F(MesaPeerTest, RectanglesOfLinesHaveTheSameSamples) {
     EXPECT_LE(differing(read_capture(text, "rectangles.hpt")), 12) << width;
   }
   report("rectangles");
+}
+
+// bench asks for as many samples a pixel as the configuration has; of those that llvmpipe has not it says so.
+TEST(MesaPeer, HasOneSampleAPixelOrFour) {
+  const auto scene = std::make_shared<const Scene>(make_builtin("triangle", 16, 16, {}, 1));
+  for (const int samples : {2, 8}) {
+    Config config = preset("embedded");
+    config.msaa_samples = samples;
+    EXPECT_THROW((void)make_frame("llvmpipe", scene, config, 1, {}), InputError) << samples;
+  }
+  Config moved = preset("embedded");
+  moved.msaa_samples = 4;
+  moved.msaa_pattern = parse_sample_pattern("0,0;0.5,0;0,0.5;0.5,0.5");
+  EXPECT_THROW((void)make_frame("llvmpipe", scene, moved, 1, {}), InputError);
+}
+
+TEST_F(MesaPeerTest, SaysWhatItHasNotOfSeveralSamples) {
+  start(24, 4);
+  for (const char* state : {"sample_mask 3", "alpha_to_coverage on"}) {
+    const std::string text =
+        std::string("halfplane 1\ntarget 96 64\nspace window\nv 1 1 0 1\nv 9 1 0 1\nv 1 9 0 1\nstate ") + state +
+        "\nt 0 1 2\n";
+    EXPECT_THROW(peer_->upload(read_capture(text, "samples.hpt")), InputError) << state;
+  }
 }
 
 // Every factor and equation, masks, alpha and stencil, over three triangles that lie over each other.

@@ -47,7 +47,7 @@ Frame rtl_frame(std::shared_ptr<const Scene> scene, const Config& config, const 
 }
 
 Frame llvmpipe_frame(const Scene& scene, const Config& config, int threads) {
-  auto peer = std::make_shared<MesaPeer>(scene.width, scene.height, config.depth_bits, threads);
+  auto peer = std::make_shared<MesaPeer>(scene.width, scene.height, config.depth_bits, threads, config.msaa_samples);
   peer->upload(scene);
   return [peer] { return FrameCost{peer->render(), 0}; };
 }
@@ -62,7 +62,10 @@ Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, co
                  const std::function<void()>& poll) {
   RenderOptions options;
   if (poll) options.progress = [poll](double) { poll(); };
-  if (engine == "llvmpipe") require_one_sample(config, "llvmpipe, as it is asked here,");
+  if (engine == "llvmpipe" &&
+      ((config.msaa_samples != 1 && config.msaa_samples != 4) || config.msaa_pattern.count != 0))
+    throw InputError(
+        "msaa.samples: llvmpipe has one sample a pixel, or four in their standard places; use one of these");
   if (engine == "functional") return functional_frame(std::move(scene), config, threads);
   if (engine == "llvmpipe") return llvmpipe_frame(*scene, config, threads);
   if (engine == "cycle" || engine == "rtl") check_hardware_scene(*scene, config);

@@ -167,6 +167,8 @@ void MesaFrame::make_vertices(const Scene& scene, Space space) {
 
 void MesaFrame::check_draw_state(const State& state, Topology topology) const {
   if (state.origin != Origin::top_left) refuse("origin bottom_left");
+  if (samples_ > 1 && state.sample_mask != State{}.sample_mask) refuse("sample_mask");
+  if (samples_ > 1 && state.alpha_to_coverage) refuse("alpha_to_coverage");
   if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
   const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
   if (state.shade == Shade::phong && drawn_as(state, topology) == PrimitiveType::triangle) refuse("shade phong");
