@@ -166,6 +166,7 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   sampled.blend_lanes = 4;
   sampled.stencil_bits = 8;
   sampled.msaa_samples = 4;
+  sampled.compress_units = 1;
   EXPECT_EQ(file_text("presets/sampled/raster_pkg.sv"), raster_pkg(sampled));
 }
 
