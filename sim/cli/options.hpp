@@ -86,11 +86,18 @@ struct TimeSpan {
 /// Nothing for an empty text. Throws InputError.
 [[nodiscard]] std::optional<TimeSpan> parse_time(const std::string& text);
 
+/// The moment of `--time`, one time. Throws InputError for a span.
+[[nodiscard]] Moment moment_of(const CommonOptions& options);
+
 /// What the options ask for, before a moment is chosen. Prints warnings to stderr. See load_scene().
 [[nodiscard]] MovingScene open_scene(const CommonOptions& options, const Config& config);
 
-/// A scene of open_scene() as the engines take it: objects outside the view left out, in the options' convention and the
+/// A scene of open_scene() before it is projected: objects outside the view left out, in the options' convention and the
 /// configuration's mapping of depth.
+[[nodiscard]] Scene prepared_in_clip_space(Scene scene, const CommonOptions& options, const Config& config,
+                                           ObjectCounts* objects = nullptr);
+
+/// The same as the engines take it: with --transform clipped, divided and mapped in smaller numbers.
 [[nodiscard]] Scene prepared(Scene scene, const CommonOptions& options, const Config& config,
                              ObjectCounts* objects = nullptr);
 
