@@ -200,6 +200,8 @@ MovingScene open_scene(const CommonOptions& options, const Config& config) {
   SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed, options.animation};
   request.lights = options.lights;
   request.transform = options.transform;
+  if (options.leaves_out) request.leaves_out = parse_cull_objects(options.cull_objects);
+  request.has_tree = options.has_tree;
   if (options.size.empty() && !is_capture(options.scene)) {
     request.width = std::min(640, config.target_width);
     request.height = std::min(480, config.target_height);
@@ -231,9 +233,30 @@ Scene load_scene(const CommonOptions& options, const Config& config, double& loa
   (void)parse_cull_objects(options.cull_objects);
   const Moment moment = moment_of(options);
   const auto start = std::chrono::steady_clock::now();
-  Scene scene = prepared(open_scene(options, config).at(moment), options, config, objects);
+  const MovingScene source = open_scene(options, config);
+  Scene scene = prepared(source.at(moment), options, config, objects);
+  if (objects != nullptr) add_work(*objects, source);
   load_s = seconds_since(start);
   return scene;
+}
+
+void add_work(ObjectCounts& objects, const MovingScene& source) {
+  if (!source.work) return;
+  objects.tests = source.work->bounds.tests;
+  objects.nodes_outside = source.work->bounds.nodes_outside;
+  objects.nodes_inside = source.work->bounds.nodes_inside;
+  objects.vertices_skipped = source.work->vertices_skipped;
+}
+
+Json objects_json(const ObjectCounts& objects) {
+  return {{"in", objects.in},
+          {"culled_sphere", objects.culled_sphere},
+          {"culled_box", objects.culled_box},
+          {"primitives_skipped", objects.primitives_skipped},
+          {"tests", objects.tests},
+          {"nodes_outside", objects.nodes_outside},
+          {"nodes_inside", objects.nodes_inside},
+          {"vertices_skipped", objects.vertices_skipped}};
 }
 
 Json result_head(const std::string& command, const CommonOptions& options, const Config& config) {

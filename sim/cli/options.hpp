@@ -45,7 +45,9 @@ struct CommonOptions {
   std::string skip = "all";
   std::string convention = "gl";
   std::string cull_objects = "box";
-  std::string json;  ///< empty: none, "-": stdout, else a file
+  bool leaves_out = false;  ///< what `cull_objects` finds outside is not computed: for commands that draw, and no more
+  bool has_tree = true;     ///< false: each object is asked by itself
+  std::string json;         ///< empty: none, "-": stdout, else a file
   bool quiet = false;
 };
 
@@ -105,6 +107,12 @@ struct TimeSpan {
 /// Prints warnings to stderr, sets `load_s`, and `objects` if there is one.
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s,
                                ObjectCounts* objects = nullptr);
+
+/// Adds what the last scene of `source` took.
+void add_work(ObjectCounts& objects, const MovingScene& source);
+
+/// {in, culled_sphere, ...}: `objects` of a result.
+[[nodiscard]] Json objects_json(const ObjectCounts& objects);
 
 /// {schema, config, scene, seed}: the head of every result; the last two are null for a command without a scene.
 /// `command` as in "render".

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "model/fixed.hpp"
 #include "model/stages/primitive_assembly.hpp"
 
 namespace halfplane {
@@ -208,8 +209,13 @@ State in_window(const State& state, int width, int height) {
 /// Takes a scene into the window, draw by draw.
 class HostProjector {
  public:
-  HostProjector(Scene scene, const HostGeometry& host, HostCounts& counts)
-      : given_(std::move(scene)), made_(given_), host_(host), counts_(counts), place_(given_.vertices.size(), kNone) {
+  HostProjector(Scene scene, const HostGeometry& host, int subpixel_bits, HostCounts& counts)
+      : given_(std::move(scene)),
+        made_(given_),
+        host_(host),
+        subpixel_bits_(subpixel_bits),
+        counts_(counts),
+        place_(given_.vertices.size(), kNone) {
     made_.indices.clear();
   }
 
@@ -288,13 +294,50 @@ class HostProjector {
       return;
     }
     ++counts_.cut;
-    const std::uint32_t first = add(polygon[0]);
-    std::uint32_t last = add(polygon[1]);
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
-      const std::uint32_t next = add(polygon[i]);
-      made_.indices.insert(made_.indices.end(), {first, last, next});
-      last = next;
+    add_pieces(polygon);
+  }
+
+  /// The fan that the pipeline makes of a clipped polygon (docs/spec.md): rounding can dent it, and then it starts at a corner
+  /// from which no piece is turned over, or those pieces are left out.
+  void add_pieces(const std::vector<HostVertex>& polygon) {
+    struct Corner {
+      std::int64_t x, y;  ///< subpixels
+      std::uint32_t place;
+    };
+    std::vector<Corner> corner;
+    for (const HostVertex& v : polygon) {
+      const std::uint32_t place = add(v);
+      const double scale = std::ldexp(1.0, subpixel_bits_);
+      corner.push_back({snap(made_.vertices[place].x, scale), snap(made_.vertices[place].y, scale), place});
     }
+    const std::size_t size = corner.size();
+    const auto at = [&](std::size_t i) -> const Corner& { return corner[i % size]; };
+    const auto area = [&](std::size_t start, std::size_t i) {
+      const Corner &a = at(start), &b = at(start + i), &c = at(start + i + 1);
+      return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    };
+    std::int64_t whole = 0;
+    for (std::size_t i = 1; i + 1 < size; ++i) whole += area(0, i);
+    const auto is_turned = [whole](std::int64_t of_piece) { return of_piece != 0 && (of_piece > 0) != (whole > 0); };
+    std::optional<std::size_t> best, smallest;
+    for (std::size_t start = 0; start < size; ++start) {
+      const auto is_before = [&](std::optional<std::size_t> other) {
+        return !other || std::pair(at(start).y, at(start).x) < std::pair(at(*other).y, at(*other).x);
+      };
+      bool has_turned = false;
+      for (std::size_t i = 1; i + 1 < size; ++i) has_turned |= is_turned(area(start, i));
+      if (!has_turned && is_before(best)) best = start;
+      if (is_before(smallest)) smallest = start;
+    }
+    const std::size_t start = best.value_or(*smallest);
+    std::size_t pieces = 0;
+    for (std::size_t i = 1; i + 1 < size; ++i) {
+      const std::int64_t of_piece = area(start, i);
+      if (whole == 0 || of_piece == 0 || is_turned(of_piece)) continue;
+      made_.indices.insert(made_.indices.end(), {at(start).place, at(start + i).place, at(start + i + 1).place});
+      ++pieces;
+    }
+    if (pieces == 0) made_.indices.insert(made_.indices.end(), 3, corner_without_area());
   }
 
   void add_line(std::uint32_t from, std::uint32_t to) {
@@ -359,6 +402,7 @@ class HostProjector {
 
   Scene given_, made_;
   const HostGeometry& host_;
+  int subpixel_bits_;
   HostCounts& counts_;
   std::vector<std::uint32_t> place_;  ///< of a vertex that needs no cut, once it is in the window
   std::vector<std::uint32_t> window_states_;
@@ -411,7 +455,7 @@ Scene in_host_numbers(Scene scene, TransformNumbers numbers, const Config& confi
   if (numbers == TransformNumbers::binary64 || first == scene.commands.end()) return scene;
   const State& state = scene.states[std::get<Draw>(*first).state];
   const HostGeometry host(numbers, state, scene.width, scene.height, config);
-  return HostProjector(std::move(scene), host, counts != nullptr ? *counts : own).run();
+  return HostProjector(std::move(scene), host, config.subpixel_bits, counts != nullptr ? *counts : own).run();
 }
 
 }  // namespace halfplane

@@ -324,6 +324,32 @@ TEST(HostGeometry, ACutFloorHasNoHolesAndNoPixelTwice) {
   }
 }
 
+TEST(HostGeometry, PiecesOfACutTriangleDrawNoPixelTwice) {
+  for (const char* name : {"tiny", "embedded"}) {
+    Config config = preset(name);
+    config.target_width = config.target_height = 96;
+    config.guard_band = 128;
+    for (const TransformNumbers numbers : kSmaller) {
+      Random random(78);
+      std::size_t cut = 0;
+      for (int i = 0; i < 1500; ++i) {
+        SceneBuilder builder(kWidth, kHeight, State{});
+        std::array<Vertex, 3> v;
+        for (Vertex& corner : v) {
+          const double z = random.between(-1, 3), x = random.between(-2, 2);
+          corner = project(x, random.between(-2, 2), z);
+        }
+        builder.triangle(v[0], v[1], v[2]);
+        HostCounts counts;
+        const Scene made = in_host_numbers(builder.scene, numbers, config, &counts);
+        cut += counts.cut;
+        for (const std::uint32_t count : counts_of(made, config)) ASSERT_LE(count, 1U) << name << ", triangle " << i;
+      }
+      EXPECT_GT(cut, 500U);
+    }
+  }
+}
+
 TEST(HostGeometry, Binary64LeavesASceneAsItIs) {
   const Scene scene = floor_scene(5);
   const Scene same = in_host_numbers(scene, TransformNumbers::binary64, preset("embedded"));
